@@ -4,17 +4,24 @@ from __future__ import annotations
 
 import json
 import math
-from dataclasses import fields
+from dataclasses import MISSING, fields
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 import pytest
+from matplotlib.backends.backend_agg import FigureCanvasAgg
+from matplotlib.figure import Figure
 
 import eomgen
-from eomgen.scene import forms
+from eomgen.report.letters import Box
+from eomgen.report.letters_artist import Names
+from eomgen.report.scene_drawing import draw
+from eomgen.report.space_drawing import draw_space
+from eomgen.scene import forms, plane_strokes, space_strokes
 from eomgen.scene.instant import drawn_start, frame_at
-from eomgen.scene.scene import ROLES, Scene
+from eomgen.scene.scene import ROLES, Mark, Scene
+from eomgen.scene.strokes import Numbers, Sizes
 from eomgen.symbolic.numeric.evaluation import FLOAT, evaluate
 
 MODELS = Path(__file__).parent.parent / "models"
@@ -146,3 +153,87 @@ def test_a_parameter_moves_lengths():
     state = drawn_start(scene.system)
     longer = type(state)(state.t, state.x, 2 * state.p)
     assert not np.allclose(frame_at(scene, state), frame_at(scene, longer))
+
+
+def test_every_kind_has_its_drawers():
+    """The tables of the plane and of space hold all of `forms.ALL`; the plane has no solids."""
+    assert {form.kind for form in forms.ALL} == {form.kind for form in space_strokes.TABLE}
+    in_the_plane = {form.kind for form in plane_strokes.TABLE}
+    assert in_the_plane | plane_strokes.SOLIDS == {form.kind for form in forms.ALL}
+    assert not in_the_plane & plane_strokes.SOLIDS
+
+
+def one_of_each(kind: type[forms.Form]) -> forms.Form:
+    """A form of a kind, made of constants."""
+    known = {
+        "text": "a",
+        "symbol": "hinge",
+        "unit": "N",
+        "faces": ((0, 1, 2),),
+        "close": "chord",
+        "start": 0,
+        "tier": 2,
+    }
+    known |= {"points": ((0, 0, 0), (1, 0, 0), (0, 1, 1)), "profile": ((0, 0), (1, 0), (1, 1)), "rims": (1,)}
+    places = {"along": (0, 2, 0), "normal": (1, 0, 0), "b": (2, 1, 0), "size": (1, 2, 3), "vector": (0, 3, 1)}
+    found: dict[str, Any] = {}
+    for field in fields(kind):
+        if field.name in known:
+            found[field.name] = known[field.name]
+        elif field.name in kind.spots:
+            found[field.name] = places.get(field.name, (0, 1, 0))
+        elif field.default is MISSING:
+            found[field.name] = places["vector"] if field.name == "vector" else 1
+    if kind.kind == "prism":
+        found["points"], found["high"] = ((0, 0), (1, 0), (0, 1)), 2
+    return kind(**found)
+
+
+@pytest.mark.parametrize("kind", forms.ALL, ids=lambda form: form.kind)
+@pytest.mark.parametrize("space", ("plane", "space"))
+def test_each_kind_is_drawn_by_each_drawer(kind, space):
+    """A form alone gives strokes or letters with finite places, and they move with its frame: R r + p."""
+    table = plane_strokes.TABLE if space == "plane" else space_strokes.TABLE
+    if kind not in table:
+        return
+    name = "double_pendulum" if space == "plane" else "arm3"
+    scene = scene_named(name)
+    numbers = Numbers(scene, frame_at(scene, drawn_start(scene.system))[None, :])
+    d = numbers.dimension
+    sizes = Sizes(0.1, -np.ones(d), np.ones(d), {("body", "N"): 1.0}, True)
+    form = one_of_each(kind)
+    at_home, moved = (table[kind](form, Mark(form, frame), numbers, sizes) for frame in (0, 2))
+    places = [*(stroke.path.reshape(-1, d) for stroke in at_home[0]), *(letter.at for letter in at_home[1])]
+    if kind.kind in ("dimension", "angle", "track") and space == "space":
+        return
+    assert places and all(np.isfinite(p).any() for p in places)
+    if kind.kind in ("line", "polygon", "arc", "box", "ellipsoid", "revolution", "prism", "polyhedron", "rod", "point"):
+        R, p = numbers.poses[2]
+        for one, other in zip(at_home[0], moved[0], strict=True):
+            assert np.allclose(one.path.reshape(-1, d) @ R[0].T + p[0], other.path.reshape(-1, d), equal_nan=True)
+
+
+def boxes_of(name: str) -> list[tuple[str, Box]]:
+    """Every name of a model's picture, and where it stands."""
+    scene = scene_named(name)
+    numbers = Numbers(scene, frame_at(scene, drawn_start(scene.system))[None, :])
+    figure = Figure(figsize=(6, 5), layout="constrained")
+    FigureCanvasAgg(figure)
+    panel = figure.subplots()
+    if scene.plane:
+        draw(panel, plane_strokes.plane_drawing(numbers, dimensions=True))
+    else:
+        draw_space(panel, space_strokes.space_drawing(numbers, dimensions=True))
+    figure.draw_without_rendering()
+    (names,) = (artist for artist in panel.get_children() if isinstance(artist, Names))
+    return names.boxes
+
+
+@pytest.mark.parametrize("name", [pytest.param(n, marks=() if n in SOME else pytest.mark.slow) for n in ALL])
+def test_names_do_not_cover_one_another(name):
+    """Of the boxes of all names in a model's picture no two meet, and there are names."""
+    boxes = boxes_of(name)
+    assert boxes
+    for k, (text, box) in enumerate(boxes):
+        for other, there in boxes[:k]:
+            assert not box.meets(there), f"{text} covers {other}"

@@ -2,23 +2,26 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Sequence
 from dataclasses import replace
 from typing import Any
 
 from eomgen.mechanics.bodies.inertia import mass_properties
-from eomgen.mechanics.bodies.kinematics import BodyLink
+from eomgen.mechanics.bodies.kinematics import GROUND, BodyLink
 from eomgen.mechanics.equations.system import System
 from eomgen.model.composite import pose_of
 from eomgen.model.shapes import MassProperties
 from eomgen.model.shapes.forms import ArcForm, EllipsoidForm, Form, LineForm, PolygonForm
 from eomgen.model.trusses import is_node
+from eomgen.model.values import exact_parameters
 from eomgen.scene.forms import PointForm, RodForm
 from eomgen.scene.scene import Mark, SceneFrame
 from eomgen.symbolic.expression.functions import function, over, sqrt
-from eomgen.symbolic.expression.graph import is_zero
+from eomgen.symbolic.expression.graph import Node, is_zero
 from eomgen.symbolic.expression.rational import Fraction
 from eomgen.symbolic.expression.spatial import ZERO, Vector
+from eomgen.symbolic.numeric.evaluation import FLOAT, evaluate
+from eomgen.symbolic.numeric.tolerances import COMPUTED
 
 
 def body_marks(system: System, link: BodyLink, frame: int) -> list[Mark]:
@@ -31,9 +34,21 @@ def body_marks(system: System, link: BodyLink, frame: int) -> list[Mark]:
         marks = [Mark(form, frame, "body", link.name) for form in seen(system, part.shape.forms(system.scope.value))]
     elif part.parts is None:
         marks = skeleton(system, link, frame)
-        if not marks or (part.shape is not None and part.shape.is_point):
+        point = part.shape is not None and part.shape.is_point
+        if (point or not marks) and not is_block(system, link):
             marks.append(Mark(PointForm(ZERO), frame, "body", link.name))
     return marks
+
+
+def is_block(system: System, link: BodyLink) -> bool:
+    """Whether a body slides on the ground and nothing says how it looks: it is drawn as a block."""
+    part = system.scope.model.bodies[link.name]
+    if system.scope.model.space == "space":
+        return False
+    formless = part.parts is None and (part.shape is None or part.shape.is_point)
+    slides = len(link.S) < 3 and sum(all(map(is_zero, w)) for w, _ in link.S) == 1
+    seated = link.joint is not None and link.joint.carries_reaction and link.joint.straight
+    return formless and slides and seated and link.parent == GROUND
 
 
 def piece_marks(system: System, body: str, parent: int, first: int) -> tuple[list[SceneFrame], list[Mark]]:
@@ -42,7 +57,8 @@ def piece_marks(system: System, body: str, parent: int, first: int) -> tuple[lis
     frames: list[SceneFrame] = []
     marks: list[Mark] = []
     for piece in pieces or ():
-        for form in seen(system, piece.shape.forms(system.scope.value)):
+        own = (PointForm(ZERO),) if piece.shape.is_point else piece.shape.forms(system.scope.value)
+        for form in seen(system, own):
             if piece.hole and isinstance(form, (ArcForm, PolygonForm)):
                 marks.append(Mark(replace(form, hole=not form.hole), first + len(frames), "hole", body))
             elif not piece.hole:
@@ -61,11 +77,46 @@ def seen(system: System, forms: Iterable[Form]) -> list[Form]:
 def skeleton(system: System, link: BodyLink, frame: int) -> list[Mark]:
     """A body without a shape: the lines through its joint and its points, in space also its inertia."""
     places = places_of_body(system, link)
-    plane = system.scope.model.space == "plane"
-    if plane:
-        return [Mark(LineForm(tuple(places)), frame, "body", link.name)] if len(places) > 1 else []
+    if system.scope.model.space == "plane":
+        return [Mark(form, frame, "body", link.name) for form in _plate(system, places)]
     rods = [Mark(RodForm(places[0], place), frame, "body", link.name) for place in places[1:]]
     return [*rods, *inertia_mark(mass_properties(system.scope, link.name), frame, link.name)]
+
+
+def _plate(system: System, places: list[Vector]) -> list[Form]:
+    """A line through places; of what moves, and has places on more than one line, the plate between them."""
+    if len(places) < 2:
+        return []
+    if not system.symbols.q or len(places) < 3 or any(system.motion.moves(place) for place in places):
+        return [LineForm(tuple(places))]
+    numbers = [tuple(map(float, evaluate(place[:2], known_parameters(system), FLOAT))) for place in places]
+    corners = hull(numbers)
+    return [PolygonForm(tuple(places[k] for k in corners)) if len(corners) > 2 else LineForm(tuple(places))]
+
+
+def hull(places: Sequence[tuple[float, ...]]) -> list[int]:
+    """The numbers of the corners of the convex hull, counter-clockwise; of points on one line its ends."""
+    order = sorted(range(len(places)), key=lambda k: (places[k], k))
+    chains = []
+    for way in (order, order[::-1]):
+        chain: list[int] = []
+        for k in way:
+            while len(chain) > 1 and _turn(places[chain[-2]], places[chain[-1]], places[k]) <= COMPUTED:
+                chain.pop()
+            chain.append(k)
+        chains.append(chain[:-1])
+    return [*chains[0], *chains[1]]
+
+
+def _turn(a: tuple[float, ...], b: tuple[float, ...], c: tuple[float, ...]) -> float:
+    """Twice the area of a triangle, positive where it is counter-clockwise."""
+    return (b[0] - a[0]) * (c[1] - a[1]) - (b[1] - a[1]) * (c[0] - a[0])
+
+
+def known_parameters(system: System) -> dict[Node, float]:
+    """The parameters in numbers; one without a value is 1, as in pictures."""
+    known = exact_parameters(system.scope.model)
+    return {node: float(known.get(name, 1)) for name, node in system.symbols.parameters.items()}
 
 
 def places_of_body(system: System, link: BodyLink) -> list[Vector]:

@@ -10,16 +10,26 @@ from eomgen.mechanics.bodies.kinematics import GROUND, BodyLink, ground_place
 from eomgen.mechanics.bodies.loads import SystemScene
 from eomgen.mechanics.equations.system import System
 from eomgen.mechanics.structures.blocks import members_of
-from eomgen.model.constraints.meeting import BodyLine, FlatSurface, Meeting, RoundSurface, TouchingPoint
+from eomgen.model.constraints.meeting import (
+    BodyLine,
+    FlatSurface,
+    Groove,
+    Meeting,
+    RoundSurface,
+    TouchingPoint,
+    TouchingRound,
+)
 from eomgen.model.constraints.strand import Stop, Strand
 from eomgen.model.forces.load import Couple, PointForce
 from eomgen.model.joints.base import unit
-from eomgen.model.shapes.forms import ArcForm, LineForm
-from eomgen.scene.forms import DamperForm, RodForm, SpringForm, SymbolForm, TrackForm
+from eomgen.model.shapes.forms import ArcForm, EllipsoidForm, LineForm
+from eomgen.scene.bodies import is_block, seen
+from eomgen.scene.forms import DamperForm, RodForm, SpringForm, SymbolForm, TrackForm, WheelForm
 from eomgen.scene.scene import Mark
 from eomgen.symbolic.expression.functions import function
 from eomgen.symbolic.expression.graph import is_zero
-from eomgen.symbolic.expression.spatial import ZERO, Pose, Vector, apply
+from eomgen.symbolic.expression.rational import Fraction
+from eomgen.symbolic.expression.spatial import ZERO, Pose, Vector, apply, vector_of
 
 BESIDE = 1  # of a spring and a damper between the same places, each to its side [symbol units]
 
@@ -45,13 +55,30 @@ def _plane_joint(
     if len(sliding) > 1 or len(link.S) > 2:
         return []
     if sliding:
-        v = apply(link.relative.R, sliding[0])
-        guide = Mark(TrackForm(link.before.p, apply(link.before.R, v)), above, "track", own)
-        symbol = "slider" if turning else "block"
-        return [guide, Mark(SymbolForm(symbol, link.point, sliding[0]), frame, "joint", own)]
+        return _guided(system, link, frame, bool(turning), sliding[0])
     if turning:
         return [Mark(SymbolForm("pin" if grounded else "hinge", link.before.p), above, "support", own)]
     return [Mark(SymbolForm("clamp" if grounded else "weld", link.before.p), above, "support", own)]
+
+
+def _guided(system: System, link: BodyLink, frame: int, turns: bool, own: Vector) -> list[Mark]:
+    """A block on its guide: on the ground's hatched, above it; a spring stands for the guide of what hangs on it."""
+    part, grounded = system.scope.model.bodies[link.name], link.parent == GROUND
+    above = 0 if grounded else link.parent + 1
+    if guides := link.joint.guides(system.scope.value, link.before):
+        return [Mark(form, above, "track", link.name) for form in guides]
+    along = apply(link.before.R, apply(link.relative.R, own))
+    upward = (-along[1], along[0], 0)
+    point, bare = part.shape is not None and part.shape.is_point, part.shape is None and part.parts is None
+    block = is_block(system, link)
+    below = Fraction(3, 5) if bare or block else Fraction(1, 4) if point else 0
+    sprung = any(effort is not None and effort.stiffness is not None for effort in link.joint.efforts())
+    found = []
+    if not sprung or grounded:
+        found = [Mark(TrackForm(link.before.p, along, upward if grounded else None, below), above, "track", link.name)]
+    if bare or block:
+        found.append(Mark(SymbolForm("slider" if turns else "block", link.point, own), frame, "body", link.name))
+    return found
 
 
 def _space_joint(
@@ -132,10 +159,11 @@ def string_marks(strands: Sequence[Strand], of: str) -> list[Mark]:
         if one.second.round:
             found.append(Mark(_wrapped(one.second, one.d, other.d), 0, "string", of))
     stops = {id(stop): stop for strand in strands for stop in (strand.first, strand.second)}
-    for peg in stops.values():
-        if peg.body is None and peg.round:
-            r = function("abs", peg.offset)
-            found.append(Mark(ArcForm(peg.center, r, r, close="chord"), 0, "joint", of))
+    for stop in stops.values():
+        shape = None if stop.body is None else stop.scene.shape(stop.body)
+        if stop.round and (shape is None or shape.is_point):
+            r = function("abs", stop.offset)
+            found.append(Mark(ArcForm(stop.center, r, r, close="chord"), 0, "joint", of))
     return found
 
 
@@ -161,7 +189,7 @@ def _is_negative(stop: Stop) -> bool:
 
 def _met(system: System, meeting: Meeting, rows: Sequence[Any], of: str) -> list[Mark]:
     """What something touches, and the support of a point."""
-    found = _surface(system, meeting, of)
+    found = [*_surface(system, meeting, of), *_round(system, meeting)]
     if isinstance(meeting.what, TouchingPoint) and not isinstance(meeting.surface, RoundSurface):
         found += _point_support(system, meeting, rows, of)
     return found
@@ -171,11 +199,11 @@ def _surface(system: System, meeting: Meeting, of: str) -> list[Mark]:
     """The line, plane, circle or ball that is touched; nothing where a shape shows it already."""
     surface, scope = meeting.surface, system.scope
     frame = 0 if surface.on is None else system.motion.index[surface.on] + 1
-    if isinstance(surface, FlatSurface) and surface.at is not None:
-        at = ground_place(scope, surface.at) if surface.on is None else scope.vector(surface.at)
+    if isinstance(surface, FlatSurface):
         n = unit(scope.vector(surface.normal))
         along = (n[1], -n[0], 0) if scope.model.space == "plane" else None
-        return [Mark(TrackForm(at, along, n), frame, "track", of)]
+        at = _level(system, meeting, surface)
+        return [Mark(TrackForm(at, along, n), frame, "track", of)] if system.symbols.q and at is not None else []
     if isinstance(surface, RoundSurface) and surface.at is not None:
         at = ground_place(scope, surface.at) if surface.on is None else scope.vector(surface.at)
         r = scope.value(surface.radius)
@@ -183,17 +211,48 @@ def _surface(system: System, meeting: Meeting, of: str) -> list[Mark]:
     return []
 
 
+def _level(system: System, meeting: Meeting, surface: FlatSurface) -> Vector | None:
+    """A place of a flat surface, in the axes of its body: where it is said to be, else where the point starts."""
+    scene = SystemScene(system.motion)
+    if surface.at is not None:
+        return scene.ground_place(surface.at) if surface.on is None else scene.vector(surface.at)
+    if not isinstance(meeting.what, TouchingPoint):
+        return None
+    return vector_of(map(scene.start, scene.position(scene.place(meeting.what.point))))
+
+
+def _round(system: System, meeting: Meeting) -> list[Mark]:
+    """A round body that no shape shows, by the radius with which it rolls."""
+    what = meeting.what
+    if not isinstance(what, TouchingRound) or (what.radius is None and what.semiaxes is None):
+        return []
+    part = system.scope.model.bodies[what.body]
+    if part.parts is not None or (part.shape is not None and not part.shape.is_point):
+        return []
+    r = system.scope.value(what.radius)  # 0 where there is none
+    at = system.motion.points[what.body][what.center or "origin"]
+    frame = system.motion.index[what.body] + 1
+    if what.axis is not None:
+        return [Mark(WheelForm(at, system.scope.vector(what.axis), r), frame, "body", what.body)]
+    ball = EllipsoidForm(at, (r, r, r) if what.semiaxes is None else system.scope.vector(what.semiaxes))
+    return [Mark(form, frame, "body", what.body) for form in seen(system, (ball,))]
+
+
 def _point_support(system: System, meeting: Meeting, rows: Sequence[Any], of: str) -> list[Mark]:
     """A roller on the ground's line, a block on a body's line."""
     if system.scope.model.space != "plane" or not isinstance(meeting.what, TouchingPoint):
         return []
     at = system.motion.position(system.motion.place(meeting.what.point))
-    surface, tie = meeting.surface, system.scope.model.constraints[of]
+    surface = meeting.surface
     if isinstance(surface, FlatSurface):
         n = unit(system.scope.vector(surface.normal))
-        if getattr(tie, "unilateral", None):
+        if system.symbols.q and system.motion.moves(at):
             return []
         return [Mark(SymbolForm("roller", at, (n[1], -n[0], 0)), 0, "support", of)]
+    if isinstance(surface, Groove) and surface.on is not None:
+        place, link = system.motion.place(meeting.what.point), system.motion.link(surface.on)
+        along = system.scope.vector(surface.along)
+        return [Mark(SymbolForm("blade", place[1], along), system.motion.index[link.name] + 1, "joint", of)]
     if isinstance(surface, BodyLine):
         (_, A), (_, B) = SystemScene(system.motion).line(surface.on)
         R = system.motion.link(surface.on).pose.R

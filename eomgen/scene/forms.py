@@ -48,10 +48,21 @@ class RodForm(SpringForm):
 
 
 @dataclass(frozen=True)
+class WheelForm(Form):
+    """A thin wheel with two spokes, `axis` of any length but 0."""
+
+    kind: ClassVar[str] = "wheel"
+    spots: ClassVar[tuple[str, ...]] = ("at", "axis")
+    at: Vector
+    axis: Vector
+    radius: Any
+
+
+@dataclass(frozen=True)
 class TrackForm(Form):
     """A straight line through a place, as long as the picture; with a normal it is the edge of what lies below.
 
-    In space with a normal, and no direction, a plane.
+    In space with a normal, and no direction, a plane. `below`: so far against the normal it is drawn [symbol units].
     """
 
     kind: ClassVar[str] = "track"
@@ -59,6 +70,7 @@ class TrackForm(Form):
     at: Vector
     along: Vector | None
     normal: Vector | None = None
+    below: Any = 0
 
 
 @dataclass(frozen=True)
@@ -138,24 +150,36 @@ class LoadForm(Form):
 
 @dataclass(frozen=True)
 class DimensionForm(Form):
-    """A dimension line beside the line from a to b, with the name of the length."""
+    """A dimension line beside the line from a to b, with the name of the length; `tier`: so far away [symbol units]."""
 
     kind: ClassVar[str] = "dimension"
     spots: ClassVar[tuple[str, ...]] = ("a", "b")
     a: Vector
     b: Vector
     text: str
+    tier: int = 3
 
 
 @dataclass(frozen=True)
 class AngleForm(Form):
-    """The arc of an angle, from one direction to another, with its name [rad from x]."""
+    """The arc of an angle, from one direction to another, with its name [rad from x]; `tier`: its radius."""
 
     kind: ClassVar[str] = "angle"
     spots: ClassVar[tuple[str, ...]] = ("at",)
     at: Vector
     start: Any
     end: Any
+    text: str
+    tier: int = 4
+
+
+@dataclass(frozen=True)
+class FieldForm(Form):
+    """A uniform field of accelerations: an arrow in the corner of the picture, of one length."""
+
+    kind: ClassVar[str] = "field"
+    spots: ClassVar[tuple[str, ...]] = ("vector",)
+    vector: Vector
     text: str
 
 
@@ -180,6 +204,7 @@ ALL: tuple[type[Form], ...] = (
     RodForm,
     SpringForm,
     DamperForm,
+    WheelForm,
     TrackForm,
     SymbolForm,
     PointForm,
@@ -189,5 +214,6 @@ ALL: tuple[type[Form], ...] = (
     LoadForm,
     DimensionForm,
     AngleForm,
+    FieldForm,
     AxesForm,
 )

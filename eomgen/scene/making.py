@@ -4,18 +4,20 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 
+from eomgen.mechanics.bodies.kinematics import BodyLink
 from eomgen.mechanics.equations.equations_of_motion import EquationsOfMotion
 from eomgen.mechanics.equations.system import System, system_of
 from eomgen.mechanics.statics.contacts_at_start import contacts_at_start
 from eomgen.model.reader import ModelOrPath, model_at
 from eomgen.model.trusses import is_node
-from eomgen.scene.bodies import body_marks, piece_marks
+from eomgen.scene.applied import applied_marks, field_marks
+from eomgen.scene.bodies import body_marks, piece_marks, places_of_body
 from eomgen.scene.connections import force_elements, joint_marks, ordered, tie_marks
-from eomgen.scene.forms import LabelForm
+from eomgen.scene.forms import AxesForm, LabelForm
 from eomgen.scene.scene import ROLES, Mark, Scene, SceneFrame
-from eomgen.symbolic.expression.spatial import ZERO, Vector
-
-UNNAMED = ("origin", "center", "start")  # points that need no letter
+from eomgen.scene.sizes import size_marks
+from eomgen.symbolic.expression.rational import Fraction
+from eomgen.symbolic.expression.spatial import ZERO, Vector, plus, times
 
 
 def scene_of_system(system: System, equations: EquationsOfMotion | None = None) -> Scene:
@@ -33,10 +35,10 @@ def scene_of_system(system: System, equations: EquationsOfMotion | None = None) 
         frames += pieces
         marks += drawn + joint_marks(system, link, k)
     marks += tie_marks(system) + force_elements(system)
+    marks += [*size_marks(system, marks), *field_marks(system), *applied_marks(system), *name_marks(system)]
+    if system.scope.model.space == "space":
+        marks.append(Mark(AxesForm(ZERO), 0, "axes", ""))
     points = tuple(named_points(system))
-    marks += [
-        Mark(LabelForm(name.rpartition(".")[2], at), 0, "point", name) for name, at in points if _has_letter(name)
-    ]
     return Scene(system, tuple(frames), points, ordered(marks, ROLES), equations)
 
 
@@ -59,5 +61,24 @@ def named_points(system: System) -> Iterator[tuple[str, Vector]]:
             yield f"{link.name}.{name}", motion.position((link.name, motion.points[link.name].get(name, ZERO)))
 
 
-def _has_letter(name: str) -> bool:
-    return name.rpartition(".")[2] not in UNNAMED
+def name_marks(system: System) -> Iterator[Mark]:
+    """The letters of points that somebody named, and the names of bodies."""
+    motion, model = system.motion, system.scope.model
+    for name, place in model.points.items():
+        yield Mark(LabelForm(name, motion.scope.vector(place)), 0, "point", name)
+    for k, link in enumerate(motion.links, start=1):
+        if is_node(link.name):
+            yield Mark(LabelForm(link.name.rpartition(".")[2], ZERO), k, "point", link.name)
+            continue
+        for name in model.bodies[link.name].points:
+            yield Mark(LabelForm(name, motion.points[link.name][name]), k, "point", f"{link.name}.{name}")
+        yield Mark(LabelForm(link.name, _middle(system, link)), k, "label", link.name)
+
+
+def _middle(system: System, link: BodyLink) -> Vector:
+    """Where a body's name stands: at its mass centre, else half-way along its middle piece."""
+    if (center := system.motion.points[link.name].get("center")) is not None:
+        return center
+    places = places_of_body(system, link) or [ZERO]
+    half = len(places) // 2
+    return times(Fraction(1, 2), plus(places[max(half - 1, 0)], places[min(half, len(places) - 1)]))

@@ -13,6 +13,8 @@ from eomgen.model.shapes.forms import ArcForm, BoxForm, EllipsoidForm, Form, Lin
 from eomgen.symbolic.expression.rational import Fraction
 from eomgen.symbolic.expression.spatial import ZERO, Vector
 
+TEETH = 8  # of a spring
+
 SymbolParts = tuple[tuple[str, Form], ...]
 """(role, form): "joint" is filled with paper, "solid" with ink, "ground" is a thin line."""
 
@@ -62,6 +64,7 @@ PLANE: dict[str, SymbolParts] = {
     "slider": (("joint", _polygon((-0.9, -0.5), (0.9, -0.5), (0.9, 0.5), (-0.9, 0.5))), *HINGE),
     "block": (("joint", _polygon((-1.1, -0.6), (1.1, -0.6), (1.1, 0.6), (-1.1, 0.6))),),
     "coil": (("ground", _spiral()),),
+    "blade": (("joint", _polygon((-1.6, 0), (-1, 0.3), (1, 0.3), (1.6, 0), (1, -0.3), (-1, -0.3))),),
 }
 
 

@@ -17,6 +17,7 @@ from eomgen.model.joints.moves import Move
 from eomgen.model.kinds import ConstantAngle, MovingGroundPlace, OwnPointName, SeatName, SpaceDirection, ValueOf
 from eomgen.model.part import Part, PartRule
 from eomgen.model.positions import DocumentPath
+from eomgen.model.shapes.forms import Form
 from eomgen.model.symbols import ReactionSymbolsField
 from eomgen.symbolic.expression.expressions import Expression
 from eomgen.symbolic.expression.functions import cos, over, sin, sqrt
@@ -71,6 +72,7 @@ class Joint(Part):
     kind: ClassVar[str]
     only_space: ClassVar[bool] = False
     carries_reaction: ClassVar[bool] = True
+    straight: ClassVar[bool] = True  # what slides in it keeps its direction
     seated: ClassVar[bool] = True  # `at` is where the joint sits; else it is among the variables
 
     on: SeatName | None = None
@@ -124,6 +126,10 @@ class Joint(Part):
     def complement(self, s: Scalars, value: ValueOf) -> tuple[Column, ...]:
         """W, 6 - f columns with S^T W = 0: the wrenches that the joint can carry."""
         raise self._not_yet()
+
+    def guides(self, value: ValueOf, seat: Pose) -> tuple[Form, ...]:
+        """The curve along which the child's joint point moves, where it is not straight, in the axes of the seat's."""
+        return ()
 
     def efforts(self) -> tuple[Effort | None, ...]:
         """Drive, spring, damper and rotor of each variable, in the order of s."""

@@ -13,9 +13,10 @@ from eomgen.model.joints.moves import Move, SlideAlong, WayAlongPieces
 from eomgen.model.kinds import ConstantAngle, Displacement, Length, MovingPlace, Text, Turn, ValueOf
 from eomgen.model.part import Part, PartRule, part_of_values, slots_of
 from eomgen.model.positions import DocumentPath as FilePath
+from eomgen.model.shapes.forms import ArcForm, Form, LineForm
 from eomgen.symbolic.expression.expressions import Expression
-from eomgen.symbolic.expression.functions import cos, over, selected, sin
-from eomgen.symbolic.expression.spatial import Pose, Vector, plus
+from eomgen.symbolic.expression.functions import cos, function, over, selected, sin
+from eomgen.symbolic.expression.spatial import Pose, Vector, apply, plus
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -95,6 +96,7 @@ class Path(Joint):
     """
 
     kind: ClassVar[str] = "path"
+    straight: ClassVar[bool] = False
     along: Displacement
     heading: ConstantAngle | None = None
     pieces: PathPieces
@@ -151,6 +153,10 @@ class Path(Joint):
             heading = heading + turn
             begin, start = stretch.reached(length, heading), stretch.end
         return tuple(found)
+
+    def guides(self, value: ValueOf, seat: Pose) -> tuple[Form, ...]:
+        pieces = zip(self.stretches(value), self.pieces, strict=True)
+        return tuple(_drawn(stretch, piece, value, seat) for stretch, piece in pieces)
 
     def bounds(self) -> tuple[tuple[Expression, Expression], ...]:
         """The arc lengths between which each piece is."""
@@ -213,6 +219,18 @@ def _bend(piece: PathPiece, value: ValueOf) -> tuple[Any, Any, Any]:
     radius, angle = value(piece.arc), value(piece.angle)
     sense = 1 if piece.turn == "ccw" else -1
     return sense * radius, sense * angle, radius * angle
+
+
+def _drawn(stretch: Stretch, piece: PathPiece, value: ValueOf, seat: Pose) -> Form:
+    """A piece as it is drawn: a line, or an arc counter-clockwise from its beginning or from its end."""
+    h, bend = stretch.heading, stretch.bend
+    if bend is None:
+        return LineForm((seat.point(stretch.begin), seat.point(stretch.place(stretch.end))))
+    first = h if piece.turn == "ccw" else stretch.turned(stretch.end)
+    x, y, _ = apply(seat.R, (bend * sin(first), -bend * cos(first), 0))
+    center = seat.point(plus(stretch.begin, (-bend * sin(h), bend * cos(h), 0)))
+    r, start = function("abs", bend), function("atan2", y, x)
+    return ArcForm(center, r, r, start, start + over(stretch.length, r))
 
 
 def _itself(expression: Expression) -> Expression:

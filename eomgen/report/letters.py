@@ -1,0 +1,116 @@
+"""Names of a picture, each beside its place where it covers no other name and as little as may be of what is drawn.
+
+Where they stand is found when the picture is drawn: only then is it known how many dots a metre has.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from dataclasses import dataclass
+from itertools import pairwise
+
+import numpy as np
+
+RINGS = (5.0, 9.0, 14.0, 20.0, 28.0, 38.0)  # from the place to the name [points]
+TURNS = tuple(math.pi * k / 8 for k in (2, 1, 14, 6, 3, 13, 10, 5, 0, 4, 12, 8, 15, 7, 11, 9))  # where one looks first
+APART = 1.0  # between two names [points]
+STEP = 4.0  # of the dots that stand for a line that should not be covered [points]
+
+
+PageSpot = tuple[float, float]
+
+
+@dataclass(frozen=True)
+class Name:
+    """A name and its place.
+
+    Args:
+        at: data coordinates.
+        rank: those with a smaller one choose first; what finds no room is left out.
+    """
+
+    text: str
+    at: tuple[float, float]
+    color: str = "#202020"
+    size: float = 9.0
+    rank: int = 0
+
+
+@dataclass(frozen=True)
+class Box:
+    """An upright box of a picture [dots]."""
+
+    left: float
+    bottom: float
+    right: float
+    top: float
+
+    def meets(self, other: Box) -> bool:
+        return (
+            self.left < other.right and other.left < self.right and self.bottom < other.top and other.bottom < self.top
+        )
+
+    def holds(self, other: Box) -> bool:
+        return (
+            self.left <= other.left
+            and other.right <= self.right
+            and self.bottom <= other.bottom
+            and other.top <= self.top
+        )
+
+    def grown(self, by: float) -> Box:
+        return Box(self.left - by, self.bottom - by, self.right + by, self.top + by)
+
+    def covered(self, dots: np.ndarray) -> int:
+        """How many of some dots lie in it."""
+        x, y = dots.T
+        return int(np.count_nonzero((x > self.left) & (x < self.right) & (y > self.bottom) & (y < self.top)))
+
+
+def _beside(at: tuple[float, float], size: tuple[float, float], away: float, turn: float) -> Box:
+    """A box of a size beside a place, so far away in a direction that its edge or corner is turned to it."""
+    c, s = math.cos(turn), math.sin(turn)
+    x = at[0] + away * c + 0.5 * size[0] * max(-1.0, min(1.0, 1.6 * c))
+    y = at[1] + away * s + 0.5 * size[1] * max(-1.0, min(1.0, 1.6 * s))
+    return Box(x - 0.5 * size[0], y - 0.5 * size[1], x + 0.5 * size[0], y + 0.5 * size[1])
+
+
+def room_for(
+    at: tuple[float, float],
+    size: tuple[float, float],
+    taken: Sequence[Box],
+    dots: np.ndarray,
+    inside: Box,
+    point: float,
+) -> Box | None:
+    """The best box of a size beside a place, which meets none that is taken; None where there is no room.
+
+    Args:
+        dots: what should not be covered.
+        inside: the panel.
+        point: a point in dots.
+    """
+    best: tuple[float, Box | None] = (math.inf, None)
+    kept = [box.grown(APART * point) for box in taken]
+    for number, ring in enumerate(RINGS):
+        for order, turn in enumerate(TURNS):
+            box = _beside(at, size, ring * point, turn)
+            if any(box.meets(other) for other in kept):
+                continue
+            cost = number + 0.05 * order + 1.5 * box.covered(dots) + (0 if inside.holds(box) else 30)
+            if cost < best[0]:
+                best = (cost, box)
+    return best[1]
+
+
+def dots_along(lines: Sequence[np.ndarray], step: float) -> np.ndarray:
+    """Points along lines, so close that no name passes between them; nan breaks a line."""
+    found = [np.zeros((0, 2))]
+    for line in lines:
+        for a, b in pairwise(line):
+            length = float(np.hypot(*(b - a)))
+            if math.isfinite(length):
+                count = min(int(length / step) + 1, 400)
+                found.append(a + np.linspace(0, 1, count + 1)[:, None] * (b - a))
+    return np.vstack(found)

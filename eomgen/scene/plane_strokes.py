@@ -1,0 +1,305 @@
+"""Forms in the plane -> strokes: what each kind of mark looks like on paper."""
+
+from __future__ import annotations
+
+import math
+from typing import Any
+
+import numpy as np
+
+from eomgen.model.shapes.forms import ArcForm, LineForm, PolygonForm
+from eomgen.scene import forms
+from eomgen.scene.scene import Mark, constant
+from eomgen.scene.strokes import DrawerTable, Drawing, Drawn, Letter, Numbers, Sizes, Stroke, drawn_with
+from eomgen.scene.symbols import PLANE, TEETH
+
+HEAD = np.array([[0.0, 0.0], [-1.1, 0.36], [-0.85, 0.0], [-1.1, -0.36], [0.0, 0.0]])  # of an arrow, its tip at 0
+ROUND = 73  # points of a circle
+LEAST = 0.03  # of an angle that is drawn [rad]
+
+
+def plane_drawing(numbers: Numbers, *, dimensions: bool = False) -> Drawing:
+    """The strokes of a scene in the plane."""
+    return drawn_with(TABLE, numbers, dimensions=dimensions)
+
+
+def _stroke(path: np.ndarray, mark: Mark, **look: bool) -> Stroke:
+    return Stroke(path, mark.role, mark.of, **look)
+
+
+# -- shapes ------------------------------------------------------------------------------------------
+
+
+def line(form: LineForm, mark: Mark, numbers: Numbers, sizes: Sizes) -> Drawn:
+    return [_stroke(numbers.spots(form.points, mark), mark, fine=form.fine)], []
+
+
+def polygon(form: PolygonForm, mark: Mark, numbers: Numbers, sizes: Sizes) -> Drawn:
+    path = numbers.spots((*form.points, form.points[0]), mark)
+    return [_stroke(path, mark, filled=True, hole=form.hole)], []
+
+
+def arc(form: ArcForm, mark: Mark, numbers: Numbers, sizes: Sizes) -> Drawn:
+    start = np.zeros(numbers.size) if form.start is None else numbers.value(form.start)
+    end = start + math.tau if form.end is None else numbers.value(form.end)
+    sweep = np.where(end < start, np.mod(end - start, math.tau), end - start)
+    turn = start[:, None] + sweep[:, None] * np.linspace(0, 1, ROUND)
+    across = numbers.value(form.radius)[:, None] * np.cos(turn), numbers.value(form.radius_y)[:, None] * np.sin(turn)
+    own = numbers.vector(form.at)[:, None, :] + np.stack(across, axis=-1)
+    if form.close == "center":
+        middle = numbers.vector(form.at)[:, None, :]
+        own = np.concatenate([middle, own, middle], axis=1)
+    elif form.close == "chord":
+        own = np.concatenate([own, own[:, :1]], axis=1)
+    filled = form.close != "none"
+    return [_stroke(numbers.placed(own, mark.frame), mark, filled=filled, hole=form.hole)], []
+
+
+def rod(form: forms.RodForm, mark: Mark, numbers: Numbers, sizes: Sizes) -> Drawn:
+    return [_stroke(numbers.spots((form.a, form.b), mark), mark)], []
+
+
+def point(form: forms.PointForm, mark: Mark, numbers: Numbers, sizes: Sizes) -> Drawn:
+    return [_stroke(numbers.spots((form.at,), mark), mark, dot=True)], []
+
+
+# -- springs, dampers, symbols -----------------------------------------------------------------------
+
+
+def spring(form: forms.SpringForm, mark: Mark, numbers: Numbers, sizes: Sizes) -> Drawn:
+    """Straight at its ends, teeth between."""
+    share = np.array([0.0, 0.15, *(0.15 + 0.7 * (k + 0.5) / TEETH for k in range(TEETH)), 0.85, 1.0])
+    aside = np.array([0.0, 0.0, *(0.55 * (-1) ** k for k in range(TEETH)), 0.0, 0.0])
+    return [_stroke(_between(form, mark, numbers, sizes, share, aside), mark)], []
+
+
+def damper(form: forms.DamperForm, mark: Mark, numbers: Numbers, sizes: Sizes) -> Drawn:
+    """A piston in a cylinder."""
+    nan = math.nan
+    share = np.array([0.0, 0.38, nan, 0.62, 0.38, 0.38, 0.62, nan, 0.52, 0.52, nan, 0.52, 1.0])
+    aside = np.array([0.0, 0.0, nan, 0.55, 0.55, -0.55, -0.55, nan, 0.42, -0.42, nan, 0.0, 0.0])
+    return [_stroke(_between(form, mark, numbers, sizes, share, aside), mark)], []
+
+
+def _between(
+    form: forms.SpringForm, mark: Mark, numbers: Numbers, sizes: Sizes, share: np.ndarray, aside: np.ndarray
+) -> np.ndarray:
+    """Points at shares of the way from a to b, and aside of it [symbol units]; to its side between short ends."""
+    a, b = numbers.spot(form.a, mark), numbers.spot(form.b, mark)
+    along = b - a
+    length = np.linalg.norm(along, axis=1, keepdims=True)
+    left = np.column_stack([-along[:, 1], along[:, 0]]) / np.where(length > 0, length, 1.0)
+    shifted = aside + form.side
+    if form.side:
+        share = np.concatenate([[0.0, 0.04], 0.08 + 0.84 * share, [0.96, 1.0]])
+        shifted = np.concatenate([[0.0, 0.0], shifted, [0.0, 0.0]])
+        share[1], share[-2] = share[2], share[-3]
+    path: np.ndarray = a[:, None, :] + share[:, None] * along[:, None, :]
+    return path + sizes.unit * shifted[:, None] * left[:, None, :]
+
+
+def track(form: forms.TrackForm, mark: Mark, numbers: Numbers, sizes: Sizes) -> Drawn:
+    """As long as the picture; with a normal hatched on the other side."""
+    if form.along is None:
+        return [], []
+    at, along = numbers.spot(form.at, mark), _unit(numbers.way(form.along, mark))
+    normal = np.zeros_like(at) if form.normal is None else _unit(numbers.way(form.normal, mark))
+    at = at - float(constant(form.below)) * sizes.unit * normal
+    middle, reach = 0.5 * (sizes.low + sizes.high), 0.5 * float(np.linalg.norm(sizes.high - sizes.low)) + sizes.unit
+    center = at + np.sum((middle - at) * along, axis=1, keepdims=True) * along
+    ends = np.stack([center - reach * along, center + reach * along], axis=1)
+    found = [_stroke(ends, mark)]
+    if form.normal is not None and sizes.unit:
+        places = np.arange(-reach, reach, 1.1 * sizes.unit)
+        begin = center[:, None, :] + places[:, None] * along[:, None, :]
+        end = begin + sizes.unit * (-0.7 * normal - 0.6 * along)[:, None, :]
+        found.append(_stroke(_broken(begin, end), mark, fine=True))
+    return found, []
+
+
+def _broken(begin: np.ndarray, end: np.ndarray) -> np.ndarray:
+    """Many pieces in one path, n x k x d each."""
+    gap = np.full_like(begin, np.nan)
+    joined: np.ndarray = np.stack([begin, end, gap], axis=2).reshape(len(begin), -1, begin.shape[2])
+    return joined
+
+
+def symbol(form: forms.SymbolForm, mark: Mark, numbers: Numbers, sizes: Sizes) -> Drawn:
+    """A symbol of the table, turned and in its size."""
+    at = numbers.spot(form.at, mark)
+    x = _unit(numbers.way(form.along, mark)) if form.along is not None else _unit(numbers.way((1, 0, 0), mark))
+    y = np.column_stack([-x[:, 1], x[:, 0]])
+    found = []
+    for role, part in PLANE[form.symbol]:
+        own, look = _own(part)
+        path = at[:, None, :] + sizes.unit * (own[:, :1] * x[:, None, :] + own[:, 1:] * y[:, None, :])
+        own_role = mark.role if role == "joint" and mark.role == "body" else role
+        found.append(Stroke(path, own_role, mark.of, **look))
+    return found, []
+
+
+def _own(part: Any) -> tuple[np.ndarray, dict[str, bool]]:
+    """The points of a part of a symbol, k x 2, and its look."""
+    if isinstance(part, ArcForm):
+        turn = np.linspace(0, math.tau, 33)
+        circle = float(constant(part.radius)) * np.column_stack([np.cos(turn), np.sin(turn)])
+        return circle + np.array([float(constant(x)) for x in part.at[:2]]), {"filled": True}
+    points = np.array([[float(constant(x)) for x in place[:2]] for place in part.points])
+    closed = isinstance(part, PolygonForm)
+    return (np.vstack([points, points[:1]]) if closed else points), {"filled": closed, "fine": not closed}
+
+
+def _unit(v: np.ndarray) -> np.ndarray:
+    length = np.linalg.norm(v, axis=1, keepdims=True)
+    found: np.ndarray = v / np.where(length > 0, length, 1.0)
+    return found
+
+
+# -- arrows ------------------------------------------------------------------------------------------
+
+
+def arrow(form: forms.ArrowForm, mark: Mark, numbers: Numbers, sizes: Sizes) -> Drawn:
+    """A shaft and a head; nothing of a vector without length."""
+    at, v = numbers.spot(form.at, mark), numbers.way(form.vector, mark)
+    shown = sizes.scales.get((mark.role, form.unit), 0.0) * v
+    begin, tip = (at, at + shown) if form.outward else (at - shown, at)
+    strokes = arrow_strokes(begin, tip, mark, sizes)
+    free = tip if form.outward else begin
+    return strokes, [Letter(form.text, free, mark.role, mark.of)] if form.text else []
+
+
+def arrow_strokes(begin: np.ndarray, tip: np.ndarray, mark: Mark, sizes: Sizes) -> list[Stroke]:
+    """An arrow from one place to another, n x 2 each; gone where it has no length."""
+    along = tip - begin
+    length = np.linalg.norm(along, axis=1, keepdims=True)
+    hidden = np.where(length > 0.02 * sizes.unit, 0.0, np.nan)
+    x = _unit(along)
+    y = np.column_stack([-x[:, 1], x[:, 0]])
+    size = np.minimum(sizes.unit, 0.8 * length)[:, None, :]
+    head = tip[:, None, :] + size * (HEAD[:, :1] * x[:, None, :] + HEAD[:, 1:] * y[:, None, :])
+    shaft = np.stack([begin, tip - 0.85 * size[:, 0] * x], axis=1)
+    return [_stroke(shaft + hidden[:, None], mark), _stroke(head + hidden[:, None], mark, filled=True)]
+
+
+def couple(form: forms.CoupleForm, mark: Mark, numbers: Numbers, sizes: Sizes) -> Drawn:
+    """Three quarters of a circle around its place, counter-clockwise where it is positive."""
+    at, value = numbers.spot(form.at, mark), numbers.value(form.vector[2])
+    sense = np.sign(value)[:, None]
+    turn = np.linspace(-0.25 * math.pi, 1.25 * math.pi, 40)
+    radius = 1.9 * sizes.unit
+    flip = np.where(sense < 0, -1.0, 1.0)
+    ring = np.stack(
+        [flip * radius * np.cos(turn), np.broadcast_to(radius * np.sin(turn), flip.shape[:1] + turn.shape)], 2
+    )
+    path = at[:, None, :] + ring + np.where(sense == 0, np.nan, 0.0)[:, None]
+    head = arrow_strokes(path[:, -4], path[:, -1] + 0.3 * (path[:, -1] - path[:, -4]), mark, sizes)[1:]
+    letters = [Letter(form.text, at + np.array([0.0, radius]), mark.role, mark.of)] if form.text else []
+    return [_stroke(path[:, :-2], mark), *head], letters
+
+
+def load(form: forms.LoadForm, mark: Mark, numbers: Numbers, sizes: Sizes) -> Drawn:
+    """Arrows whose tips are on a line, their tails joined; the largest half as long as that of a force."""
+    a, b = numbers.spot(form.a, mark), numbers.spot(form.b, mark)
+    p, q = numbers.way(form.at_a, mark), numbers.way(form.at_b, mark)
+    highest = float(np.nanmax(np.linalg.norm(np.concatenate([p, q]), axis=1))) or 1.0
+    size = 0.07 * sizes.extent / highest
+    longest = float(np.max(np.linalg.norm(b - a, axis=1)))
+    count = 3 + int(min(8.0, 3 * longest / (0.07 * sizes.extent)))
+    found, tails = [], []
+    for share in np.linspace(0, 1, count):
+        tip = a + share * (b - a)
+        tail = tip - size * (p + share * (q - p))
+        tails.append(tail)
+        found += arrow_strokes(tail, tip, mark, sizes)
+    found.append(_stroke(np.stack(tails, axis=1), mark))
+    letters = [Letter(form.text, np.mean(tails, axis=0), mark.role, mark.of)] if form.text else []
+    return found, letters
+
+
+# -- names and sizes -----------------------------------------------------------------------------------
+
+
+def label(form: forms.LabelForm, mark: Mark, numbers: Numbers, sizes: Sizes) -> Drawn:
+    return [], [Letter(form.text, numbers.spot(form.at, mark), mark.role, mark.of)]
+
+
+def dimension(form: forms.DimensionForm, mark: Mark, numbers: Numbers, sizes: Sizes) -> Drawn:
+    """A line with two heads beside the length that it measures, thin lines from its ends."""
+    if not sizes.dimensions:
+        return [], []
+    a, b = numbers.spot(form.a, mark), numbers.spot(form.b, mark)
+    x = _unit(b - a)
+    side = np.column_stack([x[:, 1], -x[:, 0]])
+    middle = 0.5 * (sizes.low + sizes.high)
+    outward = np.sign(np.sum((0.5 * (a + b) - middle) * side, axis=1, keepdims=True))
+    side = side * np.where(outward == 0, 1.0, outward)
+    away = form.tier * sizes.unit
+    c, d = a + away * side, b + away * side
+    over = 0.5 * sizes.unit * side
+    lines = _broken(np.stack([a + over, b + over], axis=1), np.stack([c + over, d + over], axis=1))
+    found = [_stroke(lines, mark, fine=True), *arrow_strokes(d, c, mark, sizes), *arrow_strokes(c, d, mark, sizes)]
+    seen = np.where(np.linalg.norm(b - a, axis=1, keepdims=True) > 1.5 * sizes.unit, 0.0, np.nan)
+    return found, [Letter(form.text, 0.5 * (c + d) + 0.2 * over + seen, mark.role, mark.of)]
+
+
+def angle(form: forms.AngleForm, mark: Mark, numbers: Numbers, sizes: Sizes) -> Drawn:
+    """The arc of an angle between two thin lines, with a head at its end."""
+    if not sizes.dimensions:
+        return [], []
+    at = numbers.spot(form.at, mark)
+    start, end = numbers.value(form.start), numbers.value(form.end)
+    sweep = np.where(np.abs(end - start) > LEAST, np.fmod(end - start, math.tau), np.nan)
+    turn = start[:, None] + sweep[:, None] * np.linspace(0, 1, 41)
+    ring = np.stack([np.cos(turn), np.sin(turn)], axis=2)
+    radius = form.tier * sizes.unit
+    path = at[:, None, :] + radius * ring
+    legs = _broken(np.repeat(at[:, None, :], 2, axis=1), at[:, None, :] + 1.25 * radius * ring[:, [0, -1]])
+    head = arrow_strokes(path[:, -4], path[:, -1], mark, sizes)[1:]
+    return [_stroke(legs, mark, fine=True), _stroke(path, mark, fine=True), *head], [
+        Letter(form.text, path[:, 20] + 0.3 * sizes.unit * ring[:, 20], mark.role, mark.of)
+    ]
+
+
+def field(form: forms.FieldForm, mark: Mark, numbers: Numbers, sizes: Sizes) -> Drawn:
+    """Beside the upper right corner."""
+    if not sizes.dimensions:
+        return [], []
+    v = 4.5 * sizes.unit * _unit(numbers.way(form.vector, mark))
+    corner = np.array([sizes.high[0] + 4 * sizes.unit, max(sizes.high[1], sizes.low[1] + 5 * sizes.unit)])
+    begin = np.broadcast_to(corner, v.shape) - np.minimum(v, 0.0) * np.array([1.0, 0.0]) - np.maximum(v, 0.0)
+    return arrow_strokes(begin, begin + v, mark, sizes), [Letter(form.text, begin + 0.5 * v, mark.role, mark.of)]
+
+
+def axes(form: forms.AxesForm, mark: Mark, numbers: Numbers, sizes: Sizes) -> Drawn:
+    """x and y, three symbols long."""
+    at = numbers.spot(form.at, mark)
+    found, letters = [], []
+    for name, way in (("x", (1, 0, 0)), ("y", (0, 1, 0))):
+        tip = at + 3 * sizes.unit * _unit(numbers.way(way, mark))
+        found += arrow_strokes(at, tip, mark, sizes)
+        letters.append(Letter(name, tip, mark.role, mark.of))
+    return found, letters
+
+
+SOLIDS = frozenset(("box", "ellipsoid", "revolution", "prism", "polyhedron", "wheel"))
+"""Kinds of space: in the plane a scene has what one sees of them along z."""
+
+TABLE: DrawerTable = {
+    LineForm: line,
+    PolygonForm: polygon,
+    ArcForm: arc,
+    forms.RodForm: rod,
+    forms.SpringForm: spring,
+    forms.DamperForm: damper,
+    forms.TrackForm: track,
+    forms.SymbolForm: symbol,
+    forms.PointForm: point,
+    forms.LabelForm: label,
+    forms.ArrowForm: arrow,
+    forms.CoupleForm: couple,
+    forms.LoadForm: load,
+    forms.DimensionForm: dimension,
+    forms.AngleForm: angle,
+    forms.FieldForm: field,
+    forms.AxesForm: axes,
+}

@@ -1,0 +1,340 @@
+"""Forms in space -> strokes: lines, and the faces of solids."""
+
+from __future__ import annotations
+
+import math
+from typing import Any
+
+import numpy as np
+
+from eomgen.model.shapes.forms import (
+    ArcForm,
+    BoxForm,
+    EllipsoidForm,
+    LineForm,
+    PolygonForm,
+    PolyhedronForm,
+    PrismForm,
+    RevolutionForm,
+)
+from eomgen.scene import forms
+from eomgen.scene.scene import Mark, constant
+from eomgen.scene.strokes import DrawerTable, Drawing, Drawn, Letter, Numbers, Sizes, Stroke, drawn_with
+from eomgen.scene.symbols import SPACE, TEETH
+
+ROUND, FALLS = 20, 10  # pieces of a turn, and from pole to pole
+CUBE = np.array([[x, y, z] for x in (-0.5, 0.5) for y in (-0.5, 0.5) for z in (-0.5, 0.5)])
+SIDES = ((0, 1, 3, 2), (4, 6, 7, 5), (0, 4, 5, 1), (2, 3, 7, 6), (0, 2, 6, 4), (1, 5, 7, 3))
+
+
+def space_drawing(numbers: Numbers, *, dimensions: bool = False) -> Drawing:
+    """The strokes of a scene in space."""
+    return drawn_with(TABLE, numbers, dimensions=dimensions)
+
+
+def _faces(corners: np.ndarray, mark: Mark, role: str = "") -> Stroke:
+    """Faces n x f x c x 3 in the ground."""
+    return Stroke(corners, role or mark.role, mark.of, filled=True, faces=True)
+
+
+# -- shapes ------------------------------------------------------------------------------------------
+
+
+def line(form: LineForm, mark: Mark, numbers: Numbers, sizes: Sizes) -> Drawn:
+    return [Stroke(numbers.spots(form.points, mark), mark.role, mark.of, fine=form.fine)], []
+
+
+def polygon(form: PolygonForm, mark: Mark, numbers: Numbers, sizes: Sizes) -> Drawn:
+    return [_faces(numbers.spots(form.points, mark)[:, None], mark)], []
+
+
+def arc(form: ArcForm, mark: Mark, numbers: Numbers, sizes: Sizes) -> Drawn:
+    start = np.zeros(numbers.size) if form.start is None else numbers.value(form.start)
+    end = start + math.tau if form.end is None else numbers.value(form.end)
+    sweep = np.where(end < start, np.mod(end - start, math.tau), end - start)
+    turn = start[:, None] + sweep[:, None] * np.linspace(0, 1, 2 * ROUND + 1)
+    x, y = numbers.value(form.radius)[:, None] * np.cos(turn), numbers.value(form.radius_y)[:, None] * np.sin(turn)
+    middle = numbers.vector(form.at)[:, None, :]
+    own = middle + np.stack([x, y, np.zeros_like(x)], axis=-1)
+    if form.close == "center":
+        own = np.concatenate([middle, own], axis=1)
+    path = numbers.placed(own, mark.frame)
+    if form.close == "none":
+        return [Stroke(path, mark.role, mark.of)], []
+    return [] if form.hole else [_faces(path[:, None], mark)], []
+
+
+def box(form: BoxForm, mark: Mark, numbers: Numbers, sizes: Sizes) -> Drawn:
+    own = numbers.vector(form.at)[:, None, :] + numbers.vector(form.size)[:, None, :] * CUBE
+    return [_faces(numbers.placed(own, mark.frame)[:, SIDES], mark)], []
+
+
+def ellipsoid(form: EllipsoidForm, mark: Mark, numbers: Numbers, sizes: Sizes) -> Drawn:
+    fall, turn = np.linspace(0, math.pi, FALLS + 1), np.linspace(0, math.tau, ROUND + 1)
+    ball = np.stack(
+        [np.outer(np.sin(fall), np.cos(turn)), np.outer(np.sin(fall), np.sin(turn)), np.outer(np.cos(fall), turn**0)], 2
+    )
+    half = numbers.vector(form.size)
+    least = 0.12 * np.max(np.where(np.isfinite(half), half, 0.0), axis=1, keepdims=True)
+    own = numbers.vector(form.at)[:, None, None, :] + np.maximum(half, least)[:, None, None, :] * ball
+    return [_faces(numbers.placed(_quads(own), mark.frame), mark)], []
+
+
+def revolution(form: RevolutionForm, mark: Mark, numbers: Numbers, sizes: Sizes) -> Drawn:
+    r = np.column_stack([numbers.value(x) for x, _ in form.profile])
+    z = np.column_stack([numbers.value(x) for _, x in form.profile])
+    own = numbers.vector(form.at)[:, None, None, :] + _swept(r, z)
+    return [_faces(numbers.placed(_quads(own), mark.frame), mark)], []
+
+
+def _swept(r: np.ndarray, z: np.ndarray) -> np.ndarray:
+    """A profile n x k about z: n x k x turns x 3."""
+    turn = np.linspace(0, math.tau, ROUND + 1)
+    swept: np.ndarray = np.stack(
+        [
+            r[:, :, None] * np.cos(turn),
+            r[:, :, None] * np.sin(turn),
+            np.broadcast_to(z[:, :, None], (*z.shape, len(turn))),
+        ],
+        axis=-1,
+    )
+    return swept
+
+
+def _quads(grid: np.ndarray) -> np.ndarray:
+    """The faces between the lines of a grid n x k x m x 3."""
+    corners = np.stack([grid[:, :-1, :-1], grid[:, 1:, :-1], grid[:, 1:, 1:], grid[:, :-1, 1:]], axis=3)
+    quads: np.ndarray = corners.reshape(len(grid), -1, 4, 3)
+    return quads
+
+
+def prism(form: PrismForm, mark: Mark, numbers: Numbers, sizes: Sizes) -> Drawn:
+    ends = [numbers.spots(tuple((x, y, z) for x, y in form.points), mark) for z in (form.low, form.high)]
+    rims = [np.concatenate([end, end[:, :1]], axis=1) for end in ends]
+    walls = np.stack([rims[0][:, :-1], rims[0][:, 1:], rims[1][:, 1:], rims[1][:, :-1]], axis=2)
+    return [_faces(walls, mark), *(_faces(end[:, None], mark) for end in ends)], []
+
+
+def polyhedron(form: PolyhedronForm, mark: Mark, numbers: Numbers, sizes: Sizes) -> Drawn:
+    corners = numbers.spots(form.points, mark)
+    return [_faces(corners[:, None, list(face)], mark) for face in form.faces], []
+
+
+def wheel(form: forms.WheelForm, mark: Mark, numbers: Numbers, sizes: Sizes) -> Drawn:
+    """Its rim and two spokes; the axes across are the body's, so that it is seen to turn."""
+    n, at, r = unit(numbers.vector(form.axis)), numbers.vector(form.at), numbers.value(form.radius)[:, None, None]
+    x, y = crossing(n)
+    turn = np.linspace(0, math.tau, 2 * ROUND + 1)
+    rim = np.cos(turn)[:, None] * x[:, None, :] + np.sin(turn)[:, None] * y[:, None, :]
+    own = at[:, None, :] + r * np.concatenate([rim, -x[:, None, :], y[:, None, :], -y[:, None, :]], axis=1)
+    path = numbers.placed(own, mark.frame)
+    spokes = [Stroke(path[:, pair], mark.role, mark.of, fine=True) for pair in ([0, -3], [-2, -1])]
+    return [Stroke(path[:, :-3], mark.role, mark.of), *spokes], []
+
+
+def rod(form: forms.RodForm, mark: Mark, numbers: Numbers, sizes: Sizes) -> Drawn:
+    return [Stroke(numbers.spots((form.a, form.b), mark), mark.role, mark.of)], []
+
+
+def point(form: forms.PointForm, mark: Mark, numbers: Numbers, sizes: Sizes) -> Drawn:
+    return [Stroke(numbers.spots((form.at,), mark), mark.role, mark.of, dot=True)], []
+
+
+# -- springs, tracks, symbols ------------------------------------------------------------------------
+
+
+def spring(form: forms.SpringForm, mark: Mark, numbers: Numbers, sizes: Sizes) -> Drawn:
+    """A coil about the line from a to b."""
+    turn = np.linspace(0, math.tau * TEETH, 12 * TEETH + 1)
+    share = np.concatenate([[0.0], np.linspace(0.12, 0.88, len(turn)), [1.0]])
+    ring = (
+        0.5 * sizes.unit * np.concatenate([[[0.0, 0.0]], np.column_stack([np.cos(turn), np.sin(turn)]), [[0.0, 0.0]]])
+    )
+    return [Stroke(_along(form, mark, numbers, share, ring), mark.role, mark.of)], []
+
+
+def damper(form: forms.DamperForm, mark: Mark, numbers: Numbers, sizes: Sizes) -> Drawn:
+    """A cylinder about a thin rod."""
+    r = np.array([0.0, 0.5, 0.5, 0.5, 0.0, 0.0]) * sizes.unit
+    share = np.array([0.38, 0.38, 0.62, 0.62, 0.62, 1.0])
+    side = np.column_stack([r, np.zeros(len(r))])
+    paths = [_along(form, mark, numbers, share, sign * side) for sign in (1, -1)]
+    start = _along(form, mark, numbers, np.array([0.0, 0.38]), np.zeros((2, 2)))
+    return [Stroke(path, mark.role, mark.of) for path in (start, *paths)], []
+
+
+def _along(form: forms.SpringForm, mark: Mark, numbers: Numbers, share: np.ndarray, across: np.ndarray) -> np.ndarray:
+    """Points at shares of the way from a to b, and beside it in two directions across [m]."""
+    a, b = numbers.spot(form.a, mark), numbers.spot(form.b, mark)
+    first, second = crossing(unit(b - a))
+    path: np.ndarray = a[:, None, :] + share[:, None] * (b - a)[:, None, :]
+    path = path + across[:, :1] * first[:, None, :] + across[:, 1:] * second[:, None, :]
+    return path
+
+
+def unit(v: np.ndarray) -> np.ndarray:
+    length = np.linalg.norm(v, axis=1, keepdims=True)
+    found: np.ndarray = v / np.where(length > 0, length, 1.0)
+    return found
+
+
+def crossing(n: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """Two unit directions across unit vectors n x 3, so that the three are right-handed."""
+    least = np.eye(3)[np.argmin(np.abs(n), axis=1)]
+    first = unit(np.cross(least, n))
+    return first, np.cross(n, first)
+
+
+def track(form: forms.TrackForm, mark: Mark, numbers: Numbers, sizes: Sizes) -> Drawn:
+    """A line as long as the picture; a plane as a square that all of it fits on."""
+    at = numbers.spot(form.at, mark)
+    middle, reach = 0.5 * (sizes.low + sizes.high), 0.6 * float(np.linalg.norm(sizes.high - sizes.low))
+    if form.along is not None:
+        along = unit(numbers.way(form.along, mark))
+        center = at + np.sum((middle - at) * along, axis=1, keepdims=True) * along
+        return [Stroke(np.stack([center - reach * along, center + reach * along], axis=1), mark.role, mark.of)], []
+    if form.normal is None:
+        return [], []
+    n = unit(numbers.way(form.normal, mark))
+    center = middle - np.sum((middle - at) * n, axis=1, keepdims=True) * n
+    x, y = (reach * e for e in crossing(n))
+    corners = np.stack([center + x + y, center - x + y, center - x - y, center + x - y], axis=1)
+    return [_faces(corners[:, None], mark)], []
+
+
+def symbol(form: forms.SymbolForm, mark: Mark, numbers: Numbers, sizes: Sizes) -> Drawn:
+    """A symbol of the table, its axis turned, in its size."""
+    at = numbers.spot(form.at, mark)
+    z = unit(numbers.way(form.along if form.along is not None else (0, 0, 1), mark))
+    x, y = crossing(z)
+    found = []
+    for role, part in SPACE[form.symbol]:
+        own = sizes.unit * _own(part)
+        path = at[:, None, None, :] + sum(own[..., k : k + 1] * e[:, None, None, :] for k, e in enumerate((x, y, z)))
+        if isinstance(part, LineForm):
+            found.append(Stroke(path[:, 0], role, mark.of, fine=True))
+        else:
+            found.append(_faces(path, mark, role))
+    return found, []
+
+
+def _own(part: Any) -> Any:
+    """The faces f x c x 3 of a part of a symbol; of a line 1 x k x 3."""
+    if isinstance(part, LineForm):
+        return np.array([[[float(constant(x)) for x in place] for place in part.points]])
+    if isinstance(part, RevolutionForm):
+        profile = np.array([[float(constant(r)), float(constant(z))] for r, z in part.profile])
+        return _quads(_swept(profile[None, :, 0], profile[None, :, 1]))[0]
+    size = np.array([float(constant(x)) for x in part.size])
+    if isinstance(part, BoxForm):
+        return (size * CUBE)[np.array(SIDES)]
+    fall = np.linspace(0, math.pi, 9)
+    return size[0] * _quads(_swept(np.sin(fall)[None], np.cos(fall)[None]))[0]
+
+
+# -- arrows and names --------------------------------------------------------------------------------
+
+
+def arrow(form: forms.ArrowForm, mark: Mark, numbers: Numbers, sizes: Sizes) -> Drawn:
+    at, v = numbers.spot(form.at, mark), numbers.way(form.vector, mark)
+    shown = sizes.scales.get((mark.role, form.unit), 0.0) * v
+    begin, tip = (at, at + shown) if form.outward else (at - shown, at)
+    free = tip if form.outward else begin
+    letters = [Letter(form.text, free, mark.role, mark.of)] if form.text else []
+    return arrow_strokes(begin, tip, mark, sizes), letters
+
+
+def arrow_strokes(begin: np.ndarray, tip: np.ndarray, mark: Mark, sizes: Sizes) -> list[Stroke]:
+    """A shaft, and a cone at its end; gone where it has no length."""
+    along = tip - begin
+    length = np.linalg.norm(along, axis=1, keepdims=True)
+    hidden = np.where(length > 0.02 * sizes.unit, 0.0, np.nan)
+    n = unit(along)
+    size = np.minimum(1.2 * sizes.unit, 0.8 * length)
+    first, second = crossing(n)
+    turn = np.linspace(0, math.tau, 9)
+    rim = (tip - size * n)[:, None, :] + 0.33 * size[:, None] * (
+        np.cos(turn)[:, None] * first[:, None, :] + np.sin(turn)[:, None] * second[:, None, :]
+    )
+    top = np.broadcast_to((tip + hidden)[:, None, :], rim[:, 1:].shape)
+    cone = np.stack([rim[:, :-1], rim[:, 1:], top], axis=2)
+    return [Stroke(np.stack([begin + hidden, tip - size * n], axis=1), mark.role, mark.of), _faces(cone, mark)]
+
+
+def couple(form: forms.CoupleForm, mark: Mark, numbers: Numbers, sizes: Sizes) -> Drawn:
+    """A double arrow along the couple."""
+    at = numbers.spot(form.at, mark)
+    v = np.column_stack([numbers.value(x) for x in form.vector])
+    tip = at + np.where(np.linalg.norm(v, axis=1, keepdims=True) > 0, 4.0, 0.0) * sizes.unit * unit(v)
+    inner = at + 0.8 * (tip - at)
+    letters = [Letter(form.text, tip, mark.role, mark.of)] if form.text else []
+    return [*arrow_strokes(at, inner, mark, sizes), *arrow_strokes(at, tip, mark, sizes)], letters
+
+
+def load(form: forms.LoadForm, mark: Mark, numbers: Numbers, sizes: Sizes) -> Drawn:
+    """Arrows whose tips are on a line."""
+    a, b = numbers.spot(form.a, mark), numbers.spot(form.b, mark)
+    p, q = numbers.way(form.at_a, mark), numbers.way(form.at_b, mark)
+    size = 0.07 * sizes.extent / (float(np.nanmax(np.linalg.norm(np.concatenate([p, q]), axis=1))) or 1.0)
+    found = []
+    for share in np.linspace(0, 1, 8):
+        tip = a + share * (b - a)
+        found += arrow_strokes(tip - size * (p + share * (q - p)), tip, mark, sizes)
+    return found, [Letter(form.text, 0.5 * (a + b), mark.role, mark.of)] if form.text else []
+
+
+def label(form: forms.LabelForm, mark: Mark, numbers: Numbers, sizes: Sizes) -> Drawn:
+    return [], [Letter(form.text, numbers.spot(form.at, mark), mark.role, mark.of)]
+
+
+def nothing(form: Any, mark: Mark, numbers: Numbers, sizes: Sizes) -> Drawn:
+    """Dimension lines and angles are for the plane."""
+    return [], []
+
+
+def field(form: forms.FieldForm, mark: Mark, numbers: Numbers, sizes: Sizes) -> Drawn:
+    """At the corner of the picture."""
+    if not sizes.dimensions:
+        return [], []
+    v = 4.5 * sizes.unit * unit(numbers.way(form.vector, mark))
+    begin = np.broadcast_to(np.array([sizes.low[0], sizes.high[1], sizes.high[2]]), v.shape) + 2 * sizes.unit
+    return arrow_strokes(begin, begin + v, mark, sizes), [Letter(form.text, begin + 0.5 * v, mark.role, mark.of)]
+
+
+def axes(form: forms.AxesForm, mark: Mark, numbers: Numbers, sizes: Sizes) -> Drawn:
+    """x, y and z, four symbols long."""
+    at = numbers.spot(form.at, mark)
+    found: list[Stroke] = []
+    letters: list[Letter] = []
+    for name, e in zip("xyz", np.eye(3, dtype=int).tolist(), strict=True):
+        tip = at + 4 * sizes.unit * unit(numbers.way((e[0], e[1], e[2]), mark))
+        found += arrow_strokes(at, tip, mark, sizes)
+        letters.append(Letter(name, tip, mark.role, mark.of))
+    return found, letters
+
+
+TABLE: DrawerTable = {
+    LineForm: line,
+    PolygonForm: polygon,
+    ArcForm: arc,
+    BoxForm: box,
+    EllipsoidForm: ellipsoid,
+    RevolutionForm: revolution,
+    PrismForm: prism,
+    PolyhedronForm: polyhedron,
+    forms.RodForm: rod,
+    forms.SpringForm: spring,
+    forms.DamperForm: damper,
+    forms.WheelForm: wheel,
+    forms.TrackForm: track,
+    forms.SymbolForm: symbol,
+    forms.PointForm: point,
+    forms.LabelForm: label,
+    forms.ArrowForm: arrow,
+    forms.CoupleForm: couple,
+    forms.LoadForm: load,
+    forms.DimensionForm: nothing,
+    forms.AngleForm: nothing,
+    forms.FieldForm: field,
+    forms.AxesForm: axes,
+}

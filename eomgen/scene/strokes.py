@@ -1,0 +1,244 @@
+"""Scene, frames -> strokes: every mark as paths in ground axes, along a whole motion at once.
+
+A path is n x k x d, over n frames: k points of the plane (d = 2) or of space (d = 3); nan breaks it. What a drawer adds
+are colours and letters. Symbols have one size in a picture: `unit`, a part of its extent.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable, Mapping
+from dataclasses import dataclass, field
+from functools import cached_property
+from typing import Any
+
+import numpy as np
+
+from eomgen.model.shapes.forms import Form
+from eomgen.scene.scene import Mark, Scene, constant, is_moving
+from eomgen.symbolic.expression.spatial import Vector
+
+SYMBOL = 0.028  # symbol unit, of the extent
+ARROW = 0.14  # the longest arrow, of the extent
+WIDEST = 6.0  # of the rest, how large a guide may be that is shown as a whole
+LONELY = 14.0  # side of a picture of one point [symbol units]
+QUANTILE = 0.98  # of all arrows of a kind are no longer than that
+SOLID = frozenset(("body", "inertia", "member", "string", "spring", "damper", "joint", "support", "center"))
+"""Roles that make up the extent of a picture."""
+
+
+@dataclass(frozen=True)
+class Stroke:
+    """A path to draw.
+
+    Args:
+        path: n x k x d [m].
+        filled: its inside is filled; hole: with paper.
+        fine: thinner than an edge.
+        faces: in space: the path is n x faces x corners x 3 of a surface.
+    """
+
+    path: np.ndarray
+    role: str
+    of: str
+    filled: bool = False
+    hole: bool = False
+    fine: bool = False
+    faces: bool = False
+    dot: bool = False
+
+
+@dataclass(frozen=True)
+class Letter:
+    """A name and the place beside which it stands, n x d."""
+
+    text: str
+    at: np.ndarray
+    role: str
+    of: str
+
+
+@dataclass(frozen=True)
+class Numbers:
+    """The numbers of a scene over n frames.
+
+    Args:
+        scene: whose.
+        frames: n x slots.
+    """
+
+    scene: Scene
+    frames: np.ndarray
+
+    @property
+    def size(self) -> int:
+        return len(self.frames)
+
+    @property
+    def dimension(self) -> int:
+        return 2 if self.scene.plane else 3
+
+    @cached_property
+    def _slots(self) -> dict[Any, int]:
+        return {x: k for k, x in enumerate(self.scene.values)}
+
+    def value(self, x: Any) -> np.ndarray:
+        """A scalar, n."""
+        if is_moving(x):
+            return self.frames[:, self._slots[x]]
+        return np.full(self.size, float(constant(x)))
+
+    def vector(self, v: Vector) -> np.ndarray:
+        """A vector in its own axes, n x d."""
+        return np.column_stack([self.value(x) for x in v[: self.dimension]])
+
+    @cached_property
+    def poses(self) -> list[tuple[np.ndarray, np.ndarray]]:
+        """(R, p) of every frame in the ground, n x d x d and n x d."""
+        found: list[tuple[np.ndarray, np.ndarray]] = []
+        for frame in self.scene.frames:
+            entries = np.column_stack([self.value(x) for x in self.scene.pose_entries(frame.pose)])
+            if self.scene.plane:
+                x, y, c, s = entries.T
+                R, p = np.moveaxis(np.array([[c, -s], [s, c]]), 2, 0), np.column_stack([x, y])
+            else:
+                R, p = entries[:, 3:].reshape(-1, 3, 3), entries[:, :3]
+            if frame.parent >= 0:
+                above, origin = found[frame.parent]
+                R, p = above @ R, origin + np.einsum("nij,nj->ni", above, p)
+            found.append((R, p))
+        return found
+
+    def placed(self, own: np.ndarray, frame: int) -> np.ndarray:
+        """Points n x ... x d of a frame's axes, in the ground."""
+        if frame == 0:
+            return own
+        R, p = self.poses[frame]
+        shape = (self.size, *(1,) * (own.ndim - 2), self.dimension)
+        found: np.ndarray = np.einsum("nij,n...j->n...i", R, own) + p.reshape(shape)
+        return found
+
+    def turned(self, own: np.ndarray, frame: int) -> np.ndarray:
+        """Directions n x d of a frame's axes, in the ground."""
+        found: np.ndarray = own if frame == 0 else np.einsum("nij,nj->ni", self.poses[frame][0], own)
+        return found
+
+    def spot(self, at: Vector, mark: Mark) -> np.ndarray:
+        """A place of a mark, n x d, ground axes."""
+        return self.placed(self.vector(at), mark.frame)
+
+    def way(self, v: Vector, mark: Mark) -> np.ndarray:
+        """A direction of a mark, n x d, ground axes."""
+        return self.turned(self.vector(v), mark.frame)
+
+    def spots(self, points: Iterable[Vector], mark: Mark) -> np.ndarray:
+        """Places of a mark, n x k x d, ground axes."""
+        return self.placed(np.stack([self.vector(each) for each in points], axis=1), mark.frame)
+
+
+@dataclass(frozen=True)
+class Sizes:
+    """What strokes need to know of the picture.
+
+    Args:
+        unit: of symbols [m].
+        low, high: corners of the box around all that moves, d [m].
+        scales: (role, unit of quantity) -> metres for a unit of an arrow.
+        dimensions: dimension lines and angles are drawn.
+    """
+
+    unit: float
+    low: np.ndarray
+    high: np.ndarray
+    scales: dict[tuple[str, str], float] = field(default_factory=dict)
+    dimensions: bool = False
+
+    @property
+    def extent(self) -> float:
+        """The larger side of the box [m]."""
+        return float(np.max(self.high - self.low)) or 1.0
+
+
+Drawn = tuple[list[Stroke], list[Letter]]
+Drawer = Callable[[Any, Mark, Numbers, Sizes], Drawn]
+DrawerTable = Mapping[type[Form], Drawer]
+
+
+@dataclass(frozen=True)
+class Drawing:
+    """Everything of a picture, in the order in which it is drawn."""
+
+    strokes: tuple[Stroke, ...]
+    letters: tuple[Letter, ...]
+    sizes: Sizes
+
+
+def drawn_with(table: DrawerTable, numbers: Numbers, *, dimensions: bool = False) -> Drawing:
+    """The marks of a scene as strokes and letters.
+
+    Args:
+        table: what each form looks like, in the plane or in space.
+        dimensions: dimension lines and angles are drawn.
+    """
+    marks = numbers.scene.marks
+    flat = Sizes(0.0, np.zeros(numbers.dimension), np.ones(numbers.dimension))
+    solid = [table[type(m.form)](m.form, m, numbers, flat)[0] for m in marks if m.role in SOLID]
+    guides = [
+        stroke
+        for m in marks
+        if m.role == "track" and m.form.kind in ("line", "arc")
+        for stroke in table[type(m.form)](m.form, m, numbers, flat)[0]
+    ]
+    low, high, extent = _box(numbers, [stroke for strokes in solid for stroke in strokes], guides)
+    sizes = Sizes(SYMBOL * extent, low, high, _scales(numbers, extent), dimensions)
+    strokes: list[Stroke] = []
+    letters: list[Letter] = []
+    for mark in marks:
+        drawn, named = table[type(mark.form)](mark.form, mark, numbers, sizes)
+        strokes += drawn
+        letters += named
+    return Drawing(tuple(strokes), tuple(letters), sizes)
+
+
+def _box(numbers: Numbers, strokes: Iterable[Stroke], guides: Iterable[Stroke]) -> tuple[np.ndarray, np.ndarray, float]:
+    """(low, high) corner of all that is solid over all frames, and its larger side in the first frame.
+
+    A guide counts where it is not much larger than the rest.
+    """
+    d = numbers.dimension
+    clouds = [stroke.path.reshape(numbers.size, -1, d) for stroke in strokes]
+    clouds += [numbers.vector(at)[:, None, :] for name, at in numbers.scene.points if not name.endswith(".origin")]
+    side = _side(clouds, d)
+    ways = [stroke.path.reshape(numbers.size, -1, d) for stroke in guides]
+    clouds += [way for way in ways if not side or _side([way], d) < WIDEST * side]
+    cloud = np.concatenate(clouds or [np.zeros((numbers.size, 1, d))], axis=1)
+    everywhere = cloud.reshape(-1, d)
+    everywhere = everywhere[np.isfinite(everywhere).all(axis=1)]
+    if not len(everywhere):
+        return -np.ones(d) / 2, np.ones(d) / 2, 1.0
+    extent = _side([cloud[:1]], d) or _side([cloud], d) or 1.0
+    low, high = everywhere.min(axis=0), everywhere.max(axis=0)
+    alone = max(0.0, LONELY * SYMBOL * extent - float(np.max(high - low)))
+    return low - 0.5 * alone, high + 0.5 * alone, extent
+
+
+def _side(clouds: list[np.ndarray], d: int) -> float:
+    """The larger side of the box around some points; 0 of none."""
+    found = [cloud.reshape(-1, d) for cloud in clouds]
+    points = np.concatenate(found) if found else np.zeros((0, d))
+    points = points[np.isfinite(points).all(axis=1)]
+    return float(np.max(np.ptp(points, axis=0))) if len(points) else 0.0
+
+
+def _scales(numbers: Numbers, extent: float) -> dict[tuple[str, str], float]:
+    """Of arrows: the longest of a role and unit, but for a fiftieth of all instants, has the length ARROW."""
+    sizes: dict[tuple[str, str], list[np.ndarray]] = {}
+    for mark in numbers.scene.marks_of_kind("arrow"):
+        form: Any = mark.form
+        sizes.setdefault((mark.role, form.unit), []).append(np.linalg.norm(numbers.vector(form.vector), axis=1))
+    found = {}
+    for key, each in sizes.items():
+        known = np.concatenate(each)
+        known = known[np.isfinite(known)]
+        largest = float(np.quantile(known, QUANTILE)) if len(known) else 0.0
+        found[key] = ARROW * extent / largest if largest > 0 else 0.0
+    return found
