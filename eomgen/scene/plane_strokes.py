@@ -30,16 +30,16 @@ def _stroke(path: np.ndarray, mark: Mark, **look: bool) -> Stroke:
 # -- shapes ------------------------------------------------------------------------------------------
 
 
-def line(form: LineForm, mark: Mark, numbers: Numbers, sizes: Sizes) -> Drawn:
+def _line(form: LineForm, mark: Mark, numbers: Numbers, sizes: Sizes) -> Drawn:
     return [_stroke(numbers.spots(form.points, mark), mark, fine=form.fine)], []
 
 
-def polygon(form: PolygonForm, mark: Mark, numbers: Numbers, sizes: Sizes) -> Drawn:
+def _polygon(form: PolygonForm, mark: Mark, numbers: Numbers, sizes: Sizes) -> Drawn:
     path = numbers.spots((*form.points, form.points[0]), mark)
     return [_stroke(path, mark, filled=True, hole=form.hole)], []
 
 
-def arc(form: ArcForm, mark: Mark, numbers: Numbers, sizes: Sizes) -> Drawn:
+def _arc(form: ArcForm, mark: Mark, numbers: Numbers, sizes: Sizes) -> Drawn:
     start = np.zeros(numbers.size) if form.start is None else numbers.value(form.start)
     end = start + math.tau if form.end is None else numbers.value(form.end)
     sweep = np.where(end < start, np.mod(end - start, math.tau), end - start)
@@ -55,25 +55,25 @@ def arc(form: ArcForm, mark: Mark, numbers: Numbers, sizes: Sizes) -> Drawn:
     return [_stroke(numbers.placed(own, mark.frame), mark, filled=filled, hole=form.hole)], []
 
 
-def rod(form: forms.RodForm, mark: Mark, numbers: Numbers, sizes: Sizes) -> Drawn:
+def _rod(form: forms.RodForm, mark: Mark, numbers: Numbers, sizes: Sizes) -> Drawn:
     return [_stroke(numbers.spots((form.a, form.b), mark), mark)], []
 
 
-def point(form: forms.PointForm, mark: Mark, numbers: Numbers, sizes: Sizes) -> Drawn:
+def _point(form: forms.PointForm, mark: Mark, numbers: Numbers, sizes: Sizes) -> Drawn:
     return [_stroke(numbers.spots((form.at,), mark), mark, dot=True)], []
 
 
 # -- springs, dampers, symbols -----------------------------------------------------------------------
 
 
-def spring(form: forms.SpringForm, mark: Mark, numbers: Numbers, sizes: Sizes) -> Drawn:
+def _spring(form: forms.SpringForm, mark: Mark, numbers: Numbers, sizes: Sizes) -> Drawn:
     """Straight at its ends, teeth between."""
     share = np.array([0.0, 0.15, *(0.15 + 0.7 * (k + 0.5) / TEETH for k in range(TEETH)), 0.85, 1.0])
     aside = np.array([0.0, 0.0, *(0.55 * (-1) ** k for k in range(TEETH)), 0.0, 0.0])
     return [_stroke(_between(form, mark, numbers, sizes, share, aside), mark)], []
 
 
-def damper(form: forms.DamperForm, mark: Mark, numbers: Numbers, sizes: Sizes) -> Drawn:
+def _damper(form: forms.DamperForm, mark: Mark, numbers: Numbers, sizes: Sizes) -> Drawn:
     """A piston in a cylinder."""
     nan = math.nan
     share = np.array([0.0, 0.38, nan, 0.62, 0.38, 0.38, 0.62, nan, 0.52, 0.52, nan, 0.52, 1.0])
@@ -98,7 +98,7 @@ def _between(
     return path + sizes.unit * shifted[:, None] * left[:, None, :]
 
 
-def track(form: forms.TrackForm, mark: Mark, numbers: Numbers, sizes: Sizes) -> Drawn:
+def _track(form: forms.TrackForm, mark: Mark, numbers: Numbers, sizes: Sizes) -> Drawn:
     """As long as the picture; with a normal hatched on the other side."""
     if form.along is None:
         return [], []
@@ -124,7 +124,7 @@ def _broken(begin: np.ndarray, end: np.ndarray) -> np.ndarray:
     return joined
 
 
-def symbol(form: forms.SymbolForm, mark: Mark, numbers: Numbers, sizes: Sizes) -> Drawn:
+def _symbol(form: forms.SymbolForm, mark: Mark, numbers: Numbers, sizes: Sizes) -> Drawn:
     """A symbol of the table, turned and in its size."""
     at = numbers.spot(form.at, mark)
     x = _unit(numbers.way(form.along, mark)) if form.along is not None else _unit(numbers.way((1, 0, 0), mark))
@@ -158,17 +158,17 @@ def _unit(v: np.ndarray) -> np.ndarray:
 # -- arrows ------------------------------------------------------------------------------------------
 
 
-def arrow(form: forms.ArrowForm, mark: Mark, numbers: Numbers, sizes: Sizes) -> Drawn:
+def _arrow(form: forms.ArrowForm, mark: Mark, numbers: Numbers, sizes: Sizes) -> Drawn:
     """A shaft and a head; nothing of a vector without length."""
     at, v = numbers.spot(form.at, mark), numbers.way(form.vector, mark)
     shown = sizes.scales.get((mark.role, form.unit), 0.0) * v
     begin, tip = (at, at + shown) if form.outward else (at - shown, at)
-    strokes = arrow_strokes(begin, tip, mark, sizes)
+    strokes = _arrow_strokes(begin, tip, mark, sizes)
     free = tip if form.outward else begin
     return strokes, [Letter(form.text, free, mark.role, mark.of)] if form.text else []
 
 
-def arrow_strokes(begin: np.ndarray, tip: np.ndarray, mark: Mark, sizes: Sizes) -> list[Stroke]:
+def _arrow_strokes(begin: np.ndarray, tip: np.ndarray, mark: Mark, sizes: Sizes) -> list[Stroke]:
     """An arrow from one place to another, n x 2 each; gone where it has no length."""
     along = tip - begin
     length = np.linalg.norm(along, axis=1, keepdims=True)
@@ -181,7 +181,7 @@ def arrow_strokes(begin: np.ndarray, tip: np.ndarray, mark: Mark, sizes: Sizes) 
     return [_stroke(shaft + hidden[:, None], mark), _stroke(head + hidden[:, None], mark, filled=True)]
 
 
-def couple(form: forms.CoupleForm, mark: Mark, numbers: Numbers, sizes: Sizes) -> Drawn:
+def _couple(form: forms.CoupleForm, mark: Mark, numbers: Numbers, sizes: Sizes) -> Drawn:
     """Three quarters of a circle around its place, counter-clockwise where it is positive."""
     at, value = numbers.spot(form.at, mark), numbers.value(form.vector[2])
     sense = np.sign(value)[:, None]
@@ -192,12 +192,12 @@ def couple(form: forms.CoupleForm, mark: Mark, numbers: Numbers, sizes: Sizes) -
         [flip * radius * np.cos(turn), np.broadcast_to(radius * np.sin(turn), flip.shape[:1] + turn.shape)], 2
     )
     path = at[:, None, :] + ring + np.where(sense == 0, np.nan, 0.0)[:, None]
-    head = arrow_strokes(path[:, -4], path[:, -1] + 0.3 * (path[:, -1] - path[:, -4]), mark, sizes)[1:]
+    head = _arrow_strokes(path[:, -4], path[:, -1] + 0.3 * (path[:, -1] - path[:, -4]), mark, sizes)[1:]
     letters = [Letter(form.text, at + np.array([0.0, radius]), mark.role, mark.of)] if form.text else []
     return [_stroke(path[:, :-2], mark), *head], letters
 
 
-def load(form: forms.LoadForm, mark: Mark, numbers: Numbers, sizes: Sizes) -> Drawn:
+def _load(form: forms.LoadForm, mark: Mark, numbers: Numbers, sizes: Sizes) -> Drawn:
     """Arrows whose tips are on a line, their tails joined; the largest half as long as that of a force."""
     a, b = numbers.spot(form.a, mark), numbers.spot(form.b, mark)
     p, q = numbers.way(form.at_a, mark), numbers.way(form.at_b, mark)
@@ -210,7 +210,7 @@ def load(form: forms.LoadForm, mark: Mark, numbers: Numbers, sizes: Sizes) -> Dr
         tip = a + share * (b - a)
         tail = tip - size * (p + share * (q - p))
         tails.append(tail)
-        found += arrow_strokes(tail, tip, mark, sizes)
+        found += _arrow_strokes(tail, tip, mark, sizes)
     found.append(_stroke(np.stack(tails, axis=1), mark))
     letters = [Letter(form.text, np.mean(tails, axis=0), mark.role, mark.of)] if form.text else []
     return found, letters
@@ -219,11 +219,11 @@ def load(form: forms.LoadForm, mark: Mark, numbers: Numbers, sizes: Sizes) -> Dr
 # -- names and sizes -----------------------------------------------------------------------------------
 
 
-def label(form: forms.LabelForm, mark: Mark, numbers: Numbers, sizes: Sizes) -> Drawn:
+def _label(form: forms.LabelForm, mark: Mark, numbers: Numbers, sizes: Sizes) -> Drawn:
     return [], [Letter(form.text, numbers.spot(form.at, mark), mark.role, mark.of)]
 
 
-def dimension(form: forms.DimensionForm, mark: Mark, numbers: Numbers, sizes: Sizes) -> Drawn:
+def _dimension(form: forms.DimensionForm, mark: Mark, numbers: Numbers, sizes: Sizes) -> Drawn:
     """A line with two heads beside the length that it measures, thin lines from its ends."""
     if not sizes.dimensions:
         return [], []
@@ -237,12 +237,12 @@ def dimension(form: forms.DimensionForm, mark: Mark, numbers: Numbers, sizes: Si
     c, d = a + away * side, b + away * side
     over = 0.5 * sizes.unit * side
     lines = _broken(np.stack([a + over, b + over], axis=1), np.stack([c + over, d + over], axis=1))
-    found = [_stroke(lines, mark, fine=True), *arrow_strokes(d, c, mark, sizes), *arrow_strokes(c, d, mark, sizes)]
+    found = [_stroke(lines, mark, fine=True), *_arrow_strokes(d, c, mark, sizes), *_arrow_strokes(c, d, mark, sizes)]
     seen = np.where(np.linalg.norm(b - a, axis=1, keepdims=True) > 1.5 * sizes.unit, 0.0, np.nan)
     return found, [Letter(form.text, 0.5 * (c + d) + 0.2 * over + seen, mark.role, mark.of)]
 
 
-def angle(form: forms.AngleForm, mark: Mark, numbers: Numbers, sizes: Sizes) -> Drawn:
+def _angle(form: forms.AngleForm, mark: Mark, numbers: Numbers, sizes: Sizes) -> Drawn:
     """The arc of an angle between two thin lines, with a head at its end."""
     if not sizes.dimensions:
         return [], []
@@ -254,29 +254,29 @@ def angle(form: forms.AngleForm, mark: Mark, numbers: Numbers, sizes: Sizes) -> 
     radius = form.tier * sizes.unit
     path = at[:, None, :] + radius * ring
     legs = _broken(np.repeat(at[:, None, :], 2, axis=1), at[:, None, :] + 1.25 * radius * ring[:, [0, -1]])
-    head = arrow_strokes(path[:, -4], path[:, -1], mark, sizes)[1:]
+    head = _arrow_strokes(path[:, -4], path[:, -1], mark, sizes)[1:]
     return [_stroke(legs, mark, fine=True), _stroke(path, mark, fine=True), *head], [
         Letter(form.text, path[:, 20] + 0.3 * sizes.unit * ring[:, 20], mark.role, mark.of)
     ]
 
 
-def field(form: forms.FieldForm, mark: Mark, numbers: Numbers, sizes: Sizes) -> Drawn:
+def _field(form: forms.FieldForm, mark: Mark, numbers: Numbers, sizes: Sizes) -> Drawn:
     """Beside the upper right corner."""
     if not sizes.dimensions:
         return [], []
     v = 4.5 * sizes.unit * _unit(numbers.way(form.vector, mark))
     corner = np.array([sizes.high[0] + 4 * sizes.unit, max(sizes.high[1], sizes.low[1] + 5 * sizes.unit)])
     begin = np.broadcast_to(corner, v.shape) - np.minimum(v, 0.0) * np.array([1.0, 0.0]) - np.maximum(v, 0.0)
-    return arrow_strokes(begin, begin + v, mark, sizes), [Letter(form.text, begin + 0.5 * v, mark.role, mark.of)]
+    return _arrow_strokes(begin, begin + v, mark, sizes), [Letter(form.text, begin + 0.5 * v, mark.role, mark.of)]
 
 
-def axes(form: forms.AxesForm, mark: Mark, numbers: Numbers, sizes: Sizes) -> Drawn:
+def _axes(form: forms.AxesForm, mark: Mark, numbers: Numbers, sizes: Sizes) -> Drawn:
     """x and y, three symbols long."""
     at = numbers.spot(form.at, mark)
     found, letters = [], []
     for name, way in (("x", (1, 0, 0)), ("y", (0, 1, 0))):
         tip = at + 3 * sizes.unit * _unit(numbers.way(way, mark))
-        found += arrow_strokes(at, tip, mark, sizes)
+        found += _arrow_strokes(at, tip, mark, sizes)
         letters.append(Letter(name, tip, mark.role, mark.of))
     return found, letters
 
@@ -285,21 +285,21 @@ SOLIDS = frozenset(("box", "ellipsoid", "revolution", "prism", "polyhedron", "wh
 """Kinds of space: in the plane a scene has what one sees of them along z."""
 
 TABLE: DrawerTable = {
-    LineForm: line,
-    PolygonForm: polygon,
-    ArcForm: arc,
-    forms.RodForm: rod,
-    forms.SpringForm: spring,
-    forms.DamperForm: damper,
-    forms.TrackForm: track,
-    forms.SymbolForm: symbol,
-    forms.PointForm: point,
-    forms.LabelForm: label,
-    forms.ArrowForm: arrow,
-    forms.CoupleForm: couple,
-    forms.LoadForm: load,
-    forms.DimensionForm: dimension,
-    forms.AngleForm: angle,
-    forms.FieldForm: field,
-    forms.AxesForm: axes,
+    LineForm: _line,
+    PolygonForm: _polygon,
+    ArcForm: _arc,
+    forms.RodForm: _rod,
+    forms.SpringForm: _spring,
+    forms.DamperForm: _damper,
+    forms.TrackForm: _track,
+    forms.SymbolForm: _symbol,
+    forms.PointForm: _point,
+    forms.LabelForm: _label,
+    forms.ArrowForm: _arrow,
+    forms.CoupleForm: _couple,
+    forms.LoadForm: _load,
+    forms.DimensionForm: _dimension,
+    forms.AngleForm: _angle,
+    forms.FieldForm: _field,
+    forms.AxesForm: _axes,
 }

@@ -40,15 +40,15 @@ def _faces(corners: np.ndarray, mark: Mark, role: str = "") -> Stroke:
 # -- shapes ------------------------------------------------------------------------------------------
 
 
-def line(form: LineForm, mark: Mark, numbers: Numbers, sizes: Sizes) -> Drawn:
+def _line(form: LineForm, mark: Mark, numbers: Numbers, sizes: Sizes) -> Drawn:
     return [Stroke(numbers.spots(form.points, mark), mark.role, mark.of, fine=form.fine)], []
 
 
-def polygon(form: PolygonForm, mark: Mark, numbers: Numbers, sizes: Sizes) -> Drawn:
+def _polygon(form: PolygonForm, mark: Mark, numbers: Numbers, sizes: Sizes) -> Drawn:
     return [_faces(numbers.spots(form.points, mark)[:, None], mark)], []
 
 
-def arc(form: ArcForm, mark: Mark, numbers: Numbers, sizes: Sizes) -> Drawn:
+def _arc(form: ArcForm, mark: Mark, numbers: Numbers, sizes: Sizes) -> Drawn:
     start = np.zeros(numbers.size) if form.start is None else numbers.value(form.start)
     end = start + math.tau if form.end is None else numbers.value(form.end)
     sweep = np.where(end < start, np.mod(end - start, math.tau), end - start)
@@ -64,12 +64,12 @@ def arc(form: ArcForm, mark: Mark, numbers: Numbers, sizes: Sizes) -> Drawn:
     return [] if form.hole else [_faces(path[:, None], mark)], []
 
 
-def box(form: BoxForm, mark: Mark, numbers: Numbers, sizes: Sizes) -> Drawn:
+def _box(form: BoxForm, mark: Mark, numbers: Numbers, sizes: Sizes) -> Drawn:
     own = numbers.vector(form.at)[:, None, :] + numbers.vector(form.size)[:, None, :] * CUBE
     return [_faces(numbers.placed(own, mark.frame)[:, SIDES], mark)], []
 
 
-def ellipsoid(form: EllipsoidForm, mark: Mark, numbers: Numbers, sizes: Sizes) -> Drawn:
+def _ellipsoid(form: EllipsoidForm, mark: Mark, numbers: Numbers, sizes: Sizes) -> Drawn:
     fall, turn = np.linspace(0, math.pi, FALLS + 1), np.linspace(0, math.tau, ROUND + 1)
     ball = np.stack(
         [np.outer(np.sin(fall), np.cos(turn)), np.outer(np.sin(fall), np.sin(turn)), np.outer(np.cos(fall), turn**0)], 2
@@ -80,7 +80,7 @@ def ellipsoid(form: EllipsoidForm, mark: Mark, numbers: Numbers, sizes: Sizes) -
     return [_faces(numbers.placed(_quads(own), mark.frame), mark)], []
 
 
-def revolution(form: RevolutionForm, mark: Mark, numbers: Numbers, sizes: Sizes) -> Drawn:
+def _revolution(form: RevolutionForm, mark: Mark, numbers: Numbers, sizes: Sizes) -> Drawn:
     r = np.column_stack([numbers.value(x) for x, _ in form.profile])
     z = np.column_stack([numbers.value(x) for _, x in form.profile])
     own = numbers.vector(form.at)[:, None, None, :] + _swept(r, z)
@@ -108,22 +108,22 @@ def _quads(grid: np.ndarray) -> np.ndarray:
     return quads
 
 
-def prism(form: PrismForm, mark: Mark, numbers: Numbers, sizes: Sizes) -> Drawn:
+def _prism(form: PrismForm, mark: Mark, numbers: Numbers, sizes: Sizes) -> Drawn:
     ends = [numbers.spots(tuple((x, y, z) for x, y in form.points), mark) for z in (form.low, form.high)]
     rims = [np.concatenate([end, end[:, :1]], axis=1) for end in ends]
     walls = np.stack([rims[0][:, :-1], rims[0][:, 1:], rims[1][:, 1:], rims[1][:, :-1]], axis=2)
     return [_faces(walls, mark), *(_faces(end[:, None], mark) for end in ends)], []
 
 
-def polyhedron(form: PolyhedronForm, mark: Mark, numbers: Numbers, sizes: Sizes) -> Drawn:
+def _polyhedron(form: PolyhedronForm, mark: Mark, numbers: Numbers, sizes: Sizes) -> Drawn:
     corners = numbers.spots(form.points, mark)
     return [_faces(corners[:, None, list(face)], mark) for face in form.faces], []
 
 
-def wheel(form: forms.WheelForm, mark: Mark, numbers: Numbers, sizes: Sizes) -> Drawn:
+def _wheel(form: forms.WheelForm, mark: Mark, numbers: Numbers, sizes: Sizes) -> Drawn:
     """Its rim and two spokes; the axes across are the body's, so that it is seen to turn."""
-    n, at, r = unit(numbers.vector(form.axis)), numbers.vector(form.at), numbers.value(form.radius)[:, None, None]
-    x, y = crossing(n)
+    n, at, r = _unit(numbers.vector(form.axis)), numbers.vector(form.at), numbers.value(form.radius)[:, None, None]
+    x, y = _crossing(n)
     turn = np.linspace(0, math.tau, 2 * ROUND + 1)
     rim = np.cos(turn)[:, None] * x[:, None, :] + np.sin(turn)[:, None] * y[:, None, :]
     own = at[:, None, :] + r * np.concatenate([rim, -x[:, None, :], y[:, None, :], -y[:, None, :]], axis=1)
@@ -132,18 +132,18 @@ def wheel(form: forms.WheelForm, mark: Mark, numbers: Numbers, sizes: Sizes) -> 
     return [Stroke(path[:, :-3], mark.role, mark.of), *spokes], []
 
 
-def rod(form: forms.RodForm, mark: Mark, numbers: Numbers, sizes: Sizes) -> Drawn:
+def _rod(form: forms.RodForm, mark: Mark, numbers: Numbers, sizes: Sizes) -> Drawn:
     return [Stroke(numbers.spots((form.a, form.b), mark), mark.role, mark.of)], []
 
 
-def point(form: forms.PointForm, mark: Mark, numbers: Numbers, sizes: Sizes) -> Drawn:
+def _point(form: forms.PointForm, mark: Mark, numbers: Numbers, sizes: Sizes) -> Drawn:
     return [Stroke(numbers.spots((form.at,), mark), mark.role, mark.of, dot=True)], []
 
 
 # -- springs, tracks, symbols ------------------------------------------------------------------------
 
 
-def spring(form: forms.SpringForm, mark: Mark, numbers: Numbers, sizes: Sizes) -> Drawn:
+def _spring(form: forms.SpringForm, mark: Mark, numbers: Numbers, sizes: Sizes) -> Drawn:
     """A coil about the line from a to b."""
     turn = np.linspace(0, math.tau * TEETH, 12 * TEETH + 1)
     share = np.concatenate([[0.0], np.linspace(0.12, 0.88, len(turn)), [1.0]])
@@ -153,7 +153,7 @@ def spring(form: forms.SpringForm, mark: Mark, numbers: Numbers, sizes: Sizes) -
     return [Stroke(_along(form, mark, numbers, share, ring), mark.role, mark.of)], []
 
 
-def damper(form: forms.DamperForm, mark: Mark, numbers: Numbers, sizes: Sizes) -> Drawn:
+def _damper(form: forms.DamperForm, mark: Mark, numbers: Numbers, sizes: Sizes) -> Drawn:
     """A cylinder about a thin rod."""
     r = np.array([0.0, 0.5, 0.5, 0.5, 0.0, 0.0]) * sizes.unit
     share = np.array([0.38, 0.38, 0.62, 0.62, 0.62, 1.0])
@@ -166,47 +166,47 @@ def damper(form: forms.DamperForm, mark: Mark, numbers: Numbers, sizes: Sizes) -
 def _along(form: forms.SpringForm, mark: Mark, numbers: Numbers, share: np.ndarray, across: np.ndarray) -> np.ndarray:
     """Points at shares of the way from a to b, and beside it in two directions across [m]."""
     a, b = numbers.spot(form.a, mark), numbers.spot(form.b, mark)
-    first, second = crossing(unit(b - a))
+    first, second = _crossing(_unit(b - a))
     path: np.ndarray = a[:, None, :] + share[:, None] * (b - a)[:, None, :]
     path = path + across[:, :1] * first[:, None, :] + across[:, 1:] * second[:, None, :]
     return path
 
 
-def unit(v: np.ndarray) -> np.ndarray:
+def _unit(v: np.ndarray) -> np.ndarray:
     length = np.linalg.norm(v, axis=1, keepdims=True)
     found: np.ndarray = v / np.where(length > 0, length, 1.0)
     return found
 
 
-def crossing(n: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+def _crossing(n: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
     """Two unit directions across unit vectors n x 3, so that the three are right-handed."""
     least = np.eye(3)[np.argmin(np.abs(n), axis=1)]
-    first = unit(np.cross(least, n))
+    first = _unit(np.cross(least, n))
     return first, np.cross(n, first)
 
 
-def track(form: forms.TrackForm, mark: Mark, numbers: Numbers, sizes: Sizes) -> Drawn:
+def _track(form: forms.TrackForm, mark: Mark, numbers: Numbers, sizes: Sizes) -> Drawn:
     """A line as long as the picture; a plane as a square that all of it fits on."""
     at = numbers.spot(form.at, mark)
     middle, reach = 0.5 * (sizes.low + sizes.high), 0.6 * float(np.linalg.norm(sizes.high - sizes.low))
     if form.along is not None:
-        along = unit(numbers.way(form.along, mark))
+        along = _unit(numbers.way(form.along, mark))
         center = at + np.sum((middle - at) * along, axis=1, keepdims=True) * along
         return [Stroke(np.stack([center - reach * along, center + reach * along], axis=1), mark.role, mark.of)], []
     if form.normal is None:
         return [], []
-    n = unit(numbers.way(form.normal, mark))
+    n = _unit(numbers.way(form.normal, mark))
     center = middle - np.sum((middle - at) * n, axis=1, keepdims=True) * n
-    x, y = (reach * e for e in crossing(n))
+    x, y = (reach * e for e in _crossing(n))
     corners = np.stack([center + x + y, center - x + y, center - x - y, center + x - y], axis=1)
     return [_faces(corners[:, None], mark)], []
 
 
-def symbol(form: forms.SymbolForm, mark: Mark, numbers: Numbers, sizes: Sizes) -> Drawn:
+def _symbol(form: forms.SymbolForm, mark: Mark, numbers: Numbers, sizes: Sizes) -> Drawn:
     """A symbol of the table, its axis turned, in its size."""
     at = numbers.spot(form.at, mark)
-    z = unit(numbers.way(form.along if form.along is not None else (0, 0, 1), mark))
-    x, y = crossing(z)
+    z = _unit(numbers.way(form.along if form.along is not None else (0, 0, 1), mark))
+    x, y = _crossing(z)
     found = []
     for role, part in SPACE[form.symbol]:
         own = sizes.unit * _own(part)
@@ -235,23 +235,23 @@ def _own(part: Any) -> Any:
 # -- arrows and names --------------------------------------------------------------------------------
 
 
-def arrow(form: forms.ArrowForm, mark: Mark, numbers: Numbers, sizes: Sizes) -> Drawn:
+def _arrow(form: forms.ArrowForm, mark: Mark, numbers: Numbers, sizes: Sizes) -> Drawn:
     at, v = numbers.spot(form.at, mark), numbers.way(form.vector, mark)
     shown = sizes.scales.get((mark.role, form.unit), 0.0) * v
     begin, tip = (at, at + shown) if form.outward else (at - shown, at)
     free = tip if form.outward else begin
     letters = [Letter(form.text, free, mark.role, mark.of)] if form.text else []
-    return arrow_strokes(begin, tip, mark, sizes), letters
+    return _arrow_strokes(begin, tip, mark, sizes), letters
 
 
-def arrow_strokes(begin: np.ndarray, tip: np.ndarray, mark: Mark, sizes: Sizes) -> list[Stroke]:
+def _arrow_strokes(begin: np.ndarray, tip: np.ndarray, mark: Mark, sizes: Sizes) -> list[Stroke]:
     """A shaft, and a cone at its end; gone where it has no length."""
     along = tip - begin
     length = np.linalg.norm(along, axis=1, keepdims=True)
     hidden = np.where(length > 0.02 * sizes.unit, 0.0, np.nan)
-    n = unit(along)
+    n = _unit(along)
     size = np.minimum(1.2 * sizes.unit, 0.8 * length)
-    first, second = crossing(n)
+    first, second = _crossing(n)
     turn = np.linspace(0, math.tau, 9)
     rim = (tip - size * n)[:, None, :] + 0.33 * size[:, None] * (
         np.cos(turn)[:, None] * first[:, None, :] + np.sin(turn)[:, None] * second[:, None, :]
@@ -261,17 +261,17 @@ def arrow_strokes(begin: np.ndarray, tip: np.ndarray, mark: Mark, sizes: Sizes) 
     return [Stroke(np.stack([begin + hidden, tip - size * n], axis=1), mark.role, mark.of), _faces(cone, mark)]
 
 
-def couple(form: forms.CoupleForm, mark: Mark, numbers: Numbers, sizes: Sizes) -> Drawn:
+def _couple(form: forms.CoupleForm, mark: Mark, numbers: Numbers, sizes: Sizes) -> Drawn:
     """A double arrow along the couple."""
     at = numbers.spot(form.at, mark)
     v = np.column_stack([numbers.value(x) for x in form.vector])
-    tip = at + np.where(np.linalg.norm(v, axis=1, keepdims=True) > 0, 4.0, 0.0) * sizes.unit * unit(v)
+    tip = at + np.where(np.linalg.norm(v, axis=1, keepdims=True) > 0, 4.0, 0.0) * sizes.unit * _unit(v)
     inner = at + 0.8 * (tip - at)
     letters = [Letter(form.text, tip, mark.role, mark.of)] if form.text else []
-    return [*arrow_strokes(at, inner, mark, sizes), *arrow_strokes(at, tip, mark, sizes)], letters
+    return [*_arrow_strokes(at, inner, mark, sizes), *_arrow_strokes(at, tip, mark, sizes)], letters
 
 
-def load(form: forms.LoadForm, mark: Mark, numbers: Numbers, sizes: Sizes) -> Drawn:
+def _load(form: forms.LoadForm, mark: Mark, numbers: Numbers, sizes: Sizes) -> Drawn:
     """Arrows whose tips are on a line."""
     a, b = numbers.spot(form.a, mark), numbers.spot(form.b, mark)
     p, q = numbers.way(form.at_a, mark), numbers.way(form.at_b, mark)
@@ -279,62 +279,62 @@ def load(form: forms.LoadForm, mark: Mark, numbers: Numbers, sizes: Sizes) -> Dr
     found = []
     for share in np.linspace(0, 1, 8):
         tip = a + share * (b - a)
-        found += arrow_strokes(tip - size * (p + share * (q - p)), tip, mark, sizes)
+        found += _arrow_strokes(tip - size * (p + share * (q - p)), tip, mark, sizes)
     return found, [Letter(form.text, 0.5 * (a + b), mark.role, mark.of)] if form.text else []
 
 
-def label(form: forms.LabelForm, mark: Mark, numbers: Numbers, sizes: Sizes) -> Drawn:
+def _label(form: forms.LabelForm, mark: Mark, numbers: Numbers, sizes: Sizes) -> Drawn:
     return [], [Letter(form.text, numbers.spot(form.at, mark), mark.role, mark.of)]
 
 
-def nothing(form: Any, mark: Mark, numbers: Numbers, sizes: Sizes) -> Drawn:
+def _nothing(form: Any, mark: Mark, numbers: Numbers, sizes: Sizes) -> Drawn:
     """Dimension lines and angles are for the plane."""
     return [], []
 
 
-def field(form: forms.FieldForm, mark: Mark, numbers: Numbers, sizes: Sizes) -> Drawn:
+def _field(form: forms.FieldForm, mark: Mark, numbers: Numbers, sizes: Sizes) -> Drawn:
     """At the corner of the picture."""
     if not sizes.dimensions:
         return [], []
-    v = 4.5 * sizes.unit * unit(numbers.way(form.vector, mark))
+    v = 4.5 * sizes.unit * _unit(numbers.way(form.vector, mark))
     begin = np.broadcast_to(np.array([sizes.low[0], sizes.high[1], sizes.high[2]]), v.shape) + 2 * sizes.unit
-    return arrow_strokes(begin, begin + v, mark, sizes), [Letter(form.text, begin + 0.5 * v, mark.role, mark.of)]
+    return _arrow_strokes(begin, begin + v, mark, sizes), [Letter(form.text, begin + 0.5 * v, mark.role, mark.of)]
 
 
-def axes(form: forms.AxesForm, mark: Mark, numbers: Numbers, sizes: Sizes) -> Drawn:
+def _axes(form: forms.AxesForm, mark: Mark, numbers: Numbers, sizes: Sizes) -> Drawn:
     """x, y and z, four symbols long."""
     at = numbers.spot(form.at, mark)
     found: list[Stroke] = []
     letters: list[Letter] = []
     for name, e in zip("xyz", np.eye(3, dtype=int).tolist(), strict=True):
-        tip = at + 4 * sizes.unit * unit(numbers.way((e[0], e[1], e[2]), mark))
-        found += arrow_strokes(at, tip, mark, sizes)
+        tip = at + 4 * sizes.unit * _unit(numbers.way((e[0], e[1], e[2]), mark))
+        found += _arrow_strokes(at, tip, mark, sizes)
         letters.append(Letter(name, tip, mark.role, mark.of))
     return found, letters
 
 
 TABLE: DrawerTable = {
-    LineForm: line,
-    PolygonForm: polygon,
-    ArcForm: arc,
-    BoxForm: box,
-    EllipsoidForm: ellipsoid,
-    RevolutionForm: revolution,
-    PrismForm: prism,
-    PolyhedronForm: polyhedron,
-    forms.RodForm: rod,
-    forms.SpringForm: spring,
-    forms.DamperForm: damper,
-    forms.WheelForm: wheel,
-    forms.TrackForm: track,
-    forms.SymbolForm: symbol,
-    forms.PointForm: point,
-    forms.LabelForm: label,
-    forms.ArrowForm: arrow,
-    forms.CoupleForm: couple,
-    forms.LoadForm: load,
-    forms.DimensionForm: nothing,
-    forms.AngleForm: nothing,
-    forms.FieldForm: field,
-    forms.AxesForm: axes,
+    LineForm: _line,
+    PolygonForm: _polygon,
+    ArcForm: _arc,
+    BoxForm: _box,
+    EllipsoidForm: _ellipsoid,
+    RevolutionForm: _revolution,
+    PrismForm: _prism,
+    PolyhedronForm: _polyhedron,
+    forms.RodForm: _rod,
+    forms.SpringForm: _spring,
+    forms.DamperForm: _damper,
+    forms.WheelForm: _wheel,
+    forms.TrackForm: _track,
+    forms.SymbolForm: _symbol,
+    forms.PointForm: _point,
+    forms.LabelForm: _label,
+    forms.ArrowForm: _arrow,
+    forms.CoupleForm: _couple,
+    forms.LoadForm: _load,
+    forms.DimensionForm: _nothing,
+    forms.AngleForm: _nothing,
+    forms.FieldForm: _field,
+    forms.AxesForm: _axes,
 }
