@@ -13,13 +13,14 @@ from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 from functools import cache
 from pathlib import Path
+from typing import Any
 
 import eomgen
 from eomgen import Equations, Output
 from eomgen.questions.answers import Answers
-from eomgen.report.latex import setter_of, side_latex
+from eomgen.report.latex import setter_of, side_latex, with_listings_typeset
 from eomgen.report.latex_math import Setter
-from eomgen.report.latex_names import notation, symbol_latex
+from eomgen.report.latex_names import Notation
 from eomgen.report.statements import Formula, Side
 from eomgen.report.text import side_text
 from eomgen.symbolic.exact.equality import equal_at_random_states
@@ -113,11 +114,21 @@ def _formula(path: Path, left: str) -> Ours:
 def _output(path: Path, name: str) -> Ours:
     exact = _answered(path)[name].exact
     assert exact is not None, f"{path.stem}: no formula for {name}"
-    scalar, names = read(Graph(), exact)
-    return Ours(side_latex(Setter(notation(names)), scalar), exact)
+    setter = setter_of(with_listings_typeset(_answered(path).derivation))
+    return Ours(side_latex(setter, read(Graph(), exact)[0]), exact)
 
 
-ASKED: dict[str, Callable[[Path, str], Ours]] = {"equation": _equation, "formula": _formula, "output": _output}
+def _reaction(path: Path, name: str) -> Ours:
+    text = _derived_data(path)["reactions"][name]
+    return Ours(side_latex(setter_of(_derived(path).derivation), read(Graph(), text)[0]), text)
+
+
+ASKED: dict[str, Callable[[Path, str], Ours]] = {
+    "equation": _equation,
+    "formula": _formula,
+    "output": _output,
+    "reaction": _reaction,
+}
 
 
 def _joined(setter: Setter, sides: Sequence[Side]) -> Ours:
@@ -128,6 +139,11 @@ def _joined(setter: Setter, sides: Sequence[Side]) -> Ours:
 @cache
 def _derived(path: Path) -> Equations:
     return eomgen.derive(eomgen.load(path))
+
+
+@cache
+def _derived_data(path: Path) -> dict[str, Any]:
+    return _derived(path).as_dict()
 
 
 @cache
@@ -192,7 +208,7 @@ def letters_of_text(text: str) -> Counter[str]:
             if kind == "function":
                 total[what[0]] += 1
             elif kind == "name":
-                total += letters_of_latex(symbol_latex(what.rstrip("'")))
+                total += letters_of_latex(Notation().latex(what.rstrip("'")))
     return total
 
 
