@@ -15,13 +15,32 @@ from typing import Any
 
 from eomgen.errors import DerivationError
 from eomgen.mechanics.bodies.inertia import armature_energy
+from eomgen.mechanics.bodies.loads import JointEffort, weights
 from eomgen.mechanics.instant.outputs import Quantities
+from eomgen.model.forces.load import GeneralizedForce, PointForce
 from eomgen.model.outputs import FUNCTIONS
 from eomgen.proof.at_a_state import NumericState, differing
 from eomgen.proof.instant import STEP
+from eomgen.proof.pushes import Pushes, add_push, pushes_of
+from eomgen.symbolic.expression.derivative import symbols_of
 from eomgen.symbolic.expression.expressions import Call
 from eomgen.symbolic.expression.graph import Node, Scalar, is_zero
-from eomgen.symbolic.expression.spatial import ZERO, Matrix, Numbers, Vector, apply, minus, plus, times, vector_of
+from eomgen.symbolic.expression.spatial import (
+    ZERO,
+    Matrix,
+    Numbers,
+    Vector,
+    apply,
+    cross,
+    dot,
+    matrix_of,
+    minus,
+    plus,
+    product,
+    times,
+    transposed,
+    vector_of,
+)
 from eomgen.symbolic.numeric.evaluation import NoValue, evaluate, fifty_digits
 
 UNIT: Matrix = ((1, 0, 0), (0, 1, 0), (0, 0, 1))
@@ -110,6 +129,51 @@ class NearbyStates:
         half = (flat[0] + flat[4] + flat[8]) / 2
         return [[(half if i == j else 0) - flat[3 * i + j] for j in range(3)] for i in range(3)]
 
+    def worked(self, body: str | None = None) -> Any:
+        """Of every body F . v + tau . w, and s' times the effort of every joint."""
+        system = self.state.equations.system
+        loads, known = system.loads, dict(self._way[1])
+        if any(isinstance(load, GeneralizedForce) for force in loads.applied for load in force.loads):
+            raise NoValue("something acts at no place")
+        placed = [load for force in loads.applied for load in force.loads]
+        if system.motion.moves(tuple(x for load in placed if isinstance(load, PointForce) for x in load.place[1])):
+            raise NoValue("a force acts at a place that slides in its body")
+        energies = tuple(f.potential for f in loads.applied if f.placeless and f.potential is not None and body is None)
+        if system.symbols.t in symbols_of(energies):
+            raise NoValue("a potential depends on time")
+        total = 0 * STEP - sum(self.along(energies)[1])
+        pushes = pushes_of(system.motion, known, (*placed, *weights(loads)))
+        for effort in loads.efforts if body is not None else ():
+            self._add_effort(pushes, effort)
+        for name, (moment, force) in pushes.items():
+            if body in (None, name):
+                rates = vector_of(self.along(self.scene.origin(name))[1])
+                flat = self.along([x for row in self.scene.axes(name) for x in row])
+                W = product(_rows(flat[1]), transposed(_rows(flat[0])))
+                w = (W[2][1], W[0][2], W[1][0])
+                arm = vector_of(self.along(self.scene.origin(name))[0])
+                total = total + dot(force, rates) + dot(minus(moment, cross(arm, force)), w)
+        for effort in loads.efforts if body is None else ():
+            link = system.motion.link(effort.body)
+            (push,) = evaluate((effort.effort,), known, fifty_digits())
+            total = total + push * self.along((link.s[effort.variable],))[1][0]
+        return total
+
+    def _add_effort(self, pushes: Pushes, effort: JointEffort) -> None:
+        """A couple about the axis, or a force along it at the joint, on the child; the opposite on the parent."""
+        motion = self.state.equations.system.motion
+        link = motion.link(effort.body)
+        turn, slide = link.S[effort.variable]
+        if not (all(map(is_zero, turn)) or all(map(is_zero, slide))):
+            raise NoValue("a joint that turns and slides at once")
+        along = apply(link.pose.R, slide if all(map(is_zero, turn)) else turn)
+        flat = self.along((effort.effort, *along, *link.pose.point(link.point)))[0]
+        push, place = times(flat[0], vector_of(flat[1:4])), vector_of(flat[4:7])
+        parent = None if link.parent < 0 else motion.links[link.parent].name
+        for name, sign in ((effort.body, 1), (parent, -1)):
+            own: Numbers = times(sign, push)
+            add_push(pushes, name, *((own, ZERO) if all(map(is_zero, slide)) else (cross(place, own), own)))
+
     def root(self, x: Any) -> Any:
         """Of a number."""
         return fifty_digits().functions["sqrt"](x)
@@ -131,6 +195,10 @@ class NearbyStates:
             raise NoValue(f"'{speed}' is no speed of these equations")
         numbers = {**self.state.numbers, found[0]: self.state.numbers[found[0]] + by}
         return NearbyStates(replace(self.state, numbers=numbers))
+
+
+def _rows(flat: Sequence[Any]) -> Matrix:
+    return matrix_of((flat[0:3], flat[3:6], flat[6:9]))
 
 
 def second_definition(state: NumericState, call: Call) -> str:

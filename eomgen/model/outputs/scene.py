@@ -123,6 +123,13 @@ class Trial(Protocol):
             NoValue: they count, and there are some.
         """
 
+    def worked(self, body: str | None = None) -> Any:
+        """Power of everything applied, or of what is applied to one body: forces and couples on differences of poses.
+
+        Raises:
+            NoValue: something acts at no place.
+        """
+
     def faster(self, speed: str, by: int) -> Trial:
         """The same with one speed larger.
 

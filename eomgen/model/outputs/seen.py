@@ -5,6 +5,7 @@ A vector law gives two output functions: its components, and its magnitude.
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable
 from typing import Any
 
@@ -20,9 +21,12 @@ from eomgen.symbolic.expression.spatial import (
     dot,
     matrix_of,
     minus,
+    plus,
+    times,
     transposed,
     vector_of,
 )
+from eomgen.symbolic.numeric.evaluation import NoValue
 
 
 def seen_from(scene: Scene, point: str, frame: str = GROUND) -> Vector:
@@ -52,9 +56,25 @@ def axes_at(trial: Trial, body: str, order: int = 0) -> Matrix:
     return matrix_of((flat[0:3], flat[3:6], flat[6:9]))
 
 
+def seen_around(trial: Trial, point: str, frame: str = GROUND) -> tuple[Numbers, ...]:
+    """The place of a point in a body's frame and axes, a moment before, now, and a moment later."""
+    places = trial.around(trial.scene.position(point))
+    if frame not in trial.scene.bodies:
+        return places
+    origins = trial.around(trial.scene.origin(frame))
+    sides = [trial.around(side) for side in transposed(trial.scene.axes(frame))]
+    arms = [minus(place, origin) for place, origin in zip(places, origins, strict=True)]
+    return tuple(vector_of(dot(side[i], arm) for side in sides) for i, arm in enumerate(arms))
+
+
 def differences(trial: Trial, point: str, frame: str = GROUND, axes: str = "", *, order: int) -> Numbers:
     """Velocity (order 1) or acceleration (2) of a point as differences of its place."""
-    rates = vector_of(trial.along(seen_from(trial.scene, point, frame))[order])
+    if math.isnan(trial.along(trial.scene.position(point))[order][0]):
+        raise NoValue("accelerations are not determined there")
+    early, now, late = seen_around(trial, point, frame)
+    h = trial.step
+    bend: Numbers = plus(minus(late, now), minus(early, now))
+    rates: Numbers = times(1 / (2 * h), minus(late, early)) if order == 1 else times(1 / (h * h), bend)
     if axes in ("", frame):
         return rates
     return apply(transposed(axes_at(trial, axes)), apply(axes_at(trial, frame), rates))

@@ -12,10 +12,11 @@ from typing import Any
 from eomgen.errors import DerivationError
 from eomgen.model.outputs.base import OutputFunction, names_of
 from eomgen.model.outputs.scene import GROUND, Scene, Trial
-from eomgen.model.outputs.seen import components, length
+from eomgen.model.outputs.seen import axes_at, components, length
 from eomgen.symbolic.expression.expressions import Call
 from eomgen.symbolic.expression.functions import sqrt
 from eomgen.symbolic.expression.spatial import (
+    IDENTITY,
     AnyScalar,
     Numbers,
     Vector,
@@ -37,6 +38,17 @@ def _angle(scene: Scene, body: str, frame: str = GROUND) -> AnyScalar:
         if not scene.is_plane:
             raise DerivationError(f"body '{name}' has no single angle in space")
     return scene.angle(body) - scene.angle(frame)
+
+
+def _angle_of_axes(trial: Trial, body: str, frame: str = GROUND) -> Any:
+    """That between the x axes of both, and as many whole turns as coordinates count."""
+    scene, x, y = trial.scene, 0, 1
+    own, sides = (transposed(axes_at(trial, name)) if name in scene.bodies else IDENTITY for name in (body, frame))
+    sine, cosine = dot(own[x], sides[y]), dot(own[x], sides[x])
+    (counted,), _, _ = trial.along((scene.angle(body) - scene.angle(frame),))
+    angle = counted.context.atan2(sine, cosine)
+    turn = 2 * counted.context.pi
+    return angle + turn * round((counted - angle) / turn)
 
 
 def _spin(scene: Scene, body: str, frame: str = GROUND, *, order: int) -> Vector:
@@ -84,6 +96,7 @@ ANGLE = OutputFunction(
     unit="rad",
     gives="angle, in the plane",
     value=lambda scene, call: _angle(scene, *names_of(call)),
+    second=lambda trial, call: _angle_of_axes(trial, *names_of(call)),
 )
 OMEGA = _one("omega", "rad/s", "angular velocity; in space its magnitude", 1)
 ANGULAR_VELOCITY = _components("omega_*", "rad/s", 1)
