@@ -102,7 +102,7 @@ def test_what_is_written_as_in_a_textbook_is_printed_as_it_is(text):
         ("a - (b + c)", "a - b - c"),
         ("x*x*x*y/x", "x^2*y"),
         ("pi/2*x", "1/2*pi*x"),
-        ("x/2/y", "1/2*x/y"),
+        ("x/2/y", "x/(2*y)"),
         ("theta'^2*cos(theta)*M", "M*cos(theta)*theta'^2"),
         ("-1*(a + b)/c", "-(a + b)/c"),
         ("-a/(x - 1)", "a/(1 - x)"),

@@ -44,6 +44,7 @@ from eomgen.report.quantity import Quantity
 from eomgen.report.result import Result
 from eomgen.report.statements import Found, Listing
 from eomgen.report.statics.result import why_not_at_rest
+from eomgen.symbolic.exact.book_form import book_form
 from eomgen.symbolic.expression.derivative import depends_on, substituted, symbols_of
 from eomgen.symbolic.expression.expressions import Call
 from eomgen.symbolic.expression.graph import Graph, Node, Scalar
@@ -51,7 +52,7 @@ from eomgen.symbolic.expression.traversal import order
 from eomgen.symbolic.numeric.evaluation import FLOAT, evaluate
 from eomgen.symbolic.numeric.sure_numbers import number_of
 from eomgen.symbolic.numeric.transplant import transplanted
-from eomgen.symbolic.numeric.work import doing
+from eomgen.symbolic.numeric.work import Work, doing
 from eomgen.symbolic.print.text import LONGEST_RESULT, readable_text, text_size
 
 Answer = Quantity  # of an output
@@ -272,12 +273,18 @@ class _Solver:
 
     def _started(self, scalar: Scalar, method: str, output: Output) -> Answer:
         """The text, and the value at the start in the output's unit."""
-        exact = readable_text(scalar)
+        exact = self._written(scalar)
         message = None if exact is not None else f"the exact form is longer than {LONGEST_RESULT} characters"
         try:
             return _valued(Answer(exact, None, "", method, message), self._at_start(scalar, output), "at the start")
         except MissingValues as error:
             return Answer(exact, None, "", method, error.what)
+
+    def _written(self, scalar: Scalar) -> str | None:
+        """The text of an exact answer; None where nobody would read it."""
+        if text_size(scalar) > LONGEST_RESULT:
+            return None
+        return readable_text(book_form(scalar, Work.FORMULA, self.phase.system.scope.positive))
 
     def _at_start(self, quantity: Scalar, output: Output) -> float:
         """The value at the start in the output's unit; what it does not depend on may be missing.
@@ -328,7 +335,7 @@ class _Solver:
         if found is None:
             return _valued(Answer(method=moment.method), self._number_at(moment, output), "at the instant")
         exact = phase.simple(found)
-        text = readable_text(exact)
+        text = self._written(exact)
         try:
             return _valued(Answer(text, None, "", method), self._at_start(exact, output), "at the instant")
         except MissingValues as error:

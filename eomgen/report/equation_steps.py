@@ -23,13 +23,15 @@ from eomgen.report.reading import (
 )
 from eomgen.report.setting_steps import moved_coordinates
 from eomgen.report.statements import Equation, Formula, Omitted, Piece, Prose, Statement, Step, prose
-from eomgen.symbolic.exact.normal_form import cancelled, common_factor, readable, simple_constants
+from eomgen.symbolic.exact.book_form import book_form
+from eomgen.symbolic.exact.normal_form import common_factor, readable, simple_constants
 from eomgen.symbolic.expression.derivative import depends_on, derivative, substituted
 from eomgen.symbolic.expression.graph import Graph, Node, Scalar, is_zero
 from eomgen.symbolic.expression.traversal import operations
 from eomgen.symbolic.numeric.work import Work
 from eomgen.symbolic.print.decimals import number_text
 from eomgen.symbolic.print.layout import factors, products_of
+from eomgen.symbolic.print.length import length_of
 from eomgen.symbolic.print.text import text_size
 
 SOLVED = 3  # accelerations that are solved for by hand, at most
@@ -232,9 +234,9 @@ def _quotient(reader: Reader, graph: Graph, above: Scalar, below: Scalar) -> Sca
     """above / below in its shorter form: as one quotient without common factors, or as a sum."""
     if conditions_in(above):
         return readable_value(reader, graph.div(above, below))
-    one = cancelled(graph.div(above, below), Work.ENTRY)
+    one = book_form(graph.div(above, below))
     several = reader.shown(one) if reader.roots else one
-    return one if isinstance(several, Omitted) or length_in_print(one) <= length_in_print(several) else several
+    return one if isinstance(several, Omitted) or length_of(one) <= length_of(several) else several
 
 
 def _in_whole_numbers(left: Scalar, right: Scalar) -> tuple[Scalar, Scalar]:
@@ -249,9 +251,7 @@ def _by_cramer(sides: Sequence[tuple[Scalar, Scalar]], a: Sequence[Node]) -> tup
     """(determinant, numerators) of left = right, which is linear in a."""
     M = [[_coefficient(left, x) for x in a] for left, _ in sides]
     rest = [readable(right - _without(left, a), Work.ENTRY) for left, right in sides]
-    return readable(_determinant(M), Work.ENTRY), [
-        readable(_determinant(_replaced(M, k, rest)), Work.ENTRY) for k in range(len(a))
-    ]
+    return book_form(_determinant(M)), [book_form(_determinant(_replaced(M, k, rest))) for k in range(len(a))]
 
 
 def _coefficient(x: Scalar, a: Node) -> Scalar:

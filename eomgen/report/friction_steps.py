@@ -15,7 +15,7 @@ from eomgen.report.reaction_names import Lettered, lettered
 from eomgen.report.reaction_values import Readings, readings_of
 from eomgen.report.reading import TRIED, Reader, conditions_in, decided, length_in_print, readable_value
 from eomgen.report.statements import Formula, Omitted, Step, prose
-from eomgen.symbolic.exact.normal_form import simplest
+from eomgen.symbolic.exact.book_form import book_form
 from eomgen.symbolic.expression.derivative import substituted
 from eomgen.symbolic.expression.functions import function, sqrt
 from eomgen.symbolic.expression.graph import Node, Scalar
@@ -23,6 +23,7 @@ from eomgen.symbolic.expression.node import ScalarRow
 from eomgen.symbolic.expression.rational import Fraction
 from eomgen.symbolic.expression.traversal import order
 from eomgen.symbolic.numeric.work import Work
+from eomgen.symbolic.print.length import length_of
 from eomgen.symbolic.print.text import text_size
 
 LONGEST = 240  # characters of an acceleration in print
@@ -58,7 +59,7 @@ def friction_of(equations: EquationsOfMotion, reader: Reader) -> FrictionTerms:
     senses = _senses(letters, system)
     forces: list[Scalar] = [0] * len(system.symbols.u)
     shown = {symbol: function(x.op, readable_value(reader, x.args[0])) for x, symbol in senses.items()}
-    definitions = [(symbol, simplest(x, Work.ENTRY, readings.system.scope.positive)) for symbol, x in shown.items()]
+    definitions = [(symbol, book_form(x, Work.ENTRY, readings.system.scope.positive)) for symbol, x in shown.items()]
     statements = [*map(Formula, definitions)]
     for rub, frictions in zip(letters.rubs, letters.frictions, strict=True):
         normal = letters.symbols[rub.component]
@@ -105,7 +106,7 @@ def _normal(readings: Readings, j: int, equations: EquationsOfMotion, senses: Ma
     accelerations = dict(zip(equations.symbols.a, equations.accelerations or (), strict=False))
     moving = [_sliding(reader, substituted((x,), accelerations)[0]) for x in values if text_size(x) <= TRIED]
     forms = readings.forms(substituted(tuple(x for x in (*values, *moving) if x is not None), senses))
-    return min(forms, key=length_in_print)
+    return min(forms, key=length_of)
 
 
 def _sliding(reader: Reader, x: Scalar) -> Scalar | None:

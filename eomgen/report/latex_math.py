@@ -16,7 +16,7 @@ from eomgen.symbolic.expression.graph import Node, Number, Scalar
 from eomgen.symbolic.expression.rational import Fraction
 from eomgen.symbolic.expression.splines import sampled_of
 from eomgen.symbolic.print.decimals import decimal_of
-from eomgen.symbolic.print.layout import SUMS, Factor, Product, is_base, is_part_of_turn
+from eomgen.symbolic.print.layout import SUMS, Factor, Product, is_base, is_part_of_turn, is_time
 from eomgen.symbolic.print.printed import summands
 
 ATOM, TALL, SUM = range(3)  # a symbol or number; what needs parentheses under an exponent; a sum or a product
@@ -113,6 +113,10 @@ class Setter:
         c = max(product.coefficient, -product.coefficient)
         if not product.denominator and not one_fraction and not is_part_of_turn(product):
             return self._juxtaposed(c, product.numerator)
+        if len(product.numerator) > 1 and is_time(product.numerator[-1][0]):
+            before = self.product(Product(c, product.numerator[:-1], product.denominator))
+            last = self.power(product.numerator[-1])
+            return Set(f"{before.tex} {last.tex}", before.width + last.width, SUM)
         whole = decimal_of(c) is not None
         above = self._juxtaposed(c if whole else c.numerator, product.numerator)
         below = self._juxtaposed(1 if whole else c.denominator, product.denominator)

@@ -16,7 +16,7 @@ from eomgen.report.reaction_values import Readings, readings_of, shown_system
 from eomgen.report.reading import LONGEST, TRIED, Reader, free_names, length_in_print
 from eomgen.report.setting_steps import count, listed_symbols
 from eomgen.report.statements import Code, Formula, Meaning, Name, Omitted, Prose, Statement, Step, Table, prose
-from eomgen.symbolic.exact.normal_form import simplest
+from eomgen.symbolic.exact.book_form import book_form
 from eomgen.symbolic.expression.derivative import depends_on, substituted
 from eomgen.symbolic.expression.graph import Node, Scalar, is_zero
 from eomgen.symbolic.expression.traversal import order
@@ -118,7 +118,7 @@ def along_the_motion(equations: EquationsOfMotion, reader: Reader, letters: Lett
     if rates is None or sum(text_size(x) for x in rates.values()) > TRIED:
         return ()
     known, u = rates, tuple(rates)
-    squares = [(u * u, simplest(x * x, Work.ENTRY, positive)) for u, x in rates.items()]
+    squares = [(u * u, book_form(x * x, Work.ENTRY, positive)) for u, x in rates.items()]
     formulas: list[Statement] = []
     rubbing = {rub.component for rub in letters.rubs}  # these stand in the step of friction
     for j, symbol in enumerate(letters.symbols):

@@ -16,11 +16,15 @@ from eomgen.mechanics.equations.equations_of_motion import EquationsOfMotion
 from eomgen.mechanics.equations.explicit_accelerations import short_accelerations
 from eomgen.mechanics.equations.system import System
 from eomgen.mechanics.reactions.reactions import Reactions, reactions_of
-from eomgen.report.reading import TRIED, Reader, conditions_in, length_in_print, readable_value
-from eomgen.symbolic.exact.normal_form import simplest
+from eomgen.mechanics.reactions.sides import reactions_by_sides
+from eomgen.report.reading import TRIED, Reader, conditions_in, readable_value
+from eomgen.symbolic.exact.book_form import book_form
+from eomgen.symbolic.exact.signs import never_vanishes
 from eomgen.symbolic.expression.derivative import depends_on, substituted
 from eomgen.symbolic.expression.graph import Node, Scalar
+from eomgen.symbolic.expression.traversal import order
 from eomgen.symbolic.numeric.work import Work
+from eomgen.symbolic.print.length import length_of
 from eomgen.symbolic.print.text import text_size
 
 LONGEST = 3000  # characters of accelerations that are put into reactions
@@ -49,6 +53,15 @@ class Readings:
         return _ways(self.shown)
 
     @cached_property
+    def sides(self) -> dict[int, Scalar]:
+        """Of the shown system, the components that the balance of one side of their joint gives."""
+        return reactions_by_sides(self.ways[0].balance)
+
+    @cached_property
+    def own_sides(self) -> dict[int, Scalar]:
+        return self.sides if self.shown is self.system else reactions_by_sides(self.own_ways[0].balance)
+
+    @cached_property
     def own_ways(self) -> tuple[Reactions, ...]:
         return self.ways if self.shown is self.system else _ways(self.system)
 
@@ -58,11 +71,15 @@ class Readings:
         Raises:
             Indeterminate: it has no single value.
         """
-        return self._shortest([way.combined(combination, "") + given for way in self.ways])
+        by_side = _by_sides(self.sides, combination)
+        values = [*([] if by_side is None else [by_side]), *(way.combined(combination, "") for way in self.ways)]
+        return self._shortest([x + given for x in values])
 
     def without(self, combination: Combination, given: Scalar = 0) -> Scalar | None:
         """The same by the equations of motion; None where nothing accelerates in it, or that is long."""
-        values = [way.combined(combination, "") + given for way in self.own_ways]
+        by_side = _by_sides(self.own_sides, combination)
+        found_ways = [*([] if by_side is None else [by_side]), *(w.combined(combination, "") for w in self.own_ways)]
+        values = [x + given for x in found_ways]
         if not self.accelerations or not all(depends_on(x, tuple(self.accelerations)) for x in values):
             return None
         found = self.replaced(values, lambda x: substituted((x,), self.accelerations)[0])
@@ -71,14 +88,15 @@ class Readings:
     def replaced(self, values: list[Scalar], by: Callable[[Scalar], Scalar]) -> Scalar | None:
         """The shortest of the values after a replacement; None where all of them are long."""
         short = [
-            simplest(y, Work.ENTRY, self.system.scope.positive) if not conditions_in(y) else y
+            book_form(y, Work.ENTRY, self.system.scope.positive) if not conditions_in(y) else y
             for x in values
             if text_size(x) <= TRIED and text_size(y := by(x)) <= TRIED
         ]
         return self._shortest(short) if short else None
 
     def _shortest(self, values: list[Scalar]) -> Scalar:
-        return min(self.forms(values), key=length_in_print)
+        """The shortest; of those that divide by nothing that may vanish, where there is one."""
+        return min(self.forms(values), key=lambda x: (divides_by_zero(x), length_of(x)))
 
     def forms(self, values: Sequence[Scalar]) -> list[Scalar]:
         """The values in readable form; without those that divide by zero in one of their cases.
@@ -116,6 +134,22 @@ def readings_of(equations: EquationsOfMotion, reader: Reader, *, free: bool = Fa
 def shown_system(system: System) -> System:
     """The system whose reactions are shown: dependent coordinates free, which is shorter; declared speeds stay."""
     return system if system.free is None or system.scope.model.speeds else system.free
+
+
+def _by_sides(sides: Mapping[int, Scalar], combination: Combination) -> Scalar | None:
+    """sum of combination * components; None where one of them is not known by its side."""
+    if not combination.keys() <= sides.keys():
+        return None
+    total: Scalar = 0
+    for j, k in combination.items():
+        total = total + k * sides[j]
+    return total
+
+
+def divides_by_zero(x: Scalar) -> bool:
+    """Whether x divides by what vanishes for some angles or at some places: by sin(alpha)."""
+    divisors = {node.args[1] for node in order((x,)) if node.op == "div"}
+    return any(type(d) is Node and not never_vanishes(d) for d in divisors)
 
 
 def _ways(system: System) -> tuple[Reactions, ...]:

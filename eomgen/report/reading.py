@@ -7,8 +7,9 @@ from dataclasses import dataclass
 from itertools import count
 
 from eomgen.report.statements import Omitted
-from eomgen.symbolic.exact.collect import gathered, with_squares
-from eomgen.symbolic.exact.normal_form import TooLarge, common_factor, normal_form, simplest
+from eomgen.symbolic.exact.book_form import BRACKETS, book_form
+from eomgen.symbolic.exact.collect import with_squares
+from eomgen.symbolic.exact.normal_form import TooLarge, common_factor, normal_form
 from eomgen.symbolic.exact.roots import Rooted, readable_over, rooted
 from eomgen.symbolic.expression.derivative import substituted
 from eomgen.symbolic.expression.functions import function
@@ -17,6 +18,7 @@ from eomgen.symbolic.expression.rational import Fraction
 from eomgen.symbolic.expression.traversal import operations, order
 from eomgen.symbolic.numeric.work import Work
 from eomgen.symbolic.print.layout import SUMS, factors
+from eomgen.symbolic.print.length import length_of
 from eomgen.symbolic.print.text import named_parts, text_size, to_text
 
 LONGEST = 1500  # characters of one formula in print
@@ -90,13 +92,14 @@ class Reader:
         try:
             if len(normal_form(x, Work.ENTRY).terms) > WAVES:
                 return None
-            short = readable_over(x, held, Work.ENTRY)
+            short = readable_over(x, held, Work.ENTRY) if held else book_form(x)
         except TooLarge:
             return None
         if self.gathers and not held:
-            short = min(short, gathered(x, Work.ENTRY), with_squares(x, Work.ENTRY), key=length_in_print)
+            squares = with_squares(x, Work.ENTRY)
+            short = squares if length_of(squares) + BRACKETS < length_of(short) else short
         left_alone = held or holds_roots(x)
-        return x if left_alone and length_in_print(x) < length_in_print(short) else short
+        return x if left_alone and length_of(x) < length_of(short) else short
 
     def whole(self, x: Scalar) -> Scalar:
         """x with the roots that its symbols stand for."""
@@ -136,7 +139,7 @@ class Reader:
             over = self.short_with_symbols((graph.div(left, divisor), graph.div(right, divisor)))
             found.append((over[0], over[1], divisor))
         found.append((left, right, 1))
-        return min(found, key=lambda each: length_in_print(*each[:2]))
+        return min(found, key=lambda each: length_of(*each[:2]))
 
     def as_square(self, x: Scalar) -> Scalar:
         """A potential k*(a - b)^2/2 with its parentheses, where that is shorter than multiplied out; else x."""
@@ -152,7 +155,7 @@ class Reader:
         for base, e in product.denominator:
             found = x.graph.div(found, x.graph.pow(base, e))
         short = self._read(x)
-        if short is not None and length_in_print(short) <= length_in_print(found):
+        if short is not None and length_of(short) <= length_of(found):
             return x
         self._known[found] = found
         return found
@@ -207,8 +210,8 @@ def readable_value(reader: Reader, value: Scalar, positive: Collection[Node] = (
     shown = reader.shown(value)
     if type(value) is not Node or text_size(value) > DIVIDED:
         return value if isinstance(shown, Omitted) else shown
-    one = simplest(value, Work.ENTRY, positive)
-    return one if isinstance(shown, Omitted) or length_in_print(one) < length_in_print(shown) else shown
+    one = book_form(value, Work.ENTRY, positive)
+    return one if isinstance(shown, Omitted) or length_of(one) < length_of(shown) else shown
 
 
 def holds_roots(*expressions: Scalar) -> bool:

@@ -12,7 +12,7 @@ from eomgen.mechanics.fields.motion_kind import HELICAL, Kind, Kinds
 from eomgen.mechanics.instant.body_motion import BodyMotion, body_motions
 from eomgen.report.bounded import tabled
 from eomgen.report.statements import Cell, Formula, Law, Name, Piece, Prose, Statement, Step, prose
-from eomgen.symbolic.exact.normal_form import simplest
+from eomgen.symbolic.exact.book_form import book_form
 from eomgen.symbolic.expression.functions import over
 from eomgen.symbolic.expression.graph import Node, Scalar, is_zero
 from eomgen.symbolic.expression.spatial import Vector
@@ -204,8 +204,8 @@ def equation_of(curve: Curve, positive: frozenset[Node]) -> tuple[Piece, ...]:
         (x, y, _), (dx, dy, _) = curve.at, curve.along
         if is_zero(dx):
             return ("straight line x = ", _formula(x))
-        slope = simplest(over(dy, dx), Work.FORMULA, positive)
-        offset = simplest(y - x * slope, Work.FORMULA, positive)
+        slope = book_form(over(dy, dx), Work.FORMULA, positive)
+        offset = book_form(y - x * slope, Work.FORMULA, positive)
         if is_zero(slope):
             return ("straight line y = ", _formula(offset))
         return ("straight line of slope ", _formula(slope), " through (0, ", _formula(offset), ")")

@@ -169,12 +169,27 @@ class Expansion:
 
     def _is_never_negative(self, f: Terms) -> bool:
         """Whether every monomial is positive and its number outweighs its waves: 1 + cos(2 x) >= 0."""
+        least = self._least(f)
+        return least is not None and all(number >= 0 for number in least.values())
+
+    def is_positive(self, f: Terms) -> bool:
+        """Whether that is so, and a product of positive symbols outweighs its waves: M + m sin(alpha)^2 > 0."""
+        least = self._least(f)
+        if least is None or not all(number >= 0 for number in least.values()):
+            return False
+        return any(number > 0 and all(self._is_sized(atom) for atom, _ in key) for key, number in least.items())
+
+    def _is_sized(self, atom: int) -> bool:
+        return atom < 0 or self._is_positive(atom)
+
+    def _least(self, f: Terms) -> dict[Monomial, Number] | None:
+        """What each monomial is multiplied by at least; None where one of them may be negative."""
         least: dict[Monomial, Number] = {}
         for (monomial, w), c in f.items():
             if not self.all_positive({(monomial, ()): 1}):
-                return False
+                return None
             least[monomial] = least.get(monomial, 0) + (-abs(Fraction(c)) if w else c)
-        return all(number >= 0 for number in least.values())
+        return least
 
     def sign_of_constant(self, x: Scalar) -> int | None:
         """The sign of a number without symbols, by its value; None for anything else, and for what may be 0."""

@@ -35,7 +35,9 @@ __all__ = [
     "collected_in",
     "common_factor",
     "equal",
+    "in_whole_numbers",
     "normal_form",
+    "quotients",
     "readable",
     "readable_all",
     "simple_constants",
@@ -211,7 +213,7 @@ def cancelled(x: Scalar, limit: int = Work.ANSWER, positive: Collection[Node] = 
     try:
         expansion, (terms,) = expanded((x,), limit, positive)
         writer = Writer(expansion)
-        return _quotients(expansion, writer, terms)[-1]
+        return quotients(expansion, writer, terms)[-1]
     except TooLarge:
         return x
 
@@ -227,7 +229,7 @@ def simplest(x: Scalar, limit: int = Work.ANSWER, positive: Collection[Node] = (
         if most is not None and len(terms) > most:
             return x
         writer = Writer(expansion)
-        forms = [writer.sum(terms), *_quotients(expansion, writer, terms)]
+        forms = [writer.sum(terms), *quotients(expansion, writer, terms)]
     except TooLarge:
         return x
     return rebuilt_as_written(min(forms, key=_length))
@@ -281,9 +283,9 @@ class Legibly:
         return vector_of(map(self, v))
 
 
-def _quotients(expansion: Expansion, writer: Writer, terms: Terms) -> list[Scalar]:
+def quotients(expansion: Expansion, writer: Writer, terms: Terms) -> list[Scalar]:
     """The sum as quotients without common factors: with its factors outside, with one root, and over a lone term."""
-    above, below = _whole(writer, *reduced(expansion, terms))
+    above, below = in_whole_numbers(writer, *reduced(expansion, terms))
     forms = [expansion.graph.div(writer.in_factors(above), writer.in_powers(below))]
     common = common_monomial(above)
     roots = tuple((atom, e) for atom, e in common if expansion.atoms.is_a(atom, "sqrt"))
@@ -302,7 +304,7 @@ def _length(x: Scalar) -> float:
     return text_size(x) * (1.5 if has_nested_quotient(x) else 1)
 
 
-def _whole(writer: Writer, numerator: Terms, denominator: Terms) -> tuple[Terms, Terms]:
+def in_whole_numbers(writer: Writer, numerator: Terms, denominator: Terms) -> tuple[Terms, Terms]:
     """The same quotient with whole coefficients, without common number, the denominator's first term positive."""
     above, below = writer.content(numerator), writer.content(denominator)
     ratio = above / below

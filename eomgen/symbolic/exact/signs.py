@@ -7,6 +7,7 @@ from collections.abc import Collection
 from eomgen.symbolic.exact.expansion import expanded
 from eomgen.symbolic.exact.terms import TooLarge
 from eomgen.symbolic.expression.graph import Node, Scalar
+from eomgen.symbolic.expression.traversal import order
 from eomgen.symbolic.numeric.work import Work
 
 
@@ -22,3 +23,13 @@ def sign_of_terms(x: Scalar, positive: Collection[Node]) -> int | None:
         if expansion.all_positive({key: sign * c for key, c in terms.items()}):
             return sign
     return None
+
+
+def never_vanishes(x: Node) -> bool:
+    """Whether x is positive wherever it has a value, if all its constants are: M + m*sin(alpha)^2, 2*l^2 + r^2."""
+    constants = tuple(node for node in order((x,)) if node.op == "symbol" and node.graph.is_constant(node))
+    try:
+        expansion, (terms,) = expanded((x,), Work.ENTRY, constants)
+    except TooLarge:
+        return False
+    return any(expansion.is_positive({key: sign * c for key, c in terms.items()}) for sign in (1, -1))

@@ -64,6 +64,7 @@ class Graph:
         self._constants = {self.pi}
         self.spheres: list[tuple[Node, ...]] = []
         self.text_sizes: dict[Node, int] = {}  # those that were asked for
+        self.lengths: dict[Node, tuple[int, int]] = {}  # as typeset, of those that were asked for
 
     def __len__(self) -> int:
         return len(self._nodes)

@@ -15,6 +15,7 @@ class Owner(Protocol):
     pi: Node
     spheres: list[tuple[Node, ...]]
     text_sizes: dict[Node, int]
+    lengths: dict[Node, tuple[int, int]]
 
     @property
     def nodes(self) -> tuple[Node, ...]: ...

@@ -171,7 +171,7 @@ def _opened_sum(x: Node, named: Container[Node]) -> tuple[list[Node], list[Node]
 
 
 def factors(x: Scalar, named: Container[Node] = ()) -> Product:
-    """x as powers over powers: constants, symbols, functions, sums, then rates (27/2*M*R^2*cos(theta)^2*theta'^2).
+    """x as powers over powers: constants, symbols, sums, functions, then rates (27/2*M*R^2*cos(theta)^2*theta'^2).
 
     A base is a symbol, pi, a function, a sum, or a `pow` that is no whole power.
 
@@ -199,28 +199,24 @@ def factors(x: Scalar, named: Container[Node] = ()) -> Product:
                 heappush(newest, (-part.index, part))
             powers[part] = powers.get(part, 0) + power * exponent
     bases.sort(key=_rank)
-    bases = _constant_sums_first(bases)
     above = tuple((base, power) for base, power in bases if power > 0)
     return Product(tidy(coefficient), above, tuple((base, -power) for base, power in bases if power < 0))
 
 
-def _constant_sums_first(bases: list[Factor]) -> list[Factor]:
-    """(I3 - I2)*w2*w3: sums of what stays the same before the first symbol of what moves."""
-    first = next((k for k, (base, _) in enumerate(bases) if _moves(base)), None)
-    if first is None:
-        return bases
-    sums = [each for each in bases[first:] if each[0].op in SUMS and _is_short_constant(each[0])]
-    return [*bases[:first], *sums, *(each for each in bases[first:] if each not in sums)]
-
-
-def _moves(base: Node) -> bool:
-    return base.op == "symbol" and not base.graph.is_constant(base) and not base.name.endswith("'")
-
-
-def _is_short_constant(base: Node) -> bool:
-    nodes = order((base,))
-    symbols = [x for x in nodes if x.op == "symbol"]
-    return len(nodes) <= SHORT_SUM and bool(symbols) and all(x.graph.is_constant(x) for x in symbols)
+def _symbols_in(base: Node) -> list[Node]:
+    """Its symbols in the order of their declaration; [] where it is long."""
+    found: dict[int, Node] = {}
+    stack, seen = [base], 1
+    while stack:
+        for a in stack.pop().args:
+            if type(a) is Node:
+                seen += 1
+                stack.append(a)
+                if a.op == "symbol":
+                    found[a.index] = a
+        if seen > SHORT_SUM:
+            return []
+    return [found[k] for k in sorted(found)]
 
 
 def rebuilt_as_written(x: Scalar) -> Scalar:
@@ -264,6 +260,11 @@ def is_part_of_turn(product: Product) -> bool:
     return lone and product.numerator[0][0].op == "pi" and 1 < product.coefficient.denominator < 100
 
 
+def is_time(node: Node) -> bool:
+    """True for t, which stands after what it is multiplied by: m*g*sin(alpha)/(2*M)*t^2."""
+    return node.op == "symbol" and node.name == "t"
+
+
 def _parts(node: Node) -> tuple[tuple[Scalar, int], ...] | None:
     """(factor, exponent) of a product, quotient, whole power or negation; None for a base."""
     if node.op == "mul":
@@ -277,12 +278,16 @@ def _parts(node: Node) -> tuple[tuple[Scalar, int], ...] | None:
     return None
 
 
-def _rank(factor: Factor) -> tuple[int, int]:
+def _rank(factor: Factor) -> tuple[int, tuple[int, ...], str, int]:
+    """Where a factor stands: by what it is made of, and by its age only where that is long."""
     base = factor[0]
     if base.op == "symbol":
-        kind = 5 if base.name.startswith("lam(") else 4 if base.name.endswith("'") else 1
-    elif base.op in SUMS:
-        kind = 3
-    else:
-        kind = 0 if base.op == "pi" or (base.op == "sqrt" and type(base.args[0]) is not Node) else 2
-    return kind, base.index
+        kind = 5 if base.name.startswith("lam(") else 4 if base.name.endswith("'") else 6 if is_time(base) else 1
+        return kind, (base.index,), "", 0
+    symbols = _symbols_in(base)
+    inside = tuple(x.index for x in symbols)
+    if base.op in SUMS:
+        still = symbols and all(map(base.graph.is_constant, symbols))
+        return 1 if still else 2, inside, "sum", base.index
+    kind = 0 if base.op == "pi" or (base.op == "sqrt" and type(base.args[0]) is not Node) else 3
+    return kind, inside, base.op, base.index

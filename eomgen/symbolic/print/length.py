@@ -7,6 +7,22 @@ is one mark too. What stands over or beside a letter (accents, primes) and where
 from __future__ import annotations
 
 import re
+from collections.abc import Mapping, Sequence
+from functools import lru_cache
+
+from eomgen.symbolic.expression.graph import Node, Number, Scalar
+from eomgen.symbolic.expression.rational import Fraction
+from eomgen.symbolic.expression.splines import sampled_of
+from eomgen.symbolic.print.decimals import decimal_of
+from eomgen.symbolic.print.layout import Factor, Product, is_base, is_part_of_turn
+from eomgen.symbolic.print.printed import summands
+from eomgen.symbolic.print.symbols import index_latex, symbol_of
+
+ATOM, TALL, SUM = range(3)  # a symbol or number; what needs parentheses under an exponent; a sum or a product
+TRIGONOMETRIC = frozenset("sin cos tan sinh cosh tanh".split())
+Marks = tuple[int, int]  # how many, and how they hang together
+
+_MULTIPLIER = re.compile(r"lam\((?P<tie>.*), (?P<row>\d+)\)")
 
 _ACCENTS = (
     "dot ddot dddot ddddot hat widehat bar overline underline vec tilde widetilde acute grave breve check mathring"
@@ -72,3 +88,119 @@ def _marks(found: re.Match[str]) -> int:
     if found["escaped"] is not None:
         return int(found["escaped"] not in ",;:!> \n")
     return int(found["name"] is not None or (found["mark"] is not None and found["mark"] not in _INVISIBLE))
+
+
+# -- of what is not typeset yet -----------------------------------------------------------------
+
+
+def length_of(*scalars: Scalar) -> int:
+    """The number of visible marks that the scalars have when they are typeset, names by their letters.
+
+    What `length_of_latex` counts in them; nothing is typeset, and each node is counted once.
+    """
+    return sum(_lengths(x)[x][0] if type(x) is Node else _number(x)[0] for x in scalars)
+
+
+def _lengths(x: Node) -> dict[Node, Marks]:
+    """The marks of x and of all its parts."""
+    known: dict[Node, Marks] = x.graph.lengths
+    plans: dict[Node, list[Product]] = {}
+    stack = [x]
+    while stack:
+        node = stack[-1]
+        if node in known:
+            stack.pop()
+            continue
+        if node not in plans:
+            plans[node] = [] if is_base(node) else summands(node)
+        bases = [base for p in plans[node] for base, _ in (*p.numerator, *p.denominator)]
+        missing = [part for part in bases or node.args if type(part) is Node and part not in known]
+        if missing:
+            stack += missing
+        else:
+            known[stack.pop()] = _sum(plans[node], known) if plans[node] else _base(node, known)
+    return known
+
+
+def _sum(products: Sequence[Product], known: Mapping[Node, Marks]) -> Marks:
+    if len(products) == 1:
+        marks, hold = _product(products[0], known)
+        return (marks + 1, SUM) if products[0].coefficient < 0 else (marks, hold)
+    signs = sum(i > 0 or p.coefficient < 0 for i, p in enumerate(products))
+    return signs + sum(_product(p, known)[0] for p in products), SUM
+
+
+def _product(product: Product, known: Mapping[Node, Marks], *, one_fraction: bool = False) -> Marks:
+    c = max(product.coefficient, -product.coefficient)
+    if not product.denominator and not one_fraction and not is_part_of_turn(product):
+        return _side(c, product.numerator, known)
+    whole = decimal_of(c) is not None
+    above = _side(c if whole else c.numerator, product.numerator, known)
+    below = _side(1 if whole else c.denominator, product.denominator, known)
+    return above[0] + 1 + below[0], SUM
+
+
+def _side(c: Number, found: Sequence[Factor], known: Mapping[Node, Marks]) -> Marks:
+    """A number and powers side by side."""
+    if not found:
+        return _number(c)
+    if len(found) == 1 and c == 1 and found[0][1] == 1:
+        return known[found[0][0]]
+    parts = [] if c == 1 else [_number(c)]
+    parts += [_power(known[base], base, exponent) for base, exponent in found]
+    dots = sum(base.op == "pow" and type(base.args[0]) is not Node for base, _ in found[0 if c != 1 else 1 :])
+    return sum(marks for marks, _ in parts) + dots, parts[0][1] if len(parts) == 1 else SUM
+
+
+def _power(found: Marks, base: Node, exponent: int) -> Marks:
+    marks, hold = found
+    if exponent == 1:
+        return (marks + 2, TALL) if hold == SUM else found
+    bracketed = hold == SUM or (hold == TALL and base.op not in TRIGONOMETRIC)
+    return marks + 2 * bracketed + len(str(exponent)), TALL
+
+
+def _base(node: Node, known: Mapping[Node, Marks]) -> Marks:
+    op = node.op
+    if op in ("symbol", "pi"):
+        return (length_of_name(node.name) if op == "symbol" else 1), ATOM
+    if op == "sampled":
+        return length_of_name(sampled_of(node.args[1]).name), ATOM
+    parts = [known[a] if type(a) is Node else _number(a) for a in node.args]
+    inside = sum(marks for marks, _ in parts)
+    if op == "sqrt":
+        return _under_root(node.args[0], parts[0], known) + 1, TALL
+    if op in ("exp", "abs"):
+        return inside + (1 if op == "exp" else 2), TALL if op == "exp" else ATOM
+    if op in ("less", "less_equal"):
+        return inside + 1, SUM
+    if op == "select":
+        return inside + 1, ATOM
+    if op == "pow":
+        return inside + 2 * (parts[0][1] != ATOM), TALL
+    plain = len(parts) == 1 and type(node.args[0]) is Node and node.args[0].op in ("symbol", "pi")
+    return inside + (1 if plain else 2 + len(parts)), TALL
+
+
+def _under_root(x: Scalar, found: Marks, known: Mapping[Node, Marks]) -> int:
+    """x with its broken number and the rest as one fraction."""
+    if type(x) is Node and x.op == "mul" and type(x.args[0]) is Fraction and decimal_of(x.args[0]) is None:
+        return _product(summands(x)[0], known, one_fraction=True)[0]
+    return found[0]
+
+
+def _number(c: Number) -> Marks:
+    decimal = decimal_of(c)
+    if c.denominator == 1 or decimal is not None:
+        digits, power = decimal or (str(c), 0)
+        return len(digits) + (3 + len(str(power)) if power else 0), ATOM if c >= 0 and not power else SUM
+    return len(str(c.numerator)) + 1 + len(str(c.denominator)), SUM
+
+
+@lru_cache(maxsize=1_000)
+def length_of_name(name: str) -> int:
+    """The letters and digits of a symbol: theta1' has two, m_cart five."""
+    multiplier = _MULTIPLIER.fullmatch(name)
+    if multiplier:
+        return 2 + len(multiplier["row"]) + length_of_latex(index_latex(multiplier["tie"]))
+    return length_of_latex(symbol_of(name.rstrip("'")).tex)

@@ -11,7 +11,7 @@ from eomgen.symbolic.expression.graph import Node, Scalar
 from eomgen.symbolic.expression.splines import sampled_of
 from eomgen.symbolic.expression.traversal import order
 from eomgen.symbolic.print.decimals import decimal_of, number_length, number_text
-from eomgen.symbolic.print.layout import Factor, Product, is_base, is_part_of_turn
+from eomgen.symbolic.print.layout import Factor, Product, is_base, is_part_of_turn, is_time
 from eomgen.symbolic.print.printed import summands
 
 ATOM, POWER, LOOSE = range(3)  # how a text hangs together: theta', x^(1/3), a*b or a + b
@@ -69,9 +69,16 @@ def _sum_text(products: list[Product], printed: Printed) -> tuple[str, int]:
 
 
 def _product_text(product: Product, printed: Printed, *, one_line: bool = False) -> tuple[str, int]:
-    """The text of |coefficient| * numerator / denominator; 14*l/3 rather than 14/3*l where `one_line`."""
+    """The text of |coefficient| * numerator / denominator; 27/2*M*R^2, 3*M*R/(2*h).
+
+    Args:
+        one_line: 14*l/3 rather than 14/3*l.
+    """
     c = product.coefficient
     c = -c if c < 0 else c
+    if product.denominator and len(product.numerator) > 1 and is_time(product.numerator[-1][0]):
+        before, last = Product(c, product.numerator[:-1], product.denominator), product.numerator[-1]
+        return f"{_product_text(before, printed)[0]}*{_power_text(last, printed)}", LOOSE
     above = [_power_text(factor, printed) for factor in product.numerator]
     below = [_power_text(factor, printed) for factor in product.denominator]
     plain = c.denominator == 1 or decimal_of(c) is not None
@@ -79,7 +86,7 @@ def _product_text(product: Product, printed: Printed, *, one_line: bool = False)
         return number_text(c), ATOM if plain else LOOSE
     if is_part_of_turn(product):
         return f"{'pi' if c.numerator == 1 else f'{c.numerator}*pi'}/{c.denominator}", LOOSE
-    if above and one_line and not plain:
+    if above and (one_line or below) and not plain:
         above = above if c.numerator == 1 else [str(c.numerator), *above]
         below = [str(c.denominator), *below]
     elif above:

@@ -1,0 +1,348 @@
+"""A scalar -> the same as the author of a textbook prints it; decided by its length as a person reads it.
+
+What multiplies one product of accelerations, rates and multipliers stands in one parenthesis, in factors:
+
+    (M + m)*X'' + m*cos(alpha)*s'',    R*(4 + 9*cos(theta)^2)*theta'',    (a + b)*(G + 2*P)/(2*h)
+
+A coefficient is multiplied out or in factors, whichever is shorter; where they are equally long it is in factors. All
+is made from the normal form, so the result depends on the function alone and made again it stays as it is. All work is
+counted: a long sum is only collected.
+"""
+
+from __future__ import annotations
+
+from collections import Counter
+from collections.abc import Callable, Collection, Iterable, Mapping, Sequence
+from dataclasses import dataclass, field
+
+from eomgen.symbolic.exact.expansion import Expansion, expanded
+from eomgen.symbolic.exact.normal_form import in_whole_numbers, quotients
+from eomgen.symbolic.exact.quotient import reduced
+from eomgen.symbolic.exact.rational_polynomial import RationalPolynomial
+from eomgen.symbolic.exact.terms import AngleSum, Terms, TooLarge, common_number
+from eomgen.symbolic.exact.writing import Writer
+from eomgen.symbolic.expression.exact_numbers import tidy
+from eomgen.symbolic.expression.graph import Node, Number, Scalar
+from eomgen.symbolic.expression.rational import Fraction
+from eomgen.symbolic.expression.traversal import order
+from eomgen.symbolic.numeric.work import Work
+from eomgen.symbolic.print.layout import has_nested_quotient, is_base, rebuilt_as_written
+from eomgen.symbolic.print.length import length_of
+
+MOST_FACTORED = 40  # terms of a sum that is looked through for factors
+MOST_NESTED = 12  # terms of a sum of which parts have a factor in common: a + b*(c + d)
+LARGEST_DEGREE = 16  # of a sum that is looked through for factors
+BRACKETS = 1  # marks that a sum may be longer in factors: (M + m)*g is M*g + m*g
+DEEPER = 10  # marks that parentheses within parentheses must save
+INSIDE = 1  # marks that a number must save in the parentheses before which it stands: (1/3*m1 + m2)*l1^2
+MERGED = 6  # marks that one coefficient of several accelerations and rates must save
+MOST_SHARED = 4  # factors that several terms of a sum hold, of which each is tried outside of them
+MOST_TRIED = 150  # sums that are formed for one scalar in search of shorter ones
+
+Base = int | tuple[str, AngleSum]  # an atom, or the sine or cosine of an angle
+Powers = tuple[tuple[Base, int], ...]  # in the order in which they were met; exponents may be negative
+Part = tuple[Number, Powers]
+Parts = list[Part]
+
+
+def book_form(x: Scalar, limit: int = Work.ENTRY, positive: Collection[Node] = ()) -> Scalar:
+    """x as the author of a textbook prints it; x itself where that takes more than `limit` products of terms.
+
+    Args:
+        positive: symbols that stand for positive numbers.
+    """
+    if type(x) is not Node:
+        return x
+    try:
+        expansion, (terms,) = expanded((x,), limit, positive)
+        writer = Writer(expansion)
+        book = _Book(expansion, writer)
+        divided = any(e < 0 for monomial, _ in terms for _, e in monomial)
+        forms = [_quotient(expansion, writer, book, terms)] if divided else []
+        forms.append(book.sum(book.coordinates_first(_parts(writer, terms))))
+        if any(expansion.atoms.is_a(atom, "sqrt") for monomial, _ in terms for atom, _ in monomial):
+            forms += map(rebuilt_as_written, quotients(expansion, writer, terms))
+    except TooLarge:
+        return x
+    return min(forms, key=_length)
+
+
+def _length(x: Scalar) -> float:
+    """A quotient within a quotient counts as half as long again."""
+    return length_of(x) * (1.5 if has_nested_quotient(x) else 1)
+
+
+def _quotient(expansion: Expansion, writer: Writer, book: _Book, terms: Terms) -> Scalar:
+    """numerator / denominator, without common factor."""
+    above, below = in_whole_numbers(writer, *reduced(expansion, terms))
+    return expansion.graph.div(book.product(_parts(writer, above)), book.product(_parts(writer, below)))
+
+
+def _parts(writer: Writer, terms: Terms) -> Parts:
+    return [
+        (c, (*monomial, *(((kind, angle), e) for kind, angle, e in factors)))
+        for c, monomial, factors in writer.written(terms)
+    ]
+
+
+@dataclass(frozen=True)
+class _Book:
+    """Writes sums of products of powers."""
+
+    expansion: Expansion
+    writer: Writer
+    tried: Counter[str] = field(default_factory=Counter)
+
+    def sum(self, parts: Parts) -> Scalar:
+        """The sum, collected, with what all terms hold before it where that is shorter."""
+        if len(parts) < 2:
+            return self._term(*parts[0]) if parts else 0
+        number, common, rest = _without_common(parts)
+        apart = self._collected(parts)
+        if len(parts) > MOST_FACTORED or (number == 1 and not common and not self._may_factor(rest)):
+            return apart
+        whole = self._times(number, common, self._factors(rest))
+        free = BRACKETS if common else 0
+        deeper = DEEPER * max(0, _depth(whole) - max(1, _depth(apart)))
+        return whole if length_of(whole) + deeper <= length_of(apart) + free else apart
+
+    def coordinates_first(self, parts: Parts) -> Parts:
+        """As places are read, X + s*cos(alpha) + R*sin(alpha); the same order where all terms share something."""
+        if _without_common(parts)[1]:
+            return parts
+        return sorted(
+            parts, key=lambda part: not any(isinstance(base, int) and self._moves(base) for base, _ in part[1])
+        )
+
+    def product(self, parts: Parts) -> Scalar:
+        """The sum in factors, what all terms hold before it."""
+        if len(parts) < 2:
+            return self.sum(parts)
+        number, common, rest = _without_common(parts)
+        return self._times(number, common, self._factors(rest))
+
+    def _times(self, number: Number, common: Powers, factors: Sequence[tuple[Parts, int]]) -> Scalar:
+        """number * common * factors, a minus in front only where no factor can take it."""
+        minus = number * (-1) ** sum(e for part, e in factors if _is_negative(part)) < 0
+        written = [(_turned(part) if _is_negative(part) else part, e) for part, e in factors]
+        if minus:
+            mixed = [k for k, (part, e) in enumerate(written) if e % 2 and any(c < 0 for c, _ in part)]
+            if mixed:
+                part, e = written[mixed[0]]
+                written[mixed[0]] = (_turned(part), e)
+                minus = False
+        sign, size = (-1 if minus else 1), abs(Fraction(number))
+        apart = self._product(self._term(sign * size, common), written)
+        if size.denominator == 1:
+            return apart
+        inside = next((k for k, (_, e) in enumerate(written) if e == 1), None)
+        if inside is None:
+            return apart
+        written[inside] = ([(tidy(size * c), powers) for c, powers in written[inside][0]], 1)
+        within = self._product(self._term(sign, common), written)
+        return within if length_of(within) + INSIDE < length_of(apart) else apart
+
+    def _product(self, total: Scalar, factors: Sequence[tuple[Parts, int]]) -> Scalar:
+        graph = self.writer.graph
+        for part, e in factors:
+            total = graph.mul(total, graph.pow(self._collected(part), e))
+        return total
+
+    def _collected(self, parts: Parts) -> Scalar:
+        """The sum with one term for each product of what accelerates and turns, each coefficient at its shortest."""
+        if len(parts) < 2:
+            return self.sum(parts)
+        groups = _grouped(parts, self._is_kinetic)
+        if not any(groups):
+            return self._still(parts)
+        apart = self._added([self._with(key, part) for key, part in groups.items()])
+        if not 1 < len(groups) <= len(parts) <= MOST_FACTORED:
+            return apart
+        merged = self._merged(groups)
+        return merged if merged is not None and length_of(merged) + MERGED <= length_of(apart) else apart
+
+    def _merged(self, groups: Mapping[Powers, Parts]) -> Scalar | None:
+        """coefficient*(a sum of what moves) for all that has the same coefficient: m*l*(cos(q)*q'' - sin(q)*q'^2)."""
+        sums: dict[tuple[Powers, tuple[Part, ...]], Parts] = {}
+        for key, part in groups.items():
+            number, common, rest = _without_common(part)
+            still = tuple(sorted((item for item in common if not self._moves(item[0])), key=repr))
+            moving = tuple(item for item in common if item not in still)
+            sums.setdefault((still, tuple(rest)), []).append((number, _times_powers(moving, key)))
+        if len(sums) == len(groups) or ((), ((1, ()),)) in sums:
+            return None
+        terms = []
+        for (still, alike), inside in sums.items():
+            number, common, left = _without_common(inside)
+            factors = [*self._factors(list(alike)), *self._factors(left)]
+            terms.append(self._times(number, _times_powers(still, common), factors))
+        return self._added(terms)
+
+    def _with(self, key: Powers, part: Parts) -> Scalar:
+        """coefficient * key"""
+        if len(part) == 1:
+            return self._term(part[0][0], _times_powers(part[0][1], key))
+        if not key:
+            return self.sum(part)
+        number, common, rest = _without_common(part)
+        return self._times(number, _times_powers(common, key), self._factors(rest))
+
+    def _still(self, parts: Parts) -> Scalar:
+        """A sum in which nothing has a rate: with one term for each product of what moves, or as it is."""
+        apart = self._added([self._term(c, powers) for c, powers in parts])
+        if len(parts) > MOST_FACTORED:
+            return apart
+        forms = []
+        groups = _grouped(parts, self._moves)
+        if 1 < len(groups) < len(parts):
+            forms.append(self._added([self._with(key, part) for key, part in groups.items()]))
+        if 2 < len(parts) <= MOST_NESTED:
+            forms += self._nested(parts)
+        best = min(forms, key=length_of, default=apart)
+        return best if length_of(best) <= length_of(apart) else apart
+
+    def _nested(self, parts: Parts) -> list[Scalar]:
+        """factor*(...) + ..., for each factor that several terms hold and not all."""
+        counts: dict[tuple[Base, int], int] = {}
+        for _, powers in parts:
+            for base, e in powers:
+                for n in range(1, e + 1):
+                    counts[base, n] = counts.get((base, n), 0) + 1
+        found = []
+        shared = [item for item in counts if 1 < counts[item] < len(parts)]
+        for base, n in sorted(shared, key=lambda item: -counts[item])[:MOST_SHARED]:
+            self.tried["sums"] += 1
+            if self.tried["sums"] <= MOST_TRIED:
+                inside = [(c, powers) for c, powers in parts if dict(powers).get(base, 0) >= n]
+                beside = [part for part in parts if part not in inside]
+                place = parts.index(inside[0])
+                before = [part for part in parts[:place] if part in beside]
+                after = [part for part in parts[place:] if part in beside]
+                pieces = [self.sum(before)] if before else []
+                pieces.append(self._with((), inside) if len(inside) == 1 else self.product(inside))
+                pieces += [self.sum(after)] if after else []
+                found.append(self._added(pieces))
+        return found
+
+    # -- factors ------------------------------------------------------------------------------
+
+    def _may_factor(self, parts: Parts) -> bool:
+        return len(self._factors(parts)) > 1
+
+    def _factors(self, parts: Parts) -> list[tuple[Parts, int]]:
+        """Irreducible factors of a sum as a polynomial in its bases, and their powers; the sum itself where none is."""
+        if len(parts) > MOST_FACTORED or any(e < 0 for _, powers in parts for _, e in powers):
+            return [(parts, 1)]
+        bases = list(dict.fromkeys(base for _, powers in parts for base, _ in powers))
+        place = {base: k for k, base in enumerate(bases)}
+        polynomial: dict[tuple[int, ...], Number] = {}
+        for c, powers in parts:
+            exponents = [0] * len(bases)
+            for base, e in powers:
+                exponents[place[base]] += e
+            polynomial[tuple(exponents)] = c
+        f = RationalPolynomial.of(polynomial)
+        if f.degree > LARGEST_DEGREE or f.is_number:
+            return [(parts, 1)]
+        number, found = f.factors()
+        if len(found) == 1 and found[0][1] == 1:
+            return [(parts, 1)]
+        met = {exponents: k for k, exponents in enumerate(polynomial)}
+        factors: list[tuple[Parts, int]] = []
+        for part, n in found:
+            written = [
+                (c, tuple((base, e) for base, e in zip(bases, exponents, strict=True) if e))
+                for exponents, c in sorted(part.terms, key=lambda item: met.get(item[0], len(met)))
+            ]
+            factors.append((written, n))
+        return [([(number, ())], 1), *factors] if number != 1 else factors
+
+    # -- nodes --------------------------------------------------------------------------------
+
+    def _term(self, c: Number, powers: Powers) -> Scalar:
+        monomial = tuple(sorted((base, e) for base, e in powers if isinstance(base, int)))
+        factors = tuple((*base, e) for base, e in powers if not isinstance(base, int))
+        return self.writer.term(tidy(c), monomial, factors)
+
+    def _added(self, terms: Sequence[Scalar]) -> Scalar:
+        """The sum in this order, a term without a minus first; as written, whatever was written before."""
+        graph = self.writer.graph
+        signed = [(_has_minus(x), _bare(x)) for x in terms]
+        first = next((k for k, (minus, _) in enumerate(signed) if not minus), None)
+        if first is None:
+            return graph.neg(self._added([x for _, x in signed]))
+        total = signed[first][1]
+        for minus, x in (*signed[:first], *signed[first + 1 :]):
+            if type(total) is Node and type(x) is Node:
+                total = graph.held("sub" if minus else "add", (total, x))
+            else:
+                total = graph.add(total, graph.neg(x) if minus else x)
+        return total
+
+    def _is_kinetic(self, base: Base) -> bool:
+        node = self.expansion.atoms.nodes.get(base) if isinstance(base, int) else None
+        return node is not None and node.op == "symbol" and (node.name.endswith("'") or node.name.startswith("lam("))
+
+    def _moves(self, base: Base) -> bool:
+        graph, nodes = self.expansion.graph, self.expansion.atoms.nodes
+        if isinstance(base, int):
+            return base >= 0 and not graph.is_constant(nodes[base])
+        return any(angle >= 0 and not graph.is_constant(nodes[angle]) for angle, _ in base[1])
+
+
+def _depth(x: Scalar) -> int:
+    """How many parentheses stand within one another, those of functions not counted."""
+    depths: dict[Node, int] = {}
+    for node in order((x,)):
+        bracketed = node.op in ("mul", "div", "pow")
+        inside = [depths[a] + (bracketed and a.op in ("add", "sub")) for a in node.args if type(a) is Node]
+        depths[node] = 0 if is_base(node) else max(inside, default=0)
+    return depths[x] if type(x) is Node else 0
+
+
+def _has_minus(x: Scalar) -> bool:
+    return x.op == "neg" if type(x) is Node else x < 0
+
+
+def _bare(x: Scalar) -> Scalar:
+    if type(x) is not Node:
+        return -x if x < 0 else x
+    return x.args[0] if x.op == "neg" else x
+
+
+def _is_negative(parts: Parts) -> bool:
+    return all(c < 0 for c, _ in parts)
+
+
+def _turned(parts: Parts) -> Parts:
+    return [(-c, powers) for c, powers in parts]
+
+
+def _grouped(parts: Parts, chosen: Callable[[Base], bool]) -> dict[Powers, Parts]:
+    """The terms by the product of their chosen bases, without it; in the order in which it is first met."""
+    groups: dict[Powers, Parts] = {}
+    for c, powers in parts:
+        key = tuple(sorted((item for item in powers if chosen(item[0])), key=repr))
+        groups.setdefault(key, []).append((c, tuple(item for item in powers if item not in key)))
+    return groups
+
+
+def _times_powers(a: Powers, b: Powers) -> Powers:
+    exponents = dict(a)
+    for base, e in b:
+        exponents[base] = exponents.get(base, 0) + e
+    return tuple((base, e) for base, e in exponents.items() if e)
+
+
+def _without_common(parts: Parts) -> tuple[Number, Powers, Parts]:
+    """(number, powers, rest): what all terms hold, and what is left of them; a negative number if all are."""
+    number: Number = common_number(c for c, _ in parts)
+    number = -number if _is_negative(parts) else number
+    bases: Iterable[Base] = dict.fromkeys(base for _, powers in parts for base, _ in powers)
+    exponents = [dict(powers) for _, powers in parts]
+    lowest = {base: min(each.get(base, 0) for each in exponents) for base in bases}
+    # the root of a number has no inverse that is one
+    common = tuple((base, e) for base, e in lowest.items() if e and not (isinstance(base, int) and base < 0))
+    inverted = tuple((base, -e) for base, e in common)
+    rest = [(tidy(Fraction(c) / Fraction(number)), _times_powers(powers, inverted)) for c, powers in parts]
+    return tidy(number), common, rest
