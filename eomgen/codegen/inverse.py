@@ -45,6 +45,9 @@ class InverseDynamics:
 
     graph: Inverse
 
+    def __repr__(self) -> str:
+        return f"<inverse dynamics: {', '.join(self.names)}>"
+
     @property
     def names(self) -> tuple[str, ...]:
         """The actuators, in the order of tau."""

@@ -127,6 +127,9 @@ class Program:
     count: Count
     accelerations: tuple[Node, ...] = ()
 
+    def __repr__(self) -> str:
+        return f"<program: {len(self.statements)} statements>"
+
     @property
     def states(self) -> tuple[Node, ...]:
         """x = (q, u)"""

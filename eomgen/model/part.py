@@ -3,15 +3,18 @@
 from collections.abc import Iterator, Mapping
 from dataclasses import MISSING, dataclass, fields
 from functools import cache
+from inspect import Parameter, Signature
 from types import NoneType, UnionType
 from typing import Any, ClassVar, TypeVar, Union, get_args, get_origin
 
 from eomgen.errors import ModelError, Problem
-from eomgen.model.fields import Leaf, in_si
+from eomgen.model.fields import Leaf, WrittenEquation, in_si
 from eomgen.model.findings import Finding, meant, nearest, shown, unknown_keys, whereabouts
 from eomgen.model.positions import DocumentPath
 from eomgen.symbolic.expression.expressions import Expression
 from eomgen.symbolic.expression.habits import other_words
+from eomgen.symbolic.expression.units import Unit
+from eomgen.symbolic.print.symbols import Symbol
 
 Made = TypeVar("Made")
 
@@ -67,7 +70,30 @@ def _rule_of(annotation: Any) -> Any:
     return annotation.__metadata__[0]
 
 
-@dataclass(frozen=True, kw_only=True)
+class _Fields:
+    """The signature of a part's class, for `help` and editors: its fields by name, without the rules by which they are
+    read; each is told in the words of the docstring."""
+
+    def __get__(self, instance: Any, cls: Any) -> Signature:
+        own = [Parameter("self", Parameter.POSITIONAL_OR_KEYWORD)]
+        fields = [
+            Parameter(slot.name, Parameter.KEYWORD_ONLY, default=Parameter.empty if slot.required else slot.default)
+            for slot in slots_of(cls)
+        ]
+        cls.__init__.__signature__ = Signature([*own, *fields], return_annotation=None)
+        return Signature(fields)
+
+
+def _shown(value: Any) -> str:
+    """A value as it is written."""
+    if isinstance(value, (Expression, Unit, WrittenEquation, Symbol)):
+        return repr(value.text)
+    if isinstance(value, tuple):
+        return f"[{', '.join(map(_shown, value))}]"
+    return repr(value)
+
+
+@dataclass(frozen=True, kw_only=True, repr=False)
 class Part:
     """Base of every part. Values given in Python are read by the same rules as those of a file.
 
@@ -75,9 +101,20 @@ class Part:
         ModelError: on construction, naming every field whose value cannot be read.
     """
 
+    __signature__ = _Fields()
     shorthand: ClassVar[str] = ""  # the field that a bare value stands for: `m = 1.2`
     title: ClassVar[str] = ""  # what messages call it
     in_unit: ClassVar[tuple[str, ...]] = ()  # the fields whose numbers are in the part's own `unit`
+
+    def __init_subclass__(cls) -> None:
+        if "__repr__" not in vars(cls):
+            cls.__repr__ = Part.__repr__  # type: ignore[method-assign]
+
+    def __repr__(self) -> str:
+        """What is given, as it is written: Revolute(on='cart', angle='theta')."""
+        slots = slots_of(type(self))
+        given = ((slot.name, getattr(self, slot.name)) for slot in slots if getattr(self, slot.name) != slot.default)
+        return f"{type(self).__name__}({', '.join(f'{name}={_shown(value)}' for name, value in given)})"
 
     def __post_init__(self) -> None:
         found: list[Finding] = []

@@ -32,4 +32,4 @@ class Table(Mapping[str, Value], Generic[Value]):
         return list(self.items()) == list(other.items())
 
     def __repr__(self) -> str:
-        return f"Table({self._items!r})"
+        return f"Table({', '.join(self._items)})"

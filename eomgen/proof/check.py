@@ -50,6 +50,9 @@ class Certificate:
 
     checks: tuple[Check, ...]
 
+    def __repr__(self) -> str:
+        return f"<certificate: {self._headline}>"
+
     @property
     def ok(self) -> bool | None:
         """False: something contradicts the result. True: what was checked holds. None: nothing could be checked."""

@@ -40,6 +40,7 @@ from eomgen.questions.motion_from_start import MotionFromStart
 from eomgen.questions.proof_of_answers import Solver, certificate_of
 from eomgen.report.document import Document, plain_document
 from eomgen.report.linearize.result import Linearization, linearize
+from eomgen.report.markdown import listing_markdown
 from eomgen.report.quantity import Quantity
 from eomgen.report.result import Result
 from eomgen.report.statements import Found, Listing
@@ -70,6 +71,13 @@ class Answers(dict[str, Answer], Result):
     def __init__(self, found: Mapping[str, Answer], solver: Solver) -> None:
         super().__init__(found)
         self._solver = solver
+
+    def __repr__(self) -> str:
+        return f"<answers: {', '.join(self) or 'none asked'}>"
+
+    def _repr_markdown_(self) -> str:
+        """Each by its name, exact and as a number, typeset."""
+        return listing_markdown([Found(name, answer) for name, answer in self.items()], self._solver.model)
 
     @property
     def derivation(self) -> Document:

@@ -64,6 +64,10 @@ class Document:
     taken: tuple[Taken, ...] = ()
     notation: Notation = Notation()
 
+    def __repr__(self) -> str:
+        titles = ", ".join(step.title for step in self.steps if step.title)
+        return f"<document {self.title!r}: {titles or 'no sections'}>"
+
     @property
     def nomenclature(self) -> tuple[Meaning, ...]:
         """What every symbol stands for."""

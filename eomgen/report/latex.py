@@ -10,6 +10,7 @@ from eomgen.report.document import Document
 from eomgen.report.latex_lines import aligned, lead_of, rows_of, runs_of
 from eomgen.report.latex_math import Set, Setter, width_of
 from eomgen.report.latex_names import latex_escaped
+from eomgen.report.quantity import Quantity
 from eomgen.report.statements import (
     Cell,
     Code,
@@ -200,9 +201,14 @@ def _typeset(graph: Graph, statement: Statement) -> Iterator[Statement]:
         found = row.quantity
         way, message = (f" [{found.method}]" if found.method else ""), (f" ({found.message})" if found.message else "")
         yield prose(Code(row.name), f": {row.words}" if row.words else "", way, message)
-        sides = [] if found.exact is None else [_read_back(graph, found.exact)]
-        sides += [Law(found.number, _number_latex(found.number))] if found.number else []
-        yield from [Formula(tuple(sides))] if sides else []
+        sides = quantity_sides(graph, found)
+        yield from [Formula(sides)] if sides else []
+
+
+def quantity_sides(graph: Graph, found: Quantity) -> tuple[Side, ...]:
+    """The formula and the number of a quantity, as far as they are known."""
+    exact = () if found.exact is None else (_read_back(graph, found.exact),)
+    return (*exact, Law(found.number, _number_latex(found.number))) if found.number else exact
 
 
 def _read_back(graph: Graph, exact: str) -> Side:
@@ -264,6 +270,11 @@ def _matrix(setter: Setter, matrix: Matrix) -> Set:
     width = sum(max(entry.width for entry in column) + 2 for column in zip(*rows, strict=True))
     lines = r" \\ ".join(" & ".join(entry.tex for entry in row) for row in rows)
     return Set(rf"\begin{{pmatrix}} {lines} \end{{pmatrix}}", width)
+
+
+def setter_width(setter: Setter, side: Side) -> float:
+    """About how many characters wide a side is set on one line."""
+    return _whole(setter, side).width
 
 
 def _whole(setter: Setter, side: Side) -> Set:

@@ -5,11 +5,24 @@ from __future__ import annotations
 import re
 from collections.abc import Sequence
 
+from eomgen.model.parts import Model
 from eomgen.report.document import Document
-from eomgen.report.latex import display_blocks, grouped, piece_latex, setter_of, side_latex, with_listings_typeset
+from eomgen.report.latex import (
+    display_blocks,
+    grouped,
+    piece_latex,
+    quantity_sides,
+    setter_of,
+    setter_width,
+    side_latex,
+    with_listings_typeset,
+)
+from eomgen.report.latex_lines import LINE
 from eomgen.report.latex_math import Setter
-from eomgen.report.quantity import unit_text
-from eomgen.report.statements import Cell, Code, Grid, Lines, Piece, Prose, Statement
+from eomgen.report.latex_names import Notation, notation_of
+from eomgen.report.quantity import Quantity, unit_text
+from eomgen.report.statements import Cell, Code, Found, Grid, Lines, Piece, Prose, Statement
+from eomgen.symbolic.expression.graph import Graph
 
 name = "markdown"
 
@@ -44,6 +57,21 @@ def markdown_blocks(setter: Setter, statements: Sequence[Statement]) -> list[str
         else:
             blocks.append(_grid(setter, group if isinstance(group, Grid) else group.grid))
     return blocks
+
+
+def listing_markdown(rows: Sequence[Found], model: Model | None = None) -> str:
+    """Quantities in a table, a row each: name, formula and number typeset; what is longer than a line is told short."""
+    setter = Setter(Notation() if model is None else notation_of(model))
+    return "\n".join(["| | |", "|---|---|", *(f"| `{row.name}` | {_told(setter, row.quantity)} |" for row in rows)])
+
+
+def _told(setter: Setter, found: Quantity) -> str:
+    sides = quantity_sides(Graph(), found)
+    shown = [side_latex(setter, side) for side in sides if setter_width(setter, side) <= LINE]
+    parts = [f"${' = '.join(shown)}$".replace("|", r"\vert ")] if shown else []
+    if len(shown) < len(sides):
+        parts.append(f"({len(found.exact or '')} characters: `.exact`)")
+    return " ".join([*parts, *([markdown_escaped(found.message)] if found.message else [])])
 
 
 def markdown_escaped(text: str) -> str:

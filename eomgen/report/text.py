@@ -154,11 +154,19 @@ def _listing_lines(listing: Listing) -> list[str]:
     lines: list[str] = []
     for row in listing.rows:
         if row.words:
-            lines += [f"{row.name}: {row.words}", *(f"{INDENT}{line}" for line in row.quantity.lines)]
+            lines += [
+                f"{row.name}: {row.words}",
+                *(x for line in row.quantity.lines for x in broken(line, INDENT, WIDTH)),
+            ]
         else:
-            first, *more = row.quantity.lines
+            first, *more = (x for line in row.quantity.lines for x in _on_lines(line, WIDTH - width - 2))
             lines += [f"{row.name:<{width}}  {first}", *(f"{'':<{width}}  {line}" for line in more)]
     return lines
+
+
+def _on_lines(text: str, width: int) -> list[str]:
+    """A formula on lines of at most `width` characters; of a name that leaves no room on one."""
+    return [line.removeprefix(INDENT) for line in broken(text, INDENT, width + len(INDENT))] if width > LAST else [text]
 
 
 def cell_text(cell: Cell) -> str:

@@ -32,6 +32,7 @@ from eomgen.proof.check import Certificate, Check
 from eomgen.proof.reaction_texts import reaction_numbers, reaction_texts
 from eomgen.questions import answers
 from eomgen.report.document import Document, plain_document
+from eomgen.report.markdown import listing_markdown
 from eomgen.report.quantity import Quantity
 from eomgen.report.reaction_names import said
 from eomgen.report.reaction_payload import null_space, reaction_formulas
@@ -64,6 +65,13 @@ class FoundReactions(dict[str, Quantity]):
     ) -> None:
         super().__init__(found)
         self.equations, self._proof = equations, proof
+
+    def __repr__(self) -> str:
+        return f"<reactions: {', '.join(self)}>"
+
+    def _repr_markdown_(self) -> str:
+        """Each by its name, exact and as a number, typeset."""
+        return listing_markdown([Found(name, quantity) for name, quantity in self.items()])
 
     def certify(self) -> Certificate:
         """The equations; the formulas against the balance in numbers, or the numbers against the motion in numbers."""

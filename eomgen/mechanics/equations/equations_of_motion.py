@@ -44,6 +44,10 @@ class EquationsOfMotion:
     accelerations: ScalarRow | None = None
     friction: ScalarRow = ()
 
+    def __repr__(self) -> str:
+        name = self.system.scope.model.name
+        return f"<equations of motion of {name!r}: {len(self.M)} speeds, {len(self.J)} closing rows>"
+
     @property
     def symbols(self) -> Symbols:
         """The symbols in which everything is written."""

@@ -41,6 +41,9 @@ class System:
     free: System | None = None
     declared: tuple[Solved, ...] = ()
 
+    def __repr__(self) -> str:
+        return f"<system of {self.scope.model.name!r}>"
+
     @property
     def scope(self) -> Scope:
         return self.motion.scope

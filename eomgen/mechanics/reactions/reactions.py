@@ -45,6 +45,10 @@ class Reactions:
     solution: Solution
     at: Mapping[Node, Scalar]
 
+    def __repr__(self) -> str:
+        names = ", ".join(component.name for component in self.components)
+        return f"<reactions of {self.balance.system.scope.model.name!r}: {names or 'none'}>"
+
     @property
     def components(self) -> tuple[Component, ...]:
         return self.balance.components

@@ -71,6 +71,9 @@ class SmallMotions:
     left_out: tuple[Node, ...]
     first: FirstOrder
 
+    def __repr__(self) -> str:
+        return f"<small motions of {self.reference.system.scope.model.name!r}>"
+
     @property
     def is_second_order(self) -> bool:
         """Whether they are M q'' + C q' + K q = B w."""

@@ -79,6 +79,9 @@ class Spectrum:
     stability: str
     why: str
 
+    def __repr__(self) -> str:
+        return f"<spectrum of {len(self.modes)} modes: {self.stability}>"
+
     @property
     def oscillating(self) -> tuple[Mode, ...]:
         """The modes that have a frequency, the slowest first."""

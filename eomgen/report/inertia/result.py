@@ -76,6 +76,9 @@ class Inertia(Result):
     stated: tuple[Stated, ...] = ()
     start: State = field(default_factory=dict)
 
+    def __repr__(self) -> str:
+        return f"<inertia of {self.system.scope.model.name!r}>"
+
     def __getitem__(self, name: str) -> Quantity:
         return self.results[name]
 

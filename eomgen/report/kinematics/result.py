@@ -46,6 +46,9 @@ class Kinematics(Result):
     kinds: Kinds | None = None
     relative: tuple[tuple[str, str], ...] = ()
 
+    def __repr__(self) -> str:
+        return f"<kinematics of {self.state.system.scope.model.name!r} at one instant: {', '.join(self.state.fields)}>"
+
     @property
     def failed(self) -> str:
         """The centres that a drawing finds elsewhere than the velocities; "" as it must be."""

@@ -58,6 +58,10 @@ class Linearization(Result):
     model: Model
     modes: Modes
 
+    def __repr__(self) -> str:
+        about = self.small.reference.about
+        return f"<small motions of {self.model.name!r} about its {about}: {', '.join(self.coordinates)}>"
+
     @property
     def small(self) -> SmallMotions:
         """The equations."""

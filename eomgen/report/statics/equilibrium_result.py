@@ -47,6 +47,9 @@ class Resting(Result):
     model: Model
     found: Equilibria
 
+    def __repr__(self) -> str:
+        return f"<statics of {self.model.name!r}: {len(self.places)} places of rest>"
+
     @property
     def places(self) -> tuple[Equilibrium, ...]:
         return self.found.found

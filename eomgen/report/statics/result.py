@@ -58,6 +58,9 @@ class Statics(Result):
     found: StaticReactions
     influence: InfluenceLine | None = None
 
+    def __repr__(self) -> str:
+        return f"<statics of {self.model.name!r}: {len(self.found.reactions)} reactions>"
+
     @property
     def ok(self) -> bool:
         """Whether the two ways agree."""

@@ -14,7 +14,7 @@ from eomgen.errors import ExpressionError
 from eomgen.symbolic.print.symbols import LARGE, LETTERS, SMALL, Symbol
 
 LONGEST = 60  # characters
-ACCENTS = frozenset("\\" + x for x in "dot ddot hat bar tilde vec widehat widetilde overline".split())
+ACCENTS = frozenset("\\" + x for x in "dot ddot hat bar tilde vec widehat overline".split())
 STYLES = frozenset("\\" + x for x in "mathrm mathit mathbf mathsf mathcal".split())
 OTHERS = "ell hbar infty partial ast star circ bullet dagger prime parallel perp".split()
 SIGNS = frozenset("\\" + x for x in (*SMALL, *LARGE, *OTHERS))
@@ -45,6 +45,8 @@ def parse_symbol(text: str) -> Symbol:
     *before, last = _atoms(tokens)
     if tokens.now:
         raise ExpressionError("a brace is closed that was never opened", tokens.at, "leave out the }")
+    if re.match(r"\{*[0-9]", before[0].tex if before else last.base):
+        raise ExpressionError("a symbol that begins with a digit, as a number does", 0, "begin with a letter")
     return Symbol(text, _joined([*(atom.tex for atom in before), last.base]), last.below, last.above)
 
 
@@ -90,18 +92,16 @@ def _atoms(tokens: _Tokens, *, index: bool = False) -> list[Symbol]:
         if (found and tokens.now in SPACES) or (index and tokens.now in _BESIDE):
             found.append(Symbol("", tokens.take()))
         else:
-            found.append(_atom(tokens, first=not found, index=index))
+            found.append(_atom(tokens, index=index))
     if not found:
         raise tokens.refuse("braces with nothing between them", "put a letter there, or leave them out")
     return found
 
 
-def _atom(tokens: _Tokens, *, first: bool, index: bool) -> Symbol:
+def _atom(tokens: _Tokens, *, index: bool) -> Symbol:
     """A piece with its primes, its index and what stands where an exponent would."""
     if tokens.now in ("_", "^", "'"):
         raise tokens.refuse(f"'{tokens.now}' has nothing before it", "put a letter there")
-    if tokens.now.isdigit() and first and not index:
-        raise tokens.refuse("a symbol that begins with a digit, as a number does", "begin with a letter")
     base = _piece(tokens, index=index)
     primes = ""
     while tokens.now == "'":
@@ -114,7 +114,7 @@ def _atom(tokens: _Tokens, *, first: bool, index: bool) -> Symbol:
             raise tokens.refuse(f"'{sign}' where the letter has {whose} already", "put all of it into one pair of { }")
         tokens.take()
         scripts[sign] = _piece(tokens, index=True, bare=True)
-    return Symbol("", base, scripts["_"], scripts["^"] or " ".join([r"\prime"] * len(primes)))
+    return Symbol("", base, scripts["_"], scripts["^"] or r"\prime" * len(primes))
 
 
 def _piece(tokens: _Tokens, *, index: bool, bare: bool = False) -> str:
