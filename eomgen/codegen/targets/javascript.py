@@ -7,6 +7,7 @@ from __future__ import annotations
 
 import json
 from collections.abc import Mapping
+from dataclasses import replace
 
 from eomgen.codegen.lowered import CHANGED, INDICES, INT, PLACES, READ, REAL, ROOM, Language
 from eomgen.codegen.lowering import lowered
@@ -14,6 +15,7 @@ from eomgen.codegen.program import Program
 from eomgen.codegen.targets.base import RHS, Called, Description, Functions, Role, Target, header
 from eomgen.codegen.targets.node import module_functions
 
+_OUT = "function {name}({arguments}, {out} = new Float64Array({size})) {{"
 JAVASCRIPT = Language(
     reserved=frozenset(
         "arguments await break case catch class const continue debugger default delete do else enum eval export "
@@ -45,10 +47,7 @@ JAVASCRIPT = Language(
     down=("for (let {name} = {last} - 1; {name} >= {first}; {name}--) {{", "}"),
     branch=("if ({condition}) {{", "} else {", "}"),
     function=("function {declared}({arguments}) {{", "}"),
-    out=(
-        "export function {name}({arguments}, {out} = new Float64Array({size})) {{",
-        "    return {out};\n}",
-    ),
+    out=(f"export {_OUT}", "    return {out};\n}"),
     remark="// {text}",
     longest=2000,  # V8 leaves longer functions unoptimized
 )
@@ -88,13 +87,23 @@ def javascript_text(program: Program, stem: str = "", role: Role = RHS) -> str:
 
     A module has its own names, so the stem is not in them.
     """
-    made = lowered(program, JAVASCRIPT, role.result)
-    lines = [JAVASCRIPT.defined[op] for op in sorted(made.ops & JAVASCRIPT.defined.keys())]
-    lines += map(JAVASCRIPT.holds, made.tables)
-    functions = ["\n".join(JAVASCRIPT.defines(f)) for f in (*made.kernels, *made.bodies)]
     a = "a, " if program.accelerations else ""
     caller = _CALLER.format(result=role.result, role=role.name, a=a, count=len(program.outputs))
-    return "\n\n".join([*(["\n".join(lines)] if lines else []), *functions, caller])
+    return f"{_functions(program, JAVASCRIPT, role)}\n\n{caller}"
+
+
+def javascript_expression(program: Program) -> str:
+    """An object of the functions `constants` and `evaluate`, for scripts that are no modules."""
+    text = _functions(program, replace(JAVASCRIPT, out=(_OUT, JAVASCRIPT.out[1])), RHS)
+    return f"(() => {{\n{text}\nreturn {{ constants, evaluate }};\n}})()"
+
+
+def _functions(program: Program, language: Language, role: Role) -> str:
+    made = lowered(program, language, role.result)
+    lines = [language.defined[op] for op in sorted(made.ops & language.defined.keys())]
+    lines += map(language.holds, made.tables)
+    functions = ["\n".join(language.defines(f)) for f in (*made.kernels, *made.bodies)]
+    return "\n\n".join([*(["\n".join(lines)] if lines else []), *functions])
 
 
 def javascript_files(program: Program, stem: str, description: Description) -> dict[str, str]:

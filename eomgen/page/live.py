@@ -1,0 +1,226 @@
+"""Phase, Scene -> Live: a model that a page can move by itself: its programs, and where their numbers lie.
+
+    begin(p)        parameters that follow from others, start and first guess of each coordinate, start of each speed
+    start, ties     phi, J u + sigma and their slopes, of the system as it is declared and as it is integrated
+    inertia         M of the declared system, by which start speeds are brought onto the ties
+    turned(x)       the rates of the coordinates by the declared speeds
+    rate(t, x)      x' = (N u + nu, a)
+    frame(t, x)     the scene's slots, T, V, the rates of the coordinates, the reactions
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from functools import cached_property
+from typing import Any
+
+from eomgen.codegen.program import Program, kinematic_rates, program_in_motion, program_of, right_hand_side
+from eomgen.codegen.reactions import determinate
+from eomgen.codegen.spheres import spheres_of
+from eomgen.errors import DerivationError
+from eomgen.mechanics.balance.friction import with_rest
+from eomgen.mechanics.bodies.scope import Scope
+from eomgen.mechanics.bodies.tree import branches_of
+from eomgen.mechanics.constraints.closure import gaps_of
+from eomgen.mechanics.constraints.consistency import is_guess
+from eomgen.mechanics.constraints.edges import left_of
+from eomgen.mechanics.equations.articulated import with_accelerations
+from eomgen.mechanics.equations.system import System
+from eomgen.mechanics.formulations import recursive
+from eomgen.mechanics.initial_state.initial_state import fixed_by_position, start_speeds
+from eomgen.model.arithmetic import in_order
+from eomgen.model.parts import Coordinate, Model
+from eomgen.scene.scene import Scene
+from eomgen.simulation.phase_model import PhaseModel
+from eomgen.simulation.solvers import breakpoints_of
+from eomgen.symbolic.expression.derivative import jacobian, substituted, symbols_of
+from eomgen.symbolic.expression.graph import Node, Scalar, is_zero
+from eomgen.symbolic.numeric.gc_pause import growing
+
+Slopes = list[tuple[int, int]]
+
+
+@dataclass(frozen=True)
+class TieRows:
+    """The ties of one system, as numbers of (t, x, p).
+
+    Args:
+        gaps, rates: phi of the ties that have one, J u + sigma of those that close.
+        speeds: J.
+    """
+
+    system: System
+    gaps: tuple[Scalar, ...]
+    rates: tuple[Scalar, ...]
+    speeds: tuple[tuple[Scalar, ...], ...]
+
+    @cached_property
+    def program(self) -> Program:
+        slopes = [x for rows in (self._positions, self.speeds) for row in rows for x in row if not is_zero(x)]
+        return program_of((*self.gaps, *self.rates, *slopes), self.system.symbols, inputs=self.system.inputs)
+
+    @cached_property
+    def _positions(self) -> tuple[tuple[Scalar, ...], ...]:
+        """dphi/dq"""
+        return tuple(map(tuple, jacobian(self.gaps, self.system.symbols.q)))
+
+    def told(self) -> dict[str, Any]:
+        """Where the numbers lie."""
+        symbols, model = self.system.symbols, self.system.scope.model
+        return {
+            "coordinates": len(symbols.q),
+            "speeds": len(symbols.u),
+            "gaps": len(self.gaps),
+            "rates": len(self.rates),
+            "positionSlopes": _places(self._positions),
+            "speedSlopes": _places(self.speeds),
+            "fixed": [k for k, q in enumerate(symbols.q) if model.coordinates[q.name].driven],
+            "spheres": spheres_of(self.program),
+        }
+
+
+def tie_rows(system: System) -> TieRows:
+    """Of a system: the gaps of all ties, also of those that eliminated coordinates satisfy, and the rows that close."""
+    free = system if system.elimination is None else system.free or system
+    closing = system.ties.closing
+    J = tuple(map(tuple, system.ties.J)) if closing and system.symbols.u else ()
+    rates = tuple(row.velocity for row in closing) if J else ()
+    return TieRows(system, gaps_of(free.ties), rates, J)
+
+
+def _places(rows: Sequence[Sequence[Scalar]]) -> Slopes:
+    return [(i, j) for i, row in enumerate(rows) for j, x in enumerate(row) if not is_zero(x)]
+
+
+@dataclass(frozen=True)
+class Live:
+    """What moves in a page.
+
+    Args:
+        phase: the one phase of a model whose contacts do not change.
+        scene: what is drawn of it.
+    """
+
+    phase: PhaseModel
+    scene: Scene
+
+    @property
+    def model(self) -> Model:
+        return self.phase.system.scope.model
+
+    @cached_property
+    def start(self) -> TieRows:
+        """The ties of the system as it is declared."""
+        return tie_rows(self.phase.declared)
+
+    @cached_property
+    def ties(self) -> TieRows:
+        """The ties of the system as it is integrated."""
+        return self.start if self.phase.system is self.phase.declared else tie_rows(self.phase.system)
+
+    @cached_property
+    def programs(self) -> dict[str, Program]:
+        """By name; one that is the same as another, or of nothing, is left out."""
+        declared, system = self.phase.declared, self.phase.system
+        with growing():
+            equations = with_accelerations(self.phase.equations)
+            found = {
+                "begin": self._begin(),
+                "rate": right_hand_side(equations),
+                "frame": program_in_motion(self._frame, equations),
+            }
+            if self.start.gaps or self.start.rates:
+                found["start"] = self.start.program
+            if self.start.rates:
+                found["inertia"] = _inertia(declared)
+            if system is not declared:
+                found["ties"] = self.ties.program
+                found["turned"] = program_of(declared.scope.rates, system.symbols, inputs=system.inputs)
+            if self.phase.edges:
+                found["edges"] = program_of(left_of(self.phase.edges), system.symbols, inputs=system.inputs)
+        return found
+
+    @cached_property
+    def _frame(self) -> tuple[Scalar, ...]:
+        equations = self.phase.equations
+        rates = kinematic_rates(equations)
+        return (*self.scene.values, equations.T, equations.V, *rates, *self.reactions.values())
+
+    @cached_property
+    def derived(self) -> tuple[str, ...]:
+        """The parameters whose values are expressions of others, each after those in its own."""
+        given = {name: None if part is None else part.value for name, part in self.model.parameters.items()}
+        return tuple(name for name in in_order(given)[0] if (x := given[name]) is not None and x.names - {"pi"})
+
+    def _begin(self) -> Program:
+        """The derived parameters; start, then first guess of each coordinate; start of each speed."""
+        system = self.phase.declared
+        scope, symbols = system.scope, system.symbols
+        known = {symbols.t: 0}
+        for name in self.derived:
+            part = self.model.parameters[name]
+            own = scope.value(part.value if part is not None else None)
+            known[symbols.parameters[name]] = substituted((own,), known)[0]
+        parts = self.model.coordinates
+        q = [_begun(scope, part) for part in parts.values()]
+        guesses = [scope.value(part.near) for part in parts.values()]
+        speeds = start_speeds(system)
+        begun = (*(symbols.parameters[name] for name in self.derived), *q, *guesses, *(speeds[u] for u in symbols.u))
+        return program_of(substituted(begun, known), symbols, inputs=system.inputs)
+
+    @cached_property
+    def reactions(self) -> dict[str, Scalar]:
+        """Those that have a single value, by name; {} where a body is held by nothing."""
+        try:
+            values = determinate(self.phase.reactions)
+        except DerivationError:
+            return {}
+        return dict(zip(values, with_rest(self.phase.system, tuple(values.values())), strict=True))
+
+    @property
+    def columns(self) -> dict[str, tuple[str, int]]:
+        """Where each number of the motion lies: ("x", place) in the state, ("frame", place) in the frame."""
+        phase, first = self.phase, len(self.scene.values)
+        found = {"T": ("frame", first), "V": ("frame", first + 1)}
+        found |= {f"{q}'": ("frame", first + 2 + k) for k, q in enumerate(phase.coordinates)}
+        found |= {name: ("x", k) for k, name in enumerate((*phase.coordinates, *phase.speeds))}
+        place = first + 2 + len(phase.coordinates)
+        return found | {name: ("frame", place + k) for k, name in enumerate(self.reactions)}
+
+    def told(self) -> dict[str, Any]:
+        """What the page has to know of the programs."""
+        declared, model = self.phase.declared, self.model
+        q, u, parts = declared.symbols.q, declared.symbols.u, model.coordinates
+        standing = set(symbols_of(gaps_of(declared.ties)))
+        sought = fixed_by_position(declared)
+        return {
+            "parameters": list(declared.symbols.parameters),
+            "derived": list(self.derived),
+            "coordinates": [x.name for x in q],
+            "speeds": [x.name for x in u],
+            "phase": {"coordinates": self.phase.coordinates, "speeds": self.phase.speeds},
+            "start": self.start.told(),
+            "ties": self.ties.told(),
+            "sought": [k for k, x in enumerate(q) if x in sought],
+            "gapTies": [row.tie for row in declared.ties.rows if row.gap is not None and not row.identical],
+            "near": [k for k, x in enumerate(q) if x in sought and parts[x.name].near is not None],
+            "own": [k for k, x in enumerate(q) if x in standing and x not in sought and not parts[x.name].driven],
+            "guesses": [x.name for x in (*q, *u) if is_guess(model, x.name)],
+            "breaks": breakpoints_of(model),
+            "edges": [edge.words for edge in self.phase.edges],
+            "columns": self.columns,
+            "slots": len(self.scene.values),
+            "conservative": self.phase.conservative,
+        }
+
+
+def _begun(scope: Scope, part: Coordinate) -> Scalar:
+    """A coordinate at the start, as `start_values` has it."""
+    first = part.motion if part.motion is not None else part.start if part.start is not None else part.near
+    return scope.value(first)
+
+
+def _inertia(system: System) -> Program:
+    M = recursive.mass(system.motion, branches_of(system.motion))
+    return program_of(tuple(x for row in M for x in row), system.symbols, inputs=system.inputs)
