@@ -1,0 +1,230 @@
+"""Trajectory -> what its player is told: scene, recorded run, units, sliders, and where it can move by itself, its programs."""
+
+from __future__ import annotations
+
+import base64
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field
+from functools import cached_property
+from typing import Any
+
+import numpy as np
+
+from eomgen.codegen.vectors import vectors
+from eomgen.errors import UsageError
+from eomgen.model.own_units import units_of
+from eomgen.model.parts import Model
+from eomgen.page.live import Live
+from eomgen.scene.instant import frames_along
+from eomgen.scene.making import scene_of_system
+from eomgen.scene.scene import Scene
+from eomgen.simulation.configuration import has_phases
+from eomgen.simulation.phase_model import PhaseModel
+from eomgen.simulation.result import Trajectory
+from eomgen.symbolic.numeric.tolerances import CARRIED
+
+VECTORS = 3  # of each program in the page
+CHECKED = (0.02, 0.05)  # of the time: where the page's own motion is held against the recorded one
+MOST_CHECKED = 0.5  # s
+PLOTTED = 3  # coordinates, from the start
+ROUND = 4.0  # m, rad: how far a start value that is 0 may be moved
+Range = tuple[float, float]
+
+
+@dataclass(frozen=True)
+class PlayerOptions:
+    """What is asked of a player.
+
+    Args:
+        sliders: parameters and starts that have one, with its range in SI, or None: the default; () for all.
+        moves: whether the model lives in the page, where it can; else the recorded run is played.
+        trail: a point that leaves a trail from the start, "" for none.
+        forces: whether arrows are shown from the start.
+        speed: of the time.
+    """
+
+    sliders: Mapping[str, Range | None] = field(default_factory=dict)
+    moves: bool = False
+    trail: str = ""
+    forces: bool = False
+    speed: float = 1.0
+
+
+@dataclass(frozen=True)
+class PlayedRun:
+    """A run and its player's options."""
+
+    run: Trajectory
+    options: PlayerOptions
+
+    @property
+    def phase(self) -> PhaseModel:
+        """The first phase: what a run without others has."""
+        found: PhaseModel = self.run.phases[0].model
+        return found
+
+    @property
+    def model(self) -> Model:
+        return self.phase.declared.scope.model
+
+    @cached_property
+    def rests(self) -> str:
+        """Why the sliders rest: the page cannot move the model by itself; "" where it can."""
+        if has_phases(self.model):
+            return "The contacts of this model change from phase to phase: the page plays the run as it was computed."
+        if self.run.carried:
+            return "This run crosses a singular position, which the page cannot: it plays the run as it was computed."
+        return ""
+
+    @cached_property
+    def live(self) -> Live | None:
+        """The model as the page evaluates it; None of contacts that change."""
+        return None if has_phases(self.model) else Live(self.phase, self.scene)
+
+    @cached_property
+    def scene(self) -> Scene:
+        if has_phases(self.model):
+            return scene_of_system(self.phase.declared)
+        return scene_of_system(self.phase.system, self.phase.equations)
+
+    def told(self) -> dict[str, Any]:
+        """What the player is told."""
+        run, names = self.run, (*self.run.coordinates, *self.run.speeds)
+        moves = self.options.moves and not self.rests
+        columns = self.live.columns if self.live else {name: ("x", k) for k, name in enumerate(names)}
+        plotted = [name for name in columns if not name.endswith("'") or name in names]
+        units = units_of(self.model, [*plotted, "energy"])
+        energy = self.live is not None
+        shown = [
+            {"name": name, **_unit(units.get("energy" if name in ("T", "V", "E") else name))}
+            for name in [*(("E",) if energy else ()), *plotted]
+        ]
+        return {
+            "name": self.model.name,
+            "time": float(run.phases[-1].end),
+            "rtol": 1e-8,
+            "scene": self.scene.to_json(),
+            "names": names,
+            "columns": columns,
+            "conservative": run.drift is not None,
+            "energy": energy,
+            "run": self._recorded(),
+            "live": self.live.told() if self.live else None,
+            "parameters": self._parameters(),
+            "sliders": self._sliders() if self.options.moves else [],
+            "rests": self.rests if self.options.moves else "",
+            "plotted": shown,
+            "plots": [*run.coordinates[:PLOTTED], *(("E",) if energy and run.drift is None else ())],
+            "vectors": self._vectors() if moves else {},
+            "check": self._checked() if moves else [],
+            "trail": self.options.trail,
+            "forces": self.options.forces,
+            "speed": self.options.speed,
+        }
+
+    def _recorded(self) -> dict[str, Any]:
+        """The run: states as they are integrated, or of contacts that change as they are named, with frames."""
+        run = self.run
+        told = {"t": _doubles(run.t), "message": "" if run.ok else run.message}
+        if self.live is not None:
+            assert run.phases[0].track is not None
+            times, states = run.phases[0].track
+            x = states[np.searchsorted(times, run.t)]
+            return {**told, "x": _doubles(x), "states": x.shape[1]}
+        named, symbols = run.columns(), self.scene.system.symbols
+        x = np.column_stack([named[node.name] for node in (*symbols.q, *symbols.u)])
+        frames = frames_along(self.scene, run.t, x, self.phase.p)
+        recorded = {"x": _doubles(run.x), "states": run.x.shape[1], "slots": frames.shape[1]}
+        return {**told, **recorded, "frames": _coded(frames.astype("<f4"))}
+
+    def _parameters(self) -> list[dict[str, Any]]:
+        names = self.phase.declared.symbols.parameters
+        return [{"name": name, "value": float(value)} for name, value in zip(names, self.phase.p, strict=True)]
+
+    def _vectors(self) -> dict[str, list[dict[str, Any]]]:
+        """Right answers of the programs that give the motion and the picture."""
+        assert self.live is not None
+        assert self.run.phases[0].track is not None
+        x0, p0 = self.run.phases[0].track[1][0], self.phase.p
+        found = {}
+        for name in ("rate", "frame"):
+            program = self.live.programs[name]
+            found[name] = [
+                {
+                    "t": v.t,
+                    "x": v.x,
+                    "p": v.p,
+                    "inputs": v.inputs,
+                    "result": [value if value == value else None for value in v.result],
+                    "tolerance": max(v.tolerance, CARRIED),
+                }
+                for v in vectors(program, x0=x0, p0=p0, count=VECTORS)
+            ]
+        return found
+
+    def _checked(self) -> list[float]:
+        """Instants of the recorded run."""
+        t = self.run.t
+        wanted = [min(share * float(t[-1]), MOST_CHECKED) for share in CHECKED]
+        return sorted({float(t[min(int(np.searchsorted(t, each)), len(t) - 1)]) for each in wanted if each > 0})
+
+    # -- sliders -----------------------------------------------------------------------------------
+
+    def _sliders(self) -> list[dict[str, Any]]:
+        """Of parameters that are numbers, and of what may start otherwise; those asked for alone, where any are."""
+        parts = self.model.parameters
+        derived = self.live.derived if self.live else ()
+        values = {
+            name: (float(value), "parameter", getattr(parts[name], "about", None) or "")
+            for name, value in zip(self.phase.declared.symbols.parameters, self.phase.p, strict=True)
+            if name not in derived
+        }
+        first = dict(zip((*self.run.coordinates, *self.run.speeds), self.run.x[0].tolist(), strict=True))
+        spheres = {e.name for four in self.phase.declared.scope.quaternions for e in four}
+        for name, part in self.model.coordinates.items():
+            if name in first and not part.driven and not part.dependent and name not in spheres:
+                values[name] = (first[name], "coordinate", part.about or "")
+        values |= {name: (first[name], "speed", "") for name in self.run.speeds if name.rstrip("'") not in spheres}
+        asked = self.options.sliders
+        unknown = [name for name in asked if name not in values]
+        if unknown:
+            raise UsageError(f"there is no slider for '{unknown[0]}'", mend=f"there are {', '.join(values)}")
+        units = units_of(self.model, values)
+        chosen = {name: values[name] for name in asked} if asked else values
+        return [self._slider(name, *told, units.get(name), asked.get(name)) for name, told in chosen.items()]
+
+    def _slider(
+        self, name: str, value: float, kind: str, about: str, unit: Any, range_: Range | None
+    ) -> dict[str, Any]:
+        low, high = range_ or _default_range(value, kind, angular=unit is not None and bool(unit.angle) and not unit.time)
+        return {
+            "name": name,
+            "kind": kind,
+            "value": value,
+            "min": low,
+            "max": high,
+            "about": about,
+            **_unit(unit),
+        }
+
+
+def _default_range(value: float, kind: str, *, angular: bool) -> Range:
+    """A parameter keeps its sign, from a fifth to three times of it; an angle goes once around."""
+    if kind == "parameter" and value:
+        return (0.2 * value, 3 * value) if value > 0 else (3 * value, 0.2 * value)
+    if kind == "coordinate" and angular:
+        return value - np.pi, value + np.pi
+    reach = 2 * abs(value) or ROUND
+    return value - reach, value + reach
+
+
+def _unit(unit: Any) -> dict[str, Any]:
+    return {"unit": "" if unit is None else unit.text, "size": 1.0 if unit is None else float(unit.size)}
+
+
+def _doubles(values: Sequence[float] | np.ndarray) -> str:
+    return _coded(np.ascontiguousarray(values, dtype="<f8"))
+
+
+def _coded(values: np.ndarray) -> str:
+    return base64.b64encode(values.tobytes()).decode("ascii")
