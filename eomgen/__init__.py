@@ -12,6 +12,7 @@
     eomgen.kinematics(model, at="t = 2")      # Kinematics: centres of rotation, velocities, accelerations, plot
     eomgen.inertia(model, about="O")          # Inertia: masses, mass centres, tensors, principal moments and axes
     eomgen.linearize(model)                   # Linearization: M, C, K, state matrix, modes, stability
+    eomgen.play(model, "play.html")           # a page in which the model is alive, offline
     eomgen.scene_of(model)                    # Scene: what can be drawn at a state, as data over the parameters
     eomgen.freedom_of(model)                  # Freedom: degrees of freedom by rank, redundant ties
     with eomgen.patience(30): ...             # any of these, for 30 s at the most
@@ -64,6 +65,7 @@ _HOMES = {
     "equations": ("Equations",),
     "verbs.reactions": ("FoundReactions", "reactions"),
     "generated": ("Generated", "generate"),
+    "page.play": ("Played", "play"),
     "pipeline": ("derive", "inverse_dynamics", "simulate"),
     "report.inertia.result": ("Inertia", "inertia"),
     "report.linearize.result": ("Linearization", "linearize"),

@@ -399,6 +399,37 @@ def codegen_command(
     return deliver(document, form_asked(wants_json, None), strict=strict)
 
 
+@main.command("play")
+@MODEL
+@JSON
+@click.option("-o", "--output", required=True, type=click.Path(dir_okay=False), help="The page: a file .html.")
+@click.option("--time", type=float, default=10.0, show_default=True, help="How long the motion is [s].")
+@with_values
+@click.option(
+    "--slider",
+    "sliders",
+    multiple=True,
+    metavar="NAME=FROM:TO",
+    help='What can be moved: "m=0.1:5", or a name alone.  [default: everything]',
+)
+@click.option("--trail", default="", metavar="POINT", help="A point that leaves a trail from the start.")
+@click.option("--forces", is_flag=True, help="Show arrows of forces from the start.")
+@click.option("--speed", type=float, default=1.0, show_default=True, help="How fast its time goes.")
+@CERTIFY
+def play_command(model: str, wants_json: bool, output: str, strict: bool, **options: Any) -> int:
+    """Write a page in which the model is alive.
+
+    Sliders for parameters and starts, bodies that one can take by hand, plots, energy; it needs no network. Models
+    whose contacts change play the recorded run.
+    """
+    from eomgen.verbs.play import play_document, refuse_other_endings
+
+    refuse_other_endings(output)
+    with reading(model) as source:
+        document = _asked(play_document, source, options, output=output)
+    return deliver(document, form_asked(wants_json, None), strict=strict)
+
+
 @main.command("schema")
 @JSON
 @OUTPUT

@@ -24,6 +24,7 @@ CHAIN = (
     ("questions",),
     ("pipeline",),
     ("generated",),
+    ("page",),
     ("verbs", "notebook"),
     ("edge",),
     ("cli_options",),

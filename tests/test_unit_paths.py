@@ -56,7 +56,11 @@ TAKEN = {
     },
 }
 """of each option: what is typed, and under which name, as which value and in which unit it is taken; None: refused"""
-BESIDE = {"codegen": ["-o", "OUT"], "simulate": ["--time", "0.2", "--target", "numpy"]}
+BESIDE = {
+    "codegen": ["-o", "OUT"],
+    "play": ["-o", "OUT.html", "--time", "0.2"],
+    "simulate": ["--time", "0.2", "--target", "numpy"],
+}
 STILL = ("new", "schema", "doctor", "examples")
 """verbs that compute nothing of a model"""
 
@@ -96,7 +100,7 @@ def test_what_is_typed_is_in_the_unit_of_the_file_or_in_its_own_and_what_was_tak
     """45 of an angle in deg is 45 deg; 0.8 m of a length in cm is 80 cm; on stderr and in `taken`."""
     for typed, expected in TAKEN[option].items():
         words = [verb, str(pendulum), *BESIDE.get(verb, []), option, typed, "--json"]
-        words = [str(pendulum.parent / "out") if word == "OUT" else word for word in words]
+        words = [word.replace("OUT", str(pendulum.parent / "out")) for word in words]
         words += ["--no-certify"] if any("--no-certify" in p.opts for p in main.commands[verb].params) else []
         result = CliRunner().invoke(main, words)
         if expected is None:

@@ -1,11 +1,11 @@
 """Phase, Scene -> Live: a model that a page can move by itself: its programs, and where their numbers lie.
 
-    begin(p)        parameters that follow from others, start and first guess of each coordinate, start of each speed
-    start, ties     phi, J u + sigma and their slopes, of the system as it is declared and as it is integrated
-    inertia         M of the declared system, by which start speeds are brought onto the ties
-    turned(x)       the rates of the coordinates by the declared speeds
-    rate(t, x)      x' = (N u + nu, a)
-    frame(t, x)     the scene's slots, T, V, the rates of the coordinates, the reactions
+begin(p)        parameters that follow from others, start and first guess of each coordinate, start of each speed
+start, ties     phi, J u + sigma and their slopes, of the system as it is declared and as it is integrated
+inertia         M of the declared system, by which start speeds are brought onto the ties
+turned(x)       the rates of the coordinates by the declared speeds
+rate(t, x)      x' = (N u + nu, a)
+frame(t, x)     the scene's slots, T, V, the rates of the coordinates, the reactions
 """
 
 from __future__ import annotations
@@ -157,7 +157,7 @@ class Live:
         """The derived parameters; start, then first guess of each coordinate; start of each speed."""
         system = self.phase.declared
         scope, symbols = system.scope, system.symbols
-        known = {symbols.t: 0}
+        known: dict[Node, Scalar] = {symbols.t: 0}
         for name in self.derived:
             part = self.model.parameters[name]
             own = scope.value(part.value if part is not None else None)

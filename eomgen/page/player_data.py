@@ -1,4 +1,4 @@
-"""Trajectory -> what its player is told: scene, recorded run, units, sliders, and where it can move by itself, its programs."""
+"""Trajectory -> what its player is told: scene, recorded run, units, sliders; how the page moves it where it can."""
 
 from __future__ import annotations
 
@@ -10,6 +10,7 @@ from typing import Any
 
 import numpy as np
 
+from eomgen.codegen.targets.base import TestVector
 from eomgen.codegen.vectors import vectors
 from eomgen.errors import UsageError
 from eomgen.model.own_units import units_of
@@ -102,7 +103,7 @@ class PlayedRun:
         return {
             "name": self.model.name,
             "time": float(run.phases[-1].end),
-            "rtol": 1e-8,
+            "rtol": CARRIED,
             "scene": self.scene.to_json(),
             "names": names,
             "columns": columns,
@@ -115,7 +116,7 @@ class PlayedRun:
             "rests": self.rests if self.options.moves else "",
             "plotted": shown,
             "plots": [*run.coordinates[:PLOTTED], *(("E",) if energy and run.drift is None else ())],
-            "vectors": self._vectors() if moves else {},
+            "vectors": {name: list(map(_vector, rows)) for name, rows in self.vectors.items()} if moves else {},
             "check": self._checked() if moves else [],
             "trail": self.options.trail,
             "forces": self.options.forces,
@@ -141,26 +142,15 @@ class PlayedRun:
         names = self.phase.declared.symbols.parameters
         return [{"name": name, "value": float(value)} for name, value in zip(names, self.phase.p, strict=True)]
 
-    def _vectors(self) -> dict[str, list[dict[str, Any]]]:
-        """Right answers of the programs that give the motion and the picture."""
-        assert self.live is not None
+    @cached_property
+    def vectors(self) -> dict[str, tuple[TestVector, ...]]:
+        """Right answers of the programs that give the motion and the picture; {} where the page has none."""
+        if self.live is None:
+            return {}
         assert self.run.phases[0].track is not None
         x0, p0 = self.run.phases[0].track[1][0], self.phase.p
-        found = {}
-        for name in ("rate", "frame"):
-            program = self.live.programs[name]
-            found[name] = [
-                {
-                    "t": v.t,
-                    "x": v.x,
-                    "p": v.p,
-                    "inputs": v.inputs,
-                    "result": [value if value == value else None for value in v.result],
-                    "tolerance": max(v.tolerance, CARRIED),
-                }
-                for v in vectors(program, x0=x0, p0=p0, count=VECTORS)
-            ]
-        return found
+        programs = {name: self.live.programs[name] for name in ("rate", "frame")}
+        return {name: vectors(program, x0=x0, p0=p0, count=VECTORS) for name, program in programs.items()}
 
     def _checked(self) -> list[float]:
         """Instants of the recorded run."""
@@ -196,7 +186,9 @@ class PlayedRun:
     def _slider(
         self, name: str, value: float, kind: str, about: str, unit: Any, range_: Range | None
     ) -> dict[str, Any]:
-        low, high = range_ or _default_range(value, kind, angular=unit is not None and bool(unit.angle) and not unit.time)
+        low, high = range_ or _default_range(
+            value, kind, angular=unit is not None and bool(unit.angle) and not unit.time
+        )
         return {
             "name": name,
             "kind": kind,
@@ -216,6 +208,11 @@ def _default_range(value: float, kind: str, *, angular: bool) -> Range:
         return value - np.pi, value + np.pi
     reach = 2 * abs(value) or ROUND
     return value - reach, value + reach
+
+
+def _vector(v: TestVector) -> dict[str, Any]:
+    result = [value if value == value else None for value in v.result]
+    return {"t": v.t, "x": v.x, "p": v.p, "inputs": v.inputs, "result": result, "tolerance": max(v.tolerance, CARRIED)}
 
 
 def _unit(unit: Any) -> dict[str, Any]:

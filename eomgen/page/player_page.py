@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import base64
+import gzip
 import html
 import json
 import re
@@ -9,13 +11,14 @@ from dataclasses import dataclass
 from importlib import resources
 
 from eomgen.codegen.targets.javascript import javascript_expression
-from eomgen.errors import visible
+from eomgen.errors import ToolMissing, visible
 from eomgen.page.player_data import PlayedRun, PlayerOptions
 from eomgen.simulation.result import Trajectory
 from eomgen.version import __version__
 
 SCRIPTS = ("integrator.mjs", "ties.mjs", "motion.mjs", "plane.mjs", "space.mjs", "player.mjs")
-_MODULE_LINES = re.compile(r"^import .*\n|^export (?=const|class|function)", re.MULTILINE)
+_IMPORT = re.compile(r"^import .*\n", re.MULTILINE)
+_EXPORT = re.compile(r"^export (?=(?:const|class|function) (\w+))", re.MULTILINE)
 
 _PAGE = """\
 <!doctype html>
@@ -82,21 +85,45 @@ def player_page(run: Trajectory, options: PlayerOptions | None = None) -> str:
 
 
 def _parts(played: PlayedRun, identity: str, *, page: bool) -> PlayerParts:
-    told = json.dumps({**played.told(), "page": page}, separators=(",", ":"), allow_nan=False)
+    library = {} if played.scene.plane else {"three": three_js()}
+    told = json.dumps({**played.told(), **library, "page": page}, separators=(",", ":"), allow_nan=False)
     for letter in "<>&\u2028\u2029":
         told = told.replace(letter, f"\\u{ord(letter):04x}")
     live = played.live
     needed = () if live is None else live.programs if played.options.moves and not played.rests else ("rate", "frame")
     programs = ",\n".join(f"{name}: {javascript_expression(live.programs[name])}" for name in needed) if live else ""
-    text = "\n".join(_MODULE_LINES.sub("", _asset(name)) for name in SCRIPTS)
+    text = "\n".join(map(_in_a_script, map(_asset, SCRIPTS)))
     begin = f'begun(document.getElementById("{identity}"), {told}, {{{programs}}});'
     body = f'<div class="eomgen-player" id="{identity}"></div>'
-    return PlayerParts(_asset("player.css"), body, f"<script>\n(() => {{\n{_harmless(text)}\n{begin}\n}})();\n</script>")
+    return PlayerParts(
+        _asset("player.css"), body, f"<script>\n(() => {{\n{_harmless(text)}\n{begin}\n}})();\n</script>"
+    )
+
+
+def three_js() -> str:
+    """The library that draws in space: its text, gzip, then base64.
+
+    Raises:
+        ToolMissing: it is not installed.
+    """
+    try:
+        folder = resources.files("jupyter_threejs_sage")
+    except ModuleNotFoundError:
+        mend = "pip install 'eomgen[space]'"
+        raise ToolMissing("there is no library for pictures in space in a page", mend=mend) from None
+    text = folder.joinpath("static", "r130", "three.min.js").read_bytes()
+    return base64.b64encode(gzip.compress(text, 9, mtime=0)).decode("ascii")
 
 
 def _asset(name: str) -> str:
     """A file of the player."""
     return resources.files("eomgen.page").joinpath("player", name).read_text(encoding="utf-8")
+
+
+def _in_a_script(module: str) -> str:
+    """A module as a statement that gives its names to those after it."""
+    names = ", ".join(_EXPORT.findall(module))
+    return f"const {{ {names} }} = (() => {{\n{_EXPORT.sub('', _IMPORT.sub('', module))}return {{ {names} }};\n}})();"
 
 
 def _harmless(text: str) -> str:

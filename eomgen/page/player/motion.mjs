@@ -61,7 +61,8 @@ export class Motion {
     /** The run from that start; its message says where it ended early. */
     run(given, { time, rtol = 1e-9, atol = rtol }) {
         const { x, why } = this.startFor(given);
-        if (why) return Object.assign(new Run(x.length), { message: why, first: this.phaseState(x), t: [0], impossible: true });
+        const first = this.phaseState(x);
+        if (why) return Object.assign(new Run(first.length), { message: why, first, t: [0], impossible: true });
         const allowed = OF_A_STEP*atol;
         let lost = "";
         const kept = (t, y) => {
@@ -69,7 +70,7 @@ export class Motion {
             if (moved && !lost && this.ties.open(t, y)[0] > 100*atol) lost = `From t = ${t.toPrecision(6)} s on the ties stay open.`;
             return moved;
         };
-        const found = integrated(this.of.rate, this.phaseState(x), time, {
+        const found = integrated(this.of.rate, first, time, {
             rtol: Math.max(OF_A_STEP*rtol, 1e-13), atol: allowed, kept, breaks: this.told.breaks,
             stopped: (t, y) => lost || this._stopped(t, y),
         });

@@ -10,6 +10,8 @@ const NEAR = 1e-6;  // of a state against the recorded one
 
 const doubles = text => new Float64Array(Uint8Array.from(atob(text), c => c.charCodeAt(0)).buffer);
 const singles = text => new Float32Array(Uint8Array.from(atob(text), c => c.charCodeAt(0)).buffer);
+const DIGITS = "\u2070\u00b9\u00b2\u00b3\u2074\u2075\u2076\u2077\u2078\u2079";
+const written = unit => unit.replaceAll("*", "\u00b7").replace(/\^(-?)(\d)/g, (_, sign, digit) => (sign && "\u207b") + DIGITS[digit]);
 const rounded = v => v === 0 ? "0" : Number.isFinite(v) ? String(+v.toPrecision(5)) : "none";
 
 /** <name ...attributes>children</name> */
@@ -74,7 +76,6 @@ export class Player {
         this.run = this.recorded;
         this._built();
         this._fitted();
-        this._listed();
         this.seek(0);
     }
 
@@ -144,7 +145,6 @@ export class Player {
         const bad = this.run.impossible || this.run.message && this.run !== this.recorded;
         this.note.textContent = bad ? this.run.message : "";
         this.note.hidden = !bad;
-        this._listed();
         for (const slider of this.sliders) slider.shown(this._current(slider.told));
         this._energy();
         this._trail();
@@ -165,8 +165,9 @@ export class Player {
     // -- what is told ------------------------------------------------------------------------------
 
     _energy() {
+        this.energy.hidden = !this.told.energy;
         if (!this.told.energy) return;
-        const times = this._times(200), rows = times.map(t => [this.value("T", t), this.value("V", t)]);
+        const every = Math.ceil(this.run.t.length/POINTS), times = Array.from(this.run.t).filter((_, k) => k % every === 0), rows = times.map(t => [this.value("T", t), this.value("V", t)]);
         const [T, V] = rows[0], first = T + V;
         let drift = 0, moves = 0;
         for (const [kinetic, potential] of rows) {
@@ -183,10 +184,6 @@ export class Player {
         this.trail = this._times(POINTS).map(t => { const frame = this.frame(t); return [t, at.map(v => typeof v === "number" ? v : frame[v[0]])]; });
     }
 
-    _listed() {
-        if (!this.told.energy && !this.energy.textContent) this.energy.hidden = true;
-    }
-
     // -- the page ------------------------------------------------------------------------------------
 
     _built() {
@@ -194,8 +191,8 @@ export class Player {
         this.stage = space ? made("div", { class: "stage space" }) : document.createElementNS("http://www.w3.org/2000/svg", "svg");
         if (!space) this.stage.setAttribute("class", "stage");
         this.stage.setAttribute("role", "img");
-        this.stage.setAttribute("aria-label", `${told.name} in motion`);
-        this.view = space ? new SpaceView(this.stage, told.scene) : new PlaneView(this.stage, told.scene);
+        this.stage.setAttribute("aria-label", `${told.name} in motion${space ? "; arrow keys turn it, plus and minus bring it nearer" : ""}`);
+        this.view = space ? new SpaceView(this.stage, told.scene, told.three) : new PlaneView(this.stage, told.scene);
         this.button = made("button", { type: "button", class: "play", "aria-label": "Play", onclick: () => this.play(!this.playing) }, "\u25b6");
         this.scrub = made("input", { type: "range", id: id("time"), min: 0, max: this.run.end, step: "any", value: 0, "aria-label": "Time",
             oninput: () => { this.play(false); this.seek(+this.scrub.value); } });
@@ -204,7 +201,7 @@ export class Player {
             ...[0.1, 0.25, 0.5, 1, 2, 4].map(v => made("option", { value: v, selected: v === (told.speed ?? 1) }, `${v} \u00d7`)));
         this.speed = told.speed ?? 1;
         const box = (text, name, on) => {
-            const input = made("input", { type: "checkbox", onchange: event => root.classList.toggle(name, event.target.checked) });
+            const input = made("input", { type: "checkbox", onchange: event => { root.classList.toggle(name, event.target.checked); this.seek(this.t); } });
             input.checked = on;
             root.classList.toggle(name, on);
             return made("label", {}, input, ` ${text}`);
@@ -212,7 +209,7 @@ export class Player {
         const roles = new Set(told.scene.marks.map(mark => mark.role));
         this.trailed = told.trail ?? "";
         const trails = made("select", { "aria-label": "Trail", onchange: event => { this.trailed = event.target.value; this._trail(); this.seek(this.t); } },
-            made("option", { value: "" }, "no trail"), ...told.scene.points.filter(p => p.at.flat().some(Array.isArray) || p.at.some(v => typeof v !== "number")).map(p => made("option", { value: p.name, selected: p.name === this.trailed }, `trail of ${p.name}`)));
+            made("option", { value: "" }, "no trail"), ...told.scene.points.filter(p => p.at.some(v => typeof v !== "number")).map(p => made("option", { value: p.name, selected: p.name === this.trailed }, `trail of ${p.name}`)));
         const options = made("div", { class: "options" }, speeds, trails,
             roles.has("force") || roles.has("reaction") ? box("forces", "forces", told.forces ?? false) : null,
             told.scene.marks.some(mark => mark.kind === "label") && !space ? box("names", "names", false) : null);
@@ -220,8 +217,9 @@ export class Player {
         this.energy = made("p", { class: "energy" });
         this.plots = [];
         this.plotting = made("div", { class: "plots" });
-        root.append(this.stage, made("div", { class: "controls" }, this.button, this.scrub, this.clock), options, this.note, this.energy,
-            this._sliders(), this._plotted());
+        const seen = [this.stage, made("div", { class: "controls" }, this.button, this.scrub, this.clock), options, this.note, this.energy];
+        const sliders = this._sliders(), plots = this._plotted();
+        root.append(made("div", { class: "seen" }, ...seen, ...(plots ? [plots] : [])), ...(sliders ? [made("div", { class: "beside" }, sliders)] : []));
         root.tabIndex = -1;
         this._energy();
         this._trail();
@@ -265,7 +263,7 @@ export class Player {
             typed.addEventListener("change", changed);
             this.sliders.push({ told: each, shown });
             shown(each.value);
-            return made("div", { class: "slider", title: each.about || null }, made("span", { class: "name" }, each.name), range, typed, made("span", { class: "unit" }, each.unit));
+            return made("div", { class: "slider", title: each.about || null }, made("span", { class: "name" }, each.name), range, typed, made("span", { class: "unit" }, written(each.unit)));
         });
         const rests = this.told.rests ? made("p", { class: "rests" }, this.told.rests) : null;
         if (!told.length) return rests;
@@ -413,7 +411,7 @@ class Plot {
         const SVG = "http://www.w3.org/2000/svg", node = (name, attributes, parent) => { const n = document.createElementNS(SVG, name); for (const [a, v] of Object.entries(attributes)) n.setAttribute(a, v); parent.append(n); return n; };
         this.root = made("figure", { class: "plot", style: `--curve: var(--c${k % 8})` });
         this.value = made("span", { class: "value" });
-        this.root.append(made("figcaption", {}, `${told.name}${told.unit ? ` [${told.unit}]` : ""} `, this.value));
+        this.root.append(made("figcaption", {}, `${told.name}${told.unit ? ` [${written(told.unit)}]` : ""} `, this.value));
         const svg = document.createElementNS(SVG, "svg");
         svg.setAttribute("viewBox", "0 0 600 110");
         svg.setAttribute("preserveAspectRatio", "none");

@@ -1,0 +1,167 @@
+"""Model -> Played: the model alive in a page that needs no network, with its proof."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass
+from functools import cached_property
+from pathlib import Path
+
+import numpy as np
+
+from eomgen import files, pipeline
+from eomgen.codegen.rhs import compiled
+from eomgen.codegen.targets.base import TestVector
+from eomgen.errors import RunFailed, ToolMissing, UsageError
+from eomgen.model.parts import Model
+from eomgen.model.reader import ModelOrPath, model_at
+from eomgen.model.replaced import Values, with_values
+from eomgen.model.values import numeric_parameters, start_values
+from eomgen.page.player_data import PlayedRun, PlayerOptions, Range
+from eomgen.page.player_page import player_page
+from eomgen.proof.check import Certificate, Check, checked, unchecked
+from eomgen.questions.run import run
+from eomgen.symbolic.numeric.work import doing
+
+SAMPLES = 401  # of a run in a page
+SUBJECTS = {"rate": "motion", "frame": "picture"}
+
+
+@dataclass(frozen=True)
+class Played:
+    """A model's page.
+
+    Args:
+        played: the run that it begins with, and what is asked.
+    """
+
+    played: PlayedRun
+
+    @cached_property
+    def html(self) -> str:
+        """The page."""
+        return player_page(self.played.run, self.played.options)
+
+    @property
+    def rests(self) -> str:
+        """Why the sliders rest, or ""."""
+        return self.played.rests
+
+    def write(self, path: str | Path) -> None:
+        """The page as a file.
+
+        Raises:
+            WriteFailed: it cannot be written; what was there before is then still there.
+        """
+        files.write(path, self.html)
+
+    def __repr__(self) -> str:
+        return f"<page of {self.played.model.name!r}, {len(self.html) // 1024} KB{': ' * bool(self.rests)}{self.rests}>"
+
+    def certify(self) -> Certificate:
+        """The proof of the run that the page begins with, and of the programs in the page, run by node."""
+        certificate: Certificate = self.played.run.certify()
+        return certificate + self._programs()
+
+    def _programs(self) -> Iterator[Check]:
+        live, how = self.played.live, "run by node at the page's own test vectors, of 50 digits"
+        for name, rows in self.played.vectors.items() if live else ():
+            assert live is not None
+            title = f"the page's program of the {SUBJECTS[name]} gives the symbols' numbers"
+            try:
+                function = compiled(live.programs[name], "javascript")
+                wrong = next((w for v in rows if (w := _wrong(v, function(v.t, v.x, v.p, v.inputs or ())))), "")
+            except (ToolMissing, RunFailed) as error:
+                yield unchecked(title, error.what, how)
+                continue
+            yield checked(title, wrong, how)
+
+
+def _wrong(v: TestVector, found: np.ndarray) -> str:
+    """Where a result differs from the vector's, or ""."""
+    right: np.ndarray = np.array(v.result)
+    missing = np.isnan(right)
+    largest = float(np.max(np.abs(right[~missing]), initial=1.0))
+    off: np.ndarray = np.where(missing, ~np.isnan(found), ~(np.abs(found - right) <= v.tolerance * largest))
+    return f"number {off.argmax()} is {found[off][0]:.9g}, not {right[off][0]:.9g}" if off.any() else ""
+
+
+def play(
+    model: ModelOrPath,
+    path: str | Path | None = None,
+    *,
+    time: float = 10.0,
+    sliders: Sequence[str] = (),
+    parameters: Values | None = None,
+    start: Values | None = None,
+    trail: str = "",
+    forces: bool = False,
+    speed: float = 1.0,
+) -> Played:
+    """The model alive in a page: sliders, bodies that one can take, plots; no network is needed.
+
+    Args:
+        path: where the page is written; None: nowhere.
+        time: how long the motion is [s].
+        sliders: what can be moved, each "NAME" or "NAME=FROM:TO" in the units of the file; () for everything.
+        parameters, start: values that replace the model's, each as `model_at` takes it.
+        trail: a point that leaves a trail from the start.
+        forces: whether arrows of forces are shown from the start.
+        speed: of the time.
+    Raises:
+        UsageError: nothing moves; a slider of what there is not.
+    """
+    valued = with_values(model_at(model), parameters, start)
+    options = PlayerOptions(slider_ranges(valued.model, sliders), True, trail, forces, speed)
+    found = played(valued.model, valued.start, time, options)
+    if path is not None:
+        found.write(path)
+    return found
+
+
+@doing("the page of the model")
+def played(model: Model, start: Mapping[str, float], time: float, options: PlayerOptions) -> Played:
+    """The page of a model whose values stand."""
+    if not model.coordinates:
+        raise UsageError("nothing moves: the model has no coordinates", mend="`statics` and `kinematics` answer it")
+    found = run(pipeline.derive(model), time=time, start=start, samples=SAMPLES)
+    made = Played(PlayedRun(found, options))
+    points = [name for name, _ in made.played.scene.points]
+    if options.trail and options.trail not in points:
+        raise UsageError(f"there is no point '{options.trail}'", mend=f"there are {', '.join(points)}")
+    return made
+
+
+def slider_ranges(model: Model, sliders: Sequence[str]) -> dict[str, Range | None]:
+    """Of each slider that is asked for its range in SI.
+
+    Raises:
+        UsageError: what is no NAME=FROM:TO.
+    """
+    found: dict[str, Range | None] = {}
+    for text in sliders:
+        name, equals, ends = text.partition("=")
+        first, colon, last = ends.partition(":")
+        known = (*model.parameters, *model.coordinates, *(f"{q}'" for q in model.coordinates), *model.speeds)
+        if name.strip() not in known:
+            raise UsageError(f"there is no slider for '{name.strip()}'", mend=f"there are {', '.join(known)}")
+        if equals and not (colon and first.strip() and last.strip()):
+            raise UsageError(f"'{text}' is no slider", mend="write --slider m=0.1:5")
+        found[name.strip()] = (
+            (_typed(model, name.strip(), first), _typed(model, name.strip(), last)) if equals else None
+        )
+    for name, ends_of in found.items():
+        if ends_of is not None and not ends_of[0] < ends_of[1]:
+            raise UsageError(f"the slider '{name}' ends before it begins", mend="write --slider m=0.1:5")
+    return found
+
+
+def _typed(model: Model, name: str, text: str) -> float:
+    """A value as it is typed for a parameter or a start, in SI."""
+    if name in model.parameters:
+        return numeric_parameters(with_values(model, {name: text.strip()}, None, declared=True).model, needed=[name])[
+            name
+        ]
+    valued = with_values(model, None, {name: text.strip()}, declared=True)
+    q, u = start_values(valued.model)
+    return float({**q, **u}[name])

@@ -1,0 +1,53 @@
+"""eomgen play: the model alive in a page of its own."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import replace
+from pathlib import Path
+from typing import Any
+
+from eomgen.errors import UsageError
+from eomgen.model.parts import Model
+from eomgen.page.play import played, slider_ranges
+from eomgen.page.player_data import PlayerOptions
+from eomgen.report.document import Document, plain_document
+from eomgen.report.statements import Lines
+
+
+def play_document(
+    model: Model,
+    *,
+    output: str,
+    time: float,
+    start: Mapping[str, float],
+    sliders: tuple[str, ...],
+    trail: str,
+    forces: bool,
+    speed: float,
+    certify: bool = True,
+) -> Document:
+    """The page, written, and what it holds."""
+    options = PlayerOptions(slider_ranges(model, sliders), True, trail, forces, speed)
+    found = played(model, start, time, options)
+    found.write(output)
+
+    def payload() -> dict[str, Any]:
+        told = found.played.told()
+        names = [slider["name"] for slider in told["sliders"]]
+        return {"name": model.name, "files": [output], "sliders": names, "rests": found.rests or None}
+
+    run = found.played.run
+    document = plain_document(model, payload, Lines((output,)), failed="" if run.ok else run.message)
+    document = replace(document, notes=(found.rests,) if found.rests else ())
+    return document.proven(found.certify() if certify else None)
+
+
+def refuse_other_endings(output: str) -> None:
+    """Refuses what is no page.
+
+    Raises:
+        UsageError: the name does not end in .html.
+    """
+    if Path(output).suffix.lower() not in (".html", ".htm"):
+        raise UsageError(f"no page can be written as '{output}'", mend="the ending is .html")

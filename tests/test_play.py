@@ -1,0 +1,184 @@
+"""The page in which a model is alive, in a browser: its motion is a simulation's, and it asks nobody for anything."""
+
+from __future__ import annotations
+
+import html
+import json
+import re
+from pathlib import Path
+
+import numpy as np
+import pytest
+from browser import visited
+from click.testing import CliRunner
+from tools import needs
+
+import eomgen
+from eomgen.cli import main
+from eomgen.page.play import play
+
+pytestmark = [pytest.mark.slow, needs("chromium")]
+
+MODELS = Path(__file__).parent.parent / "models"
+GIVEN = {  # of each model: what is set in the page, and the same for a simulation
+    "double_pendulum": {"m1": 3.0, "l2": 0.7, "theta1": 0.4},
+    "four_bar": {"b": 1.1, "alpha": 1.3, "alpha'": 3.0},
+    "cart_pole": {"M": 2.5, "x'": 0.5},
+    "trifilar_pendulum": {"l": 1.0, "gamma'": 0.3},
+    "tumbling_body": {},
+}
+END = 1.5
+
+
+def page(name: str, **options) -> str:
+    return play(MODELS / f"{name}.toml", time=END, **options).html
+
+
+@pytest.mark.parametrize("name", GIVEN)
+def test_the_page_moves_as_a_simulation_says(name):
+    """state(t) of the recorded run, then of one with other parameters and starts, equals eomgen.simulate's to 1e-6."""
+    model, given = eomgen.load(MODELS / f"{name}.toml"), GIVEN[name]
+    sets = "".join(f"eomgen.set({json.dumps(key)}, {value});" for key, value in given.items())
+    script = f"""
+        const first = eomgen.state({END});
+        eomgen.seek({END / 2}); const scrubbed = [eomgen.t, eomgen.x];
+        {sets}
+        const second = [{END / 2}, {END}].map(t => eomgen.state(t));
+        return {{ names: eomgen.names, first, scrubbed, second, check: document.body.dataset.selfcheck }};
+    """
+    seen = visited(page(name), script)
+    assert seen.console == () and seen.requests == ()
+    found = seen.found
+    assert found["check"] == "ok"
+    before = eomgen.simulate(model, time=END, samples=[0, END / 2, END])
+    assert tuple(found["names"]) == before.coordinates + before.speeds
+    assert found["first"] == pytest.approx(before.x[-1].tolist(), abs=1e-6, rel=1e-6)
+    assert found["scrubbed"][0] == END / 2
+    assert found["scrubbed"][1] == pytest.approx(before.x[1].tolist(), abs=1e-6, rel=1e-6)
+    parameters = {key: value for key, value in given.items() if key in model.parameters}
+    start = {key: value for key, value in given.items() if key not in model.parameters}
+    after = eomgen.simulate(model, time=END, samples=[0, END / 2, END], parameters=parameters, start=start)
+    assert np.array(found["second"]) == pytest.approx(after.x[1:], abs=1e-6, rel=1e-6)
+
+
+def test_a_link_holds_what_was_set():
+    """#m1=3&theta1=0.4: the page begins with them, and `set` writes them there."""
+    text = page("double_pendulum")
+    script = f"const there = eomgen.state({END}); eomgen.set('m2', 2); return [there, location.hash];"
+    there, link = visited(text, script, fragment="#m1=3&theta1=0.4").found
+    after = eomgen.simulate(MODELS / "double_pendulum.toml", time=END, parameters={"m1": 3}, start={"theta1": 0.4})
+    assert there == pytest.approx(after.x[-1].tolist(), abs=1e-6)
+    assert link == "#m1=3&theta1=0.4&m2=2"
+
+
+def test_a_wrong_program_in_the_page_shows():
+    """One sign of the right-hand side turned: data-selfcheck is "failed", and the page says so in red."""
+    text = page("double_pendulum")
+    turned = re.sub(r"(rate: [\s\S]*?const v\d+ = [^;]*?) - ", r"\1 + ", text, count=1)
+    assert turned != text
+    seen = visited(
+        turned, "return [document.body.dataset.selfcheck, document.querySelector('[role=alert]').textContent];"
+    )
+    assert seen.found[0] == "failed" and "rate, vector 0" in seen.found[1]
+
+
+def test_what_cannot_be_assembled_is_said():
+    """A coupler that is too short closes no four-bar: the page says so, and goes on when it is long enough."""
+    script = """
+        const note = document.querySelector(".note"), said = [];
+        for (const b of [0.05, 1.0]) { eomgen.set("b", b); said.push(note.hidden ? "" : note.textContent); }
+        return said;
+    """
+    said = visited(page("four_bar"), script).found
+    assert "cannot be closed" in said[0] and said[1] == ""
+
+
+def test_contacts_that_change_play_the_recorded_run_and_the_sliders_rest():
+    """box_on_two_feet: state(t) is the trajectory's, every slider is disabled, and the page says why."""
+    script = f"""
+        let refused = "";
+        try {{ eomgen.set("m", 2); }} catch (error) {{ refused = error.message; }}
+        const sliders = [...document.querySelectorAll(".slider input")];
+        const why = document.querySelector(".rests").textContent;
+        return [eomgen.state({END}), sliders.length, sliders.every(s => s.disabled), why, refused];
+    """
+    seen = visited(page("sliding_ladder"), script)
+    assert seen.console == ()
+    state, sliders, resting, why, refused = seen.found
+    right = eomgen.simulate(MODELS / "sliding_ladder.toml", time=END)
+    assert state == pytest.approx(right.x[-1].tolist(), abs=1e-6)
+    assert sliders and resting and "contacts" in why and why == refused
+
+
+@pytest.mark.parametrize("name", ["four_bar", "flyball_governor"])
+def test_a_narrow_screen_scrolls_down_alone_and_every_control_has_a_name(name):
+    """At 360 px nothing is wider than the screen; each input, button and select is reached by Tab and labelled."""
+    script = """
+        await new Promise(done => setTimeout(done, 2500));  // three.js is unpacked beside the page
+        const inner = document.querySelector("iframe").contentDocument;
+        const controls = [...inner.querySelectorAll("button, input, select, summary")];
+        const named = c => (c.getAttribute("aria-label") || c.closest("label")?.textContent || c.textContent).trim();
+        return {
+            wide: inner.documentElement.scrollWidth, screen: inner.documentElement.clientWidth,
+            nameless: controls.filter(c => !named(c)).map(c => c.outerHTML),
+            skipped: controls.filter(c => c.tabIndex < 0).length,
+            drawn: inner.querySelectorAll(".stage canvas, .stage path").length,
+        };
+    """
+    frame = f'<iframe style="width: 360px; height: 800px" srcdoc="{html.escape(page(name))}"></iframe>'
+    found = visited(f"<!doctype html><body>{frame}</body>", script).found
+    assert found["wide"] <= found["screen"] <= 360 and found["drawn"] > 0
+    assert found["nameless"] == [] and found["skipped"] == 0
+
+
+def contrast(one: str, other: str) -> float:
+    """Of two colours, as WCAG 2.2 has it."""
+
+    def light(colour: str) -> float:
+        parts = [int(colour[i : i + 2], 16) / 255 for i in (1, 3, 5)]
+        r, g, b = (c / 12.92 if c <= 0.04045 else ((c + 0.055) / 1.055) ** 2.4 for c in parts)
+        return 0.2126 * r + 0.7152 * g + 0.0722 * b
+
+    a, b = sorted((light(one), light(other)))
+    return (b + 0.05) / (a + 0.05)
+
+
+def test_words_stand_out_from_their_ground_light_and_dark():
+    """4.5 : 1 of every colour that text or a curve has, on both grounds."""
+    text = (Path(eomgen.__file__).parent / "page" / "player" / "colours.css").read_text()
+    blocks = [
+        dict(re.findall(r"--([\w]+): (#[0-9a-f]{6})", block)) for block in re.findall(r"\{[^{}]*--paper[^{}]*\}", text)
+    ]
+    assert len(blocks) == 3 and blocks[1] == blocks[2]
+    for colours in blocks:
+        for name in ("ink", "soft", "link", "good", "bad", *(f"c{k}" for k in range(8))):
+            for ground in ("paper", "card"):
+                assert contrast(colours[name], colours[ground]) >= 4.5, (name, ground)
+
+
+def test_a_strangers_text_is_text_in_a_page(tmp_path):
+    """A model called </script><script>: the page runs, and shows the name."""
+    name = "</script><script>window.stolen = 1</script> <b>&amp;"
+    text = (MODELS / "simple_pendulum.toml").read_text()
+    model = tmp_path / "m.toml"
+    model.write_text(re.sub(r'^name = ".*"$', f"name = {json.dumps(name)}", text, flags=re.MULTILINE))
+    script = (
+        "return [document.body.dataset.selfcheck, window.stolen ?? null, document.querySelector('h1').textContent];"
+    )
+    assert visited(play(model, time=0.5).html, script).found == ["ok", None, name]
+
+
+def test_play_writes_its_page_and_proves_its_programs(tmp_path):
+    """The certificate has the page's programs; the same bytes twice; a slider that makes no sense is refused."""
+    path, model = tmp_path / "p.html", str(MODELS / "cart_pole.toml")
+    words = ("play", model, "--time", "1", "--slider", "m=0.1:5", "--slider", "theta", "-o", str(path), "--json")
+    done = CliRunner().invoke(main, words)
+    payload = json.loads(done.stdout)
+    assert done.exit_code == 0 and payload["sliders"] == ["m", "theta"] and payload["files"] == [str(path)]
+    names = [check["name"] for check in payload["certificate"]["checks"]]
+    assert sum("page's program" in name for name in names) == 2
+    first = path.read_bytes()
+    assert CliRunner().invoke(main, words).exit_code == 0 and path.read_bytes() == first
+    for slider, words_ in (("mass=1:2", "no slider for 'mass'"), ("m=1", "write --slider"), ("m=5:1", "ends before")):
+        wrong = CliRunner().invoke(main, ("play", model, "--slider", slider, "-o", str(path)))
+        assert wrong.exit_code == 2 and words_ in wrong.stderr
