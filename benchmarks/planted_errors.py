@@ -54,7 +54,8 @@ class Planted:
     Args:
         name: unique, what is wrong in words.
         room: of which law it is.
-        run: words of the command line, the model among them, models/ and .toml left out: "solve four_bar".
+        run: words of the command line, the model among them, models/ and .toml left out: "solve four_bar"; "" where
+            no proof can know what was meant, as of what a person typed: then the tests alone are asked.
         tests: pytest's words that should see it, where the verb does not: "tests/test_targets.py -k nan".
         model: text of a model of its own, in the list its name in [models] where more than one entry has it; `run` then
             names it "-".
@@ -219,6 +220,8 @@ def seen_by_product(planted: Planted) -> tuple[str, str]:
     """("product" | "crash" | "harmless" | "no effect" | "broken" | "text gone" | "", what was said)."""
     if planted.gone:
         return "text gone", planted.gone
+    if not planted.run:
+        return "", ""
     right = without(planted.run, planted.model)
     if right.code != 0:
         return "broken", f"exit {right.code} without the error: {right.why}"

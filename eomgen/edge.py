@@ -101,7 +101,7 @@ def _outcome(verb: Callable[[], int], words: Sequence[str]) -> tuple[int, tuple[
         found = error.problems if isinstance(error, Placed) else problems_of(error)
         code = error.exit_code
     except (click.Abort, KeyboardInterrupt):
-        code, found = INTERRUPTED, (Problem("", "interrupted"),)
+        code, found = INTERRUPTED, (Problem("", "interrupted, nothing is kept"),)
     except ReaderGone:
         raise
     except MemoryError:

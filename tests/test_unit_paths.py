@@ -214,3 +214,11 @@ def test_what_is_typed_wrongly_is_refused_with_its_mend(words, told, pendulum):
 
 if __name__ == "__main__":
     print(table(), end="")
+
+
+def test_a_start_that_is_typed_takes_the_place_of_the_guess_of_the_file():
+    """sin theta = 0: from near = 3 the pendulum stands on its head, from the typed 0.1 it hangs."""
+    path = Path(__file__).parents[1] / "models" / "simple_pendulum.toml"
+    text = path.read_text(encoding="utf-8").replace("start = 1.0, ", "near = 3, ")
+    found = [eomgen.linearize(eomgen.loads(text), start=start).as_dict()["state"] for start in ({}, {"theta": 0.1})]
+    assert [state["theta"]["value"] for state in found] == [pytest.approx(math.pi), 0]

@@ -53,7 +53,7 @@ from eomgen.symbolic.expression.traversal import order
 from eomgen.symbolic.numeric.evaluation import FLOAT, evaluate
 from eomgen.symbolic.numeric.sure_numbers import number_of
 from eomgen.symbolic.numeric.transplant import transplanted
-from eomgen.symbolic.numeric.work import Work, doing
+from eomgen.symbolic.numeric.work import PatienceEnded, Work, doing, keep_what_there_is
 from eomgen.symbolic.print.text import LONGEST_RESULT, readable_text, text_size
 
 Answer = Quantity  # of an output
@@ -66,11 +66,12 @@ class Answers(dict[str, Answer], Result):
 
     Args:
         solver: where they come from.
+        stopped: "interrupted" or "out of patience", where only those before it were sought; "" as it should be.
     """
 
-    def __init__(self, found: Mapping[str, Answer], solver: Solver) -> None:
+    def __init__(self, found: Mapping[str, Answer], solver: Solver, stopped: str = "") -> None:
         super().__init__(found)
-        self._solver = solver
+        self._solver, self.stopped = solver, stopped
 
     def __repr__(self) -> str:
         return f"<answers: {', '.join(self) or 'none asked'}>"
@@ -105,23 +106,34 @@ class Answers(dict[str, Answer], Result):
 def solve(model: ModelOrPath, *, parameters: Values | None = None, start: Values | None = None) -> Answers:
     """Every output of the model, in its order; one that cannot be answered has its message.
 
+    Whoever stops it keeps those that were answered before.
+
     Args:
         parameters, start: values that replace the model's, each as `model_at` takes it.
     Raises:
         ModelError: none can be answered as the model is wrong: accelerations of a coordinate that moves no mass.
     """
     model = model_at(model, parameters, start)
-    solver, found, wrong = _Solver(model), {}, []
+    solver, found, wrong, stopped = _Solver(model), dict[str, Answer](), [], ""
     for name, output in model.outputs.items():
+        if stopped:
+            found[name] = _unanswered(output, DerivationError(f"not sought: {stopped}"))
+            continue
         try:
             with doing(f"the output '{name}'"):
                 found[name] = solver.answer(output)
         except ModelError as error:
             wrong.append(error)
             found[name] = _unanswered(output, error)
+        except (KeyboardInterrupt, PatienceEnded) as stop:
+            if not any(answer.answered for answer in found.values()):
+                raise
+            keep_what_there_is()
+            stopped = "interrupted" if isinstance(stop, KeyboardInterrupt) else "out of patience"
+            found[name] = _unanswered(output, DerivationError(stopped))
     if wrong and not any(answer.answered for answer in found.values()):
         raise wrong[0]
-    return Answers(found, solver)
+    return Answers(found, solver, stopped)
 
 
 @dataclass(frozen=True)

@@ -2,12 +2,20 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 from eomgen.model.parts import Model
 from eomgen.questions import answers
 from eomgen.report.document import Document
+
+LATE = "there was no time left"
 
 
 def solve_document(model: Model, *, certify: bool = True) -> Document:
     """Every entry of [outputs]."""
     found = answers.solve(model)
+    if found.stopped:
+        note = f"Nothing of it is proven: {'it was interrupted' if found.stopped == 'interrupted' else LATE}."
+        document = found.document.proven(None)
+        return replace(document, interrupted=found.stopped == "interrupted", notes=(*document.notes, note))
     return found.document.proven(found.certify() if certify and found else None)

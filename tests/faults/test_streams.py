@@ -229,5 +229,5 @@ def test_an_interrupted_derivation_says_so(monkeypatch):
         pipeline.derive = derive
 
     ended = forked(("derive", PENDULUM, "--json"), stopped)
-    assert (ended.code, ended.said.strip()) == (130, "interrupted")
+    assert (ended.code, ended.said.strip()) == (130, "interrupted, nothing is kept")
     assert json.loads(ended.out)["error"]["exit_code"] == 130

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 import threading
 import time
 from collections.abc import Sequence
@@ -14,6 +15,7 @@ from click.testing import CliRunner
 import eomgen
 from eomgen.cli import main
 from eomgen.errors import EomgenError
+from eomgen.questions import answers
 from eomgen.questions.run import run
 from eomgen.simulation import pace
 from eomgen.simulation.integrator import Stepping, march
@@ -66,7 +68,7 @@ def test_what_takes_too_long_ends_and_says_what_was_done_and_what_was_given_up(e
             pass
         with doing("the second"):
             endless()
-    assert caught.value.what == "given up after 0.1 s: the second (done before: the first)"
+    assert caught.value.what == "given up after 0.1 s, nothing is kept: the second (done before: the first)"
     assert "--patience" in caught.value.mend and caught.value.exit_code == 3
     assert time.monotonic() - began < 30
 
@@ -93,7 +95,7 @@ def test_what_is_given_up_for_another_way_is_not_told_as_done():
             pass
         with doing("the other way"):
             asks()
-    assert caught.value.what == "given up after 0.01 s: all, the other way"
+    assert caught.value.what == "given up after 0.01 s, nothing is kept: all, the other way"
 
 
 def test_patience_that_suffices_leaves_nothing_behind():
@@ -310,3 +312,22 @@ v = {{ value = "x'", at = "x = 0" }}
         "simulate": "no finite value",
     }
     assert said.get(verb, "") in found.output
+
+
+@pytest.mark.parametrize(("stop", "code"), [(KeyboardInterrupt, 130), (PatienceEnded, 3)])
+def test_answers_that_there_are_outlive_what_stops_the_search_for_the_others(stop, code, monkeypatch):
+    """Of three the first is answered, the second stopped, the third not sought: JSON says so, and nothing is proven."""
+    answer, asked = answers._Solver.answer, []
+
+    def stopped(self, output):
+        asked.append(output)
+        if len(asked) == 2:
+            raise stop
+        return answer(self, output)
+
+    monkeypatch.setattr(answers._Solver, "answer", stopped)
+    found = CliRunner().invoke(main, ["solve", str(MODELS / "block_on_wedge.toml"), "--json"])
+    told = json.loads(found.stdout)
+    values = [each["value"] for each in told["outputs"].values()]
+    assert found.exit_code == code and told["certificate"] is None and len(asked) == 2
+    assert values[0] is not None and values[1:] == [None, None] and "Nothing of it is proven" in found.stderr

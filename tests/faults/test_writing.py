@@ -242,3 +242,12 @@ def test_reading_ends_where_a_model_would_be_too_long(tmp_path):
     assert ended.code == 1 and f"{fifo}:2:" in ended.said
     assert forked(("check", str(tmp_path))).code == 2
     assert time.process_time() - begun < 5
+
+
+def test_a_file_is_on_the_disk_before_it_takes_the_place_of_the_old_one(tmp_path, monkeypatch):
+    """fsync of the file, then rename: else a machine that stops between the two leaves an empty file."""
+    done, sync, move = [], os.fsync, os.replace
+    monkeypatch.setattr(os, "fsync", lambda handle: (done.append("synced"), sync(handle)))
+    monkeypatch.setattr(os, "replace", lambda *places: (done.append("moved"), move(*places)))
+    files.write(tmp_path / "result.txt", "new")
+    assert done[: done.index("moved")] == ["synced"]

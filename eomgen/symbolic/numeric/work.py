@@ -72,7 +72,7 @@ class _Clock:
         """What was done, what was given up, and what helps."""
         given_up = ", ".join(self.told[-2:]) or "the work"
         before = f" (done before: {', '.join(self.done[-4:])})" if self.done else ""
-        what = f"given up after {self.seconds:g} s: {given_up}{before}"
+        what = f"given up after {self.seconds:g} s, nothing is kept: {given_up}{before}"
         return OutOfPatience(what, mend="ask for less, or wait longer: --patience SECONDS, --patience none")
 
 
