@@ -71,6 +71,7 @@ _HOMES = {
     "report.linearize.result": ("Linearization", "linearize"),
     "scene.making": ("scene_of",),
     "scene.scene": ("Scene",),
+    "report.run_pictures": ("run_picture",),
     "report.statics.result": ("Statics", "statics"),
     "simulation.result": ("Trajectory",),
     "report.kinematics.result": ("Kinematics",),

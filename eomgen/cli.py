@@ -252,15 +252,31 @@ def inertia_command(**options: Any) -> int:
     "it.  [default: see [linearize]]",
 )
 @click.option("--coordinate", "coordinates", multiple=True, metavar="NAME", help="Only these.  [default: all]")
-def linearize_command(**options: Any) -> int:
+@click.option(
+    "--view",
+    type=click.Choice(["modes", "bode", "locus"]),
+    default="modes",
+    show_default=True,
+    help="What --plot draws: the modes, Bode's diagrams, or the roots over a parameter.",
+)
+@click.option("--over", metavar="RANGE", help='Of --view locus: "k=100:1000:50", "log:k=1:100:50".')
+def linearize_command(view: str, over: str | None, **options: Any) -> int:
     """Give small motions about rest or a steady motion.
 
     M, C and K with their parts, the state matrix, characteristic polynomial, frequencies, damping and shapes of the
     modes, stability with the conditions of Hurwitz, transfer functions from the inputs.
     """
+    from eomgen.model.ranges import range_of
     from eomgen.report.linearize.result import linearize
 
-    return _write_result(linearize, **options)
+    if (over is not None) != (view == "locus"):
+        raise click.UsageError('--view locus and --over "k=1:10:50" go together')
+
+    def found(model: Model, **asked: Any) -> Result:
+        wanted = None if over is None else range_of(model, over)
+        return replace(linearize(model, **asked), drawn=view, over=wanted)
+
+    return _write_result(found, **options)
 
 
 @main.command("simulate")
@@ -298,6 +314,13 @@ def linearize_command(**options: Any) -> int:
     "--baumgarte", nargs=2, type=float, metavar="ALPHA BETA", help="Rates of Baumgarte's rows [1/s].  [default: 10 10]"
 )
 @FOLLOW
+@click.option(
+    "--view",
+    type=click.Choice(["time", "phase", "resultants", "polar"]),
+    default="time",
+    show_default=True,
+    help="What --plot draws: all over time, rates over coordinates, sizes of forces, forces of hinges by direction.",
+)
 @click.option("--units", is_flag=True, help='In the .csv "theta [deg]", as the file declares it, for names and SI.')
 @click.option("--samples", type=click.IntRange(min=2), help="How many instants are given.  [default: 1001]")
 @click.option("--target", metavar="NAME", help="What runs the equations, as of codegen --list.  [default: the fastest]")

@@ -170,7 +170,7 @@ def test_printed_inertia_forces_are_what_is_missing_in_the_balance_of_the_bodies
 @pytest.mark.parametrize("method", ["lagrange", "kinetostatic"])
 @pytest.mark.parametrize("name", TREES)
 def test_printed_reactions_are_those_of_the_balance_by_every_method(name, method):
-    """bar_x = -1/2*M*l*(...) = -1/4*M*(...): every side, along every motion"""
+    """R_bar_x = -1/2*M*l*(...) = -1/4*M*(...): every side, along every motion"""
     derived = equations(name, method)
     motion, known = along_motion(derived), reactions_along_motion(derived)
     own = set(letters(derived).symbols)
@@ -251,8 +251,8 @@ def test_reactions_along_the_motion_are_those_of_the_energy_theorem():
     """bar released from the horizontal: theta'^2 = 3 g sin/l, 5/2 M g below the hinge"""
     text = rendered(equations("ch17_p3", "kinetostatic").derivation, "text")
     assert "    theta'^2 = 3*g*sin(theta)/l\n" in text
-    assert "    bar_x = -9/4*M*g*cos(theta)*sin(theta)\n" in text
-    assert "    bar_y = 1/4*M*g*(1 + 9*sin(theta)^2)\n" in text
+    assert "    R_bar_x = -9/4*M*g*cos(theta)*sin(theta)\n" in text
+    assert "    R_bar_y = 1/4*M*g*(1 + 9*sin(theta)^2)\n" in text
 
 
 def test_friction_is_shown_by_its_normal_reaction_against_the_sliding():
@@ -296,7 +296,7 @@ def test_long_reactions_are_counted_and_not_printed():
     """chain20: no formula, no table of symbols that stand nowhere"""
     text = " ".join(rendered(equations("chain20").derivation, "text").split())
     assert "All of them are too long to print here: `eomgen reactions MODEL` evaluates them" in text
-    assert "rod1_x" not in text
+    assert "R_rod1_x" not in text
 
 
 def test_the_kinetostatic_text_is_the_golden_one():

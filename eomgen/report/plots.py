@@ -22,7 +22,7 @@ DASHES = {"x": "-", "y": "--", "z": ":", "n": "-", "t": "-.", "s": ":", "tension
 def plot_trajectory(
     trajectory: Trajectory, path: str | Path, *, title: str = "", units: Mapping[str, Unit] | None = None
 ) -> None:
-    """Draw a trajectory into a PNG, SVG or PDF file.
+    """Draw a trajectory over time into a PNG, SVG or PDF file.
 
     Args:
         trajectory: what is drawn.
@@ -33,7 +33,12 @@ def plot_trajectory(
         UsageError: another ending.
         WriteFailed: the file cannot be written; what was there before is then still there.
     """
-    groups = _by_unit(trajectory, units or {})
+    over_time(trajectory, title, units or {}).save(path)
+
+
+def over_time(trajectory: Trajectory, title: str, units: Mapping[str, Unit]) -> Picture:
+    """Coordinates over time, one panel a unit, how well the energy was kept, reactions."""
+    groups = _by_unit(trajectory, units)
     reactions = _reactions_by_unit(trajectory)
     count = len(groups) + (trajectory.energy is not None) + len(reactions)
 
@@ -49,7 +54,7 @@ def plot_trajectory(
         panels[-1].margins(x=0.01)
         figure.align_ylabels(panels)
 
-    Picture((8, 1.0 + 2.1 * max(count, 1)), fill, title).save(path)
+    return Picture((8, 1.0 + 2.1 * max(count, 1)), fill, title)
 
 
 def _by_unit(trajectory: Trajectory, units: Mapping[str, Unit]) -> dict[Unit, list[str]]:

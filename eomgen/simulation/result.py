@@ -7,6 +7,7 @@ import html
 import io
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field
+from importlib import import_module
 from pathlib import Path
 from typing import IO, Any, Literal
 
@@ -106,6 +107,23 @@ class Trajectory:
         if self.proof is None:
             raise UsageError("nothing is known of the equations of this run", mend="take eomgen.simulate(model)")
         return self.proof(self)
+
+    def plot(self, path: str | Path | None = None, view: str = "time") -> Any:
+        """A picture of the run, shown in a notebook; written where a path is given.
+
+        Args:
+            path: .png, .svg or .pdf.
+            view: "time", "phase" (rates over coordinates), "resultants" (sizes of forces), "polar" (forces of hinges).
+        Raises:
+            UsageError: another ending or view.
+            RunFailed: the run has nothing of the kind.
+        """
+        picture = import_module("eomgen").run_picture(
+            self, view
+        )  # the package's front door: pictures are a later room's
+        if path is not None:
+            picture.save(path)
+        return picture
 
     @property
     def ok(self) -> bool:

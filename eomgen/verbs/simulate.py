@@ -39,6 +39,7 @@ def simulate_document(
     until: WrittenEquation | None,
     output: str | None,
     plot: str | None,
+    view: str = "time",
     units: bool = False,
     certify: bool = True,
 ) -> Document:
@@ -58,9 +59,9 @@ def simulate_document(
     if output:
         _write_run(run, output, units_of(model, run.columns()) if units else None)
     if plot:
-        from eomgen.report.plots import plot_trajectory
+        from eomgen.report.run_pictures import run_picture
 
-        plot_trajectory(run, plot, title=model.name, units=units_of(model, run.coordinates))
+        run_picture(run, view, title=model.name, units=units_of(model, run.coordinates)).save(plot)
     assembled = f"The start was {run.assembled}." if run.assembled else ""
     cut = {"interrupted": "it was interrupted", "out of patience": "there was no time left"}.get(run.status, "")
     unproven = f"Nothing of it is proven: {cut}." if certify and cut else ""

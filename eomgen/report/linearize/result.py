@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
 from typing import Any
 
@@ -24,6 +24,7 @@ from eomgen.mechanics.small_motions.state_space import StateMatrices, exact_stat
 from eomgen.mechanics.statics.contacts_at_start import contacts_at_start
 from eomgen.model.outputs.base import names_of
 from eomgen.model.parts import Model
+from eomgen.model.ranges import Range, range_of
 from eomgen.model.reader import ModelOrPath, model_at
 from eomgen.model.replaced import Values
 from eomgen.proof.check import Certificate
@@ -31,6 +32,7 @@ from eomgen.proof.small_motions import small_motion_checks
 from eomgen.report.document import Document, document_of
 from eomgen.report.figures import Picture
 from eomgen.report.linearize.picture import modes_picture
+from eomgen.report.linearize.response_pictures import bode_picture, locus_picture
 from eomgen.report.linearize.state_space import LETTERS, StateSpace, state_space_of
 from eomgen.report.linearize.steps import linearization_steps
 from eomgen.report.quantity import Quantity
@@ -53,10 +55,13 @@ class Linearization(Result):
     Args:
         model: the system.
         modes: what follows from its equations to first order.
+        drawn: what its picture shows: "modes", "bode", or "locus", the roots `over` a parameter.
     """
 
     model: Model
     modes: Modes
+    drawn: str = "modes"
+    over: Range | None = None
 
     def __repr__(self) -> str:
         about = self.small.reference.about
@@ -211,12 +216,31 @@ class Linearization(Result):
 
     @property
     def picture(self) -> Picture:
-        """The modes, drawn over the reference.
+        """The modes, drawn over the reference; Bode's diagrams; or the roots over a parameter.
 
         Raises:
-            RunFailed: parameters have no values; a body stands in space, and nothing oscillates.
+            RunFailed: parameters have no values; there are no inputs; the equations are only known in numbers.
         """
-        return modes_picture(self.modes)
+        if self.over is not None:
+            return locus_picture(self.small, self.over)
+        return bode_picture(self.small) if self.drawn == "bode" else modes_picture(self.modes)
+
+    def bode(self) -> Picture:
+        """Size and phase of the transfer functions over the frequency.
+
+        Raises:
+            RunFailed: parameters have no values, or there are no inputs.
+        """
+        return replace(self, drawn="bode", over=None).picture
+
+    def locus(self, over: str) -> Picture:
+        """The eigenvalues over a parameter: "k=100:1000:50", "log:k=1:100:50", in the unit of the file.
+
+        Raises:
+            UsageError: no such parameter, no range.
+            RunFailed: parameters have no values; the equations are only known at those.
+        """
+        return replace(self, drawn="locus", over=range_of(self.model, over)).picture
 
     def entries(self) -> dict[str, Any]:
         """For machines."""

@@ -1,0 +1,92 @@
+"""Bode's diagrams, roots over a parameter, phase portraits, forces of hinges: the curves are right, and drawn."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import numpy as np
+import pytest
+from click.testing import CliRunner
+
+import eomgen
+from eomgen.cli import main
+from eomgen.model.ranges import range_of
+from eomgen.report.linearize.response_pictures import roots_over
+from eomgen.report.run_pictures import VIEWS, resultants
+
+pytestmark = pytest.mark.slow
+
+MODELS = Path(__file__).parent.parent / "models"
+
+
+@pytest.fixture(scope="module")
+def run() -> eomgen.Trajectory:
+    return eomgen.simulate(MODELS / "four_bar.toml", time=0.3, samples=31)
+
+
+def test_roots_over_a_parameter_are_those_of_the_model_with_it():
+    """The weave and capsize of the bicycle at 3 and 6 m/s: the exact equations are those linearized anew"""
+    found = eomgen.linearize(MODELS / "whipple_bicycle.toml")
+    for v, roots in zip((3.0, 6.0), roots_over(found.small, "v", (3.0, 6.0)), strict=True):
+        anew = eomgen.linearize(MODELS / "whipple_bicycle.toml", parameters={"v": v})
+        assert np.allclose(np.poly(roots), np.poly(anew.spectrum.eigenvalues), rtol=1e-9)
+
+
+def test_a_parameter_takes_those_with_it_that_are_expressions_of_it():
+    """k2 = k1/2: over k1 the roots are those of both, not of one alone"""
+    text = (MODELS / "two_mass_oscillator.toml").read_text()
+    lines = ['k2 = "k1/2"' if line.startswith("k2 =") else line for line in text.splitlines()]
+    model = eomgen.loads("\n".join(lines))
+    (roots,) = roots_over(eomgen.linearize(model).small, "k1", (7.0,))
+    both = eomgen.linearize(eomgen.loads(text), parameters={"k1": 7.0, "k2": 3.5})
+    assert np.allclose(np.poly(roots), np.poly(both.spectrum.eigenvalues))
+
+
+def test_the_resultant_of_a_hinge_is_the_length_of_its_force(run):
+    """sqrt(F_x^2 + F_y^2)"""
+    found = resultants(run)
+    assert np.allclose(found["crank"], np.hypot(run["reaction_x(crank)"], run["reaction_y(crank)"]))
+
+
+@pytest.mark.parametrize("view", VIEWS)
+def test_every_view_of_a_run_is_drawn(run, view, tmp_path):
+    path = tmp_path / "a.svg"
+    picture = run.plot(path, view)
+    assert path.read_text().count("<path") > 3 and picture._repr_png_().startswith(b"\x89PNG")
+
+
+def test_a_view_of_nothing_is_refused_in_words(run):
+    with pytest.raises(eomgen.UsageError, match="no view 'phases' of a run"):
+        run.plot(view="phases")
+    with pytest.raises(eomgen.RunFailed, match="without inputs there is no transfer function"):
+        eomgen.linearize(MODELS / "double_pendulum.toml").bode()._repr_png_()
+
+
+@pytest.mark.parametrize(
+    ("text", "name", "first", "last", "count"),
+    [("l1=1:3:5", "l1", 1, 3, 5), ("log:l1=1:100:3", "l1", 1, 100, 3), ("l1=0.5,2", "l1", 0.5, 2, 2)],
+)
+def test_a_range_has_its_ends(text, name, first, last, count):
+    found = range_of(eomgen.load(MODELS / "double_pendulum.toml"), text)
+    assert (found.name, found.values[0], found.values[-1], len(found.values)) == (name, first, last, count)
+    if text.startswith("log"):
+        assert found.values[1] == pytest.approx(10)
+
+
+@pytest.mark.parametrize("text", ["l1", "l1=1:2", "l1=1:2:1", "log:l1=0:2:5", "x=1:2:3", "l1=nan", "l1=1:inf:4", "l1="])
+def test_what_is_no_range_is_refused(text):
+    with pytest.raises(eomgen.UsageError) as caught:
+        range_of(eomgen.load(MODELS / "double_pendulum.toml"), text)
+    assert caught.value.mend
+
+
+def test_the_command_draws_them(tmp_path):
+    """--view bode, --view locus --over RANGE; one without the other is a mistake"""
+    cart = str(MODELS / "cart_pole.toml")
+    for words in (["--view", "bode"], ["--view", "locus", "--over", "m=0.1:1:20"]):
+        path = tmp_path / f"{words[1]}.png"
+        result = CliRunner().invoke(main, ["linearize", cart, "--no-certify", "--plot", str(path), *words])
+        assert result.exit_code == 0, result.stderr
+        assert path.read_bytes().startswith(b"\x89PNG")
+    for words in (["--view", "locus"], ["--over", "m=1:2:3"]):
+        assert CliRunner().invoke(main, ["linearize", cart, *words]).exit_code == 2
