@@ -67,6 +67,13 @@ def printed(text: str) -> str:
             "m1*l1*cos(x)*x'' + 2*m2*l1*cos(x)*x'' - m1*l1*sin(x)*x'^2 - 2*m2*l1*sin(x)*x'^2 + m2*g",
             "(m1 + 2*m2)*l1*(cos(x)*x'' - sin(x)*x'^2) + m2*g",
         ),
+        (
+            "(4*I*(a + b)^2*x'' + J*a^2*x'' + m*a^2*(a + b)^2*x'')/(4*(a + b)^2)",
+            "(1/4*m*a^2 + I + a^2*J/(4*(a + b)^2))*x''",
+        ),
+        ("(m*l^2*g*a + k*b^2)/(m*l^2)", "a*g + b^2*k/(m*l^2)"),
+        ("sqrt(m1*a^2 - 2*m1*a*b + m1*b^2 + m2*(a + b)^2)", "sqrt(m1*(a - b)^2 + m2*(a + b)^2)"),
+        ("m1*a + m1*b + m2*a + m2*b + sqrt(g^2 + l^2)", "(m1 + m2)*(a + b) + sqrt(g^2 + l^2)"),
     ],
 )
 def test_formulas_are_collected_and_factored_as_an_author_does(given: str, wanted: str):

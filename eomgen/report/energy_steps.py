@@ -67,7 +67,8 @@ def kinetic_energy_step(system: System, reader: Reader, energies: tuple[BodyEner
     if len(formulas) <= 1:
         return Step("kinetic_energy", "Kinetic energy", (prose(KINETIC, ":"), *page(reader, [(T, total)])))
     statements = (prose("Of each body ", KINETIC, ":"), *page(reader, formulas), prose("Together:"))
-    return Step("kinetic_energy", "Kinetic energy", (*statements, *page(reader, [(T, total)])))
+    together = reader.as_sum(total, [x for _, x in formulas])
+    return Step("kinetic_energy", "Kinetic energy", (*statements, *page(reader, [(T, together)])))
 
 
 def work_step(system: System, reader: Reader, forces: tuple[Scalar, ...]) -> Step:
@@ -84,9 +85,10 @@ def work_step(system: System, reader: Reader, forces: tuple[Scalar, ...]) -> Ste
     else:
         statements.append(prose("Nothing is free to move: what is applied enters the reactions alone."))
     statements += page(reader, formulas)
-    if sum(_is_potential(name) for name, _ in formulas) > 1:
+    potentials = [x for name, x in formulas if _is_potential(name)]
+    if len(potentials) > 1:
         statements += [prose("The potential energy together:")]
-        statements += page(reader, [(V, system.loads.potential_energy)])
+        statements += page(reader, [(V, reader.as_sum(system.loads.potential_energy, potentials))])
     if names:
         statements.append(prose("The generalized forces of everything applied:"))
         statements += page(reader, [(Name("Q", by=q), Q) for q, Q in zip(names, forces, strict=True)])

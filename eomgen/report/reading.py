@@ -160,6 +160,18 @@ class Reader:
         self._known[found] = found
         return found
 
+    def as_sum(self, total: Scalar, parts: Sequence[Scalar]) -> Scalar:
+        """A total as the sum of its parts, each as shown, where that is shorter than in a form of its own."""
+        written = [self.shown(x) for x in parts]
+        if type(total) is not Node or any(isinstance(x, Omitted) for x in written):
+            return total
+        found = sum((x for x in written if not isinstance(x, Omitted)), start=0)
+        short = self._read(total)
+        if type(found) is not Node or (short is not None and length_of(short) <= length_of(found)):
+            return total
+        self._known[found] = found
+        return found
+
 
 def conditions_in(x: Scalar) -> list[Node]:
     """The conditions of the cases in x, each once; before those that are asked only where it fails."""

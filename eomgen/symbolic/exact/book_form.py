@@ -15,12 +15,14 @@ from collections import Counter
 from collections.abc import Callable, Collection, Iterable, Mapping, Sequence
 from dataclasses import dataclass, field
 
+from eomgen.symbolic.exact.by_parameters import by_parameters
 from eomgen.symbolic.exact.expansion import Expansion, expanded
 from eomgen.symbolic.exact.normal_form import in_whole_numbers, quotients
 from eomgen.symbolic.exact.quotient import reduced
 from eomgen.symbolic.exact.rational_polynomial import RationalPolynomial
 from eomgen.symbolic.exact.terms import AngleSum, Terms, TooLarge, common_number
 from eomgen.symbolic.exact.writing import Writer
+from eomgen.symbolic.expression.derivative import substituted
 from eomgen.symbolic.expression.exact_numbers import tidy
 from eomgen.symbolic.expression.graph import Node, Number, Scalar
 from eomgen.symbolic.expression.rational import Fraction
@@ -58,18 +60,37 @@ def book_form(x: Scalar, limit: int = Work.ENTRY, positive: Collection[Node] = (
         writer = Writer(expansion)
         book = _Book(expansion, writer)
         divided = any(e < 0 for monomial, _ in terms for _, e in monomial)
-        forms = [_quotient(expansion, writer, book, terms)] if divided else []
+        forms = _quotients(expansion, writer, book, terms) if divided else []
         forms.append(book.sum(book.coordinates_first(_parts(writer, terms))))
         if any(expansion.atoms.is_a(atom, "sqrt") for monomial, _ in terms for atom, _ in monomial):
             forms += map(rebuilt_as_written, quotients(expansion, writer, terms))
     except TooLarge:
         return x
-    return min(forms, key=_length)
+    return _roots_read(min(forms, key=_length), limit, positive)
+
+
+def _roots_read(x: Scalar, limit: int, positive: Collection[Node]) -> Scalar:
+    """x with what stands under its roots in book form, too."""
+    inside = [node.args[0] for node in order((x,)) if node.op == "sqrt" and type(node.args[0]) is Node]
+    if not inside:
+        return x
+    read = substituted((x,), {f: book_form(f, limit, positive) for f in inside})[0]
+    return read if _length(read) < _length(x) else x
 
 
 def _length(x: Scalar) -> float:
     """A quotient within a quotient counts as half as long again."""
     return length_of(x) * (1.5 if has_nested_quotient(x) else 1)
+
+
+def _quotients(expansion: Expansion, writer: Writer, book: _Book, terms: Terms) -> list[Scalar]:
+    """The sum as one quotient, and as one for each parameter that it is linear in."""
+
+    def one(part: Terms) -> Scalar:
+        return _quotient(expansion, writer, book, part)
+
+    several = by_parameters(expansion, terms, one, book.added)
+    return [one(terms), *([] if several is None else [several])]
 
 
 def _quotient(expansion: Expansion, writer: Writer, book: _Book, terms: Terms) -> Scalar:
@@ -155,7 +176,7 @@ class _Book:
         groups = _grouped(parts, self._is_kinetic)
         if not any(groups):
             return self._still(parts)
-        apart = self._added([self._with(key, part) for key, part in groups.items()])
+        apart = self.added([self._with(key, part) for key, part in groups.items()])
         if not 1 < len(groups) <= len(parts) <= MOST_FACTORED:
             return apart
         merged = self._merged(groups)
@@ -176,7 +197,7 @@ class _Book:
             number, common, left = _without_common(inside)
             factors = [*self._factors(list(alike)), *self._factors(left)]
             terms.append(self._times(number, _times_powers(still, common), factors))
-        return self._added(terms)
+        return self.added(terms)
 
     def _with(self, key: Powers, part: Parts) -> Scalar:
         """coefficient * key"""
@@ -189,13 +210,14 @@ class _Book:
 
     def _still(self, parts: Parts) -> Scalar:
         """A sum in which nothing has a rate: with one term for each product of what moves, or as it is."""
-        apart = self._added([self._term(c, powers) for c, powers in parts])
+        apart = self.added([self._term(c, powers) for c, powers in parts])
         if len(parts) > MOST_FACTORED:
             return apart
         forms = []
-        groups = _grouped(parts, self._moves)
-        if 1 < len(groups) < len(parts):
-            forms.append(self._added([self._with(key, part) for key, part in groups.items()]))
+        for chosen in (self._moves, self._is_root):
+            groups = _grouped(parts, chosen)
+            if 1 < len(groups) < len(parts):
+                forms.append(self.added([self._with(key, part) for key, part in groups.items()]))
         if 2 < len(parts) <= MOST_NESTED:
             forms += self._nested(parts)
         best = min(forms, key=length_of, default=apart)
@@ -221,7 +243,7 @@ class _Book:
                 pieces = [self.sum(before)] if before else []
                 pieces.append(self._with((), inside) if len(inside) == 1 else self.product(inside))
                 pieces += [self.sum(after)] if after else []
-                found.append(self._added(pieces))
+                found.append(self.added(pieces))
         return found
 
     # -- factors ------------------------------------------------------------------------------
@@ -264,13 +286,13 @@ class _Book:
         factors = tuple((*base, e) for base, e in powers if not isinstance(base, int))
         return self.writer.term(tidy(c), monomial, factors)
 
-    def _added(self, terms: Sequence[Scalar]) -> Scalar:
+    def added(self, terms: Sequence[Scalar]) -> Scalar:
         """The sum in this order, a term without a minus first; as written, whatever was written before."""
         graph = self.writer.graph
         signed = [(_has_minus(x), _bare(x)) for x in terms]
         first = next((k for k, (minus, _) in enumerate(signed) if not minus), None)
         if first is None:
-            return graph.neg(self._added([x for _, x in signed]))
+            return graph.neg(self.added([x for _, x in signed]))
         total = signed[first][1]
         for minus, x in (*signed[:first], *signed[first + 1 :]):
             if type(total) is Node and type(x) is Node:
@@ -282,6 +304,9 @@ class _Book:
     def _is_kinetic(self, base: Base) -> bool:
         node = self.expansion.atoms.nodes.get(base) if isinstance(base, int) else None
         return node is not None and node.op == "symbol" and (node.name.endswith("'") or node.name.startswith("lam("))
+
+    def _is_root(self, base: Base) -> bool:
+        return isinstance(base, int) and self.expansion.atoms.is_a(base, "sqrt")
 
     def _moves(self, base: Base) -> bool:
         graph, nodes = self.expansion.graph, self.expansion.atoms.nodes
