@@ -171,12 +171,8 @@ class Live:
 
     @cached_property
     def reactions(self) -> dict[str, Scalar]:
-        """Those that have a single value, by name; {} where a body is held by nothing."""
-        try:
-            values = determinate(self.phase.reactions)
-        except DerivationError:
-            return {}
-        return dict(zip(values, with_rest(self.phase.system, tuple(values.values())), strict=True))
+        """Those that have a single value, by name."""
+        return reactions_in(self.phase)
 
     @property
     def columns(self) -> dict[str, tuple[str, int]]:
@@ -213,6 +209,15 @@ class Live:
             "slots": len(self.scene.values),
             "conservative": self.phase.conservative,
         }
+
+
+def reactions_in(phase: PhaseModel) -> dict[str, Scalar]:
+    """The reactions that have a single value, by name; {} where a body is held by nothing."""
+    try:
+        values = determinate(phase.reactions)
+    except DerivationError:
+        return {}
+    return dict(zip(values, with_rest(phase.system, tuple(values.values())), strict=True))
 
 
 def _begun(scope: Scope, part: Coordinate) -> Scalar:

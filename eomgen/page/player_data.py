@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import base64
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from functools import cached_property
 from typing import Any
 
@@ -15,7 +15,8 @@ from eomgen.codegen.vectors import vectors
 from eomgen.errors import UsageError
 from eomgen.model.own_units import units_of
 from eomgen.model.parts import Model
-from eomgen.page.live import Live
+from eomgen.page.live import Live, reactions_in
+from eomgen.scene.applied import reaction_marks
 from eomgen.scene.instant import frames_along
 from eomgen.scene.making import scene_of_system
 from eomgen.scene.scene import Scene
@@ -86,7 +87,9 @@ class PlayedRun:
     def scene(self) -> Scene:
         if has_phases(self.model):
             return scene_of_system(self.phase.declared)
-        return scene_of_system(self.phase.system, self.phase.equations)
+        scene = scene_of_system(self.phase.system, self.phase.equations)
+        arrows = reaction_marks(self.phase.system, reactions_in(self.phase))
+        return replace(scene, marks=(*scene.marks, *arrows))
 
     def told(self) -> dict[str, Any]:
         """What the player is told."""

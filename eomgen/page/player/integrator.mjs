@@ -52,7 +52,7 @@ export class Run {
 /**
  * The run from x0 at t = 0 to the end, or to where it goes no further, which its message says.
  *
- * rate(t, x, dx): f. kept(t, x): puts x where it belongs and says whether it did. stopped(t, x): why it ends there, or "".
+ * rate(t, x, dx): f. kept(t, x): puts x where it belongs and says whether it did. stopped(t, x, run): why it ends there, or "".
  * breaks: instants across which no step goes.
  */
 export function integrated(rate, x0, end, { rtol, atol, kept = () => false, stopped = () => "", breaks = [], most = 200000 }) {
@@ -63,7 +63,7 @@ export function integrated(rate, x0, end, { rtol, atol, kept = () => false, stop
     kept(t, x);
     run.first = Float64Array.from(x);
     run.t.push(t);
-    run.message = stopped(t, x);
+    run.message = stopped(t, x, run);
     rate(t, x, k[0]);
     if (!finite(k[0])) run.message = "The motion has no finite value where it starts.";
     if (run.message || !n) { if (!n) run.t.push(end); return run; }
@@ -104,7 +104,7 @@ export function integrated(rate, x0, end, { rtol, atol, kept = () => false, stop
         h = last && h > step ? Math.max(h, step*factor) : step*factor;
         grows = LARGEST;
         x.set(y);
-        run.message = stopped(t, x);
+        run.message = stopped(t, x, run);
         if (run.message) break;
         if (kept(t, x)) rate(t, x, k[0]);
         else { const first = k[0]; k[0] = k[6]; k[6] = first; }

@@ -4,6 +4,10 @@ import { Run, integrated } from "./integrator.mjs";
 import { STALLS, Ties, dot, leastChange, solved, weighted } from "./ties.mjs";
 
 const OF_A_STEP = 0.1;  // of the tolerances of a run: errors of many steps add up
+const INDEPENDENT = 1e-6;  // squared sine of a row's angle to those before it: more, and it counts
+const SINGULAR = 1e-4;  // of the same: less, and the ties soon do not say how the motion goes on
+const NEAR_SINGULAR = 0.05;  // of the same: less at the end of a step, and one looks into it
+const LOOKS = 16;  // there
 const EASY = 1e3;  // times farther a guess may move than a given value, for the same
 const ROUNDS = 12;  // of walking along the ties towards the values given
 
@@ -70,10 +74,21 @@ export class Motion {
             if (moved && !lost && this.ties.open(t, y)[0] > 100*atol) lost = `From t = ${t.toPrecision(6)} s on the ties stay open.`;
             return moved;
         };
+        const sizes = [], pivots = this.ties.pivots(0, first, sizes), rank = pivots.filter(v => v > INDEPENDENT).length;
+        const least = rank ? Math.min(SINGULAR, pivots[rank - 1]/100) : 0;
+        let singular = false;
+        const astray = (t, y, run) => {
+            if (!rank || !run.steps.length || this.ties.pivots(t, y, sizes)[rank - 1] > NEAR_SINGULAR) return "";
+            const begun = run.t[run.t.length - 2];
+            const within = Array.from({ length: LOOKS }, (_, k) => begun + (t - begun)*(k + 1)/LOOKS);
+            singular = within.some(s => this.ties.pivots(s, run.at(s), sizes)[rank - 1] < least);
+            return singular ? `Stopped at t = ${begun.toPrecision(6)} s: before a singular position, which this page does not cross.` : "";
+        };
         const found = integrated(this.of.rate, first, time, {
             rtol: Math.max(OF_A_STEP*rtol, 1e-13), atol: allowed, kept, breaks: this.told.breaks,
-            stopped: (t, y) => lost || this._stopped(t, y),
+            stopped: (t, y, run) => lost || this._stopped(t, y) || astray(t, y, run),
         });
+        if (singular) { found.steps.pop(); found.t.pop(); }
         return found;
     }
 

@@ -70,7 +70,7 @@ class Recorded {
 
 export class Player {
     constructor(root, told, programs) {
-        Object.assign(this, { root, told, given: {}, t: 0, playing: false, speed: 1 });
+        Object.assign(this, { root, told, given: {}, t: 0, playing: false, speed: 1, trail: [] });
         if (told.live) this.motion = new Motion(told.live, programs, told.parameters.map(p => p.value));
         this.recorded = new Recorded(told.run, this.motion ? (t, x) => this.motion.of.rate(t, x) : null);
         this.run = this.recorded;
@@ -107,7 +107,10 @@ export class Player {
         this.t = Math.min(Math.max(t, 0), this.run.end);
         const frame = this.frame(this.t);
         this.view.update(frame);
-        if (this.trailed) this.view.trailed(this.trail.filter(([s]) => s <= this.t).map(([, at]) => at));
+        if (this.trail.length) {
+            const passed = this.trail.filter(([s]) => s <= this.t).map(([, at]) => at);
+            this.view.trailed([...passed, this._point(frame)]);
+        }
         this.scrub.value = this.t;
         this.scrub.setAttribute("aria-valuetext", `${this.t.toFixed(2)} s`);
         this.clock.textContent = `${this.t.toFixed(2)} s`;
@@ -180,8 +183,14 @@ export class Player {
 
     _trail() {
         const at = this.told.scene.points.find(point => point.name === this.trailed)?.at;
-        if (!at) { this.view.trailed([]); this.trail = []; return; }
-        this.trail = this._times(POINTS).map(t => { const frame = this.frame(t); return [t, at.map(v => typeof v === "number" ? v : frame[v[0]])]; });
+        this.trail = at ? this._times(POINTS).map(t => [t, this._point(this.frame(t))]) : [];
+        if (!at) this.view.trailed([]);
+    }
+
+    /** Where the point with the trail is. */
+    _point(frame) {
+        const { at } = this.told.scene.points.find(point => point.name === this.trailed);
+        return at.map(v => typeof v === "number" ? v : frame[v[0]]);
     }
 
     // -- the page ------------------------------------------------------------------------------------

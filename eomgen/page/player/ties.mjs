@@ -117,6 +117,27 @@ export class Ties {
         return [rows, Array.from(found.subarray(gaps, gaps + rates))];
     }
 
+    /**
+     * How far each row of J is from those before it, the most independent first: squared sines.
+     *
+     * sizes: of the rows where they were longest, which grow here: one that vanishes depends on the others too.
+     */
+    pivots(t, x, sizes) {
+        const [rows] = this.speedRows(t, x), found = [];
+        const unit = rows.map((row, m) => {
+            sizes[m] = Math.max(sizes[m] ?? 0, Math.hypot(...row));
+            return sizes[m] > 0 ? row.map(a => a/sizes[m]) : row;
+        });
+        const G = unit.map(row => unit.map(other => dot(row, other))), left = new Set(G.keys());
+        while (left.size) {
+            const c = [...left].reduce((best, m) => G[m][m] > G[best][best] ? m : best);
+            left.delete(c);
+            found.push(G[c][c]);
+            if (G[c][c] > 0) for (const i of left) for (const j of left) G[i][j] -= G[i][c]*G[c][j]/G[c][c];
+        }
+        return found;
+    }
+
     /** phi = 0 by moving coordinates, each by its weight; whether |phi| is small then. */
     positionsClosed(t, x, weights, enough = CLOSED, steps = 60) {
         let before = Infinity, kept = null;
