@@ -14,6 +14,7 @@
     eomgen.linearize(model)                   # Linearization: M, C, K, state matrix, modes, stability
     eomgen.play(model, "play.html")           # a page in which the model is alive, offline
     eomgen.scene_of(model)                    # Scene: what can be drawn at a state, as data over the parameters
+    eomgen.report(model, "report.html")       # Report: a page, a paper (.pdf, .tex), text (.md), a notebook (.ipynb)
     eomgen.freedom_of(model)                  # Freedom: degrees of freedom by rank, redundant ties
     with eomgen.patience(30): ...             # any of these, for 30 s at the most
 
@@ -65,6 +66,7 @@ _HOMES = {
     "equations": ("Equations",),
     "verbs.reactions": ("FoundReactions", "reactions"),
     "generated": ("Generated", "generate"),
+    "page.contents": ("Report",),
     "page.play": ("Played", "play"),
     "pipeline": ("derive", "inverse_dynamics", "simulate"),
     "report.inertia.result": ("Inertia", "inertia"),
@@ -81,7 +83,7 @@ _HOMES = {
 _PLACES = {name: home for home, names in _HOMES.items() for name in names}
 _ROOMS = ("constraints", "forces", "joints", "shapes")  # eomgen.joints.Revolute(...)
 
-__all__ = sorted([*_PLACES, *_ROOMS, "__version__"])
+__all__ = sorted([*_PLACES, *_ROOMS, "__version__", "report"])
 
 
 def __getattr__(name: str) -> Any:
@@ -89,6 +91,8 @@ def __getattr__(name: str) -> Any:
         value = getattr(import_module(f"eomgen.{_PLACES[name]}"), name)
     elif name in _ROOMS:
         value = import_module(f"eomgen.model.{name}")
+    elif name == "report":  # a room of the package too, which can be called
+        value = import_module("eomgen.report")
     else:
         raise AttributeError(f"module 'eomgen' has no attribute '{name}'")
     globals()[name] = value

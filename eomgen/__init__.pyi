@@ -35,6 +35,7 @@ from eomgen.model.parts import Unknown as Unknown
 from eomgen.model.reader import load as load
 from eomgen.model.reader import loads as loads
 from eomgen.model.samples import samples as samples
+from eomgen.page.contents import Report as Report
 from eomgen.pipeline import derive as derive
 from eomgen.pipeline import inverse_dynamics as inverse_dynamics
 from eomgen.pipeline import simulate as simulate
@@ -51,9 +52,12 @@ from eomgen.report.linearize.result import linearize as linearize
 from eomgen.report.run_pictures import run_picture as run_picture
 from eomgen.report.statics.result import Statics as Statics
 from eomgen.report.statics.result import statics as statics
+from eomgen.scene.making import scene_of as scene_of
+from eomgen.scene.scene import Scene as Scene
 from eomgen.simulation.result import Trajectory as Trajectory
 from eomgen.symbolic.numeric.work import OutOfPatience as OutOfPatience
 from eomgen.symbolic.numeric.work import patience as patience
 from eomgen.verbs.reactions import FoundReactions as FoundReactions
 from eomgen.verbs.reactions import reactions as reactions
+from eomgen.verbs.report import report as report
 from eomgen.version import __version__ as __version__

@@ -23,6 +23,7 @@ from eomgen.cli_options import (
     with_form,
     with_picture,
     with_values,
+    words,
 )
 from eomgen.symbolic.numeric.tolerances import RUN
 from eomgen.version import __version__
@@ -450,6 +451,37 @@ def play_command(model: str, wants_json: bool, output: str, strict: bool, **opti
     refuse_other_endings(output)
     with reading(model) as source:
         document = _asked(play_document, source, options, output=output)
+    return deliver(document, form_asked(wants_json, None), strict=strict)
+
+
+@main.command("report")
+@MODEL
+@JSON
+@click.option(
+    "-o",
+    "--output",
+    required=True,
+    type=click.Path(dir_okay=False),
+    help="The file: .html, .pdf, .tex, .md or .ipynb.",
+)
+@click.option("--time", type=float, default=10.0, show_default=True, help="How long the motion is followed [s].")
+@with_values
+@click.option("--with", "with_", metavar="LIST", callback=words, help='Sections besides: "linearize,statics".')
+@click.option("--without", metavar="LIST", callback=words, help='Sections that are left out: "motion,downloads".')
+@CERTIFY
+def report_command(model: str, wants_json: bool, output: str, strict: bool, **options: Any) -> int:
+    """Write a page, paper or notebook of a model.
+
+    Its figure, data, derivation, reactions, answers, proof, plots and motion, as far as they fit the model. Sections:
+    figure data derivation reactions statics kinematics inertia outputs linearize plots motion certificate downloads.
+    """
+    from eomgen.verbs.report import form_of, report_document
+
+    form_of(output)  # refused before any work
+    with reading(model) as source:
+        name = "" if model == "-" else Path(model).name
+        text = source.data.decode()
+        document = _asked(report_document, source, options, output=output, origin=name, text=text)
     return deliver(document, form_asked(wants_json, None), strict=strict)
 
 

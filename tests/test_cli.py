@@ -51,6 +51,7 @@ VERBS = [
     "simulate",
     "codegen",
     "play",
+    "report",
     "schema",
     "doctor",
 ]

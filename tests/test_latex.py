@@ -10,6 +10,7 @@ from pathlib import Path
 
 import pytest
 from derivations import by_methods, derivable, equations
+from typesetting import lost_in_mathml, lost_in_typst
 
 from eomgen.report import rendered
 from eomgen.report.derivation import derivation_of
@@ -79,6 +80,7 @@ def test_formulas_keep_to_what_amsmath_and_katex_share(name, method):
         rows = re.sub(r"\\begin\{cases\}.*?\\end\{cases\}", "", formula, flags=re.S).split(r"\\")
         assert all(row.count("&") <= 1 for row in rows)
         assert all(row.count(r"\left") == row.count(r"\right") for row in rows)
+        assert not lost_in_mathml(formula) and not lost_in_typst(formula), formula
 
 
 @pytest.mark.parametrize("name", derivable())

@@ -38,8 +38,8 @@ def plot_trajectory(
 
 def over_time(trajectory: Trajectory, title: str, units: Mapping[str, Unit]) -> Picture:
     """Coordinates over time, one panel a unit, how well the energy was kept, reactions."""
-    groups = _by_unit(trajectory, units)
-    reactions = _reactions_by_unit(trajectory)
+    groups = by_unit(trajectory, units)
+    reactions = reactions_by_unit(trajectory)
     count = len(groups) + (trajectory.energy is not None) + len(reactions)
 
     def fill(figure: Any) -> None:
@@ -57,7 +57,8 @@ def over_time(trajectory: Trajectory, title: str, units: Mapping[str, Unit]) -> 
     return Picture((8, 1.0 + 2.1 * max(count, 1)), fill, title)
 
 
-def _by_unit(trajectory: Trajectory, units: Mapping[str, Unit]) -> dict[Unit, list[str]]:
+def by_unit(trajectory: Trajectory, units: Mapping[str, Unit]) -> dict[Unit, list[str]]:
+    """The coordinates of each unit."""
     groups: dict[Unit, list[str]] = {}
     for name in trajectory.coordinates:
         groups.setdefault(units.get(name, PLAIN), []).append(name)
@@ -106,7 +107,7 @@ def _energy(panel: Any, trajectory: Trajectory) -> None:
     )
 
 
-def _reactions_by_unit(trajectory: Trajectory) -> dict[str, list[str]]:
+def reactions_by_unit(trajectory: Trajectory) -> dict[str, list[str]]:
     """Those that have a value at some instant; of a unit of which all are 0, none."""
     groups: dict[str, list[str]] = {}
     for name, column in trajectory.reactions.items():
@@ -125,11 +126,11 @@ def _reactions(panel: Any, trajectory: Trajectory, names: list[str], unit: str) 
 
     owners: dict[str, list[str]] = {}
     for name in names:
-        owners.setdefault(_owner(name), []).append(name)
-    shown = _largest(trajectory, owners)
+        owners.setdefault(owner_of(name), []).append(name)
+    shown = largest_reactions(trajectory, owners)
     for color, owner in zip(colormaps["tab10"](np.arange(len(shown))), shown, strict=True):
         for name in owners[owner]:
-            component = _component(name)
+            component = component_of(name)
             panel.plot(
                 trajectory.t,
                 trajectory.reactions[name],
@@ -147,7 +148,7 @@ def _reactions(panel: Any, trajectory: Trajectory, names: list[str], unit: str) 
         )
 
 
-def _largest(trajectory: Trajectory, owners: Mapping[str, list[str]]) -> list[str]:
+def largest_reactions(trajectory: Trajectory, owners: Mapping[str, list[str]]) -> list[str]:
     """The joints and ties with the largest reactions, as many as have their lines in one panel; in their order."""
     size = {owner: max(_size(trajectory, name) for name in names) for owner, names in owners.items()}
     falling = sorted(owners, key=lambda owner: -size[owner])
@@ -156,12 +157,12 @@ def _largest(trajectory: Trajectory, owners: Mapping[str, list[str]]) -> list[st
     return [owner for owner in owners if owner in kept]
 
 
-def _owner(name: str) -> str:
+def owner_of(name: str) -> str:
     """reaction_x(B.II) -> B.II; tension(rope, 2) -> rope."""
     return name.partition("(")[2].rstrip(")").partition(",")[0]
 
 
-def _component(name: str) -> str:
+def component_of(name: str) -> str:
     """reaction_couple_x(B) -> couple x; tension(rope, 2) -> tension 2."""
     head, _, arguments = name.partition("(")
     number = arguments.rstrip(")").partition(",")[2].strip()

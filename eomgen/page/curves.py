@@ -1,0 +1,206 @@
+"""Trajectory -> drawings of it over time, SVG: coordinates by unit, energy, reactions; small, in the page's colours."""
+
+from __future__ import annotations
+
+import math
+import re
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from functools import partial
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from eomgen.page.contents import INKS, LegendEntry, ReportFigure
+from eomgen.page.markup import Html, element, in_a_row
+from eomgen.report.figures import Picture, mathtext
+from eomgen.report.plots import by_unit, component_of, largest_reactions, owner_of, reactions_by_unit
+from eomgen.report.statements import Code, Piece, prose
+from eomgen.simulation.result import Trajectory
+from eomgen.symbolic.expression.graph import Graph, Node
+from eomgen.symbolic.expression.units import Unit
+
+WIDTH, HEIGHT = 720.0, 186.0
+LEFT, RIGHT, TOP, BOTTOM = 58.0, 8.0, 8.0, 28.0  # margins, in which the numbers stand
+TICKS = 5  # about so many numbers on an axis
+PLAIN = 4  # digits before or behind the point, beyond which a power of ten is written
+COLORS = 8
+DASHES = {
+    "x": "",
+    "y": " d1",
+    "z": " d2",
+    "n": "",
+    "t": " d3",
+    "s": " d2",
+    "tension": "",
+    "couple": " d1",
+    "drive": " d2",
+}
+LINES = {"d1": "--", "d2": ":", "d3": "-."}
+
+
+@dataclass(frozen=True)
+class Axis:
+    """Numbers along a line.
+
+    Args:
+        low, high: its ends.
+        ticks: the numbers that are written.
+        power: of ten, that of their distance.
+    """
+
+    low: float
+    high: float
+    ticks: tuple[float, ...]
+    power: int
+
+    def text(self, value: float) -> str:
+        """A number as it is written: plainly where few digits do."""
+        if self.power < -PLAIN or max(map(abs, self.ticks)) >= 10**PLAIN:
+            if not value:
+                return "0"
+            digits, _, power = f"{value:.2e}".partition("e")
+            return f"{digits.rstrip('0').rstrip('.')}e{int(power)}".replace("-", "\N{MINUS SIGN}")
+        return f"{value:.{max(0, -self.power)}f}".replace("-", "\N{MINUS SIGN}")
+
+
+def number_axis(low: float, high: float) -> Axis:
+    """An axis from low to high with round numbers: 1, 2 or 5 times a power of ten apart."""
+    if not high > low:
+        room = abs(low) or 1.0
+        low, high = low - room / 2, high + room / 2
+    raw = (high - low) / TICKS
+    power = math.floor(math.log10(raw))
+    step = 10.0**power * next(factor for factor in (1, 2, 5, 10) if factor * 10.0**power >= raw)
+    power += step >= 10.0 ** (power + 1)
+    first, last = math.ceil(low / step), math.floor(high / step)
+    return Axis(low, high, tuple(k * step for k in range(first, last + 1)), power)
+
+
+@dataclass(frozen=True)
+class Line:
+    """A curve: its values, how it looks, how it is called."""
+
+    values: np.ndarray
+    style: str
+    name: tuple[Piece, ...]
+
+
+def motion_drawings(run: Trajectory, units: Mapping[str, Unit]) -> tuple[ReportFigure, ...]:
+    """Coordinates over time, one drawing a unit; the energy, or how far it strayed; reactions.
+
+    Args:
+        units: of the coordinates by name, in which they are drawn; absent: SI.
+    """
+    found = []
+    for number, (unit, names) in enumerate(by_unit(run, units).items(), start=1):
+        found.append(_coordinates(run, names, unit, f"motion{number}"))
+    if run.energy is not None:
+        found.append(_energy(run))
+    found += [
+        _reactions(run, names, unit, k) for k, (unit, names) in enumerate(reactions_by_unit(run).items(), start=1)
+    ]
+    return tuple(found)
+
+
+def _coordinates(run: Trajectory, names: Sequence[str], unit: Unit, key: str) -> ReportFigure:
+    graph = Graph()
+    lines = [
+        Line(run[name] / unit.size, f"curve c{k % COLORS}{' d1' if k >= COLORS else ''}", (graph.symbol(name),))
+        for k, name in enumerate(names[: 2 * COLORS])
+    ]
+    more = f"; {len(names) - len(lines)} more are not drawn" if len(names) > len(lines) else ""
+    measured = f" [{unit}]" if unit.text else ""
+    return panel(run.t, lines, key, f"Coordinates{measured} over time [s]{more}")
+
+
+def _energy(run: Trajectory) -> ReportFigure:
+    energy = run.energy
+    assert energy is not None
+    if run.drift is None:
+        return panel(run.t, [Line(energy, "curve c7", ())], "energy", "Energy T + V [J] over time [s]")
+    within = " in each phase" if len(run.phases) > 1 else ""
+    caption = f"Energy: T + V less its value at the start [J] over time [s]; relative drift {run.drift:.1e}{within}"
+    return panel(run.t, [Line(energy - energy[:1], "curve c7", ())], "energy", caption)
+
+
+def _reactions(run: Trajectory, names: Sequence[str], unit: str, number: int) -> ReportFigure:
+    owners: dict[str, list[str]] = {}
+    for name in names:
+        owners.setdefault(owner_of(name), []).append(name)
+    shown = largest_reactions(run, owners)
+    lines = [
+        Line(
+            run.reactions[name],
+            f"curve c{k % COLORS}{DASHES.get(component_of(name).split(' ')[-1], '')}",
+            (Code(name),),
+        )
+        for k, owner in enumerate(shown)
+        for name in owners[owner]
+    ]
+    few = f"; the largest, at {len(shown)} of {len(owners)} joints and ties" if len(shown) < len(owners) else ""
+    return panel(run.t, lines, f"reactions{number}", f"Reactions [{unit.replace('*', '·')}] over time [s]{few}")
+
+
+def panel(t: np.ndarray, lines: Sequence[Line], key: str, caption: str) -> ReportFigure:
+    """Curves over time with their axes."""
+    values = np.concatenate([line.values for line in lines]) if lines else np.zeros(1)
+    finite = values[np.isfinite(values)]
+    low, high = (float(finite.min()), float(finite.max())) if len(finite) else (0.0, 0.0)
+    across, up = number_axis(float(t[0]), float(t[-1])) if len(t) else number_axis(0, 1), number_axis(low, high)
+
+    def x(value: np.ndarray | float) -> np.ndarray:
+        return LEFT + (np.asarray(value) - across.low) / (across.high - across.low) * (WIDTH - LEFT - RIGHT)
+
+    def y(value: np.ndarray | float) -> np.ndarray:
+        return HEIGHT - BOTTOM - (np.asarray(value) - up.low) / (up.high - up.low) * (HEIGHT - TOP - BOTTOM)
+
+    marks = [_tick(float(x(value)), None, across.text(value)) for value in across.ticks]
+    marks += [_tick(None, float(y(value)), up.text(value)) for value in up.ticks]
+    marks += (
+        [element("path", d=f"M{LEFT:g} {y(0.0):.1f}H{WIDTH - RIGHT:g}", class_="zero")] if up.low < 0 < up.high else []
+    )
+    marks += [element("path", d=path, class_=line.style) for line in lines if (path := _path(x(t), y(line.values)))]
+    legend = tuple(LegendEntry(line.style, prose(*line.name)) for line in lines if line.name)
+    return ReportFigure(key, caption, (WIDTH, HEIGHT), in_a_row(*marks), legend, partial(_save, t, tuple(lines)))
+
+
+def _save(t: np.ndarray, lines: Sequence[Line], path: Path) -> None:
+    """The same by matplotlib, for formats that carry pictures as files."""
+
+    def fill(figure: Any) -> None:
+        panel = figure.subplots()
+        for line in lines:
+            words = line.style.split()
+            dash = next((LINES[word] for word in words if word in LINES), "-")
+            label = "".join(
+                f"${mathtext(p.name)}$" if isinstance(p, Node) else getattr(p, "text", "") for p in line.name
+            )
+            color = next(INKS[int(word[1:])] for word in words if re.fullmatch(r"c\d", word))
+            panel.plot(t, line.values, dash, color=color, linewidth=1.4, label=label or None)
+        panel.set_xlabel("$t$ [s]")
+        panel.margins(x=0.01)
+        if any(line.name for line in lines):
+            panel.legend(loc="center left", bbox_to_anchor=(1.0, 0.5), fontsize=8)
+
+    Picture((8, 2.4), fill).save(path)
+
+
+def _tick(x: float | None, y: float | None, text: str) -> Html:
+    """A line of the grid with its number: upright at x, or level at y."""
+    if x is not None:
+        line = element("path", d=f"M{x:.1f} {TOP:g}V{HEIGHT - BOTTOM:g}", class_="axis")
+        return in_a_row(line, element("text", text, x=f"{x:.1f}", y=f"{HEIGHT - BOTTOM + 17:g}", text_anchor="middle"))
+    line = element("path", d=f"M{LEFT:g} {y:.1f}H{WIDTH - RIGHT:g}", class_="axis")
+    return in_a_row(line, element("text", text, x=f"{LEFT - 7:g}", y=f"{(y or 0) + 4:.1f}", text_anchor="end"))
+
+
+def _path(x: np.ndarray, y: np.ndarray) -> str:
+    """A line through the points; where there is no value it is broken."""
+    words, open_ = [], False
+    for a, b in zip(x.tolist(), y.tolist(), strict=True):
+        if math.isfinite(b):
+            words.append(f"{'L' if open_ else 'M'}{a:.1f} {b:.1f}")
+        open_ = math.isfinite(b)
+    return "".join(words)

@@ -1,0 +1,237 @@
+"""Report -> one HTML file that asks nothing of anybody: light and dark, on a screen of any width, on paper."""
+
+from __future__ import annotations
+
+import gzip
+import re
+from base64 import b64encode
+from collections.abc import Sequence
+from importlib import resources
+
+from eomgen.page.contents import Attachment, Report, ReportFigure, ReportSection
+from eomgen.page.markup import Html, element, html, in_a_row, script, style
+from eomgen.page.mathml import font_face, mathml
+from eomgen.proof.check import SIGNS, Certificate
+from eomgen.report.document import Document
+from eomgen.report.latex import (
+    Group,
+    display_blocks,
+    grouped,
+    piece_latex,
+    setter_of,
+    side_latex,
+    with_listings_typeset,
+)
+from eomgen.report.latex_math import Setter
+from eomgen.report.statements import Cell, Code, Formula, Grid, Lines, Piece, Prose, Step
+from eomgen.report.text import formula_text
+from eomgen.version import __version__
+
+_NUMBER = re.compile(r"(-?)(\d+(?:\.\d+)?)(?:e([-+]\d+))?")
+_POWER = re.compile(r"\^\(?(-?\d+)\)?")
+MINUS = "\N{MINUS SIGN}"
+
+
+def html_page(report: Report) -> str:
+    """The report as a page."""
+    setter = setter_of(report.as_document)
+    title = report.head.title
+    sections = [element_of(setter, section, report) for section in report.sections]
+    body = (
+        element("header", *_head(report)),
+        element("main", *sections),
+        element("footer", element("p", *_made(report))),
+        script(own_text("page.js")),
+    )
+    head = (
+        element("meta", charset="utf-8"),
+        element("meta", name="viewport", content="width=device-width, initial-scale=1"),
+        element("meta", name="color-scheme", content="light dark"),
+        element("meta", name="generator", content=f"eomgen {__version__}"),
+        element("title", title),
+        style(font_face() + own_text("style.css")),
+    )
+    return f"<!doctype html>\n{element('html', element('head', *head), element('body', *body), lang='en')}\n"
+
+
+def own_text(name: str) -> str:
+    """A style sheet or a program of this room."""
+    return resources.files("eomgen.page").joinpath(name).read_text(encoding="utf-8")
+
+
+def _head(report: Report) -> list[Html]:
+    head, certificate = report.head, report.certificate
+    parts = [element("h1", head.title)]
+    parts += [element("p", head.about, class_="about")] if head.about else []
+    parts += [element("p", "Source: ", head.source, ".", class_="source")] if head.source else []
+    parts += [element("p", head.wrong, class_="wrong", role="alert")] if head.wrong else []
+    links = [element("li", element("a", section.title, href=f"#{section.key}")) for section in report.sections]
+    parts.append(element("nav", element("ul", *links), aria_label="Sections"))
+    if certificate is not None and certificate.ok:
+        held = sum(check.status == "holds" for check in certificate.checks)
+        parts.insert(1, element("p", element("a", f"✓ proven by {held} checks", href="#certificate"), class_="proven"))
+    return parts
+
+
+def _made(report: Report) -> list[str]:
+    origin = [" from ", element("code", report.origin)] if report.origin else []
+    return [f"Made by eomgen {__version__}", *origin, ". This page needs no network."]
+
+
+def element_of(setter: Setter, section: ReportSection, report: Report) -> Html:
+    """A section of the page."""
+    inside: list[Html] = [element("h2", section.title)]
+    inside += [element("p", section.remark, class_="remark")] if section.remark else []
+    for step in section.steps:
+        inside += step_html(setter, step, titled=step.title != section.title)
+    inside += [drawing_html(setter, drawing) for drawing in section.drawings]
+    inside += [section.live] if section.live else []
+    inside += [_attachments(section.attachments)] if section.attachments else []
+    if section.key == "certificate" and report.certificate is not None:
+        inside.append(_certificate(report.certificate))
+    return element("section", *inside, id=section.key)
+
+
+def step_html(setter: Setter, step: Step, *, titled: bool = True) -> list[Html]:
+    """A step of a derivation, its title above it."""
+    heading = [element("h3", step.title)] if step.title and titled else []
+    return [*heading, *(_group(setter, group) for group in grouped(step.statements))]
+
+
+def document_html(document: Document) -> Html:
+    """The steps of a document, for notebooks and pages of others."""
+    document = with_listings_typeset(document)
+    setter = setter_of(document)
+    return in_a_row(*(part for step in document.steps for part in step_html(setter, step)))
+
+
+def _group(setter: Setter, group: Group) -> Html:
+    if isinstance(group, list):
+        return _formulas(setter, group)
+    if isinstance(group, Prose):
+        return element("p", *(piece_html(setter, piece) for piece in group.pieces))
+    if isinstance(group, Lines):
+        return _scrolled(element("pre", "\n".join(group.lines)), "text")
+    return _table(setter, group if isinstance(group, Grid) else group.grid)
+
+
+def _formulas(setter: Setter, formulas: Sequence[Formula]) -> Html:
+    """Formulas below one another, which can be copied as LaTeX and as text of the grammar."""
+    blocks = display_blocks(setter, formulas)
+    tex, text = "\n".join(rf"\[{block}\]" for block in blocks), "\n".join(map(formula_text, formulas))
+    buttons = (
+        element("button", "LaTeX", type="button", data_copy=tex, aria_label="Copy as LaTeX"),
+        element("button", "text", type="button", data_copy=text, aria_label="Copy as text"),
+    )
+    shown = _scrolled(in_a_row(*(mathml(block, display=True) for block in blocks)), "formula")
+    return element("div", shown, element("span", *buttons, class_="copy"), class_="formula")
+
+
+def _scrolled(inside: Html, what: str) -> Html:
+    """What may be wider than the screen: it scrolls by itself, by keys too."""
+    return element("div", inside, class_="scroll", tabindex="0", role="group", aria_label=what)
+
+
+def piece_html(setter: Setter, piece: Piece) -> Html:
+    """One piece of a sentence."""
+    if isinstance(piece, str):
+        return html(piece)
+    if isinstance(piece, Code):
+        return element("code", piece.text)
+    return mathml(piece_latex(setter, piece, str)[1:-1])
+
+
+def _table(setter: Setter, grid: Grid) -> Html:
+    units = [head == "unit" for head in grid.head]
+    numbers = [
+        bool(grid.rows)
+        and all(isinstance(row[k], str) and _NUMBER.match(str(row[k])) for row in grid.rows if row[k] != "")
+        for k in range(len(grid.head))
+    ]
+    head = element("tr", *(element("th", _cell(setter, cell, False), scope="col") for cell in grid.head))
+    rows = [
+        element(
+            "tr",
+            *(
+                element("td", _cell(setter, cell, unit), class_="number" if number else None)
+                for cell, unit, number in zip(row, units, numbers, strict=True)
+            ),
+        )
+        for row in grid.rows
+    ]
+    return _scrolled(element("table", element("thead", head), element("tbody", *rows)), "table")
+
+
+def _cell(setter: Setter, cell: Cell, is_unit: bool) -> Html:
+    if not isinstance(cell, str):
+        return mathml(side_latex(setter, cell))
+    return unit_html(cell) if is_unit else number_html(cell)
+
+
+def unit_html(unit: str) -> Html:
+    """kg*m^2 as kg·m²."""
+    pieces = _POWER.split(unit)
+    return in_a_row(
+        *(
+            element("sup", piece.replace("-", MINUS)) if k % 2 else html(piece.replace("*", "·"))
+            for k, piece in enumerate(pieces)
+        )
+    )
+
+
+def number_html(text: str) -> Html:
+    """A number with its minus and its power of ten set; other words as they are."""
+    found = _NUMBER.fullmatch(text)
+    if found is None:
+        return html(text)
+    sign, digits, power = found.groups()
+    scale = [" · 10", element("sup", str(int(power)).replace("-", MINUS))] if power else []
+    return in_a_row(MINUS if sign else "", digits, *scale)
+
+
+def drawing_html(setter: Setter, drawing: ReportFigure) -> Html:
+    """A picture with its legend, in the colours of the page."""
+    legend = [
+        element(
+            "li",
+            element("svg", element("path", d="M0 5H22", class_=curve.style), viewBox="0 0 22 10", aria_hidden="true"),
+            *(piece_html(setter, piece) for piece in curve.name.pieces),
+        )
+        for curve in drawing.legend
+    ]
+    picture = svg(drawing, role="img", aria_label=drawing.caption)
+    caption = element("figcaption", drawing.caption, *([element("ul", *legend)] if legend else []))
+    return element("figure", picture, caption, class_="fixed" if drawing.fixed else "drawn")
+
+
+def svg(drawing: ReportFigure, **attributes: str | None) -> Html:
+    """A drawing as an element of SVG."""
+    width, height = drawing.size
+    return element("svg", drawing.marks, viewBox=f"0 0 {width:g} {height:g}", **attributes)
+
+
+def _attachments(files: Sequence[Attachment]) -> Html:
+    """Links to files that the page carries, packed; a program of the page unpacks what is asked for."""
+    rows = []
+    for file in files:
+        packed = b64encode(gzip.compress(file.content, mtime=0)).decode()
+        source = f"data:application/gzip;base64,{packed}"
+        link = element(
+            "a", file.name, href=source, download=f"{file.name}.gz", data_name=file.name, data_media=file.media
+        )
+        rows.append(element("li", link, f" ({max(1, round(len(file.content) / 1024))} KB): {file.about}"))
+    return element("ul", *rows, class_="files")
+
+
+def _certificate(certificate: Certificate) -> Html:
+    rows = [
+        element(
+            "tr",
+            element("td", SIGNS[check.status], class_=check.status),
+            element("td", check.name, f": {check.detail}" if check.detail else ""),
+            element("td", check.how),
+        )
+        for check in certificate.checks
+    ]
+    head = element("tr", *(element("th", word, scope="col") for word in ("", "what was checked", "how")))
+    return _scrolled(element("table", element("thead", head), element("tbody", *rows)), "certificate")

@@ -1,0 +1,59 @@
+"""HTML and SVG, built so that nothing of a model can become markup: the one place where text is escaped."""
+
+from __future__ import annotations
+
+import json
+from html import escape
+from typing import Any
+
+from eomgen.errors import visible
+
+VOID = frozenset({"br", "img", "input", "link", "meta"})  # elements without an end
+
+
+class Html(str):
+    """Text that is markup already; every other text is escaped."""
+
+    __slots__ = ()
+
+
+def html(text: str) -> Html:
+    """A text as markup; what steers a screen or turns its direction is shown."""
+    return text if isinstance(text, Html) else Html(escape(visible(text)))
+
+
+def in_a_row(*parts: str, between: str = "") -> Html:
+    """Parts one after the other."""
+    return Html(between.join(html(part) for part in parts))
+
+
+def element(tag: str, *inside: str, **attributes: str | None) -> Html:
+    """<tag attribute="value">inside</tag>.
+
+    Args:
+        attributes: an underscore stands for a hyphen, one at the end for nothing (`class_`); of those that are None
+            nothing is written.
+    """
+    given = "".join(
+        f' {name.rstrip("_").replace("_", "-")}="{html(str(value))}"'
+        for name, value in attributes.items()
+        if value is not None
+    )
+    return Html(f"<{tag}{given}>" if tag in VOID else f"<{tag}{given}>{in_a_row(*inside)}</{tag}>")
+
+
+def style(text: str) -> Html:
+    """A style sheet of ours."""
+    return Html(f"<style>\n{text}</style>")
+
+
+def script(text: str) -> Html:
+    """A program of ours."""
+    return Html(f"<script>\n{text}</script>")
+
+
+def data_script(identity: str, value: Any) -> Html:
+    """Data for programs of the page, as JSON; no text in it ends the element."""
+    text = json.dumps(value, separators=(",", ":"), allow_nan=False)
+    text = text.replace("<", "\\u003c").replace(">", "\\u003e").replace("&", "\\u0026")
+    return Html(f'<script type="application/json" id="{html(identity)}">{text}</script>')

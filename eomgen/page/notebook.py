@@ -1,0 +1,74 @@
+"""Report -> a notebook that was run: the text of the report, and the calls that give it."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Iterator
+from typing import Any
+
+from eomgen.errors import RunFailed, ToolMissing, UsageError
+from eomgen.page.contents import Report
+from eomgen.page.marked import markdown_head, section_markdown
+from eomgen.report.latex import setter_of
+
+CALLS = {
+    "derivation": "equations = eomgen.derive(model{values})\nequations",
+    "statics": "eomgen.statics(model{values}).picture",
+    "kinematics": "eomgen.kinematics(model{values}).picture",
+    "inertia": "eomgen.inertia(model{values}).exact",
+    "outputs": "answers = eomgen.solve(model{values})\nanswers",
+    "linearize": "small = eomgen.linearize(model{values})\nsmall.picture",
+    "plots": "run = eomgen.simulate(model, time={time!r}{values})\nrun",
+    "certificate": "equations.certify()",
+}
+"""What a section is found by."""
+WAIT = 120  # seconds for a cell
+
+
+def notebook_text(report: Report) -> str:
+    """The notebook, its cells run in a kernel of their own.
+
+    Raises:
+        UsageError: the model has no text that a notebook could hold.
+        ToolMissing: what runs notebooks is not installed.
+        RunFailed: a cell fails.
+    """
+    if not report.source:
+        raise UsageError("a notebook holds the text of its model, and this one was made in Python", "write an .html")
+    try:
+        import nbformat
+        from nbclient import NotebookClient
+        from nbclient.exceptions import CellExecutionError
+    except ImportError as error:
+        mend = "pip install 'eomgen[notebook]'; or write a .md or .html"
+        raise ToolMissing("a notebook is run by nbclient, which is not installed", "", mend) from error
+    v4: Any = nbformat.v4
+    made = {True: v4.new_code_cell, False: v4.new_markdown_cell}
+    cells = [made[is_code](text, id=f"c{k}") for k, (is_code, text) in enumerate(_cells(report))]
+    kernel = {"kernelspec": {"name": "python3", "display_name": "Python 3", "language": "python"}}
+    notebook = v4.new_notebook(cells=cells, metadata=kernel)
+    try:
+        NotebookClient(notebook, timeout=WAIT, kernel_name="python3", record_timing=False).execute()
+    except CellExecutionError as error:
+        raise RunFailed(f"a cell of the notebook fails: {error.ename}: {error.evalue}") from error
+    return json.dumps(notebook, indent=1, sort_keys=True, ensure_ascii=False) + "\n"
+
+
+def _cells(report: Report) -> Iterator[tuple[bool, str]]:
+    """(whether it is code, text) of each cell."""
+    setter, keys = setter_of(report.as_document), [section.key for section in report.sections]
+    yield False, "\n\n".join(markdown_head(report))
+    other = f"values = {dict(report.values)!r}  # in place of those of the text\n" if report.values else ""
+    yield True, f"import eomgen\n\nmodel = eomgen.loads({_quoted(report.source)}, {report.origin!r})\n{other}model"
+    for section in report.printed:
+        yield False, "\n\n".join(section_markdown(setter, section, report))
+        if section.key in CALLS and not section.remark and (section.key != "certificate" or "derivation" in keys):
+            yield True, CALLS[section.key].format(time=report.time, values=", **values" if report.values else "")
+
+
+def _quoted(text: str) -> str:
+    """A text as a literal over its lines, whatever stands in it."""
+    plain = text.isprintable() or all(c.isprintable() or c == "\n" for c in text)
+    if plain and '"""' not in text and "\\" not in text and not text.endswith('"'):
+        return f'"""{text}"""'
+    return repr(text)

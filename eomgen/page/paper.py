@@ -1,0 +1,203 @@
+"""Report -> a paper: by Typst, which a wheel brings, else by the TeX of the machine."""
+
+from __future__ import annotations
+
+import re
+import shutil
+import subprocess
+import tempfile
+from pathlib import Path
+
+from eomgen.errors import RunFailed, ToolMissing
+from eomgen.page.contents import INKS, Report, ReportFigure, ReportSection
+from eomgen.page.html import svg
+from eomgen.page.markup import element, in_a_row, style
+from eomgen.page.tex import tex_files
+from eomgen.page.typst_math import string, typst_math
+from eomgen.proof.check import SIGNS, Certificate
+from eomgen.report.latex import BLOCK, Group, display_blocks, grouped, piece_latex, setter_of, side_latex
+from eomgen.report.latex_math import Setter
+from eomgen.report.statements import Cell, Code, Grid, Lines, Piece, Prose
+from eomgen.version import __version__
+
+ENGINES = ("lualatex", "pdflatex", "xelatex", "tectonic")
+WORDY = 24  # characters from which on a column of a table is as wide as there is room
+INK = (
+    "text{font-family:'New Computer Modern';font-size:11px;fill:#444}.axis{stroke:#ddd;fill:none}"
+    ".zero{stroke:#888;fill:none}.curve{fill:none;stroke-width:1.4}"
+    + "".join(f".c{k}{{stroke:{ink}}}" for k, ink in enumerate(INKS))
+    + ".d1{stroke-dasharray:6 3}.d2{stroke-dasharray:2 2.5}.d3{stroke-dasharray:8 2.5 2 2.5}"
+)
+PREAMBLE = """#set page(paper: "a4", margin: (x: 24mm, top: 24mm, bottom: 26mm), numbering: "1")
+#set text(font: "New Computer Modern", size: 10.5pt)
+#set par(leading: 0.62em, spacing: 0.85em)
+#show math.equation: set text(font: "New Computer Modern Math")
+#show math.equation.where(block: true): set align(left)
+#show math.equation.where(block: true): it => block(inset: (left: 1.4em, y: 0.25em), breakable: true, it)
+#show math.equation.where(block: true): set block(breakable: true)
+#show heading.where(level: 1): set text(size: 14pt)
+#show heading.where(level: 1): set block(above: 1.9em, below: 0.9em)
+#show heading.where(level: 2): set text(size: 10.5pt)
+#show heading.where(level: 2): set block(above: 1.5em, below: 0.75em)
+#show raw: set text(font: "DejaVu Sans Mono", size: 8.4pt)
+#set table(stroke: none, inset: (x: 0pt, top: 3.4pt, bottom: 4.2pt), column-gutter: 1.6em)
+#show table: set par(leading: 0.5em)
+#show table.cell.where(y: 0): set text(size: 8.6pt, fill: luma(80))
+"""
+
+
+def pdf_of(report: Report) -> bytes:
+    """The paper.
+
+    Raises:
+        ToolMissing: there is neither Typst nor TeX on this machine.
+        RunFailed: TeX refuses it.
+    """
+    try:
+        import typst
+    except ImportError:
+        return _by_tex(report)
+    return bytes(typst.compile(typst_text(report).encode(), ignore_system_fonts=True))
+
+
+def _by_tex(report: Report) -> bytes:
+    engine = next(filter(None, map(shutil.which, ENGINES)), None)
+    if engine is None:
+        mend = "pip install 'eomgen[pdf]' (Typst, no TeX needed); or write a .tex or .html"
+        raise ToolMissing("a paper is set by Typst or TeX, and neither is installed", "", mend)
+    with tempfile.TemporaryDirectory() as folder:
+        for name, content in tex_files(report, "paper.tex").items():
+            (Path(folder) / name).write_bytes(content.encode() if isinstance(content, str) else content)
+        words = (
+            [engine, "paper.tex"] if engine.endswith("tectonic") else [engine, "-interaction=batchmode", "paper.tex"]
+        )
+        for _ in range(2):  # tables over several pages find their widths in the first run
+            subprocess.run(words, cwd=folder, capture_output=True, check=False)
+        paper = Path(folder) / "paper.pdf"
+        if not paper.exists():
+            raise RunFailed(f"{Path(engine).name} makes no paper of it", "", "write a .tex and see its log")
+        return paper.read_bytes()
+
+
+def typst_text(report: Report) -> str:
+    """The paper as Typst reads it."""
+    setter, head = setter_of(report.as_document), report.head
+    lines = [PREAMBLE, f"#set document(title: {string(head.title)}, date: none)"]
+    lines.append(f"#text(size: 19pt, weight: 700, {string(head.title)})")
+    lines += [f"#par(text(size: 11.5pt, {string(head.about)}))"] if head.about else []
+    lines += [f"#par(text(size: 9pt, fill: luma(80), {string(f'Source: {head.source}.')}))"] if head.source else []
+    lines += [f"#par(text(fill: rgb(160, 30, 20), weight: 700, {string(head.wrong)}))"] if head.wrong else []
+    for section in report.printed:
+        lines += _section(setter, section, report.certificate)
+    origin = f" from {report.origin}" if report.origin else ""
+    lines.append(f"#v(1em)\n#text(size: 8.5pt, fill: luma(80), {string(f'Made by eomgen {__version__}{origin}.')})")
+    return "\n\n".join(lines) + "\n"
+
+
+def _section(setter: Setter, section: ReportSection, certificate: Certificate | None) -> list[str]:
+    lines = [f"#heading(level: 1, {string(section.title)})"]
+    lines += [f"#emph({string(section.remark)})"] if section.remark else []
+    for step in section.steps:
+        lines += [f"#heading(level: 2, {string(step.title)})"] if step.title not in ("", section.title) else []
+        lines += [part for group in grouped(step.statements) for part in _group(setter, group)]
+    lines += [_drawing(setter, drawing) for drawing in section.drawings]
+    return [*lines, _certificate(certificate)] if section.key == "certificate" and certificate is not None else lines
+
+
+def _group(setter: Setter, group: Group) -> list[str]:
+    if isinstance(group, list):
+        return [_display(block) for block in display_blocks(setter, group)]
+    if isinstance(group, Prose):
+        return ["".join(_piece(setter, piece) for piece in group.pieces)]
+    if isinstance(group, Lines):
+        return [f"#raw(block: true, {string(chr(10).join(group.lines))})"]
+    return [_table(setter, group if isinstance(group, Grid) else group.grid)]
+
+
+def _display(tex: str) -> str:
+    """Formulas that stand alone: on one page, where they are no longer than the rows of one block."""
+    formula = f"$ {typst_math(tex)} $"
+    return formula if tex.count(r"\\") >= BLOCK else f"#block(breakable: false)[{formula}]"
+
+
+def _piece(setter: Setter, piece: Piece) -> str:
+    if isinstance(piece, str):
+        return f"#{string(piece)}"
+    return (
+        f"#raw({string(piece.text)})"
+        if isinstance(piece, Code)
+        else f"${typst_math(piece_latex(setter, piece, str)[1:-1])}$"
+    )
+
+
+def _table(setter: Setter, grid: Grid) -> str:
+    longest = [
+        max(len(c) if isinstance(c, str) else 0 for c in column) for column in zip(grid.head, *grid.rows, strict=True)
+    ]
+    room = sum(longest) > 90  # then long columns share what the others leave
+    columns = ", ".join("1fr" if room and each > WORDY else "auto" for each in longest)
+    units = [head == "unit" for head in grid.head]
+    head = "".join(f"{_cell(setter, cell, False)}, " for cell in grid.head)
+    rows = "\n".join("".join(f"{_cell(setter, c, u)}, " for c, u in zip(row, units, strict=True)) for row in grid.rows)
+    line = "table.hline(stroke: 0.7pt)"
+    return f"#table(columns: ({columns},), {line}, table.header({head}table.hline(stroke: 0.4pt)),\n{rows}\n{line})"
+
+
+def _cell(setter: Setter, cell: Cell, is_unit: bool) -> str:
+    if not isinstance(cell, str):
+        return f"[${typst_math(side_latex(setter, cell))}$]"
+    if is_unit:
+        return f"[{_unit(cell)}]"
+    number = re.fullmatch(r"(-?)(\d+(?:\.\d+)?)(?:e([-+]\d+))?", cell)
+    if number is None:
+        return f"[#{string(cell)}]"
+    return f"[${number[1]}{number[2]}" + (f" dot.op 10^({int(number[3])})$]" if number[3] else "$]")
+
+
+def _unit(unit: str) -> str:
+    """kg*m^2 as kg·m², upright."""
+    pieces = re.split(r"\^\(?(-?\d+)\)?", unit)
+    return "".join(
+        f"#super({string(piece.replace('-', chr(0x2212)))})" if k % 2 else f"#{string(piece.replace('*', '·'))}"
+        for k, piece in enumerate(pieces)
+    )
+
+
+def _drawing(setter: Setter, drawing: ReportFigure) -> str:
+    picture = svg_file(drawing)
+    parts = [f'#image(bytes({string(picture)}), format: "svg", width: 100%)']
+    for curve in drawing.legend:
+        dash = svg_file(ReportFigure("", "", (22, 10), element("path", d="M0 5H22", class_=curve.style)))
+        sample = f'box(baseline: -0.15em, image(bytes({string(dash)}), format: "svg", width: 1.9em))'
+        parts.append(
+            f"#box[#{sample}#h(0.4em){''.join(_piece(setter, piece) for piece in curve.name.pieces)}#h(1.2em)]"
+        )
+    caption = f"#text(size: 8.8pt, fill: luma(80), {string(drawing.caption)})"
+    return f"#block(breakable: false, width: 100%)[{parts[0]}\n{caption}\\\n{' '.join(parts[1:])}]"
+
+
+def svg_file(drawing: ReportFigure) -> str:
+    """A drawing as a file of its own, on light paper."""
+    inked = ReportFigure("", "", drawing.size, in_a_row(*(() if drawing.fixed else (style(INK),)), drawing.marks))
+    width, height = drawing.size
+    return svg(
+        inked,
+        xmlns="http://www.w3.org/2000/svg",
+        xmlns_xlink="http://www.w3.org/1999/xlink",
+        width=f"{width:g}",
+        height=f"{height:g}",
+    ).replace("xmlns-xlink", "xmlns:xlink")
+
+
+def _certificate(certificate: Certificate) -> str:
+    rows = [
+        f"[#{string(SIGNS[check.status])}], "
+        f"[#{string(check.name + (f': {check.detail}' if check.detail else ''))}], [#{string(check.how)}],"
+        for check in certificate.checks
+    ]
+    line = "table.hline(stroke: 0.7pt)"
+    head = "table.header([], [what was checked], [how], table.hline(stroke: 0.4pt))"
+    body = "\n".join(rows)
+    return (
+        f"#text(size: 9pt, table(columns: (auto, 1.6fr, 1fr), column-gutter: 0.9em, {line}, {head},\n{body}\n{line}))"
+    )

@@ -1,0 +1,358 @@
+"""eomgen report: what the verbs find of a model, joined to one page, paper or notebook."""
+
+from __future__ import annotations
+
+import io
+import zipfile
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass, replace
+from functools import cached_property
+from pathlib import Path
+from typing import Any
+
+from eomgen import files, pipeline
+from eomgen.codegen.names import identifier
+from eomgen.equations import Equations
+from eomgen.errors import DerivationError, MissingValues, RunFailed, UsageError
+from eomgen.generated import Generated
+from eomgen.model.own_units import units_of
+from eomgen.model.parts import Model
+from eomgen.model.reader import ModelOrPath, bytes_at, loads, model_at
+from eomgen.model.replaced import Values
+from eomgen.page.contents import SECTIONS, Attachment, Report, ReportSection, joint_proof
+from eomgen.page.curves import motion_drawings
+from eomgen.page.formats import FORMATS, written_as
+from eomgen.proof.check import Certificate
+from eomgen.questions import answers
+from eomgen.questions.run import run as simulated
+from eomgen.questions.velocities import kinematics
+from eomgen.report.document import Document, document_of, plain_document
+from eomgen.report.inertia.result import inertia
+from eomgen.report.latex import with_listings_typeset
+from eomgen.report.linearize.result import linearize
+from eomgen.report.result import Result
+from eomgen.report.statements import Lines
+from eomgen.report.statics.result import statics
+from eomgen.simulation.result import Trajectory
+from eomgen.symbolic.numeric.work import doing
+from eomgen.verbs.assignments import nearest_name
+
+SAMPLES = 401  # instants of the motion, in drawings and in the table that is offered
+LANGUAGES = ("c", "numpy")
+SETTING = ("assumptions", "data", "freedom", "coordinates")  # steps that say what is given
+UNFIT = (DerivationError, MissingValues, RunFailed)  # why a section that nobody asked for is empty
+EPOCH = (1980, 1, 1, 0, 0, 0)  # of files in archives: the same bytes at any time
+
+
+@dataclass(frozen=True)
+class Subject:
+    """A model, and what is asked of it; each result is found once.
+
+    Args:
+        start: values that replace those of the model at the start of the motion.
+        time: how long the motion is followed [s].
+        certify: whether results are proven.
+        origin: the name of the model's file, "" for none.
+        source: its text.
+    """
+
+    model: Model
+    start: Mapping[str, float]
+    time: float
+    certify: bool
+    origin: str
+    source: str
+
+    @property
+    def stem(self) -> str:
+        """Under which files are offered."""
+        return identifier(Path(self.origin).stem if self.origin else self.model.name)
+
+    @cached_property
+    def main(self) -> tuple[str, Document]:
+        """(section, document) of what is mainly found: of a motion its derivation, of a structure its reactions, of a
+        mechanism its velocities, of bodies that nothing holds their inertia.
+
+        Raises:
+            DerivationError: none of them fits, and why the first does not.
+        """
+        ways = (("derivation",) if self.model.coordinates else ()) + ("statics", "kinematics", "inertia")
+        refused: list[DerivationError] = []
+        for key in ways:
+            try:
+                return key, self.document(key)
+            except DerivationError as error:
+                refused.append(error)
+        raise refused[0]
+
+    @cached_property
+    def documents(self) -> dict[str, Document]:
+        """Those that were asked for, by section."""
+        return {}
+
+    def document(self, key: str) -> Document:
+        """The document of a verb, proven where that is asked; no listings are left in it."""
+        if key not in self.documents:
+            self.documents[key] = with_listings_typeset(DOCUMENTS[key](self))
+        return self.documents[key]
+
+    def proven(self, found: Result) -> Document:
+        return found.document.proven(found.certify() if self.certify else None)
+
+    @cached_property
+    def equations(self) -> Equations:
+        return pipeline.derive(self.model)
+
+    @cached_property
+    def run(self) -> Trajectory:
+        """The motion from the start.
+
+        Raises:
+            MissingValues: parameters without a value.
+        """
+        return simulated(self.equations, time=self.time, start=self.start, samples=SAMPLES)
+
+    @cached_property
+    def code(self) -> Generated:
+        origin = self.origin or self.model.name
+        return Generated(self.model, self.equations, self.stem, origin, LANGUAGES)
+
+
+def _derived(subject: Subject) -> Document:
+    document = subject.equations.written(full=False)
+    return subject.equations.proven(document) if subject.certify else document.proven(None)
+
+
+DOCUMENTS: dict[str, Callable[[Subject], Document]] = {
+    "derivation": _derived,
+    "statics": lambda subject: subject.proven(statics(subject.model)),
+    "kinematics": lambda subject: subject.proven(kinematics(subject.model)),
+    "inertia": lambda subject: subject.proven(inertia(subject.model)),
+    "linearize": lambda subject: subject.proven(linearize(subject.model)),
+    "outputs": lambda subject: subject.proven(answers.solve(subject.model)),
+}
+
+
+@doing("the report")
+def report(
+    model: ModelOrPath,
+    path: str | Path | None = None,
+    *,
+    time: float = 10.0,
+    parameters: Values | None = None,
+    start: Values | None = None,
+    with_: Sequence[str] = (),
+    without: Sequence[str] = (),
+    certify: bool = True,
+) -> Report:
+    """A model and what is found of it, as a page (.html), a paper (.pdf, .tex), text (.md) or an executed notebook.
+
+    Args:
+        path: the file that is written; None: nothing is.
+        time: how long the motion is followed [s].
+        parameters, start: values that replace the model's, each as `model_at` takes it.
+        with_, without: sections besides those that fit the model, or not among them: the keys of `SECTIONS`.
+        certify: whether what stands in it is proven.
+    Raises:
+        UsageError: no format has that ending; there is no such section.
+        ToolMissing: what sets the formulas is not installed.
+    """
+    form = None if path is None else form_of(str(path))
+    is_file = not isinstance(model, Model)
+    source = bytes_at(str(model)).decode() if is_file else ""
+    origin = Path(str(model)).name if is_file else ""
+    subject = Subject(model_at(model, parameters, start), {}, time, certify, origin, source)
+    found = report_of(subject, with_, without)
+    if form is not None and path is not None:
+        files.write_all(Path(path).parent, written_as(found, form, Path(path).name))
+    return found
+
+
+def form_of(path: str) -> str:
+    """The ending of a report's file.
+
+    Raises:
+        UsageError: no report is written so.
+    """
+    form = Path(path).suffix.lower()
+    if form not in FORMATS:
+        raise UsageError(f"no report can be written as '{path}'", mend=f"endings are {', '.join(FORMATS)}")
+    return form
+
+
+def report_document(
+    model: Model,
+    *,
+    output: str,
+    time: float,
+    start: Mapping[str, float],
+    with_: Sequence[str] = (),
+    without: Sequence[str] = (),
+    origin: str = "",
+    text: str = "",
+    certify: bool = True,
+) -> Document:
+    """The report in its file, and what was written."""
+    form = form_of(output)
+    found = report_of(Subject(model, start, time, certify, origin, text), with_, without)
+    paths = files.write_all(Path(output).parent, written_as(found, form, Path(output).name))
+    sections = [section.key for section in found.sections]
+    remarks = {section.key: section.remark for section in found.sections if section.remark}
+    names = [str(path) for path in paths]
+    document = plain_document(
+        model,
+        lambda: {"name": model.name, "files": names, "sections": sections, "remarks": remarks},
+        Lines(tuple(names)),
+        failed=found.head.failed,
+        notes=tuple(f"{key}: {remark}" for key, remark in remarks.items()),
+    )
+    return document.proven(found.certificate)
+
+
+def report_of(subject: Subject, with_: Sequence[str] = (), without: Sequence[str] = ()) -> Report:
+    """The report of a model: the sections that fit it, and those that are asked for.
+
+    Raises:
+        UsageError: there is no such section.
+    """
+    for name in (*with_, *without):
+        if name not in SECTIONS:
+            raise UsageError(f"there is no section '{name}'", mend=nearest_name(name, SECTIONS))
+    keys = [key for key in SECTIONS if key not in without and (key in with_ or key in fitting(subject))]
+    made = [_made(subject, key, key in with_) for key in keys]
+    sections = tuple(section for section in made if section is not None)
+    proofs: dict[str, Certificate | None] = {key: each.certificate for key, each in subject.documents.items()}
+    if "run" in vars(subject):
+        proofs["motion"] = subject.run.certify() if subject.certify else None
+    if "code" in vars(subject):
+        proofs["code"] = subject.code.certify() if subject.certify else None
+    model = subject.model
+    failures = [document.failed for document in subject.documents.values()]
+    failures += [subject.run.message] if "run" in vars(subject) and not subject.run.ok else []
+    failed = "; ".join(filter(None, failures))
+    head = replace(document_of(model, subject.main[1].method, ()), failed=failed)
+    values = replaced(subject)
+    return Report(head.proven(joint_proof(proofs)), sections, subject.origin, subject.source, values, subject.time)
+
+
+def replaced(subject: Subject) -> dict[str, dict[str, str]]:
+    """The parameters and starts of the model that its text has otherwise, as expressions in SI."""
+    if not subject.source:
+        return {}
+    own, model = loads(subject.source), subject.model
+    parameters = _other(own.parameters, model.parameters, "value")
+    starts = _other(own.coordinates, model.coordinates, "start") | _other(own.speeds, model.speeds, "start")
+    starts |= {f"{name}'": text for name, text in _other(own.coordinates, model.coordinates, "speed").items()}
+    return {key: found for key, found in (("parameters", parameters), ("start", starts)) if found}
+
+
+def _other(before: Mapping[str, Any], after: Mapping[str, Any], field: str) -> dict[str, str]:
+    """{name: text} of what has another value in a field."""
+    pairs = ((name, getattr(before[name], field), getattr(part, field)) for name, part in after.items())
+    return {name: new.text for name, old, new in pairs if new is not None and new != old}
+
+
+def fitting(subject: Subject) -> tuple[str, ...]:
+    """The sections that fit a model."""
+    model, (main, _) = subject.model, subject.main
+    keys = ["figure", "data", main, "certificate", "downloads"]
+    keys += ["reactions"] if main in ("derivation", "statics") else []
+    keys += ["outputs"] if model.outputs else []
+    keys += ["linearize"] if model.linearize is not None else []
+    keys += ["plots", "motion"] if main == "derivation" else ["motion"] if main == "statics" else []
+    return tuple(keys)
+
+
+def _made(subject: Subject, key: str, asked: bool) -> ReportSection | None:
+    """A section; one that fits and cannot be had says why. None: there is nothing in it.
+
+    Raises:
+        DerivationError, MissingValues, RunFailed: why one that is asked for cannot be had.
+    """
+    try:
+        section = MADE[key](subject)
+    except UNFIT as error:
+        if asked or key == subject.main[0]:
+            raise
+        return ReportSection(key, remark=f"Not here: {error.what}.")
+    return section
+
+
+def _setting(subject: Subject) -> ReportSection | None:
+    steps = tuple(step for step in subject.main[1].steps if step.key in SETTING)
+    return ReportSection("data", steps) if steps else None
+
+
+def _steps(key: str) -> Callable[[Subject], ReportSection]:
+    """What a verb finds, without what stands in sections of its own."""
+
+    def made(subject: Subject) -> ReportSection:
+        own = (*SETTING, *(("reactions",) if key == subject.main[0] else ()))
+        return ReportSection(key, tuple(step for step in subject.document(key).steps if step.key not in own))
+
+    return made
+
+
+def _reactions(subject: Subject) -> ReportSection | None:
+    steps = tuple(step for step in subject.main[1].steps if step.key == "reactions")
+    return ReportSection("reactions", steps) if steps else None
+
+
+def _outputs(subject: Subject) -> ReportSection | None:
+    document = subject.document("outputs")
+    return ReportSection("outputs", document.steps) if subject.model.outputs else None
+
+
+def _plots(subject: Subject) -> ReportSection | None:
+    run = subject.run
+    drawings = motion_drawings(run, units_of(subject.model, run.coordinates))
+    return ReportSection("plots", drawings=drawings, remark="" if run.ok else f"The run ended early: {run.message}.")
+
+
+def _figure(subject: Subject) -> ReportSection | None:
+    return None
+
+
+def _motion(subject: Subject) -> ReportSection | None:
+    return None
+
+
+def _certificate(subject: Subject) -> ReportSection | None:
+    return ReportSection("certificate") if subject.certify else None
+
+
+def _downloads(subject: Subject) -> ReportSection | None:
+    stem, found = subject.stem, []
+    if subject.source:
+        found.append(Attachment(f"{stem}.toml", "text/plain", subject.source.encode(), "the model"))
+    if "run" in vars(subject):
+        table = io.StringIO()
+        subject.run.to_csv(table)
+        about = "the motion: a header, then a line an instant, in SI"
+        found.append(Attachment(f"{stem}.csv", "text/csv", table.getvalue().encode(), about))
+    if "equations" in vars(subject) and subject.equations.speeds:
+        about = "the equations and reactions as code in C and for numpy, with test vectors"
+        found.append(Attachment(f"{stem}_code.zip", "application/zip", _archive(subject.code.texts), about))
+    return ReportSection("downloads", attachments=tuple(found)) if found else None
+
+
+def _archive(texts: Mapping[str, str]) -> bytes:
+    """Texts by path as one file."""
+    archive = io.BytesIO()
+    with zipfile.ZipFile(archive, "w", zipfile.ZIP_DEFLATED) as packed:
+        for path, text in texts.items():
+            packed.writestr(zipfile.ZipInfo(path, EPOCH), text, zipfile.ZIP_DEFLATED)
+    return archive.getvalue()
+
+
+MADE: dict[str, Callable[[Subject], ReportSection | None]] = {
+    "figure": _figure,
+    "data": _setting,
+    **{key: _steps(key) for key in ("derivation", "statics", "kinematics", "inertia", "linearize")},
+    "reactions": _reactions,
+    "outputs": _outputs,
+    "plots": _plots,
+    "motion": _motion,
+    "certificate": _certificate,
+    "downloads": _downloads,
+}

@@ -1,0 +1,346 @@
+"""A report is one page that asks nothing of anybody, a paper, a text, a notebook; it holds what the verbs say."""
+
+from __future__ import annotations
+
+import html
+import json
+import re
+import shutil
+import subprocess
+import sys
+from html.parser import HTMLParser
+from importlib.util import find_spec
+from pathlib import Path
+
+import pytest
+from browser import visited
+from tools import REQUIRED, needs
+from typesetting import lost_in_mathml, lost_in_typst
+
+import eomgen
+from eomgen.equations import Equations
+from eomgen.errors import ToolMissing, UsageError
+from eomgen.page.contents import SECTIONS
+from eomgen.page.formats import written_as
+from eomgen.page.html import html_page
+from eomgen.page.typst_math import UnknownCommand, typst_math
+from eomgen.proof.check import Certificate, Check
+from eomgen.report.document import DISTRUST
+from eomgen.symbolic.print.declared_symbol import COMMANDS
+from eomgen.verbs.report import report, report_document
+
+pytestmark = pytest.mark.slow
+
+MODELS = Path(__file__).parent.parent / "models"
+HOSTILE = (
+    '</script><script>alert(1)</script><img src=x onerror=alert(2)> " \' & #sys.read("x") $ \\input{x} `x` ]\u202e'
+)
+
+
+def has(package: str) -> pytest.MarkDecorator:
+    """The mark of a test that takes an extra."""
+    return pytest.mark.skipif(find_spec(package) is None and not REQUIRED, reason=f"not installed: {package}")
+
+
+def of(name: str, **asked: object) -> eomgen.report:
+    return report(MODELS / f"{name}.toml", **asked)
+
+
+@pytest.fixture(scope="module")
+def pendulum():
+    return of("double_pendulum", time=2)
+
+
+@pytest.fixture(scope="module")
+def page(pendulum):
+    return html_page(pendulum)
+
+
+# -- what stands in it -----------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize(
+    ("name", "expected"),
+    [
+        ("double_pendulum", "data derivation reactions plots certificate downloads"),
+        ("a_frame", "data reactions statics outputs certificate downloads"),
+        ("slider_crank", "data derivation reactions outputs plots certificate downloads"),
+        ("cart_pole", "data derivation reactions outputs linearize plots certificate downloads"),
+        ("seeds/ch11_p3", "kinematics outputs certificate downloads"),
+        ("seeds/s1_inertia_tensor", "data inertia outputs certificate downloads"),
+    ],
+)
+def test_the_sections_are_those_that_fit_the_model(name, expected):
+    """A motion has its derivation, a structure its reactions, a mechanism its instant, a lone body its inertia."""
+    found = [section.key for section in of(name, time=0.5).sections]
+    assert [key for key in found if key not in ("figure", "motion")] == expected.split()
+
+
+def test_sections_are_added_and_left_out_by_name():
+    """--with linearize --without plots,downloads; another name is refused with the nearest."""
+    found = [
+        section.key for section in of("double_pendulum", with_=("linearize",), without=("plots", "downloads")).sections
+    ]
+    assert "linearize" in found and not {"plots", "downloads"} & set(found)
+    with pytest.raises(UsageError, match="did you mean 'plots'"):
+        of("double_pendulum", without=("plot",))
+
+
+def test_the_page_says_what_the_verbs_say(page):
+    """The equations of motion, a reaction, the outputs' numbers: the same LaTeX as `derive`, the same text."""
+    derived = eomgen.derive(MODELS / "double_pendulum.toml")
+    body = html.unescape(page)
+    for block in re.findall(r"\\\[(.*?)\\\]", derived.latex(), re.S):
+        assert block in body
+    assert "multiplied by 6 and divided by" in page
+
+
+def test_the_proof_is_that_of_every_verb_in_it():
+    """The checks of derive, solve, simulate and codegen, each once; without any there is no section of it."""
+    found = of("simple_pendulum", time=0.5)
+    model = eomgen.load(MODELS / "simple_pendulum.toml")
+    names = [check.name for check in found.certificate.checks]
+    assert {check.name for check in eomgen.solve(model).certify().checks} <= set(names)
+    assert {check.name for check in eomgen.derive(model).certify().checks} <= set(names)
+    assert len(found.certificate.checks) == len(set(found.certificate.checks))
+    bare = of("simple_pendulum", time=0.5, certify=False)
+    assert bare.certificate is None and "certificate" not in [section.key for section in bare.sections]
+
+
+def test_a_contradiction_marks_the_page_and_ends_in_exit_3(monkeypatch, tmp_path):
+    """The result is written, and says first that it is not to be trusted."""
+    wrong = Certificate((Check("M is symmetric", "fails", "prime field", "M[1, 2] differs"),))
+    monkeypatch.setattr(Equations, "certify", lambda *given, **options: wrong)
+    model = eomgen.load(MODELS / "double_pendulum.toml")
+    document = report_document(model, output=str(tmp_path / "r.html"), time=0.1, start={})
+    assert document.wrong == DISTRUST
+    text = (tmp_path / "r.html").read_text()
+    assert f'<p class="wrong" role="alert">{DISTRUST}</p>' in text and "proven by" not in text
+
+
+def test_what_a_missing_value_keeps_away_is_said():
+    """No value for m: no plots, and the page says why; the derivation is there."""
+    text = (MODELS / "double_pendulum.toml").read_text()
+    model = eomgen.loads(re.sub(r"(?m)^m1 = .*$", "m1 = {}", text))
+    found = {section.key: section for section in report(model).sections}
+    assert "no value for parameter 'm1'" in found["plots"].remark and found["derivation"].steps
+
+
+def test_the_same_bytes_every_time(page):
+    """Nothing of the clock or of memory stands in a page or a paper."""
+    again = of("double_pendulum", time=2)
+    assert html_page(again) == page
+
+
+# -- the page --------------------------------------------------------------------------------------
+
+
+@needs("chromium")
+def test_a_browser_shows_the_page_without_a_request_or_an_error(page, pendulum):
+    """Offline: no address is asked for, the console is silent; LaTeX, text and files come out as they are meant."""
+    script = """
+    const copied = [];
+    navigator.clipboard.writeText = async (text) => { copied.push(text); };
+    for (const button of [...document.querySelectorAll("button[data-copy]")].slice(-2)) button.click();
+    const files = {};
+    URL.createObjectURL = (blob) => { held = blob; return "#"; };
+    let held;
+    for (const link of document.querySelectorAll("a[data-name]")) {
+        link.dispatchEvent(new MouseEvent("click", { cancelable: true }));
+        await new Promise((resolve) => setTimeout(resolve, 200));
+        files[link.dataset.name] = (await held.text()).slice(0, 40);
+    }
+    return { copied, files, formulas: document.querySelectorAll("math").length };
+    """
+    found = visited(page, script)
+    assert found.requests == () and found.console == ()
+    assert found.found["formulas"] == page.count("<math") > 20
+    latex, text = found.found["copied"]
+    assert latex.startswith(r"\[\begin{aligned}") and "arm2_y = 1/2*m2*" in text
+    assert found.found["files"]["double_pendulum.csv"].startswith("t,theta1,theta2,theta1',theta2',energy")
+    assert found.found["files"]["double_pendulum.toml"] == (MODELS / "double_pendulum.toml").read_text()[:40]
+
+
+@needs("chromium")
+@pytest.mark.parametrize("name", ["double_pendulum", "a_frame"])
+def test_nothing_is_wider_than_a_telephone(name):
+    """At 360 px the page does not scroll sideways: what is wider scrolls by itself, and can be reached by Tab."""
+    inner = html.escape(html_page(of(name, time=0.5)))
+    frame = f'<iframe style="width:360px;height:640px;border:0" srcdoc="{inner}"></iframe>'
+    script = "const page = document.querySelector('iframe').contentDocument, root = page.documentElement;"
+    script += "const wide = [...page.querySelectorAll('.scroll')].filter((e) => e.scrollWidth > e.clientWidth + 1);"
+    script += "return [root.scrollWidth, wide.length, wide.every((e) => e.tabIndex === 0)];"
+    found = visited(f"<!doctype html><meta charset=utf-8><body>{frame}</body>", script)
+    width, count, reachable = found.found
+    assert width <= 360 and count > 0 and reachable
+
+
+@pytest.mark.parametrize(("name", "most"), [("double_pendulum", 400_000), ("heavy_top", 700_000)])
+def test_a_page_is_small(name, most):
+    """With its motion of 10 s, its letters and its files."""
+    assert len(html_page(of(name))) <= most
+
+
+class Tags(HTMLParser):
+    """The tags of a page and their attributes."""
+
+    def __init__(self) -> None:
+        super().__init__()
+        self.found: list[tuple[str, dict[str, str | None]]] = []
+
+    def handle_starttag(self, tag, attrs):
+        self.found.append((tag, dict(attrs)))
+
+
+def test_a_strangers_text_is_text_in_every_format(tmp_path):
+    """Names and remarks that would be tags, programs or commands: no element, no attribute, no code is made of them."""
+    said = json.dumps(HOSTILE)
+    text = (MODELS / "simple_pendulum.toml").read_text()
+    text = re.sub(r"(?m)^name = .*$", lambda _: f"name = {said}\nabout = {said}", text)
+    source = tmp_path / "x.toml"
+    source.write_text(re.sub(r'about = "[^"]*" }', lambda _: f"about = {said} }}", text))
+    found = report(source, time=0.2)
+    page = html_page(found)
+    tags = Tags()
+    tags.feed(page)
+    own = [tag for tag, _ in tags.found]
+    assert "img" not in own and own.count("script") == page.count("<script>") and "alert(1)</script>" not in page
+    assert not [name for _, attributes in tags.found for name in attributes if name.startswith("on")]
+    assert all(attributes.get("href", "#").startswith(("#", "data:")) for _, attributes in tags.found)
+    assert "\u202e" not in page
+    markdown = written_as(found, ".md", "x.md")["x.md"]
+    assert "<img" not in markdown.replace(r"\<img", "")
+    latex = written_as(found, ".tex", "x.tex")["x.tex"]
+    assert r"\input{x}" not in latex
+    if find_spec("typst") is not None:
+        assert written_as(found, ".pdf", "x.pdf")["x.pdf"].startswith(b"%PDF")
+
+
+# -- formulas --------------------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize("name", ["a_frame", "seeds/ch11_p3", "seeds/ch21_p1", "cart_pole", "seeds/s1_inertia_tensor"])
+def test_no_formula_and_no_row_of_it_is_lost(name):
+    """Of structures, mechanisms, small motions and bodies; those of all derivations are looked at in test_latex."""
+    found = of(name, certify=False, without=("plots", "motion", "downloads"))
+    page = html_page(found)
+    displays = re.findall(r"\\\[(.*?)\\\]", html.unescape(page), re.S)
+    assert "unset" not in re.sub(r"<style>.*?</style>", "", page, flags=re.S)
+    assert not list(filter(None, map(lost_in_mathml, displays))) and not list(
+        filter(None, map(lost_in_typst, displays))
+    )
+    assert displays or name.endswith("tensor")
+
+
+@pytest.mark.parametrize(
+    ("tex", "expected"),
+    [
+        (r"\frac{27}{2} M R^{2} \dot{\theta}^{2}", "frac(27, 2) M R ^(2) dot(θ) ^(2)"),
+        (r"\left(a + b\right)", r"lr(\( a + b \))"),
+        (r"x_{\mathrm{stick\_x},1}", r'x _(upright("stick_x") \, 1)'),
+        (r"\operatorname{atan2}\left(y, x\right)", r'op("atan2") lr(\( y \, x \))'),
+        (r"\sqrt{\lvert x \rvert}", r"sqrt(\| x \|)"),
+        (r"\begin{cases} a & x < 0 \\ b & \text{otherwise} \end{cases}", 'cases(a & x < 0, b & "otherwise")'),
+        (r"\begin{pmatrix} a & b \\ c & d \end{pmatrix}", 'mat(delim: "(", a , b; c , d)'),
+    ],
+)
+def test_each_command_has_its_word_in_typst(tex, expected):
+    assert typst_math(tex) == expected
+
+
+def test_symbols_that_a_model_may_declare_are_known_to_both():
+    """Every Greek letter, accent and style of the grammar of symbols, alone and with an index."""
+    for command in COMMANDS:
+        tex = rf"{command}{{x}}_{{\mathrm{{a}}}}^{{2}}"
+        assert not lost_in_mathml(tex) and not lost_in_typst(tex), tex
+
+
+def test_a_command_that_nobody_knows_is_refused():
+    with pytest.raises(UnknownCommand, match="foo"):
+        typst_math(r"\foo{x}")
+
+
+def test_planted_losses_are_seen():
+    """A row that is joined with the next, a sign that is printed, a command that is shown as an error."""
+    two = r"\begin{aligned} a &= b \\ &\quad + c \end{aligned}"
+    assert not lost_in_mathml(two) and not lost_in_typst(two)
+    assert lost_in_mathml(two, "<math><mtable><mtr></mtr></mtable></math>")
+    assert lost_in_mathml("a", "<math><mi>a</mi><mo>&amp;</mo></math>")
+    assert lost_in_mathml(r"\foo")
+
+
+# -- other formats ---------------------------------------------------------------------------------
+
+
+@has("typst")
+def test_the_paper_has_its_text(pendulum, tmp_path):
+    """A PDF of a few pages, with the same words."""
+    paper = written_as(pendulum, ".pdf", "r.pdf")["r.pdf"]
+    assert paper.startswith(b"%PDF") and paper == written_as(pendulum, ".pdf", "r.pdf")["r.pdf"]
+    if shutil.which("pdftotext"):
+        (tmp_path / "r.pdf").write_bytes(paper)
+        text = subprocess.run(["pdftotext", "-layout", tmp_path / "r.pdf", "-"], capture_output=True, text=True).stdout
+        assert all(word in text for word in ("Double pendulum", "Equations of motion", "Certificate"))
+
+
+def test_latex_brings_its_pictures_and_compiles(pendulum, tmp_path):
+    """Each picture that it names is written; where TeX is, a paper comes out."""
+    found = written_as(pendulum, ".tex", "r.tex")
+    assert set(re.findall(r"\{(r-[\w-]+\.pdf)\}", str(found["r.tex"]))) == found.keys() - {"r.tex"} != set()
+    if shutil.which("pdflatex"):
+        for name, content in found.items():
+            (tmp_path / name).write_bytes(content.encode() if isinstance(content, str) else content)
+        words = ["pdflatex", "-interaction=nonstopmode", "-halt-on-error", "r.tex"]
+        assert subprocess.run(words, cwd=tmp_path, capture_output=True).returncode == 0
+
+
+def test_markdown_names_its_pictures(pendulum):
+    found = written_as(pendulum, ".md", "r.md")
+    assert set(re.findall(r"\]\(<(r-[\w-]+\.svg)>\)", str(found["r.md"]))) == found.keys() - {"r.md"} != set()
+
+
+@has("nbclient")
+def test_a_notebook_was_run_with_the_values_of_the_report(tmp_path):
+    """Each cell of code has run without an error; a parameter that was typed holds in it."""
+    path = tmp_path / "r.ipynb"
+    report(MODELS / "simple_pendulum.toml", path, time=0.2, parameters={"l": "3 m"})
+    cells = json.loads(path.read_text())["cells"]
+    code = [cell for cell in cells if cell["cell_type"] == "code"]
+    assert all(cell["execution_count"] for cell in code) and len(code) >= 4
+    outputs = [each for cell in code for each in cell["outputs"]]
+    assert not [each for each in outputs if each["output_type"] == "error"]
+    assert "'parameters': {'l': '3'}" in "".join(code[0]["source"])
+
+
+@pytest.mark.parametrize(
+    ("package", "ending", "mend"),
+    [
+        ("math_core", ".html", r"eomgen\[report\]"),
+        ("typst", ".pdf", r"eomgen\[pdf\]"),
+        ("nbclient", ".ipynb", r"eomgen\[notebook\]"),
+    ],
+)
+def test_a_missing_extra_is_named_with_what_mends_it(monkeypatch, pendulum, package, ending, mend):
+    """Exit 4, and what to install; nothing is imported before it is needed."""
+    from eomgen.page import mathml
+
+    monkeypatch.setitem(sys.modules, package, None)
+    monkeypatch.setenv("PATH", "")
+    mathml._converters.cache_clear()
+    with pytest.raises(ToolMissing, match=mend) as caught:
+        written_as(pendulum, ending, f"r{ending}")
+    assert caught.value.exit_code == 4
+    mathml._converters.cache_clear()
+
+
+def test_an_ending_that_no_report_has_is_refused():
+    with pytest.raises(UsageError, match=r"r\.docx"):
+        report(MODELS / "double_pendulum.toml", "r.docx")
+
+
+def test_the_help_names_every_section():
+    """`eomgen report --help` and SECTIONS."""
+    from eomgen.cli import main
+
+    told = main.commands["report"].help
+    assert sorted(told.partition("Sections:")[2].replace(".", "").split()) == sorted(SECTIONS)
