@@ -88,7 +88,7 @@ class ReportSection:
         steps: of the document of a verb; formulas in it are graph scalars.
         drawings: in their order, after the steps.
         attachments: files that it offers.
-        live: what moves, as HTML that is complete in itself; "" where nothing does.
+        live: gives what moves, as HTML that is complete in itself; None where nothing does.
         remark: why it is empty, or what else is to be said.
     """
 
@@ -96,7 +96,7 @@ class ReportSection:
     steps: tuple[Step, ...] = ()
     drawings: tuple[ReportFigure, ...] = ()
     attachments: tuple[Attachment, ...] = ()
-    live: Html = Html("")
+    live: Callable[[], Html] | None = None
     remark: str = ""
 
     @property

@@ -5,9 +5,10 @@ from __future__ import annotations
 import gzip
 import re
 from base64 import b64encode
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from importlib import resources
 
+from eomgen.errors import ToolMissing
 from eomgen.page.contents import Attachment, Report, ReportFigure, ReportSection
 from eomgen.page.markup import Html, element, html, in_a_row, script, style
 from eomgen.page.mathml import font_face, mathml
@@ -85,11 +86,19 @@ def element_of(setter: Setter, section: ReportSection, report: Report) -> Html:
     for step in section.steps:
         inside += step_html(setter, step, titled=step.title != section.title)
     inside += [drawing_html(setter, drawing) for drawing in section.drawings]
-    inside += [section.live] if section.live else []
+    inside += [_live(section.live)] if section.live else []
     inside += [_attachments(section.attachments)] if section.attachments else []
     if section.key == "certificate" and report.certificate is not None:
         inside.append(_certificate(report.certificate))
     return element("section", *inside, id=section.key)
+
+
+def _live(live: Callable[[], Html]) -> Html:
+    """What moves; or what it takes, where that is not installed."""
+    try:
+        return live()
+    except ToolMissing as error:
+        return element("p", f"Not here: {error.what}; {error.mend}.", class_="remark")
 
 
 def step_html(setter: Setter, step: Step, *, titled: bool = True) -> list[Html]:

@@ -90,7 +90,13 @@ def _parts(played: PlayedRun, identity: str, *, page: bool) -> PlayerParts:
     for letter in "<>&\u2028\u2029":
         told = told.replace(letter, f"\\u{ord(letter):04x}")
     live = played.live
-    needed = () if live is None else live.programs if played.options.moves and not played.rests else ("rate", "frame")
+    needed = (
+        ()
+        if live is None
+        else live.programs
+        if played.options.moves and not played.rests
+        else ("begin", "rate", "frame")
+    )
     programs = ",\n".join(f"{name}: {javascript_expression(live.programs[name])}" for name in needed) if live else ""
     text = "\n".join(map(_in_a_script, map(_asset, SCRIPTS)))
     begin = f'begun(document.getElementById("{identity}"), {told}, {{{programs}}});'

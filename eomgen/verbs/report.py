@@ -19,9 +19,13 @@ from eomgen.model.own_units import units_of
 from eomgen.model.parts import Model
 from eomgen.model.reader import ModelOrPath, bytes_at, loads, model_at
 from eomgen.model.replaced import Values
-from eomgen.page.contents import SECTIONS, Attachment, Report, ReportSection, joint_proof
+from eomgen.page.contents import SECTIONS, Attachment, Report, ReportFigure, ReportSection, joint_proof
 from eomgen.page.curves import motion_drawings
+from eomgen.page.figure import figure_of, rest_figure
 from eomgen.page.formats import FORMATS, written_as
+from eomgen.page.markup import Html
+from eomgen.page.player_data import PlayerOptions
+from eomgen.page.player_page import player_parts
 from eomgen.proof.check import Certificate
 from eomgen.questions import answers
 from eomgen.questions.run import run as simulated
@@ -41,6 +45,12 @@ SAMPLES = 401  # instants of the motion, in drawings and in the table that is of
 LANGUAGES = ("c", "numpy")
 SETTING = ("assumptions", "data", "freedom", "coordinates")  # steps that say what is given
 UNFIT = (DerivationError, MissingValues, RunFailed)  # why a section that nobody asked for is empty
+CAPTIONS = {
+    "statics": "Loads and reactions; normal force N, shear force V and bending moment M along the beams.",
+    "kinematics": "Centres of rotation and velocities.",
+    "inertia": "Bodies, mass centres and principal axes.",
+    "linearize": "Shapes of the modes.",
+}
 EPOCH = (1980, 1, 1, 0, 0, 0)  # of files in archives: the same bytes at any time
 
 
@@ -93,10 +103,16 @@ class Subject:
     def document(self, key: str) -> Document:
         """The document of a verb, proven where that is asked; no listings are left in it."""
         if key not in self.documents:
-            self.documents[key] = with_listings_typeset(DOCUMENTS[key](self))
+            self.documents[key] = with_listings_typeset(_derived(self) if key == "derivation" else self._told(key))
         return self.documents[key]
 
-    def proven(self, found: Result) -> Document:
+    @cached_property
+    def found(self) -> dict[str, Result]:
+        """The results of those that have one, by section."""
+        return {}
+
+    def _told(self, key: str) -> Document:
+        found = self.found[key] = FOUND[key](self.model)
         return found.document.proven(found.certify() if self.certify else None)
 
     @cached_property
@@ -123,13 +139,12 @@ def _derived(subject: Subject) -> Document:
     return subject.equations.proven(document) if subject.certify else document.proven(None)
 
 
-DOCUMENTS: dict[str, Callable[[Subject], Document]] = {
-    "derivation": _derived,
-    "statics": lambda subject: subject.proven(statics(subject.model)),
-    "kinematics": lambda subject: subject.proven(kinematics(subject.model)),
-    "inertia": lambda subject: subject.proven(inertia(subject.model)),
-    "linearize": lambda subject: subject.proven(linearize(subject.model)),
-    "outputs": lambda subject: subject.proven(answers.solve(subject.model)),
+FOUND: dict[str, Callable[[Model], Result]] = {
+    "statics": statics,
+    "kinematics": kinematics,
+    "inertia": inertia,
+    "linearize": linearize,
+    "outputs": answers.solve,
 }
 
 
@@ -288,9 +303,21 @@ def _steps(key: str) -> Callable[[Subject], ReportSection]:
 
     def made(subject: Subject) -> ReportSection:
         own = (*SETTING, *(("reactions",) if key == subject.main[0] else ()))
-        return ReportSection(key, tuple(step for step in subject.document(key).steps if step.key not in own))
+        steps = tuple(step for step in subject.document(key).steps if step.key not in own)
+        return ReportSection(key, steps, _pictures(subject, key))
 
     return made
+
+
+def _pictures(subject: Subject, key: str) -> tuple[ReportFigure, ...]:
+    """The picture of a result of the plane; none of what has none."""
+    if key == "derivation" or subject.model.space == "space":
+        return ()
+    try:
+        picture = subject.found[key].picture
+    except UsageError:
+        return ()
+    return (figure_of(replace(picture, title=""), key, CAPTIONS[key]),)
 
 
 def _reactions(subject: Subject) -> ReportSection | None:
@@ -310,11 +337,20 @@ def _plots(subject: Subject) -> ReportSection | None:
 
 
 def _figure(subject: Subject) -> ReportSection | None:
-    return None
+    return ReportSection("figure", drawings=(rest_figure(subject.model),))
 
 
 def _motion(subject: Subject) -> ReportSection | None:
-    return None
+    """The motion as a player; what moves when a structure is released has its words in its steps."""
+    if subject.main[0] != "derivation":
+        return None
+    run = subject.run
+
+    def live() -> Html:
+        parts = player_parts(run, PlayerOptions(), "motion-player")
+        return Html(f"<style>{parts.style}</style>{parts.body}{parts.script}")
+
+    return ReportSection("motion", live=live)
 
 
 def _certificate(subject: Subject) -> ReportSection | None:

@@ -1,0 +1,55 @@
+"""Pictures of matplotlib as figures of a report: a model at rest with its dimensions, and those of results."""
+
+from __future__ import annotations
+
+import re
+import tempfile
+from pathlib import Path
+
+from eomgen.model.parts import Model
+from eomgen.page.contents import ReportFigure
+from eomgen.page.markup import Html
+from eomgen.report.figures import Picture
+from eomgen.report.scene_drawing import draw
+from eomgen.report.space_drawing import draw_space
+from eomgen.scene.instant import drawn_start, frame_at
+from eomgen.scene.making import scene_of
+from eomgen.scene.plane_strokes import plane_drawing
+from eomgen.scene.space_strokes import space_drawing
+from eomgen.scene.strokes import Numbers
+
+SIZE = (8.0, 4.2)  # of the rest picture [inches]
+_SVG = re.compile(r'<svg[^>]*viewBox="0 0 ([\d.]+) ([\d.]+)"[^>]*>(.*)</svg>', re.DOTALL)
+
+
+def rest_figure(model: Model) -> ReportFigure:
+    """A model where it starts, with its coordinates and lengths."""
+    scene = scene_of(model)
+    state = drawn_start(scene.system)
+    numbers = Numbers(scene, frame_at(scene, state)[None, :])
+    drawing = (plane_drawing if scene.plane else space_drawing)(numbers, dimensions=True)
+
+    def fill(figure: object) -> None:
+        panel = figure.subplots()  # type: ignore[attr-defined]
+        (draw if scene.plane else draw_space)(panel, drawing)
+
+    assumed = f"; drawn with {', '.join(state.assumed)} = 1" if state.assumed else ""
+    where = "at the start" if model.coordinates else "as it stands"
+    return figure_of(Picture(SIZE, fill), "figure", f"{model.name} {where}{assumed}.")
+
+
+def figure_of(picture: Picture, key: str, caption: str) -> ReportFigure:
+    """A picture as a figure: SVG of its own colours."""
+    with tempfile.TemporaryDirectory() as folder:
+        path = Path(folder) / "picture.svg"
+        picture.save(path)
+        found = _SVG.search(path.read_text(encoding="utf-8"))
+    assert found is not None
+    size = float(found[1]), float(found[2])
+    return ReportFigure(key, caption, size, Html(_lean(found[3])), save=picture.save, fixed=True)
+
+
+def _lean(marks: str) -> str:
+    """Without what says nothing to a browser: metadata and comments."""
+    marks = re.sub(r"<metadata>.*?</metadata>|<!--.*?-->", "", marks, flags=re.DOTALL)
+    return re.sub(r"\n\s*", "\n", marks)
