@@ -143,8 +143,9 @@ def test_a_browser_shows_the_page_without_a_request_or_an_error(page, pendulum):
     navigator.clipboard.writeText = async (text) => { copied.push(text); };
     for (const button of [...document.querySelectorAll("button[data-copy]")].slice(-2)) button.click();
     const files = {};
-    URL.createObjectURL = (blob) => { held = blob; return "#"; };
     let held;
+    HTMLAnchorElement.prototype.click = () => {};
+    URL.createObjectURL = (blob) => { held = blob; return "#"; };
     for (const link of document.querySelectorAll("a[data-name]")) {
         link.dispatchEvent(new MouseEvent("click", { cancelable: true }));
         await new Promise((resolve) => setTimeout(resolve, 200));
