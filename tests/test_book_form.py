@@ -71,7 +71,7 @@ def printed(text: str) -> str:
             "(4*I*(a + b)^2*x'' + J*a^2*x'' + m*a^2*(a + b)^2*x'')/(4*(a + b)^2)",
             "(1/4*m*a^2 + I + a^2*J/(4*(a + b)^2))*x''",
         ),
-        ("(m*l^2*g*a + k*b^2)/(m*l^2)", "a*g + b^2*k/(m*l^2)"),
+        ("(m*l^2*g*a + k*b^2)/(m*l^2)", "b^2*k/(m*l^2) + a*g"),
         ("sqrt(m1*a^2 - 2*m1*a*b + m1*b^2 + m2*(a + b)^2)", "sqrt(m1*(a - b)^2 + m2*(a + b)^2)"),
         ("m1*a + m1*b + m2*a + m2*b + sqrt(g^2 + l^2)", "(m1 + m2)*(a + b) + sqrt(g^2 + l^2)"),
     ],

@@ -60,12 +60,14 @@ def book_form(x: Scalar, limit: int = Work.ENTRY, positive: Collection[Node] = (
         writer = Writer(expansion)
         book = _Book(expansion, writer)
         divided = any(e < 0 for monomial, _ in terms for _, e in monomial)
-        forms = _quotients(expansion, writer, book, terms) if divided else []
+        forms = [_quotient(expansion, writer, book, terms)] if divided else []
         forms.append(book.sum(book.coordinates_first(_parts(writer, terms))))
         if any(expansion.atoms.is_a(atom, "sqrt") for monomial, _ in terms for atom, _ in monomial):
             forms += map(rebuilt_as_written, quotients(expansion, writer, terms))
     except TooLarge:
         return x
+    if divided:
+        forms += _of_its_parameters(expansion, writer, book, terms)
     return _roots_read(min(forms, key=_length), limit, positive)
 
 
@@ -83,14 +85,13 @@ def _length(x: Scalar) -> float:
     return length_of(x) * (1.5 if has_nested_quotient(x) else 1)
 
 
-def _quotients(expansion: Expansion, writer: Writer, book: _Book, terms: Terms) -> list[Scalar]:
-    """The sum as one quotient, and as one for each parameter that it is linear in."""
-
-    def one(part: Terms) -> Scalar:
-        return _quotient(expansion, writer, book, part)
-
-    several = by_parameters(expansion, terms, one, book.added)
-    return [one(terms), *([] if several is None else [several])]
+def _of_its_parameters(expansion: Expansion, writer: Writer, book: _Book, terms: Terms) -> list[Scalar]:
+    """The sum with one quotient for each parameter that it is linear in, where there are several."""
+    try:
+        found = by_parameters(expansion, terms, lambda f: _quotient(expansion, writer, book, f), book.added)
+    except TooLarge:
+        return []
+    return [] if found is None else [found]
 
 
 def _quotient(expansion: Expansion, writer: Writer, book: _Book, terms: Terms) -> Scalar:
