@@ -73,6 +73,7 @@ _HOMES = {
     "report.linearize.result": ("Linearization", "linearize"),
     "scene.making": ("scene_of",),
     "scene.scene": ("Scene",),
+    "report.rest_picture": ("rest_picture",),
     "report.run_pictures": ("run_picture",),
     "report.statics.result": ("Statics", "statics"),
     "simulation.result": ("Trajectory",),

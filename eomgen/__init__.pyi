@@ -49,6 +49,7 @@ from eomgen.report.inertia.result import inertia as inertia
 from eomgen.report.kinematics.result import Kinematics as Kinematics
 from eomgen.report.linearize.result import Linearization as Linearization
 from eomgen.report.linearize.result import linearize as linearize
+from eomgen.report.rest_picture import rest_picture as rest_picture
 from eomgen.report.run_pictures import run_picture as run_picture
 from eomgen.report.statics.result import Statics as Statics
 from eomgen.report.statics.result import statics as statics

@@ -18,7 +18,7 @@
 # %%
 import eomgen
 
-text = """
+text = r"""
 eomgen = 1
 name = "Bar with a sliding collar"
 space = "plane"
@@ -29,7 +29,7 @@ l = 0.5
 g = 9.81
 
 [coordinates]
-theta = { start = 0, about = "bar below the horizontal, clockwise" }
+theta = { start = 0, about = "bar below the horizontal, clockwise", symbol = '\varphi' }
 r = { start = 0.3, about = "collar from the hinge" }
 
 [bodies.bar]
@@ -49,14 +49,19 @@ Q_theta = "generalized_force(theta)"
 v = "speed(collar.center)"
 """
 model = eomgen.loads(text)
+model
+
+# %% [markdown]
+# A symbol that is declared stands in every formula; text and code keep the name.
+
+# %%
+eomgen.derive(model)
 
 # %% [markdown]
 # ## What the file asks
 
 # %%
-answers = eomgen.solve(model)
-for name, answer in answers.items():
-    print(name, "=", answer.exact, "=", answer.value)
+eomgen.solve(model)
 
 # %% [markdown]
 # ## The same by hand
@@ -67,8 +72,7 @@ for name, answer in answers.items():
 import sympy
 
 equations = eomgen.derive(model)
-symbols = {symbol.name: symbol for symbol in sympy.Matrix(list(equations.Q)).free_symbols}
-M, l, g, r, theta = (symbols[name] for name in ("M", "l", "g", "r", "theta"))
+M, l, g, r, theta = (equations.symbols[name] for name in ("M", "l", "g", "r", "theta"))
 by_hand = (3 * l + 2 * r) * M * g * sympy.cos(theta)
 assert sympy.expand(equations.Q[0] - by_hand) == 0
 by_hand

@@ -62,8 +62,7 @@ hinge
 # By hand, with the centre at l/2: `x = l/2 cos(theta)`, `y = -l/2 sin(theta)`, twice differentiated.
 
 # %%
-s = {symbol.name: symbol for symbol in hinge.free_symbols}
-m, l, g, theta, w, e = (s[name] for name in ("m", "l", "g", "theta", "theta'", "theta''"))
+m, l, g, theta, w, e = (equations.symbols[name] for name in ("m", "l", "g", "theta", "theta'", "theta''"))
 sin, cos = sympy.sin(theta), sympy.cos(theta)
 by_hand = sympy.Matrix([-m * l / 2 * (e * sin + w**2 * cos), m * g - m * l / 2 * (e * cos - w**2 * sin)])
 assert (hinge - by_hand).applyfunc(sympy.expand) == sympy.zeros(2, 1)
@@ -96,15 +95,7 @@ assert abs(run["reaction_y(rod)"][0] - weight / 4) < 1e-9
 assert abs(run["reaction_y(rod)"].max() - 5 / 2 * weight) < 1e-3 * weight
 
 # %%
-import matplotlib.pyplot as plt
-
-figure, axes = plt.subplots(figsize=(7, 3))
-for name in run.reactions:
-    axes.plot(run["theta"], run[name], label=name)
-axes.set_xlabel("theta [rad]")
-axes.set_ylabel("reaction [N]")
-axes.legend()
-figure
+run.plot(view="polar")
 
 # %% [markdown]
 # ## As code
@@ -139,11 +130,4 @@ for phase in run.phases:
 assert abs(run.phases[0].end - answers["t_leaves"].value) < 1e-9
 
 # %%
-figure, axes = plt.subplots(figsize=(7, 3))
-for name in run.reactions:
-    axes.plot(run.t, run[name], label=name)
-axes.axvline(run.phases[0].end, color="grey", linewidth=0.8)
-axes.set_xlabel("t [s]")
-axes.set_ylabel("reaction [N]")
-axes.legend()
-figure
+run.plot()

@@ -4,6 +4,7 @@ from dataclasses import dataclass, field
 from importlib import import_module
 from typing import Annotated, Any, ClassVar
 
+from eomgen.errors import EomgenError
 from eomgen.model import constraints, forces, joints, shapes
 from eomgen.model.constraints import Constraint
 from eomgen.model.containers import ListRule, TableRule
@@ -288,6 +289,14 @@ class Model(Part):
             DerivationError, NotYet: what cannot be derived is not drawn either.
         """
         return import_module("eomgen").scene_of(self)  # the package's front door: the scene is a later room's
+
+    def _repr_png_(self) -> bytes | None:
+        """Where it starts, for notebooks; None where that cannot be drawn."""
+        try:
+            found: bytes = import_module("eomgen").rest_picture(self)._repr_png_()
+        except EomgenError:
+            return None
+        return found
 
     def body_points(self, body: str) -> tuple[str, ...]:
         """The names of a body's points: `origin`, its shape's or mass centre's, its own."""
