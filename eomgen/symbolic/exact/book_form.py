@@ -226,25 +226,19 @@ class _Book:
 
     def _nested(self, parts: Parts) -> list[Scalar]:
         """factor*(...) + ..., for each factor that several terms hold and not all."""
-        counts: dict[tuple[Base, int], int] = {}
-        for _, powers in parts:
-            for base, e in powers:
-                for n in range(1, e + 1):
-                    counts[base, n] = counts.get((base, n), 0) + 1
+        highest: dict[Base, int] = {}
+        for base, e in (item for _, powers in parts for item in powers):
+            highest[base] = max(e, highest.get(base, 0))
+        held = {(base, e): [part for part in parts if (base, e) in part[1]] for base, e in highest.items() if e > 0}
+        shared = [inside for inside in held.values() if 1 < len(inside) < len(parts)]
         found = []
-        shared = [item for item in counts if 1 < counts[item] < len(parts)]
-        for base, n in sorted(shared, key=lambda item: -counts[item])[:MOST_SHARED]:
+        for inside in sorted(shared, key=len, reverse=True)[:MOST_SHARED]:
             self.tried["sums"] += 1
             if self.tried["sums"] <= MOST_TRIED:
-                inside = [(c, powers) for c, powers in parts if dict(powers).get(base, 0) >= n]
-                beside = [part for part in parts if part not in inside]
                 place = parts.index(inside[0])
-                before = [part for part in parts[:place] if part in beside]
-                after = [part for part in parts[place:] if part in beside]
-                pieces = [self.sum(before)] if before else []
-                pieces.append(self._with((), inside) if len(inside) == 1 else self.product(inside))
-                pieces += [self.sum(after)] if after else []
-                found.append(self.added(pieces))
+                pieces = [[x for x in part if x not in inside] for part in (parts[:place], parts[place:])]
+                before, after = ([self.sum(piece)] if piece else [] for piece in pieces)
+                found.append(self.added([*before, self.product(inside), *after]))
         return found
 
     # -- factors ------------------------------------------------------------------------------
