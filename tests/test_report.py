@@ -53,10 +53,10 @@ FORMATS = tuple(member.name for member in ALL)
 
 KINETIC_ENERGIES = {
     "ch17_p3": "1/6*M*l^2*theta'^2",
-    "ch18_p4": "4*M*x'^2 + 6*M*l*cos(phi)*x'*phi' + 4*M*l^2*phi'^2",
-    "ch22_p1": "6*M*R^2*theta'^2 + 27/2*M*R^2*cos(theta)^2*theta'^2",
-    "ch22_p2": "2*M*l^2*theta'^2 + M*r^2*theta'^2 + M*r'^2",
-    "ch22_p5": "3*M*x'^2 + 6*M*R*cos(theta)*x'*theta' + 8*M*R^2*theta'^2",
+    "ch18_p4": "2*M*(2*x'^2 + 3*l*cos(phi)*x'*phi' + 2*l^2*phi'^2)",
+    "ch22_p1": "3/2*M*R^2*(4 + 9*cos(theta)^2)*theta'^2",
+    "ch22_p2": "M*(2*l^2 + r^2)*theta'^2 + M*r'^2",
+    "ch22_p5": "M*(3*x'^2 + 6*R*cos(theta)*x'*theta' + 8*R^2*theta'^2)",
 }
 
 
@@ -243,14 +243,13 @@ def test_printed_accelerations_solve_the_printed_equations(name):
 
 
 @pytest.mark.parametrize("name", KINETIC_ENERGIES)
-def test_kinetic_energies_come_out_term_by_term_as_a_textbook_prints_them(name):
-    """T = 6*M*R^2*theta'^2 + 27/2*M*R^2*cos(theta)^2*theta'^2, in the text and in JSON"""
+def test_kinetic_energies_come_out_as_a_textbook_prints_them(name):
+    """T = 3/2*M*R^2*(4 + 9*cos(theta)^2)*theta'^2, in the text and in JSON"""
     derived = equations(name)
-    terms = sorted(KINETIC_ENERGIES[name].split(" + "))
     text = re.sub(r"\n {8}", " ", rendered(derived.derivation, "text"))
     printed = re.search(r"^    T = (.*)$", text, re.M)
-    assert printed is not None and sorted(printed[1].split(" + ")) == terms
-    assert sorted(derived.entries()["kinetic_energy"].split(" + ")) == terms
+    assert printed is not None
+    assert printed[1] == derived.entries()["kinetic_energy"] == KINETIC_ENERGIES[name]
 
 
 @pytest.mark.parametrize("name", derivable())
@@ -378,7 +377,7 @@ def test_equations_with_numbers_for_lengths_are_not_multiplied_by_huge_ones():
     text = rendered(equations("andrews_squeezer").derivation, "text")
     assert "multiplied by" not in text
     assert not re.search(r"(?<![\d.])\d{5}", text.split("Equations of motion")[1])
-    assert "    8.464e-7*m1*beta'' + 0.00018125*m2*beta''" in text
+    assert "(8.464e-7*m1 + 0.00018125*m2 + I1 + I2 - 0.000161*m2*cos(Theta))*beta''" in text
 
 
 def test_the_force_of_a_spring_keeps_its_form():
@@ -386,11 +385,11 @@ def test_the_force_of_a_spring_keeps_its_form():
     text = rendered(equations("andrews_squeezer").derivation, "text")
     assert "    r1 = sqrt(0.0048012554 - 0.00060028*cos(gamma) - 0.0033834*sin(gamma))\n" in text
     assert "    V(spring) = 1/2*c0*(r1 - l0)^2\n" in text
-    assert "    Q(gamma) = c0*(0.0016917*cos(gamma) - 0.00030014*sin(gamma))*(1 - l0/r1)\n" in text
+    assert "    Q(gamma) = c0*(1 - l0/r1)*(0.0016917*cos(gamma) - 0.00030014*sin(gamma))\n" in text
     text = rendered(equations("springs").derivation, "text")
-    assert "    Fy(damper 1) = 1/2*l*b*v1*(cos(alpha) - cos(beta))/r1\n" in text
+    assert "    Fy(damper 1) = l*b*v1*(cos(alpha) - cos(beta))/(2*r1)\n" in text
     assert "(l*sin(alpha - beta) - 2*d*cos(alpha))*(k - k*l0/r1 + b*v1/r1)" in text
-    assert "    V(middle) = 1/2*k2*(x2 - x1)^2\n" in rendered(equations("two_mass_oscillator").derivation, "text")
+    assert "    V(middle) = 1/2*k2*(x1 - x2)^2\n" in rendered(equations("two_mass_oscillator").derivation, "text")
 
 
 def test_a_letter_that_is_also_a_name_of_the_model_is_told_apart():
@@ -418,7 +417,7 @@ def test_momenta_by_the_printed_letters_are_partial_derivatives():
     formula = _derivatives(equations("ch22_p1").derivation)[0]
     assert isinstance(formula.sides[0], Partial)
     text = rendered(equations("ch22_p1").derivation, "text")
-    assert "    dT/dtheta' = 12*M*R^2*theta' + 27*M*R^2*cos(theta)^2*theta'\n" in text
+    assert "    dT/dtheta' = 3*M*R^2*(4 + 9*cos(theta)^2)*theta'\n" in text
 
 
 def test_an_unknown_format_is_refused_with_those_that_there_are():

@@ -28,6 +28,7 @@ from eomgen.symbolic.expression.graph import Node, Number, Scalar
 from eomgen.symbolic.expression.rational import Fraction
 from eomgen.symbolic.expression.traversal import order
 from eomgen.symbolic.numeric.work import Work
+from eomgen.symbolic.print.decimals import decimal_of
 from eomgen.symbolic.print.layout import has_nested_quotient, is_base, rebuilt_as_written
 from eomgen.symbolic.print.length import length_of
 
@@ -357,6 +358,7 @@ def _times_powers(a: Powers, b: Powers) -> Powers:
 def _without_common(parts: Parts) -> tuple[Number, Powers, Parts]:
     """(number, powers, rest): what all terms hold, and what is left of them; a negative number if all are."""
     number: Number = common_number(c for c, _ in parts)
+    number = 1 if decimal_of(number) is not None else number  # of 0.00018125 and 0.000161 nobody takes out 2.5e-7
     number = -number if _is_negative(parts) else number
     bases: Iterable[Base] = dict.fromkeys(base for _, powers in parts for base, _ in powers)
     exponents = [dict(powers) for _, powers in parts]
