@@ -36,6 +36,8 @@ from eomgen.model.reader import load as load
 from eomgen.model.reader import loads as loads
 from eomgen.model.samples import samples as samples
 from eomgen.page.contents import Report as Report
+from eomgen.page.play import Played as Played
+from eomgen.page.play import play as play
 from eomgen.pipeline import derive as derive
 from eomgen.pipeline import inverse_dynamics as inverse_dynamics
 from eomgen.pipeline import simulate as simulate

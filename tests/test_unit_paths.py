@@ -59,6 +59,7 @@ TAKEN = {
 BESIDE = {
     "codegen": ["-o", "OUT"],
     "play": ["-o", "OUT.html", "--time", "0.2"],
+    "report": ["-o", "OUT.html", "--time", "0.2", "--without", "figure,plots,motion,downloads"],
     "simulate": ["--time", "0.2", "--target", "numpy"],
 }
 STILL = ("new", "schema", "doctor", "examples")
