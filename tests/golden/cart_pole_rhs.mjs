@@ -35,7 +35,7 @@ export function evaluate(t, x, p, c, inputs, dx = new Float64Array(4)) {
     const theta = x[1];
     const x_dot = x[2]; // x'
     const theta_dot = x[3]; // theta'
-    const acting = new Float64Array(1);
+    const acting = new Array(1).fill(0);
     if (inputs !== null) {
         acting[0] = inputs[0];
     } else {

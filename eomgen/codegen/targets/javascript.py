@@ -21,7 +21,7 @@ JAVASCRIPT = Language(
         "arguments await break case catch class const continue debugger default delete do else enum eval export "
         "extends false finally for function if implements import in instanceof interface let new null package private "
         "protected public return static super switch this throw true try typeof undefined var void while with yield "
-        "Float64Array Infinity Int32Array Math NaN".split()
+        "Array Float64Array Infinity Math NaN".split()
     ),
     functions={
         **{op: f"Math.{op}({{0}})" for op in "sqrt sin cos asin acos atan sinh cosh tanh exp log abs sign".split()},
@@ -39,8 +39,7 @@ JAVASCRIPT = Language(
     put="{place} = {value};",
     call="{function}({arguments});",
     back="return {value};",
-    arrays=dict.fromkeys((CHANGED, ROOM), "const {name} = new Float64Array({size});")
-    | {PLACES: "const {name} = new Int32Array({size});"},
+    arrays=dict.fromkeys((CHANGED, ROOM, PLACES), "const {name} = new Array({size}).fill(0);"),  # cheaper than typed ones
     tables={INT: "const {name} = {value};", INDICES: "const {name} = {values};", READ: "const {name} = {values};"},
     listed=("[", "]"),
     loop=("for (let {name} = {first}; {name} < {last}; {name}++) {{", "}"),

@@ -438,7 +438,7 @@ class Plot {
         const finite = values.filter(Number.isFinite);
         let low = Math.min(...finite), high = Math.max(...finite);
         if (!finite.length) [low, high] = [0, 1];
-        if (high - low < 1e-9*Math.max(Math.abs(low), Math.abs(high), 1e-12)) [low, high] = [low - 0.5*Math.max(Math.abs(low), 1e-3), high + 0.5*Math.max(Math.abs(high), 1e-3)];
+        if (high - low < 1e-6*Math.max(Math.abs(low), Math.abs(high), 1e-12)) [low, high] = [low - 0.5*Math.max(Math.abs(low), 1e-3), high + 0.5*Math.max(Math.abs(high), 1e-3)];
         const y = v => 105 - 100*(v - low)/(high - low);
         this.curve.setAttribute("points", values.map((v, i) => Number.isFinite(v) ? `${(600*i/(POINTS - 1)).toFixed(1)},${y(v).toFixed(1)}` : "").join(" "));
         this.zero.setAttribute("y1", y(0)), this.zero.setAttribute("y2", y(0));
