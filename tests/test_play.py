@@ -16,6 +16,7 @@ from tools import needs
 import eomgen
 from eomgen.cli import main
 from eomgen.page.play import play
+from eomgen.scene.phase_frames import phase_frames
 
 pytestmark = [pytest.mark.slow, needs("chromium")]
 
@@ -94,7 +95,7 @@ def test_what_cannot_be_assembled_is_said():
 
 
 def test_contacts_that_change_play_the_recorded_run_and_the_sliders_rest():
-    """box_on_two_feet: state(t) is the trajectory's, every slider is disabled, and the page says why."""
+    """state(t) is the trajectory's, every slider is disabled, and the page says why."""
     script = f"""
         let refused = "";
         try {{ eomgen.set("m", 2); }} catch (error) {{ refused = error.message; }}
@@ -182,3 +183,15 @@ def test_play_writes_its_page_and_proves_its_programs(tmp_path):
     for slider, words_ in (("mass=1:2", "no slider for 'mass'"), ("m=1", "write --slider"), ("m=5:1", "ends before")):
         wrong = CliRunner().invoke(main, ("play", model, "--slider", slider, "-o", str(path)))
         assert wrong.exit_code == 2 and words_ in wrong.stderr
+
+
+@pytest.mark.parametrize("name", ["loop_the_loop", "sliding_ladder"])
+def test_each_phase_is_drawn_by_its_own_coordinates(name):
+    """A body's place goes on from phase to phase: between neighbouring pictures it makes no leap."""
+    run = eomgen.simulate(MODELS / f"{name}.toml", time=3 if name == "loop_the_loop" else 2, samples=801)
+    told, frames = phase_frames(run)
+    assert len(run.phases) > 1
+    pose = next(frame["pose"] for frame in told["frames"] if frame["name"])
+    places = np.column_stack([frames[:, v[0]] if isinstance(v, list) else np.full(len(frames), v) for v in pose[:2]])
+    steps = np.linalg.norm(np.diff(places, axis=0), axis=1)
+    assert np.isfinite(steps).all() and steps.max() < 0.2

@@ -172,7 +172,7 @@ class Live:
     @cached_property
     def reactions(self) -> dict[str, Scalar]:
         """Those that have a single value, by name."""
-        return reactions_in(self.phase)
+        return single_reactions(self.phase)
 
     @property
     def columns(self) -> dict[str, tuple[str, int]]:
@@ -211,7 +211,7 @@ class Live:
         }
 
 
-def reactions_in(phase: PhaseModel) -> dict[str, Scalar]:
+def single_reactions(phase: PhaseModel) -> dict[str, Scalar]:
     """The reactions that have a single value, by name; {} where a body is held by nothing."""
     try:
         values = determinate(phase.reactions)

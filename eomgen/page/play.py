@@ -17,7 +17,7 @@ from eomgen.model.parts import Model
 from eomgen.model.reader import ModelOrPath, model_at
 from eomgen.model.replaced import Values, with_values
 from eomgen.model.values import numeric_parameters, start_values
-from eomgen.page.player_data import PlayedRun, PlayerOptions, Range
+from eomgen.page.player_data import PlayedRun, PlayerOptions, SliderRange
 from eomgen.page.player_page import player_page
 from eomgen.proof.check import Certificate, Check, checked, unchecked
 from eomgen.questions.run import run
@@ -126,19 +126,19 @@ def played(model: Model, start: Mapping[str, float], time: float, options: Playe
         raise UsageError("nothing moves: the model has no coordinates", mend="`statics` and `kinematics` answer it")
     found = run(pipeline.derive(model), time=time, start=start, samples=SAMPLES)
     made = Played(PlayedRun(found, options))
-    points = [name for name, _ in made.played.scene.points]
+    points = [point["name"] for point in made.played.drawn[0]["points"]]
     if options.trail and options.trail not in points:
         raise UsageError(f"there is no point '{options.trail}'", mend=f"there are {', '.join(points)}")
     return made
 
 
-def slider_ranges(model: Model, sliders: Sequence[str]) -> dict[str, Range | None]:
+def slider_ranges(model: Model, sliders: Sequence[str]) -> dict[str, SliderRange | None]:
     """Of each slider that is asked for its range in SI.
 
     Raises:
         UsageError: what is no NAME=FROM:TO.
     """
-    found: dict[str, Range | None] = {}
+    found: dict[str, SliderRange | None] = {}
     for text in sliders:
         name, equals, ends = text.partition("=")
         first, colon, last = ends.partition(":")

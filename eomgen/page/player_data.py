@@ -15,12 +15,12 @@ from eomgen.codegen.vectors import vectors
 from eomgen.errors import UsageError
 from eomgen.model.own_units import units_of
 from eomgen.model.parts import Model
-from eomgen.page.live import Live, reactions_in
+from eomgen.page.live import Live, single_reactions
 from eomgen.scene.applied import reaction_marks
-from eomgen.scene.instant import frames_along
 from eomgen.scene.making import scene_of_system
+from eomgen.scene.phase_frames import phase_frames
 from eomgen.scene.scene import Scene
-from eomgen.simulation.configuration import has_phases
+from eomgen.simulation.configuration import Configuration
 from eomgen.simulation.phase_model import PhaseModel
 from eomgen.simulation.result import Trajectory
 from eomgen.symbolic.numeric.tolerances import CARRIED
@@ -30,7 +30,7 @@ CHECKED = (0.02, 0.05)  # of the time: where the page's own motion is held again
 MOST_CHECKED = 0.5  # s
 PLOTTED = 3  # coordinates, from the start
 ROUND = 4.0  # m, rad: how far a start value that is 0 may be moved
-Range = tuple[float, float]
+SliderRange = tuple[float, float]
 
 
 @dataclass(frozen=True)
@@ -45,7 +45,7 @@ class PlayerOptions:
         speed: of the time.
     """
 
-    sliders: Mapping[str, Range | None] = field(default_factory=dict)
+    sliders: Mapping[str, SliderRange | None] = field(default_factory=dict)
     moves: bool = False
     trail: str = ""
     forces: bool = False
@@ -69,10 +69,15 @@ class PlayedRun:
     def model(self) -> Model:
         return self.phase.declared.scope.model
 
+    @property
+    def changes(self) -> bool:
+        """Whether contacts change in it, or could."""
+        return self.phase.configuration != Configuration()
+
     @cached_property
     def rests(self) -> str:
         """Why the sliders rest: the page cannot move the model by itself; "" where it can."""
-        if has_phases(self.model):
+        if self.changes:
             return "The contacts of this model change from phase to phase: the page plays the run as it was computed."
         if self.run.carried:
             return "This run crosses a singular position, which the page cannot: it plays the run as it was computed."
@@ -81,14 +86,18 @@ class PlayedRun:
     @cached_property
     def live(self) -> Live | None:
         """The model as the page evaluates it; None of contacts that change."""
-        return None if has_phases(self.model) else Live(self.phase, self.scene)
+        return None if self.changes else Live(self.phase, self.scene)
+
+    @cached_property
+    def drawn(self) -> tuple[dict[str, Any], np.ndarray | None]:
+        """(the scene as data, its numbers at the instants of the run where no program in the page gives them)."""
+        return phase_frames(self.run) if self.changes else (self.scene.to_json(), None)
 
     @cached_property
     def scene(self) -> Scene:
-        if has_phases(self.model):
-            return scene_of_system(self.phase.declared)
+        """Of a model whose contacts do not change."""
         scene = scene_of_system(self.phase.system, self.phase.equations)
-        arrows = reaction_marks(self.phase.system, reactions_in(self.phase))
+        arrows = reaction_marks(self.phase.system, single_reactions(self.phase))
         return replace(scene, marks=(*scene.marks, *arrows))
 
     def told(self) -> dict[str, Any]:
@@ -107,7 +116,7 @@ class PlayedRun:
             "name": self.model.name,
             "time": float(run.phases[-1].end),
             "rtol": CARRIED,
-            "scene": self.scene.to_json(),
+            "scene": self.drawn[0],
             "names": names,
             "columns": columns,
             "conservative": run.drift is not None,
@@ -135,9 +144,8 @@ class PlayedRun:
             times, states = run.phases[0].track
             x = states[np.searchsorted(times, run.t)]
             return {**told, "x": _doubles(x), "states": x.shape[1]}
-        named, symbols = run.columns(), self.scene.system.symbols
-        x = np.column_stack([named[node.name] for node in (*symbols.q, *symbols.u)])
-        frames = frames_along(self.scene, run.t, x, self.phase.p)
+        frames = self.drawn[1]
+        assert frames is not None
         recorded = {"x": _doubles(run.x), "states": run.x.shape[1], "slots": frames.shape[1]}
         return {**told, **recorded, "frames": _coded(frames.astype("<f4"))}
 
@@ -187,7 +195,7 @@ class PlayedRun:
         return [self._slider(name, *told, units.get(name), asked.get(name)) for name, told in chosen.items()]
 
     def _slider(
-        self, name: str, value: float, kind: str, about: str, unit: Any, range_: Range | None
+        self, name: str, value: float, kind: str, about: str, unit: Any, range_: SliderRange | None
     ) -> dict[str, Any]:
         low, high = range_ or _default_range(
             value, kind, angular=unit is not None and bool(unit.angle) and not unit.time
@@ -203,7 +211,7 @@ class PlayedRun:
         }
 
 
-def _default_range(value: float, kind: str, *, angular: bool) -> Range:
+def _default_range(value: float, kind: str, *, angular: bool) -> SliderRange:
     """A parameter keeps its sign, from a fifth to three times of it; an angle goes once around."""
     if kind == "parameter" and value:
         return (0.2 * value, 3 * value) if value > 0 else (3 * value, 0.2 * value)

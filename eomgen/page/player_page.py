@@ -85,7 +85,7 @@ def player_page(run: Trajectory, options: PlayerOptions | None = None) -> str:
 
 
 def _parts(played: PlayedRun, identity: str, *, page: bool) -> PlayerParts:
-    library = {} if played.scene.plane else {"three": three_js()}
+    library = {} if played.model.space == "plane" else {"three": three_js()}
     told = json.dumps({**played.told(), **library, "page": page}, separators=(",", ":"), allow_nan=False)
     for letter in "<>&\u2028\u2029":
         told = told.replace(letter, f"\\u{ord(letter):04x}")

@@ -39,7 +39,9 @@ JAVASCRIPT = Language(
     put="{place} = {value};",
     call="{function}({arguments});",
     back="return {value};",
-    arrays=dict.fromkeys((CHANGED, ROOM, PLACES), "const {name} = new Array({size}).fill(0);"),  # cheaper than typed ones
+    arrays=dict.fromkeys(
+        (CHANGED, ROOM, PLACES), "const {name} = new Array({size}).fill(0);"
+    ),  # cheaper than typed ones
     tables={INT: "const {name} = {value};", INDICES: "const {name} = {values};", READ: "const {name} = {values};"},
     listed=("[", "]"),
     loop=("for (let {name} = {first}; {name} < {last}; {name}++) {{", "}"),
