@@ -177,6 +177,8 @@ VERBS = [
     ("linearize", "double_pendulum.toml"),
     ("simulate", "double_pendulum.toml"),
     ("codegen", "double_pendulum.toml", "-o", "DIR"),
+    ("play", "double_pendulum.toml", "-o", "DIR/page.html"),
+    ("report", "double_pendulum.toml", "-o", "DIR/report.html"),
 ]
 
 
@@ -184,7 +186,7 @@ VERBS = [
 def test_every_verb_ends_when_patience_does(words, tmp_path):
     """Exit 3, and a sentence in place of a result."""
     verb, model, *more = words
-    more = [str(tmp_path) if each == "DIR" else each for each in more]
+    more = [each.replace("DIR", str(tmp_path)) for each in more]
     found = CliRunner().invoke(main, [verb, str(MODELS / model), *more, "--patience", "1e-6"])
     assert found.exit_code == 3 and "given up after 1e-06 s" in found.output and "--patience none" in found.output
 
