@@ -64,6 +64,7 @@ _HOMES = {
     "model.samples": ("samples",),
     "codegen.inverse": ("InverseDynamics",),
     "equations": ("Equations",),
+    "verbs.animate": ("animate",),
     "verbs.reactions": ("FoundReactions", "reactions"),
     "generated": ("Generated", "generate"),
     "page.contents": ("Report",),

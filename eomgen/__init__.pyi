@@ -60,6 +60,7 @@ from eomgen.scene.scene import Scene as Scene
 from eomgen.simulation.result import Trajectory as Trajectory
 from eomgen.symbolic.numeric.work import OutOfPatience as OutOfPatience
 from eomgen.symbolic.numeric.work import patience as patience
+from eomgen.verbs.animate import animate as animate
 from eomgen.verbs.reactions import FoundReactions as FoundReactions
 from eomgen.verbs.reactions import reactions as reactions
 from eomgen.verbs.report import report as report

@@ -361,6 +361,35 @@ def simulate_command(
     return deliver(document, form_asked(wants_json, format_), on_stderr=output is not None and not asked, strict=strict)
 
 
+@main.command("animate")
+@MODEL
+@JSON
+@FORMAT
+@click.option(
+    "-o", "--output", required=True, type=click.Path(dir_okay=False), help="Write .gif, .mp4, or a strip .png."
+)
+@click.option("--time", type=float, default=10.0, show_default=True, help="How long the motion is [s].")
+@with_values
+@click.option("--fps", type=float, default=25.0, show_default=True, help="Frames a second.")
+@click.option("--speed", type=float, default=1.0, show_default=True, help="Seconds of the motion in a second.")
+@click.option("--trail", multiple=True, metavar="POINT", help="A point that leaves a trail: arm2.end.")
+@click.option("--forces", is_flag=True, help="Show forces and reactions as arrows.")
+@click.option("--modes", type=click.IntRange(min=1), metavar="N", help="Show the N slowest small motions instead.")
+@click.option("--frames", type=click.IntRange(min=1), default=6, show_default=True, help="Of a strip.")
+def animate_command(model: str, wants_json: bool, format_: str | None, output: str, **options: Any) -> int:
+    """Show the motion, or small motions, as a moving picture."""
+    from eomgen.verbs.animate import Showing, animate_document
+
+    strict = options.pop("strict")
+    shown = {name: options.pop(name) for name in ("fps", "speed", "trail", "forces", "frames")}
+    options["showing"] = Showing(**shown)
+    with reading(model) as source:
+        document = _asked(animate_document, source, options, output=output)
+    return deliver(
+        document, form_asked(wants_json, format_), on_stderr=not wants_json and format_ is None, strict=strict
+    )
+
+
 @main.command("codegen")
 @click.argument("model", required=False, type=click.Path(exists=True, dir_okay=False, allow_dash=True))
 @JSON

@@ -49,6 +49,7 @@ VERBS = [
     "inertia",
     "linearize",
     "simulate",
+    "animate",
     "codegen",
     "play",
     "report",

@@ -10,7 +10,10 @@ import pytest
 import eomgen
 from eomgen.report.arrows import is_freer_outward
 from eomgen.report.figures import figures, scale_of
-from eomgen.report.support_symbols import coil
+from eomgen.scene import forms, plane_strokes
+from eomgen.scene.instant import drawn_start, frame_at
+from eomgen.scene.scene import Mark
+from eomgen.scene.strokes import PictureSizes, SceneNumbers
 
 pytestmark = pytest.mark.slow
 
@@ -57,7 +60,12 @@ def test_an_arrow_is_drawn_on_the_side_where_it_meets_fewer_lines():
 
 def test_a_spring_is_a_zigzag_from_end_to_end():
     """It begins and ends at its points, and swings by its width to both sides of the line between them."""
-    line = coil((1.0, 1.0), (4.0, 5.0), 0.3)
+    scene = eomgen.load(MODELS / "simple_pendulum.toml").scene()
+    numbers = SceneNumbers(scene, frame_at(scene, drawn_start(scene.system))[None, :])
+    form = forms.SpringForm((1, 1, 0), (4, 5, 0))
+    sizes = PictureSizes(0.3 / 0.55, np.zeros(2), np.ones(2))
+    (stroke,), _ = plane_strokes.TABLE[forms.SpringForm](form, Mark(form), numbers, sizes)
+    line = stroke.path[0]
     away = (line - line[0]) @ np.array([-0.8, 0.6])
     assert np.allclose(line[[0, -1]], [[1, 1], [4, 5]])
     assert np.allclose([away.min(), away.max()], [-0.3, 0.3])

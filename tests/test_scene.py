@@ -14,14 +14,14 @@ from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.figure import Figure
 
 import eomgen
-from eomgen.report.letters import Box
-from eomgen.report.letters_artist import Names
+from eomgen.report.letters import PageBox
+from eomgen.report.letters_artist import NamesArtist
 from eomgen.report.scene_drawing import draw
 from eomgen.report.space_drawing import draw_space
 from eomgen.scene import forms, plane_strokes, space_strokes
 from eomgen.scene.instant import drawn_start, frame_at
 from eomgen.scene.scene import ROLES, Mark, Scene
-from eomgen.scene.strokes import Numbers, Sizes
+from eomgen.scene.strokes import PictureSizes, SceneNumbers
 from eomgen.symbolic.numeric.evaluation import FLOAT, evaluate
 
 MODELS = Path(__file__).parent.parent / "models"
@@ -198,9 +198,9 @@ def test_each_kind_is_drawn_by_each_drawer(kind, space):
         return
     name = "double_pendulum" if space == "plane" else "arm3"
     scene = scene_named(name)
-    numbers = Numbers(scene, frame_at(scene, drawn_start(scene.system))[None, :])
+    numbers = SceneNumbers(scene, frame_at(scene, drawn_start(scene.system))[None, :])
     d = numbers.dimension
-    sizes = Sizes(0.1, -np.ones(d), np.ones(d), {("body", "N"): 1.0}, True)
+    sizes = PictureSizes(0.1, -np.ones(d), np.ones(d), {("body", "N"): 1.0}, True)
     form = one_of_each(kind)
     at_home, moved = (table[kind](form, Mark(form, frame), numbers, sizes) for frame in (0, 2))
     places = [*(stroke.path.reshape(-1, d) for stroke in at_home[0]), *(letter.at for letter in at_home[1])]
@@ -213,10 +213,10 @@ def test_each_kind_is_drawn_by_each_drawer(kind, space):
             assert np.allclose(one.path.reshape(-1, d) @ R[0].T + p[0], other.path.reshape(-1, d), equal_nan=True)
 
 
-def boxes_of(name: str) -> list[tuple[str, Box]]:
+def boxes_of(name: str) -> list[tuple[str, PageBox]]:
     """Every name of a model's picture, and where it stands."""
     scene = scene_named(name)
-    numbers = Numbers(scene, frame_at(scene, drawn_start(scene.system))[None, :])
+    numbers = SceneNumbers(scene, frame_at(scene, drawn_start(scene.system))[None, :])
     figure = Figure(figsize=(6, 5), layout="constrained")
     FigureCanvasAgg(figure)
     panel = figure.subplots()
@@ -225,7 +225,7 @@ def boxes_of(name: str) -> list[tuple[str, Box]]:
     else:
         draw_space(panel, space_strokes.space_drawing(numbers, dimensions=True))
     figure.draw_without_rendering()
-    (names,) = (artist for artist in panel.get_children() if isinstance(artist, Names))
+    (names,) = (artist for artist in panel.get_children() if isinstance(artist, NamesArtist))
     return names.boxes
 
 
@@ -237,3 +237,9 @@ def test_names_do_not_cover_one_another(name):
     for k, (text, box) in enumerate(boxes):
         for other, there in boxes[:k]:
             assert not box.meets(there), f"{text} covers {other}"
+
+
+def test_a_scene_leaves_the_interpreter_as_it_was():
+    """b"\\0" is zero: a number made of one character of text would have been written over it."""
+    scene_named("double_pendulum")
+    assert bytes([0])[0] == 0

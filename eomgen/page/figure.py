@@ -16,7 +16,7 @@ from eomgen.scene.instant import drawn_start, frame_at
 from eomgen.scene.making import scene_of
 from eomgen.scene.plane_strokes import plane_drawing
 from eomgen.scene.space_strokes import space_drawing
-from eomgen.scene.strokes import Numbers
+from eomgen.scene.strokes import SceneNumbers
 
 SIZE = (8.0, 4.2)  # of the rest picture [inches]
 _SVG = re.compile(r'<svg[^>]*viewBox="0 0 ([\d.]+) ([\d.]+)"[^>]*>(.*)</svg>', re.DOTALL)
@@ -26,7 +26,7 @@ def rest_figure(model: Model) -> ReportFigure:
     """A model where it starts, with its coordinates and lengths."""
     scene = scene_of(model)
     state = drawn_start(scene.system)
-    numbers = Numbers(scene, frame_at(scene, state)[None, :])
+    numbers = SceneNumbers(scene, frame_at(scene, state)[None, :])
     drawing = (plane_drawing if scene.plane else space_drawing)(numbers, dimensions=True)
 
     def fill(figure: object) -> None:

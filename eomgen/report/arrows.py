@@ -9,9 +9,7 @@ from typing import Any
 
 import numpy as np
 
-from eomgen.report.drawing import LOAD, REACTION, Sketch
-from eomgen.report.figures import halo
-from eomgen.report.support_symbols import PagePoint
+from eomgen.report.drawing import LOAD, REACTION, PagePoint, Sketch, name_beside
 
 __all__ = ["LOAD", "REACTION", "arrow", "distributed", "is_freer_outward", "moment_arc"]
 
@@ -41,20 +39,7 @@ def arrow(panel: Any, tip: PagePoint, vector: PagePoint, *, color: str, label: s
     free = end if outward else begin
     panel.plot(*free, alpha=0)  # so that the axes hold it
     if label:
-        sense = 1 if outward else -1
-        x, y = 8 * sense * dx / length, 8 * sense * dy / length
-        panel.annotate(
-            label,
-            free,
-            xytext=(x, y),
-            textcoords="offset points",
-            color=color,
-            fontsize=9,
-            zorder=7,
-            ha=_aligned(x, "right", "left"),
-            va=_aligned(y, "top", "bottom"),
-            path_effects=halo(),
-        )
+        name_beside(panel, label, free, color)
 
 
 def is_freer_outward(lines: Iterable[np.ndarray], at: PagePoint, vector: PagePoint) -> bool:
@@ -81,10 +66,6 @@ def _meets(a: np.ndarray, b: np.ndarray, at: np.ndarray, stroke: np.ndarray) -> 
     return bool(0 <= on_piece <= 1 and CLEAR < on_stroke <= 1)
 
 
-def _aligned(away: float, before: str, after: str) -> str:
-    return "center" if abs(away) < 3 else after if away > 0 else before
-
-
 def moment_arc(panel: Any, sketch: Sketch, at: PagePoint, sense: float, *, color: str, label: str = "") -> None:
     """A couple: three quarters of a circle with an arrow, counter-clockwise for a positive sense."""
     r = 1.9 * sketch.symbol
@@ -100,18 +81,7 @@ def moment_arc(panel: Any, sketch: Sketch, at: PagePoint, sense: float, *, color
         arrowprops={"arrowstyle": "-|>", "color": color, "linewidth": 1.5, "shrinkA": 0, "shrinkB": 0},
     )
     if label:
-        panel.annotate(
-            label,
-            (at[0], at[1] + r),
-            xytext=(0, 5),
-            textcoords="offset points",
-            color=color,
-            fontsize=9,
-            ha="center",
-            va="bottom",
-            zorder=7,
-            path_effects=halo(),
-        )
+        name_beside(panel, label, (at[0], at[1] + r), color)
 
 
 def distributed(
@@ -138,16 +108,5 @@ def distributed(
         arrow(panel, (tip[0], tip[1]), (vector[0], vector[1]), color=color)
     panel.plot(*np.array(tails).T, color=color, linewidth=1.2, zorder=6)
     if label:
-        x, y = -4 * (p + q) / (np.linalg.norm(p + q) or 1.0)
-        panel.annotate(
-            label,
-            tuple(np.mean(tails, axis=0)),
-            xytext=(x, y),
-            textcoords="offset points",
-            color=color,
-            fontsize=9,
-            ha=_aligned(x, "right", "left"),
-            va=_aligned(y, "top", "bottom"),
-            zorder=7,
-            path_effects=halo(),
-        )
+        x, y = np.mean(tails, axis=0)
+        name_beside(panel, label, (float(x), float(y)), color)

@@ -22,7 +22,7 @@ PageSpot = tuple[float, float]
 
 
 @dataclass(frozen=True)
-class Name:
+class PlacedName:
     """A name and its place.
 
     Args:
@@ -38,7 +38,7 @@ class Name:
 
 
 @dataclass(frozen=True)
-class Box:
+class PageBox:
     """An upright box of a picture [dots]."""
 
     left: float
@@ -46,12 +46,12 @@ class Box:
     right: float
     top: float
 
-    def meets(self, other: Box) -> bool:
+    def meets(self, other: PageBox) -> bool:
         return (
             self.left < other.right and other.left < self.right and self.bottom < other.top and other.bottom < self.top
         )
 
-    def holds(self, other: Box) -> bool:
+    def holds(self, other: PageBox) -> bool:
         return (
             self.left <= other.left
             and other.right <= self.right
@@ -59,8 +59,8 @@ class Box:
             and other.top <= self.top
         )
 
-    def grown(self, by: float) -> Box:
-        return Box(self.left - by, self.bottom - by, self.right + by, self.top + by)
+    def grown(self, by: float) -> PageBox:
+        return PageBox(self.left - by, self.bottom - by, self.right + by, self.top + by)
 
     def covered(self, dots: np.ndarray) -> int:
         """How many of some dots lie in it."""
@@ -68,22 +68,22 @@ class Box:
         return int(np.count_nonzero((x > self.left) & (x < self.right) & (y > self.bottom) & (y < self.top)))
 
 
-def _beside(at: tuple[float, float], size: tuple[float, float], away: float, turn: float) -> Box:
+def _beside(at: tuple[float, float], size: tuple[float, float], away: float, turn: float) -> PageBox:
     """A box of a size beside a place, so far away in a direction that its edge or corner is turned to it."""
     c, s = math.cos(turn), math.sin(turn)
     x = at[0] + away * c + 0.5 * size[0] * max(-1.0, min(1.0, 1.6 * c))
     y = at[1] + away * s + 0.5 * size[1] * max(-1.0, min(1.0, 1.6 * s))
-    return Box(x - 0.5 * size[0], y - 0.5 * size[1], x + 0.5 * size[0], y + 0.5 * size[1])
+    return PageBox(x - 0.5 * size[0], y - 0.5 * size[1], x + 0.5 * size[0], y + 0.5 * size[1])
 
 
 def room_for(
     at: tuple[float, float],
     size: tuple[float, float],
-    taken: Sequence[Box],
+    taken: Sequence[PageBox],
     dots: np.ndarray,
-    inside: Box,
+    inside: PageBox,
     point: float,
-) -> Box | None:
+) -> PageBox | None:
     """The best box of a size beside a place, which meets none that is taken; None where there is no room.
 
     Args:
@@ -91,7 +91,7 @@ def room_for(
         inside: the panel.
         point: a point in dots.
     """
-    best: tuple[float, Box | None] = (math.inf, None)
+    best: tuple[float, PageBox | None] = (math.inf, None)
     kept = [box.grown(APART * point) for box in taken]
     for number, ring in enumerate(RINGS):
         for order, turn in enumerate(TURNS):

@@ -10,10 +10,10 @@ from matplotlib.artist import Artist
 from matplotlib.text import Text
 
 from eomgen.report.figures import halo
-from eomgen.report.letters import STEP, Box, Name, dots_along, room_for
+from eomgen.report.letters import STEP, PageBox, PlacedName, dots_along, room_for
 
 
-class Names(Artist):
+class NamesArtist(Artist):
     """The names of one panel.
 
     Args:
@@ -23,12 +23,16 @@ class Names(Artist):
 
     zorder = 9
 
-    def __init__(self, names: Sequence[Name], lines: Sequence[np.ndarray]) -> None:
+    def __init__(self, names: Sequence[PlacedName], lines: Sequence[np.ndarray]) -> None:
         super().__init__()
         self.names = sorted(dict.fromkeys(names), key=lambda name: name.rank)
         self.lines = lines
-        self.boxes: list[tuple[str, Box]] = []
+        self.boxes: list[tuple[str, PageBox]] = []
         """(text, box in dots) of every name as it was drawn last."""
+
+    def add(self, name: PlacedName) -> None:
+        """One more, which chooses its place by its rank."""
+        self.names = sorted(dict.fromkeys([*self.names, name]), key=lambda each: each.rank)
 
     def draw(self, renderer: Any) -> None:
         """Find room for each and draw it."""
@@ -39,7 +43,7 @@ class Names(Artist):
         page = self.axes.transData.transform
         dots = dots_along([page(line) for line in self.lines], STEP * point)
         window = self.axes.get_window_extent(renderer)
-        inside = Box(window.x0, window.y0, window.x1, window.y1)
+        inside = PageBox(window.x0, window.y0, window.x1, window.y1)
         self.boxes = []
         for name in self.names:
             text = Text(0, 0, name.text, color=name.color, fontsize=name.size, path_effects=halo())

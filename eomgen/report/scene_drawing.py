@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 
 from eomgen.report.figures import mathtext
-from eomgen.report.letters import Name
+from eomgen.report.letters import PlacedName
 from eomgen.scene.strokes import Drawing, Letter, Stroke
 
 INK, GREY, PAPER = "#2b2b2b", "#6a6a6a", "#ffffff"
@@ -61,10 +61,10 @@ def draw(
     panel.set_xlim(low[0], high[0])
     panel.set_ylim(low[1], high[1])
     if names:
-        from eomgen.report.letters_artist import Names
+        from eomgen.report.letters_artist import NamesArtist
 
         lines = [stroke.path[frame] for stroke in drawing.strokes if stroke.role != "label"]
-        panel.add_artist(Names(tuple(names_of(drawing.letters, frame, colors or {})), lines))
+        panel.add_artist(NamesArtist(tuple(letter_names(drawing.letters, frame, colors or {})), lines))
     return shown
 
 
@@ -106,7 +106,7 @@ def limits(drawing: Drawing) -> tuple[np.ndarray, np.ndarray]:
     return middle - 0.5 * size, middle + 0.5 * size
 
 
-def names_of(letters: Sequence[Letter], frame: int, colors: Mapping[str, str]) -> Iterable[Name]:
+def letter_names(letters: Sequence[Letter], frame: int, colors: Mapping[str, str]) -> Iterable[PlacedName]:
     """The names of a picture; of several points at one place the first."""
     there: set[tuple[str, int, int]] = set()
     for letter in letters:
@@ -118,7 +118,7 @@ def names_of(letters: Sequence[Letter], frame: int, colors: Mapping[str, str]) -
             continue
         there.add(key)
         color = colors.get(letter.of, BODY) if letter.role == "label" else LINES.get(letter.role, (INK, 1.0))[0]
-        yield Name(written(letter), (x, y), color, 9.0, RANKS.get(letter.role, 4))
+        yield PlacedName(written(letter), (x, y), color, 9.0, RANKS.get(letter.role, 4))
 
 
 def written(letter: Letter) -> str:

@@ -8,7 +8,7 @@ from typing import Any
 
 import numpy as np
 
-from eomgen.report.letters import Name
+from eomgen.report.letters import PlacedName
 from eomgen.report.scene_drawing import BODY, FILLS, FINE, INK, LINES, MARGIN, NARROWEST, RANKS, SMALLEST, written
 from eomgen.scene.strokes import Drawing
 
@@ -112,16 +112,16 @@ class SpacePicture:
             if np.isfinite([a, b]).all()
         ]
 
-    def names(self, frame: int) -> list[Name]:
+    def names(self, frame: int) -> list[PlacedName]:
         """The names beside their places on the page."""
-        found: dict[tuple[str, int, int], Name] = {}
+        found: dict[tuple[str, int, int], PlacedName] = {}
         for letter in self.drawing.letters:
             at = letter.at[frame] @ self.view.T
             if np.isfinite(at).all():
                 color = (
                     self.colors.get(letter.of, BODY) if letter.role == "label" else LINES.get(letter.role, (INK, 1))[0]
                 )
-                name = Name(written(letter), (float(at[0]), float(at[1])), color, 9.0, RANKS.get(letter.role, 4))
+                name = PlacedName(written(letter), (float(at[0]), float(at[1])), color, 9.0, RANKS.get(letter.role, 4))
                 found.setdefault((letter.role, round(at[0] * 1e6), round(at[1] * 1e6)), name)
         return list(found.values())
 
@@ -142,7 +142,7 @@ def draw_space(panel: Any, drawing: Drawing, frame: int = 0, *, names: bool = Tr
     picture = SpacePicture(panel, drawing)
     picture.show(frame)
     if names:
-        from eomgen.report.letters_artist import Names
+        from eomgen.report.letters_artist import NamesArtist
 
-        panel.add_artist(Names(tuple(picture.names(frame)), picture.lines(frame)))
+        panel.add_artist(NamesArtist(tuple(picture.names(frame)), picture.lines(frame)))
     return picture

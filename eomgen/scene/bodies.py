@@ -89,7 +89,7 @@ def _plate(system: System, places: list[Vector]) -> list[Form]:
         return []
     if not system.symbols.q or len(places) < 3 or any(system.motion.moves(place) for place in places):
         return [LineForm(tuple(places))]
-    numbers = [tuple(map(float, evaluate(place[:2], known_parameters(system), FLOAT))) for place in places]
+    numbers = [tuple(map(float, evaluate(place[:2], parameters_as_drawn(system), FLOAT))) for place in places]
     corners = hull(numbers)
     return [PolygonForm(tuple(places[k] for k in corners)) if len(corners) > 2 else LineForm(tuple(places))]
 
@@ -113,7 +113,7 @@ def _turn(a: tuple[float, ...], b: tuple[float, ...], c: tuple[float, ...]) -> f
     return (b[0] - a[0]) * (c[1] - a[1]) - (b[1] - a[1]) * (c[0] - a[0])
 
 
-def known_parameters(system: System) -> dict[Node, float]:
+def parameters_as_drawn(system: System) -> dict[Node, float]:
     """The parameters in numbers; one without a value is 1, as in pictures."""
     known = exact_parameters(system.scope.model)
     return {node: float(known.get(name, 1)) for name, node in system.symbols.parameters.items()}

@@ -9,8 +9,8 @@ import numpy as np
 
 from eomgen.model.shapes.forms import ArcForm, LineForm, PolygonForm
 from eomgen.scene import forms
-from eomgen.scene.scene import Mark, constant
-from eomgen.scene.strokes import DrawerTable, Drawing, Drawn, Letter, Numbers, Sizes, Stroke, drawn_with
+from eomgen.scene.scene import Mark, plain_number
+from eomgen.scene.strokes import DrawerTable, Drawing, Drawn, Letter, PictureSizes, SceneNumbers, Stroke, drawn_with
 from eomgen.scene.symbols import PLANE, TEETH
 
 HEAD = np.array([[0.0, 0.0], [-1.1, 0.36], [-0.85, 0.0], [-1.1, -0.36], [0.0, 0.0]])  # of an arrow, its tip at 0
@@ -18,7 +18,7 @@ ROUND = 73  # points of a circle
 LEAST = 0.03  # of an angle that is drawn [rad]
 
 
-def plane_drawing(numbers: Numbers, *, dimensions: bool = False) -> Drawing:
+def plane_drawing(numbers: SceneNumbers, *, dimensions: bool = False) -> Drawing:
     """The strokes of a scene in the plane."""
     return drawn_with(TABLE, numbers, dimensions=dimensions)
 
@@ -30,16 +30,16 @@ def _stroke(path: np.ndarray, mark: Mark, **look: bool) -> Stroke:
 # -- shapes ------------------------------------------------------------------------------------------
 
 
-def _line(form: LineForm, mark: Mark, numbers: Numbers, sizes: Sizes) -> Drawn:
+def _line(form: LineForm, mark: Mark, numbers: SceneNumbers, sizes: PictureSizes) -> Drawn:
     return [_stroke(numbers.spots(form.points, mark), mark, fine=form.fine)], []
 
 
-def _polygon(form: PolygonForm, mark: Mark, numbers: Numbers, sizes: Sizes) -> Drawn:
+def _polygon(form: PolygonForm, mark: Mark, numbers: SceneNumbers, sizes: PictureSizes) -> Drawn:
     path = numbers.spots((*form.points, form.points[0]), mark)
     return [_stroke(path, mark, filled=True, hole=form.hole)], []
 
 
-def _arc(form: ArcForm, mark: Mark, numbers: Numbers, sizes: Sizes) -> Drawn:
+def _arc(form: ArcForm, mark: Mark, numbers: SceneNumbers, sizes: PictureSizes) -> Drawn:
     start = np.zeros(numbers.size) if form.start is None else numbers.value(form.start)
     end = start + math.tau if form.end is None else numbers.value(form.end)
     sweep = np.where(end < start, np.mod(end - start, math.tau), end - start)
@@ -55,25 +55,25 @@ def _arc(form: ArcForm, mark: Mark, numbers: Numbers, sizes: Sizes) -> Drawn:
     return [_stroke(numbers.placed(own, mark.frame), mark, filled=filled, hole=form.hole)], []
 
 
-def _rod(form: forms.RodForm, mark: Mark, numbers: Numbers, sizes: Sizes) -> Drawn:
+def _rod(form: forms.RodForm, mark: Mark, numbers: SceneNumbers, sizes: PictureSizes) -> Drawn:
     return [_stroke(numbers.spots((form.a, form.b), mark), mark)], []
 
 
-def _point(form: forms.PointForm, mark: Mark, numbers: Numbers, sizes: Sizes) -> Drawn:
+def _point(form: forms.PointForm, mark: Mark, numbers: SceneNumbers, sizes: PictureSizes) -> Drawn:
     return [_stroke(numbers.spots((form.at,), mark), mark, dot=True)], []
 
 
 # -- springs, dampers, symbols -----------------------------------------------------------------------
 
 
-def _spring(form: forms.SpringForm, mark: Mark, numbers: Numbers, sizes: Sizes) -> Drawn:
+def _spring(form: forms.SpringForm, mark: Mark, numbers: SceneNumbers, sizes: PictureSizes) -> Drawn:
     """Straight at its ends, teeth between."""
     share = np.array([0.0, 0.15, *(0.15 + 0.7 * (k + 0.5) / TEETH for k in range(TEETH)), 0.85, 1.0])
     aside = np.array([0.0, 0.0, *(0.55 * (-1) ** k for k in range(TEETH)), 0.0, 0.0])
     return [_stroke(_between(form, mark, numbers, sizes, share, aside), mark)], []
 
 
-def _damper(form: forms.DamperForm, mark: Mark, numbers: Numbers, sizes: Sizes) -> Drawn:
+def _damper(form: forms.DamperForm, mark: Mark, numbers: SceneNumbers, sizes: PictureSizes) -> Drawn:
     """A piston in a cylinder."""
     nan = math.nan
     share = np.array([0.0, 0.38, nan, 0.62, 0.38, 0.38, 0.62, nan, 0.52, 0.52, nan, 0.52, 1.0])
@@ -82,7 +82,7 @@ def _damper(form: forms.DamperForm, mark: Mark, numbers: Numbers, sizes: Sizes) 
 
 
 def _between(
-    form: forms.SpringForm, mark: Mark, numbers: Numbers, sizes: Sizes, share: np.ndarray, aside: np.ndarray
+    form: forms.SpringForm, mark: Mark, numbers: SceneNumbers, sizes: PictureSizes, share: np.ndarray, aside: np.ndarray
 ) -> np.ndarray:
     """Points at shares of the way from a to b, and aside of it [symbol units]; to its side between short ends."""
     a, b = numbers.spot(form.a, mark), numbers.spot(form.b, mark)
@@ -98,13 +98,13 @@ def _between(
     return path + sizes.unit * shifted[:, None] * left[:, None, :]
 
 
-def _track(form: forms.TrackForm, mark: Mark, numbers: Numbers, sizes: Sizes) -> Drawn:
+def _track(form: forms.TrackForm, mark: Mark, numbers: SceneNumbers, sizes: PictureSizes) -> Drawn:
     """As long as the picture; with a normal hatched on the other side."""
     if form.along is None:
         return [], []
     at, along = numbers.spot(form.at, mark), _unit(numbers.way(form.along, mark))
     normal = np.zeros_like(at) if form.normal is None else _unit(numbers.way(form.normal, mark))
-    at = at - float(constant(form.below)) * sizes.unit * normal
+    at = at - float(plain_number(form.below)) * sizes.unit * normal
     middle, reach = 0.5 * (sizes.low + sizes.high), 0.5 * float(np.linalg.norm(sizes.high - sizes.low)) + sizes.unit
     center = at + np.sum((middle - at) * along, axis=1, keepdims=True) * along
     ends = np.stack([center - reach * along, center + reach * along], axis=1)
@@ -124,7 +124,7 @@ def _broken(begin: np.ndarray, end: np.ndarray) -> np.ndarray:
     return joined
 
 
-def _symbol(form: forms.SymbolForm, mark: Mark, numbers: Numbers, sizes: Sizes) -> Drawn:
+def _symbol(form: forms.SymbolForm, mark: Mark, numbers: SceneNumbers, sizes: PictureSizes) -> Drawn:
     """A symbol of the table, turned and in its size."""
     at = numbers.spot(form.at, mark)
     x = _unit(numbers.way(form.along, mark)) if form.along is not None else _unit(numbers.way((1, 0, 0), mark))
@@ -142,9 +142,9 @@ def _own(part: Any) -> tuple[np.ndarray, dict[str, bool]]:
     """The points of a part of a symbol, k x 2, and its look."""
     if isinstance(part, ArcForm):
         turn = np.linspace(0, math.tau, 33)
-        circle = float(constant(part.radius)) * np.column_stack([np.cos(turn), np.sin(turn)])
-        return circle + np.array([float(constant(x)) for x in part.at[:2]]), {"filled": True}
-    points = np.array([[float(constant(x)) for x in place[:2]] for place in part.points])
+        circle = float(plain_number(part.radius)) * np.column_stack([np.cos(turn), np.sin(turn)])
+        return circle + np.array([float(plain_number(x)) for x in part.at[:2]]), {"filled": True}
+    points = np.array([[float(plain_number(x)) for x in place[:2]] for place in part.points])
     closed = isinstance(part, PolygonForm)
     return (np.vstack([points, points[:1]]) if closed else points), {"filled": closed, "fine": not closed}
 
@@ -158,7 +158,7 @@ def _unit(v: np.ndarray) -> np.ndarray:
 # -- arrows ------------------------------------------------------------------------------------------
 
 
-def _arrow(form: forms.ArrowForm, mark: Mark, numbers: Numbers, sizes: Sizes) -> Drawn:
+def _arrow(form: forms.ArrowForm, mark: Mark, numbers: SceneNumbers, sizes: PictureSizes) -> Drawn:
     """A shaft and a head; nothing of a vector without length."""
     at, v = numbers.spot(form.at, mark), numbers.way(form.vector, mark)
     shown = sizes.scales.get((mark.role, form.unit), 0.0) * v
@@ -168,7 +168,7 @@ def _arrow(form: forms.ArrowForm, mark: Mark, numbers: Numbers, sizes: Sizes) ->
     return strokes, [Letter(form.text, free, mark.role, mark.of)] if form.text else []
 
 
-def _arrow_strokes(begin: np.ndarray, tip: np.ndarray, mark: Mark, sizes: Sizes) -> list[Stroke]:
+def _arrow_strokes(begin: np.ndarray, tip: np.ndarray, mark: Mark, sizes: PictureSizes) -> list[Stroke]:
     """An arrow from one place to another, n x 2 each; gone where it has no length."""
     along = tip - begin
     length = np.linalg.norm(along, axis=1, keepdims=True)
@@ -181,7 +181,7 @@ def _arrow_strokes(begin: np.ndarray, tip: np.ndarray, mark: Mark, sizes: Sizes)
     return [_stroke(shaft + hidden[:, None], mark), _stroke(head + hidden[:, None], mark, filled=True)]
 
 
-def _couple(form: forms.CoupleForm, mark: Mark, numbers: Numbers, sizes: Sizes) -> Drawn:
+def _couple(form: forms.CoupleForm, mark: Mark, numbers: SceneNumbers, sizes: PictureSizes) -> Drawn:
     """Three quarters of a circle around its place, counter-clockwise where it is positive."""
     at, value = numbers.spot(form.at, mark), numbers.value(form.vector[2])
     sense = np.sign(value)[:, None]
@@ -197,7 +197,7 @@ def _couple(form: forms.CoupleForm, mark: Mark, numbers: Numbers, sizes: Sizes) 
     return [_stroke(path[:, :-2], mark), *head], letters
 
 
-def _load(form: forms.LoadForm, mark: Mark, numbers: Numbers, sizes: Sizes) -> Drawn:
+def _load(form: forms.LoadForm, mark: Mark, numbers: SceneNumbers, sizes: PictureSizes) -> Drawn:
     """Arrows whose tips are on a line, their tails joined; the largest half as long as that of a force."""
     a, b = numbers.spot(form.a, mark), numbers.spot(form.b, mark)
     p, q = numbers.way(form.at_a, mark), numbers.way(form.at_b, mark)
@@ -219,11 +219,11 @@ def _load(form: forms.LoadForm, mark: Mark, numbers: Numbers, sizes: Sizes) -> D
 # -- names and sizes -----------------------------------------------------------------------------------
 
 
-def _label(form: forms.LabelForm, mark: Mark, numbers: Numbers, sizes: Sizes) -> Drawn:
+def _label(form: forms.LabelForm, mark: Mark, numbers: SceneNumbers, sizes: PictureSizes) -> Drawn:
     return [], [Letter(form.text, numbers.spot(form.at, mark), mark.role, mark.of)]
 
 
-def _dimension(form: forms.DimensionForm, mark: Mark, numbers: Numbers, sizes: Sizes) -> Drawn:
+def _dimension(form: forms.DimensionForm, mark: Mark, numbers: SceneNumbers, sizes: PictureSizes) -> Drawn:
     """A line with two heads beside the length that it measures, thin lines from its ends."""
     if not sizes.dimensions:
         return [], []
@@ -242,7 +242,7 @@ def _dimension(form: forms.DimensionForm, mark: Mark, numbers: Numbers, sizes: S
     return found, [Letter(form.text, 0.5 * (c + d) + 0.2 * over + seen, mark.role, mark.of)]
 
 
-def _angle(form: forms.AngleForm, mark: Mark, numbers: Numbers, sizes: Sizes) -> Drawn:
+def _angle(form: forms.AngleForm, mark: Mark, numbers: SceneNumbers, sizes: PictureSizes) -> Drawn:
     """The arc of an angle between two thin lines, with a head at its end."""
     if not sizes.dimensions:
         return [], []
@@ -260,7 +260,7 @@ def _angle(form: forms.AngleForm, mark: Mark, numbers: Numbers, sizes: Sizes) ->
     ]
 
 
-def _field(form: forms.FieldForm, mark: Mark, numbers: Numbers, sizes: Sizes) -> Drawn:
+def _field(form: forms.FieldForm, mark: Mark, numbers: SceneNumbers, sizes: PictureSizes) -> Drawn:
     """Beside the upper right corner."""
     if not sizes.dimensions:
         return [], []
@@ -270,7 +270,7 @@ def _field(form: forms.FieldForm, mark: Mark, numbers: Numbers, sizes: Sizes) ->
     return _arrow_strokes(begin, begin + v, mark, sizes), [Letter(form.text, begin + 0.5 * v, mark.role, mark.of)]
 
 
-def _axes(form: forms.AxesForm, mark: Mark, numbers: Numbers, sizes: Sizes) -> Drawn:
+def _axes(form: forms.AxesForm, mark: Mark, numbers: SceneNumbers, sizes: PictureSizes) -> Drawn:
     """x and y, three symbols long."""
     at = numbers.spot(form.at, mark)
     found, letters = [], []

@@ -179,7 +179,7 @@ class Scene:
     def _value(self, x: Any) -> Any:
         if x is None or isinstance(x, (str, bool)):
             return x
-        return [self._slots[x]] if is_moving(x) else constant(x)
+        return [self._slots[x]] if is_moving(x) else plain_number(x)
 
     def _pose(self, pose: Pose) -> list[Any]:
         return [self._value(x) for x in self.pose_entries(pose)]
@@ -209,7 +209,7 @@ def is_moving(x: Any) -> bool:
     return type(x) is Node and bool(symbols_of((x,)))
 
 
-def constant(x: Any) -> float | int:
+def plain_number(x: Any) -> float | int:
     """A scalar without symbols, as a number."""
     number = float(evaluate((x,), {}, FLOAT)[0]) if type(x) is Node else float(x)
     return int(number) if number.is_integer() else number

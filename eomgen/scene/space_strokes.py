@@ -18,8 +18,8 @@ from eomgen.model.shapes.forms import (
     RevolutionForm,
 )
 from eomgen.scene import forms
-from eomgen.scene.scene import Mark, constant
-from eomgen.scene.strokes import DrawerTable, Drawing, Drawn, Letter, Numbers, Sizes, Stroke, drawn_with
+from eomgen.scene.scene import Mark, plain_number
+from eomgen.scene.strokes import DrawerTable, Drawing, Drawn, Letter, PictureSizes, SceneNumbers, Stroke, drawn_with
 from eomgen.scene.symbols import SPACE, TEETH
 
 ROUND, FALLS = 20, 10  # pieces of a turn, and from pole to pole
@@ -27,7 +27,7 @@ CUBE = np.array([[x, y, z] for x in (-0.5, 0.5) for y in (-0.5, 0.5) for z in (-
 SIDES = ((0, 1, 3, 2), (4, 6, 7, 5), (0, 4, 5, 1), (2, 3, 7, 6), (0, 2, 6, 4), (1, 5, 7, 3))
 
 
-def space_drawing(numbers: Numbers, *, dimensions: bool = False) -> Drawing:
+def space_drawing(numbers: SceneNumbers, *, dimensions: bool = False) -> Drawing:
     """The strokes of a scene in space."""
     return drawn_with(TABLE, numbers, dimensions=dimensions)
 
@@ -40,15 +40,15 @@ def _faces(corners: np.ndarray, mark: Mark, role: str = "") -> Stroke:
 # -- shapes ------------------------------------------------------------------------------------------
 
 
-def _line(form: LineForm, mark: Mark, numbers: Numbers, sizes: Sizes) -> Drawn:
+def _line(form: LineForm, mark: Mark, numbers: SceneNumbers, sizes: PictureSizes) -> Drawn:
     return [Stroke(numbers.spots(form.points, mark), mark.role, mark.of, fine=form.fine)], []
 
 
-def _polygon(form: PolygonForm, mark: Mark, numbers: Numbers, sizes: Sizes) -> Drawn:
+def _polygon(form: PolygonForm, mark: Mark, numbers: SceneNumbers, sizes: PictureSizes) -> Drawn:
     return [_faces(numbers.spots(form.points, mark)[:, None], mark)], []
 
 
-def _arc(form: ArcForm, mark: Mark, numbers: Numbers, sizes: Sizes) -> Drawn:
+def _arc(form: ArcForm, mark: Mark, numbers: SceneNumbers, sizes: PictureSizes) -> Drawn:
     start = np.zeros(numbers.size) if form.start is None else numbers.value(form.start)
     end = start + math.tau if form.end is None else numbers.value(form.end)
     sweep = np.where(end < start, np.mod(end - start, math.tau), end - start)
@@ -64,12 +64,12 @@ def _arc(form: ArcForm, mark: Mark, numbers: Numbers, sizes: Sizes) -> Drawn:
     return [] if form.hole else [_faces(path[:, None], mark)], []
 
 
-def _box(form: BoxForm, mark: Mark, numbers: Numbers, sizes: Sizes) -> Drawn:
+def _box(form: BoxForm, mark: Mark, numbers: SceneNumbers, sizes: PictureSizes) -> Drawn:
     own = numbers.vector(form.at)[:, None, :] + numbers.vector(form.size)[:, None, :] * CUBE
     return [_faces(numbers.placed(own, mark.frame)[:, SIDES], mark)], []
 
 
-def _ellipsoid(form: EllipsoidForm, mark: Mark, numbers: Numbers, sizes: Sizes) -> Drawn:
+def _ellipsoid(form: EllipsoidForm, mark: Mark, numbers: SceneNumbers, sizes: PictureSizes) -> Drawn:
     fall, turn = np.linspace(0, math.pi, FALLS + 1), np.linspace(0, math.tau, ROUND + 1)
     ball = np.stack(
         [np.outer(np.sin(fall), np.cos(turn)), np.outer(np.sin(fall), np.sin(turn)), np.outer(np.cos(fall), turn**0)], 2
@@ -80,7 +80,7 @@ def _ellipsoid(form: EllipsoidForm, mark: Mark, numbers: Numbers, sizes: Sizes) 
     return [_faces(numbers.placed(_quads(own), mark.frame), mark)], []
 
 
-def _revolution(form: RevolutionForm, mark: Mark, numbers: Numbers, sizes: Sizes) -> Drawn:
+def _revolution(form: RevolutionForm, mark: Mark, numbers: SceneNumbers, sizes: PictureSizes) -> Drawn:
     r = np.column_stack([numbers.value(x) for x, _ in form.profile])
     z = np.column_stack([numbers.value(x) for _, x in form.profile])
     own = numbers.vector(form.at)[:, None, None, :] + _swept(r, z)
@@ -108,19 +108,19 @@ def _quads(grid: np.ndarray) -> np.ndarray:
     return quads
 
 
-def _prism(form: PrismForm, mark: Mark, numbers: Numbers, sizes: Sizes) -> Drawn:
+def _prism(form: PrismForm, mark: Mark, numbers: SceneNumbers, sizes: PictureSizes) -> Drawn:
     ends = [numbers.spots(tuple((x, y, z) for x, y in form.points), mark) for z in (form.low, form.high)]
     rims = [np.concatenate([end, end[:, :1]], axis=1) for end in ends]
     walls = np.stack([rims[0][:, :-1], rims[0][:, 1:], rims[1][:, 1:], rims[1][:, :-1]], axis=2)
     return [_faces(walls, mark), *(_faces(end[:, None], mark) for end in ends)], []
 
 
-def _polyhedron(form: PolyhedronForm, mark: Mark, numbers: Numbers, sizes: Sizes) -> Drawn:
+def _polyhedron(form: PolyhedronForm, mark: Mark, numbers: SceneNumbers, sizes: PictureSizes) -> Drawn:
     corners = numbers.spots(form.points, mark)
     return [_faces(corners[:, None, list(face)], mark) for face in form.faces], []
 
 
-def _wheel(form: forms.WheelForm, mark: Mark, numbers: Numbers, sizes: Sizes) -> Drawn:
+def _wheel(form: forms.WheelForm, mark: Mark, numbers: SceneNumbers, sizes: PictureSizes) -> Drawn:
     """Its rim and two spokes; the axes across are the body's, so that it is seen to turn."""
     n, at, r = _unit(numbers.vector(form.axis)), numbers.vector(form.at), numbers.value(form.radius)[:, None, None]
     x, y = _crossing(n)
@@ -132,18 +132,18 @@ def _wheel(form: forms.WheelForm, mark: Mark, numbers: Numbers, sizes: Sizes) ->
     return [Stroke(path[:, :-3], mark.role, mark.of), *spokes], []
 
 
-def _rod(form: forms.RodForm, mark: Mark, numbers: Numbers, sizes: Sizes) -> Drawn:
+def _rod(form: forms.RodForm, mark: Mark, numbers: SceneNumbers, sizes: PictureSizes) -> Drawn:
     return [Stroke(numbers.spots((form.a, form.b), mark), mark.role, mark.of)], []
 
 
-def _point(form: forms.PointForm, mark: Mark, numbers: Numbers, sizes: Sizes) -> Drawn:
+def _point(form: forms.PointForm, mark: Mark, numbers: SceneNumbers, sizes: PictureSizes) -> Drawn:
     return [Stroke(numbers.spots((form.at,), mark), mark.role, mark.of, dot=True)], []
 
 
 # -- springs, tracks, symbols ------------------------------------------------------------------------
 
 
-def _spring(form: forms.SpringForm, mark: Mark, numbers: Numbers, sizes: Sizes) -> Drawn:
+def _spring(form: forms.SpringForm, mark: Mark, numbers: SceneNumbers, sizes: PictureSizes) -> Drawn:
     """A coil about the line from a to b."""
     turn = np.linspace(0, math.tau * TEETH, 12 * TEETH + 1)
     share = np.concatenate([[0.0], np.linspace(0.12, 0.88, len(turn)), [1.0]])
@@ -153,7 +153,7 @@ def _spring(form: forms.SpringForm, mark: Mark, numbers: Numbers, sizes: Sizes) 
     return [Stroke(_along(form, mark, numbers, share, ring), mark.role, mark.of)], []
 
 
-def _damper(form: forms.DamperForm, mark: Mark, numbers: Numbers, sizes: Sizes) -> Drawn:
+def _damper(form: forms.DamperForm, mark: Mark, numbers: SceneNumbers, sizes: PictureSizes) -> Drawn:
     """A cylinder about a thin rod."""
     r = np.array([0.0, 0.5, 0.5, 0.5, 0.0, 0.0]) * sizes.unit
     share = np.array([0.38, 0.38, 0.62, 0.62, 0.62, 1.0])
@@ -163,7 +163,9 @@ def _damper(form: forms.DamperForm, mark: Mark, numbers: Numbers, sizes: Sizes) 
     return [Stroke(path, mark.role, mark.of) for path in (start, *paths)], []
 
 
-def _along(form: forms.SpringForm, mark: Mark, numbers: Numbers, share: np.ndarray, across: np.ndarray) -> np.ndarray:
+def _along(
+    form: forms.SpringForm, mark: Mark, numbers: SceneNumbers, share: np.ndarray, across: np.ndarray
+) -> np.ndarray:
     """Points at shares of the way from a to b, and beside it in two directions across [m]."""
     a, b = numbers.spot(form.a, mark), numbers.spot(form.b, mark)
     first, second = _crossing(_unit(b - a))
@@ -185,7 +187,7 @@ def _crossing(n: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
     return first, np.cross(n, first)
 
 
-def _track(form: forms.TrackForm, mark: Mark, numbers: Numbers, sizes: Sizes) -> Drawn:
+def _track(form: forms.TrackForm, mark: Mark, numbers: SceneNumbers, sizes: PictureSizes) -> Drawn:
     """A line as long as the picture; a plane as a square that all of it fits on."""
     at = numbers.spot(form.at, mark)
     middle, reach = 0.5 * (sizes.low + sizes.high), 0.6 * float(np.linalg.norm(sizes.high - sizes.low))
@@ -202,7 +204,7 @@ def _track(form: forms.TrackForm, mark: Mark, numbers: Numbers, sizes: Sizes) ->
     return [_faces(corners[:, None], mark)], []
 
 
-def _symbol(form: forms.SymbolForm, mark: Mark, numbers: Numbers, sizes: Sizes) -> Drawn:
+def _symbol(form: forms.SymbolForm, mark: Mark, numbers: SceneNumbers, sizes: PictureSizes) -> Drawn:
     """A symbol of the table, its axis turned, in its size."""
     at = numbers.spot(form.at, mark)
     z = _unit(numbers.way(form.along if form.along is not None else (0, 0, 1), mark))
@@ -221,11 +223,11 @@ def _symbol(form: forms.SymbolForm, mark: Mark, numbers: Numbers, sizes: Sizes) 
 def _own(part: Any) -> Any:
     """The faces f x c x 3 of a part of a symbol; of a line 1 x k x 3."""
     if isinstance(part, LineForm):
-        return np.array([[[float(constant(x)) for x in place] for place in part.points]])
+        return np.array([[[float(plain_number(x)) for x in place] for place in part.points]])
     if isinstance(part, RevolutionForm):
-        profile = np.array([[float(constant(r)), float(constant(z))] for r, z in part.profile])
+        profile = np.array([[float(plain_number(r)), float(plain_number(z))] for r, z in part.profile])
         return _quads(_swept(profile[None, :, 0], profile[None, :, 1]))[0]
-    size = np.array([float(constant(x)) for x in part.size])
+    size = np.array([float(plain_number(x)) for x in part.size])
     if isinstance(part, BoxForm):
         return (size * CUBE)[np.array(SIDES)]
     fall = np.linspace(0, math.pi, 9)
@@ -235,7 +237,7 @@ def _own(part: Any) -> Any:
 # -- arrows and names --------------------------------------------------------------------------------
 
 
-def _arrow(form: forms.ArrowForm, mark: Mark, numbers: Numbers, sizes: Sizes) -> Drawn:
+def _arrow(form: forms.ArrowForm, mark: Mark, numbers: SceneNumbers, sizes: PictureSizes) -> Drawn:
     at, v = numbers.spot(form.at, mark), numbers.way(form.vector, mark)
     shown = sizes.scales.get((mark.role, form.unit), 0.0) * v
     begin, tip = (at, at + shown) if form.outward else (at - shown, at)
@@ -244,7 +246,7 @@ def _arrow(form: forms.ArrowForm, mark: Mark, numbers: Numbers, sizes: Sizes) ->
     return _arrow_strokes(begin, tip, mark, sizes), letters
 
 
-def _arrow_strokes(begin: np.ndarray, tip: np.ndarray, mark: Mark, sizes: Sizes) -> list[Stroke]:
+def _arrow_strokes(begin: np.ndarray, tip: np.ndarray, mark: Mark, sizes: PictureSizes) -> list[Stroke]:
     """A shaft, and a cone at its end; gone where it has no length."""
     along = tip - begin
     length = np.linalg.norm(along, axis=1, keepdims=True)
@@ -261,7 +263,7 @@ def _arrow_strokes(begin: np.ndarray, tip: np.ndarray, mark: Mark, sizes: Sizes)
     return [Stroke(np.stack([begin + hidden, tip - size * n], axis=1), mark.role, mark.of), _faces(cone, mark)]
 
 
-def _couple(form: forms.CoupleForm, mark: Mark, numbers: Numbers, sizes: Sizes) -> Drawn:
+def _couple(form: forms.CoupleForm, mark: Mark, numbers: SceneNumbers, sizes: PictureSizes) -> Drawn:
     """A double arrow along the couple."""
     at = numbers.spot(form.at, mark)
     v = np.column_stack([numbers.value(x) for x in form.vector])
@@ -271,7 +273,7 @@ def _couple(form: forms.CoupleForm, mark: Mark, numbers: Numbers, sizes: Sizes) 
     return [*_arrow_strokes(at, inner, mark, sizes), *_arrow_strokes(at, tip, mark, sizes)], letters
 
 
-def _load(form: forms.LoadForm, mark: Mark, numbers: Numbers, sizes: Sizes) -> Drawn:
+def _load(form: forms.LoadForm, mark: Mark, numbers: SceneNumbers, sizes: PictureSizes) -> Drawn:
     """Arrows whose tips are on a line."""
     a, b = numbers.spot(form.a, mark), numbers.spot(form.b, mark)
     p, q = numbers.way(form.at_a, mark), numbers.way(form.at_b, mark)
@@ -283,16 +285,16 @@ def _load(form: forms.LoadForm, mark: Mark, numbers: Numbers, sizes: Sizes) -> D
     return found, [Letter(form.text, 0.5 * (a + b), mark.role, mark.of)] if form.text else []
 
 
-def _label(form: forms.LabelForm, mark: Mark, numbers: Numbers, sizes: Sizes) -> Drawn:
+def _label(form: forms.LabelForm, mark: Mark, numbers: SceneNumbers, sizes: PictureSizes) -> Drawn:
     return [], [Letter(form.text, numbers.spot(form.at, mark), mark.role, mark.of)]
 
 
-def _nothing(form: Any, mark: Mark, numbers: Numbers, sizes: Sizes) -> Drawn:
+def _nothing(form: Any, mark: Mark, numbers: SceneNumbers, sizes: PictureSizes) -> Drawn:
     """Dimension lines and angles are for the plane."""
     return [], []
 
 
-def _field(form: forms.FieldForm, mark: Mark, numbers: Numbers, sizes: Sizes) -> Drawn:
+def _field(form: forms.FieldForm, mark: Mark, numbers: SceneNumbers, sizes: PictureSizes) -> Drawn:
     """At the corner of the picture."""
     if not sizes.dimensions:
         return [], []
@@ -301,7 +303,7 @@ def _field(form: forms.FieldForm, mark: Mark, numbers: Numbers, sizes: Sizes) ->
     return _arrow_strokes(begin, begin + v, mark, sizes), [Letter(form.text, begin + 0.5 * v, mark.role, mark.of)]
 
 
-def _axes(form: forms.AxesForm, mark: Mark, numbers: Numbers, sizes: Sizes) -> Drawn:
+def _axes(form: forms.AxesForm, mark: Mark, numbers: SceneNumbers, sizes: PictureSizes) -> Drawn:
     """x, y and z, four symbols long."""
     at = numbers.spot(form.at, mark)
     found: list[Stroke] = []

@@ -14,11 +14,11 @@ from typing import Any
 import numpy as np
 
 from eomgen.model.shapes.forms import Form
-from eomgen.scene.scene import Mark, Scene, constant, is_moving
+from eomgen.scene.scene import Mark, Scene, is_moving, plain_number
 from eomgen.symbolic.expression.spatial import Vector
 
 SYMBOL = 0.028  # symbol unit, of the extent
-ARROW = 0.14  # the longest arrow, of the extent
+ARROW = 0.2  # the longest arrow, of the extent
 WIDEST = 6.0  # of the rest, how large a guide may be that is shown as a whole
 LONELY = 14.0  # side of a picture of one point [symbol units]
 QUANTILE = 0.98  # of all arrows of a kind are no longer than that
@@ -58,7 +58,7 @@ class Letter:
 
 
 @dataclass(frozen=True)
-class Numbers:
+class SceneNumbers:
     """The numbers of a scene over n frames.
 
     Args:
@@ -85,7 +85,7 @@ class Numbers:
         """A scalar, n."""
         if is_moving(x):
             return self.frames[:, self._slots[x]]
-        return np.full(self.size, float(constant(x)))
+        return np.full(self.size, float(plain_number(x)))
 
     def vector(self, v: Vector) -> np.ndarray:
         """A vector in its own axes, n x d."""
@@ -136,7 +136,7 @@ class Numbers:
 
 
 @dataclass(frozen=True)
-class Sizes:
+class PictureSizes:
     """What strokes need to know of the picture.
 
     Args:
@@ -159,7 +159,7 @@ class Sizes:
 
 
 Drawn = tuple[list[Stroke], list[Letter]]
-Drawer = Callable[[Any, Mark, Numbers, Sizes], Drawn]
+Drawer = Callable[[Any, Mark, SceneNumbers, PictureSizes], Drawn]
 DrawerTable = Mapping[type[Form], Drawer]
 
 
@@ -169,10 +169,10 @@ class Drawing:
 
     strokes: tuple[Stroke, ...]
     letters: tuple[Letter, ...]
-    sizes: Sizes
+    sizes: PictureSizes
 
 
-def drawn_with(table: DrawerTable, numbers: Numbers, *, dimensions: bool = False) -> Drawing:
+def drawn_with(table: DrawerTable, numbers: SceneNumbers, *, dimensions: bool = False) -> Drawing:
     """The marks of a scene as strokes and letters.
 
     Args:
@@ -180,7 +180,7 @@ def drawn_with(table: DrawerTable, numbers: Numbers, *, dimensions: bool = False
         dimensions: dimension lines and angles are drawn.
     """
     marks = numbers.scene.marks
-    flat = Sizes(0.0, np.zeros(numbers.dimension), np.ones(numbers.dimension))
+    flat = PictureSizes(0.0, np.zeros(numbers.dimension), np.ones(numbers.dimension))
     solid = [table[type(m.form)](m.form, m, numbers, flat)[0] for m in marks if m.role in SOLID]
     guides = [
         stroke
@@ -189,7 +189,7 @@ def drawn_with(table: DrawerTable, numbers: Numbers, *, dimensions: bool = False
         for stroke in table[type(m.form)](m.form, m, numbers, flat)[0]
     ]
     low, high, extent = _box(numbers, [stroke for strokes in solid for stroke in strokes], guides)
-    sizes = Sizes(SYMBOL * extent, low, high, _scales(numbers, extent), dimensions)
+    sizes = PictureSizes(SYMBOL * extent, low, high, _scales(numbers, extent), dimensions)
     strokes: list[Stroke] = []
     letters: list[Letter] = []
     for mark in marks:
@@ -199,7 +199,9 @@ def drawn_with(table: DrawerTable, numbers: Numbers, *, dimensions: bool = False
     return Drawing(tuple(strokes), tuple(letters), sizes)
 
 
-def _box(numbers: Numbers, strokes: Iterable[Stroke], guides: Iterable[Stroke]) -> tuple[np.ndarray, np.ndarray, float]:
+def _box(
+    numbers: SceneNumbers, strokes: Iterable[Stroke], guides: Iterable[Stroke]
+) -> tuple[np.ndarray, np.ndarray, float]:
     """(low, high) corner of all that is solid over all frames, and its larger side in the first frame.
 
     A guide counts where it is not much larger than the rest.
@@ -229,7 +231,7 @@ def _side(clouds: list[np.ndarray], d: int) -> float:
     return float(np.max(np.ptp(points, axis=0))) if len(points) else 0.0
 
 
-def _scales(numbers: Numbers, extent: float) -> dict[tuple[str, str], float]:
+def _scales(numbers: SceneNumbers, extent: float) -> dict[tuple[str, str], float]:
     """Of arrows: the longest of a role and unit, but for a fiftieth of all instants, has the length ARROW."""
     sizes: dict[tuple[str, str], list[np.ndarray]] = {}
     for mark in numbers.scene.marks_of_kind("arrow"):

@@ -19,12 +19,17 @@ SymbolParts = tuple[tuple[str, Form], ...]
 """(role, form): "joint" is filled with paper, "solid" with ink, "ground" is a thin line."""
 
 
+def _exact(x: float) -> Fraction:
+    """A number of a symbol, to three places."""
+    return Fraction(round(1000 * x), 1000)
+
+
 def _line(*points: tuple[float, float]) -> Form:
     return LineForm(_spots(points))
 
 
 def _spots(points: Iterable[tuple[float, float]]) -> tuple[Vector, ...]:
-    return tuple((Fraction(str(x)), Fraction(str(y)), 0) for x, y in points)
+    return tuple((_exact(x), _exact(y), 0) for x, y in points)
 
 
 def _polygon(*points: tuple[float, float]) -> Form:
@@ -32,8 +37,8 @@ def _polygon(*points: tuple[float, float]) -> Form:
 
 
 def _circle(x: float, y: float, radius: float) -> Form:
-    r = Fraction(str(radius))
-    return ArcForm((Fraction(str(x)), Fraction(str(y)), 0), r, r, close="chord")
+    r = _exact(radius)
+    return ArcForm((_exact(x), _exact(y), 0), r, r, close="chord")
 
 
 def _square(half: float) -> Form:
@@ -69,17 +74,17 @@ PLANE: dict[str, SymbolParts] = {
 
 
 def _ball(radius: float) -> Form:
-    r = Fraction(str(radius))
+    r = _exact(radius)
     return EllipsoidForm(ZERO, (r, r, r))
 
 
 def _drum(radius: float, half: float) -> Form:
-    r, h = Fraction(str(radius)), Fraction(str(half))
+    r, h = _exact(radius), _exact(half)
     return RevolutionForm(ZERO, ((0, -h), (r, -h), (r, h), (0, h)), (r,))
 
 
 def _block(x: float, y: float, z: float) -> Form:
-    return BoxForm(ZERO, (Fraction(str(x)), Fraction(str(y)), Fraction(str(z))))
+    return BoxForm(ZERO, (_exact(x), _exact(y), _exact(z)))
 
 
 SPACE: dict[str, SymbolParts] = {

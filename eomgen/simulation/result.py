@@ -190,6 +190,14 @@ class Trajectory:
         times = columns.pop("t")
         return pandas.DataFrame(columns, index=pandas.Index(times, name="t"))
 
+    def animate(self, path: str | Path | None = None, **how: Any) -> Any:
+        """The motion as a moving picture: .gif, .mp4, .png (a strip), .html; without a path its player shows itself.
+
+        Args:
+            how: fps, speed, trail, forces, frames, as of `eomgen animate`.
+        """
+        return import_module("eomgen").animate(self, path, **how)  # the package's front door: pictures come later
+
     def summary(self) -> str:
         """How it went, in a line or two."""
         parts = [f"{self.message} {self.steps} steps, {self.evaluations} evaluations."]

@@ -19,10 +19,9 @@ from eomgen.mechanics.fields.centrodes import Centrodes
 from eomgen.mechanics.instant.kinematic_state import KinematicState
 from eomgen.mechanics.instant.mechanism import FIXED, Mechanism
 from eomgen.report.arrows import arrow
-from eomgen.report.drawing import ARROW, REACTION, Sketch, draw_model
+from eomgen.report.drawing import ARROW, REACTION, PagePoint, Sketch, draw_model, name_beside
 from eomgen.report.figures import Picture
 from eomgen.report.kinematics.centrode_plot import centrode_panel
-from eomgen.report.support_symbols import PagePoint
 from eomgen.symbolic.expression.derivative import substituted, symbols_of
 from eomgen.symbolic.expression.graph import Node, Scalar
 
@@ -121,15 +120,7 @@ class _Panels:
                 places.setdefault((round(x, 9), round(y, 9)), []).append(center.name)
         for place, names in places.items():
             panel.plot(*place, marker="x", markersize=8, color=CENTER, zorder=8)
-            panel.annotate(
-                " ".join(names).replace("$", r"\$"),
-                place,
-                xytext=(6, -11),
-                textcoords="offset points",
-                fontsize=8,
-                color=CENTER,
-                zorder=8,
-            )
+            name_beside(panel, " ".join(names).replace("$", r"\$"), place, CENTER)
         return far
 
     def _is_far(self, place: PagePoint) -> bool:

@@ -21,11 +21,10 @@ from eomgen.model.forces.load import Couple, PointForce, SpreadLoad
 from eomgen.model.parts import Model
 from eomgen.model.values import exact_parameters
 from eomgen.report.arrows import arrow, distributed, is_freer_outward, moment_arc
-from eomgen.report.drawing import ARROW, LOAD, REACTION, Sketch, draw_model
+from eomgen.report.drawing import ARROW, LOAD, REACTION, PagePoint, Sketch, draw_model
 from eomgen.report.figures import Picture, Scale, halo, scale_of
 from eomgen.report.statics.diagrams import diagram_panels, influence_panel
 from eomgen.report.statics.section_steps import Sections
-from eomgen.report.support_symbols import PagePoint
 from eomgen.symbolic.expression.graph import Scalar
 from eomgen.symbolic.expression.spatial import ZERO
 from eomgen.symbolic.numeric.tolerances import COMPUTED

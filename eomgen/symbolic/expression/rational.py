@@ -1,6 +1,7 @@
 """Exact rationals: compiled where quicktions is installed, else Python's own. Same values, texts and hashes either way.
 
-Every module takes its Fraction from here, and nowhere else is a choice made.
+Every module takes its Fraction from here, and nowhere else is a choice made. It is never made of text of one
+character: quicktions 1.24 then writes over the interpreter's own b"\\0".
 """
 
 from __future__ import annotations

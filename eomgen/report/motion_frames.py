@@ -1,0 +1,177 @@
+"""Trajectory -> Movie: a run, or a mode, as frames of a scene, with its trails and its forces."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from eomgen.codegen.program import program_of
+from eomgen.codegen.rhs import compiled
+from eomgen.errors import UsageError
+from eomgen.mechanics.equations.system import System
+from eomgen.mechanics.small_motions.modes import Modes
+from eomgen.mechanics.small_motions.spectrum import Mode
+from eomgen.model.findings import nearest
+from eomgen.scene.applied import reaction_marks
+from eomgen.scene.instant import DrawnState, frames_along
+from eomgen.scene.making import scene_of_system
+from eomgen.scene.plane_strokes import plane_drawing
+from eomgen.scene.scene import Scene
+from eomgen.scene.space_strokes import space_drawing
+from eomgen.scene.strokes import Drawing, SceneNumbers
+from eomgen.simulation.result import Trajectory
+from eomgen.symbolic.expression.graph import Node, Scalar
+from eomgen.symbolic.numeric.tolerances import COMPUTED, WIDE_STEP
+
+MOST_FRAMES = 5000
+FINE = 8  # places of a trail in a frame
+PERIOD = 2.0  # of a mode as it is shown, and how long it is [s]
+SWING = 0.12  # of the extent, by which the point of a mode that moves most is swung out
+
+
+@dataclass(frozen=True)
+class Movie:
+    """Frames of one scene.
+
+    Args:
+        drawing: over all frames.
+        times: of each frame in the motion [s].
+        trails: name of a point -> its places, FINE of them a frame, d each.
+        title: what is said above it.
+    """
+
+    drawing: Drawing
+    times: np.ndarray
+    plane: bool
+    trails: Mapping[str, np.ndarray]
+    title: str = ""
+
+
+def frame_times(end: float, fps: float, speed: float) -> np.ndarray:
+    """The instants of the frames of a motion from 0: speed / fps apart [s].
+
+    Raises:
+        UsageError: a rate or speed that is not positive, too many frames.
+    """
+    if not (fps > 0 and speed > 0 and end >= 0):
+        raise UsageError("frames per second and speed are positive numbers")
+    count = int(np.floor(end * fps / speed * (1 + COMPUTED))) + 1
+    if count > MOST_FRAMES:
+        what = f"{count} frames are more than {MOST_FRAMES}"
+        raise UsageError(what, mend="take a shorter --time, fewer frames with --fps, or a larger --speed")
+    return np.arange(count) * speed / fps
+
+
+def movie_of(run: Trajectory, times: np.ndarray, *, trail: Sequence[str] = (), forces: bool = False) -> Movie:
+    """A run at some instants; states between its rows are interpolated.
+
+    Args:
+        trail: points that leave a trail.
+        forces: applied forces and reactions are arrows.
+    Raises:
+        UsageError: a point that is not there; a run whose equations nobody knows.
+    """
+    phase = run.phases[0].model if run.phases else None
+    if phase is None:
+        raise UsageError("nothing is known of the bodies of this run", mend="take eomgen.simulate(model)")
+    system: System = phase.declared
+    names = [node.name for node in (*system.symbols.q, *system.symbols.u)]
+    columns = dict(zip(run.coordinates + run.speeds, run.x.T, strict=True))
+
+    def states(at: np.ndarray) -> np.ndarray:
+        found = [np.interp(at, run.t, columns[name]) for name in names]
+        return np.column_stack(found) if found else np.zeros((len(at), 0))
+
+    scene = scene_of_system(system)
+    given: dict[Node, np.ndarray] = {}
+    if forces:
+        symbols = {name: system.symbols.graph.symbol(f"({name})") for name in run.reactions}
+        given = {symbols[name]: np.interp(times, run.t, column) for name, column in run.reactions.items()}
+        scene = replace(scene, marks=(*scene.marks, *reaction_marks(system, symbols)))
+    else:
+        scene = replace(scene, marks=tuple(mark for mark in scene.marks if mark.role != "force"))
+    numbers = SceneNumbers(scene, _frames(scene, times, states(times), phase.p, given))
+    fine = np.interp(np.arange(FINE * (len(times) - 1) + 1) / FINE, np.arange(len(times)), times)
+    return _movie(numbers, times, _trails(scene, trail, lambda way: frames_along(way, fine, states(fine), phase.p)))
+
+
+def _frames(scene: Scene, t: np.ndarray, x: np.ndarray, p: np.ndarray, given: Mapping[Node, np.ndarray]) -> np.ndarray:
+    """The frames of a scene in which some symbols have columns of their own."""
+    if not given:
+        return frames_along(scene, t, x, p)
+    known = tuple(value for value in scene.values if value not in given)
+    program = program_of(known, scene.system.symbols, inputs=scene.system.inputs)
+    with np.errstate(all="ignore"):
+        found = dict(zip(known, compiled(program, "numpy").many(t, x, p).T, strict=True))
+    columns: dict[Scalar, np.ndarray] = dict(found)
+    for node, column in given.items():
+        columns[node] = column
+    return np.column_stack([columns[value] for value in scene.values])
+
+
+def _trails(scene: Scene, names: Sequence[str], frames: Callable[[Scene], np.ndarray]) -> dict[str, np.ndarray]:
+    """The places of named points."""
+    points = dict(scene.points)
+    for name in names:
+        if name not in points:
+            raise UsageError(f"there is no point '{name}'", mend=nearest(name, points))
+    if not names:
+        return {}
+    way = Scene(scene.system, scene.frames[:1], tuple((name, points[name]) for name in names), ())
+    numbers = SceneNumbers(way, frames(way))
+    return {name: numbers.vector(points[name]) for name in names}
+
+
+def _movie(numbers: SceneNumbers, times: np.ndarray, trails: Mapping[str, np.ndarray], title: str = "") -> Movie:
+    plane = numbers.scene.plane
+    return Movie((plane_drawing if plane else space_drawing)(numbers), times, plane, trails, title)
+
+
+def mode_movies(modes: Modes, count: int, fps: float) -> list[Movie]:
+    """The slowest modes about their reference, each over one period, all shown equally fast.
+
+    Raises:
+        UsageError: there is none; parameters without values.
+    """
+    reference = modes.small.reference
+    if not reference.valued:
+        raise UsageError("modes are shown with values of all parameters", mend="give them values in [parameters]")
+    shown = [mode for mode in modes.spectrum.modes if mode.frequency][:count]
+    if not shown:
+        raise UsageError("the model has no mode that swings")
+    return [_mode_movie(modes, mode, k, int(PERIOD * fps)) for k, mode in enumerate(shown, start=1)]
+
+
+def _mode_movie(modes: Modes, mode: Mode, number: int, count: int) -> Movie:
+    """q = q_0 + a Re(shape e^(i phase)) over one turn of the phase."""
+    system = modes.small.reference.system
+    scene = scene_of_system(system)
+    at = reference_state(modes)
+    shape = np.array([complex(mode.shape.get(q, 0.0)) for q in system.symbols.q] + [0.0] * len(system.symbols.u))
+    phase = 2 * np.pi * np.arange(count) / count
+    swung = np.real(shape[None, :] * np.exp(1j * phase)[:, None])
+    size = swing(scene, at, swung)
+    frames = frames_along(scene, np.full(count, at.t), at.x[None, :] + size * swung, at.p)
+    frequency = mode.frequency or 0.0
+    return _movie(SceneNumbers(scene, frames), phase / (frequency or 1.0), {}, f"{number}: {frequency:.4g} rad/s")
+
+
+def reference_state(modes: Modes) -> DrawnState:
+    """The state about which small motions are looked at."""
+    system, numbers = modes.small.reference.system, modes.small.reference.numbers
+    symbols = system.symbols
+    x = [float(numbers.get(node, 0.0)) for node in (*symbols.q, *symbols.u)]
+    p = [float(numbers[node]) for node in symbols.parameters.values()]
+    return DrawnState(float(numbers.get(symbols.t, 0.0)), np.array(x), np.array(p))
+
+
+def swing(scene: Scene, at: DrawnState, swung: np.ndarray) -> float:
+    """How far a mode is swung out: so that what moves most moves by a part of the picture."""
+    states = np.vstack([at.x[None, :], at.x + WIDE_STEP * swung])
+    numbers = SceneNumbers(scene, frames_along(scene, np.full(len(states), at.t), states, at.p))
+    drawing = (plane_drawing if scene.plane else space_drawing)(numbers)
+    solid = [s.path.reshape(len(states), -1) for s in drawing.strokes if s.role in ("body", "inertia", "member")]
+    moved = max((float(np.nanmax(np.abs(path - path[0]))) for path in solid if path.size), default=0.0)
+    return SWING * drawing.sizes.extent * WIDE_STEP / moved if moved > 0 else 0.0

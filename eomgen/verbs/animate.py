@@ -1,0 +1,153 @@
+"""eomgen animate: the motion, or small motions, as a moving picture."""
+
+from __future__ import annotations
+
+import html
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+
+import numpy as np
+
+from eomgen import files, pipeline
+from eomgen.errors import UsageError
+from eomgen.model.parts import Model
+from eomgen.questions.run import run as simulated
+from eomgen.report.document import Document, plain_document
+from eomgen.report.motion_frames import FINE, Movie, frame_times, mode_movies, movie_of
+from eomgen.report.moving_picture import Progress, gif, mp4, on_stderr, strip
+from eomgen.report.statements import prose
+from eomgen.simulation.integrator import Stepping
+from eomgen.simulation.result import Trajectory
+from eomgen.symbolic.numeric.tolerances import COMPUTED
+
+ENDINGS = (".gif", ".mp4", ".png", ".html")
+
+
+@dataclass(frozen=True)
+class PlayerFrame:
+    """A run's player, which shows itself in a notebook: a page of its own that asks nobody for anything."""
+
+    page: str
+
+    def _repr_html_(self) -> str:
+        inside = html.escape(self.page)
+        return f'<iframe sandbox="allow-scripts" style="width:100%;height:560px;border:0" srcdoc="{inside}"></iframe>'
+
+
+@dataclass(frozen=True)
+class Showing:
+    """How a motion is shown.
+
+    Args:
+        fps: frames a second.
+        speed: seconds of the motion in a second.
+        trail: points that leave a trail.
+        forces: forces and reactions are arrows.
+        frames: of a strip.
+    """
+
+    fps: float = 25.0
+    speed: float = 1.0
+    trail: tuple[str, ...] = ()
+    forces: bool = False
+    frames: int = 6
+
+
+def animate_document(
+    model: Model, *, output: str, time: float, start: Mapping[str, float], showing: Showing, modes: int | None
+) -> Document:
+    """The picture is written; the document says what it holds."""
+    refuse_ending(output)
+    if modes is not None:
+        if Path(output).suffix.lower() == ".html":
+            raise UsageError("small motions have no page", mend="write a .gif")
+        movies = _modes(model, modes, showing)
+        summary = f"{len(movies)} mode{'s' * (len(movies) > 1)}"
+    else:
+        times = frame_times(time, showing.fps, showing.speed)
+        run = _run(model, times, start)
+        if Path(output).suffix.lower() == ".html":
+            files.write(output, player(run, showing))
+            return _told(model, run.summary(), len(times), output, showing)
+        movies, summary = [_shown(run, times, showing)], run.summary()
+    write_movies(movies, output, showing, on_stderr)
+    return _told(model, summary, len(movies[0].times), output, showing)
+
+
+def _told(model: Model, summary: str, count: int, output: str, showing: Showing) -> Document:
+    """What was written."""
+    payload = {"name": model.name, "files": [output], "frames": count, "fps": showing.fps, "speed": showing.speed}
+    return plain_document(model, lambda: payload, prose(f"{model.name}: {summary}"), prose(f"{count} frames: {output}"))
+
+
+def animate(
+    run: Trajectory,
+    path: str | Path | None = None,
+    *,
+    fps: float = 25.0,
+    speed: float = 1.0,
+    trail: str | Sequence[str] = (),
+    forces: bool = False,
+    frames: int = 6,
+) -> PlayerFrame | None:
+    """A run as a moving picture: written as .gif, .mp4, a strip .png or a page; without a path the page shows itself.
+
+    Raises:
+        UsageError: another ending, a point that is not there.
+        ToolMissing: .mp4 without ffmpeg.
+    """
+    showing = Showing(fps, speed, (trail,) if isinstance(trail, str) else tuple(trail), forces, frames)
+    times = frame_times(float(run.t[-1]), fps, speed)
+    if path is None:
+        return PlayerFrame(player(run, showing))
+    refuse_ending(str(path))
+    if Path(path).suffix.lower() == ".html":
+        files.write(path, player(run, showing))
+        return None
+    write_movies([_shown(run, times, showing)], str(path), showing, None)
+    return None
+
+
+def player(run: Trajectory, showing: Showing) -> str:
+    """The page with the run's player."""
+    from eomgen.page.player_data import PlayerOptions
+    from eomgen.page.player_page import player_page
+
+    trail = showing.trail[0] if showing.trail else ""
+    return player_page(run, PlayerOptions(trail=trail, forces=showing.forces, speed=showing.speed))
+
+
+def refuse_ending(path: str) -> None:
+    """Refuses a file that no picture is written into."""
+    if Path(path).suffix.lower() not in ENDINGS:
+        raise UsageError(f"no moving picture can be written as '{path}'", mend=f"endings are {', '.join(ENDINGS)}")
+
+
+def _run(model: Model, times: np.ndarray, start: Mapping[str, float]) -> Trajectory:
+    equations = pipeline.derive(model)
+    end = float(times[-1]) or 1.0
+    return simulated(equations, time=end, start=start, samples=FINE * max(len(times) - 1, 1) + 1, how=Stepping())
+
+
+def _shown(run: Trajectory, times: np.ndarray, showing: Showing) -> Movie:
+    """The frames up to where the run ended."""
+    here = times[times <= run.t[-1] * (1 + COMPUTED)] if len(run.t) else times[:0]
+    return movie_of(run, here, trail=showing.trail, forces=showing.forces)
+
+
+def _modes(model: Model, count: int, showing: Showing) -> list[Movie]:
+    from eomgen.report.linearize.result import linearize
+
+    return mode_movies(linearize(model).modes, count, showing.fps)
+
+
+def write_movies(movies: Sequence[Movie], path: str, showing: Showing, progress: Progress | None) -> None:
+    """Movies side by side into a file, the ending says of which kind."""
+    ending = Path(path).suffix.lower()
+    if ending == ".mp4":
+        mp4(movies, showing.fps, path, progress)
+    elif ending == ".png":
+        files.write(path, strip(movies[0], showing.frames))
+    else:
+        files.write(path, gif(movies, showing.fps, progress))

@@ -1,0 +1,140 @@
+"""Moving pictures: what a frame shows is where the motion has it."""
+
+from __future__ import annotations
+
+import html
+import io
+import subprocess
+from pathlib import Path
+
+import numpy as np
+import pytest
+from click.testing import CliRunner
+from PIL import Image
+
+import eomgen
+from eomgen.cli import main
+from eomgen.report import moving_picture
+from eomgen.report.linearize.result import linearize
+from eomgen.report.motion_frames import FINE, SWING, frame_times, mode_movies, movie_of
+
+pytestmark = pytest.mark.slow
+MODELS = Path(__file__).parent.parent / "models"
+PENDULUM = MODELS / "double_pendulum.toml"
+
+
+@pytest.fixture(scope="module")
+def run() -> eomgen.Trajectory:
+    return eomgen.simulate(eomgen.load(PENDULUM), time=1, samples=101)
+
+
+def test_frames_stand_as_far_apart_as_speed_over_rate():
+    """dt = speed / fps, the last one not after the end; too many are refused before any work."""
+    assert np.allclose(frame_times(1.0, 25, 1), np.arange(26) / 25)
+    assert np.allclose(frame_times(1.0, 10, 2), [0, 0.2, 0.4, 0.6, 0.8, 1.0])
+    with pytest.raises(eomgen.UsageError, match="frames are more than"):
+        frame_times(1e6, 25, 1)
+    with pytest.raises(eomgen.UsageError, match="positive"):
+        frame_times(1.0, 0, 1)
+
+
+def test_a_trail_is_the_way_of_its_point(run):
+    """x = l1 cos(a1) + l2 cos(a2), y likewise, with the angles of the run's own rows: by hand."""
+    times = frame_times(1.0, 20, 1)
+    movie = movie_of(run, times, trail=("arm2.end",))
+    way = movie.trails["arm2.end"]
+    assert len(way) == FINE * (len(times) - 1) + 1
+    model = eomgen.load(PENDULUM)
+    known = {name: float(part.value.evaluate({})) for name, part in model.parameters.items()}
+    row = 50
+    q = dict(zip(run.coordinates, run.x[row], strict=False))
+    at, turned = np.zeros(2), 0.0
+    for body in ("arm1", "arm2"):
+        joint = model.bodies[body].joint
+        turned = joint.angle.evaluate({**q, "pi": np.pi}) + (turned if joint.on else 0.0)
+        at = at + model.bodies[body].shape.length.evaluate(known) * np.array([np.cos(turned), np.sin(turned)])
+    assert np.allclose(way[round(run.t[row] * 20 * FINE)], at, atol=2e-3)
+    with pytest.raises(eomgen.UsageError, match="no point"):
+        movie_of(run, times, trail=("arm2.ende",))
+
+
+def test_the_arrow_of_a_reaction_is_the_column_of_the_run(run):
+    """tip - tail = scale (R_x, R_y), one scale in the whole run, at the joint."""
+    times = frame_times(1.0, 20, 1)
+    drawing = movie_of(run, times, forces=True).drawing
+    scale = drawing.sizes.scales["reaction", "N"]
+    force = np.column_stack([np.interp(times, run.t, run[f"reaction_{axis}(arm1)"]) for axis in "xy"])
+    shaft, head = (s for s in drawing.strokes if s.role == "reaction" and s.of == "arm1")
+    arrow = head.path[:, 0] - shaft.path[:, 0]
+    assert np.allclose(arrow, scale * force) and np.allclose(head.path[:, 0], 0.0)
+
+
+def test_a_gif_has_a_picture_for_each_frame_and_one_palette(run):
+    """n frames of 1/fps; the same bytes every time; its white is white."""
+    movies = [movie_of(run, frame_times(1.0, 25, 1))]
+    data = moving_picture.gif(movies, 25)
+    assert data == moving_picture.gif(movies, 25) and len(data) < 150_000
+    with Image.open(io.BytesIO(data)) as picture:
+        assert picture.n_frames == 26 and picture.info["duration"] == 40 and picture.info["loop"] == 0
+        assert picture.convert("RGB").getpixel((1, 1)) == (255, 255, 255)
+        first = np.array(picture.convert("RGB"))
+        picture.seek(20)
+        assert np.any(first != np.array(picture.convert("RGB")))
+
+
+def test_modes_of_particles_move_and_come_back():
+    """Of the picture's extent the largest deflection is SWING; after a period a mode is where it began."""
+    model = eomgen.load(MODELS / "two_mass_oscillator.toml")
+    movies = mode_movies(linearize(model).modes, 2, 25)
+    assert len(movies) == 2
+    for movie in movies:
+        paths = [s.path.reshape(len(movie.times), -1) for s in movie.drawing.strokes if s.role == "body"]
+        moved = max(float(np.nanmax(np.abs(path - path.mean(axis=0)))) for path in paths)
+        assert 0.5 * SWING < moved / movie.drawing.sizes.extent < 1.5 * SWING
+        step = max(float(np.nanmax(np.abs(path[0] - path[-1]))) for path in paths)
+        assert step < 0.3 * moved
+
+
+@pytest.mark.parametrize("ending", ("gif", "png"))
+@pytest.mark.parametrize("model", ("double_pendulum", "arm3"))
+def test_the_verb_writes_what_its_ending_says(model, ending, tmp_path):
+    """In the plane and in space; only what was written is said."""
+    target = tmp_path / f"motion.{ending}"
+    done = CliRunner().invoke(
+        main, ["animate", str(MODELS / f"{model}.toml"), "-o", str(target), "--time", "0.2", "--frames", "3"]
+    )
+    assert done.exit_code == 0, done.output
+    with Image.open(target) as picture:
+        assert getattr(picture, "n_frames", 1) == (6 if ending == "gif" else 1)
+
+
+def test_what_cannot_be_written_is_said_before_any_work(tmp_path, monkeypatch, run):
+    """Another ending is exit 2; .mp4 without ffmpeg is exit 4, with the package that has it."""
+    done = CliRunner().invoke(main, ["animate", str(PENDULUM), "-o", str(tmp_path / "motion.avi")])
+    assert done.exit_code == 2 and "endings are" in done.output
+    monkeypatch.setattr(moving_picture.shutil, "which", lambda name: None)
+    monkeypatch.setitem(__import__("sys").modules, "imageio_ffmpeg", None)
+    with pytest.raises(eomgen.ToolMissing, match="ffmpeg") as missing:
+        run.animate(tmp_path / "motion.mp4")
+    assert missing.value.exit_code == 4 and not (tmp_path / "motion.mp4").exists()
+
+
+def test_an_mp4_is_what_ffmpeg_makes_of_all_frames(tmp_path, monkeypatch, run):
+    """Every frame goes into it, 3 bytes a dot."""
+    fake = tmp_path / "ffmpeg"
+    fake.write_text('#!/bin/sh\nfor last; do :; done\nwc -c > "$last"\n')
+    fake.chmod(0o755)
+    monkeypatch.setattr(moving_picture, "ffmpeg", lambda: str(fake))
+    run.animate(tmp_path / "motion.mp4", fps=10)
+    (size,) = {image.size for image in moving_picture.images([movie_of(run, frame_times(1.0, 10, 1))])}
+    assert int((tmp_path / "motion.mp4").read_text()) == 11 * 3 * size[0] * size[1]
+    assert subprocess.run([fake, tmp_path / "none"], input=b"", check=True).returncode == 0
+
+
+def test_a_run_shows_its_player_in_a_notebook_and_as_a_page(run, tmp_path):
+    """The page stands in a sandboxed <iframe>, and is the file that .html gives."""
+    shown = run.animate()._repr_html_()
+    assert shown.startswith('<iframe sandbox="allow-scripts"')
+    run.animate(tmp_path / "motion.html")
+    page = (tmp_path / "motion.html").read_text(encoding="utf-8")
+    assert html.unescape(shown.partition('srcdoc="')[2].removesuffix('"></iframe>')) == page
