@@ -12,7 +12,7 @@ from eomgen.scene.instant import drawn_start, frame_at
 from eomgen.scene.making import scene_of
 from eomgen.scene.plane_strokes import plane_drawing
 from eomgen.scene.space_strokes import space_drawing
-from eomgen.scene.strokes import Numbers
+from eomgen.scene.strokes import SceneNumbers
 
 SIZE = (6.4, 4.2)  # [inches]
 
@@ -24,7 +24,7 @@ def rest_picture(model: Model) -> Picture:
         DerivationError, NotYet: what cannot be derived is not drawn either.
     """
     scene = scene_of(model)
-    numbers = Numbers(scene, frame_at(scene, drawn_start(scene.system))[None, :])
+    numbers = SceneNumbers(scene, frame_at(scene, drawn_start(scene.system))[None, :])
     drawing = (plane_drawing if scene.plane else space_drawing)(numbers, dimensions=True)
 
     def fill(figure: Any) -> None:
