@@ -112,3 +112,36 @@ def test_the_jacobian_of_a_point_gives_its_velocity(pendulum):
     assert pendulum.point_jacobian("O").is_zero_matrix if "O" in pendulum.model.points else True
     with pytest.raises(eomgen.UsageError, match=r"no point 'arm2\.ende'"):
         pendulum.point_jacobian("arm2.ende")
+
+
+def test_every_repr_is_a_line_or_two(pendulum):
+    """At most 240 characters, and no line breaks, whatever the size of what it stands for"""
+    model = pendulum.model
+    run = eomgen.simulate(model, time=0.1, samples=11)
+    found = [
+        *(pendulum, pendulum.graph, pendulum.system, pendulum.program, pendulum.reactions, pendulum.derivation),
+        *(pendulum.certify(), pendulum.subs(m1=1), pendulum.rhs("numpy"), pendulum.inverse_dynamics()),
+        *(model, model.parameters, model.bodies["arm2"], model.bodies["arm2"].joint, model.coordinates["theta1"]),
+        *(eomgen.linearize(model), eomgen.statics(model), eomgen.inertia(model), eomgen.solve(model)),
+        *(eomgen.reactions(model), eomgen.freedom_of(model), model.scene(), run),
+    ]
+    for each in found:
+        assert "\n" not in repr(each) and len(repr(each)) <= 240, repr(each)
+    assert repr(model.bodies["arm2"].joint) == "Revolute(on='arm1.end', angle='theta2 - theta1')"
+
+
+def test_the_help_of_a_part_names_its_fields_and_not_their_rules():
+    import pydoc
+
+    text = pydoc.plain(pydoc.render_doc(eomgen.joints.Revolute))
+    assert "Revolute(*, on=None, at=None, point=None, turned=None, symbol=None, angle, axis=None" in text
+    assert "Annotated" not in text[:1200] and "angle: of the child against the parent" in text
+
+
+def test_results_show_themselves_in_notebooks(pendulum):
+    """A model by its picture, equations and answers typeset, a formula that no line holds by its size"""
+    assert pendulum.model._repr_png_().startswith(b"\x89PNG")
+    assert r"\ddot{\theta}_{1}" in pendulum._repr_latex_()
+    answers = eomgen.solve(MODELS / "seeds" / "ch22_p1.toml")._repr_markdown_()
+    assert r"| `Q_theta` | $6 M R g \sin\theta" in answers or r"\sin\theta" in answers
+    assert "| `reaction_x(arm1)` |" in eomgen.reactions(pendulum.model)._repr_markdown_()

@@ -65,8 +65,7 @@ class Document:
     notation: Notation = Notation()
 
     def __repr__(self) -> str:
-        titles = ", ".join(step.title for step in self.steps if step.title)
-        return f"<document {self.title!r}: {titles or 'no sections'}>"
+        return f"<document {self.title!r} of {len(self.steps)} sections>"
 
     @property
     def nomenclature(self) -> tuple[Meaning, ...]:

@@ -17,6 +17,8 @@ from eomgen import files
 from eomgen.errors import UsageError
 from eomgen.symbolic.expression.units import Unit
 
+SHOWN = 80  # characters of names on a line
+
 RunStatus = Literal[
     "finished",
     "not finite",
@@ -213,7 +215,8 @@ class Trajectory:
         return " ".join(parts if self.reactions or not self.remark else [*parts, self.remark])
 
     def __repr__(self) -> str:
-        names = ", ".join((*self.coordinates, *self.speeds, *self.reactions))
+        names = ", ".join((*self.coordinates, *self.speeds))
+        names = names if len(names) < SHOWN else f"{len(self.coordinates)} coordinates, {len(self.speeds)} speeds"
         return f"<trajectory of {names}: {len(self.t)} instants. {self.summary()}>"
 
     def _repr_html_(self) -> str:
