@@ -7,14 +7,18 @@ from __future__ import annotations
 
 import hashlib
 import os
+import shutil
 from collections.abc import Callable, Iterator
 from dataclasses import replace
+from html import escape
 from pathlib import Path
 from typing import Any
 
 from cut_reference import write
 
 import eomgen
+from eomgen.page.figure import rest_figure
+from eomgen.page.player_page import player_page
 from eomgen.report import markdown
 from eomgen.report.document import Document
 
@@ -24,6 +28,8 @@ PLACE = ROOT / "docs" / "gallery"
 QUICK = ("double_pendulum", "gerber_beam", "heavy_top", "quick_return", "seeds/ch13_p2", "seeds/ch22_p1")
 PATIENCE = 60.0  # seconds of one model
 LONGEST = 4000  # letters of a section
+SECONDS = 6.0  # of a motion
+MOTION = "<iframe class='gallery-motion' title='The motion of {title}' src='{file}' loading='lazy'></iframe>"
 GROUPS = {"": "Models", "seeds": "Exercises of a textbook"}
 
 
@@ -108,12 +114,37 @@ def told(part: Callable[[eomgen.Model], str], model: eomgen.Model) -> str:
     return text if len(text) <= LONGEST else "It is long: the verbs below print all of it."
 
 
+def moves(model: eomgen.Model) -> bool:
+    """Whether there is something to be seen of its motion."""
+    return any(body.mass is not None or body.shape is not None for body in model.bodies.values()) and bool(
+        model.coordinates
+    )
+
+
+def shown(model: eomgen.Model, path: Path) -> list[str]:
+    """The picture, and where it moves the motion; their files stand beside the page."""
+    found = []
+    try:
+        with eomgen.patience(PATIENCE):
+            rest_figure(model).save(path.with_suffix(".svg"))
+            found.append(f"```{{image}} {path.stem}.svg\n:class: gallery-picture\n:alt: {model.name} at rest\n```")
+            if moves(model):
+                run = eomgen.simulate(model, time=SECONDS, samples=301)
+                write(path.with_suffix(".motion.html"), player_page(run))
+                frame = MOTION.format(title=escape(model.name, quote=True), file=f"{path.stem}.motion.html")
+                found.append(f"```{{raw}} html\n{frame}\n```")
+    except (eomgen.EomgenError, eomgen.OutOfPatience) as error:
+        found.append(f"eomgen says: {markdown.markdown_escaped(str(error).splitlines()[0])}")
+    return found
+
+
 def page(name: str) -> str:
-    """The Markdown of a model."""
+    """The Markdown of a model; its picture and its motion are written beside it."""
     model = eomgen.load(MODELS / f"{name}.toml")
     up = "../" * (name.count("/") + 2)
     remarks = (model.about or "", f"Source: {model.source}." if model.source else "")
     blocks = [f"# {markdown.markdown_escaped(model.name)}", *map(markdown.markdown_escaped, filter(None, remarks))]
+    blocks += shown(model, PLACE / f"{name}.md")
     blocks += filter(None, (told(part, model) for part in parts_of(model)))
     blocks.append(f"## Its file\n\n```{{literalinclude}} {up}models/{name}.toml\n:language: toml\n```")
     blocks.append(f"A copy to work on: `eomgen new mine --example {Path(name).name}`.")
@@ -138,6 +169,7 @@ def generate(app: Any) -> None:
         stamp = path.with_suffix(".made")
         made = hashlib.sha256(version.encode() + (MODELS / f"{name}.toml").read_bytes()).hexdigest()
         if not path.exists() or not stamp.exists() or stamp.read_text() != made:
+            path.parent.mkdir(parents=True, exist_ok=True)
             write(path, page(name))
             stamp.write_text(made)
     for path in PLACE.rglob("*.md"):
@@ -146,7 +178,16 @@ def generate(app: Any) -> None:
     write(PLACE / "index.md", contents(names))
 
 
+def put_motions(app: Any, failed: Exception | None) -> None:
+    """The pages of motions stand beside the pages of their models."""
+    for path in PLACE.rglob("*.motion.html") if failed is None else ():
+        to = Path(app.outdir) / "gallery" / path.relative_to(PLACE)
+        if to.with_name(path.name.replace(".motion", "")).exists():
+            shutil.copy(path, to)
+
+
 def setup(app: Any) -> dict[str, bool]:
     """Sphinx asks for it."""
     app.connect("builder-inited", generate)
+    app.connect("build-finished", put_motions)
     return {"parallel_read_safe": True, "parallel_write_safe": True}
