@@ -20,6 +20,7 @@ extensions = [
     "sphinx.ext.napoleon",
     "cut_reference",
     "gallery",
+    "kinds",
     "mathml",
     "sources",
 ]

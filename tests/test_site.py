@@ -55,6 +55,16 @@ def test_each_section_of_the_reference_is_a_page(site):
     assert len(lines) > 400 and not [line for line in lines if line not in shown]
 
 
+def test_a_kind_has_a_page_with_its_picture(site):
+    """Its fields, its example, what follows of it; the reference's table and the list of kinds lead there."""
+    found = {path.stem: path.read_text("utf-8") for path in site.glob("model_file/kinds/*.html")}
+    assert "_images/rolling.svg" in found["rolling"] and (site / "_images" / "rolling.svg").stat().st_size > 2000
+    words = unescape(re.sub("<[^>]+>", "", found["rolling"]))
+    assert "Disc on a slope" in words and "Equations of motion" in words and "nonnegative expression [m]" in words
+    assert 'href="kinds/rolling.html"' in (site / "model_file" / "constraints.html").read_text("utf-8")
+    assert all(f'href="{name}.html"' in found["index"] for name in found if name != "index")
+
+
 def test_a_page_of_the_gallery_tells_what_eomgen_finds(site):
     """Its equations as formulas, its answers, its file."""
     found = {path.stem: path.read_text("utf-8") for path in site.glob("gallery/**/*.html")}

@@ -123,10 +123,11 @@ def cut() -> tuple[dict[str, str], dict[tuple[str, str], str]]:
         homes[f"docs/{path.name}", ""] = path.stem
     homes["models", ""] = "gallery/index"
     raw["model_file/index"] = ("models/README.md", "The model file", before_contents(reference[0][1]))
+    homes.update({(f"docs/{page}.md", ""): page for page in raw})
     found = {}
     for page, (source, title, text) in raw.items():
         found[page] = f"# {title}\n\n{linked(text, source, homes, page).strip()}\n"
-    listed = "\n".join(names)
+    listed = "\n".join([*names, "kinds/index"])  # those are written by `kinds`
     found["model_file/index"] += f"\n```{{toctree}}\n:maxdepth: 2\n\n{listed}\n```\n"
     return found, homes
 

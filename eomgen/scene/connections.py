@@ -112,11 +112,16 @@ def elements(a: Vector, b: Vector, spring: bool, damper: bool, of: str) -> list[
 
 
 def force_elements(system: System) -> list[Mark]:
-    """Springs, dampers and pulls between points."""
+    """Springs, dampers and pulls between points; a torsion spring at the joint of its second body."""
     motion, found = system.motion, list[Mark]()
     for name, force in system.scope.model.forces.items():
         element = force.element
-        if element is None or len(element.points) != 2:
+        if element is None:
+            continue
+        for body in element.bodies[1:] if element.stiffness is not None else ():
+            assert body is not None, "only the first may be the ground"
+            found.append(Mark(SymbolForm("coil", motion.link(body).point), motion.index[body] + 1, "spring", name))
+        if len(element.points) != 2:
             continue
         a, b = (motion.position(motion.place(point)) for point in element.points)
         found += elements(a, b, element.stiffness is not None, element.damping is not None, name)

@@ -22,7 +22,10 @@ class Constraint(Part, ABC):
     """A tie between bodies, or between coordinates.
 
     `table` is where a user declares it. `spaces` are those in which this version states its rows; elsewhere it is read,
-    checked and not derived yet. `symbol` is what its reactions are called in formulas.
+    checked and not derived yet.
+
+    Args:
+        symbol: what its reactions are called in formulas, in LaTeX.
     """
 
     kind: ClassVar[str]

@@ -15,7 +15,12 @@ from eomgen.symbolic.expression.spatial import IDENTITY
 
 @dataclass(frozen=True, kw_only=True)
 class Clamp(Constraint):
-    """A body is built into the ground at `point`, or bodies are welded together at `points`."""
+    """A body is built into the ground at `point`, or bodies are welded together at `points`.
+
+    Args:
+        point: that stays where it stands, with its body.
+        points: one of each body instead.
+    """
 
     kind: ClassVar[str] = "clamp"
     one_of: ClassVar[tuple[str, ...]] = ("point", "points")

@@ -19,6 +19,10 @@ class Equation(Constraint):
 
     Places of points and angles of bodies may stand in both, velocities in a rate: what holds them pushes on the
     bodies, with lam times the derivative of the equation by each.
+
+    Args:
+        gap: of coordinates, places and time.
+        rate: linear in rates and velocities.
     """
 
     kind: ClassVar[str] = "equation"

@@ -16,6 +16,10 @@ class Gear(Constraint):
     """The rates of the two bodies' angles are in the ratio: omega of the first = ratio * omega of the second.
 
     In the plane the angles are those against the ground's axes; in space those of the bodies' own joints.
+
+    Args:
+        bodies: the two wheels.
+        ratio: of their rates, negative where they turn against one another.
     """
 
     kind: ClassVar[str] = "gear"

@@ -18,6 +18,10 @@ class Guide(Constraint):
     """The point moves along `along` (ground axes) and its body does not turn.
 
     A normal force and a couple; in space two forces across `along` and three couples.
+
+    Args:
+        point: what is guided.
+        along: direction of the guide, ground axes.
     """
 
     kind: ClassVar[str] = "guide"

@@ -12,7 +12,12 @@ from eomgen.symbolic.expression.expressions import as_expression
 
 @dataclass(frozen=True, kw_only=True)
 class Motion(Constraint):
-    """coordinate = value(t)."""
+    """coordinate = value(t).
+
+    Args:
+        coordinate: what is driven.
+        value: where it is at each instant.
+    """
 
     kind: ClassVar[str] = "motion"
     coordinate: CoordinateName

@@ -11,7 +11,11 @@ from eomgen.symbolic.expression.spatial import AnyScalar
 
 @dataclass(frozen=True, kw_only=True)
 class Potential(Force):
-    """A potential energy given as an expression of coordinates, parameters and time [J]."""
+    """A potential energy given as an expression of coordinates, parameters and time [J].
+
+    Args:
+        energy: V.
+    """
 
     kind: ClassVar[str] = "potential"
     placeless: ClassVar[bool] = True

@@ -13,7 +13,12 @@ from eomgen.symbolic.expression.spatial import Pose, rotation
 
 @dataclass(frozen=True, kw_only=True)
 class Fixed(Joint):
-    """Welded on at a constant `angle` about `axis` (default z): f = 0, W = 1."""
+    """Welded on: f = 0, W = 1.
+
+    Args:
+        angle: at which it is welded, constant [rad].
+        axis: about which; None: z.
+    """
 
     kind: ClassVar[str] = "fixed"
     angle: ConstantAngle | None = None

@@ -31,8 +31,9 @@ class Placed(Joint):
 
     Args:
         at: of `point` in the parent's axes, 2 or 3 [m].
-        angle: of the child about `axis` (default z) [rad]; in space `orientation` and `angles` instead.
-        orientation: a sequence of the body's own axes, "zxz"; or "quaternion", with `quaternion` and `omega`.
+        angle: of the child about `axis` [rad]; in space `orientation` and `angles` instead.
+        axis: of `angle`; None: z.
+        orientation, angles, quaternion, omega: as of `spherical` (space).
     """
 
     kind: ClassVar[str] = "placed"

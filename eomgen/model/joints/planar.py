@@ -16,6 +16,10 @@ class Planar(Joint):
     """Motion in the x-y plane of the turned axes: s = (x, y, angle), X = ((x, y, 0), Rot(z, angle)).
 
     S = (0, R^T e_x), (0, R^T e_y), (e_z, 0); W: the torques about x and y, and the force along z.
+
+    Args:
+        x, y: of `point` in the turned axes [m].
+        angle: of the child against the parent [rad].
     """
 
     kind: ClassVar[str] = "planar"

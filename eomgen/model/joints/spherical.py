@@ -31,8 +31,10 @@ class Spherical(Joint):
     S takes the rates of the angles (`turning_columns`), or the angular velocity by which the quaternion moves.
 
     Args:
-        orientation: "zxz", "xyz", ... with `angles`, turned about the body's own successive axes, zxz:
-            R = Rz(psi) Rx(theta) Rz(phi), child to parent; or "quaternion" with `quaternion`, scalar first.
+        orientation: "zxz", "xyz", ...: turns about the body's own successive axes; zxz:
+            R = Rz(psi) Rx(theta) Rz(phi), child to parent; or "quaternion".
+        angles: of these turns [rad].
+        quaternion: names of its four coordinates, scalar first.
         omega: names of the speeds: the child's angular velocity against the parent, child's axes [rad/s].
     """
 
