@@ -37,7 +37,7 @@ def test_the_result_for_machines_has_every_part():
     assert len(found["state_matrix"]) == 4 and len(found["input_matrix"]) == 4
     assert found["stability"] == "unstable" and "divergence" in found["why"]
     theta = next(f for f in found["transfer_functions"] if f["coordinate"] == "theta")
-    assert theta["numerator"] == ["6"] and theta["denominator"] == ["-6*g*(M + m)", "0", "l*(4*M + m)"]
+    assert theta["numerator"] == ["6"] and theta["denominator"] == ["-6*(M + m)*g", "0", "(4*M + m)*l"]
     steps = ["data", "reference", "equations", "characteristic", "modes", "stability", "state_space", "transfer"]
     assert [step["key"] for step in found["steps"]] == steps
 

@@ -60,8 +60,8 @@ SHORT = {
     "sqrt(14*g*l/3)": "sqrt(14*g*l/3)",
     # common factors with sines
     "v0^2*(sin(a) + mu*cos(a))/(sin(a)^2 + mu^2*cos(a)^2 + 2*mu*cos(a)*sin(a))": "v0^2/(sin(a) + mu*cos(a))",
-    "(10*cos(x)*sin(x)*x'^2 + 3/2*g*sin(x)/R)/(3 + 10*cos(x)^2)": "1/2*sin(x)*(20*R*cos(x)*x'^2 + 3*g)/(R*"
-    "(3 + 10*cos(x)^2))",
+    "(10*cos(x)*sin(x)*x'^2 + 3/2*g*sin(x)/R)/(3 + 10*cos(x)^2)": "(20*R*cos(x)*x'^2 + 3*g)*sin(x)"
+    "/(2*R*(3 + 10*cos(x)^2))",
     "M*g/(1 + 6*sin(x)^2 + 9*sin(x)^4)": "M*g/(1 + 3*sin(x)^2)^2",
     # signs and magnitudes
     "sign(2*l*sin(theta)*theta')": "sign(sin(theta)*theta')",

@@ -41,7 +41,7 @@ def test_the_force_of_a_spring_is_factored(symbols):
     stretch = distance(symbols) - l0
     force = -gradient(k * stretch * stretch / 2, (x,))[0]
     text, same = written(force)
-    assert text == "k*(a*sin(theta) - x)*(1 - l0/r)"
+    assert text == "k*(1 - l0/r)*(a*sin(theta) - x)"
     assert equal_at_random_states([(same, force)]).equal
 
 
@@ -51,7 +51,7 @@ def test_a_spring_is_found_beside_other_forces(symbols):
     stretch = distance(symbols) - l0
     force = -gradient(k * stretch * stretch / 2 + 3 * k * x * x, (x,))[0]
     text, same = written(force)
-    assert text == "k*(a*sin(theta) - x)*(1 - l0/r) - 6*k*x"
+    assert text == "k*(1 - l0/r)*(a*sin(theta) - x) - 6*k*x"
     assert equal_at_random_states([(same, force)]).equal
 
 
