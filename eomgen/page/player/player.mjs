@@ -396,7 +396,7 @@ export class Player {
     }
 
     _remembered() {
-        if (!this.told.page) return;
+        if (!this.told.page || location.protocol === "about:") return;  // a page in a page has no address
         const state = Object.entries(this.given).map(([name, value]) => `${encodeURIComponent(name)}=${value}`).join("&");
         history.replaceState(null, "", state ? `#${state}` : location.pathname + location.search);
     }
