@@ -127,7 +127,7 @@ def test_every_repr_is_a_line_or_two(pendulum):
     ]
     for each in found:
         assert "\n" not in repr(each) and len(repr(each)) <= 240, repr(each)
-    assert repr(model.bodies["arm2"].joint) == "Revolute(on='arm1.end', angle='theta2 - theta1')"
+    assert repr(model.bodies["arm2"].joint) == "Revolute(on='arm1.end', point='start', angle='theta2 - theta1')"
 
 
 def test_the_help_of_a_part_names_its_fields_and_not_their_rules():
