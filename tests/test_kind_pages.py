@@ -10,6 +10,8 @@ import pytest
 
 import eomgen
 from eomgen.model.part import slots_of
+from eomgen.page.figure import rest_figure
+from eomgen.scene.instant import drawn_start, frame_at
 from eomgen.scene.scene import Mark, Scene
 
 ROOT = Path(__file__).parent.parent
@@ -50,9 +52,9 @@ def test_every_kind_has_an_example_that_is_proven(kind):
 def test_every_kind_has_a_picture(kind, tmp_path):
     """Of lengths above 0, with finite numbers, and with marks of the kind itself where it can be seen."""
     scene = kinds.example(kind).scene()
-    kinds.picture(scene).save(tmp_path / "it.svg")
+    rest_figure(kinds.example(kind)).save(tmp_path / "it.svg")
     assert (tmp_path / "it.svg").read_text("utf-8").count("<path") > 5
-    frame = kinds.frame_at(scene, kinds.drawn_start(scene.system))
+    frame = frame_at(scene, drawn_start(scene.system))
     assert np.isfinite(frame).all()
     assert kind in NOT_DRAWN or marks_of(kind, scene), f"no mark of it in the picture of '{kind}'"
 

@@ -27,14 +27,7 @@ from eomgen.model.containers import EitherRule, ListRule
 from eomgen.model.fields import PARAMETERS, AxialRule, FlagRule, FormulaRule, NameRule, TextRule, VectorRule
 from eomgen.model.part import PartRule, Slot, slots_of
 from eomgen.model.symbols import ReactionSymbolsRule
-from eomgen.report.figures import Picture
-from eomgen.report.scene_drawing import draw
-from eomgen.report.space_drawing import draw_space
-from eomgen.scene.instant import drawn_start, frame_at
-from eomgen.scene.plane_strokes import plane_drawing
-from eomgen.scene.scene import Scene
-from eomgen.scene.space_strokes import space_drawing
-from eomgen.scene.strokes import Numbers
+from eomgen.page.figure import rest_figure
 
 ROOT = Path(__file__).parents[2]
 EXAMPLES = ROOT / "docs" / "examples"
@@ -45,7 +38,6 @@ SEAMS: Mapping[str, tuple[type[Any], ...]] = {
     "Forces": forces.ALL,
 }
 QUICK = ("revolute", "screw", "rolling", "clamp", "spring")
-SIZE = (5.2, 3.6)  # of a picture [inch]
 ENTRY = re.compile(r"^(\w[\w, ]*): (.*)$")
 
 
@@ -198,20 +190,6 @@ def example(kind: str) -> eomgen.Model:
     return eomgen.load(EXAMPLES / f"{kind}.toml")
 
 
-def picture(scene: Scene) -> Picture:
-    """The model where it starts."""
-    numbers = Numbers(scene, frame_at(scene, drawn_start(scene.system))[None, :])
-
-    def fill(figure: Any) -> None:
-        panel = figure.subplots()
-        if scene.plane:
-            draw(panel, plane_drawing(numbers, dimensions=True))
-        else:
-            draw_space(panel, space_drawing(numbers, dimensions=True))
-
-    return Picture(SIZE, fill)
-
-
 def counted(kind: str, system: System) -> str:
     """What a joint leaves free and what it carries; what a tie asks and carries; of forces nothing."""
     section = kinds()[kind]
@@ -282,7 +260,7 @@ def generate(app: Any) -> None:
     names, (_, homes) = chosen(), cut()
     for kind in names:
         write(PLACE / f"{kind}.md", page(kind, homes))
-        picture(example(kind).scene()).save(PLACE / f"{kind}.svg")
+        rest_figure(example(kind)).save(PLACE / f"{kind}.svg")
     for path in PLACE.iterdir():
         if path.stem not in (*names, "index"):
             path.unlink()
