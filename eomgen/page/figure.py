@@ -4,19 +4,15 @@ from __future__ import annotations
 
 import re
 import tempfile
+from dataclasses import replace
 from pathlib import Path
 
 from eomgen.model.parts import Model
 from eomgen.page.contents import ReportFigure
 from eomgen.page.markup import Html
 from eomgen.report.figures import Picture
-from eomgen.report.scene_drawing import draw
-from eomgen.report.space_drawing import draw_space
-from eomgen.scene.instant import drawn_start, frame_at
-from eomgen.scene.making import scene_of
-from eomgen.scene.plane_strokes import plane_drawing
-from eomgen.scene.space_strokes import space_drawing
-from eomgen.scene.strokes import SceneNumbers
+from eomgen.report.rest_picture import rest_picture
+from eomgen.report.statics.picture import missing_values
 
 SIZE = (8.0, 4.2)  # of the rest picture [inches]
 _SVG = re.compile(r'<svg[^>]*viewBox="0 0 ([\d.]+) ([\d.]+)"[^>]*>(.*)</svg>', re.DOTALL)
@@ -24,18 +20,10 @@ _SVG = re.compile(r'<svg[^>]*viewBox="0 0 ([\d.]+) ([\d.]+)"[^>]*>(.*)</svg>', r
 
 def rest_figure(model: Model) -> ReportFigure:
     """A model where it starts, with its coordinates and lengths."""
-    scene = scene_of(model)
-    state = drawn_start(scene.system)
-    numbers = SceneNumbers(scene, frame_at(scene, state)[None, :])
-    drawing = (plane_drawing if scene.plane else space_drawing)(numbers, dimensions=True)
-
-    def fill(figure: object) -> None:
-        panel = figure.subplots()  # type: ignore[attr-defined]
-        (draw if scene.plane else draw_space)(panel, drawing)
-
-    assumed = f"; drawn with {', '.join(state.assumed)} = 1" if state.assumed else ""
+    missing = missing_values(model)
+    assumed = f"; drawn with {', '.join(missing)} = 1" if missing else ""
     where = "at the start" if model.coordinates else "as it stands"
-    return figure_of(Picture(SIZE, fill), "figure", f"{model.name} {where}{assumed}.")
+    return figure_of(replace(rest_picture(model), size=SIZE, title=""), "figure", f"{model.name} {where}{assumed}.")
 
 
 def figure_of(picture: Picture, key: str, caption: str) -> ReportFigure:
