@@ -48,7 +48,7 @@ KNOWN = {
     "g*cos(x) - b*sin(x)": ["atan(g/b)", "atan(g/b) + pi"],
     "cos(x - a) - 1/2": ["a + pi/3", "a - pi/3"],
     "l*cos(x) - l*cos(a)": ["-a", "a"],
-    "a*exp(-2*b*x) - c": ["1/2*log(a/c)/b"],
+    "a*exp(-2*b*x) - c": ["log(a/c)/(2*b)"],
     "exp(-2*x) - 3*exp(-x) + 2": ["0", "-log(2)"],
     "sqrt(x + 1) + x - 5": ["3"],
     "sqrt(x^2 + l^2) - 2*l": ["-sqrt(3)*l", "sqrt(3)*l"],

@@ -276,7 +276,7 @@ constraints.wall = { kind = "support", point = "rod.B", normal = [1, 0], at = [0
 outputs.least = { value = "least_speed(rod.origin, rod.B)", at = "t = 0.2" }
 """
     answer = answers.solve(eomgen.loads(text))["least"]
-    assert answer.exact == "1/5*v^2/l"
+    assert answer.exact == "v^2/(5*l)"
     assert answer.value == pytest.approx(0.256, rel=1e-12)
 
 

@@ -235,7 +235,7 @@ p = { kind = "force", point = "II.B", force = ["-P", 0] }
 """
     found = solved(text)
     assert not found.disagreeing
-    assert to_text(found.by_name["P"].work.value) == "1/2*a*Q/b"
+    assert to_text(found.by_name["P"].work.value) == "a*Q/(2*b)"
 
 
 def test_a_straight_boom_may_turn_about_its_own_line():

@@ -115,8 +115,8 @@ def test_symbolic_panels_and_heights_stay_short_in_long_trusses():
     rest += '[outputs]\nchord = "tension(T, b0-b1)"\nfirst = "tension(T, b0-t1)"\npost = "tension(T, b1-t1)"\n'
     found = eomgen.solve(model(nodes, members, rest, parameters="P = {}\na = { positive = true }\nh = {}"))
     assert {name: a.exact for name, a in found.items()} == {
-        "chord": "3/4*P*a/h",
-        "first": "-3/4*P*sqrt(a^2 + h^2)/h",
+        "chord": "3*P*a/(4*h)",
+        "first": "-3*P*sqrt(a^2 + h^2)/(4*h)",
         "post": "0",
     }
 
