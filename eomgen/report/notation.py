@@ -27,7 +27,7 @@ MEANINGS = {
     "Fx": ("force along x, ground axes", "N"),
     "Fy": ("force along y, ground axes", "N"),
     "Fz": ("force along z, ground axes", "N"),
-    "couple": ("couple on a body, counter-clockwise", "N m"),
+    "couple": ("couple on a body, counter-clockwise", "N*m"),
     "gap": ("what a constraint keeps at zero", ""),
     "Fin_x": ("inertia force of a body along x, minus mass times acceleration of the mass centre", "N"),
     "Fin_y": ("inertia force of a body along y, minus mass times acceleration of the mass centre", "N"),

@@ -543,3 +543,19 @@ length = 0.5
     r, rate = run["r"], run["r'"]
     h = 1.5 * rate**2 - 1.5 * 4 * (r**2 + 0.04) + 35 * (np.hypot(r, 0.2) - 0.5) ** 2
     assert h == pytest.approx(np.full_like(h, h[0]), rel=1e-7)
+
+
+def test_the_work_of_a_constant_couple_belongs_to_the_energy_that_stays():
+    """1/2 m v^2 + 1/2 J w^2 - C phi; the angle of the body is an expression, phi = -x/l."""
+    text = (
+        HEAD
+        + '[coordinates]\nx = 0\n[bodies.b]\nshape = { kind = "disc", mass = "m", radius = "l" }\n'
+        + 'joint = { kind = "planar", x = "x", y = 0, angle = "-x/l" }\n'
+        + '[forces.motor]\nkind = "couple"\nbody = "b"\ncouple = "F"\n'
+    )
+    each = phase(text)
+    energy = energy_integral(each.equations)
+    symbols = each.system.symbols
+    names = {**symbols.parameters, "x": symbols.q[0], "x'": symbols.u[0]}
+    expected = parse("3/4*m*x'^2 + F*x/l").evaluate(names)
+    assert equal_at_random_states([(energy.expression, expected)]).equal

@@ -72,7 +72,8 @@ def _work(system: System, load: Load) -> Scalar:
     if isinstance(load, PointForce) and load.axes is None and _is_constant(system, *load.force):
         return dot(load.force, motion.position(load.place))
     if isinstance(load, Couple) and _is_constant(system, *load.couple):
-        return load.couple[2] * (motion.link(load.body).angle or 0)
+        angle = motion.link(load.body).angle
+        return 0 if angle is None else load.couple[2] * angle
     if isinstance(load, GeneralizedForce) and _is_constant(system, load.value):
         return load.value * next(q for q in system.symbols.q if q.name == load.coordinate)
     return 0
