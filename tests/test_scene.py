@@ -87,6 +87,8 @@ def test_a_scene_shows_bodies_where_mechanics_has_them(name):
     numbers |= dict(zip(symbols.parameters.values(), reader.state.p, strict=True))
     place = {each["name"]: reader.spot(each["at"]) for each in reader.data["points"]}
     assert all(each["parent"] < k for k, each in enumerate(reader.data["frames"]))
+    for k, (R, p) in enumerate(SceneNumbers(scene, reader.frame[None, :]).poses):  # as the drawers in Python have them
+        assert np.allclose(R[0], reader.pose(k)[0]) and np.allclose(p[0], reader.pose(k)[1])
     for k, link in enumerate(motion.links, start=1):
         R, p = reader.pose(k)
         assert np.allclose(R.T @ R, np.eye(len(R))) and math.isclose(np.linalg.det(R), 1)
