@@ -554,7 +554,7 @@ def test_the_work_of_a_constant_couple_belongs_to_the_energy_that_stays():
         + '[forces.motor]\nkind = "couple"\nbody = "b"\ncouple = "F"\n'
     )
     each = phase(text)
-    energy = energy_integral(each.equations)
+    energy = energy_integral(each.equations)[0]
     symbols = each.system.symbols
     names = {**symbols.parameters, "x": symbols.q[0], "x'": symbols.u[0]}
     expected = parse("3/4*m*x'^2 + F*x/l").evaluate(names)
