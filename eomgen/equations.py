@@ -35,6 +35,7 @@ from eomgen.report.derivation import derivation_of, printed_formulas
 from eomgen.report.document import Document
 from eomgen.report.latex import equations_latex
 from eomgen.report.payload import equations_payload
+from eomgen.report.reaction_steps import letters_of
 from eomgen.report.result import Result
 from eomgen.report.statements import Prose, Step
 from eomgen.symbolic.exact.normal_form import readable_all
@@ -253,7 +254,19 @@ class Equations(Result):
 
     def proven(self, document: Document) -> Document:
         """A derivation with its proof: the equations', and of its own formulas as they are printed."""
-        return document.proven(self.certify(printed=Printed(*printed_formulas(document))))
+        return document.proven(self.certify(printed=Printed(*printed_formulas(document), self._letters)))
+
+    @property
+    def _letters(self) -> dict[str, Scalar]:
+        """The letters of printed reactions, with what the balance of all bodies gives; {} where something rubs."""
+        if self.graph.friction:
+            return {}
+        letters = letters_of(self.system)
+        if isinstance(letters, str):
+            return {}
+        solved = self.reactions
+        known = (j for j in range(len(letters.symbols)) if solved.solution.determined(j))
+        return {letters.symbols[j].name: solved.combined({j: 1}, "") for j in known}
 
     def rhs(self, target: str | None = None) -> RightHandSide:
         """The right-hand side `rhs(t, x, p, inputs=())`, x = q then u.

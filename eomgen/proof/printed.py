@@ -8,7 +8,7 @@ the next instant: the state a step later and a step earlier, to first order, wit
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from functools import cached_property
 from typing import Any
 
@@ -40,10 +40,12 @@ class Printed:
     Args:
         formulas: the sides of each.
         constants: of what is said to stay constant along every motion.
+        letters: what a letter that only formulas define is worth by another way.
     """
 
     formulas: tuple[tuple[str, ...], ...] = ()
     constants: tuple[str, ...] = ()
+    letters: Mapping[str, Scalar] = field(default_factory=dict)
 
 
 @dataclass(frozen=True)
@@ -73,6 +75,7 @@ class ReadBack:
                 continue
             read = [self._derivatives.get(text, self._read(text, names)) for text in sides]
             known = [x for x in read if x is not None]
+            known = [self.printed.letters[sides[0]], *known] if sides[0] in self.printed.letters else known
             found += [(sides[0], known[0], x) for x in known[1:]]
             if read[0] is None and known and sides[0].replace("_", "").isalnum():
                 names[sides[0]] = known[0]

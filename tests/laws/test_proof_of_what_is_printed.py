@@ -8,6 +8,7 @@ import pytest
 
 import eomgen
 from eomgen.mechanics.first_integrals import constants_of_motion
+from eomgen.report import reaction_values
 from eomgen.report.reading import Reader
 from eomgen.report.statements import Omitted
 from eomgen.symbolic.expression.derivative import substituted
@@ -48,6 +49,19 @@ def test_a_formula_that_gets_wrong_on_the_way_to_the_page_is_seen(monkeypatch):
 
     monkeypatch.setattr(Reader, "shown", shown)
     assert statuses("simple_pendulum")[PRINTED] == "fails"
+
+
+def test_a_printed_reaction_is_worth_what_the_balance_of_all_bodies_gives(monkeypatch):
+    """A letter that one formula defines is known by a second way: a couple without the lever arm of its force."""
+    own = reaction_values.reactions_by_sides
+    monkeypatch.setattr(reaction_values, "reactions_by_sides", lambda balance: dict.fromkeys(own(balance), 0))
+    assert statuses("block_on_wedge")[PRINTED] == "fails"
+
+
+@pytest.mark.parametrize("name", ["ch18_p5", "car_axis"])
+def test_a_side_of_a_joint_hangs_on_the_ground_by_what_presses_there_too(name):
+    """A string over a peg, a tie between coordinates: what they do to the ground is not balanced among the bodies."""
+    assert statuses(name)[PRINTED] == "holds"
 
 
 def test_a_printed_integral_that_does_not_stay_is_seen(monkeypatch):

@@ -19,7 +19,7 @@ from eomgen.mechanics.balance.components import Component
 from eomgen.mechanics.balance.unit_wrenches import Axes, Effect
 from eomgen.mechanics.bodies.kinematics import GROUND
 from eomgen.symbolic.exact.normal_form import equal
-from eomgen.symbolic.expression.graph import Scalar
+from eomgen.symbolic.expression.graph import Scalar, is_zero
 from eomgen.symbolic.expression.spatial import (
     IDENTITY,
     ZERO,
@@ -87,9 +87,8 @@ class _Sides:
     def _side(self, start: int, cut: set[int]) -> frozenset[int]:
         """The bodies, and GROUND, that hang together with the start when these components are cut through."""
         joined: dict[int, set[int]] = {}
-        for j, c in enumerate(self.balance.components):
+        for j, ends in enumerate(self._ends):
             if j not in cut:
-                ends = _ends(c)
                 for end in ends:
                     joined.setdefault(end, set()).update(ends)
         reached, pending = {start}, [start]
@@ -99,6 +98,31 @@ class _Sides:
                     pending.append(other)
                 reached.add(other)
         return frozenset(reached)
+
+    @cached_property
+    def _ends(self) -> list[set[int]]:
+        """Of each component what it joins: the ground too, where its pushes on bodies do not make up for one another."""
+        found = []
+        for c in self.balance.components:
+            ends = {effect.link for effect in c.effects}
+            found.append(ends if len(ends) > 1 and self._is_even(c) else ends | {GROUND})
+        return found
+
+    def _is_even(self, component: Component) -> bool:
+        """Whether action and reaction are among its pushes: a string over a peg of the ground presses on that, too."""
+        if component.kind != "tie":
+            return True
+        total: list[Scalar] = [0] * 6
+        for effect in component.effects:
+            pose = self.axes.motion.links[effect.link].pose
+            R = IDENTITY if self.axes.plane else pose.R
+            force, couple = apply(R, effect.force), apply(R, effect.couple)
+            if effect.place is not None:
+                couple = plus(couple, cross(pose.point(effect.place), force))
+            elif any(not is_zero(x) for x in force):
+                return False
+            total = [x + y for x, y in zip(total, (*force, *couple), strict=True)]
+        return all(equal(x, 0) for x in total)
 
     def _held(self, body: int, side: Iterable[int], effect: Effect) -> tuple[Vector, Vector]:
         """Force, and couple about the place of the effect, in the axes of the body's equations."""
@@ -134,12 +158,6 @@ class _Sides:
             local = links[k].local
             pose = pose.then(Pose(local.R, minus(local.p, apply(local.R, links[k].point))))
         return pose
-
-
-def _ends(component: Component) -> set[int]:
-    """The bodies that it joins; what acts on one alone joins that to the ground."""
-    ends = {effect.link for effect in component.effects}
-    return ends if len(ends) > 1 else ends | {GROUND}
 
 
 def _only(effects: Sequence[Effect]) -> Effect | None:
