@@ -101,7 +101,7 @@ class _Sides:
 
     @cached_property
     def _ends(self) -> list[set[int]]:
-        """Of each component what it joins: the ground too, where its pushes on bodies do not make up for one another."""
+        """What each component joins: the ground too, where its pushes on bodies do not make up for one another."""
         found = []
         for c in self.balance.components:
             ends = {effect.link for effect in c.effects}
