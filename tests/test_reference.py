@@ -167,3 +167,10 @@ def test_links_inside_the_repository_lead_somewhere(page):
         path, _, anchor = target.partition("#")
         if not path.startswith("http"):
             assert (folder / path).exists() if path else anchor in headings, target
+
+
+def test_the_first_two_shell_blocks_set_everything_up():
+    """What a newcomer runs first, and what the check of every change runs: nothing before them is a shell block."""
+    first, second = blocks(README, "sh")[:2]
+    assert all(block.startswith("python3 -m venv .venv && ") for block in (first, second))
+    assert "eomgen derive" in first and second.rstrip().endswith("pytest -q -n 2")
