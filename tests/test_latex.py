@@ -284,7 +284,7 @@ def test_notebooks_get_the_equations_in_one_display():
     """$$ aligned $$, and an honest word where they are too long"""
     found = equations("ch22_p1")._repr_latex_()
     assert found.startswith("$$\\begin{aligned}") and found.endswith("\\end{aligned}$$")
-    assert r"4 R \ddot{\theta} + 9 R \ddot{\theta} \cos^{2}\theta" in found
+    assert r"R \left(4 + 9 \cos^{2}\theta\right) \ddot{\theta} - 9 R" in found
     assert "too long" in equations("chain20")._repr_latex_()
 
 

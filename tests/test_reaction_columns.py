@@ -268,7 +268,7 @@ def test_reactions_are_written_with_the_trajectory(tmp_path):
     run = eomgen.simulate(eomgen.load(MODELS / "double_pendulum.toml"), time=0.2, samples=5)
     names = [f"reaction_{axis}(arm{k})" for k in (1, 2) for axis in "xy"]
     assert list(run.reactions) == names and list(run.columns())[-4:] == names
-    assert {run.units[name] for name in names} == {"N"} and "reaction_x(arm1)" in repr(run)
+    assert {run.units[name] for name in names} == {"N"}
     run.to_csv(tmp_path / "run.csv")
     rows = list(csv.DictReader((tmp_path / "run.csv").open()))
     assert [float(row["reaction_y(arm2)"]) for row in rows] == run["reaction_y(arm2)"].tolist()

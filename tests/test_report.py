@@ -299,7 +299,7 @@ def test_the_payload_has_the_keys_that_others_rely_on():
     assert data["parameters"]["l_max"] == 0.4 and data["parameters"]["k"] is None
     assert data["inputs"] == {"F": "5*sin(2*t)"}
     assert data["kinematic_matrix"][3] == ["0", "0", "0"]
-    assert data["kinematic_bias"][3] == "theta_1*Omega*cos(t*Omega)"
+    assert data["kinematic_bias"][3] == "theta_1*Omega*cos(Omega*t)"
     assert data["gaps"][2] is None and data["gaps"][1] is not None
     assert data["certificate"] == {"ok": None, "checks": []}
     assert as_dict(equations("loop").document.proven(None))["certificate"] is None
@@ -376,7 +376,7 @@ def test_equations_with_numbers_for_lengths_are_not_multiplied_by_huge_ones():
     """0.00018125*m2*beta'' in metres, not 453125*m2*beta'' after a multiplication by 2500000000"""
     text = rendered(equations("andrews_squeezer").derivation, "text")
     assert "multiplied by" not in text
-    assert not re.search(r"(?<![\d.])\d{5}", text.split("Equations of motion")[1])
+    assert not re.search(r"(?<![\d.])\d{5}", text.split("Equations of motion")[1].split("Reactions\n")[0])
     assert "(8.464e-7*m1 + 0.00018125*m2 + I1 + I2 - 0.000161*m2*cos(Theta))*beta''" in text
 
 

@@ -388,11 +388,14 @@ def parts_in(value: Any) -> Iterator[Part]:
 
 
 def test_no_field_of_a_joint_a_constraint_or_a_force_is_left_out():
-    """Of each kind every field stands in one of the models above, with a value that is not its default."""
+    """Of each kind every field stands in one of the models above, with a value that is not its default.
+
+    A symbol is how something is printed, and no mechanics: tests/test_symbols.py.
+    """
     used: set[tuple[type, str]] = set()
     for text in SAMPLES.values():
         for part in parts_in(eomgen.loads(text)):
             used |= {(type(part), s.key) for s in slots_of(type(part)) if getattr(part, s.name) != s.default}
     kinds = (*joints.ALL, *constraints.ALL, *forces.ALL)
-    left_out = [f"{kind.kind}: {s.key}" for kind in kinds for s in slots_of(kind) if (kind, s.key) not in used]
-    assert left_out == []
+    fields = [(kind, s.key) for kind in kinds for s in slots_of(kind) if s.key != "symbol"]
+    assert [f"{kind.kind}: {key}" for kind, key in fields if (kind, key) not in used] == []

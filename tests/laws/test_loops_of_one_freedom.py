@@ -421,8 +421,7 @@ def test_derivations_of_closed_machines_are_proved(name):
 def test_a_differential_has_its_formula():
     """a = R T/((M + m) R^2 + 3 J + 2 Jp): constant rows leave a short formula, though they are redundant."""
     found = eomgen.solve(eomgen.loads(DIFFERENTIAL))["a"].exact
-    assert found is not None and len(found) < 80
-    assert "M*R^2" in found
+    assert found == "5*R*T/(15*J + 10*Jp + (21 + 5*M)*R^2)"  # m = 4.2
 
 
 @pytest.mark.parametrize(("name", "body"), [("slider-crank", "crank"), ("geared five-bar", "c1"), ("vice", "spindle")])

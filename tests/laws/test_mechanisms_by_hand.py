@@ -438,8 +438,8 @@ def test_parallel_cranks_hand_on_the_angle_itself():
     answers = eomgen.solve(eomgen.loads(text))
     assert {name: answer.exact for name, answer in answers.items()} == {
         "turn": "0",
-        "c": "a0 + w*t1",
-        "v_x": "-r*w*sin(a0 + w*t1)",
+        "c": "w*t1 + a0",
+        "v_x": "-r*w*sin(w*t1 + a0)",
         "a": "r*w^2",
     }
 

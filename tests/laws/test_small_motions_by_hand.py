@@ -895,8 +895,8 @@ joint = { kind = "placed", on = "trolley", at = ["l*sin(th)", "-l*cos(th)"] }
 kind = "gravity"
 acceleration = [0, "-g"]
 """).render("text")
-    assert "W[x, F] = (l*s^2 + g)/(M*l*s^4 + g*(M + m)*s^2)" in found
-    assert "W[th, F] = -1/(M*l*s^2 + g*(M + m))" in found
+    assert "W[x, F] = (l*s^2 + g)/(M*l*s^4 + (M + m)*g*s^2)" in found
+    assert "W[th, F] = -1/(M*l*s^2 + (M + m)*g)" in found
 
 
 def test_a_planet_circles_at_the_radius_of_kepler():

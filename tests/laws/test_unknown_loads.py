@@ -67,7 +67,7 @@ def test_a_lever_is_held_by_the_ratio_of_its_arms():
     """P b = G a, the bearing carries both."""
     assert {name: answer.exact for name, answer in solved(LEVER).items()} == {
         "P": "a*G/b",
-        "O_y": "G + a*G/b",
+        "O_y": "a*G/b + G",
         "both": "2*a*G/b + G",
     }
 
