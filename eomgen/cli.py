@@ -378,8 +378,9 @@ def simulate_command(
 @click.option("--frames", type=click.IntRange(min=1), default=6, show_default=True, help="Of a strip.")
 def animate_command(model: str, wants_json: bool, format_: str | None, output: str, **options: Any) -> int:
     """Show the motion, or small motions, as a moving picture."""
-    from eomgen.verbs.animate import Showing, animate_document
+    from eomgen.verbs.animate import Showing, animate_document, refuse_ending
 
+    refuse_ending(output)
     strict = options.pop("strict")
     shown = {name: options.pop(name) for name in ("fps", "speed", "trail", "forces", "frames")}
     options["showing"] = Showing(**shown)

@@ -396,7 +396,7 @@ def test_the_ending_of_the_file_chooses_the_format(ending, mark, tmp_path):
 @pytest.mark.parametrize("verb", VERBS[2:])
 def test_an_ending_that_no_form_has_is_refused_before_any_work(verb, tmp_path):
     """derive -o w.html: exit 2, the endings that there are, no file, with and without --format."""
-    own = {"play": {".html"}, "report": {".html", ".pdf", ".PDF"}}.get(verb, set())
+    own = {"animate": {".html"}, "play": {".html"}, "report": {".html", ".pdf", ".PDF"}}.get(verb, set())
     for ending in sorted({".html", ".pdf", ".docx", ".xlsx", ".PDF"} - own):
         path = tmp_path / f"w{ending}"
         words = (verb, *(() if verb in ("schema", "doctor") else (SEED,)), "-o", str(path))
@@ -404,7 +404,7 @@ def test_an_ending_that_no_form_has_is_refused_before_any_work(verb, tmp_path):
         for result in (run(*words), run(*words, *(("--format", "text") if has_form else ("--json",)))):
             assert result.exit_code == 2 and not list(tmp_path.iterdir())
             endings = {"simulate": ".csv, .npz", "codegen": "-o names the folder", "play": "the ending is .html"}
-            endings["report"] = ".html, .pdf, .tex, .md, .ipynb"
+            endings |= {"report": ".html, .pdf, .tex, .md, .ipynb", "animate": ".gif, .mp4, .png, .html"}
             assert endings.get(verb, ".txt, .tex, .md, .json") in result.stderr
 
 

@@ -57,6 +57,7 @@ TAKEN = {
 }
 """of each option: what is typed, and under which name, as which value and in which unit it is taken; None: refused"""
 BESIDE = {
+    "animate": ["-o", "OUT.gif", "--time", "0.2"],
     "codegen": ["-o", "OUT"],
     "play": ["-o", "OUT.html", "--time", "0.2"],
     "report": ["-o", "OUT.html", "--time", "0.2", "--without", "figure,plots,motion,downloads"],

@@ -58,7 +58,6 @@ def animate_document(
     model: Model, *, output: str, time: float, start: Mapping[str, float], showing: Showing, modes: int | None
 ) -> Document:
     """The picture is written; the document says what it holds."""
-    refuse_ending(output)
     if modes is not None:
         if Path(output).suffix.lower() == ".html":
             raise UsageError("small motions have no page", mend="write a .gif")
@@ -119,7 +118,11 @@ def player(run: Trajectory, showing: Showing) -> str:
 
 
 def refuse_ending(path: str) -> None:
-    """Refuses a file that no picture is written into."""
+    """Refuses a file that no picture is written into.
+
+    Raises:
+        UsageError: the name has another ending.
+    """
     if Path(path).suffix.lower() not in ENDINGS:
         raise UsageError(f"no moving picture can be written as '{path}'", mend=f"endings are {', '.join(ENDINGS)}")
 

@@ -176,6 +176,7 @@ VERBS = [
     ("inertia", "double_pendulum.toml"),
     ("linearize", "double_pendulum.toml"),
     ("simulate", "double_pendulum.toml"),
+    ("animate", "double_pendulum.toml", "-o", "DIR/motion.gif"),
     ("codegen", "double_pendulum.toml", "-o", "DIR"),
     ("play", "double_pendulum.toml", "-o", "DIR/page.html"),
     ("report", "double_pendulum.toml", "-o", "DIR/report.html"),
