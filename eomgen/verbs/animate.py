@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import html
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 
 import numpy as np
@@ -58,6 +58,7 @@ def animate_document(
     model: Model, *, output: str, time: float, start: Mapping[str, float], showing: Showing, modes: int | None
 ) -> Document:
     """The picture is written; the document says what it holds."""
+    run: Trajectory | None = None
     if modes is not None:
         if Path(output).suffix.lower() == ".html":
             raise UsageError("small motions have no page", mend="write a .gif")
@@ -68,16 +69,19 @@ def animate_document(
         run = _run(model, times, start)
         if Path(output).suffix.lower() == ".html":
             files.write(output, player(run, showing))
-            return _told(model, run.summary(), len(times), output, showing)
+            return _told(model, run.summary(), len(times), output, showing, run)
         movies, summary = [_shown(run, times, showing)], run.summary()
     write_movies(movies, output, showing, on_stderr)
-    return _told(model, summary, len(movies[0].times), output, showing)
+    return _told(model, summary, len(movies[0].times), output, showing, run)
 
 
-def _told(model: Model, summary: str, count: int, output: str, showing: Showing) -> Document:
-    """What was written."""
+def _told(model: Model, summary: str, count: int, output: str, showing: Showing, run: Trajectory | None) -> Document:
+    """What was written; a run that did not reach its end fails, though what there is of it is shown."""
+    failed = "" if run is None or run.ok else run.message
     payload = {"name": model.name, "files": [output], "frames": count, "fps": showing.fps, "speed": showing.speed}
-    return plain_document(model, lambda: payload, prose(f"{model.name}: {summary}"), prose(f"{count} frames: {output}"))
+    told = (prose(f"{model.name}: {summary}"), prose(f"{count} frames: {output}"))
+    document = plain_document(model, lambda: payload, *told, failed=failed)
+    return replace(document, interrupted=run is not None and run.status == "interrupted")
 
 
 def animate(
