@@ -367,7 +367,7 @@ def test_a_hostile_text_costs_little_and_ends_in_an_error(text):
     begin = time.process_time()
     with pytest.raises(ModelError):
         loads(text)
-    assert time.process_time() - begin < 3
+    assert time.process_time() - begin < 20  # about 1 by itself; a process that holds much is slower
 
 
 def test_a_slider_whose_point_is_no_name_is_a_model_error():

@@ -31,6 +31,8 @@ addEventListener("load", async () => {
 });
 </script>"""
 
+TRIES = 5  # the browser's virtual time may run out while it waits for one of its own processes
+
 
 @dataclass(frozen=True)
 class Visit:
@@ -53,6 +55,21 @@ def visited(
     page: str, script: str = "return null;", *, width: int = 1280, fragment: str = "", flags: str = ""
 ) -> Visit:
     """The page opened, and a script (the body of an async function) run in it when it has loaded."""
+    for _ in range(TRIES):
+        done, asked = _opened(page, script, width, fragment, flags)
+        if told := re.search(r'data-found="([^"]*)"', done.stdout):
+            break
+    else:
+        raise AssertionError(f"the script did not end: {done.stdout[-2000:]} {done.stderr[-2000:]}")
+    inside = json.loads(html.unescape(told[1]))
+    console = tuple(line for line in done.stderr.splitlines() if "CONSOLE" in line and "GL Driver" not in line)
+    return Visit(done.stdout, inside["found"], console, (*inside["left"], *asked))
+
+
+def _opened(
+    page: str, script: str, width: int, fragment: str, flags: str
+) -> tuple[subprocess.CompletedProcess[str], list[str]]:
+    """(the browser's end, the addresses that it asked for)."""
     with tempfile.TemporaryDirectory() as folder:
         path = Path(folder, "page.html")
         path.write_text(page.replace("</body>", FOUND.replace("SCRIPT", script) + "</body>"), encoding="utf-8")
@@ -62,9 +79,4 @@ def visited(
         command += [f"--window-size={width},900", f"--log-net-log={log}", "--dump-dom", f"{path.as_uri()}{fragment}"]
         done = subprocess.run(command, capture_output=True, text=True, check=False, timeout=120)
         asked = re.findall(r'"url":"(https?://[^"]+)"', log.read_text(errors="replace")) if log.exists() else []
-        asked = [address for address in asked if not BROWSERS_OWN.match(address)]
-    told = re.search(r'data-found="([^"]*)"', done.stdout)
-    assert told, f"the script did not end: {done.stdout[-2000:]} {done.stderr[-2000:]}"
-    inside = json.loads(html.unescape(told[1]))
-    console = tuple(line for line in done.stderr.splitlines() if "CONSOLE" in line and "GL Driver" not in line)
-    return Visit(done.stdout, inside["found"], console, (*inside["left"], *asked))
+    return done, [address for address in asked if not BROWSERS_OWN.match(address)]
