@@ -196,7 +196,7 @@ class Equations(Result):
 
         if isinstance(given, str):
             return to_sympy([self.system.scope.value(as_expression(given))])[0]
-        return sympy.sympify(given)
+        return sympy.sympify(given, strict=True)
 
     @cached_property
     def derived(self) -> EquationsOfMotion:
