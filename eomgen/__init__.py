@@ -66,26 +66,27 @@ _HOMES = {
     "equations": ("Equations",),
     "verbs.animate": ("animate",),
     "verbs.reactions": ("FoundReactions", "reactions"),
+    "verbs.report": ("report",),
     "generated": ("Generated", "generate"),
     "page.contents": ("Report",),
     "page.play": ("Played", "play"),
     "pipeline": ("derive", "inverse_dynamics", "simulate"),
-    "report.inertia.result": ("Inertia", "inertia"),
-    "report.linearize.result": ("Linearization", "linearize"),
+    "documents.inertia.result": ("Inertia", "inertia"),
+    "documents.linearize.result": ("Linearization", "linearize"),
     "scene.making": ("scene_of",),
     "scene.scene": ("Scene",),
-    "report.rest_picture": ("rest_picture",),
-    "report.run_pictures": ("run_picture",),
-    "report.statics.result": ("Statics", "statics"),
+    "documents.rest_picture": ("rest_picture",),
+    "documents.run_pictures": ("run_picture",),
+    "documents.statics.result": ("Statics", "statics"),
     "simulation.result": ("Trajectory",),
-    "report.kinematics.result": ("Kinematics",),
+    "documents.kinematics.result": ("Kinematics",),
     "questions.velocities": ("kinematics",),
     "symbolic.numeric.work": ("OutOfPatience", "patience"),
 }
 _PLACES = {name: home for home, names in _HOMES.items() for name in names}
 _ROOMS = ("constraints", "forces", "joints", "shapes")  # eomgen.joints.Revolute(...)
 
-__all__ = sorted([*_PLACES, *_ROOMS, "__version__", "report"])
+__all__ = sorted([*_PLACES, *_ROOMS, "__version__"])
 
 
 def __getattr__(name: str) -> Any:
@@ -93,8 +94,6 @@ def __getattr__(name: str) -> Any:
         value = getattr(import_module(f"eomgen.{_PLACES[name]}"), name)
     elif name in _ROOMS:
         value = import_module(f"eomgen.model.{name}")
-    elif name == "report":  # a room of the package too, which can be called
-        value = import_module("eomgen.report")
     else:
         raise AttributeError(f"module 'eomgen' has no attribute '{name}'")
     globals()[name] = value

@@ -1,6 +1,15 @@
 """The public names, for type checkers: at run time each is imported on its first use (`__init__.py`)."""
 
 from eomgen.codegen.inverse import InverseDynamics as InverseDynamics
+from eomgen.documents.inertia.result import Inertia as Inertia
+from eomgen.documents.inertia.result import inertia as inertia
+from eomgen.documents.kinematics.result import Kinematics as Kinematics
+from eomgen.documents.linearize.result import Linearization as Linearization
+from eomgen.documents.linearize.result import linearize as linearize
+from eomgen.documents.rest_picture import rest_picture as rest_picture
+from eomgen.documents.run_pictures import run_picture as run_picture
+from eomgen.documents.statics.result import Statics as Statics
+from eomgen.documents.statics.result import statics as statics
 from eomgen.equations import Equations as Equations
 from eomgen.errors import DerivationError as DerivationError
 from eomgen.errors import EomgenError as EomgenError
@@ -46,15 +55,6 @@ from eomgen.proof.check import Check as Check
 from eomgen.questions.answers import Answer as Answer
 from eomgen.questions.answers import solve as solve
 from eomgen.questions.velocities import kinematics as kinematics
-from eomgen.report.inertia.result import Inertia as Inertia
-from eomgen.report.inertia.result import inertia as inertia
-from eomgen.report.kinematics.result import Kinematics as Kinematics
-from eomgen.report.linearize.result import Linearization as Linearization
-from eomgen.report.linearize.result import linearize as linearize
-from eomgen.report.rest_picture import rest_picture as rest_picture
-from eomgen.report.run_pictures import run_picture as run_picture
-from eomgen.report.statics.result import Statics as Statics
-from eomgen.report.statics.result import statics as statics
 from eomgen.scene.making import scene_of as scene_of
 from eomgen.scene.scene import Scene as Scene
 from eomgen.simulation.result import Trajectory as Trajectory

@@ -29,9 +29,9 @@ from eomgen.symbolic.numeric.tolerances import RUN
 from eomgen.version import __version__
 
 if TYPE_CHECKING:
+    from eomgen.documents.document import Document
+    from eomgen.documents.result import Result
     from eomgen.model.parts import Model
-    from eomgen.report.document import Document
-    from eomgen.report.result import Result
 
 
 def _followed(declared: Model, follow: tuple[str, ...]) -> Model:
@@ -202,7 +202,7 @@ def statics_command(**options: Any) -> int:
     mechanism that is left when it is released, and by equilibrium; members of trusses; N, V and M along its beams. Of a
     system that is free to move: where it is at rest, and whether that is stable.
     """
-    from eomgen.report.statics.result import statics
+    from eomgen.documents.statics.result import statics
 
     return _write_result(statics, **options)
 
@@ -239,7 +239,7 @@ def inertia_command(**options: Any) -> int:
     Of each body and of all together; of a body of parts what each adds. Both signs of the products are given: of the
     tensor (minus) and of the textbook (plus).
     """
-    from eomgen.report.inertia.result import inertia
+    from eomgen.documents.inertia.result import inertia
 
     return _write_result(inertia, **options)
 
@@ -267,8 +267,8 @@ def linearize_command(view: str, over: str | None, **options: Any) -> int:
     M, C and K with their parts, the state matrix, characteristic polynomial, frequencies, damping and shapes of the
     modes, stability with the conditions of Hurwitz, transfer functions from the inputs.
     """
+    from eomgen.documents.linearize.result import linearize
     from eomgen.model.ranges import range_of
-    from eomgen.report.linearize.result import linearize
 
     if (over is not None) != (view == "locus"):
         raise click.UsageError('--view locus and --over "k=1:10:50" go together')

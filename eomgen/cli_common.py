@@ -25,8 +25,8 @@ from eomgen.symbolic.numeric.work import doing, patience
 from eomgen.version import SCHEMA_VERSION
 
 if TYPE_CHECKING:
+    from eomgen.documents.document import Document
     from eomgen.model.parts import Model
-    from eomgen.report.document import Document
 
 LATER = ("verify", "sweep")
 ONE_THREAD = ("OPENBLAS_NUM_THREADS", "1")  # numpy's matrices are small here: its threads would wait for one another
@@ -141,7 +141,7 @@ def deliver(
     Args:
         strict: warnings end in exit 1.
     """
-    from eomgen.report import rendered
+    from eomgen.documents import rendered
 
     result = rendered(document, form)
     if on_stderr:
@@ -172,7 +172,7 @@ def deliver_several(
 
     A model that is wrong is told, and the next one follows.
     """
-    from eomgen.report import rendered
+    from eomgen.documents import rendered
 
     code, results = 0, []
     for path in paths:

@@ -14,6 +14,13 @@ from eomgen.codegen.inverse import InverseDynamics
 from eomgen.codegen.program import Program, right_hand_side
 from eomgen.codegen.reactions import ReactionFunction, determinate, reactions_program
 from eomgen.codegen.rhs import RightHandSide, compiled, parameter_vector
+from eomgen.documents.derivation import derivation_of, printed_formulas
+from eomgen.documents.document import Document
+from eomgen.documents.latex import equations_latex
+from eomgen.documents.payload import equations_payload
+from eomgen.documents.reaction_steps import letters_of
+from eomgen.documents.result import Result
+from eomgen.documents.statements import Prose, Step
 from eomgen.errors import DerivationError, MissingValues, UsageError
 from eomgen.mechanics.balance.friction import with_rest
 from eomgen.mechanics.equations.articulated import with_accelerations
@@ -31,13 +38,6 @@ from eomgen.model.findings import nearest
 from eomgen.model.parts import Model
 from eomgen.proof.check import Certificate
 from eomgen.proof.printed import Printed
-from eomgen.report.derivation import derivation_of, printed_formulas
-from eomgen.report.document import Document
-from eomgen.report.latex import equations_latex
-from eomgen.report.payload import equations_payload
-from eomgen.report.reaction_steps import letters_of
-from eomgen.report.result import Result
-from eomgen.report.statements import Prose, Step
 from eomgen.symbolic.exact.normal_form import readable_all
 from eomgen.symbolic.expression.expressions import as_expression
 from eomgen.symbolic.expression.graph import Scalar

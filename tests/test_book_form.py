@@ -6,8 +6,8 @@ from random import Random
 
 import pytest
 
-from eomgen.report.latex_math import Setter
-from eomgen.report.latex_names import Notation
+from eomgen.documents.latex_math import Setter
+from eomgen.documents.latex_names import Notation
 from eomgen.symbolic.exact.book_form import book_form
 from eomgen.symbolic.exact.normal_form import equal, readable
 from eomgen.symbolic.expression.expressions import parse

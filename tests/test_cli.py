@@ -20,11 +20,11 @@ from eomgen.cli import main
 from eomgen.cli_common import LATER
 from eomgen.codegen.build import compiler
 from eomgen.codegen.targets import ALL
+from eomgen.documents import rendered
+from eomgen.documents.document import Document
+from eomgen.documents.quantity import Quantity
+from eomgen.documents.statements import Found, Listing, Step
 from eomgen.proof.check import Certificate, Check
-from eomgen.report import rendered
-from eomgen.report.document import Document
-from eomgen.report.quantity import Quantity
-from eomgen.report.statements import Found, Listing, Step
 from eomgen.version import __version__
 
 pytestmark = pytest.mark.slow

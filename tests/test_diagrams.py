@@ -7,12 +7,12 @@ import pytest
 from matplotlib.figure import Figure
 
 import eomgen
+from eomgen.documents.statics.diagrams import diagram_panels, influence_panel
 from eomgen.mechanics.equations.system import system_of
 from eomgen.mechanics.reactions.reactions import reactions_of
 from eomgen.mechanics.statics.influence import influence_line
 from eomgen.mechanics.statics.section_forces import section_forces
 from eomgen.mechanics.structures.structure import structure_of
-from eomgen.report.statics.diagrams import diagram_panels, influence_panel
 
 BEAM = """
 eomgen = 1

@@ -9,9 +9,9 @@ from pathlib import Path
 import pytest
 
 import eomgen
+from eomgen.documents import rendered
+from eomgen.documents.document import Document
 from eomgen.model.values import exact_parameters
-from eomgen.report import rendered
-from eomgen.report.document import Document
 from eomgen.symbolic.expression.expressions import parse
 from eomgen.symbolic.expression.graph import Graph
 from eomgen.symbolic.numeric.evaluation import FLOAT, evaluate

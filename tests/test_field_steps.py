@@ -6,15 +6,15 @@ import pytest
 
 import eomgen
 from eomgen import report
+from eomgen.documents.document import Document
+from eomgen.documents.kinematics.centrode_plot import centrode_panel
+from eomgen.documents.kinematics.field_steps import field_payload, field_steps
+from eomgen.documents.kinematics.relative_steps import relative_payload, relative_steps
 from eomgen.mechanics.fields.centrodes import all_centrodes
 from eomgen.mechanics.fields.motion_kind import Kinds
 from eomgen.questions.at_instant import parameters_of
 from eomgen.questions.in_phase import PhaseEquations
 from eomgen.questions.motion_from_start import MotionFromStart
-from eomgen.report.document import Document
-from eomgen.report.kinematics.centrode_plot import centrode_panel
-from eomgen.report.kinematics.field_steps import field_payload, field_steps
-from eomgen.report.kinematics.relative_steps import relative_payload, relative_steps
 from eomgen.symbolic.exact.normal_form import equal
 from eomgen.symbolic.expression.expressions import parse
 

@@ -7,7 +7,7 @@ from pathlib import Path
 import pytest
 
 import eomgen
-from eomgen.report import rendered
+from eomgen.documents import rendered
 from eomgen.verbs.check import check_document
 
 HEAD = """

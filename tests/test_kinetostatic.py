@@ -10,6 +10,11 @@ import numpy as np
 import pytest
 from derivations import by_every_method, equations, model_called, read_back
 
+from eomgen.documents import rendered
+from eomgen.documents.document import Document
+from eomgen.documents.reaction_names import Lettered
+from eomgen.documents.reaction_steps import letters_of
+from eomgen.documents.statements import Formula
 from eomgen.equations import Equations
 from eomgen.errors import DerivationError
 from eomgen.mechanics.balance.named_reactions import named_reactions
@@ -17,11 +22,6 @@ from eomgen.mechanics.equations.explicit_accelerations import short_acceleration
 from eomgen.mechanics.reactions.reactions import reactions_of
 from eomgen.model.reader import loads
 from eomgen.pipeline import derive
-from eomgen.report import rendered
-from eomgen.report.document import Document
-from eomgen.report.reaction_names import Lettered
-from eomgen.report.reaction_steps import letters_of
-from eomgen.report.statements import Formula
 from eomgen.symbolic.exact.equality import equal_at_random_states
 from eomgen.symbolic.expression.derivative import substituted
 from eomgen.symbolic.expression.graph import Node, Scalar, is_zero

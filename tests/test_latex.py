@@ -12,14 +12,14 @@ import pytest
 from derivations import by_methods, derivable, equations
 from typesetting import lost_in_mathml, lost_in_typst
 
-from eomgen.report import rendered
-from eomgen.report.derivation import derivation_of
-from eomgen.report.latex import equations_latex, unit_latex, value_latex
-from eomgen.report.latex_lines import LINE, pieces, rows_of, runs_of
-from eomgen.report.latex_math import Setter
-from eomgen.report.latex_names import Notation, latex_escaped
-from eomgen.report.markdown import markdown_escaped as escaped_markdown
-from eomgen.report.statements import Omitted
+from eomgen.documents import rendered
+from eomgen.documents.derivation import derivation_of
+from eomgen.documents.latex import equations_latex, unit_latex, value_latex
+from eomgen.documents.latex_lines import LINE, pieces, rows_of, runs_of
+from eomgen.documents.latex_math import Setter
+from eomgen.documents.latex_names import Notation, latex_escaped
+from eomgen.documents.markdown import markdown_escaped as escaped_markdown
+from eomgen.documents.statements import Omitted
 from eomgen.symbolic.expression.functions import cos, sin, sqrt
 from eomgen.symbolic.expression.graph import Graph, Scalar
 
@@ -290,8 +290,8 @@ def test_notebooks_get_the_equations_in_one_display():
 
 def test_nothing_is_left_out_in_silence():
     """Omitted stands for its size"""
-    from eomgen.report.latex import side_latex
-    from eomgen.report.text import side_text
+    from eomgen.documents.latex import side_latex
+    from eomgen.documents.text import side_text
 
     assert side_text(Omitted(1033)) == "(1033 operations, not printed)"
     assert "1033 operations" in side_latex(Setter(), Omitted(1033))

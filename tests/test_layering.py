@@ -19,7 +19,7 @@ CHAIN = (
     ("proof",),
     ("certificate",),
     ("scene",),
-    ("report",),
+    ("documents",),
     ("equations",),
     ("questions",),
     ("pipeline",),

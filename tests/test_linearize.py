@@ -10,7 +10,7 @@ from click.testing import CliRunner
 
 import eomgen
 from eomgen.cli import main
-from eomgen.report import rendered
+from eomgen.documents import rendered
 
 pytestmark = pytest.mark.slow
 

@@ -14,9 +14,9 @@ from PIL import Image
 
 import eomgen
 from eomgen.cli import main
-from eomgen.report import moving_picture
-from eomgen.report.linearize.result import linearize
-from eomgen.report.motion_frames import FINE, SWING, frame_times, mode_movies, movie_of
+from eomgen.documents import moving_picture
+from eomgen.documents.linearize.result import linearize
+from eomgen.documents.motion_frames import FINE, SWING, frame_times, mode_movies, movie_of
 
 pytestmark = pytest.mark.slow
 MODELS = Path(__file__).parent.parent / "models"

@@ -18,6 +18,7 @@ from tools import REQUIRED, needs
 from typesetting import lost_in_mathml, lost_in_typst
 
 import eomgen
+from eomgen.documents.document import DISTRUST
 from eomgen.equations import Equations
 from eomgen.errors import ToolMissing, UsageError
 from eomgen.page.contents import SECTIONS
@@ -25,7 +26,6 @@ from eomgen.page.formats import written_as
 from eomgen.page.html import html_page
 from eomgen.page.typst_math import UnknownCommand, typst_math
 from eomgen.proof.check import Certificate, Check
-from eomgen.report.document import DISTRUST
 from eomgen.symbolic.print.declared_symbol import COMMANDS
 from eomgen.verbs.report import report, report_document
 

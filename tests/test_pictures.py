@@ -8,8 +8,8 @@ import numpy as np
 import pytest
 
 import eomgen
-from eomgen.report.arrows import is_freer_outward
-from eomgen.report.figures import figures, scale_of
+from eomgen.documents.arrows import is_freer_outward
+from eomgen.documents.figures import figures, scale_of
 from eomgen.scene import forms, plane_strokes
 from eomgen.scene.instant import drawn_start, frame_at
 from eomgen.scene.scene import Mark

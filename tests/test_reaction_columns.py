@@ -15,6 +15,7 @@ import pytest
 from moving import at
 
 import eomgen
+from eomgen.documents.plots import plot_trajectory
 from eomgen.equations import Equations
 from eomgen.errors import DerivationError
 from eomgen.mechanics.balance.balance_solution import Indeterminate
@@ -24,7 +25,6 @@ from eomgen.mechanics.equations.accelerations import accelerations_at
 from eomgen.mechanics.instant.outputs import Quantities
 from eomgen.model.unknowns import in_loads
 from eomgen.model.values import numeric_parameters
-from eomgen.report.plots import plot_trajectory
 from eomgen.simulation.reaction_columns import ReactionColumns
 from eomgen.symbolic.expression.expressions import parse
 from eomgen.symbolic.numeric.evaluation import evaluate, fifty_digits

@@ -23,22 +23,22 @@ from derivations import (
     symbols_named,
 )
 
+from eomgen.documents import ALL, rendered
+from eomgen.documents.derivation import derivation_of
+from eomgen.documents.document import Document
+from eomgen.documents.json_form import as_dict
+from eomgen.documents.latex import symbols_in
+from eomgen.documents.notation import MEANINGS, quantities
+from eomgen.documents.reading import Reader
+from eomgen.documents.setting_steps import moved_coordinates
+from eomgen.documents.statements import Entry, Formula, Name, Partial, Prose, Rate, Step
+from eomgen.documents.text import WIDTH, broken, formula_text
 from eomgen.equations import Equations
 from eomgen.errors import UsageError
 from eomgen.mechanics.bodies.inertia import kinetic_energy
 from eomgen.mechanics.equations.system import System
 from eomgen.mechanics.equations.work import generalized_forces, per_speed
 from eomgen.proof.check import Certificate
-from eomgen.report import ALL, rendered
-from eomgen.report.derivation import derivation_of
-from eomgen.report.document import Document
-from eomgen.report.json_form import as_dict
-from eomgen.report.latex import symbols_in
-from eomgen.report.notation import MEANINGS, quantities
-from eomgen.report.reading import Reader
-from eomgen.report.setting_steps import moved_coordinates
-from eomgen.report.statements import Entry, Formula, Name, Partial, Prose, Rate, Step
-from eomgen.report.text import WIDTH, broken, formula_text
 from eomgen.symbolic.exact.equality import equal_at_random_states
 from eomgen.symbolic.expression.derivative import gradient, substituted
 from eomgen.symbolic.expression.graph import Graph, Node, Scalar

@@ -10,9 +10,9 @@ from click.testing import CliRunner
 
 import eomgen
 from eomgen.cli import main
+from eomgen.documents.linearize.response_pictures import roots_over
+from eomgen.documents.run_pictures import VIEWS, resultants
 from eomgen.model.ranges import range_of
-from eomgen.report.linearize.response_pictures import roots_over
-from eomgen.report.run_pictures import VIEWS, resultants
 
 pytestmark = pytest.mark.slow
 

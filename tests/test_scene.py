@@ -14,10 +14,10 @@ from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.figure import Figure
 
 import eomgen
-from eomgen.report.letters import PageBox
-from eomgen.report.letters_artist import NamesArtist
-from eomgen.report.scene_drawing import draw
-from eomgen.report.space_drawing import draw_space
+from eomgen.documents.letters import PageBox
+from eomgen.documents.letters_artist import NamesArtist
+from eomgen.documents.scene_drawing import draw
+from eomgen.documents.space_drawing import draw_space
 from eomgen.scene import forms, plane_strokes, space_strokes
 from eomgen.scene.instant import drawn_start, frame_at
 from eomgen.scene.scene import ROLES, Mark, Scene

@@ -14,11 +14,11 @@ from hand_made import cart_pole, pendulum, symbols, tied_pendulum
 import eomgen
 from eomgen.codegen.program import program_of, right_hand_side
 from eomgen.codegen.rhs import compiled, parameter_vector
+from eomgen.documents.figures import mathtext
+from eomgen.documents.plots import plot_trajectory
 from eomgen.errors import UsageError, WriteFailed
 from eomgen.mechanics.equations.stabilization import stabilized
 from eomgen.mechanics.formulations import recursive
-from eomgen.report.figures import mathtext
-from eomgen.report.plots import plot_trajectory
 from eomgen.simulation.integrate import METHODS, drift_of, integrate
 from eomgen.simulation.result import Trajectory
 from eomgen.simulation.slopes import slope_of

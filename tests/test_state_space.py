@@ -8,8 +8,8 @@ import numpy as np
 import pytest
 
 import eomgen
-from eomgen.report.statements import Law, Matrix
-from eomgen.report.text import statement_lines
+from eomgen.documents.statements import Law, Matrix
+from eomgen.documents.text import statement_lines
 
 pytestmark = pytest.mark.slow
 
@@ -71,5 +71,5 @@ def test_a_matrix_that_no_line_holds_stands_entry_by_entry():
 
 
 def test_columns_of_a_matrix_stand_below_one_another():
-    formula = eomgen.report.statements.Formula((Law("A", "A"), Matrix(((1, 20), (300, 4)))))
+    formula = eomgen.documents.statements.Formula((Law("A", "A"), Matrix(((1, 20), (300, 4)))))
     assert statement_lines(formula) == ["    A = [1    20]", "        [300  4 ]"]

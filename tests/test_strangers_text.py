@@ -9,8 +9,8 @@ import warnings
 import pytest
 
 import eomgen
+from eomgen.documents import rendered
 from eomgen.errors import visible
-from eomgen.report import rendered
 
 pytestmark = pytest.mark.slow
 

@@ -12,11 +12,11 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 import eomgen
+from eomgen.documents import rendered
+from eomgen.documents.figures import mathtext
+from eomgen.documents.latex import names_in, setter_of
 from eomgen.errors import ExpressionError, ModelError
 from eomgen.model.warnings import warnings_of
-from eomgen.report import rendered
-from eomgen.report.figures import mathtext
-from eomgen.report.latex import names_in, setter_of
 from eomgen.symbolic.print.declared_symbol import COMMANDS, LONGEST, SPACES, parse_symbol
 
 TOKENS = (*COMMANDS, *SPACES, *"abcXYZ019_^{}'{}__", " ", ",", "+", r"\input", "$", "%", "θ", "\t")

@@ -17,10 +17,10 @@ from typing import Any
 from cut_reference import write
 
 import eomgen
+from eomgen.documents import markdown
+from eomgen.documents.document import Document
 from eomgen.page.figure import rest_figure
 from eomgen.page.player_page import player_page
-from eomgen.report import markdown
-from eomgen.report.document import Document
 
 ROOT = Path(__file__).parents[2]
 MODELS = ROOT / "models"

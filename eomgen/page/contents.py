@@ -6,11 +6,11 @@ from collections.abc import Callable, Mapping
 from dataclasses import dataclass, replace
 from pathlib import Path
 
+from eomgen.documents.document import Document
+from eomgen.documents.statements import Prose, Step
 from eomgen.model.table import Table
 from eomgen.page.markup import Html
 from eomgen.proof.check import Certificate, Check
-from eomgen.report.document import Document
-from eomgen.report.statements import Prose, Step
 
 SECTIONS = {
     "figure": "Figure",

@@ -12,11 +12,11 @@ from typing import Any
 
 import numpy as np
 
+from eomgen.documents.figures import Picture, mathtext
+from eomgen.documents.plots import by_unit, component_of, largest_reactions, owner_of, reactions_by_unit
+from eomgen.documents.statements import Code, Piece, prose
 from eomgen.page.contents import INKS, LegendEntry, ReportFigure
 from eomgen.page.markup import Html, element, in_a_row
-from eomgen.report.figures import Picture, mathtext
-from eomgen.report.plots import by_unit, component_of, largest_reactions, owner_of, reactions_by_unit
-from eomgen.report.statements import Code, Piece, prose
 from eomgen.simulation.result import Trajectory
 from eomgen.symbolic.expression.graph import Graph, Node
 from eomgen.symbolic.expression.units import Unit

@@ -7,12 +7,12 @@ import tempfile
 from dataclasses import replace
 from pathlib import Path
 
+from eomgen.documents.figures import Picture
+from eomgen.documents.rest_picture import rest_picture
+from eomgen.documents.statics.picture import missing_values
 from eomgen.model.parts import Model
 from eomgen.page.contents import ReportFigure
 from eomgen.page.markup import Html
-from eomgen.report.figures import Picture
-from eomgen.report.rest_picture import rest_picture
-from eomgen.report.statics.picture import missing_values
 
 SIZE = (8.0, 4.2)  # of the rest picture [inches]
 _SVG = re.compile(r'<svg[^>]*viewBox="0 0 ([\d.]+) ([\d.]+)"[^>]*>(.*)</svg>', re.DOTALL)

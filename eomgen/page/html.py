@@ -8,13 +8,8 @@ from base64 import b64encode
 from collections.abc import Callable, Sequence
 from importlib import resources
 
-from eomgen.errors import ToolMissing
-from eomgen.page.contents import Attachment, Report, ReportFigure, ReportSection
-from eomgen.page.markup import Html, element, html, in_a_row, script, style
-from eomgen.page.mathml import font_face, mathml
-from eomgen.proof.check import SIGNS, Certificate
-from eomgen.report.document import Document
-from eomgen.report.latex import (
+from eomgen.documents.document import Document
+from eomgen.documents.latex import (
     Group,
     display_blocks,
     grouped,
@@ -23,9 +18,14 @@ from eomgen.report.latex import (
     side_latex,
     with_listings_typeset,
 )
-from eomgen.report.latex_math import Setter
-from eomgen.report.statements import Cell, Code, Formula, Grid, Lines, Piece, Prose, Step
-from eomgen.report.text import formula_text
+from eomgen.documents.latex_math import Setter
+from eomgen.documents.statements import Cell, Code, Formula, Grid, Lines, Piece, Prose, Step
+from eomgen.documents.text import formula_text
+from eomgen.errors import ToolMissing
+from eomgen.page.contents import Attachment, Report, ReportFigure, ReportSection
+from eomgen.page.markup import Html, element, html, in_a_row, script, style
+from eomgen.page.mathml import font_face, mathml
+from eomgen.proof.check import SIGNS, Certificate
 from eomgen.version import __version__
 
 _NUMBER = re.compile(r"(-?)(\d+(?:\.\d+)?)(?:e([-+]\d+))?")

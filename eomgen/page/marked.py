@@ -4,11 +4,11 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 
+from eomgen.documents.latex import setter_of
+from eomgen.documents.latex_math import Setter
+from eomgen.documents.markdown import markdown_blocks, markdown_escaped
 from eomgen.page.contents import Report, ReportSection
 from eomgen.page.pictures import Pictures
-from eomgen.report.latex import setter_of
-from eomgen.report.latex_math import Setter
-from eomgen.report.markdown import markdown_blocks, markdown_escaped
 
 
 def markdown_files(report: Report, name: str) -> Mapping[str, str | bytes]:

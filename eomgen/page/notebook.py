@@ -6,10 +6,10 @@ import json
 from collections.abc import Iterator
 from typing import Any
 
+from eomgen.documents.latex import setter_of
 from eomgen.errors import RunFailed, ToolMissing, UsageError
 from eomgen.page.contents import Report
 from eomgen.page.marked import markdown_head, section_markdown
-from eomgen.report.latex import setter_of
 
 CALLS = {
     "derivation": "equations = eomgen.derive(model{values})\nequations",

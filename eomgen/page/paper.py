@@ -8,6 +8,9 @@ import subprocess
 import tempfile
 from pathlib import Path
 
+from eomgen.documents.latex import BLOCK, Group, display_blocks, grouped, piece_latex, setter_of, side_latex
+from eomgen.documents.latex_math import Setter
+from eomgen.documents.statements import Cell, Code, Grid, Lines, Piece, Prose
 from eomgen.errors import RunFailed, ToolMissing
 from eomgen.page.contents import INKS, Report, ReportFigure, ReportSection
 from eomgen.page.html import svg
@@ -15,9 +18,6 @@ from eomgen.page.markup import element, in_a_row, style
 from eomgen.page.tex import tex_files
 from eomgen.page.typst_math import string, typst_math
 from eomgen.proof.check import SIGNS, Certificate
-from eomgen.report.latex import BLOCK, Group, display_blocks, grouped, piece_latex, setter_of, side_latex
-from eomgen.report.latex_math import Setter
-from eomgen.report.statements import Cell, Code, Grid, Lines, Piece, Prose
 from eomgen.version import __version__
 
 ENGINES = ("lualatex", "pdflatex", "xelatex", "tectonic")

@@ -4,12 +4,12 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 
+from eomgen.documents.latex import PREAMBLE, latex_blocks, setter_of
+from eomgen.documents.latex_math import Setter
+from eomgen.documents.latex_names import latex_escaped
 from eomgen.page.contents import Report, ReportFigure, ReportSection
 from eomgen.page.pictures import Pictures
 from eomgen.proof.check import Status
-from eomgen.report.latex import PREAMBLE, latex_blocks, setter_of
-from eomgen.report.latex_math import Setter
-from eomgen.report.latex_names import latex_escaped
 from eomgen.version import __version__
 
 GRAPHICS = "\\usepackage{graphicx}\n"

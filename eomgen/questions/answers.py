@@ -13,6 +13,13 @@ from dataclasses import dataclass, replace
 from functools import cached_property
 from typing import Any
 
+from eomgen.documents.document import Document, plain_document
+from eomgen.documents.linearize.result import Linearization, linearize
+from eomgen.documents.markdown import listing_markdown
+from eomgen.documents.quantity import Quantity
+from eomgen.documents.result import Result
+from eomgen.documents.statements import Found, Listing
+from eomgen.documents.statics.result import why_not_at_rest
 from eomgen.errors import (
     DerivationError,
     EomgenError,
@@ -38,13 +45,6 @@ from eomgen.questions.at_instant import StateAtInstant, resting
 from eomgen.questions.in_phase import PhaseEquations
 from eomgen.questions.motion_from_start import MotionFromStart
 from eomgen.questions.proof_of_answers import Solver, certificate_of
-from eomgen.report.document import Document, plain_document
-from eomgen.report.linearize.result import Linearization, linearize
-from eomgen.report.markdown import listing_markdown
-from eomgen.report.quantity import Quantity
-from eomgen.report.result import Result
-from eomgen.report.statements import Found, Listing
-from eomgen.report.statics.result import why_not_at_rest
 from eomgen.symbolic.exact.book_form import book_form
 from eomgen.symbolic.expression.derivative import depends_on, substituted, symbols_of
 from eomgen.symbolic.expression.expressions import Call

@@ -18,6 +18,7 @@ import numpy as np
 from eomgen.certificate import certify
 from eomgen.codegen.program import program_of, right_hand_side
 from eomgen.codegen.rhs import compiled
+from eomgen.documents.quantity import Quantity
 from eomgen.errors import DerivationError, ModelError, RunFailed
 from eomgen.mechanics.equations.articulated import with_accelerations
 from eomgen.mechanics.initial_state.numeric_value import known_exactly
@@ -35,7 +36,6 @@ from eomgen.questions.at_instant import StateAtInstant
 from eomgen.questions.in_phase import PhaseEquations
 from eomgen.questions.motion_from_start import MotionFromStart
 from eomgen.questions.proof_of_phases import wrong_way
-from eomgen.report.quantity import Quantity
 from eomgen.simulation.constraint_drift import projection_of
 from eomgen.simulation.constraint_rank import nearness_of
 from eomgen.simulation.integrate import integrate

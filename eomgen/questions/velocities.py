@@ -11,6 +11,7 @@ from collections.abc import Mapping, Sequence
 from dataclasses import replace
 from math import isfinite
 
+from eomgen.documents.kinematics.result import Kinematics
 from eomgen.errors import DerivationError, ModelError, UsageError
 from eomgen.mechanics.constraints.freedom import counted, freedoms
 from eomgen.mechanics.fields.motion_kind import Kinds
@@ -24,7 +25,6 @@ from eomgen.model.replaced import Values, equation_typed
 from eomgen.questions.at_instant import StateAtInstant, parameters_of
 from eomgen.questions.in_phase import PhaseEquations, exact_numbers
 from eomgen.questions.motion_from_start import MotionFromStart
-from eomgen.report.kinematics.result import Kinematics
 from eomgen.symbolic.expression.derivative import depends_on, substituted
 from eomgen.symbolic.expression.expressions import Expression
 from eomgen.symbolic.expression.graph import Node, is_zero

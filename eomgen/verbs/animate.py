@@ -10,13 +10,13 @@ from pathlib import Path
 import numpy as np
 
 from eomgen import files, pipeline
+from eomgen.documents.document import Document, plain_document
+from eomgen.documents.motion_frames import FINE, Movie, frame_times, mode_movies, movie_of
+from eomgen.documents.moving_picture import Progress, gif, mp4, on_stderr, strip
+from eomgen.documents.statements import prose
 from eomgen.errors import UsageError
 from eomgen.model.parts import Model
 from eomgen.questions.run import run as simulated
-from eomgen.report.document import Document, plain_document
-from eomgen.report.motion_frames import FINE, Movie, frame_times, mode_movies, movie_of
-from eomgen.report.moving_picture import Progress, gif, mp4, on_stderr, strip
-from eomgen.report.statements import prose
 from eomgen.simulation.integrator import Stepping
 from eomgen.simulation.result import Trajectory
 from eomgen.symbolic.numeric.tolerances import COMPUTED
@@ -144,7 +144,7 @@ def _shown(run: Trajectory, times: np.ndarray, showing: Showing) -> Movie:
 
 
 def _modes(model: Model, count: int, showing: Showing) -> list[Movie]:
-    from eomgen.report.linearize.result import linearize
+    from eomgen.documents.linearize.result import linearize
 
     return mode_movies(linearize(model).modes, count, showing.fps)
 

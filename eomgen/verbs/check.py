@@ -5,13 +5,13 @@ from __future__ import annotations
 from dataclasses import replace
 from typing import Any
 
+from eomgen.documents.document import Document, plain_document
+from eomgen.documents.statements import Lines
 from eomgen.mechanics.constraints.freedom import Freedom
 from eomgen.mechanics.structures.structure import Structure
 from eomgen.model.dimensions import inferred_units
 from eomgen.model.parts import Model, Truss
 from eomgen.model.warnings import warnings_of
-from eomgen.report.document import Document, plain_document
-from eomgen.report.statements import Lines
 from eomgen.symbolic.print.text import to_text
 from eomgen.verbs.checked import Checked, LoopStart, checked_model
 from eomgen.verbs.freedom_lines import branch_lines, freedom_lines

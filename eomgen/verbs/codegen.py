@@ -5,10 +5,10 @@ from __future__ import annotations
 from dataclasses import replace
 
 from eomgen.codegen.targets import ALL
+from eomgen.documents.document import Document, lines_document, plain_document
+from eomgen.documents.statements import Lines
 from eomgen.generated import Generated, generate
 from eomgen.model.parts import Model
-from eomgen.report.document import Document, lines_document, plain_document
-from eomgen.report.statements import Lines
 
 
 def codegen_document(

@@ -5,14 +5,14 @@ from __future__ import annotations
 from dataclasses import replace
 
 from eomgen import pipeline
+from eomgen.documents.document import Document
+from eomgen.documents.statements import Grid, Step
 from eomgen.equations import Equations
 from eomgen.errors import DerivationError
 from eomgen.mechanics.balance.balance import balance_of
 from eomgen.mechanics.balance.named_reactions import NamedReaction, named_reactions
 from eomgen.model.own_units import units_of_model
 from eomgen.model.parts import Model
-from eomgen.report.document import Document
-from eomgen.report.statements import Grid, Step
 
 HEADS = {"names": "name", "equations": "equation of motion along", "reactions": "reaction", "outputs": "output"}
 

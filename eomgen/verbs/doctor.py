@@ -8,7 +8,7 @@ import shutil
 from importlib import metadata
 
 from eomgen.codegen.build import cache_folder, compiler
-from eomgen.report.document import Document, lines_document
+from eomgen.documents.document import Document, lines_document
 from eomgen.version import __version__
 
 

@@ -4,11 +4,11 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
+from eomgen.documents.kinematics.result import Kinematics
 from eomgen.errors import ModelError, UsageError
 from eomgen.model.fields import WrittenEquation
 from eomgen.model.parts import Model
 from eomgen.questions.velocities import kinematics as found_in
-from eomgen.report.kinematics.result import Kinematics
 from eomgen.verbs.assignments import nearest_name
 
 

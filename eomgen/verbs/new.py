@@ -9,8 +9,8 @@ from dataclasses import replace
 from pathlib import Path
 
 from eomgen import files
+from eomgen.documents.document import Document, lines_document
 from eomgen.errors import UsageError
-from eomgen.report.document import Document, lines_document
 from eomgen.verbs.examples import example_named
 
 TEMPLATES = Path(__file__).parent.parent / "templates"

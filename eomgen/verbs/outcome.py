@@ -4,8 +4,8 @@ from __future__ import annotations
 
 from collections.abc import Iterable
 
-from eomgen.report.document import Document
-from eomgen.report.result import Result
+from eomgen.documents.document import Document
+from eomgen.documents.result import Result
 
 
 def shown(found: Result, *, plot: str | None = None, certify: bool = True) -> Document:

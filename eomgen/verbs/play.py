@@ -7,12 +7,12 @@ from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
+from eomgen.documents.document import Document, plain_document
+from eomgen.documents.statements import Lines
 from eomgen.errors import UsageError
 from eomgen.model.parts import Model
 from eomgen.page.play import played, slider_ranges
 from eomgen.page.player_data import PlayerOptions
-from eomgen.report.document import Document, plain_document
-from eomgen.report.statements import Lines
 
 
 def play_document(

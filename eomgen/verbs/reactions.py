@@ -14,6 +14,13 @@ import numpy as np
 from eomgen import pipeline
 from eomgen.certificate import certify as certificate_of_equations
 from eomgen.codegen.rhs import parameter_vector
+from eomgen.documents.document import Document, plain_document
+from eomgen.documents.markdown import listing_markdown
+from eomgen.documents.quantity import Quantity
+from eomgen.documents.reaction_names import said
+from eomgen.documents.reaction_payload import null_space, reaction_formulas
+from eomgen.documents.statements import Found, Lines, Listing, Statement, prose
+from eomgen.documents.statics.result import why_not_at_rest
 from eomgen.equations import Equations
 from eomgen.errors import DerivationError, ExpressionError, MissingValues, ModelError, UsageError
 from eomgen.mechanics.balance.balance import balance_of
@@ -31,13 +38,6 @@ from eomgen.proof.at_a_state import NumericState
 from eomgen.proof.check import Certificate, Check
 from eomgen.proof.reaction_texts import reaction_numbers, reaction_texts
 from eomgen.questions import answers
-from eomgen.report.document import Document, plain_document
-from eomgen.report.markdown import listing_markdown
-from eomgen.report.quantity import Quantity
-from eomgen.report.reaction_names import said
-from eomgen.report.reaction_payload import null_space, reaction_formulas
-from eomgen.report.statements import Found, Lines, Listing, Statement, prose
-from eomgen.report.statics.result import why_not_at_rest
 from eomgen.simulation.reaction_columns import ReactionColumns
 from eomgen.symbolic.expression.expressions import parse
 from eomgen.symbolic.numeric.tolerances import ROUNDING

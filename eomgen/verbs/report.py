@@ -12,6 +12,13 @@ from typing import Any
 
 from eomgen import files, pipeline
 from eomgen.codegen.names import identifier
+from eomgen.documents.document import Document, document_of, plain_document
+from eomgen.documents.inertia.result import inertia
+from eomgen.documents.latex import with_listings_typeset
+from eomgen.documents.linearize.result import linearize
+from eomgen.documents.result import Result
+from eomgen.documents.statements import Lines
+from eomgen.documents.statics.result import statics
 from eomgen.equations import Equations
 from eomgen.errors import DerivationError, MissingValues, RunFailed, UsageError
 from eomgen.generated import Generated
@@ -30,13 +37,6 @@ from eomgen.proof.check import Certificate
 from eomgen.questions import answers
 from eomgen.questions.run import run as simulated
 from eomgen.questions.velocities import kinematics
-from eomgen.report.document import Document, document_of, plain_document
-from eomgen.report.inertia.result import inertia
-from eomgen.report.latex import with_listings_typeset
-from eomgen.report.linearize.result import linearize
-from eomgen.report.result import Result
-from eomgen.report.statements import Lines
-from eomgen.report.statics.result import statics
 from eomgen.simulation.result import Trajectory
 from eomgen.symbolic.numeric.work import doing
 from eomgen.verbs.assignments import nearest_name

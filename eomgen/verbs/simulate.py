@@ -12,6 +12,8 @@ import numpy as np
 from eomgen import pipeline
 from eomgen.codegen.accelerations import closing_accelerations
 from eomgen.codegen.rhs import parameter_vector
+from eomgen.documents.document import Document, plain_document
+from eomgen.documents.statements import Grid, Statement, prose
 from eomgen.equations import Equations
 from eomgen.errors import UsageError
 from eomgen.files import is_stream
@@ -19,8 +21,6 @@ from eomgen.model.fields import WrittenEquation
 from eomgen.model.own_units import units_of
 from eomgen.model.parts import Model
 from eomgen.questions.run import run as simulated
-from eomgen.report.document import Document, plain_document
-from eomgen.report.statements import Grid, Statement, prose
 from eomgen.simulation.integrator import Stepping
 from eomgen.simulation.result import Trajectory
 from eomgen.symbolic.expression.units import Unit
@@ -59,7 +59,7 @@ def simulate_document(
     if output:
         _write_run(run, output, units_of(model, run.columns()) if units else None)
     if plot:
-        from eomgen.report.run_pictures import run_picture
+        from eomgen.documents.run_pictures import run_picture
 
         run_picture(run, view, title=model.name, units=units_of(model, run.coordinates)).save(plot)
     assembled = f"The start was {run.assembled}." if run.assembled else ""

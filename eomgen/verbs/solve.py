@@ -4,9 +4,9 @@ from __future__ import annotations
 
 from dataclasses import replace
 
+from eomgen.documents.document import Document
 from eomgen.model.parts import Model
 from eomgen.questions import answers
-from eomgen.report.document import Document
 
 LATE = "there was no time left"
 

@@ -12,6 +12,7 @@ from random import Random
 import pytest
 
 import eomgen
+from eomgen.documents.linearize.result import linearize
 from eomgen.errors import DerivationError
 from eomgen.mechanics.equations.system import system_of
 from eomgen.mechanics.formulations import recursive
@@ -21,7 +22,6 @@ from eomgen.model.outputs import ALL, FUNCTIONS, velocity
 from eomgen.model.outputs.base import BALANCE, SMALL_MOTIONS
 from eomgen.proof.at_a_state import NumericState
 from eomgen.proof.second_definitions import second_definition
-from eomgen.report.linearize.result import linearize
 from eomgen.symbolic.expression.expressions import parse
 from eomgen.symbolic.expression.units import Unit, parse_unit
 from eomgen.symbolic.numeric.evaluation import NoValue

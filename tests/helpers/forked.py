@@ -22,8 +22,8 @@ needs_fork = pytest.mark.skipif(not hasattr(os, "fork"), reason="faults are made
 needs_sh = pytest.mark.skipif(os.name != "posix", reason="compilers that are shell scripts, modes of files")
 LONGEST = 60  # seconds of one process
 VERBS = ("check", "derive", "doctor", "new", "reactions", "schema", "simulate", "solve", "codegen")
-USED = [*(f"eomgen.verbs.{verb}" for verb in VERBS), "eomgen.report.plots", "eomgen.report.latex"]
-USED += ["matplotlib.backends.backend_agg", "scipy.integrate", "eomgen.report.statics.result"]  # slow to import
+USED = [*(f"eomgen.verbs.{verb}" for verb in VERBS), "eomgen.documents.plots", "eomgen.documents.latex"]
+USED += ["matplotlib.backends.backend_agg", "scipy.integrate", "eomgen.documents.statics.result"]  # slow to import
 
 
 @dataclass(frozen=True)

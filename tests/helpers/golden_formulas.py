@@ -17,12 +17,12 @@ from typing import Any
 
 import eomgen
 from eomgen import Equations, Output
+from eomgen.documents.latex import setter_of, side_latex, with_listings_typeset
+from eomgen.documents.latex_math import Setter
+from eomgen.documents.latex_names import Notation
+from eomgen.documents.statements import Formula, Side
+from eomgen.documents.text import side_text
 from eomgen.questions.answers import Answers
-from eomgen.report.latex import setter_of, side_latex, with_listings_typeset
-from eomgen.report.latex_math import Setter
-from eomgen.report.latex_names import Notation
-from eomgen.report.statements import Formula, Side
-from eomgen.report.text import side_text
 from eomgen.symbolic.exact.equality import equal_at_random_states
 from eomgen.symbolic.expression.derivative import derivative
 from eomgen.symbolic.expression.expressions import parse

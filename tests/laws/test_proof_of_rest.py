@@ -8,11 +8,11 @@ from pathlib import Path
 import pytest
 
 import eomgen
+from eomgen.documents.statics.result import statics
 from eomgen.mechanics.equilibria.static_equations import StaticEquations
 from eomgen.mechanics.statics.section_forces import Extreme, SectionForces, SectionPiece
 from eomgen.mechanics.structures import blocks
 from eomgen.proof.check import Certificate
-from eomgen.report.statics.result import statics
 from eomgen.symbolic.expression.functions import over
 
 pytestmark = pytest.mark.slow

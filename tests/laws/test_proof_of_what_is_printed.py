@@ -7,10 +7,10 @@ from pathlib import Path
 import pytest
 
 import eomgen
+from eomgen.documents import reaction_values
+from eomgen.documents.reading import Reader
+from eomgen.documents.statements import Omitted
 from eomgen.mechanics.first_integrals import constants_of_motion
-from eomgen.report import reaction_values
-from eomgen.report.reading import Reader
-from eomgen.report.statements import Omitted
 from eomgen.symbolic.expression.derivative import substituted
 from eomgen.symbolic.expression.functions import function
 from eomgen.symbolic.expression.traversal import order

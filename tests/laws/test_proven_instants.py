@@ -9,10 +9,10 @@ import pytest
 from known_answers import MODELS
 
 import eomgen
+from eomgen.documents.json_form import as_dict
 from eomgen.mechanics.fields import relative_motion
 from eomgen.mechanics.instant import body_motion, kinematic_state, mechanism
 from eomgen.questions import velocities
-from eomgen.report.json_form import as_dict
 from eomgen.symbolic.expression.spatial import times
 from eomgen.verbs.kinematics import kinematics_asked as verb
 from eomgen.verbs.outcome import shown

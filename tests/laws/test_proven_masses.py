@@ -10,11 +10,11 @@ import pytest
 from known_answers import MODELS
 
 import eomgen
+from eomgen.documents.inertia import result, rows, steps
+from eomgen.documents.inertia.result import inertia as verb
+from eomgen.documents.json_form import as_dict
 from eomgen.mechanics.bodies import composition
 from eomgen.model.shapes import MassProperties, Rod, Sector
-from eomgen.report.inertia import result, rows, steps
-from eomgen.report.inertia.result import inertia as verb
-from eomgen.report.json_form import as_dict
 from eomgen.verbs.outcome import shown
 
 PLATE = MODELS / "seeds" / "ch13_p1.toml"

@@ -9,10 +9,10 @@ import pytest
 from known_answers import MODELS
 
 import eomgen
+from eomgen.documents.json_form import as_dict
+from eomgen.documents.statics.result import statics as verb
 from eomgen.mechanics.equilibria import search
 from eomgen.mechanics.statics import influence, section_forces, two_ways
-from eomgen.report.json_form import as_dict
-from eomgen.report.statics.result import statics as verb
 from eomgen.verbs.outcome import shown
 
 BEAM = MODELS / "gerber_beam.toml"

@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import pytest
 
-from eomgen.report.reaction_values import readings_of
-from eomgen.report.reading import Reader
+from eomgen.documents.reaction_values import readings_of
+from eomgen.documents.reading import Reader
 from eomgen.symbolic.exact.normal_form import equal
 from eomgen.symbolic.expression.derivative import substituted
 from tests.helpers.derivations import equations

@@ -1,0 +1,21 @@
+"""Report formats: the seam of ways to print a document. Each gives `name` and `render(document)`."""
+
+from collections.abc import Callable
+
+from eomgen.documents import json_form, latex, markdown, text
+from eomgen.documents.document import Document
+from eomgen.errors import UsageError, visible
+
+ALL = (text, latex, markdown, json_form)
+
+
+def rendered(document: Document, format: str = "text") -> str:
+    """The document in one of the formats of ALL: text, latex, markdown, json.
+
+    Raises:
+        UsageError: an unknown format.
+    """
+    formats: dict[str, Callable[[Document], str]] = {member.name: member.render for member in ALL}
+    if format not in formats:
+        raise UsageError(f"unknown format '{format}'", mend=f"one of {', '.join(formats)}")
+    return visible(formats[format](document))

@@ -1,0 +1,211 @@
+"""Equations of motion -> Document: the way to the equations of motion, step by step, as a teacher would write it."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+from eomgen.documents import energy_steps, motion_steps, projection_steps
+from eomgen.documents.balance_steps import kinetostatic_steps, reactions_table_step
+from eomgen.documents.document import Document, document_of, with_symbols
+from eomgen.documents.energy_steps import Momenta
+from eomgen.documents.equation_steps import EquationSteps, Sides, equations_of, multiplier_forces, sides_of
+from eomgen.documents.integral_steps import integral_steps
+from eomgen.documents.maggi_steps import MAGGI, maggi_equations
+from eomgen.documents.naming import Written, with_parts_named, with_roots_named
+from eomgen.documents.notation import notation_step
+from eomgen.documents.reaction_names import Lettered, lettered
+from eomgen.documents.reaction_steps import along_the_motion, letters_of, reactions_step
+from eomgen.documents.reading import Reader
+from eomgen.documents.setting_steps import setting_steps
+from eomgen.documents.statements import Formula, Law, Step
+from eomgen.documents.text import side_text
+from eomgen.mechanics.bodies.inertia import BodyEnergy, armature_energy, body_energies, kinetic_energy
+from eomgen.mechanics.equations.equations_of_motion import EquationsOfMotion
+from eomgen.mechanics.equations.system import System
+from eomgen.mechanics.equations.work import generalized_forces
+from eomgen.mechanics.formulations import derived_by, lagrange
+from eomgen.mechanics.reactions.reactions import reactions_of
+from eomgen.symbolic.exact.equality import equal_at_random_states
+from eomgen.symbolic.expression.graph import Node, Scalar
+from eomgen.symbolic.print.text import text_size
+
+LAGRANGE = Law(
+    "d/dt(dT/dq_k') - dT/dq_k = Q_k",
+    r"\frac{d}{dt} \frac{\partial T}{\partial \dot{q}_{k}} - \frac{\partial T}{\partial q_{k}} = Q_{k}",
+)
+MATRICES = Law("M*a + c = Q", r"M a + c = Q")
+LAGRANGE_WITH_TIES = Law(
+    f"{LAGRANGE.text} + (J^T*lam)_k", LAGRANGE.latex + r" + \left(J^{\mathsf{T}} \lambda\right)_{k}"
+)
+MATRICES_WITH_TIES = Law(f"{MATRICES.text} + J^T*lam", MATRICES.latex + r" + J^{\mathsf{T}} \lambda")
+
+FROM_THE_START = frozenset(("data", "freedom", "coordinates", "constraints", "along", "laws"))
+"""Steps whose formulas hold on the motion from the start alone, or define what the others use."""
+SHORT = 900  # characters of the derivatives of T that are printed where rates of dependent coordinates stand in them
+
+
+def derivation_of(equations: EquationsOfMotion, method: str, *, full: bool = False) -> Document:
+    """The derivation of the equations of motion of a system.
+
+    By "lagrange" the energies are differentiated in the form in which they are printed, so that each step follows
+    from the one before; by "projection" the balance of momentum of every body is projected on its free motions.
+    What is too long to print is said to be so, with its size, unless `full`.
+
+    Args:
+        equations: those that a user gets; printed with named sub-expressions where the method's own are long.
+        full: everything is printed, however long, the long and the repeated parts with names of their own.
+    """
+    system = equations.system
+    model = system.scope.model
+    reader = Reader(full=full, gathers=model.space == "space")
+    letters = letters_of(system)
+    steps, result = _by_method(equations, reader, method, letters)
+    known = method == "kinetostatic" or bool(equations.friction)  # the table of the reactions stands further up
+    last = reactions_step(equations, reader, letters, table=not known)
+    if method == "kinetostatic" and not isinstance(letters, str):
+        last = (*last, *along_the_motion(equations, reader, letters))
+    last = (*integral_steps(equations, reader), *last)
+    written = Written((*setting_steps(system), *steps, *result.steps, *last), result.equations, result.definitions)
+    graph, taken = equations.symbols.graph, {*system.scope.names, *(symbol.name for symbol, _ in result.definitions)}
+    taken |= set() if isinstance(letters, str) else letters.names
+    written = with_roots_named(written, graph, taken, reader.roots)
+    if full:
+        written = with_parts_named(written, graph, taken, reader.raw)
+    notation = notation_step(written.steps, system.scope.names)
+    declared = {} if isinstance(letters, str) else letters.declared
+    document = with_symbols(document_of(model, method, (*written.steps, notation)), declared)
+    return replace(document, equations=written.equations, definitions=written.definitions)
+
+
+def _by_method(
+    equations: EquationsOfMotion, reader: Reader, method: str, letters: Lettered | str
+) -> tuple[tuple[Step, ...], EquationSteps]:
+    """The method's own steps, and its equations of motion.
+
+    Raises:
+        DerivationError: by "kinetostatic", where the reactions cannot carry the motion.
+    """
+    system = equations.system
+    if method == "kinetostatic":
+        if isinstance(letters, str):
+            letters = lettered(reactions_of(system.free or system), system.scope.names)  # raises what it says
+        return kinetostatic_steps(equations, reader, letters)
+    steps, result = _BY_METHOD[method](equations, reader)
+    if equations.friction and not isinstance(letters, str):
+        steps = (*steps, reactions_table_step(letters))
+    return steps, result
+
+
+def _lagrange(equations: EquationsOfMotion, reader: Reader) -> tuple[tuple[Step, ...], EquationSteps]:
+    """By the energies; where dependent rates make those long, or do not come from positions, by Maggi's equations.
+
+    Speeds that are no rates have no equation of Lagrange's: there the balances are projected (Kane's way).
+    """
+    system = equations.system
+    if system.scope.model.speeds:
+        return _projection(equations, reader)
+    if system.free is None:
+        return _by_energies(equations, reader)
+    if _is_integrable(equations):
+        momenta = energy_steps.momenta_of(system, reader, _whole(system, reader, body_energies(system.motion)))
+        if sum(text_size(x) for x in (*momenta.momenta, *momenta.rates, *momenta.held)) <= SHORT:
+            return _by_energies(equations, reader)
+    return _by_maggi(equations, system.free, reader)
+
+
+def _is_integrable(equations: EquationsOfMotion) -> bool:
+    """Whether Lagrange's equations hold in the independent speeds alone, as they do where ties are ones of position."""
+    _, c = lagrange.inertia_by_energies(equations.system.motion, kinetic_energy(equations.system.motion))
+    return equal_at_random_states(zip(c, equations.c, strict=True)).equal
+
+
+def _by_energies(equations: EquationsOfMotion, reader: Reader) -> tuple[tuple[Step, ...], EquationSteps]:
+    system = equations.system
+    energies = body_energies(system.motion)
+    T = _whole(system, reader, energies)
+    momenta = energy_steps.momenta_of(system, reader, T)
+    forces = reader.short_with_symbols(generalized_forces(system.loads))
+    velocities = (motion_steps.velocities_step(system, reader, energies),)
+    constraints = motion_steps.constraints_step(system, reader)
+    steps = (
+        motion_steps.positions_step(system, reader),
+        *((*velocities, *constraints) if system.free is None else (*constraints, *velocities)),
+        energy_steps.kinetic_energy_step(system, reader, energies, T),
+        energy_steps.work_step(system, reader, forces),
+    )
+    if momenta.momenta:
+        steps = (*steps, energy_steps.derivatives_step(system, reader, momenta))
+    sides = _lagrange_sides(equations, momenta, forces)
+    law = LAGRANGE_WITH_TIES if equations.J else LAGRANGE
+    return steps, equations_of(equations, reader, sides, ("Lagrange's equations ", law, ":"))
+
+
+def _by_maggi(equations: EquationsOfMotion, free: System, reader: Reader) -> tuple[tuple[Step, ...], EquationSteps]:
+    """Lagrange's equations as if all coordinates were free, put together along the motions that the ties allow."""
+    system = equations.system
+    energies = body_energies(free.motion)
+    T = _whole(free, reader, energies)
+    momenta = energy_steps.momenta_of(free, reader, T)
+    forces = reader.short_with_symbols(generalized_forces(free.loads))
+    steps = (
+        motion_steps.positions_step(system, reader),
+        motion_steps.velocities_step(free, reader, energies),
+        *motion_steps.constraints_step(system, reader),
+        energy_steps.kinetic_energy_step(free, reader, energies, T),
+        energy_steps.work_step(free, reader, forces),
+        energy_steps.derivatives_step(free, reader, momenta),
+    )
+    result = None if equations.friction else maggi_equations(equations, free, reader, momenta, forces)
+    if result is None:
+        own = derived_by("lagrange", system)
+        rule = ("Put together along the motions that the constraints allow, ", MAGGI, ":")
+        result = equations_of(equations, reader, sides_of(equations, own.M, own.c, own.Q), rule)
+    return steps, result
+
+
+def _whole(system: System, reader: Reader, energies: tuple[BodyEnergy, ...]) -> Scalar:
+    """T of the whole, readable where it is short enough."""
+    total: Scalar = 0
+    for link, energy in zip(system.motion.links, energies, strict=True):
+        total = total + energy.translation + energy.rotation + armature_energy(system.motion, link)
+    return reader.short((total,))[0]
+
+
+def _lagrange_sides(equations: EquationsOfMotion, momenta: Momenta, forces: tuple[Scalar, ...]) -> list[Sides]:
+    """d/dt dT/du - N^T dT/dq = Q + J^T lam"""
+    ties = multiplier_forces(equations)
+    rows = zip(momenta.rates, momenta.held, forces, ties, strict=True)
+    return [Sides(rate - held, force + tie) for rate, held, force, tie in rows]
+
+
+def _projection(equations: EquationsOfMotion, reader: Reader) -> tuple[tuple[Step, ...], EquationSteps]:
+    system = equations.system
+    own = derived_by("projection", system)
+    steps: tuple[Step, ...] = (
+        motion_steps.positions_step(system, reader),
+        *motion_steps.speeds_step(system, reader),
+        projection_steps.twists_step(system, reader),
+        *motion_steps.constraints_step(system, reader),
+    )
+    if own.Q:
+        steps = (*steps, projection_steps.balance_step(own, reader))
+    sides = sides_of(equations, own.M, own.c, own.Q)
+    law = MATRICES_WITH_TIES if equations.J else MATRICES
+    return steps, equations_of(equations, reader, sides, ("The equations ", law, ":"))
+
+
+_BY_METHOD = {"lagrange": _lagrange, "projection": _projection}
+
+
+def printed_formulas(document: Document) -> tuple[tuple[tuple[str, ...], ...], tuple[str, ...]]:
+    """(the sides of every formula that holds at any state, what is said to stay constant), as they are printed."""
+    formulas: list[tuple[str, ...]] = []
+    constants: list[str] = []
+    for step in (step for step in document.steps if step.key not in FROM_THE_START):
+        for statement in (s for s in step.statements if isinstance(s, Formula)):
+            sides = tuple(map(side_text, statement.sides))
+            if step.key == "integrals" and type(statement.sides[0]) is not Node:  # a symbol is a part of what follows
+                constants.append(sides[-1])
+            else:
+                formulas.append(sides)
+    return tuple(formulas), tuple(constants)

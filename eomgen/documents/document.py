@@ -1,0 +1,145 @@
+"""What a verb gives, as one value: sections for people, quantities for machines, the proof; each format draws it."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator, Mapping
+from dataclasses import dataclass, replace
+from typing import Any
+
+from eomgen.documents.latex_names import Notation, notation_of
+from eomgen.documents.quantity import Quantity
+from eomgen.documents.statements import Equation, Lines, Meaning, Statement, Step, Table
+from eomgen.errors import Problem
+from eomgen.model.parts import Model
+from eomgen.model.replaced import Taken
+from eomgen.proof.check import Certificate
+from eomgen.symbolic.expression.graph import Node, Scalar
+from eomgen.symbolic.print.symbols import Symbol
+
+DISTRUST = "the certificate FAILS: do not trust this result"
+NOTHING_CHECKED = Problem("", "nothing of this result could be checked")
+
+
+def _nothing() -> Mapping[str, Any]:
+    return {}
+
+
+@dataclass(frozen=True)
+class Document:
+    """What a verb gives.
+
+    Args:
+        title: the model's name.
+        about: a remark of the user, "" where there is none.
+        source: where the system comes from, "".
+        space: "plane" or "space".
+        method: "lagrange", "statics", ...; "" where nothing is derived.
+        steps: its sections, in order.
+        equations: the equations of motion as printed; empty where they are too long.
+        definitions: sub-expressions with a name of their own, in the order of their use.
+        entries: gives what machines get by name, with quantities as leaves; made when they are asked.
+        failed: what is wrong with the result, or open in it; "" as it must be.
+        notes: what else is worth a line on stderr.
+        certificate: the proof; None where none was made.
+        interrupted: it holds what there was when somebody stopped it.
+        cautions: what is allowed in the model and hardly meant.
+        taken: what was made of values that a person typed.
+        notation: how its symbols are set in LaTeX.
+    """
+
+    title: str
+    about: str = ""
+    source: str = ""
+    space: str = ""
+    method: str = ""
+    steps: tuple[Step, ...] = ()
+    equations: tuple[Equation, ...] = ()
+    definitions: tuple[tuple[Node, Scalar], ...] = ()
+    entries: Callable[[], Mapping[str, Any]] = _nothing
+    failed: str = ""
+    notes: tuple[str, ...] = ()
+    certificate: Certificate | None = None
+    interrupted: bool = False
+    cautions: tuple[Problem, ...] = ()
+    taken: tuple[Taken, ...] = ()
+    notation: Notation = Notation()
+
+    def __repr__(self) -> str:
+        return f"<document {self.title!r} of {len(self.steps)} sections>"
+
+    @property
+    def nomenclature(self) -> tuple[Meaning, ...]:
+        """What every symbol stands for."""
+        tables = (s for step in self.steps for s in step.statements if isinstance(s, Table))
+        return tuple(row for table in tables for row in table.rows)
+
+    @property
+    def has_heads(self) -> bool:
+        """Whether its sections have titles: then it has one too."""
+        return any(step.title for step in self.steps)
+
+    @property
+    def quantities(self) -> dict[str, Quantity]:
+        """Every quantity by its place among the entries: reactions.reaction_y(A)."""
+        return dict(_leaves("", self.entries()))
+
+    @property
+    def distrust(self) -> str:
+        """That the proof contradicts the result, in words; "" as it must be."""
+        return DISTRUST if self.certificate is not None and self.certificate.ok is False else ""
+
+    @property
+    def wrong(self) -> str:
+        """Why the exit code is 3, or ""."""
+        return "; ".join(filter(None, (self.distrust, self.failed)))
+
+    @property
+    def warnings(self) -> tuple[Problem, ...]:
+        """What a user should know before the result is used."""
+        unchecked = self.certificate is not None and self.certificate.ok is None
+        return (*self.cautions, *((NOTHING_CHECKED,) if unchecked else ()))
+
+    def proven(self, certificate: Certificate | None) -> Document:
+        """With its proof; None: none was asked for."""
+        entries = self.entries
+        proof = None if certificate is None else certificate.as_dict()
+        return replace(self, certificate=certificate, entries=lambda: {**entries(), "certificate": proof})
+
+
+def document_of(model: Model, method: str, steps: tuple[Step, ...]) -> Document:
+    """The document of a model, under its name, its remark and its source."""
+    about, source = model.about or "", model.source or ""
+    return Document(model.name, about, source, model.space, method, steps, notation=notation_of(model))
+
+
+def with_symbols(document: Document, symbols: Mapping[str, Symbol]) -> Document:
+    """The document with symbols for names that are not the model's: of its reactions."""
+    return replace(document, notation=document.notation.with_symbols(symbols))
+
+
+def plain_document(
+    model: Model,
+    entries: Callable[[], Mapping[str, Any]],
+    *statements: Statement,
+    failed: str = "",
+    notes: tuple[str, ...] = (),
+) -> Document:
+    """A document of one section without a head: what is no derivation."""
+    steps = (Step("", "", statements),)
+    return Document(model.name, steps=steps, entries=entries, failed=failed, notes=notes, notation=notation_of(model))
+
+
+def lines_document(entries: Callable[[], Mapping[str, Any]], *lines: str) -> Document:
+    """Lines of text that are of no model."""
+    return Document("", steps=(Step("", "", (Lines(lines),)),), entries=entries)
+
+
+def _leaves(name: str, entry: Any) -> Iterator[tuple[str, Quantity]]:
+    if isinstance(entry, Quantity):
+        yield name, entry
+    elif isinstance(entry, Mapping):
+        for key, inner in entry.items():
+            yield from _leaves(f"{name}.{key}" if name else str(key), inner)
+    elif isinstance(entry, (list, tuple)):
+        for k, inner in enumerate(entry):
+            yield from _leaves(f"{name}[{k}]", inner)

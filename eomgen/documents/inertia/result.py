@@ -1,0 +1,304 @@
+"""Model -> Inertia: masses, mass centres, tensors, principal axes of its bodies, about points and axes."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import dataclass, field
+from functools import cached_property
+from itertools import chain
+from typing import Any
+
+from eomgen.documents.document import Document, document_of
+from eomgen.documents.figures import Picture
+from eomgen.documents.inertia.picture import inertia_picture, values_at_start
+from eomgen.documents.inertia.rows import InertiaSum, own_sum, together
+from eomgen.documents.inertia.steps import (
+    LONGEST,
+    InertiaEntry,
+    Section,
+    axis_results,
+    conventions_grid,
+    line,
+    mass_results,
+    masses_grid,
+    moments_grid,
+    named_results,
+    polar_results,
+    principal_statements,
+    tensor_results,
+)
+from eomgen.documents.quantity import Quantity
+from eomgen.documents.result import Result
+from eomgen.documents.setting_steps import data_step
+from eomgen.documents.statements import Law, Prose, Statement, Step, prose
+from eomgen.errors import DerivationError, MissingValues, ModelError, UsageError
+from eomgen.mechanics.equations.system import System, system_of
+from eomgen.mechanics.masses.inertia_about import flat_bodies, shapeless
+from eomgen.mechanics.masses.principal import numbers_in
+from eomgen.model.findings import nearest
+from eomgen.model.reader import ModelOrPath, model_at
+from eomgen.model.replaced import Values
+from eomgen.proof.check import Certificate
+from eomgen.proof.masses import Stated, mass_checks, tried
+from eomgen.symbolic.expression.derivative import symbols_of
+from eomgen.symbolic.expression.graph import is_zero
+from eomgen.symbolic.expression.node import State
+from eomgen.symbolic.expression.spatial import IDENTITY, Vector, minus
+from eomgen.symbolic.numeric.work import doing
+from eomgen.symbolic.print.text import readable_text, text_size
+
+TENSOR = Law(
+    "I_xx = integral (y^2 + z^2) dm, I_xy = - integral x y dm",
+    r"I_{xx} = \int (y^{2} + z^{2})\,dm,\ I_{xy} = -\int x y\,dm",
+)
+POLAR = Law("J_P = integral r^2 dm", r"J_{P} = \int r^{2}\,dm")
+PLANAR = Law("P_x = integral x^2 dm", r"P_{x} = \int x^{2}\,dm")
+TEXTBOOK = Law("J_xy = + integral x y dm", r"J_{xy} = +\int x y\,dm")
+
+
+@dataclass(frozen=True)
+class Inertia(Result):
+    """What is asked of the inertia of a model's bodies.
+
+    Args:
+        system: whose bodies they are.
+        results: by name: m(plate), x_C(plate), I_xx(plate), J_xy(plate), I_1(plate), k_1(plate), I_xx(O), J_P(O), ...
+        axes: the principal axes in numbers, the rows of R, by "plate" or "O".
+        steps: how they are found.
+        stated: all of it, by the bodies of which it is said.
+        start: where moving bodies are taken in numbers; {}: parameters or the start have none.
+    """
+
+    system: System
+    results: dict[str, Quantity]
+    axes: dict[str, list[list[float]]]
+    steps: tuple[Step, ...]
+    stated: tuple[Stated, ...] = ()
+    start: State = field(default_factory=dict)
+
+    def __repr__(self) -> str:
+        return f"<inertia of {self.system.scope.model.name!r}>"
+
+    def __getitem__(self, name: str) -> Quantity:
+        return self.results[name]
+
+    @property
+    def derivation(self) -> Document:
+        """How they are found."""
+        return document_of(self.system.scope.model, "inertia", self.steps)
+
+    @property
+    def picture(self) -> Picture:
+        """The bodies with mass centres and principal axes.
+
+        Raises:
+            RunFailed: they are in space.
+            MissingValues: parameters without a value.
+        """
+        return inertia_picture(self.system, self.axes)
+
+    def certify(self) -> Certificate:
+        """Check shapes, parts and all that is stated of them against quadratures of what the shapes fill."""
+        return Certificate(tuple(mass_checks(self.system.motion, self.stated, self.start or tried(self.system.scope))))
+
+    def entries(self) -> dict[str, Any]:
+        """For machines."""
+        return {"name": self.system.scope.model.name, "results": self.results, "principal_axes": self.axes}
+
+
+@doing("masses and inertia")
+def inertia(
+    model: ModelOrPath,
+    bodies: Sequence[str] = (),
+    *,
+    about: str | None = None,
+    axis: str | None = None,
+    parameters: Values | None = None,
+    start: Values | None = None,
+) -> Inertia:
+    """Mass, mass centre, tensor, principal moments and axes of bodies, each about its mass centre in its own axes.
+
+    Several bodies are taken together too, in ground axes where they stand.
+
+    Args:
+        bodies: by name; none: all.
+        about: a point, "O" or "arm.end", about which they are taken together too.
+        axis: "A,B": the axis through two points; or x, y, z through `about`.
+        parameters, start: values that replace the model's, each as `model_at` takes it.
+    Raises:
+        UsageError: no such body, point or axis.
+        DerivationError: a model without bodies.
+    """
+    model = model_at(model, parameters, start)
+    return _Report(system_of(model), tuple(bodies), about, axis).made()
+
+
+@dataclass(frozen=True)
+class _Report:
+    """The steps of one report."""
+
+    system: System
+    named: tuple[str, ...]
+    about: str | None
+    axis: str | None
+
+    @cached_property
+    def stated(self) -> list[Stated]:
+        """What was said so far."""
+        return []
+
+    @cached_property
+    def start(self) -> State:
+        """Where moving bodies are taken in numbers; empty where the start is not known."""
+        try:
+            return values_at_start(self.system)
+        except (MissingValues, DerivationError):
+            return {}
+
+    def _when(self, section: Section) -> Iterable[Statement]:
+        """Where the numbers are taken, if what is asked moves."""
+        moving = set(self.system.scope.symbols.q) & set(symbols_of((*section.point, *chain(*section.tensor))))
+        if moving and self.start:
+            where = ", ".join(f"{q.name} = {self.start[q]:.6g}" for q in self.system.scope.symbols.q if q in moving)
+            yield prose(f"Numbers at the start: {where}.")
+
+    @property
+    def bodies(self) -> tuple[str, ...]:
+        """The bodies that are meant, with a mass.
+
+        Raises:
+            UsageError, DerivationError: there is no such body; none of them has a mass.
+        """
+        model = self.system.scope.model
+        for name in self.named:
+            if name not in model.bodies:
+                raise UsageError(f"there is no body '{name}'", mend=nearest(name, model.bodies))
+        names = self.named or tuple(link.name for link in self.system.motion.links if link.name in model.bodies)
+        heavy = tuple(name for name in names if not is_zero(together_mass(self.system, name)))
+        if not heavy:
+            raise DerivationError("no body has a mass", mend="give a body a shape, or 'mass' and 'inertia'")
+        return heavy
+
+    def made(self) -> Inertia:
+        bodies = self.bodies
+        sections = [self._own(body) for body in bodies]
+        made = [self._step(f"Body '{s.of}'", f"inertia_{s.of}", s) for s in sections]
+        if len(bodies) > 1:
+            whole = together(self.system.motion, bodies, self.start)
+            section = self._centroidal(whole, "", bodies)
+            made.append(self._step("The bodies together, ground axes", "inertia_together", section))
+        if self.about is not None or self.axis is not None:
+            made.append(self._about(bodies))
+        results = [result for _, found, _ in made for result in found]
+        axes = {key or "together": rows for _, _, (key, rows) in made if rows is not None}
+        steps = (data_step(self.system), _conventions(), *(step for step, _, _ in made))
+        return Inertia(
+            self.system, self._quantities(named_results(results)), axes, steps, tuple(self.stated), self.start
+        )
+
+    def _quantities(self, entries: Mapping[str, InertiaEntry]) -> dict[str, Quantity]:
+        """Each with its number: all in one go, or each by itself where some have none."""
+        scalars = [entry.value for entry in entries.values()]
+        whole = numbers_in(scalars, self.system.scope, self.start)
+        single = (numbers_in((x,), self.system.scope, self.start) for x in scalars)
+        numbers: Sequence[float | None] = whole or [None if each is None else each[0] for each in single]
+        return {
+            name: Quantity(readable_text(entry.value), None if x is None else x + 0.0, entry.unit)
+            for (name, entry), x in zip(entries.items(), numbers, strict=True)
+        }
+
+    def _own(self, body: str) -> Section:
+        return self._centroidal(own_sum(self.system.motion, body, self.start), body, (body,))
+
+    def _centroidal(self, sum: InertiaSum, of: str, bodies: tuple[str, ...]) -> Section:
+        motion = self.system.motion
+        return Section(sum, sum.com, of, bool(flat_bodies(motion, bodies)), True, shapeless(motion, bodies), bodies)
+
+    def _step(self, title: str, key: str, section: Section, axis: tuple[Vector, Vector] | None = None) -> Any:
+        """A section as a step, its results, and its principal axes in numbers."""
+        masses, tensor = mass_results(section), tensor_results(section)
+        statements: list[Statement] = [*self._when(section)]
+        if section.centroidal:
+            statements += [*masses_grid(section), *(line(section, result) for result in masses)]
+        if section.silent:
+            silent = ", ".join(f"'{body}'" for body in section.silent)
+            words = f"No moments: of the inertia of {silent} the model says nothing."
+            self._state(section, masses, None, None)
+            return Step(key, title, (*statements, prose(words))), masses, (section.of, None)
+        statements += [*moments_grid(section), conventions_grid(section)]
+        if any(text_size(result.value) > LONGEST for result in tensor):  # the table then holds numbers
+            statements += [line(section, result) for result in tensor]
+        more = [] if section.centroidal else polar_results(section)
+        more += axis_results(section, *axis) if axis is not None else []
+        statements += [line(section, result) for result in more]
+        principal, moments, rows = principal_statements(section)
+        results = [*(masses if section.centroidal else []), *tensor, *more, *moments]
+        self._state(section, results, rows, axis)
+        return Step(key, title, (*statements, *principal)), results, (section.of, rows)
+
+    def _state(self, section: Section, results: Sequence[InertiaEntry], rows: Any, axis: Any) -> None:
+        """What a section says, for its proof."""
+        values = {result.name.partition("(")[0]: result.value for result in results}
+        in_ground = not (section.centroidal and section.of)
+        self.stated.append(Stated(section.of, section.bodies, in_ground, section.point, values, rows, axis))
+
+    def _about(self, bodies: tuple[str, ...]) -> Any:
+        """The bodies together about a point, and about an axis through it."""
+        point, name, axis = self._point_and_axis()
+        if silent := shapeless(self.system.motion, bodies):
+            raise ModelError(
+                f"body '{silent[0]}' has a mass and no inertia",
+                f"bodies.{silent[0]}",
+                "give 'inertia' (0 for a point), or a shape; or leave it out: --body",
+            )
+        flat = bool(flat_bodies(self.system.motion, bodies))
+        section = Section(together(self.system.motion, bodies, self.start), point, name, flat, False, (), bodies)
+        title = f"About {name}, ground axes" + (f", and about the axis {self.axis}" if self.axis else "")
+        return self._step(title, "inertia_about", section, axis)
+
+    def _point_and_axis(self) -> tuple[Vector, str, tuple[Vector, Vector] | None]:
+        """The point, its name, and the axis: a point on it, and its direction."""
+        if self.axis is None or self.axis in ("x", "y", "z"):
+            if self.about is None:
+                raise UsageError(f"the axis {self.axis} goes through what point?", mend="write --about POINT")
+            point = self._place(self.about)
+            return point, self.about, None if self.axis is None else (point, IDENTITY["xyz".index(self.axis)])
+        first, comma, second = (part.strip() for part in self.axis.partition(","))
+        if not comma:
+            raise UsageError(f"'{self.axis}' is no axis", mend='write x, y or z, or two points: "A,B"')
+        point, other = self._place(first), self._place(second)
+        along = minus(other, point)
+        if all(is_zero(x) for x in along):
+            raise UsageError(f"'{first}' and '{second}' are in one place, so they are on no single axis")
+        if self.about is not None and self.about != first:
+            return self._place(self.about), self.about, (point, along)
+        return point, first, (point, along)
+
+    def _place(self, name: str) -> Vector:
+        """Where a named point is, ground axes."""
+        known = self.system.scope.model.named_points
+        if name not in known:
+            raise UsageError(f"there is no point '{name}'", mend=nearest(name, known))
+        return self.system.motion.position(self.system.motion.place(name))
+
+
+def together_mass(system: System, body: str) -> Any:
+    """The mass of a body, its pieces added up."""
+    return own_sum(system.motion, body, {}).m
+
+
+def _conventions() -> Step:
+    words: Iterable[Any] = (
+        "I is the inertia tensor, ",
+        TENSOR,
+        ". The product of inertia of the textbooks has the other sign, ",
+        TEXTBOOK,
+        "; ",
+        Law("J_x = I_xx", "J_{x} = I_{xx}"),
+        " is the moment about x, ",
+        POLAR,
+        " that about the point, ",
+        PLANAR,
+        " that about the plane across x. In SI units.",
+    )
+    return Step("conventions", "Conventions", (Prose(tuple(words)),))

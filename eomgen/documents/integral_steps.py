@@ -1,0 +1,118 @@
+"""Equations of motion -> the steps after the equations of motion: cyclic coordinates, energy, laws of motion."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from itertools import groupby
+
+from eomgen.documents.bounded import page
+from eomgen.documents.reading import Reader
+from eomgen.documents.setting_steps import listed_symbols
+from eomgen.documents.statements import Formula, Law, Name, Partial, Prose, Statement, Step, prose
+from eomgen.mechanics.bodies.loads import given_start
+from eomgen.mechanics.equations.equations_of_motion import EquationsOfMotion
+from eomgen.mechanics.equations.explicit_accelerations import short_accelerations
+from eomgen.mechanics.equations.system import System
+from eomgen.mechanics.first_integrals.constants_of_motion import Constant, momenta_of_the_whole
+from eomgen.mechanics.first_integrals.integrals import Integral, energy_integral, momentum_integrals
+from eomgen.mechanics.first_integrals.laws import laws_of_motion
+from eomgen.symbolic.expression.derivative import depends_on
+from eomgen.symbolic.expression.graph import Node, Scalar
+from eomgen.symbolic.expression.traversal import order
+from eomgen.symbolic.print.text import text_size
+
+MOST_SPEEDS = 6  # of a system whose laws of motion are sought
+LONGEST_LAW = 400  # characters of a law that is printed
+
+ENERGY = Law("T + V", "T + V")
+ENERGY_AND_WORK = Law("T + V - W", "T + V - W")
+JACOBI = Law("sum u_k*dT/du_k - T + V", r"\sum u_{k} \frac{\partial T}{\partial u_{k}} - T + V")
+
+
+def integral_steps(equations: EquationsOfMotion, reader: Reader) -> tuple[Step, ...]:
+    """First integrals, and laws of motion from the model's start; no step where there are none."""
+    return (*_integrals(equations, reader), *_laws(equations, reader))
+
+
+def _integrals(equations: EquationsOfMotion, reader: Reader) -> tuple[Step, ...]:
+    symbols = equations.symbols
+    cyclic = [each for each in momentum_integrals(equations) if not depends_on(each.expression, (symbols.t,))]
+    statements: list[Statement] = []
+    if cyclic:
+        moving = {q.name: q for q in symbols.q}
+        speeds = {u.name.removesuffix("'"): u for u in symbols.u}
+        rates = [each for each in cyclic if speeds[each.coordinate].name != each.coordinate]
+        if rates:
+            statements.append(_cyclic(tuple(moving[each.coordinate] for each in rates)))
+            pairs = [(Partial(Name("T"), speeds[each.coordinate]), each.expression) for each in rates]
+            statements += page(reader, pairs)
+        for each in (other for other in cyclic if other not in rates):
+            statements.append(prose("The momentum of the speed ", speeds[each.coordinate], " stays constant:"))
+            statements += page(reader, [(Partial(Name("T"), speeds[each.coordinate]), each.expression)])
+    energies = energy_integral(equations)
+    for energy in energies:
+        statements += _energy(reader, equations, energy)
+    statements += _of_the_whole(equations, reader, [each.expression for each in (*cyclic, *energies)])
+    return (Step("integrals", "First integrals", tuple(statements)),) if statements else ()
+
+
+def _of_the_whole(equations: EquationsOfMotion, reader: Reader, known: Sequence[Scalar]) -> list[Statement]:
+    """Momentum and angular momentum of all bodies together, ground axes, where they stay."""
+    statements: list[Statement] = []
+    found = momenta_of_the_whole(equations, known)
+    for about, group in groupby(found, key=lambda each: (each.letter, each.about)):
+        what = "momentum" if about[0] == "P" else f"angular momentum about {about[1]}"
+        statements.append(prose(f"The {what}, in the axes of the ground, stays constant:"))
+        statements += page(reader, [(_side(each), each.expression) for each in group])
+    return statements
+
+
+def _side(each: Constant) -> Name:
+    return Name(f"{each.letter}_{each.axis}") if each.axis else Name(each.letter, power=2)
+
+
+def _cyclic(coordinates: tuple[Node, ...]) -> Prose:
+    many = len(coordinates) > 1
+    verb = ("s ", " are cyclic: their momenta stay") if many else (" ", " is cyclic: its momentum stays")
+    return prose(f"The coordinate{verb[0]}", *listed_symbols(coordinates), f"{verb[1]} constant:")
+
+
+def _energy(reader: Reader, equations: EquationsOfMotion, energy: Integral) -> list[Statement]:
+    """T + V, or T + V - W, and that it stays constant; in words alone where it is written piece by piece."""
+    law, words = ENERGY, ("The energy ", ENERGY, " stays constant")
+    if energy.name == "jacobi":
+        law = JACOBI
+        words = ("What moves by itself does so at a steady rate, and Jacobi's integral ", JACOBI, " stays constant")
+    elif energy.expression is not equations.T + equations.V:
+        law = ENERGY_AND_WORK
+        words = ("The energy less the work of the constant forces, ", law, ", stays constant")
+    if any(node.op == "select" for node in order((energy.expression,))):
+        return [prose(*words, ".")]
+    return [prose(*words, ":"), *page(reader, [(law, energy.expression)])]
+
+
+def _laws(equations: EquationsOfMotion, reader: Reader) -> tuple[Step, ...]:
+    """q(t) of the coordinates whose equations are solved in closed form."""
+    system = equations.system
+    symbols = system.symbols
+    start = _start(system)
+    if not 0 < len(symbols.u) <= MOST_SPEEDS or symbols.inputs or start is None:
+        return ()
+    accelerations = short_accelerations(equations)
+    laws = {} if accelerations is None else laws_of_motion(system, accelerations, start)
+    free = {u.name.removesuffix("'") for u in symbols.u}
+    found = [(q, laws[q]) for q in symbols.q if q in laws and q.name in free and text_size(laws[q]) <= LONGEST_LAW]
+    if not found:
+        return ()
+    words = prose("From the start values, in closed form:")
+    return (Step("laws", "Laws of motion", (words, *(Formula((q, _law(reader, x))) for q, x in found))),)
+
+
+def _law(reader: Reader, x: Scalar) -> Scalar:
+    """A law as it was found, which is shorter than multiplied out, with symbols for its roots."""
+    return reader.with_symbols((x,))[0]
+
+
+def _start(system: System) -> dict[Node, Scalar] | None:
+    """q and u at the start; None where a dependent coordinate is sought by the ties."""
+    return given_start(system.scope) if system.free is None else None

@@ -1,0 +1,179 @@
+"""KinematicState -> Kinematics: the motion at one instant as a user gets it: step by step, for machines, drawn."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, replace
+from functools import cached_property
+from typing import Any
+
+from eomgen.certificate import certify
+from eomgen.documents.document import Document, document_of
+from eomgen.documents.figures import Picture
+from eomgen.documents.kinematics.field_steps import field_payload, field_steps, kinds_step, particles_of
+from eomgen.documents.kinematics.mechanism_plot import mechanism_picture
+from eomgen.documents.kinematics.mechanism_steps import cell, how_found, in_numbers, mechanism_steps
+from eomgen.documents.kinematics.relative_steps import relative_payload, relative_steps
+from eomgen.documents.quantity import Quantity
+from eomgen.documents.result import Result
+from eomgen.documents.setting_steps import data_step
+from eomgen.documents.statements import Cell, Law, Piece, Prose, Step
+from eomgen.mechanics.fields.centrodes import all_centrodes
+from eomgen.mechanics.fields.motion_kind import Kinds
+from eomgen.mechanics.instant.body_motion import body_motions
+from eomgen.mechanics.instant.kinematic_state import KinematicState
+from eomgen.mechanics.instant.mechanism import RotationCenter
+from eomgen.proof.check import Certificate
+from eomgen.proof.instant import instant_checks
+from eomgen.symbolic.expression.graph import Node, Scalar
+from eomgen.symbolic.expression.spatial import Vector
+from eomgen.symbolic.print.text import readable_text, text_size
+
+LINE = 80  # characters of a formula among the fields
+
+
+@dataclass(frozen=True)
+class Kinematics(Result):
+    """Velocities, accelerations and centres of rotation at one instant.
+
+    Args:
+        state: the motion.
+        kinds: of the motions of which it is an instant; None where only the instant is known.
+        relative: (point, body) that are asked besides: the point as it is seen from the body.
+    """
+
+    state: KinematicState
+    kinds: Kinds | None = None
+    relative: tuple[tuple[str, str], ...] = ()
+
+    def __repr__(self) -> str:
+        return f"<kinematics of {self.state.system.scope.model.name!r} at one instant: {', '.join(self.state.fields)}>"
+
+    @property
+    def failed(self) -> str:
+        """The centres that a drawing finds elsewhere than the velocities; "" as it must be."""
+        wrong = self.state.disagreement
+        return f"the centres by drawing and by velocities do not agree: {wrong}" if wrong else ""
+
+    def certify(self) -> Certificate:
+        """Check the equations of motion where the motion follows them, and all velocities by differences of places."""
+        state = self.state
+        base = Certificate(()) if state.equations is None else certify(state.equations)
+        bodies = body_motions(state.system, state.state) if state.accelerated and state.is_short else ()
+        return base + instant_checks(state, bodies, self.relative)
+
+    @cached_property
+    def derivation(self) -> Document:
+        """Step by step."""
+        model, system = self.state.system.scope.model, self.state.system
+        data = (data_step(system),) if system.symbols.parameters else ()
+        kinds = self._kinds() if self.state.fields else ()
+        more = (*kinds, *self._seen())
+        more = more if self.state.exact else tuple(in_numbers(self.state, step) for step in more)
+        steps = (*data, *mechanism_steps(self.state), *more)
+        return document_of(model, "kinematics", steps)
+
+    def _kinds(self) -> tuple[Step, ...]:
+        """Kinds of motion; spins, poles and centrodes where the accelerations are known exactly."""
+        system, state = self.state.system, self.state.state
+        if self.state.accelerated and self.state.is_short:
+            kinds, *fields = field_steps(system, state, self.kinds, self._shown)
+            return (self._within_lines(kinds), *fields)
+        motions = body_motions(system, self.state.moving, self.kinds)
+        return (self._within_lines(kinds_step(motions, particles_of(system))),)
+
+    def _within_lines(self, step: Step) -> Step:
+        """The sentences with numbers in place of formulas that are longer than a line."""
+        statements = tuple(
+            Prose(tuple(self._within_line(piece) for piece in each.pieces)) if isinstance(each, Prose) else each
+            for each in step.statements
+        )
+        return replace(step, statements=statements)
+
+    def _within_line(self, piece: Piece) -> Piece:
+        if not isinstance(piece, Node) or text_size(piece) <= LINE:
+            return piece
+        number = self.state.number(piece)
+        return "..." if number is None else f"{number:.6g}"
+
+    def _shown(self, x: Scalar) -> Cell:
+        """A value of the fields: a number where its formula is longer than a line."""
+        written = x if text_size(x) <= LINE else cell(self.state, x)
+        return Law(written, written) if isinstance(written, str) else written
+
+    def _seen(self) -> tuple[Step, ...]:
+        return tuple(
+            step
+            for point, body in self.relative
+            for step in relative_steps(self.state.system, point, body, self.state.state)
+        )
+
+    @property
+    def picture(self) -> Picture:
+        """The mechanism with its centres and velocities.
+
+        Raises:
+            RunFailed: it is in space.
+            MissingValues: parameters without a value.
+        """
+        return mechanism_picture(self.state, () if self.kinds is None else all_centrodes(self.kinds))
+
+    # -- for machines --------------------------------------------------------------------------------
+
+    def entries(self) -> dict[str, Any]:
+        """For machines."""
+        state = self.state
+        mechanism = state.mechanism
+        return {
+            "name": state.system.scope.model.name,
+            "when": state.when,
+            "freedoms": {"by_rank": state.freedoms, "by_formula": state.formula[0], "formula": state.formula[1]},
+            "given": list(state.given),
+            "rate": None if state.symbol is None else {"symbol": state.symbol.name, "of": state.rate},
+            "exact": state.exact,
+            "blocks": {} if mechanism is None else {name: list(bodies) for name, bodies in mechanism.blocks.items()},
+            "centers": [] if mechanism is None else [self._center(c) for c in mechanism.centers.values()],
+            "angular_velocities": {name: self._turn(field.w) for name, field in state.turning.items()},
+            "velocities": {names: self._vector(v) for names, _, v, _ in state.points},
+            **self._accelerations(),
+            "bodies": field_payload(state.system, state.state, self.kinds) if self._has_bodies else {},
+            "relative": [relative_payload(state.system, p, b, state.state) for p, b in self.relative],
+        }
+
+    @property
+    def _has_bodies(self) -> bool:
+        return bool(self.state.accelerated) and self.state.is_short
+
+    def _accelerations(self) -> Mapping[str, Any]:
+        if not self.state.accelerated:
+            return {"angular_accelerations": None, "accelerations": None}
+        exact = not self.state.rounded
+        return {
+            "angular_accelerations": {name: self._turn(field.e, exact) for name, field in self.state.turning.items()},
+            "accelerations": {names: self._vector(a, exact) for names, _, _, a in self.state.points if a is not None},
+        }
+
+    def _center(self, center: RotationCenter) -> dict[str, Any]:
+        x, y, _ = center.point
+        place = [self._value(x), self._value(y)]
+        found = self.state.found.get(center.pair)
+        return {
+            "bodies": list(center.pair),
+            "kind": "infinite" if center.at_infinity else "finite",
+            "place": None if center.at_infinity else place,
+            "direction": place if center.at_infinity else None,
+            "found": None if found is None else how_found(self.state, found),
+        }
+
+    def _turn(self, w: Vector, exact: bool = True) -> Any:
+        return self._value(w[2], exact) if self.state.plane else self._vector(w, exact)
+
+    def _vector(self, v: Vector, exact: bool = True) -> dict[str, Any]:
+        axes = "xy" if self.state.plane else "xyz"
+        parts = {axis: self._value(x, exact) for axis, x in zip(axes, v, strict=False)}
+        return {**parts, "magnitude": self._value(self.state.size(v), exact)}
+
+    def _value(self, x: Scalar, exact: bool = True) -> Quantity:
+        shown = self.state.put((x, 0, 0))[0]
+        written = readable_text(shown) if exact and self.state.exact else None
+        return Quantity(written, self.state.number(shown), unit=None)

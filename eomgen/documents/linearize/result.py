@@ -1,0 +1,398 @@
+"""Model -> Linearization: its small motions as a user gets them: step by step, for machines, drawn."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+from functools import cached_property
+from typing import Any
+
+import numpy as np
+
+from eomgen.certificate import certify
+from eomgen.documents.document import Document, document_of
+from eomgen.documents.figures import Picture
+from eomgen.documents.linearize.picture import modes_picture
+from eomgen.documents.linearize.response_pictures import bode_picture, locus_picture
+from eomgen.documents.linearize.state_space import LETTERS, StateSpace, state_space_of
+from eomgen.documents.linearize.steps import linearization_steps
+from eomgen.documents.quantity import Quantity
+from eomgen.documents.result import Result
+from eomgen.documents.setting_steps import data_step
+from eomgen.errors import DerivationError, UsageError
+from eomgen.mechanics.equations.system import system_of
+from eomgen.mechanics.initial_state.numeric_value import known_exactly
+from eomgen.mechanics.small_motions.family import Family
+from eomgen.mechanics.small_motions.field import Entries
+from eomgen.mechanics.small_motions.linearization import SmallMotions, small_motions_of
+from eomgen.mechanics.small_motions.modes import Frequency, Modes
+from eomgen.mechanics.small_motions.polynomial import Polynomial
+from eomgen.mechanics.small_motions.reduction import LinearEquations
+from eomgen.mechanics.small_motions.spectrum import Mode, Spectrum
+from eomgen.mechanics.small_motions.state_space import StateMatrices, exact_state_space, with_outputs
+from eomgen.mechanics.statics.contacts_at_start import contacts_at_start
+from eomgen.model.outputs.base import names_of
+from eomgen.model.parts import Model
+from eomgen.model.ranges import Range, range_of
+from eomgen.model.reader import ModelOrPath, model_at
+from eomgen.model.replaced import Values
+from eomgen.proof.check import Certificate
+from eomgen.proof.small_motions import small_motion_checks
+from eomgen.symbolic.expression.expressions import Call, Expression
+from eomgen.symbolic.expression.graph import Scalar
+from eomgen.symbolic.expression.rational import Fraction
+from eomgen.symbolic.numeric.sure_numbers import numbers_of
+from eomgen.symbolic.numeric.work import doing
+from eomgen.symbolic.print.text import to_text
+
+METHOD = "linearization"
+
+
+@dataclass(frozen=True)
+class Linearization(Result):
+    """Small motions about a place of rest or a steady motion.
+
+    Args:
+        model: the system.
+        modes: what follows from its equations to first order.
+        drawn: what its picture shows: "modes", "bode", or "locus", the roots `over` a parameter.
+    """
+
+    model: Model
+    modes: Modes
+    drawn: str = "modes"
+    over: Range | None = None
+
+    def __repr__(self) -> str:
+        about = self.small.reference.about
+        return f"<small motions of {self.model.name!r} about its {about}: {', '.join(self.coordinates)}>"
+
+    @property
+    def small(self) -> SmallMotions:
+        """The equations."""
+        return self.modes.small
+
+    @property
+    def equations(self) -> LinearEquations:
+        """M, C, K, B, F, E: exact where they are known so, else floats."""
+        return self.small.exact or self.small.numbers
+
+    @property
+    def is_exact(self) -> bool:
+        return self.small.exact is not None
+
+    @property
+    def coordinates(self) -> tuple[str, ...]:
+        return tuple(q.name for q in self.equations.coordinates)
+
+    @property
+    def speeds(self) -> tuple[str, ...]:
+        return tuple(u.name for u in self.equations.speeds)
+
+    @property
+    def inputs(self) -> tuple[str, ...]:
+        return tuple(w.name for w in self.equations.inputs)
+
+    M = cached_property(lambda self: self._numbers("M"))
+    C = cached_property(lambda self: self._numbers("C"))
+    K = cached_property(lambda self: self._numbers("K"))
+    D = cached_property(lambda self: (self.C + self.C.T) / 2)
+    G = cached_property(lambda self: (self.C - self.C.T) / 2)
+
+    @cached_property
+    def exact(self) -> dict[str, Any]:
+        """{"M": M, "C": C, "K": K, "B": B} as sympy matrices of the parameters; {} where only numbers are known."""
+        import sympy
+
+        from eomgen.symbolic.print.sympy_form import to_sympy
+
+        letters = "MCKB" if self.is_exact else ""
+        return {letter: sympy.Matrix([to_sympy(row) for row in getattr(self.equations, letter)]) for letter in letters}
+
+    @property
+    def A(self) -> np.ndarray:
+        """The state matrix, x = (coordinates, speeds)."""
+        self._refuse_unvalued()
+        return self.small.state_matrix
+
+    @property
+    def B(self) -> np.ndarray:
+        """The input matrix of x' = A x + B w."""
+        self._refuse_unvalued()
+        return self.small.input_matrix
+
+    def state_space(self, outputs: Sequence[str] = ()) -> StateSpace:
+        """x' = A x + B w, y = C_y x + D_y w, x = (coordinates, speeds).
+
+        Args:
+            outputs: y: names of coordinates, of speeds, or of their rates (theta''); (): the coordinates.
+        Raises:
+            UsageError: another name.
+            DerivationError: they are known in numbers only, and parameters have no values.
+        """
+        wanted = tuple((outputs,) if isinstance(outputs, str) else outputs) or self.coordinates
+        exact, numbers = self._state_spaces(wanted)
+        if exact is None:
+            self._refuse_unvalued()
+        return state_space_of(exact, numbers)
+
+    def _state_spaces(self, outputs: Sequence[str]) -> tuple[StateMatrices | None, StateMatrices | None]:
+        """(exact, in numbers), as far as they are known."""
+        exact = exact_state_space(self.small, outputs)
+        if not self.valued:
+            return exact, None
+        A, B = self.small.state_matrix.tolist(), self.small.input_matrix.tolist()
+        return exact, with_outputs(self.small.numbers, A, B, outputs)
+
+    @property
+    def spectrum(self) -> Spectrum:
+        """Modes, eigenvalues, stability."""
+        self._refuse_unvalued()
+        return self.modes.spectrum
+
+    @property
+    def frequencies(self) -> tuple[Frequency, ...]:
+        """Of the motions that oscillate, the lowest first."""
+        return self.modes.frequencies
+
+    def _numbers(self, letter: str) -> np.ndarray:
+        self._refuse_unvalued()
+        return np.array(getattr(self.small.numbers, letter), dtype=float)
+
+    @property
+    def valued(self) -> bool:
+        return self.small.reference.valued
+
+    def _refuse_unvalued(self) -> None:
+        """Numbers need values.
+
+        Raises:
+            DerivationError: parameters have none.
+        """
+        if not self.valued:
+            raise DerivationError("numbers of small motions need values of all parameters", "parameters")
+
+    def certify(self) -> Certificate:
+        """Check the equations of motion, and the small motions against differences of these."""
+        first = self.small.first
+        return certify(first.equations) + small_motion_checks(self.modes)
+
+    # -- as outputs ask ------------------------------------------------------------------------------------
+
+    def value(self, call: Call) -> tuple[Scalar, bool]:
+        """(one of the functions mass, damping, stiffness, frequency, whether it is exact).
+
+        Raises:
+            DerivationError: no such coordinate or frequency; without values of all parameters there is no number.
+        """
+        if call.name == "frequency":
+            return self._frequency(call)
+        found, exact = self.modes.entry(call.name, *names_of(call))
+        return found if exact else self._rounded(found), exact
+
+    def _frequency(self, call: Call) -> tuple[Scalar, bool]:
+        (number,) = call.args
+        k = number.literal if isinstance(number, Expression) else None
+        if k is None or k != int(k):
+            raise DerivationError(f"'{call}': frequencies are numbered 1, 2, ...")
+        found = self.modes.frequency(int(k))
+        if found.exact is not None:
+            return found.exact, True
+        assert found.mode.frequency is not None
+        return self._rounded(found.mode.frequency), False
+
+    def _rounded(self, x: float) -> Fraction:
+        self._refuse_unvalued()
+        return Fraction(x)
+
+    # -- as it is shown --------------------------------------------------------------------------------------
+
+    @cached_property
+    def derivation(self) -> Document:
+        """The way, step by step."""
+        model = self.model
+        steps = (data_step(self.small.reference.system), *linearization_steps(self.modes))
+        return document_of(model, METHOD, steps)
+
+    @property
+    def picture(self) -> Picture:
+        """The modes, drawn over the reference; Bode's diagrams; or the roots over a parameter.
+
+        Raises:
+            RunFailed: parameters have no values; there are no inputs; the equations are only known in numbers.
+        """
+        if self.over is not None:
+            return locus_picture(self.small, self.over)
+        return bode_picture(self.small) if self.drawn == "bode" else modes_picture(self.modes)
+
+    def bode(self) -> Picture:
+        """Size and phase of the transfer functions over the frequency.
+
+        Raises:
+            RunFailed: parameters have no values, or there are no inputs.
+        """
+        return replace(self, drawn="bode", over=None).picture
+
+    def locus(self, over: str) -> Picture:
+        """The eigenvalues over a parameter: "k=100:1000:50", "log:k=1:100:50", in the unit of the file.
+
+        Raises:
+            UsageError: no such parameter, no range.
+            RunFailed: parameters have no values; the equations are only known at those.
+        """
+        return replace(self, drawn="locus", over=range_of(self.model, over)).picture
+
+    def entries(self) -> dict[str, Any]:
+        """For machines."""
+        reference, equations = self.small.reference, self.equations
+        parts = self.modes.symmetric_parts if self.small.is_second_order else {}
+        return {
+            "name": self.model.name,
+            "about": reference.about,
+            "state": {
+                x.name: _state(reference.exact.get(x), float(reference.numbers[x]), valued=self.valued)
+                for x in (*reference.system.symbols.q, *reference.system.symbols.u)
+            },
+            "family": self._family(reference.family),
+            "coordinates": list(self.coordinates),
+            "speeds": list(self.speeds),
+            "inputs": list(self.inputs),
+            "left_out": [q.name for q in self.small.left_out],
+            "second_order": self.small.is_second_order,
+            "exact": self.is_exact,
+            **{
+                name: self._matrix(getattr(equations, letter))
+                for name, letter in (
+                    ("mass", "M"),
+                    ("rates", "C"),
+                    ("stiffness", "K"),
+                    ("input", "B"),
+                    ("kinematic_rates", "E"),
+                    ("kinematic_places", "F"),
+                )
+            },
+            **{
+                name: self._matrix([[self.modes.tidy(x) for x in row] for row in parts[letter]])
+                for name, letter in (("damping", "D"), ("gyroscopic", "G"), ("circulatory", "H"))
+                if parts
+            },
+            "state_space": self._state_space_entry(),
+            "state_matrix": self.A.tolist() if self.valued else None,
+            "input_matrix": self.B.tolist() if self.valued else None,
+            "characteristic_polynomial": _polynomial(self.modes.polynomial),
+            "conditions": [to_text(x) for x in self.modes.conditions.expressions],
+            "conditions_for": self.modes.conditions.words or None,
+            "transfer_functions": [
+                {
+                    "coordinate": f.coordinate.name,
+                    "input": f.input.name,
+                    "numerator": _polynomial(f.above),
+                    "denominator": _polynomial(f.below),
+                }
+                for f in self.modes.transfers
+            ],
+            "eigenvalues": [[x.real, x.imag] for x in self.spectrum.eigenvalues] if self.valued else None,
+            "modes": [self._mode(mode) for mode in self.modes.spectrum.modes] if self.valued else None,
+            "stability": self.spectrum.stability if self.valued else None,
+            "why": self.spectrum.why if self.valued else None,
+        }
+
+    def _state_space_entry(self) -> dict[str, Any]:
+        """The state space with the coordinates as outputs."""
+        exact, numbers = self._state_spaces(self.coordinates)
+        return {
+            "states": [*self.coordinates, *self.speeds],
+            "outputs": list(self.coordinates),
+            **{
+                letter: {
+                    "exact": None if exact is None else [[to_text(x) for x in row] for row in getattr(exact, letter)],
+                    "value": None if numbers is None else getattr(numbers, letter),
+                }
+                for letter in LETTERS
+            },
+        }
+
+    def _family(self, family: Family | None) -> dict[str, Any] | None:
+        """The steady motions that this one belongs to; null where it was not sought, or cannot be written."""
+        if family is None:
+            return None
+        motions = zip(family.others, family.closed, self.modes.beside, strict=True) if self.valued else ()
+        return {
+            "held": [x.name for x in (*family.zeros, *family.held)],
+            "conditions": [to_text(x) for x in family.conditions],
+            "formulas": {x.name: to_text(value) for x, value in family.formulas.items()},
+            "complete": family.complete,
+            "where": family.where,
+            "motions": [
+                {
+                    "state": {x.name: _state(closed.get(x), value, valued=True) for x, value in at.items()},
+                    "stability": stability or None,
+                }
+                for at, closed, stability in motions
+            ],
+        }
+
+    def _matrix(self, A: Entries) -> dict[str, Any]:
+        if not self.is_exact:
+            return {"exact": None, "value": A}
+        return {"exact": [[to_text(x) for x in row] for row in A], "value": self._values(A)}
+
+    def _values(self, A: Entries) -> list[list[float]] | None:
+        if not self.valued:
+            return None
+        flat = iter(numbers_of([x for row in A for x in row], known_exactly(self.small.reference.system.scope)))
+        return [[next(flat) for _ in row] for row in A]
+
+    def _mode(self, mode: Mode) -> dict[str, Any]:
+        exact = next((f.exact for f in self.frequencies if f.mode is mode), None)
+        return {
+            "eigenvalue": [mode.eigenvalue.real, mode.eigenvalue.imag],
+            "frequency": Quantity(None if exact is None else to_text(exact), mode.frequency, unit=None),
+            "hertz": mode.hertz,
+            "damping_ratio": mode.damping_ratio,
+            "kind": mode.kind,
+            "shape": {q.name: [x.real, x.imag] for q, x in mode.shape.items()},
+        }
+
+
+def _state(exact: Scalar | None, number: float, *, valued: bool) -> Quantity:
+    return Quantity(None if exact is None else to_text(exact), number if valued else None, unit=None)
+
+
+def _polynomial(polynomial: Polynomial | None) -> list[str] | None:
+    """Coefficients, the constant first."""
+    if polynomial is None:
+        return None
+    return [repr(c) if isinstance(c, float) else to_text(c) for c in polynomial.coefficients]
+
+
+@doing("small motions")
+def linearize(
+    model: ModelOrPath,
+    about: str | None = None,
+    coordinates: Sequence[str] = (),
+    *,
+    parameters: Values | None = None,
+    start: Values | None = None,
+) -> Linearization:
+    """The small motions of a model about a place of rest, or about its start, a steady motion.
+
+    Args:
+        about: "equilibrium", "start" (a steady motion), or "steady" (the one near the start); None: as the model says.
+        coordinates: in which they are asked; (): as the model says, or all.
+        parameters, start: values that replace the model's, each as `model_at` takes it.
+    Raises:
+        UsageError: a coordinate that the model does not have.
+        DerivationError: no place of rest; the start is no steady motion; the coordinates do not move by themselves.
+    """
+    model = model_at(model, parameters, start)
+    part = model.linearize
+    asked = coordinates or (part.coordinates if part is not None else None) or ()
+    wanted = tuple(dict.fromkeys((asked,) if isinstance(asked, str) else asked))
+    for name in wanted:
+        if name not in model.coordinates:
+            raise UsageError(f"no coordinate '{name}'", mend=f"one of {', '.join(model.coordinates)}")
+    about = about or (part.about if part is not None else "equilibrium")
+    return Linearization(
+        model, Modes(small_motions_of(system_of(model, contacts_at_start(model).modes), about, wanted))
+    )

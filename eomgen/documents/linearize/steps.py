@@ -1,0 +1,401 @@
+"""Modes -> the steps of a linearization: the reference, the equations to first order, modes, stability."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Sequence
+
+import numpy as np
+
+from eomgen.documents.linearize.reference_step import reference_step
+from eomgen.documents.setting_steps import listed_symbols
+from eomgen.documents.statements import (
+    Cell,
+    Formula,
+    Grid,
+    Law,
+    Matrix,
+    Prose,
+    Side,
+    Statement,
+    Step,
+    narrow_grid,
+    prose,
+)
+from eomgen.documents.statements import Entry as Place
+from eomgen.errors import DerivationError
+from eomgen.mechanics.initial_state.numeric_value import known_exactly
+from eomgen.mechanics.small_motions.field import Entries, MatrixEntry
+from eomgen.mechanics.small_motions.forms import floats
+from eomgen.mechanics.small_motions.modes import Frequency, Modes
+from eomgen.mechanics.small_motions.polynomial import Polynomial, laplace_variable
+from eomgen.mechanics.small_motions.reduction import LinearEquations
+from eomgen.mechanics.small_motions.spectrum import Mode
+from eomgen.mechanics.small_motions.state_space import exact_state_space, with_outputs
+from eomgen.mechanics.small_motions.transfer import TransferFunction
+from eomgen.symbolic.expression.functions import over
+from eomgen.symbolic.expression.graph import Node, Scalar, is_zero
+from eomgen.symbolic.numeric.sure_numbers import number_of
+from eomgen.symbolic.numeric.tolerances import COMPUTED, SOLVED
+from eomgen.symbolic.print.text import text_size, to_text
+
+SECOND_ORDER = Law("M*q'' + C*q' + K*q = B*w", r"M \ddot{q} + C \dot{q} + K q = B w")
+FREE = Law("M*q'' + C*q' + K*q = 0", r"M \ddot{q} + C \dot{q} + K q = 0")
+UNDAMPED = Law("M*q'' + K*q = 0", r"M \ddot{q} + K q = 0")
+FIRST_ORDER = Law("M*u' + C*u + K*q = B*w,  q' = E*u + F*q", r"M \dot{u} + C u + K q = B w,\quad \dot{q} = E u + F q")
+WHERE = Law(
+    "R = M*a - Q + c - J^T*lam",
+    r"R = M a - Q + c - J^{\mathsf{T}} \lambda",
+)
+ALONG = Law(
+    "K = Z^T*(R_q*P + R_u*Y + M*X_q),  C = Z^T*(R_u*Z + M*X_u)",
+    r"K = Z^{\mathsf{T}}\left(R_{q} P + R_{u} Y + M X_{q}\right),\quad "
+    r"C = Z^{\mathsf{T}}\left(R_{u} Z + M X_{u}\right)",
+)
+FOLLOW = Law(
+    "dq = P*dq_i,  du = Z*du_i + Y*dq_i,  da = Z*da_i + X_u*du_i + X_q*dq_i",
+    r"\delta q = P\, \delta q_{i},\quad \delta u = Z\, \delta u_{i} + Y\, \delta q_{i},\quad "
+    r"\delta a = Z\, \delta a_{i} + X_{u}\, \delta u_{i} + X_{q}\, \delta q_{i}",
+)
+PLAIN = Law("K = dR/dq,  C = dR/du", r"K = \frac{\partial R}{\partial q},\quad C = \frac{\partial R}{\partial u}")
+DETERMINANT = ("det({s}^2*M + {s}*C + K)", r"\det\left({s}^{{2}} M + {s} C + K\right)")
+STATE_DETERMINANT = ("det(M)*det({s}*1 - A)", r"\det M \det\left({s} \mathbf{{1}} - A\right)")
+LONG = 1200  # characters of one formula
+WIDEST = 88  # characters of a row of a matrix
+MOST_SHOWN = 8  # coordinates of matrices that are printed entry by entry
+
+
+def linearization_steps(modes: Modes) -> tuple[Step, ...]:
+    """Reference, equations, characteristic polynomial, modes, stability, transfer functions."""
+    steps = [reference_step(modes), _equations(modes), *_characteristic(modes)]
+    steps.append(_modes(modes))
+    return (*steps, *_stability(modes), *_state_space(modes), *_transfers(modes))
+
+
+# -- the equations --------------------------------------------------------------------------------------------
+
+
+def _equations(modes: Modes) -> Step:
+    small = modes.small
+    e = small.exact or small.numbers
+    tied = len(e.coordinates) < len(e.all) or bool(small.reference.system.ties.closing)
+    statements: list[Statement] = [
+        prose(
+            "The equations of motion ",
+            Law("R = 0", "R = 0"),
+            ", ",
+            WHERE,
+            ", to first order in the displacements ",
+            *listed_symbols(e.coordinates),
+            " from it",
+            ", along the ties" if tied else "",
+            ": ",
+            ALONG if tied else PLAIN,
+            ".",
+        )
+    ]
+    undamped = all(is_zero(x) for row in e.C for x in row)
+    turns = tuple(q for q in e.coordinates if q not in e.all)
+    if turns:
+        words = " are small turns about the axes of the body that spins, of which its speeds are the rates."
+        statements.append(prose(*listed_symbols(turns), words))
+    if tied:
+        statements.append(prose("The ties, differentiated, say what follows: ", FOLLOW, "."))
+    law = (SECOND_ORDER if e.inputs else UNDAMPED if undamped else FREE) if small.is_second_order else FIRST_ORDER
+    statements.append(prose(law, "."))
+    if len(e.speeds) > MOST_SHOWN:
+        statements.append(prose(f"M, C and K of {len(e.speeds)} coordinates stand in the result for machines."))
+        return Step("equations", "Equations to first order", tuple(statements))
+    rows = _rows(modes)
+    if len(rows) > 1:
+        statements.append(prose("Rows and columns in the order ", *listed_symbols(tuple(map(_plain, rows))), ":"))
+    statements += _entries("M", e.M, rows, rows, symmetric=True)
+    statements += _rates(modes, undamped)
+    symmetric = small.is_second_order and _symmetric(modes, e.K)
+    statements += _entries("K", e.K, rows, e.coordinates, symmetric=symmetric)
+    if small.is_second_order and not symmetric:
+        H = [[modes.tidy(x) for x in row] for row in modes.symmetric_parts["H"]]
+        statements.append(prose("The skew part H = (K - K^T)/2 of K is circulatory."))
+        statements += _entries("H", H, rows, e.coordinates, symmetric=False)
+    statements += _entries("B", e.B, rows, e.inputs, symmetric=False)
+    if not small.is_second_order:
+        statements += _entries("E", e.E, e.coordinates, e.speeds, symmetric=False)
+        statements += _entries("F", e.F, e.coordinates, e.coordinates, symmetric=False)
+    return Step("equations", "Equations to first order", tuple(statements))
+
+
+def _rows(modes: Modes) -> Sequence[Node]:
+    """What the rows belong to: of equations of second order the coordinates, else the speeds."""
+    e = modes.small.exact or modes.small.numbers
+    return e.coordinates if modes.small.is_second_order else e.speeds
+
+
+def _rates(modes: Modes, undamped: bool) -> list[Statement]:
+    """C, in its damping and its gyroscopic part where it has both."""
+    e = modes.small.exact or modes.small.numbers
+    if undamped:
+        return []
+    if not modes.small.is_second_order:
+        return _entries("C", e.C, e.speeds, e.speeds, symmetric=False)
+    parts = {letter: [[modes.tidy(x) for x in row] for row in modes.symmetric_parts[letter]] for letter in "DG"}
+    there = [letter for letter, A in parts.items() if not all(is_zero(x) for row in A for x in row)]
+    words = {
+        "D": "C = D, of damping (symmetric).",
+        "G": "C = G, gyroscopic (skew).",
+        "DG": "C = D + G, of damping (symmetric) and gyroscopic (skew).",
+    }
+    shown: list[Statement] = [prose(words.get("".join(there), ""))] if there else []
+    for letter, A in parts.items():
+        shown += _entries(letter, A, e.coordinates, e.coordinates, symmetric=letter == "D")
+    return shown
+
+
+def _symmetric(modes: Modes, A: Entries) -> bool:
+    if modes.small.exact is None:
+        n = range(len(A))
+        largest = max((abs(x) for row in A for x in row), default=0)
+        return all(abs(A[i][j] - A[j][i]) <= COMPUTED * largest for i in n for j in n)
+    return all(is_zero(modes.tidy(A[i][j] - A[j][i])) for i in range(len(A)) for j in range(i))
+
+
+def _entries(
+    letter: str, A: Entries, rows: Sequence[Node], columns: Sequence[Node], *, symmetric: bool
+) -> list[Statement]:
+    """The matrix; where it is too wide for a line its entries that are not zero, of a symmetric one each once."""
+    if not columns:
+        return []
+    whole = matrix_of(A)
+    if whole is not None:
+        return [Formula((Law(letter, letter), whole))]
+    found: list[Statement] = []
+    for i, row in enumerate(rows):
+        for j, column in enumerate(columns):
+            if not is_zero(A[i][j]) and (j >= i or not symmetric):
+                found.append(Formula((Place(letter, _plain(row), _plain(column)), _side(A[i][j]))))
+    return found
+
+
+def matrix_of(A: Entries) -> Matrix | None:
+    """The matrix as it is printed; None where a line does not hold a row of it."""
+    rows = tuple(tuple(_number(x) if isinstance(x, float) else x for x in row) for row in A)
+    texts = [[x.text if isinstance(x, Law) else to_text(x) for x in row] for row in rows]
+    width = sum(max(map(len, column)) + 2 for column in zip(*texts, strict=True))
+    return Matrix(rows) if rows and rows[0] and width <= WIDEST else None
+
+
+def _plain(x: Node) -> Node:
+    """The coordinate of a rate."""
+    plain: Node = x.graph.symbol(x.name.removesuffix("'"))
+    return plain
+
+
+def _side(x: MatrixEntry) -> Side:
+    if isinstance(x, float):
+        return _number(x)
+    return x if text_size(x) <= LONG else Law("(too long to print)", r"\text{(too long to print)}")
+
+
+def _number(x: float) -> Law:
+    text = f"{x + 0.0:.7g}"  # no minus before 0
+    return Law(text, _latex_number(text))
+
+
+# -- modes ------------------------------------------------------------------------------------------------------
+
+
+def _characteristic(modes: Modes) -> tuple[Step, ...]:
+    shown = _polynomial(modes)
+    if shown is None:
+        return ()
+    exact, s = modes.small.exact, "s"
+    if exact is not None and not isinstance(shown, Law):
+        s = laplace_variable(exact).name
+    law = Law(*(x.format(s=s) for x in (DETERMINANT if modes.small.is_second_order else STATE_DETERMINANT)))
+    statements = (prose(f"With displacements that go as exp({s} t):"), Formula((law, shown, 0)))
+    return (Step("characteristic", "Characteristic equation", statements),)
+
+
+def _polynomial(modes: Modes) -> Side | None:
+    """Exact where that is short enough to print, else in numbers; None where there are neither."""
+    small = modes.small
+    if modes.polynomial is not None and small.exact is not None:
+        exact = _written(modes.polynomial, laplace_variable(small.exact))
+        if text_size(exact) <= LONG or not small.reference.valued:
+            return _side(exact)
+    if not small.reference.valued or len(small.state_matrix) > MOST_SHOWN:
+        return None
+    scale = np.linalg.det(floats(small.numbers.M))
+    return _in_numbers(scale * np.poly(small.state_matrix))
+
+
+def _in_numbers(coefficients: np.ndarray) -> Law:
+    """The highest power first."""
+    n = len(coefficients) - 1
+    largest = abs(coefficients).max()
+    terms = [
+        (f"{x:.7g}".replace("+0", "").replace("-0", "-"), n - k)
+        for k, x in enumerate(coefficients)
+        if abs(x) > SOLVED * largest
+    ]
+    plain = [c + {0: "", 1: "*s"}.get(k, f"*s^{k}") for c, k in terms]
+    latex = [_latex_number(c) + {0: "", 1: " s"}.get(k, f" s^{{{k}}}") for c, k in terms]
+    one = (("1*s", "s"), ("1 s", "s"))
+    found = [
+        [re.sub(rf"^(-?){re.escape(a)}", rf"\1{b}", x) for x in written]
+        for written, (a, b) in zip((plain, latex), one, strict=True)
+    ]
+    return Law(*(" + ".join(x).replace("+ -", "- ") for x in found))
+
+
+def _latex_number(text: str) -> str:
+    mantissa, _, power = text.partition("e")
+    return rf"{mantissa} \cdot 10^{{{power}}}" if power else text
+
+
+def _written(polynomial: Polynomial, s: Node) -> Scalar:
+    """The highest power first."""
+    total: Scalar = sum((c * s**n for n, c in reversed(list(enumerate(polynomial.coefficients)))), start=0)
+    return total
+
+
+def _modes(modes: Modes) -> Step:
+    """Frequencies in closed form, and a table of the modes in numbers."""
+    statements: list[Statement] = []
+    for k, found in enumerate(_frequencies(modes), start=1):
+        if found.exact is not None and not is_zero(found.exact):
+            statements.append(Formula((Law(f"omega_{k}", rf"\omega_{{{k}}}"), _side(found.exact))))
+    if modes.small.reference.valued:
+        listed_modes = modes.spectrum.modes
+        rows = [_row(k, mode) for k, mode in enumerate(listed_modes, start=1)]
+        head = ("mode", "eigenvalue [1/s]", "omega [rad/s]", "f [Hz]", "damping ratio", "")
+        statements += [narrow_grid(head, rows), _shapes(listed_modes)]
+    if not statements:
+        statements.append(prose("The modes depend on the values of the parameters."))
+    return Step("modes", "Modes", tuple(statements))
+
+
+def _frequencies(modes: Modes) -> Sequence[Frequency]:
+    """None, where their order depends on the parameters."""
+    try:
+        return modes.frequencies
+    except DerivationError:
+        return ()
+
+
+def _row(k: int, mode: Mode) -> tuple[Cell, ...]:
+    omega, hertz, ratio = mode.frequency, mode.hertz, mode.damping_ratio
+    return (
+        str(k),
+        _complex(mode.eigenvalue, pair=mode.pair),
+        *("" if x is None else f"{x:.7g}" for x in (omega, hertz, ratio)),
+        mode.kind,
+    )
+
+
+def _complex(x: complex, *, pair: bool = False) -> Cell:
+    if not x.imag:
+        return f"{x.real:.7g}"
+    sign = "+-" if pair else "+" if x.imag > 0 else "-"
+    text = f"{x.real:.7g} {sign} {abs(x.imag):.7g}i" if x.real else f"{sign}{abs(x.imag):.7g}i"
+    latex = " ".join(_latex_number(part) for part in text.removesuffix("i").split())
+    return Law(text, latex.replace("+-", r"\pm ") + r"\,\mathrm{i}")
+
+
+def _shapes(modes: Sequence[Mode]) -> Grid:
+    """A column for each mode, the largest displacement 1."""
+    coordinates = list(modes[0].shape) if modes else []
+    rows: list[tuple[Cell, ...]] = [(q, *(_complex(_tidied(mode.shape[q])) for mode in modes)) for q in coordinates]
+    return Grid(("shape", *(f"mode {k}" for k in range(1, len(modes) + 1))), tuple(rows))
+
+
+def _tidied(x: complex) -> complex:
+    return complex(round(x.real, 6) + 0.0, round(x.imag, 6) + 0.0)
+
+
+# -- stability, inputs ----------------------------------------------------------------------------------------
+
+
+def _stability(modes: Modes) -> tuple[Step, ...]:
+    statements: list[Statement] = []
+    if modes.small.reference.valued:
+        statements.append(prose(f"{modes.spectrum.stability.capitalize()}: {modes.spectrum.why}."))
+    conditions = modes.conditions
+    if conditions.expressions:
+        which = "all motions but those that stay as they are" if conditions.zeros else "all motions"
+        statements.append(prose(f"By Routh and Hurwitz {which} {conditions.words} where these are positive:"))
+        for k, x in enumerate(conditions.expressions, start=1):
+            statements.append(Formula((Law(f"h_{k}", f"h_{{{k}}}"), _or_number(modes, x))))
+    return (Step("stability", "Stability", tuple(statements)),) if statements else ()
+
+
+def _or_number(modes: Modes, x: Scalar) -> Side:
+    """A formula, or its value where it is too long to print."""
+    reference = modes.small.reference
+    if text_size(x) <= LONG or not reference.valued:
+        return _side(x)
+    return _number(number_of(x, known_exactly(reference.system.scope)))
+
+
+def _state_space(modes: Modes) -> tuple[Step, ...]:
+    """A, B, C_y, D_y of the coordinates as outputs, exact where they are short, else in numbers; without inputs A."""
+    e = modes.small.exact or modes.small.numbers
+    shown = _state_matrices(modes) if len(e.speeds) <= MOST_SHOWN else ()
+    if not shown:
+        return ()
+    words = prose(Law("x' = A*x", r"\dot{x} = A x"), ", with x = (", *listed_symbols((*e.coordinates, *e.speeds)), "):")
+    if e.inputs:
+        words = _with_inputs(e)
+    letters = ("A", "B", "C_y", "D_y")
+    formulas = [Formula((Law(x, x.replace("_y", "_{y}")), m)) for x, m in zip(letters, shown, strict=False)]
+    return (Step("state_space", "State space", (words, *formulas)),)
+
+
+def _with_inputs(e: LinearEquations) -> Prose:
+    return prose(
+        Law("x' = A*x + B*w,  y = C_y*x + D_y*w", r"\dot{x} = A x + B w,\quad y = C_{y} x + D_{y} w"),
+        ", with x = (",
+        *listed_symbols((*e.coordinates, *e.speeds)),
+        "), w = (",
+        *listed_symbols(e.inputs),
+        ") and y = (",
+        *listed_symbols(e.coordinates),
+        "):",
+    )
+
+
+def _state_matrices(modes: Modes) -> tuple[Matrix, ...]:
+    """Those that are not empty, exact where all of them can be printed; else in numbers; () where there are neither."""
+    small = modes.small
+    outputs = tuple(q.name for q in small.numbers.coordinates)
+    ways = [exact_state_space(small, outputs)]
+    if small.reference.valued:
+        A, B = small.state_matrix.tolist(), small.input_matrix.tolist()
+        ways.append(with_outputs(small.numbers, A, B, outputs))
+    for found in ways:
+        if found is not None:
+            shown = [matrix_of(x) for x in ((found.A, found.B, found.C_y, found.D_y) if found.inputs else (found.A,))]
+            if None not in shown:
+                return tuple(x for x in shown if x is not None)
+    return ()
+
+
+def _transfers(modes: Modes) -> tuple[Step, ...]:
+    if not modes.transfers:
+        return ()
+    exact = modes.small.exact
+    s = "s" if exact is None else laplace_variable(exact).name
+    statements: list[Statement] = [prose(f"From inputs to coordinates, as functions of {s}:")]
+    for f in modes.transfers:
+        statements.append(Formula((Place("W", f.coordinate, f.input), _quotient(modes, f))))
+    return (Step("transfer", "Transfer functions", tuple(statements)),)
+
+
+def _quotient(modes: Modes, f: TransferFunction) -> Side:
+    exact = modes.small.exact
+    if exact is not None and not any(isinstance(c, float) for c in f.below.coefficients):
+        s = laplace_variable(exact)
+        return _side(over(_written(f.above, s), _written(f.below, s)))
+    if not any(f.above.coefficients):
+        return 0
+    above, below = (_in_numbers(np.array(p.coefficients[::-1], dtype=float)) for p in (f.above, f.below))
+    return Law(f"({above.text})/({below.text})", rf"\frac{{{above.latex}}}{{{below.latex}}}")

@@ -1,0 +1,224 @@
+"""Movie -> a GIF, an MP4 or a strip of frames: what stays is drawn once, what moves is drawn over it."""
+
+from __future__ import annotations
+
+import io
+import math
+import shutil
+import subprocess
+import sys
+from collections.abc import Callable, Iterator, Sequence
+from typing import Any
+
+import numpy as np
+
+from eomgen.documents.figures import STYLE
+from eomgen.documents.motion_frames import FINE, Movie
+from eomgen.documents.scene_drawing import artist_of, limits
+from eomgen.documents.space_drawing import SpacePicture, sight
+from eomgen.errors import RunFailed, ToolMissing
+
+WIDTH, HIGHEST, DOTS = 4.8, 4.8, 100  # of a moving picture [inches, dots an inch]
+COLORS, NEARLY_WHITE = 64, 246  # of a GIF; what is lighter is paper
+TRAILS = ("#c77c11", "#8e44ad", "#2e7d4f", "#b03a2e")
+STRIP = 2.6  # width of a frame in a strip [inches]
+
+Progress = Callable[[int, int], None]
+
+
+class Stage:
+    """One movie on matplotlib axes."""
+
+    def __init__(self, panel: Any, movie: Movie) -> None:
+        self.panel, self.movie = panel, movie
+        self.space = None if movie.plane else SpacePicture(panel, movie.drawing)
+        self.moving: list[tuple[Any, np.ndarray, bool]] = []
+        if self.space is None:
+            self._plane_artists()
+        self.trails = [
+            (panel.plot([], [], color=TRAILS[k % len(TRAILS)], linewidth=1.2, zorder=3)[0], self._page(path))
+            for k, path in enumerate(movie.trails.values())
+        ]
+        if movie.title:
+            panel.set_title(movie.title, fontsize=9)
+
+    def _plane_artists(self) -> None:
+        """What stays and lies under all that moves is part of the ground; the rest is drawn anew."""
+        self.panel.set_aspect("equal")
+        self.panel.axis("off")
+        low, high = limits(self.movie.drawing)
+        self.panel.set_xlim(low[0], high[0])
+        self.panel.set_ylim(low[1], high[1])
+        strokes = [stroke for stroke in self.movie.drawing.strokes if stroke.path.size]
+        for k, stroke in enumerate(strokes):
+            artist = artist_of(self.panel, stroke, 0, {}, 1 + k / len(strokes))
+            still = np.array_equal(stroke.path, np.broadcast_to(stroke.path[:1], stroke.path.shape), equal_nan=True)
+            if self.moving or not still:
+                self.moving.append((artist, stroke.path, stroke.filled))
+
+    def _page(self, path: np.ndarray) -> np.ndarray:
+        return path if self.space is None else path @ sight().T[:, :2]
+
+    @property
+    def artists(self) -> list[Any]:
+        """What is drawn anew in every frame."""
+        own = [artist for artist, _, _ in self.moving] if self.space is None else [self.space.pieces]
+        return [*own, *(artist for artist, _ in self.trails)]
+
+    def show(self, frame: int) -> None:
+        """Everything at one frame."""
+        if self.space is not None:
+            self.space.show(frame)
+        for artist, path, filled in self.moving:
+            if filled:
+                artist.set_xy(path[frame])
+            else:
+                artist.set_data(path[frame, :, 0], path[frame, :, 1])
+        for artist, path in self.trails:
+            artist.set_data(*path[: FINE * frame + 1].T)
+
+
+def images(movies: Sequence[Movie], progress: Progress | None = None) -> Iterator[Any]:
+    """Every frame of movies side by side, as Pillow images of one size, both sides even."""
+    from matplotlib import rc_context
+    from matplotlib.backends.backend_agg import FigureCanvasAgg
+    from matplotlib.figure import Figure
+    from PIL import Image
+
+    with rc_context(STYLE):
+        tall = max(_tallness(movie) for movie in movies)
+        side = WIDTH if len(movies) == 1 else WIDTH * 0.62
+        height = min(HIGHEST, max(1.6, side * tall))
+        figure = Figure(figsize=(_even(side * len(movies)), _even(height)), dpi=DOTS)
+        canvas: Any = FigureCanvasAgg(figure)
+        stages = []
+        for k, movie in enumerate(movies):
+            room = 0.9 if movie.title else 1.0
+            stages.append(Stage(figure.add_axes((k / len(movies), 0, 1 / len(movies), room)), movie))
+        artists = [(stage.panel, artist) for stage in stages for artist in stage.artists]
+        for _, artist in artists:
+            artist.set_animated(True)
+        canvas.draw()
+        ground = canvas.copy_from_bbox(figure.bbox)
+        count = len(movies[0].times)
+        for frame in range(count):
+            canvas.restore_region(ground)
+            for stage in stages:
+                stage.show(frame)
+            for panel, artist in artists:
+                panel.draw_artist(artist)
+            size = canvas.get_width_height()
+            yield Image.frombuffer("RGBA", size, bytes(canvas.buffer_rgba()), "raw", "RGBA", 0, 1).convert("RGB")
+            if progress is not None:
+                progress(frame + 1, count)
+
+
+def _tallness(movie: Movie) -> float:
+    """Height over width of what is drawn."""
+    if movie.plane:
+        low, high = limits(movie.drawing)
+    else:
+        cloud = np.vstack([s.path.reshape(-1, 3) for s in movie.drawing.strokes if s.role != "track"])
+        page = cloud[np.isfinite(cloud).all(axis=1)] @ sight().T[:, :2]
+        low, high = page.min(axis=0), page.max(axis=0)
+    wide, high_ = (float(x) or 1.0 for x in high - low)
+    return min(1.4, max(0.35, high_ / wide))
+
+
+def _even(inches: float) -> float:
+    """A length of an even number of dots."""
+    return 2 * round(inches * DOTS / 2) / DOTS
+
+
+def gif(movies: Sequence[Movie], fps: float, progress: Progress | None = None) -> bytes:
+    """A GIF that runs for ever, all frames with one palette."""
+    drawn = list(images(movies, progress))
+    palette = _palette(drawn)
+    frames = [image.quantize(palette=palette, dither=0) for image in drawn]
+    page = io.BytesIO()
+    delay = max(20, 10 * round(100 / fps))
+    frames[0].save(page, format="GIF", save_all=True, append_images=frames[1:], duration=delay, loop=0, optimize=False)
+    return page.getvalue()
+
+
+def _palette(drawn: Sequence[Any]) -> Any:
+    """The colours of the first, the middle and the last frame."""
+    from PIL import Image
+
+    chosen = [drawn[0], drawn[len(drawn) // 2], drawn[-1]]
+    width, height = drawn[0].size
+    together = Image.new("RGB", (width, 3 * height))
+    for k, image in enumerate(chosen):
+        together.paste(image, (0, k * height))
+    entries = np.array(together.quantize(colors=COLORS).getpalette()).reshape(-1, 3)[:COLORS]
+    entries[entries.min(axis=1) > NEARLY_WHITE] = 255
+    found = Image.new("P", (1, 1))
+    found.putpalette([*entries.ravel().tolist(), *[0] * (768 - entries.size)])
+    return found
+
+
+def mp4(movies: Sequence[Movie], fps: float, path: str, progress: Progress | None = None) -> None:
+    """An MP4 (H.264), written by ffmpeg.
+
+    Raises:
+        ToolMissing: there is no ffmpeg on this machine.
+        RunFailed: it failed.
+    """
+    command = ffmpeg()
+    frames = images(movies, progress)
+    first = next(frames)
+    width, height = first.size
+    wanted = [command, "-y", "-loglevel", "error", "-f", "rawvideo", "-pix_fmt", "rgb24", "-s", f"{width}x{height}"]
+    wanted += ["-r", f"{fps:g}", "-i", "-", "-an", "-vcodec", "libx264", "-pix_fmt", "yuv420p", "-f", "mp4", path]
+    with subprocess.Popen(wanted, stdin=subprocess.PIPE, stderr=subprocess.PIPE) as running:
+        _, said = running.communicate(b"".join([first.tobytes(), *(image.tobytes() for image in frames)]))
+    if running.returncode:
+        raise RunFailed(f"ffmpeg failed: {said.decode(errors='replace').strip().splitlines()[-1:]}")
+
+
+def ffmpeg() -> str:
+    """The path of ffmpeg: the system's, else that of the package imageio-ffmpeg.
+
+    Raises:
+        ToolMissing: there is none.
+    """
+    if found := shutil.which("ffmpeg"):
+        return found
+    try:
+        from imageio_ffmpeg import get_ffmpeg_exe
+    except ImportError:
+        what = "no ffmpeg is on this machine, which writes .mp4"
+        raise ToolMissing(what, mend="pip install 'eomgen[video]', or write a .gif") from None
+    return str(get_ffmpeg_exe())
+
+
+def strip(movie: Movie, count: int) -> bytes:
+    """Frames of a movie side by side, with their times, as a PNG."""
+    from matplotlib import rc_context
+    from matplotlib.backends.backend_agg import FigureCanvasAgg
+    from matplotlib.figure import Figure
+
+    shown = sorted({round(k * (len(movie.times) - 1) / max(1, count - 1)) for k in range(count)})
+    columns = min(6, len(shown))
+    rows = math.ceil(len(shown) / columns)
+    height = STRIP * _tallness(movie) + 0.3
+    page = io.BytesIO()
+    with rc_context(STYLE):
+        figure = Figure(figsize=(STRIP * columns, height * rows), dpi=150)
+        FigureCanvasAgg(figure)
+        for k, frame in enumerate(shown):
+            row, column = divmod(k, columns)
+            box = (column / columns, 1 - (row + 1) / rows, 1 / columns, 0.9 / rows)
+            stage = Stage(figure.add_axes(box), movie)
+            stage.show(frame)
+            stage.panel.set_title(f"t = {movie.times[frame]:.3g} s", fontsize=9)
+        figure.savefig(page, format="png")
+    return page.getvalue()
+
+
+def on_stderr(done: int, count: int) -> None:
+    """Progress as one line on a terminal's stderr."""
+    if sys.stderr.isatty():
+        end = "\n" if done == count else ""
+        sys.stderr.write(f"\rframe {done} of {count}{end}")
+        sys.stderr.flush()

@@ -1,0 +1,130 @@
+"""Equations -> what `derive --json` carries, as plain data. Every expression is text that the grammar reads back.
+
+q' = N u + nu,   M a = forcing + J^T lam,   J a + gamma = 0
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import Any
+
+from eomgen.documents.equation_steps import multiplier_forces
+from eomgen.documents.reaction_payload import reactions_payload
+from eomgen.documents.reading import TRIED, Reader, without_cases
+from eomgen.mechanics.equations.equations_of_motion import EquationsOfMotion
+from eomgen.model.values import exact_parameters
+from eomgen.symbolic.expression.graph import Node, Scalar
+from eomgen.symbolic.print.text import text_size, to_text, with_definitions
+
+LARGEST = 16_000_000  # characters of all expressions together that are written out in full
+NAMED_PART = 200  # characters of a text in which long parts have names
+
+
+def equations_payload(equations: EquationsOfMotion, method: str) -> dict[str, Any]:
+    """The equations of motion as plain data, ready for JSON.
+
+    Matrices are lists of rows, vectors flat lists. Small expressions are multiplied out. Where everything written out
+    would be longer than 16 megabytes, long and repeated parts stand under `definitions`, [[name, text], ...], each
+    before its use.
+    """
+    model, symbols = equations.system.scope.model, equations.symbols
+    fields = _fields(equations)
+    definitions, texts = _texts([x for field in fields.values() for x in field.scalars], _taken(equations))
+    rest = iter(texts)
+    written = {name: field.shaped([next(rest) for _ in field.scalars]) for name, field in fields.items()}
+    sides = written.pop("equations")
+    values = exact_parameters(model)
+    return {
+        "name": model.name,
+        "space": model.space,
+        "source": model.source or "",
+        "method": method,
+        "coordinates": [q.name for q in symbols.q],
+        "speeds": [u.name for u in symbols.u],
+        "parameters": {name: float(values[name]) if name in values else None for name in symbols.parameters},
+        "inputs": {name: part.value.text for name, part in model.inputs.items()},
+        **({"definitions": [list(pair) for pair in definitions]} if definitions else {}),
+        **written,
+        "unknowns": [x.name for x in (*symbols.a, *symbols.lam)],
+        "generalized_forces": dict(zip((u.name for u in symbols.u), written["generalized_forces"], strict=True)),
+        "equations": [f"{left} = {right}" for left, right in sides],
+        **reactions_payload(equations, _taken(equations) | {name for name, _ in definitions}),
+    }
+
+
+@dataclass(frozen=True)
+class Field:
+    """The scalars of one entry of the payload, and how its texts stand together.
+
+    Args:
+        scalars: in order.
+        rows: of a matrix, each as long as the others; None for a flat list.
+        single: one text instead of a list.
+        present: for a list with nulls, which of its places have a scalar.
+    """
+
+    scalars: tuple[Scalar, ...]
+    rows: int | None = None
+    single: bool = False
+    present: tuple[bool, ...] | None = None
+
+    def shaped(self, texts: Sequence[str]) -> Any:
+        """The texts of the scalars in the entry's shape."""
+        if self.single:
+            return texts[0]
+        if self.rows is not None:
+            width = len(texts) // max(self.rows, 1)
+            return [list(texts[width * i : width * (i + 1)]) for i in range(self.rows)]
+        if self.present is None:
+            return list(texts)
+        found = iter(texts)
+        return [next(found) if there else None for there in self.present]
+
+
+def _fields(equations: EquationsOfMotion) -> dict[str, Field]:
+    """Every expression of the payload."""
+    gaps = tuple(gap for gap in equations.phi if gap is not None)
+    return {
+        "kinematic_matrix": _matrix(equations.N),
+        "kinematic_bias": Field(equations.nu),
+        "mass_matrix": _matrix(equations.M),
+        "forcing": Field(equations.forcing),
+        "constraint_jacobian": _matrix(equations.J),
+        "velocity_bias": Field(equations.sigma),
+        "constraint_bias": Field(equations.gamma),
+        "gaps": Field(gaps, present=tuple(gap is not None for gap in equations.phi)),
+        "kinetic_energy": Field((equations.T,), single=True),
+        "potential_energy": Field((equations.V,), single=True),
+        "generalized_forces": Field(equations.Q),
+        "equations": Field(_sides(equations), rows=len(equations.symbols.u)),
+    }
+
+
+def _matrix(rows: Sequence[Sequence[Scalar]]) -> Field:
+    return Field(tuple(x for row in rows for x in row), rows=len(rows))
+
+
+def _sides(equations: EquationsOfMotion) -> tuple[Scalar, ...]:
+    """Left and right of M a + c = Q + J^T lam, row by row."""
+    sides: list[Scalar] = []
+    for k, reaction in enumerate(multiplier_forces(equations)):
+        left = sum((m * a for m, a in zip(equations.M[k], equations.symbols.a, strict=True)), start=equations.c[k])
+        sides += [left, equations.Q[k] + reaction]
+    return tuple(sides)
+
+
+def _texts(scalars: Sequence[Scalar], taken: frozenset[str]) -> tuple[list[tuple[str, str]], list[str]]:
+    """The texts, and the named parts that they share where all in full would be too long."""
+    whole = sum(text_size(x) for x in scalars)
+    written = without_cases(Reader().short(scalars) if whole <= TRIED * len(scalars) else scalars)
+    if sum(text_size(x) for x in written) <= LARGEST:
+        return [], [to_text(x) for x in written]
+    return with_definitions(without_cases(scalars), NAMED_PART, taken)
+
+
+def _taken(equations: EquationsOfMotion) -> frozenset[str]:
+    """Names that no named part may have."""
+    s = equations.symbols
+    symbols: tuple[Node, ...] = (s.t, *s.parameters.values(), *s.inputs.values(), *s.q, *s.u, *s.a, *s.lam)
+    return frozenset(symbol.name for symbol in symbols)

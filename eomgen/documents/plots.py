@@ -1,0 +1,169 @@
+"""Trajectory -> a picture of it: coordinates over time, one panel a unit, how well the energy was kept, reactions."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from eomgen.documents.figures import Picture, mathtext
+from eomgen.simulation.result import Trajectory
+from eomgen.symbolic.expression.units import Unit
+
+PLAIN = Unit("")
+MOST_IN_LEGEND = 12
+MOST_REACTIONS = 10  # lines in one panel
+UNITS_OF_REACTIONS = {"N": "N", "N*m": r"N$\,$m"}
+DASHES = {"x": "-", "y": "--", "z": ":", "n": "-", "t": "-.", "s": ":", "tension": "-", "couple": "--", "drive": ":"}
+
+
+def plot_trajectory(
+    trajectory: Trajectory, path: str | Path, *, title: str = "", units: Mapping[str, Unit] | None = None
+) -> None:
+    """Draw a trajectory over time into a PNG, SVG or PDF file.
+
+    Args:
+        trajectory: what is drawn.
+        path: where to; the ending says which.
+        title: above the picture, the model's name.
+        units: of the coordinates by name, in which they are drawn; absent: SI, and none is printed.
+    Raises:
+        UsageError: another ending.
+        WriteFailed: the file cannot be written; what was there before is then still there.
+    """
+    over_time(trajectory, title, units or {}).save(path)
+
+
+def over_time(trajectory: Trajectory, title: str, units: Mapping[str, Unit]) -> Picture:
+    """Coordinates over time, one panel a unit, how well the energy was kept, reactions."""
+    groups = by_unit(trajectory, units)
+    reactions = reactions_by_unit(trajectory)
+    count = len(groups) + (trajectory.energy is not None) + len(reactions)
+
+    def fill(figure: Any) -> None:
+        panels = figure.subplots(max(count, 1), 1, sharex=True, squeeze=False)[:, 0]
+        for panel, (unit, names) in zip(panels, groups.items(), strict=False):
+            _coordinates(panel, trajectory, names, unit)
+        if trajectory.energy is not None:
+            _energy(panels[len(groups)], trajectory)
+        for panel, (kind, alike) in zip(panels[count - len(reactions) :], reactions.items(), strict=False):
+            _reactions(panel, trajectory, alike, kind)
+        panels[-1].set_xlabel("$t$ [s]")
+        panels[-1].margins(x=0.01)
+        figure.align_ylabels(panels)
+
+    return Picture((8, 1.0 + 2.1 * max(count, 1)), fill, title)
+
+
+def by_unit(trajectory: Trajectory, units: Mapping[str, Unit]) -> dict[Unit, list[str]]:
+    """The coordinates of each unit."""
+    groups: dict[Unit, list[str]] = {}
+    for name in trajectory.coordinates:
+        groups.setdefault(units.get(name, PLAIN), []).append(name)
+    return groups
+
+
+def _coordinates(panel: Any, trajectory: Trajectory, names: list[str], unit: Unit) -> None:
+    from matplotlib import colormaps
+
+    few = len(names) <= MOST_IN_LEGEND
+    colors = (
+        colormaps["tab10"](np.arange(10))
+        if len(names) <= 10
+        else colormaps["viridis"](np.linspace(0, 0.92, len(names)))
+    )
+    labels = [f"${mathtext(name)}$" for name in names]
+    for name, label, color in zip(names, labels, colors, strict=False):
+        panel.plot(trajectory.t, trajectory[name] / unit.size, label=label, color=color, linewidth=1.6 if few else 1.0)
+    shown = ", ".join(labels) if len(labels) <= 3 else f"{labels[0]}, …, {labels[-1]}"
+    panel.set_ylabel(f"{shown} [{unit}]" if unit.text else shown)
+    if len(names) > 1 and few:
+        panel.legend(loc="center left", bbox_to_anchor=(1.0, 0.5))
+
+
+def _energy(panel: Any, trajectory: Trajectory) -> None:
+    """E - E(0) where energy should stay, else E."""
+    energy = trajectory.energy
+    assert energy is not None
+    if trajectory.drift is None:
+        panel.plot(trajectory.t, energy, color="#444444", linewidth=1.4)
+        panel.set_ylabel("$E$ [J]")
+        return
+    panel.plot(trajectory.t, energy - energy[:1], color="#b03a2e", linewidth=1.2)
+    panel.axhline(0, color="#808080", linewidth=0.8)
+    panel.ticklabel_format(axis="y", style="sci", scilimits=(-2, 2))
+    panel.set_ylabel("$E - E(0)$ [J]")
+    within = " in each phase" if len(trajectory.phases) > 1 else ""
+    panel.annotate(
+        f"relative drift {trajectory.drift:.1e}{within}",
+        (1.0, 1.02),
+        xycoords="axes fraction",
+        ha="right",
+        va="bottom",
+        fontsize=9,
+        color="#505050",
+    )
+
+
+def reactions_by_unit(trajectory: Trajectory) -> dict[str, list[str]]:
+    """Those that have a value at some instant; of a unit of which all are 0, none."""
+    groups: dict[str, list[str]] = {}
+    for name, column in trajectory.reactions.items():
+        if not np.isnan(column).all():
+            groups.setdefault(trajectory.units.get(name, ""), []).append(name)
+    return {unit: names for unit, names in groups.items() if any(_size(trajectory, name) > 0 for name in names)}
+
+
+def _size(trajectory: Trajectory, name: str) -> float:
+    return float(np.nanmax(np.abs(trajectory.reactions[name])))
+
+
+def _reactions(panel: Any, trajectory: Trajectory, names: list[str], unit: str) -> None:
+    """One colour a joint or tie, one kind of line a component; of many the largest."""
+    from matplotlib import colormaps
+
+    owners: dict[str, list[str]] = {}
+    for name in names:
+        owners.setdefault(owner_of(name), []).append(name)
+    shown = largest_reactions(trajectory, owners)
+    for color, owner in zip(colormaps["tab10"](np.arange(len(shown))), shown, strict=True):
+        for name in owners[owner]:
+            component = component_of(name)
+            panel.plot(
+                trajectory.t,
+                trajectory.reactions[name],
+                label=f"{owner}: {component}".replace("$", r"\$"),
+                color=color,
+                linewidth=1.4,
+                linestyle=DASHES.get(component.split(" ")[-1], "-"),
+            )
+    panel.set_ylabel(f"reactions [{UNITS_OF_REACTIONS.get(unit, unit)}]")
+    panel.legend(loc="center left", bbox_to_anchor=(1.0, 0.5), fontsize=8)
+    if len(shown) < len(owners):
+        words = f"the largest, at {len(shown)} of {len(owners)} joints and ties"
+        panel.annotate(
+            words, (1.0, 1.02), xycoords="axes fraction", ha="right", va="bottom", fontsize=9, color="#505050"
+        )
+
+
+def largest_reactions(trajectory: Trajectory, owners: Mapping[str, list[str]]) -> list[str]:
+    """The joints and ties with the largest reactions, as many as have their lines in one panel; in their order."""
+    size = {owner: max(_size(trajectory, name) for name in names) for owner, names in owners.items()}
+    falling = sorted(owners, key=lambda owner: -size[owner])
+    lines = np.cumsum([len(owners[owner]) for owner in falling])
+    kept = falling[: max(1, int(np.searchsorted(lines, MOST_REACTIONS, side="right")))]
+    return [owner for owner in owners if owner in kept]
+
+
+def owner_of(name: str) -> str:
+    """reaction_x(B.II) -> B.II; tension(rope, 2) -> rope."""
+    return name.partition("(")[2].rstrip(")").partition(",")[0]
+
+
+def component_of(name: str) -> str:
+    """reaction_couple_x(B) -> couple x; tension(rope, 2) -> tension 2."""
+    head, _, arguments = name.partition("(")
+    number = arguments.rstrip(")").partition(",")[2].strip()
+    return " ".join(word for word in (head.removeprefix("reaction_").replace("_", " "), number) if word)

@@ -1,0 +1,280 @@
+"""Graph scalars -> the same scalars as a reader wants them, with bounded work; what is too long to print is known."""
+
+from __future__ import annotations
+
+from collections.abc import Collection, Container, Iterator, Sequence
+from dataclasses import dataclass
+from itertools import count
+
+from eomgen.documents.statements import Omitted
+from eomgen.symbolic.exact.book_form import BRACKETS, book_form
+from eomgen.symbolic.exact.collect import with_squares
+from eomgen.symbolic.exact.normal_form import TooLarge, common_factor, normal_form
+from eomgen.symbolic.exact.roots import Rooted, readable_over, rooted
+from eomgen.symbolic.expression.derivative import substituted
+from eomgen.symbolic.expression.functions import function
+from eomgen.symbolic.expression.graph import Graph, Node, Scalar, is_zero
+from eomgen.symbolic.expression.rational import Fraction
+from eomgen.symbolic.expression.traversal import operations, order
+from eomgen.symbolic.numeric.work import Work
+from eomgen.symbolic.print.layout import SUMS, factors
+from eomgen.symbolic.print.length import length_of
+from eomgen.symbolic.print.text import named_parts, text_size, to_text
+
+LONGEST = 1500  # characters of one formula in print
+NESTED = 400  # characters of a formula that is not multiplied out, in print
+TRIED = 20_000  # characters: what is longer by far will not become short
+WAVES = 100  # terms of a normal form that are written shortly; more of them take long, and are long
+POLYNOMIAL = frozenset("symbol pi neg add sub mul div sin cos".split())
+LARGEST_DIVISOR = 120  # a number by which an equation is divided or multiplied, at most
+HALF = Fraction(1, 2)
+DIVIDED = 4000  # characters: longer formulas are not tried as one quotient
+MOST_CASES = 4  # conditions of one formula, of which each case is put into readable form
+NAMED_PART = 160  # characters of a formula in which long parts have names
+NAMED = 80  # sub-expressions with a name of their own, at most
+NAMED_LENGTH = 8000  # characters of all named sub-expressions together, at most
+
+
+class Reader:
+    """Puts scalars into readable form, each once and with a budget of its own: none depends on those before it.
+
+    Args:
+        full: what is too long to print is printed as it is, and not left out.
+        gathers: sums of parameters stand in parentheses before what moves, and squares of sums are left, where that
+            is shorter: so the equations of bodies that turn in space are written.
+    """
+
+    def __init__(self, *, full: bool = False, gathers: bool = False) -> None:
+        self.full, self.gathers = full, gathers
+        self.raw: set[Scalar] = set()  # what is too long to print whole
+        self.roots: dict[Node, Scalar] = {}  # what the symbols in `shown` stand for
+        self._known: dict[Scalar, Scalar | None] = {}
+
+    def _read(self, x: Scalar) -> Scalar | None:
+        """x in its readable form, a symbol for each root of a sum; None where it is too long to print."""
+        if x not in self._known:
+            conditions = conditions_in(x)
+            many = len(conditions) > MOST_CASES
+            short = self._whole(x) if many or not conditions else self._by_cases(x, conditions[0])
+            self._known[x] = short
+            if short is not None:
+                self._known[short] = short
+        return self._known[x]
+
+    def _whole(self, x: Scalar) -> Scalar | None:
+        return self._shortened(*self.with_symbols((x,)))
+
+    def _by_cases(self, x: Scalar, condition: Node) -> Scalar | None:
+        """x where the condition holds, and where it does not, each in readable form."""
+        if_true, if_false = (self._read(decided(x, condition, holds)) for holds in (True, False))
+        if if_true is None or if_false is None:
+            return None
+        found = condition.graph.select(condition, if_true, if_false) if if_true is not if_false else if_true
+        return found if text_size(found) <= LONGEST or self.full else None
+
+    def _shortened(self, x: Scalar) -> Scalar | None:
+        size = text_size(x)
+        if size <= TRIED:
+            short = self._shortest(x)
+            if short is not None and text_size(short) <= LONGEST:
+                return short
+        if size <= NESTED:
+            return x
+        self.raw.add(x)
+        return x if self.full else None
+
+    def _shortest(self, x: Scalar) -> Scalar | None:
+        """x multiplied out and written shortly; None where that takes too much work.
+
+        1/2*k*(r - l)^2 with a root r is left alone where that is shorter.
+        """
+        held = [symbol for symbol in order((x,)) if symbol in self.roots]
+        try:
+            if len(normal_form(x, Work.ENTRY).terms) > WAVES:
+                return None
+            short = readable_over(x, held, Work.ENTRY) if held else book_form(x)
+        except TooLarge:
+            return None
+        if self.gathers and not held:
+            squares = with_squares(x, Work.ENTRY)
+            short = squares if length_of(squares) + BRACKETS < length_of(short) else short
+        left_alone = held or holds_roots(x)
+        return x if left_alone and length_of(x) < length_of(short) else short
+
+    def whole(self, x: Scalar) -> Scalar:
+        """x with the roots that its symbols stand for."""
+        return Rooted((), tuple(self.roots.items())).back((x,))[0]
+
+    def with_symbols(self, scalars: Sequence[Scalar]) -> tuple[Scalar, ...]:
+        """The scalars as they are, but with a symbol for each root of a sum."""
+        over = rooted(scalars, Work.ENTRY)
+        self.roots |= dict(over.roots)
+        return over.expressions
+
+    def shown(self, x: Scalar) -> Scalar | Omitted:
+        """x in its readable form with a symbol for each root of a sum, or how large it is."""
+        short = self._read(x)
+        return omitted(x) if short is None else short
+
+    def short_with_symbols(self, scalars: Sequence[Scalar]) -> tuple[Scalar, ...]:
+        """Each as shown, or as it is where that is too long."""
+        return tuple(x if (short := self._read(x)) is None else short for x in scalars)
+
+    def short(self, scalars: Sequence[Scalar]) -> tuple[Scalar, ...]:
+        """Each in its readable form, or as it is where that is too long."""
+        return tuple(map(self.whole, self.short_with_symbols(scalars)))
+
+    def divided(self, left: Scalar, right: Scalar) -> tuple[Scalar, Scalar, Scalar]:
+        """(left / divisor, right / divisor, divisor), all as shown: both sides without what every term of them holds.
+
+        A number is divided by only where it is small; nothing is where the equation gets longer by it.
+        """
+        if holds_roots(left, right) or (is_zero(left) and is_zero(right)):
+            return left, right, 1
+        graph = next(x.graph for x in (left, right) if type(x) is Node)
+        number, product = common_factor((left, right), Work.ENTRY, tuple(self.roots))
+        small = max(number.numerator, number.denominator) <= LARGEST_DIVISOR
+        found: list[tuple[Scalar, Scalar, Scalar]] = []
+        for divisor in (number * product, product) if small else (product,):
+            over = self.short_with_symbols((graph.div(left, divisor), graph.div(right, divisor)))
+            found.append((over[0], over[1], divisor))
+        found.append((left, right, 1))
+        return min(found, key=lambda each: length_of(*each[:2]))
+
+    def as_square(self, x: Scalar) -> Scalar:
+        """A potential k*(a - b)^2/2 with its parentheses, where that is shorter than multiplied out; else x."""
+        product = factors(self.with_symbols((x,))[0])
+        if type(x) is not Node or not any(base.op in SUMS and e == 2 for base, e in product.numerator):
+            return x
+        found: Scalar = product.coefficient
+        for base, e in product.numerator:
+            written = self.shown(base) if e == 2 else base
+            if isinstance(written, Omitted):
+                return x
+            found = found * x.graph.pow(written, e)
+        for base, e in product.denominator:
+            found = x.graph.div(found, x.graph.pow(base, e))
+        short = self._read(x)
+        if short is not None and length_of(short) <= length_of(found):
+            return x
+        self._known[found] = found
+        return found
+
+    def as_sum(self, total: Scalar, parts: Sequence[Scalar]) -> Scalar:
+        """A total as the sum of its parts, each as shown, where that is shorter than in a form of its own."""
+        written = [self.shown(x) for x in parts]
+        if type(total) is not Node or any(isinstance(x, Omitted) for x in written):
+            return total
+        found = sum((x for x in written if not isinstance(x, Omitted)), start=0)
+        short = self._read(total)
+        if type(found) is not Node or (short is not None and length_of(short) <= length_of(found)):
+            return total
+        self._known[found] = found
+        return found
+
+
+def conditions_in(x: Scalar) -> list[Node]:
+    """The conditions of the cases in x, each once; before those that are asked only where it fails."""
+    deep: dict[Node, int] = {}
+    for node in order((x,)):
+        if node.op == "select":
+            deep[node.args[0]] = max(deep.get(node.args[0], 0), _chain(node))
+    return sorted(deep, key=lambda condition: -deep[condition])
+
+
+def _chain(node: Scalar) -> int:
+    """How many conditions are asked one after the other."""
+    length = 0
+    while type(node) is Node and node.op == "select":
+        length, node = length + 1, node.args[2]
+    return length
+
+
+def decided(x: Scalar, condition: Node, holds: bool) -> Scalar:
+    """x with every choice by the condition made."""
+    while chosen := {n: n.args[1 if holds else 2] for n in order((x,)) if n.op == "select" and n.args[0] is condition}:
+        (x,) = substituted((x,), chosen)
+    return x
+
+
+def without_cases(scalars: Sequence[Scalar]) -> tuple[Scalar, ...]:
+    """The same by functions of the grammar: a where x <= y, else b, is (a (1 + s) + b (1 - s))/2, s = sign(y - x).
+
+    Where x = y exactly it is the mean of both.
+    """
+    known: dict[Node, Scalar] = {}
+    for node in order(scalars):
+        if node.op == "select":
+            condition, if_true, if_false = node.args
+            low, high = substituted(condition.args, known)
+            s = function("sign", high - low)
+            if_true, if_false = substituted((if_true, if_false), known)
+            known[node] = HALF * (if_true * (1 + s) + if_false * (1 - s))
+    return substituted(tuple(scalars), known) if known else tuple(scalars)
+
+
+def readable_value(reader: Reader, value: Scalar, positive: Collection[Node] = ()) -> Scalar:
+    """The value as shown, or as one quotient where that is shorter; as it is where both are too long."""
+    conditions = conditions_in(value)
+    if 0 < len(conditions) <= MOST_CASES and text_size(value) <= TRIED:
+        cases = [readable_value(reader, decided(value, conditions[0], holds), positive) for holds in (True, False)]
+        return conditions[0].graph.select(conditions[0], *cases) if cases[0] is not cases[1] else cases[0]
+    shown = reader.shown(value)
+    if type(value) is not Node or text_size(value) > DIVIDED:
+        return value if isinstance(shown, Omitted) else shown
+    one = book_form(value, Work.ENTRY, positive)
+    return one if isinstance(shown, Omitted) or length_of(one) < length_of(shown) else shown
+
+
+def holds_roots(*expressions: Scalar) -> bool:
+    """True where the expressions hold functions other than sines and cosines."""
+    return any(node.op not in POLYNOMIAL for node in order(expressions))
+
+
+def length_in_print(*expressions: Scalar) -> int:
+    """The number of characters; about that where it is large."""
+    return sum(len(to_text(x)) if text_size(x) <= 4 * LONGEST else text_size(x) for x in expressions)
+
+
+def omitted(*expressions: Scalar) -> Omitted:
+    """That the expressions are too long to print."""
+    return Omitted(operations(expressions).total)
+
+
+@dataclass(frozen=True)
+class Shortened:
+    """Expressions in which long and repeated parts have names.
+
+    Args:
+        definitions: (symbol, what it stands for), each before its use.
+        expressions: written with the symbols.
+    """
+
+    definitions: tuple[tuple[Node, Scalar], ...]
+    expressions: tuple[Scalar, ...]
+
+
+def shortened(graph: Graph, expressions: Sequence[Scalar], limit: int, taken: Container[str]) -> Shortened | None:
+    """The expressions with named parts z1, z2, ..., so that none is much longer than `limit` characters.
+
+    None where the names would be too many for a reader.
+    """
+    parts = named_parts(expressions, limit)
+    if len(parts) > NAMED:
+        return None
+    used = {node.name for node in order(expressions) if node.op == "symbol"}
+    known: dict[Node, Scalar] = {}
+    definitions = []
+    for part, name in zip(parts, free_names("z", taken, used), strict=False):
+        value = substituted((part,), known)[0]
+        known[part] = graph.symbol(name)
+        definitions.append((graph.symbol(name), value))
+    written = substituted(expressions, known)
+    length = sum(text_size(x) for x in (*written, *(value for _, value in definitions)))
+    return Shortened(tuple(definitions), written) if length <= NAMED_LENGTH else None
+
+
+def free_names(letter: str, *taken: Container[str]) -> Iterator[str]:
+    """letter1, letter2, ..., without those that are taken."""
+    names = (f"{letter}{number}" for number in count(1))
+    return (name for name in names if not any(name in each for each in taken))

@@ -1,0 +1,33 @@
+"""Model -> a picture of it where it starts, with its coordinates and lengths."""
+
+from __future__ import annotations
+
+from typing import Any
+
+from eomgen.documents.figures import Picture
+from eomgen.documents.scene_drawing import draw
+from eomgen.documents.space_drawing import draw_space
+from eomgen.model.parts import Model
+from eomgen.scene.instant import drawn_start, frame_at
+from eomgen.scene.making import scene_of
+from eomgen.scene.plane_strokes import plane_drawing
+from eomgen.scene.space_strokes import space_drawing
+from eomgen.scene.strokes import SceneNumbers
+
+SIZE = (6.4, 4.2)  # [inches]
+
+
+def rest_picture(model: Model) -> Picture:
+    """The scene of a model at its start; a parameter without a value is drawn as 1.
+
+    Raises:
+        DerivationError, NotYet: what cannot be derived is not drawn either.
+    """
+    scene = scene_of(model)
+    numbers = SceneNumbers(scene, frame_at(scene, drawn_start(scene.system))[None, :])
+    drawing = (plane_drawing if scene.plane else space_drawing)(numbers, dimensions=True)
+
+    def fill(figure: Any) -> None:
+        (draw if scene.plane else draw_space)(figure.subplots(), drawing)
+
+    return Picture(SIZE, fill, model.name)

@@ -1,0 +1,148 @@
+"""Drawing in space -> matplotlib: faces and lines seen from far away, the farthest drawn first."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping
+from typing import Any
+
+import numpy as np
+
+from eomgen.documents.letters import PlacedName
+from eomgen.documents.scene_drawing import BODY, FILLS, FINE, INK, LINES, MARGIN, NARROWEST, RANKS, SMALLEST, written
+from eomgen.scene.strokes import Drawing
+
+AZIMUTH, ELEVATION = math.radians(-58), math.radians(22)
+LIGHT = np.array([0.35, -0.5, 0.79])
+CLEAR = {"inertia": 0.35, "track": 0.12, "hole": 0.2}  # how much of what is behind these hide
+TOWARDS = 0.02  # lines lie so much nearer than the faces around them, of the extent
+
+
+Ink = tuple[float, float, float, float]
+
+
+def sight(azimuth: float = AZIMUTH, elevation: float = ELEVATION) -> np.ndarray:
+    """The rotation from the ground to the page: right, up, towards the eye."""
+    c, s, ce, se = math.cos(azimuth), math.sin(azimuth), math.cos(elevation), math.sin(elevation)
+    return np.array([[-s, c, 0.0], [-se * c, -se * s, ce], [ce * c, ce * s, se]])
+
+
+class SpacePicture:
+    """A scene in space on matplotlib axes; `show` sets it to another of its frames."""
+
+    def __init__(self, panel: Any, drawing: Drawing, colors: Mapping[str, str] | None = None) -> None:
+        from matplotlib.collections import PolyCollection
+
+        self.drawing, self.colors, self.view = drawing, colors or {}, sight()
+        panel.set_aspect("equal")
+        panel.axis("off")
+        self.pieces = PolyCollection([], closed=False, capstyle="round", joinstyle="round")
+        panel.add_collection(self.pieces, autolim=False)
+        low, high = self.limits()
+        panel.set_xlim(low[0], high[0])
+        panel.set_ylim(low[1], high[1])
+
+    def limits(self) -> tuple[np.ndarray, np.ndarray]:
+        """The corners of the page: all that is drawn over all frames, but for planes and lines that go on."""
+        clouds = [s.path.reshape(-1, 3) for s in self.drawing.strokes if s.role != "track"]
+        cloud = np.vstack([*clouds, self.drawing.sizes.low[None], self.drawing.sizes.high[None]])
+        page = cloud[np.isfinite(cloud).all(axis=1)] @ self.view.T[:, :2]
+        margin = MARGIN * self.drawing.sizes.unit
+        low, high = page.min(axis=0) - margin, page.max(axis=0) + margin
+        size, middle = high - low, 0.5 * (low + high)
+        size = np.maximum(size, max(NARROWEST * size.max(), SMALLEST * self.drawing.sizes.unit))
+        return middle - 0.5 * size, middle + 0.5 * size
+
+    def show(self, frame: int) -> None:
+        """Everything at one frame, sorted by its distance."""
+        parts: list[tuple[float, np.ndarray, Ink, Ink, float]] = []
+        for stroke in self.drawing.strokes:
+            color, width = LINES[stroke.role]
+            if stroke.role in ("body", "inertia") and stroke.of in self.colors:
+                color = self.colors[stroke.of]
+            parts += self._faces(stroke, frame, color) if stroke.faces else self._line(stroke, frame, color, width)
+        parts.sort(key=lambda part: part[0])
+        self.pieces.set_verts([part[1] for part in parts], closed=False)
+        self.pieces.set_facecolor([part[2] for part in parts])
+        self.pieces.set_edgecolor([part[3] for part in parts])
+        self.pieces.set_linewidth([part[4] for part in parts])
+
+    def _faces(self, stroke: Any, frame: int, color: str) -> list[Any]:
+        corners = stroke.path[frame]
+        if not np.isfinite(corners).all():
+            return []
+        normal = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 1])
+        flat = np.linalg.norm(normal, axis=1) == 0
+        if corners.shape[1] > 3:
+            normal = np.where(
+                flat[:, None], np.cross(corners[:, 2] - corners[:, 1], corners[:, 3] - corners[:, 2]), normal
+            )
+        lengths = np.linalg.norm(normal, axis=1, keepdims=True)
+        normal = normal / np.where(lengths > 0, lengths, 1.0)
+        page = corners @ self.view.T
+        light = 0.62 + 0.38 * np.abs(normal @ LIGHT)
+        alpha = CLEAR.get(stroke.role, 1.0)
+        base = _rgb(FILLS.get(stroke.role, color) if stroke.of not in self.colors else color)
+        edge = (*_rgb(color), 0.25 if len(corners) > 12 else 0.8 * max(alpha, 0.4))
+        back = -math.inf if stroke.role == "track" else 0.0
+        return [
+            (
+                float(face[:, 2].mean()) + back,
+                np.vstack([face[:, :2], face[:1, :2]]),
+                (*(base * shade), alpha),
+                edge,
+                0.4,
+            )
+            for face, shade in zip(page, light, strict=True)
+        ]
+
+    def _line(self, stroke: Any, frame: int, color: str, width: float) -> list[Any]:
+        page = stroke.path[frame] @ self.view.T
+        near = TOWARDS * self.drawing.sizes.extent
+        ink = (*_rgb(color), 1.0)
+        if stroke.dot:
+            turn = np.linspace(0, math.tau, 17)
+            dot = page[0, :2] + 0.55 * self.drawing.sizes.unit * np.column_stack([np.cos(turn), np.sin(turn)])
+            return [(float(page[0, 2]) + near, dot, ink, ink, 0.5)] if np.isfinite(page).all() else []
+        thin = FINE if stroke.fine else 3.0 if stroke.role == "body" else width
+        joined = [(page[k], page[k + 1]) for k in range(len(page) - 1)]
+        return [
+            (float(a[2] + b[2]) / 2 + near, np.array([a[:2], b[:2]]), (0.0, 0.0, 0.0, 0.0), ink, thin)
+            for a, b in joined
+            if np.isfinite([a, b]).all()
+        ]
+
+    def names(self, frame: int) -> list[PlacedName]:
+        """The names beside their places on the page."""
+        found: dict[tuple[str, int, int], PlacedName] = {}
+        for letter in self.drawing.letters:
+            at = letter.at[frame] @ self.view.T
+            if np.isfinite(at).all():
+                color = (
+                    self.colors.get(letter.of, BODY) if letter.role == "label" else LINES.get(letter.role, (INK, 1))[0]
+                )
+                name = PlacedName(written(letter), (float(at[0]), float(at[1])), color, 9.0, RANKS.get(letter.role, 4))
+                found.setdefault((letter.role, round(at[0] * 1e6), round(at[1] * 1e6)), name)
+        return list(found.values())
+
+    def lines(self, frame: int) -> list[np.ndarray]:
+        """What names should not cover."""
+        paths = [s.path[frame].reshape(-1, 3) @ self.view.T[:, :2] for s in self.drawing.strokes if not s.faces]
+        return paths
+
+
+def _rgb(color: str) -> np.ndarray:
+    from matplotlib.colors import to_rgb
+
+    return np.array(to_rgb(color))
+
+
+def draw_space(panel: Any, drawing: Drawing, frame: int = 0, *, names: bool = True) -> SpacePicture:
+    """A scene in space at one of its frames, on matplotlib axes with equal scales and no frame."""
+    picture = SpacePicture(panel, drawing)
+    picture.show(frame)
+    if names:
+        from eomgen.documents.letters_artist import NamesArtist
+
+        panel.add_artist(NamesArtist(tuple(picture.names(frame)), picture.lines(frame)))
+    return picture

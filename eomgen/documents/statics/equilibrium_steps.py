@@ -1,0 +1,167 @@
+"""Equilibria -> the steps that lead to them: the balance at rest, the places, their stability, the reactions there."""
+
+from __future__ import annotations
+
+from eomgen.documents.bounded import page
+from eomgen.documents.naming import Written, with_roots_named
+from eomgen.documents.reaction_names import said
+from eomgen.documents.reading import Reader
+from eomgen.documents.setting_steps import count, listed_symbols
+from eomgen.documents.statements import Cell, Entry, Formula, Law, Name, Piece, Statement, Step, narrow_grid, prose
+from eomgen.mechanics.equilibria.resting_reactions import ReactionsOrWhy, RestingReaction
+from eomgen.mechanics.equilibria.search import Equilibria, Equilibrium
+from eomgen.mechanics.equilibria.stability import Stability
+from eomgen.mechanics.equilibria.static_equations import StaticEquations
+from eomgen.mechanics.initial_state.numeric_value import known_exactly, shown_numbers
+from eomgen.mechanics.reactions.reactions import Reactions
+from eomgen.symbolic.expression.graph import Scalar
+
+REST = Law("Q_k = 0", "Q_{k} = 0")
+REST_WITH_TIES = Law("Q_k + (J^T*lam)_k = 0", r"Q_{k} + \left(J^{\mathsf{T}} \lambda\right)_{k} = 0")
+STIFFNESS = Law(
+    "K = -Z^T*d(Q + J^T*lam)/dq*Z",
+    r"K = -Z^{\mathsf{T}} \frac{\partial (Q + J^{\mathsf{T}} \lambda)}{\partial q} Z",
+)
+SECOND = Law("K = d2V/dq2", r"K = \frac{\partial^{2} V}{\partial q^{2}}")
+ALONG = Law("J*Z = 0", r"J Z = 0")
+MOST_SHOWN = 4  # coordinates of a K that is printed
+
+
+def equilibrium_steps(found: Equilibria, reactions: ReactionsOrWhy | None) -> tuple[Step, ...]:
+    """The balance at rest, every place, its stability, and the reactions at the nearest one."""
+    reader = Reader()
+    steps: tuple[Step, ...] = (rest_balance_step(found.statics, reader), _places(found))
+    if reactions:
+        steps = (*steps, _stability(found), *_reactions(found.found[0], reactions))
+    scope = found.statics.system.scope
+    return with_roots_named(Written(steps, (), ()), scope.graph, scope.names, reader.roots).steps
+
+
+def rest_balance_step(statics: StaticEquations, reader: Reader) -> Step:
+    """That the virtual work vanishes for every displacement: the equations."""
+    if not statics.q:
+        return Step("balance", "Balance at rest", (prose("No force changes with the place."),))
+    law = REST_WITH_TIES if statics.lam else REST
+    words = "At rest the virtual work of all forces vanishes for every displacement"
+    words += ", those of the ties included: " if statics.lam else ": "
+    held: list[Statement] = []
+    if statics.held:
+        held = [prose(f"What the model drives is held where it starts: {', '.join(statics.held)}.")]
+    forces = _all_forces(reader, statics)
+    own = len(statics.phi) - statics.norms
+    ties = [Formula((reader.shown(x), 0)) for x in statics.phi[:own]]
+    ties += [Formula((x + 1, 1)) for x in statics.phi[own:]]  # of quaternions, which are read with it
+    between = [prose("The ties hold the coordinates by")] if ties else []
+    return Step("balance", "Balance at rest", (*held, prose(words, law, "."), *forces, *between, *ties))
+
+
+def _all_forces(reader: Reader, statics: StaticEquations) -> tuple[Statement, ...]:
+    """The equation along every coordinate; with ties the multipliers stand in it beside Q."""
+    if not statics.lam:
+        pairs = [(Name("Q", by=q), force) for q, force in zip(statics.q, statics.forces, strict=True)]
+        others = tuple(Formula((reader.shown(x), 0)) for x in statics.beside)
+        return (*page(reader, pairs, then=(0,)), *others)
+    return tuple(Formula((reader.shown(x), 0)) for x in (*statics.forces, *statics.beside))
+
+
+# -- the places ------------------------------------------------------------------------------------
+
+
+def _places(found: Equilibria) -> Step:
+    statements: list[Statement] = []
+    if found.indifferent:
+        symbols = found.indifferent
+        stay = "it stays where it starts" if len(symbols) == 1 else "they stay where they start"
+        statements.append(prose("No force holds ", *listed_symbols(symbols), f": {stay}."))
+    if found.chosen:
+        stay = "its start: it stays" if len(found.chosen) == 1 else "their start: they stay"
+        any_ = "The velocity ties let it rest at any "
+        statements.append(prose(any_, *listed_symbols(found.chosen), f" near {stay} there."))
+    if not found.found:
+        statements.append(prose(_how_many(found)))
+        return Step("places", "Places of rest", tuple(statements))
+    rows = [row for k, place in enumerate(found.found, start=1) for row in _rows(k, place)]
+    grid = narrow_grid(("place", "coordinate", "exact", "value", "stability"), rows)
+    return Step("places", "Places of rest", (*statements, prose(_how_many(found)), grid))
+
+
+def _how_many(found: Equilibria) -> str:
+    where = f" ({found.where})" if found.where else ""
+    if found.complete:
+        return (
+            f"There is {_places_in_words(len(found.found))}{where}."
+            if len(found.found) == 1
+            else (f"There are {_places_in_words(len(found.found))}{where}.")
+        )
+    many = _places_in_words(len(found.found))
+    return f"Found: {many}{where}. That there are no others is not proved."
+
+
+def _places_in_words(n: int) -> str:
+    return "none" if n == 0 else count(n, "place of rest", "places of rest")
+
+
+def _rows(number: int, place: Equilibrium) -> list[tuple[Cell, ...]]:
+    rows: list[tuple[Cell, ...]] = []
+    for k, q in enumerate(place.statics.system.symbols.q):
+        exact: Cell = place.exact.get(q, "")
+        value = f"{place.numbers[q]:.9g}" if q in place.numbers else ""
+        rows.append((str(number) if k == 0 else "", q, exact, value, place.stability.kind if k == 0 else ""))
+    return rows
+
+
+# -- stability -------------------------------------------------------------------------------------
+
+
+def _stability(found: Equilibria) -> Step:
+    ties = bool(found.statics.lam)
+    law: tuple[Piece, ...] = (STIFFNESS, ", ", ALONG) if ties else (SECOND,)
+    statements: list[Statement] = [prose("The second variation of the potential energy decides: ", *law, ".")]
+    for number, place in enumerate(found.found, start=1):
+        statements += _verdict(number, place.stability)
+    return Step("stability", "Stability", tuple(statements))
+
+
+def _verdict(number: int, stability: Stability) -> list[Statement]:
+    words: list[Statement] = [prose(f"Place {number}: {stability.kind}; {stability.why}.")]
+    if not stability.K or len(stability.along) > MOST_SHOWN:
+        return words
+    symmetric = stability.kind != "no potential energy"
+    entries: list[Statement] = []
+    for i, row in enumerate(stability.along):
+        for j, column in enumerate(stability.along):
+            if j >= i or not symmetric:
+                value = stability.K[i][j]
+                shown: Scalar | Law = Law(f"{value:.7g}", f"{value:.7g}") if isinstance(value, float) else value
+                entries.append(Formula((Entry("K", row, column), shown)))
+    minors = [Formula((_leading(n), x)) for n, x in enumerate(stability.minors, start=1) if n > 1]
+    return [*words, *entries, *minors]
+
+
+def _leading(n: int) -> Law:
+    return Law(f"det K_{n}", rf"\det K_{{{n}}}")
+
+
+# -- the reactions ---------------------------------------------------------------------------------
+
+
+def _reactions(place: Equilibrium, those: ReactionsOrWhy) -> tuple[Step, ...]:
+    reactions, found, why = those
+    title = "Reactions at place 1"
+    if reactions is None:
+        return (Step("reactions", title, (prose(f"The reactions do not follow: {why}."),)),)
+    if not found:
+        return ()
+    numbers = shown_numbers([each.value for each in found], known_exactly(place.statics.system.scope))
+    rows = tuple(_reaction_row(place, reactions, *pair) for pair in zip(found, numbers, strict=True))
+    grid = narrow_grid(("reaction", "meaning", "exact", "value", "unit"), rows)
+    pulls = [prose(f"But '{name}' would have to pull there: it does not hold.") for name in place.pulling]
+    return (Step("reactions", title, (prose("By the balance of every body:"), grid, *pulls)),)
+
+
+def _reaction_row(
+    place: Equilibrium, reactions: Reactions, each: RestingReaction, number: float | None
+) -> tuple[Cell, ...]:
+    named = each.named
+    exact: Cell = "indeterminate" if each.value is None else each.value if place.is_exact else ""
+    return named.name, said(reactions.balance, named), exact, "" if number is None else f"{number:.7g}", named.unit

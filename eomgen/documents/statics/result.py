@@ -1,0 +1,258 @@
+"""Model -> Statics: a structure at rest as a user gets it: solved, written step by step, for machines."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from functools import cached_property
+from typing import Any
+
+from eomgen.documents.document import Document
+from eomgen.documents.figures import Picture
+from eomgen.documents.quantity import Quantity
+from eomgen.documents.result import Result
+from eomgen.documents.statics.equilibrium_result import Resting, has_freedoms, resting_places
+from eomgen.documents.statics.picture import statics_picture
+from eomgen.documents.statics.section_steps import (
+    Sections,
+    influence_payload,
+    influence_step,
+    section_payload,
+    section_steps,
+    sections_of,
+)
+from eomgen.documents.statics.steps import contacts_step, statics_derivation
+from eomgen.errors import UsageError
+from eomgen.mechanics.equations.system import System, system_of
+from eomgen.mechanics.equilibria.static_equations import with_drives_held
+from eomgen.mechanics.initial_state.numeric_value import known_exactly, shown_numbers
+from eomgen.mechanics.statics.influence import InfluenceLine, influence_line
+from eomgen.mechanics.statics.rest_contacts import RestCondition, conditions_of, modes_at_rest
+from eomgen.mechanics.statics.two_ways import StaticReaction, StaticReactions, static_reactions_of
+from eomgen.mechanics.statics.virtual_work import WorkEquation
+from eomgen.mechanics.structures.blocks import RigidBlock, blocks_of
+from eomgen.mechanics.structures.velocity_plan import VelocityPlan
+from eomgen.model.contacts import contacts_of
+from eomgen.model.parts import Model
+from eomgen.model.reader import ModelOrPath, model_at
+from eomgen.model.replaced import Values
+from eomgen.proof.check import Certificate
+from eomgen.proof.structure import structure_checks
+from eomgen.symbolic.expression.graph import Scalar
+from eomgen.symbolic.numeric.tolerances import COMPUTED
+from eomgen.symbolic.numeric.work import doing
+from eomgen.symbolic.print.text import to_text
+
+
+@dataclass(frozen=True)
+class Statics(Result):
+    """A structure at rest: every reaction by virtual work and by equilibrium.
+
+    Args:
+        model: the structure.
+        found: its reactions.
+        influence: an influence line, where one was asked.
+    """
+
+    model: Model
+    found: StaticReactions
+    influence: InfluenceLine | None = None
+
+    def __repr__(self) -> str:
+        return f"<statics of {self.model.name!r}: {len(self.found.reactions)} reactions>"
+
+    @property
+    def ok(self) -> bool:
+        """Whether the two ways agree."""
+        return not self.found.disagreeing
+
+    @property
+    def failed(self) -> str:
+        """What is wrong with the result, or open in it, in words; "" as it must be."""
+        if self.ok:
+            return "; ".join((*self._open, *self.broken))
+        wrong = ", ".join(reaction.name for reaction in self.found.disagreeing)
+        return f"virtual work and equilibrium do not agree: {wrong}"
+
+    @property
+    def _open(self) -> tuple[str, ...]:
+        """That some reactions are statically indeterminate."""
+        names = [reaction.name for reaction in self.found.open]
+        if not names:
+            return ()
+        degree = self.found.structure.indeterminacy
+        return (
+            f"the structure is statically indeterminate, to the degree {degree}: the balance of rigid bodies "
+            f"leaves {', '.join(names)} open; take a redundant tie away, or let something give",
+        )
+
+    @cached_property
+    def conditions(self) -> tuple[RestCondition, ...]:
+        """What must hold of contacts that can end or slide."""
+        return conditions_of(self.found)
+
+    @cached_property
+    def broken(self) -> tuple[str, ...]:
+        """Of these what does not hold, in words: then it is not at rest like this."""
+        margins = self._numbers([(c.broken, c.margin) for c in self.conditions])
+        return tuple(words for words, margin in margins.items() if margin < -COMPUTED)
+
+    @cached_property
+    def sections(self) -> Sections:
+        """N, V and M of every body that is a beam."""
+        return sections_of(self.found.balance)
+
+    @cached_property
+    def exact(self) -> dict[str, str | None]:
+        """{reaction: its value as text}, None where it is statically indeterminate."""
+        return {r.name: None if r.value is None else to_text(r.value) for r in self.found.reactions}
+
+    @cached_property
+    def values(self) -> dict[str, float]:
+        """{reaction: its number} [N, N m], of those that have one."""
+        return self._numbers([(r.name, r.value) for r in self.found.reactions if r.value is not None])
+
+    def _numbers(self, pairs: Sequence[tuple[str, Scalar]]) -> dict[str, float]:
+        """The scalars in numbers, those whose parameters have values."""
+        names, scalars = zip(*pairs, strict=True) if pairs else ((), ())
+        found = shown_numbers(scalars, known_exactly(self.found.system.scope))
+        return {name: x for name, x in zip(names, found, strict=True) if x is not None}
+
+    def certify(self) -> Certificate:
+        """Check the two ways, every body's balance, section forces from the other end, influence lines by loads."""
+        return Certificate(tuple(structure_checks(self.found, self.sections.found, self.influence)))
+
+    @cached_property
+    def derivation(self) -> Document:
+        """The solution, step by step."""
+        contacts = contacts_step(self.conditions, self.broken)
+        influence = () if self.influence is None else (influence_step(self.influence),)
+        return statics_derivation(self.found, self.values, (*contacts, *section_steps(self.sections), *influence))
+
+    def entries(self) -> dict[str, Any]:
+        """For machines."""
+        structure = self.found.structure
+        return {
+            "name": self.model.name,
+            "structure": {
+                "velocities": len(structure.columns),
+                "reactions": len(structure.rows),
+                "rank": structure.rank,
+                "mobility": structure.mobility,
+                "indeterminacy": structure.indeterminacy,
+                "count": self.found.count[0],
+                "formula": self.found.count[1],
+            },
+            "reactions": {reaction.name: self._reaction(reaction) for reaction in self.found.reactions},
+            "self_stresses": [
+                {structure.names[j]: to_text(x) for j, x in stress.items()} for stress in structure.stresses
+            ],
+            "sections": section_payload(self.sections),
+            "influence": None if self.influence is None else influence_payload(self.influence),
+            "contacts": [{"tie": c.tie, "kind": c.kind, "margin": to_text(c.margin)} for c in self.conditions],
+            "broken": list(self.broken),
+            "agree": self.ok,
+        }
+
+    def _reaction(self, reaction: StaticReaction) -> Quantity:
+        beside = {
+            "by_equilibrium": _text(reaction.balanced),
+            "work": None if reaction.work is None else _work(reaction.work),
+            "agree": reaction.agree,
+        }
+        method = "equilibrium" if reaction.work is None else "virtual work"
+        message = None if reaction.value is not None else "statically indeterminate"
+        exact, value = self.exact[reaction.name], self.values.get(reaction.name)
+        return Quantity(exact, value, reaction.unit, method, message, beside)
+
+    @property
+    def picture(self) -> Picture:
+        """The structure with its loads and reactions, N, V and M.
+
+        Raises:
+            RunFailed: it is in space.
+        """
+        return statics_picture(self.found, self.sections, self.influence)
+
+
+def why_not_at_rest(model: Model, system: System) -> str:
+    """What contacts of bodies without coordinates would have to do and cannot; "" where they rest.
+
+    Raises:
+        DerivationError: bodies can move.
+    """
+    if model.coordinates or not contacts_of(model):
+        return ""
+    return "; ".join(Statics(model, static_reactions_of(system)).broken)
+
+
+def _text(value: Scalar | None) -> str | None:
+    return None if value is None else to_text(value)
+
+
+def _work(equation: WorkEquation) -> dict[str, Any]:
+    """The released mechanism, per unit of its scale, and the equation of virtual work: along * R + sum of terms = 0."""
+    return {
+        "mechanism": [_block(equation.plan, block) for block in blocks_of(equation.plan)],
+        "along": to_text(equation.along),
+        "terms": [{"load": term.acting.name, "work": to_text(term.work)} for term in equation.terms],
+        "value": to_text(equation.value),
+    }
+
+
+def _block(plan: VelocityPlan, block: RigidBlock) -> dict[str, Any]:
+    """What moves as one: its parts, spin, the velocity of its point at the origin; in the plane its centre too."""
+    moved = {
+        "parts": list(block.parts),
+        "rotation": [to_text(x) for x in block.spin],
+        "shift_at_origin": [to_text(plan.simple(x)) for x in block.velocity],
+    }
+    if plan.system.scope.model.space != "plane":
+        return moved
+    center = block.center(plan)
+    found = {"center": center.place, "direction": center.direction}
+    return {**moved, **{key: v and [to_text(plan.simple(x)) for x in v[:2]] for key, v in found.items()}}
+
+
+@doing("the forces at rest")
+def statics(
+    model: ModelOrPath,
+    *,
+    reaction: str | None = None,
+    influence: str | None = None,
+    parameters: Values | None = None,
+    start: Values | None = None,
+) -> Statics | Resting:
+    """A structure at rest; of a system that is free to move, its places of rest.
+
+    Args:
+        influence: the reaction, member force or section force whose influence line is asked too.
+        reaction: the only one that is found by virtual work too; None: all.
+        parameters, start: values that replace the model's, each as `model_at` takes it.
+    Raises:
+        UsageError: no reaction of that name; one is asked by itself of a system that is free to move.
+        DerivationError: bodies can move; a force acts at no place.
+    """
+    model = model_at(model, parameters, start)
+    system = system_of(model, modes_at_rest(model))
+    if has_freedoms(system):
+        _refuse_for_resting(reaction=reaction, influence=influence)
+        return resting_places(model, system)
+    held, _ = with_drives_held(system)  # what the model drives is held where it starts
+    found = static_reactions_of(held, only=reaction)
+    line = None if influence is None else influence_line(found.structure, influence)
+    return Statics(model, found, line)
+
+
+def _refuse_for_resting(**asked: str | None) -> None:
+    """Refuse what is asked of structures alone.
+
+    Raises:
+        UsageError: it is named.
+    """
+    for name, value in asked.items():
+        if value is not None:
+            raise UsageError(
+                f"--{name} is of structures that stand, and this system is free to move",
+                mend="without it the places of rest are given",
+            )
