@@ -5,9 +5,9 @@ these rules alone come the reading of texts and numbers (`read`), the walk that 
 (`leaves`) and the JSON Schema (`schema`). Nothing is computed here.
 """
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass
-from typing import Any
+from typing import Any, Generic, TypeVar
 
 from eomgen.errors import ExpressionError
 from eomgen.model.findings import Decimal, Finding, article, nearest, shown, unknown_keys
@@ -24,6 +24,8 @@ RATES = "parameters, coordinates, their rates and time"
 SPEEDS = "parameters, coordinates, their rates, speeds and time"
 MOTION = "parameters, coordinates, rates, speeds, inputs and time"
 EVERYTHING = "all names, accelerations and functions of the motion"
+
+Parsed = TypeVar("Parsed")
 
 
 @dataclass(frozen=True)
@@ -345,17 +347,31 @@ class FlagRule:
 
 
 @dataclass(frozen=True)
-class UnitRule:
-    """The text of a unit: `kg*m^2`."""
+class ParsedTextRule(Generic[Parsed]):
+    """A text that has a grammar of its own: a unit, a symbol in LaTeX.
 
-    def read(self, raw: Any, path: DocumentPath, found: list[Finding]) -> Unit | None:
-        if isinstance(raw, Unit):
+    Args:
+        of: what it is read into.
+        parse: reads it.
+        needed: what is asked for.
+        like: an example, as the mend of another thing.
+        limits: of the text, in the words of JSON Schema.
+    """
+
+    of: type[Parsed]
+    parse: Callable[[str], Parsed]
+    needed: str
+    like: str
+    limits: tuple[tuple[str, int], ...] = ()
+
+    def read(self, raw: Any, path: DocumentPath, found: list[Finding]) -> Parsed | None:
+        if isinstance(raw, self.of):
             return raw
         if not isinstance(raw, str) or isinstance(raw, Decimal):
-            found.append(Finding(path, f"a unit is needed here, not {shown(raw)}", 'like "kg*m^2"'))
+            found.append(Finding(path, f"{self.needed} is needed here, not {shown(raw)}", self.like))
             return None
         try:
-            return parse_unit(raw)
+            return self.parse(raw)
         except ExpressionError as error:
             found.append(Finding(path, error.what, error.mend, error.column, error.length, raw=raw))
             return None
@@ -364,7 +380,7 @@ class UnitRule:
         yield Leaf(path, self, value, part)
 
     def schema(self, definitions: dict[str, Any]) -> dict[str, Any]:
-        return {"type": "string", "description": "a unit, like kg*m^2 or deg"}
+        return {"type": "string", "description": f"{self.needed}, {self.like}", **dict(self.limits)}
 
 
-UNIT = UnitRule()
+UNIT = ParsedTextRule(Unit, parse_unit, "a unit", 'like "kg*m^2"')

@@ -6,39 +6,21 @@ from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 from typing import Annotated, Any
 
-from eomgen.errors import ExpressionError
-from eomgen.model.fields import Leaf
-from eomgen.model.findings import Decimal, Finding, shown, unknown_keys
+from eomgen.model.fields import Leaf, ParsedTextRule
+from eomgen.model.findings import Finding, unknown_keys
 from eomgen.model.positions import DocumentPath
 from eomgen.model.table import Table
 from eomgen.symbolic.print.declared_symbol import LONGEST, parse_symbol
 from eomgen.symbolic.print.symbols import Symbol
 
 REACTIONS = ("x", "y", "z", "n", "t", "s", "couple", "tension", "drive")
-LIKE = r"like '\theta_A' or 'J_C', in single quotes"
-
-
-@dataclass(frozen=True)
-class SymbolRule:
-    r"""LaTeX of one symbol: 'J_C', '\dot\gamma'."""
-
-    def read(self, raw: Any, path: DocumentPath, found: list[Finding]) -> Symbol | None:
-        if isinstance(raw, Symbol):
-            return raw
-        if not isinstance(raw, str) or isinstance(raw, Decimal):
-            found.append(Finding(path, f"a symbol is needed here, not {shown(raw)}", LIKE))
-            return None
-        try:
-            return parse_symbol(raw)
-        except ExpressionError as error:
-            found.append(Finding(path, error.what, error.mend, error.column, error.length, raw=raw))
-            return None
-
-    def leaves(self, value: Any, path: DocumentPath, part: Any) -> Iterator[Leaf]:
-        yield Leaf(path, self, value, part)
-
-    def schema(self, definitions: dict[str, Any]) -> dict[str, Any]:
-        return {"type": "string", "description": "a symbol in LaTeX", "minLength": 1, "maxLength": LONGEST}
+SYMBOL = ParsedTextRule(
+    Symbol,
+    parse_symbol,
+    "a symbol",
+    r"like '\theta_A' or 'J_C', in single quotes",
+    (("minLength", 1), ("maxLength", LONGEST)),
+)
 
 
 @dataclass(frozen=True)
@@ -62,10 +44,10 @@ class ReactionSymbolsRule:
         if isinstance(raw, ReactionSymbols):
             return raw
         if not isinstance(raw, Mapping):
-            letter = SymbolRule().read(raw, path, found)
+            letter = SYMBOL.read(raw, path, found)
             return None if letter is None else ReactionSymbols(letter)
         unknown_keys(raw, REACTIONS, path, found, "the symbols of reactions")
-        read = {label: SymbolRule().read(raw[label], (*path, label), found) for label in REACTIONS if label in raw}
+        read = {label: SYMBOL.read(raw[label], (*path, label), found) for label in REACTIONS if label in raw}
         return ReactionSymbols(None, Table({label: symbol for label, symbol in read.items() if symbol is not None}))
 
     def leaves(self, value: Any, path: DocumentPath, part: Any) -> Iterator[Leaf]:
@@ -75,10 +57,10 @@ class ReactionSymbolsRule:
             yield Leaf((*path, label), self, symbol, part)
 
     def schema(self, definitions: dict[str, Any]) -> dict[str, Any]:
-        one = SymbolRule().schema(definitions)
+        one = SYMBOL.schema(definitions)
         table = {"type": "object", "properties": dict.fromkeys(REACTIONS, one), "additionalProperties": False}
         return {"anyOf": [one, table]}
 
 
-SymbolField = Annotated[Symbol, SymbolRule()]
+SymbolField = Annotated[Symbol, SYMBOL]
 ReactionSymbolsField = Annotated[ReactionSymbols, ReactionSymbolsRule()]

@@ -27,7 +27,7 @@ from eomgen.mechanics.reactions.drive import drive, multiplier
 from eomgen.mechanics.reactions.reactions import Reactions, reactions_of
 from eomgen.mechanics.statics.section_forces import SectionForces, section_forces
 from eomgen.model.outputs import FUNCTIONS
-from eomgen.model.outputs.scene import GROUND
+from eomgen.model.outputs.context import GROUND
 from eomgen.model.shapes import MassProperties
 from eomgen.symbolic.exact.normal_form import simplest
 from eomgen.symbolic.expression.derivative import derivative, substituted

@@ -10,7 +10,7 @@ from eomgen.model.constraints.meeting import Meeting, Thread
 from eomgen.model.constraints.row import Edge, TieRow
 from eomgen.model.constraints.strand import Strand
 from eomgen.model.findings import Finding
-from eomgen.model.forces.load import Scene
+from eomgen.model.forces.load import LoadContext
 from eomgen.model.part import Part
 from eomgen.model.positions import DocumentPath
 from eomgen.model.symbols import ReactionSymbolsField
@@ -50,7 +50,7 @@ class Constraint(Part, ABC):
         """Of each strand of a string the row that holds its tension, from 1; () where it is no string."""
         return ()
 
-    def strands_at(self, scene: Scene) -> tuple[Strand, ...]:
+    def strands_at(self, scene: LoadContext) -> tuple[Strand, ...]:
         """The straight pieces of a string; () where it is no string."""
         return ()
 
@@ -58,7 +58,7 @@ class Constraint(Part, ABC):
         """Whether the ground guides what the tie holds, though it pushes on no place of the ground."""
         return False
 
-    def edges(self, scene: Scene) -> tuple[Edge, ...]:
+    def edges(self, scene: LoadContext) -> tuple[Edge, ...]:
         """What must not vanish, else nobody can say where the tie holds its bodies; () where there is no such thing."""
         return ()
 
@@ -74,12 +74,12 @@ class Constraint(Part, ABC):
         """The coordinate that it gives as a function of time; "" where it does no such thing."""
         return ""
 
-    def agreeing(self, scene: Scene) -> tuple[Scalar, ...]:
+    def agreeing(self, scene: LoadContext) -> tuple[Scalar, ...]:
         """What is 1 where directions of two bodies agree, -1 where one is turned over, which the rows allow too."""
         return ()
 
     @abstractmethod
-    def rows(self, scene: Scene) -> tuple[TieRow, ...]:
+    def rows(self, scene: LoadContext) -> tuple[TieRow, ...]:
         """The rows of the tie, asked only where it works.
 
         Raises:

@@ -7,7 +7,7 @@ from eomgen.model.constraints.base import Constraint
 from eomgen.model.constraints.pin import alike, held_together, not_turning, others_of
 from eomgen.model.constraints.plane import same_turn
 from eomgen.model.constraints.row import TieRow
-from eomgen.model.forces.load import Scene
+from eomgen.model.forces.load import LoadContext
 from eomgen.model.kinds import PointName, Points
 from eomgen.symbolic.expression.graph import Scalar
 from eomgen.symbolic.expression.spatial import IDENTITY
@@ -27,7 +27,7 @@ class Clamp(Constraint):
     point: PointName | None = None
     points: Points | None = None
 
-    def rows(self, scene: Scene) -> tuple[TieRow, ...]:
+    def rows(self, scene: LoadContext) -> tuple[TieRow, ...]:
         """The rows of a pin, and no turning against the start; in space e_i . e_j = 0 of axes in either body."""
         first, *_ = named = [scene.place(p) for p in (*(self.points or ()), self.point) if p is not None]
         rows: list[TieRow] = []
@@ -37,7 +37,7 @@ class Clamp(Constraint):
             rows += [same_turn(scene, *bodies)] if scene.plane else not_turning(scene, bodies)
         return tuple(rows)
 
-    def agreeing(self, scene: Scene) -> tuple[Scalar, ...]:
+    def agreeing(self, scene: LoadContext) -> tuple[Scalar, ...]:
         """In space e_i . e_i of the axes in either body."""
         if scene.plane:
             return ()

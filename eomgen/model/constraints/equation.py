@@ -7,7 +7,7 @@ from typing import ClassVar
 from eomgen.model.constraints.base import Constraint
 from eomgen.model.constraints.measured import Measured
 from eomgen.model.constraints.row import TieRow
-from eomgen.model.forces.load import Push, Scene
+from eomgen.model.forces.load import LoadContext, Push
 from eomgen.model.kinds import Gap, VelocityLaw
 from eomgen.symbolic.expression.expressions import Call
 from eomgen.symbolic.expression.spatial import AnyScalar
@@ -30,7 +30,7 @@ class Equation(Constraint):
     gap: Gap | None = None
     rate: VelocityLaw | None = None
 
-    def rows(self, scene: Scene) -> tuple[TieRow, ...]:
+    def rows(self, scene: LoadContext) -> tuple[TieRow, ...]:
         """phi = 0 with the forces lam dphi/dx(P); or sum k v + rest = 0 with the forces lam k."""
         law = self.rate if self.gap is None else self.gap
         assert law is not None, "one of gap and rate is given"

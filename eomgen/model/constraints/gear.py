@@ -6,7 +6,7 @@ from typing import ClassVar
 from eomgen.model.constraints.base import Constraint
 from eomgen.model.constraints.plane import same_turn
 from eomgen.model.constraints.row import TieRow
-from eomgen.model.forces.load import Couple, Push, Scene
+from eomgen.model.forces.load import Couple, LoadContext, Push
 from eomgen.model.kinds import Pure, TwoBodies
 from eomgen.symbolic.expression.spatial import AnyScalar, times
 
@@ -26,7 +26,7 @@ class Gear(Constraint):
     bodies: TwoBodies
     ratio: Pure
 
-    def rows(self, scene: Scene) -> tuple[TieRow, ...]:
+    def rows(self, scene: LoadContext) -> tuple[TieRow, ...]:
         """theta_1 - ratio theta_2 stays; a couple 1 on the first body, - ratio on the second, none on the ground.
 
         In space each couple is along the axis of the body's joint, its opposite on the body that carries the joint.
@@ -40,7 +40,7 @@ class Gear(Constraint):
         return (TieRow((*on_first, *on_second), turned - scene.start(turned), component="couple"),)
 
 
-def _at_joint(scene: Scene, body: str, couple: AnyScalar) -> tuple[AnyScalar, tuple[Push, ...]]:
+def _at_joint(scene: LoadContext, body: str, couple: AnyScalar) -> tuple[AnyScalar, tuple[Push, ...]]:
     """The angle of a body's joint, and the couple along its axis on the body, the opposite on its parent."""
     angle, axis, parent = scene.turn_of_joint(body)
     on_parent = () if parent is None else (Couple(parent, times(-couple, axis), axes=body),)

@@ -7,7 +7,7 @@ from eomgen.model.constraints.base import Constraint
 from eomgen.model.constraints.pin import alike, not_turning
 from eomgen.model.constraints.plane import same_turn
 from eomgen.model.constraints.row import TieRow, direction_of, normals_of
-from eomgen.model.forces.load import PointForce, Scene
+from eomgen.model.forces.load import LoadContext, PointForce
 from eomgen.model.kinds import Direction, PointName
 from eomgen.symbolic.expression.graph import Scalar
 from eomgen.symbolic.expression.spatial import IDENTITY, dot
@@ -28,7 +28,7 @@ class Guide(Constraint):
     point: PointName
     along: Direction
 
-    def rows(self, scene: Scene) -> tuple[TieRow, ...]:
+    def rows(self, scene: LoadContext) -> tuple[TieRow, ...]:
         """n . (p - p_start) = 0 for each n across `along`; theta - theta_start = 0, in space as a clamp."""
         place = scene.place(self.point)
         rows = []
@@ -38,7 +38,7 @@ class Guide(Constraint):
         turns = [same_turn(scene, place[0], None)] if scene.plane else not_turning(scene, (place[0], None))
         return (*rows, *turns)
 
-    def agreeing(self, scene: Scene) -> tuple[Scalar, ...]:
+    def agreeing(self, scene: LoadContext) -> tuple[Scalar, ...]:
         """In space e_i . e_i of the ground's axes and those that the body carries."""
         body = scene.place(self.point)[0]
         return () if scene.plane else tuple(alike(scene, (body, None), e) for e in IDENTITY)

@@ -7,7 +7,7 @@ from eomgen.errors import ModelError
 from eomgen.model.constraints.base import Constraint
 from eomgen.model.constraints.meeting import Thread
 from eomgen.model.constraints.row import TieRow
-from eomgen.model.forces.load import PointForce, Scene
+from eomgen.model.forces.load import LoadContext, PointForce
 from eomgen.model.kinds import Flag, Length, TwoPoints
 from eomgen.symbolic.expression.functions import over, sqrt
 from eomgen.symbolic.expression.rational import Fraction
@@ -33,7 +33,7 @@ class Link(Constraint):
     def thread(self) -> Thread:
         return Thread(self.points, length=self.length)
 
-    def rows(self, scene: Scene) -> tuple[TieRow, ...]:
+    def rows(self, scene: LoadContext) -> tuple[TieRow, ...]:
         """(L - r . r / L) / 2 = 0, r from the first point to the second; a tension 1 pulls the first along r / L.
 
         It is L - |r| to first order, without a root.
@@ -45,7 +45,7 @@ class Link(Constraint):
         pulls = (PointForce(first, d), PointForce(second, times(-1, d)))
         return (TieRow(pulls, Fraction(1, 2) * (L - dot(r, d)), component="tension"),)
 
-    def _length(self, scene: Scene, r: Vector) -> AnyScalar:
+    def _length(self, scene: LoadContext, r: Vector) -> AnyScalar:
         if self.length is not None:
             return scene.value(self.length)
         square = scene.start(dot(r, r))

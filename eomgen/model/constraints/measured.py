@@ -11,7 +11,7 @@ from dataclasses import dataclass
 
 from eomgen.errors import ModelError
 from eomgen.model.constraints.plane import Touch, angle_of, opposite
-from eomgen.model.forces.load import BodyPoint, Couple, Push, Scene
+from eomgen.model.forces.load import BodyPoint, Couple, LoadContext, Push
 from eomgen.symbolic.expression.expressions import Call, Reference
 from eomgen.symbolic.expression.spatial import IDENTITY, ZERO, AnyScalar, Vector, apply, dot, minus, times
 
@@ -26,7 +26,7 @@ class Measured:
         call: as it was written.
     """
 
-    scene: Scene
+    scene: LoadContext
     call: Call
 
     @property

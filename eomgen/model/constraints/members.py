@@ -10,7 +10,7 @@ from eomgen.model.constraints.link import Link
 from eomgen.model.constraints.row import TieRow
 from eomgen.model.containers import ListRule
 from eomgen.model.fields import NameRule
-from eomgen.model.forces.load import PointForce, Scene
+from eomgen.model.forces.load import LoadContext, PointForce
 from eomgen.model.kinds import Text
 from eomgen.symbolic.expression.expressions import Call, Reference
 from eomgen.symbolic.expression.functions import over, sqrt
@@ -46,11 +46,11 @@ class Members(Constraint):
         first, second = member.split("-")
         return f"{self.truss}.{first}", f"{self.truss}.{second}"
 
-    def rows(self, scene: Scene) -> tuple[TieRow, ...]:
+    def rows(self, scene: LoadContext) -> tuple[TieRow, ...]:
         """Of each member the row of a link."""
         return tuple(self._row(scene, member) for member in self.members)
 
-    def _row(self, scene: Scene, member: str) -> TieRow:
+    def _row(self, scene: LoadContext, member: str) -> TieRow:
         ends = self.ends(member)
         first, second = (scene.position(scene.place(point)) for point in ends)
         r = minus(second, first)
@@ -73,7 +73,7 @@ def trusses_of(constraints: Mapping[str, Constraint]) -> dict[str, Members]:
     return {name: tie for name, tie in constraints.items() if isinstance(tie, Members)}
 
 
-def _direction(scene: Scene, r: Vector) -> tuple[AnyScalar, ...]:
+def _direction(scene: LoadContext, r: Vector) -> tuple[AnyScalar, ...]:
     """r over its length: in plain numbers and roots of them where all components are multiples of one parameter."""
     (square,) = scene.readable((dot(r, r),))
     (length,) = scene.readable((sqrt(square),))

@@ -5,7 +5,7 @@ from typing import ClassVar
 
 from eomgen.model.constraints.base import Constraint
 from eomgen.model.constraints.row import TieRow
-from eomgen.model.forces.load import Scene
+from eomgen.model.forces.load import LoadContext
 from eomgen.model.kinds import CoordinateName, MotionOfCoordinate
 from eomgen.symbolic.expression.expressions import as_expression
 
@@ -27,6 +27,6 @@ class Motion(Constraint):
         """Its coordinate."""
         return self.coordinate
 
-    def rows(self, scene: Scene) -> tuple[TieRow, ...]:
+    def rows(self, scene: LoadContext) -> tuple[TieRow, ...]:
         """q - f(t) = 0; lam is the generalized force along q."""
         return (TieRow((), scene.value(as_expression(self.coordinate)) - scene.value(self.value)),)

@@ -5,7 +5,7 @@ from typing import ClassVar
 
 from eomgen.model.constraints.base import Constraint
 from eomgen.model.constraints.row import AXIS_NAMES, TieRow, scene_axes
-from eomgen.model.forces.load import BodyPoint, Couple, PointForce, Scene
+from eomgen.model.forces.load import BodyPoint, Couple, LoadContext, PointForce
 from eomgen.model.joints.base import across, unit
 from eomgen.model.kinds import Points, SpaceDirection
 from eomgen.symbolic.expression.graph import Scalar
@@ -25,7 +25,7 @@ class Pin(Constraint):
     points: Points
     axis: SpaceDirection | None = None
 
-    def rows(self, scene: Scene) -> tuple[TieRow, ...]:
+    def rows(self, scene: LoadContext) -> tuple[TieRow, ...]:
         """For each further point P of the hinge, e . (p_first - p_P) = 0 along each axis; alone, against its start.
 
         With an axis in space also n_P . e = 0 for the two directions e of the first body across the axis.
@@ -39,7 +39,7 @@ class Pin(Constraint):
                 rows += [across_from(scene, (first[0], other[0]), e, n) for e in across(n)]
         return tuple(rows)
 
-    def agreeing(self, scene: Scene) -> tuple[Scalar, ...]:
+    def agreeing(self, scene: LoadContext) -> tuple[Scalar, ...]:
         """Of a hinge in space n_first . n_P, for each further point P."""
         if self.axis is None or scene.plane:
             return ()
@@ -48,7 +48,7 @@ class Pin(Constraint):
         return tuple(alike(scene, (first[0], other[0]), n) for other in others_of(scene, named))
 
 
-def others_of(scene: Scene, named: list[BodyPoint]) -> list[BodyPoint]:
+def others_of(scene: LoadContext, named: list[BodyPoint]) -> list[BodyPoint]:
     """The places to which the first is held: the others, or where it stands at the start."""
     first, *others = named
     if others:
@@ -57,7 +57,7 @@ def others_of(scene: Scene, named: list[BodyPoint]) -> list[BodyPoint]:
     return [(None, (scene.start(x), scene.start(y), scene.start(z)))]
 
 
-def held_together(scene: Scene, first: BodyPoint, other: BodyPoint) -> list[TieRow]:
+def held_together(scene: LoadContext, first: BodyPoint, other: BodyPoint) -> list[TieRow]:
     """e . (p_first - p_other) = 0 along each axis; a unit force on the first, its opposite on the other."""
     gap = minus(scene.position(first), scene.position(other))
     return [
@@ -66,7 +66,7 @@ def held_together(scene: Scene, first: BodyPoint, other: BodyPoint) -> list[TieR
     ]
 
 
-def across_from(scene: Scene, bodies: tuple[str | None, str | None], e: Vector, n: Vector) -> TieRow:
+def across_from(scene: LoadContext, bodies: tuple[str | None, str | None], e: Vector, n: Vector) -> TieRow:
     """n . e = 0 in space: n is carried by the second body, e across it by the first; the couple is e x n."""
     n, e = carried_direction(scene, bodies[1], n), carried_direction(scene, bodies[0], e)
     couple = cross(e, n)
@@ -74,18 +74,18 @@ def across_from(scene: Scene, bodies: tuple[str | None, str | None], e: Vector, 
     return TieRow(tuple(Couple(b, tau) for b, tau in pairs if b is not None), dot(n, e), component="couple")
 
 
-def not_turning(scene: Scene, bodies: tuple[str | None, str | None]) -> list[TieRow]:
+def not_turning(scene: LoadContext, bodies: tuple[str | None, str | None]) -> list[TieRow]:
     """e_i . e_j = 0 in space of axes in either body, that agree at the start: the couples about x, y and z."""
     x, y, z = IDENTITY  # y x z = x
     return [across_from(scene, bodies, e, n) for e, n in ((y, z), (z, x), (x, y))]
 
 
-def alike(scene: Scene, bodies: tuple[str | None, str | None], n: Vector) -> Scalar:
+def alike(scene: LoadContext, bodies: tuple[str | None, str | None], n: Vector) -> Scalar:
     """n . n of a direction that agreed at the start, carried by either body."""
     return dot(carried_direction(scene, bodies[0], n), carried_direction(scene, bodies[1], n))
 
 
-def carried_direction(scene: Scene, body: str | None, direction: Vector) -> Vector:
+def carried_direction(scene: LoadContext, body: str | None, direction: Vector) -> Vector:
     """A direction given in ground axes at the start, as the body carries it along, ground axes."""
     if body is None:
         return direction

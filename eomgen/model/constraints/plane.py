@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 from eomgen.model.constraints.row import TieRow
-from eomgen.model.forces.load import BodyPoint, Couple, PointForce, Push, Scene
+from eomgen.model.forces.load import BodyPoint, Couple, LoadContext, PointForce, Push
 from eomgen.symbolic.expression.spatial import ZERO, AnyScalar, Vector, cross, times
 
 
@@ -19,7 +19,7 @@ def right(d: Vector) -> Vector:
     return (d[1], -d[0], 0)
 
 
-def angle_of(scene: Scene, body: str | None) -> AnyScalar:
+def angle_of(scene: LoadContext, body: str | None) -> AnyScalar:
     """The angle of a body against the ground's axes; the ground's is 0 [rad]."""
     return 0 if body is None else scene.angle(body)
 
@@ -30,7 +30,7 @@ def couples(first: str | None, second: str | None, ratio: AnyScalar = 1) -> tupl
     return tuple(Couple(body, (0, 0, tau)) for body, tau in pairs if body is not None)
 
 
-def same_turn(scene: Scene, first: str | None, second: str | None, ratio: AnyScalar = 1) -> TieRow:
+def same_turn(scene: LoadContext, first: str | None, second: str | None, ratio: AnyScalar = 1) -> TieRow:
     """theta_1 - ratio theta_2 stays as at the start: a couple on the first body, - ratio times it on the second."""
     turned = angle_of(scene, first) - ratio * angle_of(scene, second)
     return TieRow(couples(first, second, ratio), turned - scene.start(turned), component="couple")

@@ -23,7 +23,7 @@ from eomgen.model.constraints.tracks import (
     wheel_on_ball,
 )
 from eomgen.model.findings import Finding
-from eomgen.model.forces.load import Scene
+from eomgen.model.forces.load import LoadContext
 from eomgen.model.friction import FrictionLaw
 from eomgen.model.kinds import BodyName, Flag, Length, OwnPointName, Radius, Size, SpaceDirection
 from eomgen.model.part import PartRule
@@ -138,7 +138,7 @@ class Rolling(Constraint):
         surface = RoundSurface(self.on, track.at, track.radius, bool(track.inside), track.axis)
         return Meeting(body, surface, not self.slip)
 
-    def rows(self, scene: Scene) -> tuple[TieRow, ...]:
+    def rows(self, scene: LoadContext) -> tuple[TieRow, ...]:
         """The normal row, gap = 0, n pushing the body off its track; unless it slips, e . (v - v_track) = 0 along it.
 
         Both velocities are those of the bodies' material points at the contact. In the plane e = t is n turned
@@ -156,7 +156,7 @@ class Rolling(Constraint):
         held = (TieRow(push, None, component=name, material=True) for name, push in zip(ALONG, along, strict=False))
         return (TieRow(normal, contact.gap, component="n"), *held)
 
-    def edges(self, scene: Scene) -> tuple[Edge, ...]:
+    def edges(self, scene: LoadContext) -> tuple[Edge, ...]:
         """A wheel must not lie flat, on a ball neither."""
         body, name = self._round(scene), scene.where.rpartition(".")[2]
         if not isinstance(body, Wheel):
@@ -168,7 +168,7 @@ class Rolling(Constraint):
         out = minus(center, scene.position(self._curved(scene).anchor))
         return (Edge(f"the whole rim of '{self.body}' touches in '{name}'", body.distance(scene, out)),)
 
-    def _contact(self, scene: Scene, center: Any) -> TrackContact:
+    def _contact(self, scene: LoadContext, center: Any) -> TrackContact:
         body = self._round(scene)
         track = self.plane or self.line
         if track is not None:
@@ -184,13 +184,13 @@ class Rolling(Constraint):
             "let it roll on a plane, or leave out 'axis' and 'ellipsoid'",
         )
 
-    def _curved(self, scene: Scene) -> Curved:
+    def _curved(self, scene: LoadContext) -> Curved:
         if self.circle is not None:
             return curved(scene, self.on, self.circle)
         assert self.on is not None, "one of line, plane, circle and on is given"
         return Curved(scene.own_place(self.on, None), scene.radius(self.on))
 
-    def _round(self, scene: Scene) -> Round:
+    def _round(self, scene: LoadContext) -> Round:
         """What touches: a ball (in the plane a disc), a wheel, an ellipsoid; sizes left out are those of the shape."""
         shape = scene.shape(self.body)
         semiaxes = self.ellipsoid or (getattr(shape, "semiaxes", None) if self._plain else None)
@@ -208,5 +208,5 @@ class Rolling(Constraint):
         """Whether nothing is said of the body's form."""
         return self.radius is None and self.axis is None
 
-    def _radius(self, scene: Scene) -> AnyScalar:
+    def _radius(self, scene: LoadContext) -> AnyScalar:
         return scene.radius(self.body) if self.radius is None else scene.value(self.radius)

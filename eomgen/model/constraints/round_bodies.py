@@ -16,7 +16,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 from eomgen.errors import ModelError
-from eomgen.model.forces.load import Scene
+from eomgen.model.forces.load import LoadContext
 from eomgen.model.joints.base import unit
 from eomgen.symbolic.exact.normal_form import readable
 from eomgen.symbolic.expression.functions import cos, over, sin, sqrt
@@ -48,7 +48,7 @@ class RollingBall:
 
     R: AnyScalar
 
-    def nearest(self, scene: Scene, n: Vector) -> Nearest:
+    def nearest(self, scene: LoadContext, n: Vector) -> Nearest:
         """R below the centre."""
         return Nearest(times(-self.R, n), self.R)
 
@@ -62,7 +62,7 @@ class Wheel:
     R: AnyScalar
     tube: AnyScalar
 
-    def nearest(self, scene: Scene, n: Vector) -> Nearest:
+    def nearest(self, scene: LoadContext, n: Vector) -> Nearest:
         """The lowest place of the rim.
 
         Raises:
@@ -78,7 +78,7 @@ class Wheel:
         down = times(over(-self.R, rho), cross(a, cross(n, a)))
         return Nearest(minus(down, times(self.tube, n)), self.R * rho + self.tube)
 
-    def nearest_to_ball(self, scene: Scene, out: Vector, side: int) -> Vector:
+    def nearest_to_ball(self, scene: LoadContext, out: Vector, side: int) -> Vector:
         """From the wheel's centre to the place of its centre line nearest to a ball's centre; from inside the farthest.
 
         -+ R h / |h|,  h = d - (d . a) a,  d from the ball's centre to the wheel's.
@@ -95,23 +95,23 @@ class Wheel:
             )
         return times(over(-side * self.R, size), h)
 
-    def distance(self, scene: Scene, out: Vector) -> AnyScalar:
+    def distance(self, scene: LoadContext, out: Vector) -> AnyScalar:
         """|h|, of a ball's centre from the wheel's axis [m]; 0 where the whole rim touches."""
         h = self._across(scene, out)
         return sqrt(_short(dot(h, h)))
 
-    def _across(self, scene: Scene, out: Vector) -> Vector:
+    def _across(self, scene: LoadContext, out: Vector) -> Vector:
         a = self._axle(scene)
         return minus(out, times(dot(out, a), a))
 
-    def tilt(self, scene: Scene, n: Vector) -> AnyScalar:
+    def tilt(self, scene: LoadContext, n: Vector) -> AnyScalar:
         """rho = |n x a|, the sine of the angle between its axis and n; 0 where it lies flat."""
         a = self._axle(scene)
         k = cross(n, a)
         wave = _other_wave(scene, _short(dot(n, a)))
         return sqrt(dot(k, k)) if wave is None else wave
 
-    def _axle(self, scene: Scene) -> Vector:
+    def _axle(self, scene: LoadContext) -> Vector:
         return apply(scene.orientation(self.body), unit(self.axis))
 
 
@@ -122,7 +122,7 @@ class Egg:
     body: str
     semiaxes: Vector
 
-    def nearest(self, scene: Scene, n: Vector) -> Nearest:
+    def nearest(self, scene: LoadContext, n: Vector) -> Nearest:
         """The place of the surface at which n is its inner normal."""
         R = scene.orientation(self.body)
         n_B = apply(transposed(R), n)
@@ -134,7 +134,7 @@ class Egg:
 Round = RollingBall | Wheel | Egg
 
 
-def laid_in(scene: Scene, n: Vector) -> tuple[Vector, Vector]:
+def laid_in(scene: LoadContext, n: Vector) -> tuple[Vector, Vector]:
     """Two directions in the plane across the unit vector n: x laid into the plane (y where n is along x), and n x it.
 
     So (t, s) is (x, y) on a level floor, and t points down a slope about y.
@@ -152,7 +152,7 @@ def laid_in(scene: Scene, n: Vector) -> tuple[Vector, Vector]:
     return t, cross(n, t)
 
 
-def turned_over(scene: Scene, n: Vector) -> tuple[Vector, Vector]:
+def turned_over(scene: LoadContext, n: Vector) -> tuple[Vector, Vector]:
     """Two directions across a unit vector n that moves: those that come along when e turns into n the shortest way.
 
     t_i = e_i - (n . e_i) (n + e) / (1 + n . e), e the axis of the ground nearest to n at the start. Opposite to e,
@@ -168,14 +168,14 @@ def turned_over(scene: Scene, n: Vector) -> tuple[Vector, Vector]:
     return t, s
 
 
-def _nearest_axis(scene: Scene, n: Vector) -> tuple[int, int]:
+def _nearest_axis(scene: LoadContext, n: Vector) -> tuple[int, int]:
     """(which axis, +1 or -1); z where nobody knows."""
     sizes = [_worth(scene, x, unknown=0.0) for x in n]
     k = max((2, 1, 0), key=lambda i: abs(sizes[i]))
     return k, -1 if sizes[k] < 0 else 1
 
 
-def complement(scene: Scene, x: AnyScalar) -> AnyScalar:
+def complement(scene: LoadContext, x: AnyScalar) -> AnyScalar:
     """sqrt(1 - x^2)."""
     x = _short(x)
     wave = _other_wave(scene, x)
@@ -187,7 +187,7 @@ def _short(x: AnyScalar) -> AnyScalar:
     return readable(x, Work.PART) if type(x) is Node and text_size(x) <= LONGEST else x
 
 
-def _other_wave(scene: Scene, x: AnyScalar) -> AnyScalar | None:
+def _other_wave(scene: LoadContext, x: AnyScalar) -> AnyScalar | None:
     """sqrt(1 - x^2) of a sine or a cosine: the cosine or sine, in the sense that it has at the start; else None."""
     if type(x) is Node and x.op == "neg":
         return _other_wave(scene, x.args[0])
@@ -197,11 +197,11 @@ def _other_wave(scene: Scene, x: AnyScalar) -> AnyScalar | None:
     return -found if _sense(scene, found) < 0 else found
 
 
-def _sense(scene: Scene, x: AnyScalar) -> int:
+def _sense(scene: LoadContext, x: AnyScalar) -> int:
     return -1 if _worth(scene, x) < 0 else 1
 
 
-def _worth(scene: Scene, x: AnyScalar, unknown: float = 1.0) -> float:
+def _worth(scene: LoadContext, x: AnyScalar, unknown: float = 1.0) -> float:
     """What x is at the start with the model's values."""
     found = scene.worth(x)
     return unknown if found is None else found

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-from eomgen.model.forces.load import Couple, PointForce, Scene
+from eomgen.model.forces.load import Couple, LoadContext, PointForce
 from eomgen.model.joints.base import across, unit
 from eomgen.symbolic.expression.spatial import AnyScalar, Vector
 
@@ -47,7 +47,7 @@ class Edge:
     vanishes: AnyScalar
 
 
-def direction_of(scene: Scene, v: Vector) -> Vector:
+def direction_of(scene: LoadContext, v: Vector) -> Vector:
     """v over its length; along an axis it is that axis, in the sense that v has with the model's values."""
     along = [k for k, x in enumerate(v) if not (type(x) is int and x == 0)]
     sense = scene.worth(v[along[0]]) if len(along) == 1 else None
@@ -57,7 +57,7 @@ def direction_of(scene: Scene, v: Vector) -> Vector:
     return (x, y, z)
 
 
-def normals_of(scene: Scene, d: Vector) -> tuple[tuple[str, Vector], ...]:
+def normals_of(scene: LoadContext, d: Vector) -> tuple[tuple[str, Vector], ...]:
     """Unit vectors across the unit vector d, with their names: in the plane its left normal, in space two."""
     if scene.plane:
         return (("n", (-d[1], d[0], 0)),)
@@ -65,7 +65,7 @@ def normals_of(scene: Scene, d: Vector) -> tuple[tuple[str, Vector], ...]:
     return ("n 1", first), ("n 2", second)
 
 
-def scene_axes(scene: Scene) -> tuple[Vector, ...]:
+def scene_axes(scene: LoadContext) -> tuple[Vector, ...]:
     """The ground's axes in which a point can be held: x, y, and in space z."""
     axes: tuple[Vector, ...] = ((1, 0, 0), (0, 1, 0), (0, 0, 1))
     return axes[:2] if scene.plane else axes

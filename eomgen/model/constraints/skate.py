@@ -11,7 +11,7 @@ from eomgen.model.constraints.plane import left
 from eomgen.model.constraints.round_bodies import complement
 from eomgen.model.constraints.row import TieRow, direction_of
 from eomgen.model.findings import Finding
-from eomgen.model.forces.load import PointForce, Scene
+from eomgen.model.forces.load import LoadContext, PointForce
 from eomgen.model.kinds import Direction, PointName, SpaceDirection
 from eomgen.model.positions import DocumentPath
 from eomgen.symbolic.expression.functions import over
@@ -43,7 +43,7 @@ class Skate(Constraint):
             TouchingPoint(self.point), Groove(self.point.rpartition(".")[0] or None, self.along, self.normal)
         )
 
-    def rows(self, scene: Scene) -> tuple[TieRow, ...]:
+    def rows(self, scene: LoadContext) -> tuple[TieRow, ...]:
         """n . v = 0; a row of velocities alone, which no gap has for a rate.
 
         n is the left normal of `along`; in space, on ice of the normal e and with the edge d, n = e x d / |e x d|.

@@ -11,7 +11,7 @@ from eomgen.model.constraints.meeting import BodyLine, Meeting, TouchingPoint
 from eomgen.model.constraints.plane import Touch, opposite
 from eomgen.model.constraints.row import TieRow, direction_of, normals_of
 from eomgen.model.findings import Finding
-from eomgen.model.forces.load import Scene
+from eomgen.model.forces.load import LoadContext
 from eomgen.model.friction import FrictionLaw
 from eomgen.model.kinds import BodyName, Flag, PointName
 from eomgen.model.positions import DocumentPath
@@ -53,7 +53,7 @@ class Slider(Constraint):
         """The point, on the body's line."""
         return Meeting(TouchingPoint(self.point), BodyLine(self.on))
 
-    def rows(self, scene: Scene) -> tuple[TieRow, ...]:
+    def rows(self, scene: LoadContext) -> tuple[TieRow, ...]:
         """n . (p - p_A) = 0 for each n across A -> B in the body; the line pushes along n, friction along A -> B.
 
         In the plane n is the left normal; in space there are two, and |N| = sqrt(N_1^2 + N_2^2). A point of the ground

@@ -9,7 +9,7 @@ from typing import Any
 from eomgen.errors import ModelError
 from eomgen.model.constraints.plane import angle_of, left
 from eomgen.model.constraints.row import TieRow, normals_of
-from eomgen.model.forces.load import BodyPoint, Couple, PointForce, Push, Scene
+from eomgen.model.forces.load import BodyPoint, Couple, LoadContext, PointForce, Push
 from eomgen.model.joints.base import Z
 from eomgen.symbolic.expression.functions import over, sqrt
 from eomgen.symbolic.expression.spatial import AnyScalar, Vector, cross, dot, minus, plus, times
@@ -29,7 +29,7 @@ class Stop:
         axis: in space, about which it is round, and turned counter-clockwise: unit, ground axes; left(d) = axis x d.
     """
 
-    scene: Scene
+    scene: LoadContext
     place: BodyPoint
     offset: AnyScalar = 0
     axis: Vector = Z
@@ -97,7 +97,7 @@ class Strand:
         return (*self.first.pulled(self.d, 1), *self.second.pulled(self.d, -1))
 
 
-def strand_along(scene: Scene, first: Stop, second: Stop, d: Vector) -> Strand:
+def strand_along(scene: LoadContext, first: Stop, second: Stop, d: Vector) -> Strand:
     """The strand that keeps the direction d: its length grows with d . (c_2 - c_1).
 
     Raises:
@@ -111,7 +111,7 @@ def strand_along(scene: Scene, first: Stop, second: Stop, d: Vector) -> Strand:
     return Strand(first, second, d, length)
 
 
-def common_tangent(scene: Scene, first: Stop, second: Stop) -> Strand:
+def common_tangent(scene: LoadContext, first: Stop, second: Stop) -> Strand:
     """The strand that touches both: with D = c_2 - c_1, h = a_1 - a_2 and l = sqrt(D . D - h^2) it is
 
         d = (l D - h left(D)) / D . D,   for then d . D = l and left(d) . D = h.
@@ -142,7 +142,7 @@ def common_tangent(scene: Scene, first: Stop, second: Stop) -> Strand:
 
 
 def _straight(
-    scene: Scene, D: Vector, h: AnyScalar, side: Callable[[Vector], Vector]
+    scene: LoadContext, D: Vector, h: AnyScalar, side: Callable[[Vector], Vector]
 ) -> tuple[Vector, AnyScalar] | None:
     """Direction and length of a strand that stays along an axis: left(d) . D = h for good, d . D > 0 at the start."""
     for d in AXES if scene.plane else (*AXES, Z, times(-1, Z)):
@@ -154,7 +154,9 @@ def _straight(
     return None
 
 
-def _off(scene: Scene, d: Vector, D: Vector, h: AnyScalar, side: Callable[[Vector], Vector]) -> tuple[AnyScalar, ...]:
+def _off(
+    scene: LoadContext, d: Vector, D: Vector, h: AnyScalar, side: Callable[[Vector], Vector]
+) -> tuple[AnyScalar, ...]:
     """What keeps D from being along d and h to its left."""
     if scene.plane:
         return (dot(side(d), D) - h,)
@@ -182,7 +184,7 @@ def _along(first: Stop, second: Stop) -> int:
     )
 
 
-def _refuse_out_of_plane(scene: Scene, first: Stop, second: Stop, d: Vector) -> None:
+def _refuse_out_of_plane(scene: LoadContext, first: Stop, second: Stop, d: Vector) -> None:
     """In space a strand lies in the plane of what it touches: n . d = 0."""
     for stop in (first, second):
         if not scene.plane and stop.round and not scene.vanishes(dot(stop.axis, d)):
@@ -190,7 +192,7 @@ def _refuse_out_of_plane(scene: Scene, first: Stop, second: Stop, d: Vector) -> 
             raise ModelError(what, scene.where, "turn the axis, or lead the string over an eyelet, a point, there")
 
 
-def rope_row(scene: Scene, strands: Sequence[Strand]) -> TieRow:
+def rope_row(scene: LoadContext, strands: Sequence[Strand]) -> TieRow:
     """The row of one tension through strands that are joined by what slips: the sum of their rows.
 
     Its gap is what the string has left at the start, - sum l - a_1 theta_1 + a_2 theta_2 + ..., where the lengths are
@@ -202,7 +204,7 @@ def rope_row(scene: Scene, strands: Sequence[Strand]) -> TieRow:
     return TieRow(pushes, _gap(scene, strands), component="tension")
 
 
-def _gap(scene: Scene, strands: Sequence[Strand]) -> AnyScalar | None:
+def _gap(scene: LoadContext, strands: Sequence[Strand]) -> AnyScalar | None:
     used: AnyScalar = 0
     for strand in strands:
         if strand.length is None or strand.first.winds or strand.second.winds:
@@ -211,7 +213,7 @@ def _gap(scene: Scene, strands: Sequence[Strand]) -> AnyScalar | None:
     return scene.start(used) - used
 
 
-def side_rows(scene: Scene, strand: Strand) -> list[TieRow]:
+def side_rows(scene: LoadContext, strand: Strand) -> list[TieRow]:
     """The restrictions that a strand keeps its direction: n . (p_1 - p_2) = 0 of its ends, for each n across it.
 
     In the plane n = left(d). Those that hold by themselves are left out.
@@ -236,7 +238,7 @@ def side_rows(scene: Scene, strand: Strand) -> list[TieRow]:
     return rows
 
 
-def _sides(scene: Scene, strand: Strand) -> list[tuple[str, Vector, AnyScalar]]:
+def _sides(scene: LoadContext, strand: Strand) -> list[tuple[str, Vector, AnyScalar]]:
     """(name, n, how far apart along n the strand's centres are) for each n across it."""
     first, second = strand.first, strand.second
     if not (first.round or second.round) or scene.plane:
@@ -246,7 +248,7 @@ def _sides(scene: Scene, strand: Strand) -> list[tuple[str, Vector, AnyScalar]]:
     return [("n 1", stop.left(strand.d), apart), ("n 2", stop.axis, 0)]
 
 
-def _against(scene: Scene, first: Stop, second: Stop) -> ModelError:
+def _against(scene: LoadContext, first: Stop, second: Stop) -> ModelError:
     what = f"the strand between {_names(first, second)} runs against the direction given at the start"
     return ModelError(what, scene.where, "directions are those of travel along 'path'")
 

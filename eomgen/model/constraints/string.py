@@ -13,7 +13,7 @@ from eomgen.model.constraints.strand import Stop, Strand, common_tangent, rope_r
 from eomgen.model.containers import EitherRule, ListRule
 from eomgen.model.fields import NameRule, TextRule, VectorRule
 from eomgen.model.findings import Finding
-from eomgen.model.forces.load import Scene
+from eomgen.model.forces.load import LoadContext
 from eomgen.model.joints.base import Z, unit
 from eomgen.model.kinds import BodyName, Flag, GroundPlace, Radius, SpaceDirection, Turn
 from eomgen.model.part import Part, PartRule
@@ -79,7 +79,7 @@ class String(Constraint):
     def thread(self) -> Thread:
         return Thread(self.path, self.strands)
 
-    def strands_at(self, scene: Scene) -> tuple[Strand, ...]:
+    def strands_at(self, scene: LoadContext) -> tuple[Strand, ...]:
         """From stop to stop, along given directions or common tangents."""
         pairs = pairwise([_stop(scene, item) for item in self.path])
         if self.strands is None:
@@ -121,7 +121,7 @@ class String(Constraint):
             what = f"the string has {pieces} strands, but {len(self.strands)} directions are given"
             yield Finding((*path, "strands"), what)
 
-    def rows(self, scene: Scene) -> tuple[TieRow, ...]:
+    def rows(self, scene: LoadContext) -> tuple[TieRow, ...]:
         """A row for each tension; after them the restrictions of strands that keep a direction while their ends move.
 
         A strand with travel direction d pulls + d on what it leaves and - d on what it reaches.
@@ -132,7 +132,7 @@ class String(Constraint):
         return (*(rope_row(scene, rope) for rope in ropes), *sides)
 
 
-def _stop(scene: Scene, item: str | Wrap) -> Stop:
+def _stop(scene: LoadContext, item: str | Wrap) -> Stop:
     """A point, or a wrap about a body's origin or a place on the ground."""
     if isinstance(item, str):
         return Stop(scene, scene.place(item))
@@ -143,5 +143,5 @@ def _stop(scene: Scene, item: str | Wrap) -> Stop:
     return Stop(scene, place, radius if item.turn == "cw" else -radius, n)
 
 
-def _direction(scene: Scene, way: str | tuple[Expression, ...]) -> Vector:
+def _direction(scene: LoadContext, way: str | tuple[Expression, ...]) -> Vector:
     return DIRECTIONS[way] if isinstance(way, str) else direction_of(scene, scene.vector(way))

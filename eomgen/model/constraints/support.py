@@ -7,7 +7,7 @@ from eomgen.model.constraints.base import Constraint
 from eomgen.model.constraints.meeting import FlatSurface, Meeting, TouchingPoint
 from eomgen.model.constraints.round_bodies import laid_in
 from eomgen.model.constraints.row import TieRow, direction_of
-from eomgen.model.forces.load import PointForce, Scene
+from eomgen.model.forces.load import LoadContext, PointForce
 from eomgen.model.friction import FrictionLaw
 from eomgen.model.kinds import Direction, Flag, GroundPlace, PointName
 from eomgen.symbolic.expression.spatial import Vector, dot, minus, vector_of
@@ -36,7 +36,7 @@ class Support(Constraint):
         """The point, on its line or plane."""
         return Meeting(TouchingPoint(self.point), FlatSurface(None, self.at, self.normal))
 
-    def rows(self, scene: Scene) -> tuple[TieRow, ...]:
+    def rows(self, scene: LoadContext) -> tuple[TieRow, ...]:
         """n . (p - p_0) = 0, n of unit length; the support pushes along n; friction along t, with t, n as x, y.
 
         In space along t and s, as those of a rolling body.

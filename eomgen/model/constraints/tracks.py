@@ -7,7 +7,7 @@ from eomgen.errors import ModelError
 from eomgen.model.constraints.plane import right
 from eomgen.model.constraints.round_bodies import RollingBall, Round, Wheel, laid_in, turned_over
 from eomgen.model.constraints.row import direction_of
-from eomgen.model.forces.load import BodyPoint, Scene
+from eomgen.model.forces.load import BodyPoint, LoadContext
 from eomgen.model.joints.base import unit
 from eomgen.model.kinds import Direction, Flag, GroundPlace, Length, SpaceDirection
 from eomgen.model.part import Part
@@ -73,7 +73,7 @@ class Curved:
     axis: Vector | None = None
 
 
-def on_level(scene: Scene, on: str | None, track: Track, center: Vector, body: Round) -> TrackContact:
+def on_level(scene: LoadContext, on: str | None, track: Track, center: Vector, body: Round) -> TrackContact:
     """gap = n . (c - at) - height, n and `at` fixed in the track's body."""
     own = direction_of(scene, scene.vector(track.normal))
     tangents = (right(own),) if scene.plane else laid_in(scene, own)
@@ -83,17 +83,17 @@ def on_level(scene: Scene, on: str | None, track: Track, center: Vector, body: R
     return TrackContact(n, dot(n, out) - near.height, near.reach, anchor, plus(out, near.reach), tuple(along))
 
 
-def normal_of(scene: Scene, on: str | None, track: Track) -> Vector:
+def normal_of(scene: LoadContext, on: str | None, track: Track) -> Vector:
     """Its unit normal in ground axes."""
     return _carried(scene, on, direction_of(scene, scene.vector(track.normal)))
 
 
-def _carried(scene: Scene, on: str | None, e: Vector) -> Vector:
+def _carried(scene: LoadContext, on: str | None, e: Vector) -> Vector:
     """A direction of the ground, or of the body `on`, in ground axes."""
     return e if on is None else apply(scene.orientation(on), e)
 
 
-def on_curved(scene: Scene, track: Curved, center: Vector, ball: RollingBall) -> TrackContact:
+def on_curved(scene: LoadContext, track: Curved, center: Vector, ball: RollingBall) -> TrackContact:
     """gap = (d . d - D^2) / 2D, n = d / D, d from the circle's centre (the pipe's axis) to the ball's.
 
     d and D = r + R where they touch; inside, D = r - R and both signs turn. No root stands in it: to first order the
@@ -108,7 +108,7 @@ def on_curved(scene: Scene, track: Curved, center: Vector, ball: RollingBall) ->
     return TrackContact(n, _gap(track, d, D), times(-ball.R, n), track.anchor, arm, _around(scene, track, n))
 
 
-def wheel_on_ball(scene: Scene, track: Curved, center: Vector, wheel: Wheel) -> TrackContact:
+def wheel_on_ball(scene: LoadContext, track: Curved, center: Vector, wheel: Wheel) -> TrackContact:
     """A wheel on a ball, or in it: a ball of the tyre's radius at the place of its centre line that comes nearest."""
     D, out = _apart(scene, track, wheel.tube), minus(center, scene.position(track.anchor))
     rim = wheel.nearest_to_ball(scene, out, track.side)
@@ -122,7 +122,7 @@ def _gap(track: Curved, d: Vector, D: AnyScalar) -> AnyScalar:
     return Fraction(1, 2) * track.side * (over(dot(d, d), D) - D)
 
 
-def _apart(scene: Scene, track: Curved, R: AnyScalar) -> AnyScalar:
+def _apart(scene: LoadContext, track: Curved, R: AnyScalar) -> AnyScalar:
     """How far the centre of a ball is from that of its track where they touch [m]."""
     inside = track.side < 0
     D = track.r - R if inside else track.r + R
@@ -133,19 +133,19 @@ def _apart(scene: Scene, track: Curved, R: AnyScalar) -> AnyScalar:
     return D
 
 
-def _around(scene: Scene, track: Curved, n: Vector) -> tuple[Vector, ...]:
+def _around(scene: LoadContext, track: Curved, n: Vector) -> tuple[Vector, ...]:
     """Directions across n: of a pipe its axis k and n x k."""
     if scene.plane:
         return (right(n),)
     return turned_over(scene, n) if track.axis is None else (track.axis, cross(n, track.axis))
 
 
-def curved(scene: Scene, on: str | None, circle: Circle) -> Curved:
+def curved(scene: LoadContext, on: str | None, circle: Circle) -> Curved:
     """The circle of a model as it stands."""
     axis = None if circle.axis is None else _carried(scene, on, unit(scene.vector(circle.axis)))
     return Curved(anchor_of(scene, on, circle.at), scene.value(circle.radius), -1 if circle.inside else 1, axis)
 
 
-def anchor_of(scene: Scene, on: str | None, at: tuple[Expression, ...] | str) -> BodyPoint:
+def anchor_of(scene: LoadContext, on: str | None, at: tuple[Expression, ...] | str) -> BodyPoint:
     """A place of the track: of the ground, or in the axes of the body `on`."""
     return (None, scene.ground_place(at)) if on is None else (on, scene.vector(at))

@@ -7,7 +7,7 @@ from typing import ClassVar
 from eomgen.model.catalog import Catalog
 from eomgen.model.findings import Finding
 from eomgen.model.forces.element import Element
-from eomgen.model.forces.load import Load, Scene, SpreadLoad
+from eomgen.model.forces.load import Load, LoadContext, SpreadLoad
 from eomgen.model.part import Part
 from eomgen.model.positions import DocumentPath
 from eomgen.symbolic.expression.spatial import AnyScalar
@@ -37,14 +37,14 @@ class Force(Part):
         """What it is between two points or two bodies; None for what acts otherwise."""
         return None
 
-    def loads(self, scene: Scene) -> tuple[Load, ...]:
+    def loads(self, scene: LoadContext) -> tuple[Load, ...]:
         """Forces and couples on bodies, and forces along coordinates."""
         return ()
 
-    def spread(self, scene: Scene) -> tuple[SpreadLoad, ...]:
+    def spread(self, scene: LoadContext) -> tuple[SpreadLoad, ...]:
         """What is spread along lines, of which `loads` gives the resultants."""
         return ()
 
-    def potential(self, scene: Scene) -> AnyScalar | None:
+    def potential(self, scene: LoadContext) -> AnyScalar | None:
         """V [J], or None where the force has none."""
         return None

@@ -5,7 +5,7 @@ from typing import ClassVar
 
 from eomgen.model.forces.base import Force
 from eomgen.model.forces.element import Element
-from eomgen.model.forces.load import Load, Scene
+from eomgen.model.forces.load import Load, LoadContext
 from eomgen.model.forces.reach import reach
 from eomgen.model.kinds import Pull, TwoPoints
 from eomgen.symbolic.expression.spatial import AnyScalar
@@ -28,11 +28,11 @@ class Between(Force):
     def element(self) -> Element:
         return Element(points=self.points, pull=self.pull)
 
-    def loads(self, scene: Scene) -> tuple[Load, ...]:
+    def loads(self, scene: LoadContext) -> tuple[Load, ...]:
         """A pull f(r, r')."""
         line = reach(scene, self.points)
         return line.pulled(scene.value_at(self.pull, {"r": line.length, "r'": line.rate}))
 
-    def potential(self, scene: Scene) -> AnyScalar | None:
+    def potential(self, scene: LoadContext) -> AnyScalar | None:
         """V = integral of f dr where f holds r and parameters only; None where it has no closed form."""
         return scene.primitive(self.pull, "r", reach(scene, self.points).length)

@@ -25,7 +25,7 @@ class CoupleForce(Force):
     axes: AxesName = "ground"
     point: OwnPointName | None = None
 
-    def loads(self, scene: load.Scene) -> tuple[load.Load, ...]:
+    def loads(self, scene: load.LoadContext) -> tuple[load.Load, ...]:
         axes = None if self.axes == "ground" else self.axes
         couple = scene.vector(self.couple)
         if len(self.couple) == 1:

@@ -5,7 +5,7 @@ from typing import ClassVar
 
 from eomgen.model.forces.base import Force
 from eomgen.model.forces.element import Element
-from eomgen.model.forces.load import Load, Scene
+from eomgen.model.forces.load import Load, LoadContext
 from eomgen.model.forces.reach import reach
 from eomgen.model.kinds import Direction, LinearDamping, TwoPoints
 
@@ -29,7 +29,7 @@ class Damper(Force):
     def element(self) -> Element:
         return Element(points=self.points, along=self.along, damping=self.damping)
 
-    def loads(self, scene: Scene) -> tuple[Load, ...]:
+    def loads(self, scene: LoadContext) -> tuple[Load, ...]:
         """A pull c l'."""
         line = reach(scene, self.points, self.along)
         return line.pulled(scene.value(self.damping) * line.rate)

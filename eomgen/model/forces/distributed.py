@@ -5,7 +5,7 @@ from typing import ClassVar
 
 from eomgen.errors import ModelError
 from eomgen.model.forces.base import Force
-from eomgen.model.forces.load import Load, PointForce, Scene, SpreadLoad
+from eomgen.model.forces.load import Load, LoadContext, PointForce, SpreadLoad
 from eomgen.model.kinds import BodyName, LineLoad, TwoLineLoads, TwoOwnPoints
 from eomgen.symbolic.expression.functions import sqrt
 from eomgen.symbolic.expression.graph import is_zero
@@ -31,7 +31,7 @@ class Distributed(Force):
     intensity: LineLoad | None = None
     intensities: TwoLineLoads | None = None
 
-    def loads(self, scene: Scene) -> tuple[Load, ...]:
+    def loads(self, scene: LoadContext) -> tuple[Load, ...]:
         """Forces (2 q_A + q_B) L / 6 at A and (q_A + 2 q_B) L / 6 at B: the same resultant and moment as the load."""
         (line,) = self.spread(scene)
         length = _length(line)
@@ -40,7 +40,7 @@ class Distributed(Force):
             PointForce(line.end, _resultant(length, line.at_end, line.at_start)),
         )
 
-    def spread(self, scene: Scene) -> tuple[SpreadLoad, ...]:
+    def spread(self, scene: LoadContext) -> tuple[SpreadLoad, ...]:
         """q_A at A, q_B at B, linear between.
 
         Raises:

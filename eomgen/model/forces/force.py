@@ -23,6 +23,6 @@ class PointForce(Force):
     force: ForceVector
     axes: AxesName = "ground"
 
-    def loads(self, scene: load.Scene) -> tuple[load.Load, ...]:
+    def loads(self, scene: load.LoadContext) -> tuple[load.Load, ...]:
         axes = None if self.axes == "ground" else self.axes
         return (load.PointForce(scene.place(self.point), scene.vector(self.force), axes),)

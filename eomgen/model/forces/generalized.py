@@ -4,7 +4,7 @@ from dataclasses import dataclass
 from typing import ClassVar
 
 from eomgen.model.forces.base import Force
-from eomgen.model.forces.load import GeneralizedForce, Load, Scene
+from eomgen.model.forces.load import GeneralizedForce, Load, LoadContext
 from eomgen.model.kinds import CoordinateName, WorkingForce
 
 
@@ -21,5 +21,5 @@ class Generalized(Force):
     coordinate: CoordinateName
     value: WorkingForce
 
-    def loads(self, scene: Scene) -> tuple[Load, ...]:
+    def loads(self, scene: LoadContext) -> tuple[Load, ...]:
         return (GeneralizedForce(self.coordinate, scene.value(self.value)),)

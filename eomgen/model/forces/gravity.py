@@ -4,7 +4,7 @@ from dataclasses import dataclass
 from typing import ClassVar
 
 from eomgen.model.forces.base import Force
-from eomgen.model.forces.load import Load, PointForce, Scene, UniformField
+from eomgen.model.forces.load import Load, LoadContext, PointForce, UniformField
 from eomgen.model.kinds import Acceleration, Bodies, Flag
 from eomgen.symbolic.expression.spatial import AnyScalar, dot, times
 
@@ -25,14 +25,14 @@ class Gravity(Force):
     bodies: Bodies | None = None
     axis_down: Flag = False
 
-    def loads(self, scene: Scene) -> tuple[Load, ...]:
+    def loads(self, scene: LoadContext) -> tuple[Load, ...]:
         """A uniform field, or m g at the mass centre of each named body."""
         g = scene.vector(self.acceleration)
         if self.bodies is None:
             return (UniformField(g),)
         return tuple(PointForce(place, times(m, g)) for place, m in scene.masses(self.bodies))
 
-    def potential(self, scene: Scene) -> AnyScalar | None:
+    def potential(self, scene: LoadContext) -> AnyScalar | None:
         """V = - sum m g . r"""
         g = scene.vector(self.acceleration)
         V: AnyScalar = 0

@@ -63,7 +63,7 @@ Push = PointForce | Couple
 Load = PointForce | Couple | GeneralizedForce | UniformField
 
 
-class Scene(Protocol):
+class LoadContext(Protocol):
     """What a force law may ask of the system, over any scalar."""
 
     def value(self, expression: Any) -> AnyScalar: ...

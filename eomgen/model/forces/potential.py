@@ -4,7 +4,7 @@ from dataclasses import dataclass
 from typing import ClassVar
 
 from eomgen.model.forces.base import Force
-from eomgen.model.forces.load import Scene
+from eomgen.model.forces.load import LoadContext
 from eomgen.model.kinds import Energy
 from eomgen.symbolic.expression.spatial import AnyScalar
 
@@ -21,5 +21,5 @@ class Potential(Force):
     placeless: ClassVar[bool] = True
     energy: Energy
 
-    def potential(self, scene: Scene) -> AnyScalar | None:
+    def potential(self, scene: LoadContext) -> AnyScalar | None:
         return scene.value(self.energy)

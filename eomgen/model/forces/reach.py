@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 from eomgen.errors import DerivationError
-from eomgen.model.forces.load import BodyPoint, Load, PointForce, Scene
+from eomgen.model.forces.load import BodyPoint, Load, LoadContext, PointForce
 from eomgen.symbolic.expression.expressions import Expression
 from eomgen.symbolic.expression.functions import over, sqrt
 from eomgen.symbolic.expression.graph import is_zero
@@ -34,7 +34,7 @@ class Reach:
         return (PointForce(self.ends[0], pull), PointForce(self.ends[1], times(-1, pull)))
 
 
-def reach(scene: Scene, points: tuple[str, ...], along: tuple[Expression, ...] | None = None) -> Reach:
+def reach(scene: LoadContext, points: tuple[str, ...], along: tuple[Expression, ...] | None = None) -> Reach:
     """The line between two points: l = |p2 - p1|, or n . (p2 - p1) along a fixed direction n."""
     ends = (scene.place(points[0]), scene.place(points[1]))
     gap = minus(scene.position(ends[1]), scene.position(ends[0]))

@@ -5,7 +5,7 @@ from typing import ClassVar
 
 from eomgen.model.forces.base import Force
 from eomgen.model.forces.element import Element
-from eomgen.model.forces.load import Load, Scene
+from eomgen.model.forces.load import Load, LoadContext
 from eomgen.model.forces.reach import reach
 from eomgen.model.kinds import Direction, LinearStiffness, NaturalLength, TwoPoints
 from eomgen.symbolic.expression.rational import Fraction
@@ -34,15 +34,15 @@ class Spring(Force):
     def element(self) -> Element:
         return Element(points=self.points, along=self.along, stiffness=self.stiffness, slack=self.length)
 
-    def loads(self, scene: Scene) -> tuple[Load, ...]:
+    def loads(self, scene: LoadContext) -> tuple[Load, ...]:
         """A pull k (l - l0)."""
         line = reach(scene, self.points, self.along)
         return line.pulled(scene.value(self.stiffness) * self._stretch(scene, line.length))
 
-    def potential(self, scene: Scene) -> AnyScalar | None:
+    def potential(self, scene: LoadContext) -> AnyScalar | None:
         """V = k (l - l0)^2 / 2"""
         stretch = self._stretch(scene, reach(scene, self.points, self.along).length)
         return Fraction(1, 2) * scene.value(self.stiffness) * stretch * stretch
 
-    def _stretch(self, scene: Scene, length: AnyScalar) -> AnyScalar:
+    def _stretch(self, scene: LoadContext, length: AnyScalar) -> AnyScalar:
         return length - (scene.start(length) if self.length == "start" else scene.value(self.length))

@@ -5,7 +5,7 @@ from typing import ClassVar
 
 from eomgen.model.forces.base import Force
 from eomgen.model.forces.element import Element
-from eomgen.model.forces.load import Load, Scene
+from eomgen.model.forces.load import Load, LoadContext
 from eomgen.model.forces.twist import relative, turned
 from eomgen.model.kinds import AngularDamping, BodyName, TwoBodies
 
@@ -30,7 +30,7 @@ class TorsionDamper(Force):
     def element(self) -> Element:
         return Element(bodies=self.bodies or (None, self.body), damping=self.damping)
 
-    def loads(self, scene: Scene) -> tuple[Load, ...]:
+    def loads(self, scene: LoadContext) -> tuple[Load, ...]:
         """A couple - c theta' on the second body, the opposite on the first."""
         rate = relative(self.bodies, self.body, scene.angle_rate)
         return turned(self.bodies, self.body, -scene.value(self.damping) * rate)

@@ -5,7 +5,7 @@ from typing import ClassVar
 
 from eomgen.model.forces.base import Force
 from eomgen.model.forces.element import Element
-from eomgen.model.forces.load import Load, Scene
+from eomgen.model.forces.load import Load, LoadContext
 from eomgen.model.forces.twist import relative, turned
 from eomgen.model.kinds import AngularStiffness, BodyName, RestAngle, TwoBodies
 from eomgen.symbolic.expression.rational import Fraction
@@ -35,14 +35,14 @@ class TorsionSpring(Force):
     def element(self) -> Element:
         return Element(bodies=self.bodies or (None, self.body), stiffness=self.stiffness, slack=self.rest)
 
-    def loads(self, scene: Scene) -> tuple[Load, ...]:
+    def loads(self, scene: LoadContext) -> tuple[Load, ...]:
         """A couple - k (theta - rest) on the second body, the opposite on the first."""
         return turned(self.bodies, self.body, -scene.value(self.stiffness) * self._twist(scene))
 
-    def potential(self, scene: Scene) -> AnyScalar | None:
+    def potential(self, scene: LoadContext) -> AnyScalar | None:
         """V = k (theta - rest)^2 / 2"""
         twist = self._twist(scene)
         return Fraction(1, 2) * scene.value(self.stiffness) * twist * twist
 
-    def _twist(self, scene: Scene) -> AnyScalar:
+    def _twist(self, scene: LoadContext) -> AnyScalar:
         return relative(self.bodies, self.body, scene.angle) - scene.value(self.rest)

@@ -9,7 +9,7 @@ from __future__ import annotations
 from typing import Any
 
 from eomgen.model.outputs.base import OutputFunction, name_at
-from eomgen.model.outputs.scene import Trial
+from eomgen.model.outputs.context import Trial
 from eomgen.symbolic.expression.spatial import dot
 from eomgen.symbolic.numeric.evaluation import NoValue
 

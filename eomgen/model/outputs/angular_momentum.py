@@ -6,13 +6,13 @@ from typing import Any
 
 from eomgen.model.outputs.base import MASSES, OutputFunction, along, component, name_at
 from eomgen.model.outputs.bodies_meant import bodies_from, refuse_unknown
-from eomgen.model.outputs.scene import Scene, Trial
+from eomgen.model.outputs.context import OutputContext, Trial
 from eomgen.symbolic.expression.expressions import Call
 from eomgen.symbolic.expression.graph import is_zero
 from eomgen.symbolic.expression.spatial import AnyScalar, cross, minus, vector_of
 
 
-def _momentum(scene: Scene, call: Call) -> AnyScalar:
+def _momentum(scene: OutputContext, call: Call) -> AnyScalar:
     bodies, axis = bodies_from(scene, call, 1), component(call)
     turning = [b for b in bodies if any(not is_zero(w) for w in scene.spin(b))]
     refuse_unknown(scene, call, turning, about_z=axis == 2)

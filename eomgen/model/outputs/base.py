@@ -10,7 +10,7 @@ from eomgen.errors import DerivationError
 from eomgen.model.catalog import Catalog
 from eomgen.model.fields import Leaf
 from eomgen.model.findings import Finding
-from eomgen.model.outputs.scene import Scene, Trial
+from eomgen.model.outputs.context import OutputContext, Trial
 from eomgen.symbolic.expression.expressions import Call, Expression, Reference
 from eomgen.symbolic.expression.spatial import AnyScalar
 from eomgen.symbolic.expression.units import Unit, parse_unit
@@ -23,7 +23,7 @@ BALANCE = "balance of the bodies"
 MASSES = "distribution of mass"
 SMALL_MOTIONS = "small motions"
 
-ValueOf = Callable[[Scene, Call], AnyScalar]
+ValueOf = Callable[[OutputContext, Call], AnyScalar]
 SecondOf = Callable[[Trial, Call], Any]
 
 

@@ -6,11 +6,11 @@ from collections.abc import Sequence
 
 from eomgen.errors import DerivationError
 from eomgen.model.outputs.base import name_at
-from eomgen.model.outputs.scene import Scene
+from eomgen.model.outputs.context import OutputContext
 from eomgen.symbolic.expression.expressions import Call
 
 
-def bodies_from(scene: Scene, call: Call, first: int) -> tuple[str, ...]:
+def bodies_from(scene: OutputContext, call: Call, first: int) -> tuple[str, ...]:
     """The bodies from the argument `first` on; without any, all of them."""
     named = tuple(name_at(call, k) for k in range(first, len(call.args)))
     if len(set(named)) < len(named):
@@ -20,7 +20,7 @@ def bodies_from(scene: Scene, call: Call, first: int) -> tuple[str, ...]:
     return named or scene.bodies
 
 
-def refuse_unknown(scene: Scene, call: Call, bodies: Sequence[str], *, about_z: bool) -> None:
+def refuse_unknown(scene: OutputContext, call: Call, bodies: Sequence[str], *, about_z: bool) -> None:
     """What is asked must be known of the bodies.
 
     Args:

@@ -10,24 +10,24 @@ from typing import Any
 
 from eomgen.errors import DerivationError
 from eomgen.model.outputs.base import OutputFunction, SecondOf, component, names_of
-from eomgen.model.outputs.scene import GROUND, Scene, Trial
+from eomgen.model.outputs.context import GROUND, OutputContext, Trial
 from eomgen.model.outputs.seen import axes_at
 from eomgen.symbolic.expression.spatial import ZERO, Numbers, Vector, apply, minus, plus, times, transposed, vector_of
 
 CORNERS: tuple[Vector, ...] = (ZERO, (1, 0, 0), (0, 1, 0))  # of a triangle in the body [m]
 
 
-def _in_plane(scene: Scene, what: str, body: str) -> None:
+def _in_plane(scene: OutputContext, what: str, body: str) -> None:
     if not scene.is_plane:
         raise DerivationError(f"{what}({body}): it is asked of plane motion")
 
 
-def _center(scene: Scene, body: str, other: str = GROUND) -> Vector:
+def _center(scene: OutputContext, body: str, other: str = GROUND) -> Vector:
     _in_plane(scene, "rotation_center", body)
     return scene.rotation_center(body, other)
 
 
-def _pole(scene: Scene, body: str) -> Vector:
+def _pole(scene: OutputContext, body: str) -> Vector:
     _in_plane(scene, "acceleration_pole", body)
     return scene.acceleration_pole(body)
 

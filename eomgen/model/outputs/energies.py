@@ -8,7 +8,7 @@ from __future__ import annotations
 from typing import Any
 
 from eomgen.model.outputs.base import OutputFunction, names_of
-from eomgen.model.outputs.scene import Trial
+from eomgen.model.outputs.context import Trial
 from eomgen.symbolic.expression.derivative import depends_on
 from eomgen.symbolic.expression.expressions import Call
 from eomgen.symbolic.expression.graph import Node

@@ -10,12 +10,12 @@ from typing import Any
 
 from eomgen.errors import DerivationError
 from eomgen.model.outputs.base import OutputFunction, names_of
-from eomgen.model.outputs.scene import Scene, Trial
+from eomgen.model.outputs.context import OutputContext, Trial
 from eomgen.model.outputs.seen import differences, length
 from eomgen.symbolic.expression.spatial import AnyScalar, dot, minus, plus, times
 
 
-def _least_speed(scene: Scene, start: str, end: str) -> AnyScalar:
+def _least_speed(scene: OutputContext, start: str, end: str) -> AnyScalar:
     body, other = scene.body_of(start), scene.body_of(end)
     if body != other:
         what = f"least_speed({start}, {end}): '{start}' and '{end}' are points of two bodies"

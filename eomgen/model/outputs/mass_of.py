@@ -4,12 +4,12 @@ from __future__ import annotations
 
 from eomgen.errors import DerivationError
 from eomgen.model.outputs.base import MASSES, OutputFunction, name_at, number_at
-from eomgen.model.outputs.scene import Scene
+from eomgen.model.outputs.context import OutputContext
 from eomgen.symbolic.expression.expressions import Call
 from eomgen.symbolic.expression.spatial import AnyScalar
 
 
-def _mass(scene: Scene, call: Call) -> AnyScalar:
+def _mass(scene: OutputContext, call: Call) -> AnyScalar:
     body = name_at(call, 0)
     if body == "ground":
         raise DerivationError(f"'{call}': the ground has no mass")

@@ -16,7 +16,7 @@ from typing import Any
 from eomgen.errors import DerivationError
 from eomgen.model.outputs.base import AXES, MASSES, OutputFunction, SecondOf, ValueOf, name_at, number_at
 from eomgen.model.outputs.bodies_meant import bodies_from, refuse_unknown
-from eomgen.model.outputs.scene import Scene, Trial
+from eomgen.model.outputs.context import OutputContext, Trial
 from eomgen.symbolic.expression.expressions import Call
 from eomgen.symbolic.expression.functions import over
 from eomgen.symbolic.expression.graph import is_zero
@@ -54,7 +54,7 @@ def second_moments(I: Matrix) -> Matrix:
     return matrix_of(((half if i == j else 0) - I[i][j] for j in range(3)) for i in range(3))
 
 
-def _tensor(scene: Scene, call: Call, first: int, *, about_z: bool = False) -> Matrix:
+def _tensor(scene: OutputContext, call: Call, first: int, *, about_z: bool = False) -> Matrix:
     """I_P of the bodies from the argument `first` on, at the state."""
     bodies = bodies_from(scene, call, first)
     refuse_unknown(scene, call, bodies, about_z=about_z)
@@ -65,7 +65,7 @@ def _axis_at(call: Call, k: int) -> int:
     return AXES[name_at(call, k)]
 
 
-def _direction(scene: Scene, call: Call) -> Vector:
+def _direction(scene: OutputContext, call: Call) -> Vector:
     """Along x, y or z, or from the point to another one."""
     name = name_at(call, 1)
     if name in AXES:
@@ -76,28 +76,28 @@ def _direction(scene: Scene, call: Call) -> Vector:
     return (x, y, z)
 
 
-def _about_axis(scene: Scene, call: Call) -> AnyScalar:
+def _about_axis(scene: OutputContext, call: Call) -> AnyScalar:
     along = _direction(scene, call)
     return about_axis(_tensor(scene, call, 2, about_z=is_zero(along[0]) and is_zero(along[1])), along)
 
 
-def _about_point(scene: Scene, call: Call) -> AnyScalar:
+def _about_point(scene: OutputContext, call: Call) -> AnyScalar:
     """A body of the plane that is given by its moment about z counts as thin: its I_xx + I_yy is I_zz."""
     thin = scene.known_about_z(bodies_from(scene, call, 1))
     missing = HALF * sum(scene.mass(body).I[2][2] for body in thin)
     return polar(_tensor(scene, call, 1, about_z=True)) + missing
 
 
-def _second_moment(scene: Scene, call: Call, i: int, j: int, first: int) -> AnyScalar:
+def _second_moment(scene: OutputContext, call: Call, i: int, j: int, first: int) -> AnyScalar:
     return second_moments(_tensor(scene, call, first))[i][j]
 
 
-def _entry(scene: Scene, call: Call) -> AnyScalar:
+def _entry(scene: OutputContext, call: Call) -> AnyScalar:
     i, j = _axis_at(call, 1), _axis_at(call, 2)
     return _tensor(scene, call, 3, about_z=i == j == 2)[i][j]
 
 
-def _principal(scene: Scene, call: Call) -> AnyScalar:
+def _principal(scene: OutputContext, call: Call) -> AnyScalar:
     return scene.principal_moments(_tensor(scene, call, 2))[number_at(call, 1, 3) - 1]
 
 

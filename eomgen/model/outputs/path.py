@@ -14,7 +14,7 @@ from typing import Any
 from eomgen.errors import DerivationError
 from eomgen.model.outputs.acceleration import acceleration
 from eomgen.model.outputs.base import OutputFunction, ValueOf, names_of
-from eomgen.model.outputs.scene import Trial
+from eomgen.model.outputs.context import Trial
 from eomgen.model.outputs.seen import differences, length, seen_from
 from eomgen.model.outputs.velocity import velocity
 from eomgen.symbolic.expression.expressions import Call

@@ -4,12 +4,12 @@ Poses are what all else is built on: by the second way a place is seen from anot
 """
 
 from eomgen.model.outputs.base import OutputFunction, along, component, names_of
-from eomgen.model.outputs.scene import GROUND, Scene, Trial
+from eomgen.model.outputs.context import GROUND, OutputContext, Trial
 from eomgen.model.outputs.seen import axes_at, seen_around, seen_from, turned
 from eomgen.symbolic.expression.spatial import Numbers, Vector, apply, transposed
 
 
-def _place(scene: Scene, point: str, frame: str = GROUND, axes: str = "") -> Vector:
+def _place(scene: OutputContext, point: str, frame: str = GROUND, axes: str = "") -> Vector:
     return turned(scene, seen_from(scene, point, frame), frame, axes)
 
 

@@ -8,7 +8,7 @@ from __future__ import annotations
 
 from eomgen.errors import DerivationError
 from eomgen.model.outputs.base import AXES, BALANCE, OutputFunction, along, component, names_of
-from eomgen.model.outputs.scene import Scene
+from eomgen.model.outputs.context import OutputContext
 from eomgen.symbolic.expression.expressions import Call
 from eomgen.symbolic.expression.spatial import AnyScalar
 
@@ -20,15 +20,15 @@ def _placed(call: Call) -> tuple[str, str, str]:
     return name, side, frame
 
 
-def _force(scene: Scene, call: Call) -> AnyScalar:
+def _force(scene: OutputContext, call: Call) -> AnyScalar:
     return scene.reactions.component("force", component(call), *_placed(call))
 
 
-def _couple(scene: Scene, call: Call) -> AnyScalar:
+def _couple(scene: OutputContext, call: Call) -> AnyScalar:
     return scene.reactions.component("couple", component(call), *_placed(call))
 
 
-def _one_couple(scene: Scene, call: Call) -> AnyScalar:
+def _one_couple(scene: OutputContext, call: Call) -> AnyScalar:
     """In space along the axle of the gear's first body; other couples have no one direction there."""
     if scene.is_plane:
         return scene.reactions.component("couple", AXES["z"], *_placed(call))
@@ -39,7 +39,7 @@ def _one_couple(scene: Scene, call: Call) -> AnyScalar:
     return scene.reactions.multiplier(owner)
 
 
-def _contact(scene: Scene, call: Call) -> AnyScalar:
+def _contact(scene: OutputContext, call: Call) -> AnyScalar:
     owner, side, _ = _placed(call)
     if side:
         mend = f"ask {call.name}({owner}), at an instant where it is meant"

@@ -11,7 +11,7 @@ from __future__ import annotations
 from collections.abc import Callable
 
 from eomgen.model.outputs.base import OutputFunction
-from eomgen.model.outputs.scene import GROUND, PartsOfMotion, Scene, Trial
+from eomgen.model.outputs.context import GROUND, OutputContext, PartsOfMotion, Trial
 from eomgen.model.outputs.seen import (
     SeenVector,
     VectorOf,
@@ -76,7 +76,7 @@ def _coriolis(trial: Trial, point: str, body: str) -> Numbers:
 def _of(part: PartOf) -> VectorOf:
     """The part, ground axes or those of a body."""
 
-    def law(scene: Scene, point: str, body: str, axes: str = "") -> Vector:
+    def law(scene: OutputContext, point: str, body: str, axes: str = "") -> Vector:
         return turned(scene, part(scene.parts_of_motion(point, body)), GROUND, axes)
 
     return law

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from eomgen.errors import DerivationError
 from eomgen.model.outputs.base import BALANCE, SIDES, OutputFunction, ValueOf, name_at
-from eomgen.model.outputs.scene import Scene
+from eomgen.model.outputs.context import OutputContext
 from eomgen.symbolic.expression.expressions import Call, Expression, Reference, parse
 from eomgen.symbolic.expression.spatial import AnyScalar
 
@@ -15,7 +15,7 @@ def distance_of(call: Call) -> Expression:
     return parse(x.name) if isinstance(x, Reference) else x
 
 
-def _section(scene: Scene, call: Call) -> AnyScalar:
+def _section(scene: OutputContext, call: Call) -> AnyScalar:
     """bending_moment(beam, a), shear_force(beam, a, before)."""
     sides = [name_at(call, k) for k in range(2, len(call.args))]
     if any(name not in SIDES for name in sides):

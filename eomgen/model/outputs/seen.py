@@ -10,7 +10,7 @@ from collections.abc import Callable
 from typing import Any
 
 from eomgen.model.outputs.base import OutputFunction, along, component, names_of
-from eomgen.model.outputs.scene import GROUND, Scene, Trial
+from eomgen.model.outputs.context import GROUND, OutputContext, Trial
 from eomgen.symbolic.expression.functions import sqrt
 from eomgen.symbolic.expression.spatial import (
     AnyScalar,
@@ -29,7 +29,7 @@ from eomgen.symbolic.expression.spatial import (
 from eomgen.symbolic.numeric.evaluation import NoValue
 
 
-def seen_from(scene: Scene, point: str, frame: str = GROUND) -> Vector:
+def seen_from(scene: OutputContext, point: str, frame: str = GROUND) -> Vector:
     """The place of a point in a body's frame and axes."""
     place = scene.position(point)
     if frame not in scene.bodies:
@@ -37,14 +37,14 @@ def seen_from(scene: Scene, point: str, frame: str = GROUND) -> Vector:
     return apply(transposed(scene.axes(frame)), minus(place, scene.origin(frame)))
 
 
-def turned(scene: Scene, seen: Vector, frame: str, axes: str) -> Vector:
+def turned(scene: OutputContext, seen: Vector, frame: str, axes: str) -> Vector:
     """From the axes of one body into those of another; "": they stay."""
     if axes in ("", frame):
         return seen
     return apply(transposed(scene.axes(axes)), apply(scene.axes(frame), seen))
 
 
-def size(scene: Scene, v: Vector) -> AnyScalar:
+def size(scene: OutputContext, v: Vector) -> AnyScalar:
     """|v| at the state."""
     (v,) = scene.here(v)
     return sqrt(dot(v, v))

@@ -4,12 +4,12 @@ from __future__ import annotations
 
 from eomgen.errors import DerivationError
 from eomgen.model.outputs.base import SMALL_MOTIONS, OutputFunction
-from eomgen.model.outputs.scene import Scene
+from eomgen.model.outputs.context import OutputContext
 from eomgen.symbolic.expression.expressions import Call
 from eomgen.symbolic.expression.spatial import AnyScalar
 
 
-def _of_no_state(scene: Scene, call: Call) -> AnyScalar:
+def _of_no_state(scene: OutputContext, call: Call) -> AnyScalar:
     raise DerivationError(f"'{call}' is of the linearized system, not of a state", mend="ask it by itself")
 
 

@@ -10,12 +10,12 @@ from eomgen.model.constraints.members import ends_asked
 from eomgen.model.fields import Leaf
 from eomgen.model.findings import Finding, nearest
 from eomgen.model.outputs.base import BALANCE, OutputFunction, name_at
-from eomgen.model.outputs.scene import Scene
+from eomgen.model.outputs.context import OutputContext
 from eomgen.symbolic.expression.expressions import Call, Expression, Reference
 from eomgen.symbolic.expression.spatial import AnyScalar
 
 
-def _tension(scene: Scene, call: Call) -> AnyScalar:
+def _tension(scene: OutputContext, call: Call) -> AnyScalar:
     """tension(rope), tension(rope, 2), or tension(T, n1-n2) of a truss."""
     name, strand = name_at(call, 0), call.args[1:]
     if scene.is_truss(name):

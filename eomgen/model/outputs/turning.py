@@ -11,7 +11,7 @@ from typing import Any
 
 from eomgen.errors import DerivationError
 from eomgen.model.outputs.base import OutputFunction, names_of
-from eomgen.model.outputs.scene import GROUND, Scene, Trial
+from eomgen.model.outputs.context import GROUND, OutputContext, Trial
 from eomgen.model.outputs.seen import axes_at, components, length
 from eomgen.symbolic.expression.expressions import Call
 from eomgen.symbolic.expression.functions import sqrt
@@ -32,7 +32,7 @@ from eomgen.symbolic.expression.spatial import (
 BODY = ("body", "body")
 
 
-def _angle(scene: Scene, body: str, frame: str = GROUND) -> AnyScalar:
+def _angle(scene: OutputContext, body: str, frame: str = GROUND) -> AnyScalar:
     """phi_body - phi_frame, in the plane [rad]."""
     for name in (body, frame):
         if not scene.is_plane:
@@ -51,7 +51,7 @@ def _angle_of_axes(trial: Trial, body: str, frame: str = GROUND) -> Any:
     return angle + turn * round((counted - angle) / turn)
 
 
-def _spin(scene: Scene, body: str, frame: str = GROUND, *, order: int) -> Vector:
+def _spin(scene: OutputContext, body: str, frame: str = GROUND, *, order: int) -> Vector:
     """omega (order 1) or epsilon (2), ground axes or those of `frame`."""
     w = scene.spin(body)
     if frame in scene.bodies:
@@ -71,7 +71,7 @@ def _turned(trial: Trial, body: str, frame: str = GROUND, *, order: int) -> Numb
 def _one(name: str, unit: str, gives: str, order: int) -> OutputFunction:
     """In the plane counter-clockwise positive; in space the magnitude."""
 
-    def value(scene: Scene, call: Call) -> AnyScalar:
+    def value(scene: OutputContext, call: Call) -> AnyScalar:
         w = _spin(scene, *names_of(call), order=order)
         return w[2] if scene.is_plane else sqrt(dot(w, w))
 

@@ -2,14 +2,14 @@
 
 from functools import partial
 
-from eomgen.model.outputs.scene import GROUND, Scene
+from eomgen.model.outputs.context import GROUND, OutputContext
 from eomgen.model.outputs.seen import components, differences, magnitude, seen_from, turned
 from eomgen.symbolic.expression.spatial import Vector
 
 SEEN = "velocity; seen from the first body, in the axes of the second"
 
 
-def velocity(scene: Scene, point: str, frame: str = GROUND, axes: str = "") -> Vector:
+def velocity(scene: OutputContext, point: str, frame: str = GROUND, axes: str = "") -> Vector:
     """v = dr/dt [m/s]"""
     return turned(scene, scene.rate(seen_from(scene, point, frame)), frame, axes)
 

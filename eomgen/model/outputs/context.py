@@ -44,7 +44,7 @@ class PartsOfMotion(Protocol):
     def centripetal(self) -> Vector: ...
 
 
-class Scene(Protocol):
+class OutputContext(Protocol):
     """A system: its scalars are functions of q, u, a, t, lam and the parameters; vectors are in ground axes.
 
     Velocities come from places by `rate`, accelerations from velocities by `acceleration`; `placed` puts in the state,
@@ -103,7 +103,7 @@ class Trial(Protocol):
     """
 
     @property
-    def scene(self) -> Scene: ...
+    def scene(self) -> OutputContext: ...
     @property
     def step(self) -> Any:
         """How long a moment is [s]."""
