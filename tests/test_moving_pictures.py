@@ -17,6 +17,7 @@ from eomgen.cli import main
 from eomgen.documents import moving_picture
 from eomgen.documents.linearize.result import linearize
 from eomgen.documents.motion_frames import FINE, SWING, frame_times, mode_movies, movie_of
+from eomgen.scene.phase_frames import phase_frames
 
 pytestmark = pytest.mark.slow
 MODELS = Path(__file__).parent.parent / "models"
@@ -67,6 +68,19 @@ def test_the_arrow_of_a_reaction_is_the_column_of_the_run(run):
     shaft, head = (s for s in drawing.strokes if s.role == "reaction" and s.of == "arm1")
     arrow = head.path[:, 0] - shaft.path[:, 0]
     assert np.allclose(arrow, scale * force) and np.allclose(head.path[:, 0], 0.0)
+
+
+@pytest.mark.parametrize(("name", "body"), (("sliding_ladder", "ladder"), ("loop_the_loop", "bead")))
+def test_each_phase_of_a_moving_picture_is_drawn_by_its_own_system(name, body):
+    """Where a contact opens bodies make no leap, though coordinates mean something else there; nor do trails."""
+    run = eomgen.simulate(MODELS / f"{name}.toml", time=2, samples=401)
+    assert len(run.phases) > 1
+    point = next(p for p, _ in phase_frames(run, run.t).scene.points if p.startswith(f"{body}."))
+    movie = movie_of(run, frame_times(float(run.t[-1]), 100, 1), trail=(point,))
+    paths = [s.path for s in movie.drawing.strokes if s.role == "body" and s.of == body]
+    for path in (*paths, movie.trails[point][:, None, :]):
+        steps = np.linalg.norm(np.diff(path, axis=0), axis=2)
+        assert np.isfinite(steps).all() and steps.max() < 0.1 * movie.drawing.sizes.extent
 
 
 def test_a_gif_has_a_picture_for_each_frame_and_one_palette(run):

@@ -189,7 +189,8 @@ def test_play_writes_its_page_and_proves_its_programs(tmp_path):
 def test_each_phase_is_drawn_by_its_own_coordinates(name):
     """A body's place goes on from phase to phase: between neighbouring pictures it makes no leap."""
     run = eomgen.simulate(MODELS / f"{name}.toml", time=3 if name == "loop_the_loop" else 2, samples=801)
-    told, frames = phase_frames(run)
+    numbers = phase_frames(run, run.t)
+    told, frames = numbers.scene.to_json(), numbers.frames
     assert len(run.phases) > 1
     pose = next(frame["pose"] for frame in told["frames"] if frame["name"])
     places = np.column_stack([frames[:, v[0]] if isinstance(v, list) else np.full(len(frames), v) for v in pose[:2]])

@@ -2,27 +2,25 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass, replace
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 
-from eomgen.codegen.program import program_of
-from eomgen.codegen.rhs import compiled
 from eomgen.errors import UsageError
 from eomgen.mechanics.equations.system import System
 from eomgen.mechanics.small_motions.modes import Modes
 from eomgen.mechanics.small_motions.spectrum import Mode
 from eomgen.model.findings import nearest
-from eomgen.scene.applied import reaction_marks
 from eomgen.scene.instant import DrawnState, frames_along
-from eomgen.scene.making import scene_of_system
+from eomgen.scene.making import named_points, scene_of_system
+from eomgen.scene.phase_frames import phase_frames
 from eomgen.scene.plane_strokes import plane_drawing
-from eomgen.scene.scene import Scene
+from eomgen.scene.scene import Scene, SceneFrame
 from eomgen.scene.space_strokes import space_drawing
 from eomgen.scene.strokes import Drawing, SceneNumbers
 from eomgen.simulation.result import Trajectory
-from eomgen.symbolic.expression.graph import Node, Scalar
 from eomgen.symbolic.numeric.tolerances import COMPUTED, WIDE_STEP
 
 MOST_FRAMES = 5000
@@ -65,7 +63,7 @@ def frame_times(end: float, fps: float, speed: float) -> np.ndarray:
 
 
 def movie_of(run: Trajectory, times: np.ndarray, *, trail: Sequence[str] = (), forces: bool = False) -> Movie:
-    """A run at some instants; states between its rows are interpolated.
+    """A run at some instants; states between its rows are interpolated, each phase is drawn by its own system.
 
     Args:
         trail: points that leave a trail.
@@ -73,55 +71,28 @@ def movie_of(run: Trajectory, times: np.ndarray, *, trail: Sequence[str] = (), f
     Raises:
         UsageError: a point that is not there; a run whose equations nobody knows.
     """
-    phase = run.phases[0].model if run.phases else None
-    if phase is None:
+    if not run.phases or run.phases[0].model is None:
         raise UsageError("nothing is known of the bodies of this run", mend="take eomgen.simulate(model)")
-    system: System = phase.declared
-    names = [node.name for node in (*system.symbols.q, *system.symbols.u)]
-    columns = dict(zip(run.coordinates + run.speeds, run.x.T, strict=True))
-
-    def states(at: np.ndarray) -> np.ndarray:
-        found = [np.interp(at, run.t, columns[name]) for name in names]
-        return np.column_stack(found) if found else np.zeros((len(at), 0))
-
-    scene = scene_of_system(system)
-    given: dict[Node, np.ndarray] = {}
-    if forces:
-        symbols = {name: system.symbols.graph.symbol(f"({name})") for name in run.reactions}
-        given = {symbols[name]: np.interp(times, run.t, column) for name, column in run.reactions.items()}
-        scene = replace(scene, marks=(*scene.marks, *reaction_marks(system, symbols)))
-    else:
-        scene = replace(scene, marks=tuple(mark for mark in scene.marks if mark.role != "force"))
-    numbers = SceneNumbers(scene, _frames(scene, times, states(times), phase.p, given))
+    numbers = phase_frames(run, times, forces=forces)
     fine = np.interp(np.arange(FINE * (len(times) - 1) + 1) / FINE, np.arange(len(times)), times)
-    return _movie(numbers, times, _trails(scene, trail, lambda way: frames_along(way, fine, states(fine), phase.p)))
+    return _movie(numbers, times, _trails(run, fine, trail, dict(numbers.scene.points)))
 
 
-def _frames(scene: Scene, t: np.ndarray, x: np.ndarray, p: np.ndarray, given: Mapping[Node, np.ndarray]) -> np.ndarray:
-    """The frames of a scene in which some symbols have columns of their own."""
-    if not given:
-        return frames_along(scene, t, x, p)
-    known = tuple(value for value in scene.values if value not in given)
-    program = program_of(known, scene.system.symbols, inputs=scene.system.inputs)
-    with np.errstate(all="ignore"):
-        found = dict(zip(known, compiled(program, "numpy").many(t, x, p).T, strict=True))
-    columns: dict[Scalar, np.ndarray] = dict(found)
-    for node, column in given.items():
-        columns[node] = column
-    return np.column_stack([columns[value] for value in scene.values])
-
-
-def _trails(scene: Scene, names: Sequence[str], frames: Callable[[Scene], np.ndarray]) -> dict[str, np.ndarray]:
+def _trails(
+    run: Trajectory, times: np.ndarray, names: Sequence[str], points: Mapping[str, Any]
+) -> dict[str, np.ndarray]:
     """The places of named points."""
-    points = dict(scene.points)
     for name in names:
         if name not in points:
             raise UsageError(f"there is no point '{name}'", mend=nearest(name, points))
     if not names:
         return {}
-    way = Scene(scene.system, scene.frames[:1], tuple((name, points[name]) for name in names), ())
-    numbers = SceneNumbers(way, frames(way))
-    return {name: numbers.vector(points[name]) for name in names}
+
+    def way(system: System) -> Scene:
+        return Scene(system, (SceneFrame(""),), tuple(x for x in named_points(system) if x[0] in names), ())
+
+    numbers = phase_frames(run, times, forces=False, scene_of=way)
+    return {name: numbers.vector(at) for name, at in numbers.scene.points}
 
 
 def _movie(numbers: SceneNumbers, times: np.ndarray, trails: Mapping[str, np.ndarray], title: str = "") -> Movie:

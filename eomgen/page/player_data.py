@@ -91,7 +91,10 @@ class PlayedRun:
     @cached_property
     def drawn(self) -> tuple[dict[str, Any], np.ndarray | None]:
         """(the scene as data, its numbers at the instants of the run where no program in the page gives them)."""
-        return phase_frames(self.run) if self.changes else (self.scene.to_json(), None)
+        if not self.changes:
+            return self.scene.to_json(), None
+        numbers = phase_frames(self.run, self.run.t)
+        return numbers.scene.to_json(), numbers.frames
 
     @cached_property
     def scene(self) -> Scene:

@@ -1,89 +1,204 @@
 """Trajectory -> one picture over all its phases: each phase is drawn by its own system, whose coordinates mean its own.
 
-Bodies, points and marks of the first phase are found again by their names in the others. A number that differs from
-phase to phase, or moves in one of them, gets a slot of its own; what another phase has not is nan there, and hidden.
+Scenes of the same bodies become one: bodies, points and marks are found again by their names. A number that differs
+from piece to piece, or moves in one of them, gets a slot of its own; what a piece has not is nan there, and hidden.
 """
 
 from __future__ import annotations
 
 from collections import Counter
-from collections.abc import Iterator, Mapping
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from dataclasses import fields, replace
 from typing import Any
 
 import numpy as np
 
+from eomgen.codegen.program import program_of
+from eomgen.codegen.rhs import compiled
+from eomgen.mechanics.equations.system import System
+from eomgen.model.shapes.forms import Form
+from eomgen.scene.applied import reaction_marks
 from eomgen.scene.instant import frames_along
 from eomgen.scene.making import scene_of_system
+from eomgen.scene.scene import ROLES, Mark, Scene, SceneFrame, is_moving, plain_number, scalars_of
+from eomgen.scene.strokes import SceneNumbers
 from eomgen.simulation.result import Phase, Trajectory
+from eomgen.symbolic.expression.graph import Node, Scalar
+from eomgen.symbolic.expression.spatial import Pose, vector_of
 
-Way = tuple[Any, ...]
-WORD_FIELDS = ("name", "kind", "frame", "parent", "role", "of", "text", "symbol", "unit", "close", "faces", "side")
+Piece = tuple[SceneNumbers, np.ndarray]
+"""A scene over its own instants, and their places among those of the whole."""
+SceneMaker = Callable[[System], Scene]
+Known = tuple[SceneNumbers, Sequence[Scalar]]
+"""A piece and the numbers in it of one thing."""
 
-
-def phase_frames(run: Trajectory) -> tuple[dict[str, Any], np.ndarray]:
-    """(the scene as `Scene.to_json` tells it, its slots at the instants of the run, n x slots)."""
-    scenes = [(phase, scene_of_system(phase.model.declared)) for phase in run.phases]
-    told = scenes[0][1].to_json()
-    tables = [_values(run, phase, dict(_numbers(scene.to_json())), scene) for phase, scene in scenes]
-    columns: list[np.ndarray] = []
-
-    def placed(path: Way, first: Any) -> Any:
-        if all(path in table and _constant(table[path]) == first for table in tables):
-            return first
-        column = np.full(len(run.t), np.nan)
-        for phase, table in zip(run.phases, tables, strict=True):
-            rows = slice(*phase.rows)
-            if path in table:
-                value = table[path]
-                column[rows] = value[rows] if isinstance(value, np.ndarray) else value
-        columns.append(column)
-        return [len(columns) - 1]
-
-    drawn = {key: _rebuilt(told[key], placed, key) for key in ("frames", "points", "marks")}
-    frames = np.column_stack(columns) if columns else np.empty((len(run.t), 0))
-    return {**told, **drawn, "slots": len(columns)}, frames
+WORDS = ("text", "symbol", "unit", "close", "faces", "side", "tier", "hole", "fine", "outward")
+"""Fields of forms that say what a thing is, not where."""
 
 
-def _constant(value: Any) -> Any:
-    return None if isinstance(value, np.ndarray) else value
+def phase_frames(
+    run: Trajectory, times: np.ndarray, *, forces: bool = True, scene_of: SceneMaker = scene_of_system
+) -> SceneNumbers:
+    """What is drawn of a run, and its numbers at some instants of it; states between rows are interpolated.
+
+    Args:
+        forces: applied forces and reactions are arrows.
+        scene_of: what is drawn of a system.
+    """
+    starts = [phase.start for phase in run.phases]
+    owner = np.maximum(np.searchsorted(starts, times, side="right") - 1, 0)
+    rows = [np.flatnonzero(owner == k) for k in range(len(starts))]
+    pairs = [(k, own) for k, own in enumerate(rows) if len(own)] or [(0, rows[0])]
+    pieces = [
+        (_phase_numbers(run, run.phases[k], times[own], forces=forces, scene_of=scene_of), own) for k, own in pairs
+    ]
+    return joined(pieces)
 
 
-def _values(run: Trajectory, phase: Phase, leaves: Mapping[Way, Any], scene: Any) -> dict[Way, Any]:
-    """Each number of a phase's scene: a constant, or its column over all rows of the run."""
-    named, symbols = run.columns(), scene.system.symbols
-    rest = np.zeros(len(run.t))
-    x = np.column_stack([rest, *(named.get(node.name, rest) for node in (*symbols.q, *symbols.u))])[:, 1:]
-    frames = frames_along(scene, run.t, x, phase.model.p)
-    return {path: frames[:, value[0]] if isinstance(value, list) else value for path, value in leaves.items()}
+def _phase_numbers(
+    run: Trajectory, phase: Phase, times: np.ndarray, *, forces: bool, scene_of: SceneMaker
+) -> SceneNumbers:
+    """A phase at instants of its own."""
+    system: System = phase.model.declared
+    columns = _columns(run, phase, times)
+    scene = scene_of(system)
+    given: dict[Node, np.ndarray] = {}
+    if forces:
+        symbols = {name: system.symbols.graph.symbol(f"({name})") for name in run.reactions}
+        given = {symbols[name]: columns[name] for name in run.reactions}
+        scene = replace(scene, marks=(*scene.marks, *reaction_marks(system, symbols)))
+    else:
+        scene = replace(scene, marks=tuple(mark for mark in scene.marks if mark.role != "force"))
+    rest = np.zeros(len(times))
+    x = np.column_stack([rest, *(columns.get(node.name, rest) for node in (*system.symbols.q, *system.symbols.u))])
+    return SceneNumbers(scene, _frames(scene, times, x[:, 1:], phase.model.p, given))
 
 
-def _numbers(told: Mapping[str, Any]) -> Iterator[tuple[Way, Any]]:
-    """Every number of a scene by the names on the way to it: constants, and slots [i]."""
-    found: list[tuple[Way, Any]] = []
+def _columns(run: Trajectory, phase: Phase, times: np.ndarray) -> dict[str, np.ndarray]:
+    """Every column of the run at instants of one of its phases, between that phase's own ends."""
+    named = run.columns()
+    begin, end = phase.rows
+    t, edges = run.t[begin:end], [(phase.start, phase.first), (phase.end, phase.last)]
+    if not (phase.first and phase.last):
+        return {name: np.interp(times, run.t, column) for name, column in named.items()}
+    t = np.concatenate([[edges[0][0]], t, [edges[1][0]]])
+    return {
+        name: np.interp(times, t, np.concatenate([[edges[0][1][name]], column[begin:end], [edges[1][1][name]]]))
+        for name, column in named.items()
+    }
 
-    def kept(path: Way, value: Any) -> Any:
-        found.append((path, value))
-        return value
 
-    for key in ("frames", "points", "marks"):
-        _rebuilt(told[key], kept, key)
-    yield from found
+def _frames(scene: Scene, t: np.ndarray, x: np.ndarray, p: np.ndarray, given: Mapping[Node, np.ndarray]) -> np.ndarray:
+    """The frames of a scene in which some symbols have columns of their own."""
+    if not given:
+        return frames_along(scene, t, x, p)
+    known = tuple(value for value in scene.values if value not in given)
+    program = program_of(known, scene.system.symbols, inputs=scene.system.inputs)
+    with np.errstate(all="ignore"):
+        found: dict[Scalar, np.ndarray] = dict(zip(known, compiled(program, "numpy").many(t, x, p).T, strict=True))
+    columns = found | dict(given)
+    return np.column_stack([columns[value] for value in scene.values])
 
 
-def _rebuilt(parts: list[dict[str, Any]], change: Any, key: str) -> list[dict[str, Any]]:
-    """The parts with every number replaced by change(path, number)."""
-    seen: Counter[Way] = Counter()
-    made = []
-    for part in parts:
-        who = (key, *(part.get(word) for word in ("name", "kind", "frame", "role", "of", "text", "symbol")))
+# -- several scenes as one -----------------------------------------------------------------------------
+
+
+def joined(pieces: Sequence[Piece]) -> SceneNumbers:
+    """Scenes of the same bodies, one after the other, as one."""
+    if len(pieces) == 1:
+        return pieces[0][0]
+    one = _Joined(pieces)
+    first = pieces[0][0].scene
+    frames = tuple(one.frame(k) for k in range(len(first.frames)))
+    points = tuple(one.points())
+    marks = tuple(sorted(one.marks(), key=lambda mark: ROLES.index(mark.role)))
+    scene = Scene(first.system, frames, points, marks)
+    columns = [one.columns[value] for value in scene.values]
+    size = sum(len(rows) for _, rows in pieces)
+    return SceneNumbers(scene, np.column_stack(columns) if columns else np.empty((size, 0)))
+
+
+class _Joined:
+    """The numbers of several scenes, each once.
+
+    Args:
+        pieces: the scenes, of the same bodies.
+    """
+
+    def __init__(self, pieces: Sequence[Piece]) -> None:
+        self.pieces = pieces
+        self.size = sum(len(rows) for _, rows in pieces)
+        self.graph = pieces[0][0].scene.system.symbols.graph
+        self.columns: dict[Scalar, np.ndarray] = {}
+        self._slots: dict[tuple[Scalar | None, ...], Scalar] = {}
+
+    def frame(self, k: int) -> SceneFrame:
+        """The k-th frame."""
+        own = self.pieces[0][0].scene.frames[k]
+        if k == 0:
+            return own
+        entries = self._numbers(
+            [numbers.scene.pose_entries(numbers.scene.frames[k].pose) for numbers, _ in self.pieces]
+        )
+        if self.pieces[0][0].scene.plane:
+            x, y, c, s = entries
+            return replace(own, pose=Pose(((c, -s, 0), (s, c, 0), (0, 0, 1)), (x, y, 0)))
+        R = (vector_of(entries[3:6]), vector_of(entries[6:9]), vector_of(entries[9:12]))
+        return replace(own, pose=Pose(R, vector_of(entries[:3])))
+
+    def points(self) -> Iterator[tuple[str, Any]]:
+        """The named points."""
+        tables = [dict(numbers.scene.points) for numbers, _ in self.pieces]
+        for name in dict.fromkeys(name for table in tables for name in table):
+            yield name, vector_of(self._numbers([table.get(name) for table in tables]))
+
+    def marks(self) -> Iterator[Mark]:
+        """All marks that one of the scenes has."""
+        tables = [_by_identity(numbers.scene.marks) for numbers, _ in self.pieces]
+        for key in dict.fromkeys(key for table in tables for key in table):
+            found = [table.get(key) for table in tables]
+            some = next(mark for mark in found if mark is not None)
+            flat = iter(self._numbers([None if mark is None else tuple(scalars_of(mark.form)) for mark in found]))
+            slots = {f.name: _filled(getattr(some.form, f.name), flat) for f in fields(some.form)}
+            yield replace(some, form=replace(some.form, **slots))
+
+    def _numbers(self, found: Sequence[Sequence[Scalar] | None]) -> list[Scalar]:
+        """The numbers of a thing, from those that each piece has of it."""
+        size = next(len(each) for each in found if each is not None)
+        return [self._number(tuple(None if each is None else each[k] for each in found)) for k in range(size)]
+
+    def _number(self, found: tuple[Scalar | None, ...]) -> Scalar:
+        """One: a constant where all have the same, else a slot."""
+        first = found[0]
+        if first is not None and not any(map(is_moving, found)) and all(x is not None for x in found):
+            values = [plain_number(x) for x in found]
+            if all(value == values[0] for value in values):
+                return first
+        if found not in self._slots:
+            column = np.full(self.size, np.nan)
+            for (numbers, rows), x in zip(self.pieces, found, strict=True):
+                if x is not None:
+                    column[rows] = numbers.value(x)
+            slot = self._slots[found] = self.graph.symbol(f"(slot {len(self._slots)})")
+            self.columns[slot] = column
+        return self._slots[found]
+
+
+def _by_identity(marks: Sequence[Mark]) -> dict[tuple[Any, ...], Mark]:
+    """The marks by what they are; of the same the first, the second, and so on."""
+    seen: Counter[tuple[Any, ...]] = Counter()
+    found = {}
+    for mark in marks:
+        form: Form = mark.form
+        words = tuple(getattr(form, word, None) for word in WORDS)
+        who = (form.kind, mark.frame, mark.role, mark.of, words, sum(1 for _ in scalars_of(form)))
         seen[who] += 1
-        made.append({k: v if k in WORD_FIELDS else _changed(v, change, (*who, seen[who], k)) for k, v in part.items()})
-    return made
+        found[*who, seen[who]] = mark
+    return found
 
 
-def _changed(value: Any, change: Any, path: Way) -> Any:
-    if isinstance(value, (bool, str)) or value is None:
-        return value
-    if isinstance(value, list) and not (len(value) == 1 and isinstance(value[0], int)):
-        return [_changed(each, change, (*path, i)) for i, each in enumerate(value)]
-    return change(path, value)
+def _filled(value: Any, numbers: Iterator[Scalar]) -> Any:
+    """A field of a form with other numbers, in the order of `scalars_of`."""
+    if isinstance(value, tuple):
+        return tuple(_filled(x, numbers) for x in value)
+    return value if value is None or isinstance(value, (str, bool)) else next(numbers)
