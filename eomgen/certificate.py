@@ -51,7 +51,14 @@ def certify(
     checks.append(trials.free_bodies())
     if rubs(equations.system):
         checks.append(trials.friction())
-    checks += [*trials.tensors(), *trials.contacts(), *trials.threads(), *trials.elements(), *trials.balance()]
+    checks += [
+        *trials.tensors(),
+        *trials.contacts(),
+        *trials.threads(),
+        *trials.kept_ties(),
+        *trials.elements(),
+        *trials.balance(),
+    ]
     checks += [] if printed is None else trials.printed(printed)
     if rhs is not None:
         checks.append(trials.code(rhs))

@@ -20,7 +20,7 @@ from eomgen.documents.latex import equations_latex
 from eomgen.documents.payload import equations_payload
 from eomgen.documents.reaction_steps import letters_of
 from eomgen.documents.result import Result
-from eomgen.documents.statements import Prose, Step
+from eomgen.documents.setting_steps import assumption_steps
 from eomgen.errors import DerivationError, MissingValues, UsageError
 from eomgen.mechanics.balance.friction import with_rest
 from eomgen.mechanics.equations.articulated import with_accelerations
@@ -310,9 +310,7 @@ class Equations(Result):
 
     def _with_assumptions(self, derivation: Document) -> Document:
         """What had to be assumed stands first."""
-        told = tuple(Prose((f"{what}.",)) for what in self.assumptions)
-        first = (Step("assumptions", "Assumptions", told),) if told else ()
-        return replace(derivation, steps=(*first, *derivation.steps))
+        return replace(derivation, steps=(*assumption_steps(self.assumptions), *derivation.steps))
 
     @doing("the derivation, step by step")
     def written(self, *, full: bool) -> Document:

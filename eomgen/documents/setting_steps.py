@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from typing import Any
 
 from eomgen.documents.statements import Formula, Meaning, Piece, Rate, Statement, Step, Table, prose
@@ -26,6 +26,12 @@ INPUTS = ("input", "meaning", "unit", "value")
 def setting_steps(system: System) -> tuple[Step, ...]:
     """Data, degrees of freedom, coordinates."""
     return (data_step(system), _freedom(system), _coordinates(system))
+
+
+def assumption_steps(assumptions: Sequence[str]) -> tuple[Step, ...]:
+    """What had to be assumed, as a first step; none where nothing was."""
+    told = tuple(prose(f"{what}.") for what in assumptions)
+    return (Step("assumptions", "Assumptions", told),) if told else ()
 
 
 def listed_symbols(symbols: tuple[Node, ...]) -> tuple[Piece, ...]:

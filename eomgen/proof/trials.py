@@ -28,6 +28,7 @@ from eomgen.proof.contact_geometry import apart, meetings_of
 from eomgen.proof.elements import elements_of, undeclared
 from eomgen.proof.free_bodies import demand_of
 from eomgen.proof.joint_places import misplaced
+from eomgen.proof.kept_ties import open_at_start, rows_that_stay
 from eomgen.proof.printed import Printed, ReadBack
 from eomgen.proof.states import States, in_doubles
 from eomgen.proof.strands import strung_otherwise, threads_of
@@ -282,6 +283,12 @@ class Trials:
         if threads_of(self.equations.system):
             name = "strings and links touch what they are led over, keep their length and pull along it"
             yield self._at_states(name, "50 digits", lambda state: strung_otherwise(self.equations.system, state))
+
+    def kept_ties(self) -> Iterable[Check]:
+        """What stays as at the start is closed there; none where nothing does."""
+        if rows_that_stay(self.equations.system):
+            name = "ties that keep what is at the start are closed there"
+            yield self._at_states(name, "50 digits", lambda state: open_at_start(self.equations.system, state))
 
     def elements(self) -> Iterable[Check]:
         """Springs, dampers and pulls act as they are declared; none where there are none."""

@@ -123,3 +123,12 @@ def test_derive_runs_no_simulation_and_no_compiler(monkeypatch):
     for model in touched:
         eomgen.derive(model)
     assert len(touched) > 8
+
+
+def test_what_is_assumed_of_contacts_stands_with_small_motions_too():
+    """A mass on a spring over a floor of unknown height."""
+    text = BALL.replace("HEIGHT", "{ unit = 'm' }").replace("START", "h")
+    text += '\n[forces.coil]\nkind = "generalized"\ncoordinate = "x"\nvalue = "-50*x"\n'
+    found, words = eomgen.linearize(eomgen.loads(text), about="equilibrium"), "floor assumed closed: h has no value"
+    assert found.assumptions == (words,) and found.as_dict()["assumptions"] == [words]
+    assert f"{words}." in found.render("text")

@@ -8,6 +8,7 @@ from fractions import Fraction
 import pytest
 
 import eomgen
+from eomgen.model.constraints import gear, plane
 from eomgen.model.constraints.link import Link
 from eomgen.model.constraints.strand import Stop
 from eomgen.model.constraints.string import String
@@ -192,3 +193,34 @@ def test_a_condition_that_held_before_is_told():
     moment = motion.until(output.at)
     motion.runs_to(earlier.at)[:] = motion.runs_to(output.at)
     assert wrong_way(motion, earlier, moment).startswith("'s = L/2' holds before t = ")
+
+
+GEARS = """
+eomgen = 1
+space = "plane"
+parameters = { m = 2, R = 0.3 }
+coordinates = { phi = { start = 0.4, speed = 1 }, psi = { near = 0.1 } }
+[bodies.one]
+shape = { kind = "disc", mass = "m", radius = "R" }
+joint = { kind = "revolute", angle = "phi" }
+[bodies.two]
+shape = { kind = "disc", mass = "2*m", radius = "R" }
+joint = { kind = "revolute", angle = "psi", at = ["2*R", 0] }
+[constraints.teeth]
+kind = "gear"
+bodies = ["one", "two"]
+ratio = -1
+"""
+
+
+def test_gears_that_do_not_mesh_where_they_start_are_told(monkeypatch):
+    """theta_1 - ratio theta_2 stays what it is at the start, whatever that is."""
+    assert failing(GEARS) == []
+    real = plane.same_turn
+
+    def off(scene, first, second, ratio=1):
+        row = real(scene, first, second, ratio)
+        return replace(row, gap=row.gap - Fraction(1, 10))
+
+    monkeypatch.setattr(gear, "same_turn", off)
+    assert "ties that keep what is at the start are closed there" in failing(GEARS)

@@ -18,7 +18,7 @@ from eomgen.documents.linearize.state_space import LETTERS, StateSpace, state_sp
 from eomgen.documents.linearize.steps import linearization_steps
 from eomgen.documents.quantity import Quantity
 from eomgen.documents.result import Result
-from eomgen.documents.setting_steps import data_step
+from eomgen.documents.setting_steps import assumption_steps, data_step
 from eomgen.errors import DerivationError, UsageError
 from eomgen.mechanics.equations.system import system_of
 from eomgen.mechanics.initial_state.numeric_value import known_exactly
@@ -56,12 +56,14 @@ class Linearization(Result):
         model: the system.
         modes: what follows from its equations to first order.
         drawn: what its picture shows: "modes", "bode", or "locus", the roots `over` a parameter.
+        assumptions: what had to be assumed of contacts.
     """
 
     model: Model
     modes: Modes
     drawn: str = "modes"
     over: Range | None = None
+    assumptions: tuple[str, ...] = ()
 
     def __repr__(self) -> str:
         about = self.small.reference.about
@@ -211,7 +213,8 @@ class Linearization(Result):
     def derivation(self) -> Document:
         """The way, step by step."""
         model = self.model
-        steps = (data_step(self.small.reference.system), *linearization_steps(self.modes))
+        given = (*assumption_steps(self.assumptions), data_step(self.small.reference.system))
+        steps = (*given, *linearization_steps(self.modes))
         return document_of(model, METHOD, steps)
 
     @property
@@ -249,6 +252,7 @@ class Linearization(Result):
         return {
             "name": self.model.name,
             "about": reference.about,
+            "assumptions": list(self.assumptions),
             "state": {
                 x.name: _state(reference.exact.get(x), float(reference.numbers[x]), valued=self.valued)
                 for x in (*reference.system.symbols.q, *reference.system.symbols.u)
@@ -393,6 +397,6 @@ def linearize(
         if name not in model.coordinates:
             raise UsageError(f"no coordinate '{name}'", mend=f"one of {', '.join(model.coordinates)}")
     about = about or (part.about if part is not None else "equilibrium")
-    return Linearization(
-        model, Modes(small_motions_of(system_of(model, contacts_at_start(model).modes), about, wanted))
-    )
+    contacts = contacts_at_start(model)
+    modes = Modes(small_motions_of(system_of(model, contacts.modes), about, wanted))
+    return Linearization(model, modes, assumptions=contacts.assumptions)

@@ -74,6 +74,10 @@ class Constraint(Part, ABC):
         """The coordinate that it gives as a function of time; "" where it does no such thing."""
         return ""
 
+    def stays(self, component: str) -> bool:
+        """Whether this row keeps something as it is at the start, and so is closed there, wherever that is."""
+        return False
+
     def agreeing(self, scene: LoadContext) -> tuple[Scalar, ...]:
         """What is 1 where directions of two bodies agree, -1 where one is turned over, which the rows allow too."""
         return ()

@@ -27,6 +27,9 @@ class Clamp(Constraint):
     point: PointName | None = None
     points: Points | None = None
 
+    def stays(self, component: str) -> bool:
+        return self.point is not None or component == "couple"
+
     def rows(self, scene: LoadContext) -> tuple[TieRow, ...]:
         """The rows of a pin, and no turning against the start; in space e_i . e_j = 0 of axes in either body."""
         first, *_ = named = [scene.place(p) for p in (*(self.points or ()), self.point) if p is not None]

@@ -26,6 +26,9 @@ class Gear(Constraint):
     bodies: TwoBodies
     ratio: Pure
 
+    def stays(self, component: str) -> bool:
+        return True
+
     def rows(self, scene: LoadContext) -> tuple[TieRow, ...]:
         """theta_1 - ratio theta_2 stays; a couple 1 on the first body, - ratio on the second, none on the ground.
 

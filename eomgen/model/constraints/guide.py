@@ -28,6 +28,9 @@ class Guide(Constraint):
     point: PointName
     along: Direction
 
+    def stays(self, component: str) -> bool:
+        return True
+
     def rows(self, scene: LoadContext) -> tuple[TieRow, ...]:
         """n . (p - p_start) = 0 for each n across `along`; theta - theta_start = 0, in space as a clamp."""
         place = scene.place(self.point)

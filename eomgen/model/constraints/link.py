@@ -33,6 +33,9 @@ class Link(Constraint):
     def thread(self) -> Thread:
         return Thread(self.points, length=self.length)
 
+    def stays(self, component: str) -> bool:
+        return self.length is None
+
     def rows(self, scene: LoadContext) -> tuple[TieRow, ...]:
         """(L - r . r / L) / 2 = 0, r from the first point to the second; a tension 1 pulls the first along r / L.
 

@@ -46,6 +46,9 @@ class Members(Constraint):
         first, second = member.split("-")
         return f"{self.truss}.{first}", f"{self.truss}.{second}"
 
+    def stays(self, component: str) -> bool:
+        return True
+
     def rows(self, scene: LoadContext) -> tuple[TieRow, ...]:
         """Of each member the row of a link."""
         return tuple(self._row(scene, member) for member in self.members)

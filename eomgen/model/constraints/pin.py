@@ -25,6 +25,9 @@ class Pin(Constraint):
     points: Points
     axis: SpaceDirection | None = None
 
+    def stays(self, component: str) -> bool:
+        return len(self.points) == 1 and component != "couple"
+
     def rows(self, scene: LoadContext) -> tuple[TieRow, ...]:
         """For each further point P of the hinge, e . (p_first - p_P) = 0 along each axis; alone, against its start.
 

@@ -121,6 +121,9 @@ class String(Constraint):
             what = f"the string has {pieces} strands, but {len(self.strands)} directions are given"
             yield Finding((*path, "strands"), what)
 
+    def stays(self, component: str) -> bool:
+        return component == "tension"
+
     def rows(self, scene: LoadContext) -> tuple[TieRow, ...]:
         """A row for each tension; after them the restrictions of strands that keep a direction while their ends move.
 
