@@ -5,6 +5,7 @@
     equations.certify().ok                    # Certificate: the proof
     equations.rhs()(0.0, x, p)                # the right-hand side, x = coordinates then speeds; C or numpy
     eomgen.simulate(model, time=10)           # Trajectory: t, x, energy, drift, status, message
+    eomgen.simulator(model)(time=10)          # the same as often as one likes: derived and compiled once
     eomgen.generate(model, ("c", "numpy"))    # Generated: texts, write(directory)
     eomgen.inverse_dynamics(model)            # InverseDynamics: the forces that given accelerations take, as code
     eomgen.solve(model)                       # {name: Answer} of the model's outputs: exact, value
@@ -70,7 +71,8 @@ _HOMES = {
     "generated": ("Generated", "generate"),
     "page.contents": ("Report",),
     "page.play": ("Played", "play"),
-    "pipeline": ("derive", "inverse_dynamics", "simulate"),
+    "pipeline": ("derive", "inverse_dynamics", "simulate", "simulator"),
+    "questions.simulator": ("Simulator",),
     "documents.inertia.result": ("Inertia", "inertia"),
     "documents.linearize.result": ("Linearization", "linearize"),
     "scene.making": ("scene_of",),

@@ -19,7 +19,8 @@ from eomgen.model.fields import WrittenEquation
 from eomgen.model.reader import ModelOrPath, model_at
 from eomgen.model.replaced import Values, with_inputs, with_values
 from eomgen.model.unknowns import refuse_motion
-from eomgen.questions.run import run
+from eomgen.questions.simulator import REACTIONS, Simulator
+from eomgen.simulation.integrate import SAMPLES as EVENLY
 from eomgen.simulation.integrator import Stepping
 from eomgen.simulation.result import Trajectory
 from eomgen.symbolic.numeric.gc_pause import growing
@@ -74,6 +75,24 @@ def inverse_dynamics(
     return derive(model, parameters=parameters, start=start).inverse_dynamics(actuated)
 
 
+def simulator(
+    model: ModelOrPath,
+    *,
+    rtol: float = RUN,
+    atol: float = RUN,
+    target: str | None = None,
+    method: str = "DOP853",
+    stabilization: str = "projection",
+) -> Simulator:
+    """`simulator(time=10, parameters=None, start=None, samples=101, columns=())` -> Trajectory: derived, compiled once.
+
+    Args:
+        rtol, atol, target, method, stabilization: as of `simulate`.
+    """
+    how = Stepping(method=method, rtol=rtol, atol=atol, stabilization=stabilization)
+    return Simulator(model_at(model), derive, how, target)
+
+
 def simulate(
     model: ModelOrPath,
     *,
@@ -105,18 +124,10 @@ def simulate(
         MissingValues: parameters without a value, all named.
     """
     valued = with_values(model_at(model), parameters, start)
-    model = valued.model
-    how = Stepping(method=method, rtol=rtol, atol=atol, stabilization=stabilization)
-    equations = derive(with_inputs(model, inputs or {}))
-    found = run(
-        equations,
-        time=time,
-        start=valued.start,
-        target=target,
-        samples=samples,
-        how=how,
-        until=until,
-    )
+    model = with_inputs(valued.model, inputs or {})
+    run = simulator(model, rtol=rtol, atol=atol, target=target, method=method, stabilization=stabilization)
+    samples = EVENLY if samples is None else samples
+    found = run(time, start=valued.start, samples=samples, columns=REACTIONS, until=until)
     if found.reactions and found.remark:
         warnings.warn(f"{model.name}: {found.remark}", RuntimeWarning, stacklevel=2)
     return found

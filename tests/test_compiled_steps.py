@@ -1,4 +1,4 @@
-"""Steps with their stages in C against scipy's own, on right-hand sides in C."""
+"""Steps in C against scipy's own: the same instants, states and events, whatever is watched."""
 
 from __future__ import annotations
 
@@ -6,50 +6,45 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-import scipy.integrate
 
 import eomgen
 from eomgen.codegen.build import compiler
-from eomgen.simulation.solvers import EXPLICIT, quick, solver_of
+from eomgen.simulation.compiled_steps import CompiledSteps
+from eomgen.simulation.integrator import Stepping, march
 
 MODELS = Path(__file__).parent.parent / "models"
 
 pytestmark = pytest.mark.skipif(compiler() is None, reason="no C compiler")
 
 
-def rate(name: str = "double_pendulum"):
+def rates(name: str):
+    """(the right-hand side in C, the same without its address, the start)."""
     rhs = eomgen.derive(eomgen.load(MODELS / f"{name}.toml")).rhs("c")
-    return rhs.at(rhs.p0), rhs.x0
+    f = rhs.at(rhs.p0)
+    return f, lambda t, x: f(t, x), rhs.x0, rhs.spheres
 
 
-@pytest.mark.parametrize("method", EXPLICIT)
-@pytest.mark.parametrize("name", ["double_pendulum", "spherical_pendulum", "arm3"])
-def test_steps_in_c_are_those_of_scipy(method, name):
-    """The same instants, states, rates, states between the steps and numbers of evaluations, to rounding."""
-    f, x0 = rate(name)
-    options = {"rtol": 1e-7, "atol": 1e-9}
-    own = quick(method)(f, 0.0, x0, 1.0, at=f.address, **options)
-    other = getattr(scipy.integrate, method)(f, 0.0, x0, 1.0, **options)
-    for _ in range(60):
-        if other.status != "running":
-            break
-        own.step(), other.step()
-        assert own.t == pytest.approx(other.t, rel=1e-6) and own.nfev == other.nfev
-        between = (other.t_old + other.t) / 2
-        for found, expected in (
-            (own.y, other.y),
-            (own.f, other.f),
-            (own.dense_output()(between), other.dense_output()(between)),
-        ):
-            assert found == pytest.approx(expected, rel=1e-5, abs=1e-5 * np.max(np.abs(expected)))
-    assert own.status == other.status and other.t > 0
+@pytest.mark.parametrize("name", ["double_pendulum", "spherical_pendulum", "arm3", "tumbling_body"])
+def test_steps_in_c_are_those_of_scipy(name):
+    """The same instants and states to rounding, between the steps too, and as many evaluations."""
+    f, plain, x0, spheres = rates(name)
+    how, instants = Stepping(rtol=1e-7, atol=1e-9), np.linspace(0.0, 0.5, 38)
+    own, other = (march(rate, (0.0, 0.5), x0, how=how, instants=instants, spheres=spheres) for rate in (f, plain))
+    assert (own.steps, own.status, own.message) == (other.steps, other.status, other.message) and own.steps > 3
+    steps, expected = (np.array(run.tracks[0].t) for run in (own, other))
+    assert steps == pytest.approx(expected, rel=1e-6)
+    size = np.max(np.abs(other.x))
+    assert own.t.tolist() == other.t.tolist() and own.x == pytest.approx(other.x, rel=1e-6, abs=1e-7 * size)
 
 
-@pytest.mark.parametrize("method", EXPLICIT)
-def test_what_runs_in_c_takes_such_steps(method):
-    f, x0 = rate()
-    assert isinstance(solver_of(method, f, (0.0, 1.0), x0, rtol=1e-6, atol=1e-6), quick(method))
-    assert not isinstance(solver_of(method, lambda t, x: f(t, x), (0.0, 1.0), x0, rtol=1e-6, atol=1e-6), quick(method))
+def test_it_is_c_that_steps(monkeypatch):
+    """A plain motion takes a few calls, not one a step."""
+    calls = []
+    advance = CompiledSteps.advance
+    monkeypatch.setattr(CompiledSteps, "advance", lambda self, most: calls.append(1) or advance(self, most))
+    f, _, x0, _ = rates("double_pendulum")
+    run = march(f, (0.0, 10.0), x0, how=Stepping())
+    assert run.steps > 200 and 0 < len(calls) < 20
 
 
 def test_a_step_shrinks_until_it_goes_no_further():
@@ -66,3 +61,26 @@ def test_a_step_shrinks_until_it_goes_no_further():
     """
     run = eomgen.simulate(eomgen.loads(text), time=2, target="c")
     assert run.status in ("not finite", "step too small") and run.t[-1] == pytest.approx(1, abs=1e-6)
+
+
+RUNS = [  # contacts that change, ties in all forms, change points, quaternions, samples
+    ("sliding_ladder", 2.0),
+    ("four_bar", 3.0),
+    ("n_four_bar", 3.0),
+    ("bricard", 1.0),
+    ("flyball_governor", 0.3),
+]
+
+
+@pytest.mark.parametrize(("name", "time"), RUNS)
+def test_a_run_in_c_is_that_of_scipy(name, time):
+    """The same phases, instants of events, crossings and states; both within the tolerance of the run."""
+    model = eomgen.load(MODELS / f"{name}.toml")
+    with np.errstate(all="ignore"):
+        own, other = (eomgen.simulate(model, time=time, samples=51, target=target) for target in ("c", "numpy"))
+    assert own.status == other.status and len(own.phases) == len(other.phases)
+    assert [len(own.carried), own.t.size] == [len(other.carried), other.t.size]
+    for phase, expected in zip(own.phases, other.phases, strict=True):
+        assert phase.end == pytest.approx(expected.end, abs=1e-8)
+    assert own.x == pytest.approx(other.x, abs=1e-7 * (1 + np.max(np.abs(other.x))))
+    assert own.gap is None or own.gap < 1e-9

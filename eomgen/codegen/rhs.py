@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import sys
 from collections.abc import Mapping, Sequence
+from contextlib import suppress
 from typing import Any
 
 import numpy as np
@@ -11,8 +12,8 @@ import numpy as np
 from eomgen.codegen.program import Program
 from eomgen.codegen.spheres import spheres_of
 from eomgen.codegen.targets import ALL
-from eomgen.codegen.targets.base import RHS, Functions, Target
-from eomgen.codegen.trial import Address
+from eomgen.codegen.targets.base import RHS, Address, Functions, Target
+from eomgen.codegen.targets.c import c_together
 from eomgen.errors import RunFailed, ToolMissing, UsageError
 from eomgen.model.parts import Model
 from eomgen.model.values import numeric_parameters
@@ -128,6 +129,18 @@ def compiled(program: Program, target: str | None = None, *, x0: Any = None, p0:
     except (RunFailed, ToolMissing) as error:
         _say(f"{error.what.splitlines()[0]}: the equations run in numpy, some 30 times slower")
         return compiled(program, "numpy", x0=x0, p0=p0)
+
+
+def compiled_together(programs: Sequence[Program], target: str | None = None) -> tuple[RightHandSide, ...]:
+    """Several programs as functions, one library of them where they run in C; with the errors of `compiled`."""
+    if target in (None, "c"):
+        with suppress(*([RunFailed, ToolMissing] if target is None else [])):
+            made = c_together(programs)
+            return tuple(
+                RightHandSide(program, functions, "c", None, None)
+                for program, functions in zip(programs, made, strict=True)
+            )
+    return tuple(compiled(program, target) for program in programs)
 
 
 def target_named(name: str) -> Target:

@@ -99,6 +99,8 @@ def run(
     samples: int | Sequence[float] | None = None,
     how: Stepping | None = None,
     until: WrittenEquation | str | None = None,
+    models: PhaseModels | None = None,
+    reactions: bool = True,
 ) -> Trajectory:
     """The motion by equations that are derived already.
 
@@ -109,17 +111,18 @@ def run(
         samples: as of `integrate`.
         how: the integrator's way; its tolerances are those of the run, and a step takes a tenth of them.
         until: an equation: the run ends where it first holds after the start.
+        models: the phases of these equations at these parameters, where they are known; what they hold is used again.
+        reactions: whether they are among the columns.
     Raises:
         MissingValues: parameters without a value, all named.
         UsageError: what is asked makes no sense.
     """
     how, samples = how or Stepping(), SAMPLES if samples is None else samples
-    model, p = equations.model, parameter_vector(equations.model, parameters)
+    model = equations.model
     condition = None if until is None else condition_of(model, until)
     refuse_bad_run(0.0, time, how)
     _refuse_given(model, start or {})
-    pulled = how.rates if how.stabilization == "baumgarte" else None
-    models = PhaseModels(model, p, target, pulled, equations.graph)
+    models = models or phase_models(equations, parameter_vector(model, parameters), how, target)
     here = at_start(models, 0.0, parameters, start)
     _refuse_fork_at_rest(models, here)
     plan = Plan(
@@ -130,9 +133,16 @@ def run(
     )
     runs = _followed(through(models, here, plan))
     words = until.text if isinstance(until, WrittenEquation) else until
-    found = with_reactions(_told(joined(models, runs), words), runs)
-    found = replace(found, assembled="" if here.begun is None else here.begun.words)
-    return thinned(replace(found, proof=RunProof(equations, p, how, models)), samples)
+    found = _told(joined(models, runs), words)
+    found = with_reactions(found, runs) if reactions else found
+    assembled = "" if here.begun is None else here.begun.words
+    return thinned(replace(found, assembled=assembled, proof=RunProof(equations, models.p, how, models)), samples)
+
+
+def phase_models(equations: Equations, p: np.ndarray, how: Stepping, target: str | None) -> PhaseModels:
+    """The phases of equations that are derived already, at values of the parameters."""
+    pulled = how.rates if how.stabilization == "baumgarte" else None
+    return PhaseModels(equations.model, p, target, pulled, equations.graph)
 
 
 def _followed(phases: Iterator[PhaseRun]) -> list[PhaseRun]:

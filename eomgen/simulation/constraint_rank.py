@@ -16,8 +16,7 @@ from eomgen.mechanics.constraints.elimination import singular_blocks
 from eomgen.mechanics.constraints.freedom import rank_of_ties
 from eomgen.mechanics.equations.equations_of_motion import EquationsOfMotion
 from eomgen.mechanics.equations.system import System
-from eomgen.simulation.event_location import PARTS, Crossing
-from eomgen.simulation.integrator import LOOKED_OUT
+from eomgen.simulation.event_location import LOOKED_OUT, PARTS, Crossing, Measured
 from eomgen.symbolic.expression.graph import Scalar
 from eomgen.symbolic.numeric.dense import divisor
 
@@ -147,31 +146,31 @@ class RankLookout:
     """
 
     def __init__(self, nearness: Nearness, near: float, t: float, x: np.ndarray) -> None:
-        self.nearness, self.near, self._before = nearness, near, nearness.at(t, x)
-        self._armed = self._before > ARMED * near
-        self._slopes: deque[float] = deque(maxlen=REMEMBERED)
+        self.nearness, self.near, self.before = nearness, near, nearness.at(t, x)
+        self.armed = self.before > ARMED * near
+        self.slopes: deque[float] = deque(maxlen=REMEMBERED)
 
     def step(self, t_old: float, t_new: float, x_new: np.ndarray, dense: Callable[[], Any]) -> Crossing | None:
         """Where the nearness falls below what is near in a step that ends in x_new."""
-        before, self._before = self._before, self.nearness.at(t_new, x_new)
-        if self._armed and self._is_calm(before, t_new - t_old):
+        before, self.before = self.before, self.nearness.at(t_new, x_new)
+        if self.armed and self._is_calm(before, t_new - t_old):
             return None
         motion = dense()
         times = np.linspace(t_old, t_new, PARTS + 1)
         sizes = self.nearness(times, motion(times).T)
-        if not self._armed:
+        if not self.armed:
             far = np.flatnonzero(sizes > ARMED * self.near)
             if not far.size:
                 return None
-            self._armed, times, sizes = True, times[far[0] :], sizes[far[0] :]
+            self.armed, times, sizes = True, times[far[0] :], sizes[far[0] :]
         found = self._fallen(times, sizes, lambda t: self.nearness.at(t, motion(t)))
         return None if found is None else Crossing(LOOKED_OUT, found, motion(found))
 
     def _is_calm(self, before: float, step: float) -> bool:
         """Whether it cannot have come near zero within a step, unless it changes much faster than before."""
-        self._slopes.append(abs(self._before - before) / step)
-        enough = len(self._slopes) == REMEMBERED
-        return enough and min(before, self._before) > self.near + STEEP * max(self._slopes) * step
+        self.slopes.append(abs(self.before - before) / step)
+        enough = len(self.slopes) == REMEMBERED
+        return enough and min(before, self.before) > self.near + STEEP * max(self.slopes) * step
 
     def _fallen(self, t: np.ndarray, sizes: np.ndarray, size: Callable[[float], float]) -> float | None:
         """The first instant at which it is near; a V between two instants is looked into where it may reach zero."""
@@ -192,15 +191,9 @@ class RankLookout:
         return float(brentq(lambda s: size(s) - self.near, before[-1], first)) if before.size else first
 
 
-def measure(system: System, outputs: tuple[Scalar, ...], p: np.ndarray) -> Measure:
+def measure(system: System, outputs: tuple[Scalar, ...], p: np.ndarray) -> Measured:
     """(t n, x n x states) -> the outputs at each state, n x outputs."""
-    function = compiled(program_of(outputs, system.symbols, inputs=system.inputs), "numpy")
-    one = function.at(p)
-
-    def along(t: Any, x: Any) -> np.ndarray:
-        return one(t[0], x[0])[None, :] if len(x) == 1 and np.ndim(t) else function.many(t, x, p)
-
-    return along
+    return Measured(compiled(program_of(outputs, system.symbols, inputs=system.inputs), "numpy"), p)
 
 
 @dataclass(frozen=True)

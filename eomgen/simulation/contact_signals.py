@@ -10,8 +10,10 @@ import numpy as np
 
 from eomgen.codegen.rhs import RightHandSide
 from eomgen.simulation.contact_events import ContactEvents, EventFunction, stopped_below
+from eomgen.simulation.event_location import Measured
 from eomgen.simulation.phase_functions import PhaseFunctions
 from eomgen.simulation.reaction_columns import ReactionColumns
+from eomgen.symbolic.expression.graph import Scalar
 from eomgen.symbolic.numeric.tolerances import COMPUTED, SUMMED
 
 
@@ -70,6 +72,21 @@ class ContactSignals:
         ways = iter(self._ways.many(t, self.functions.inner(x), self.functions.p).T)
         found = [next(ways) if bound.kind == "piece" else self._left(bound, signals) for bound in self.watch.bounds]
         return np.column_stack(found)
+
+    def measured(self, further: tuple[Scalar, ...]) -> Measured | None:
+        """The bounds and further scalars as one function of q, u and t; None where a bound is not one of these."""
+        if any(self._stands_apart(bound) for bound in self.watch.bounds):
+            return None
+        values = tuple(bound.value for bound in self.watch.bounds if bound.value is not None)
+        return Measured(self.functions.function((*values, *further)), self.functions.p)
+
+    def _stands_apart(self, bound: EventFunction) -> bool:
+        """Whether a bound follows from a balance that is solved with rank, is integrated, or knows a state before."""
+        if bound.kind == "piece":
+            return False
+        contact = self.watch.contact(bound.owner)
+        stops = bound.kind == "stops" and bool(stopped_below(contact))
+        return bound.value is None or stops or any(s.column for s in self.watch.signals if s.owner == bound.owner)
 
     def _left(self, bound: EventFunction, signals: Mapping[tuple[str, str], np.ndarray]) -> np.ndarray:
         """What is left of a bound of a contact."""

@@ -5,10 +5,12 @@ from __future__ import annotations
 import math
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field
+from functools import cached_property
 from typing import Any
 
 import numpy as np
 
+from eomgen.codegen.rhs import RateFunction, RightHandSide
 from eomgen.symbolic.numeric.tolerances import CARRIED, COMPUTED, ITERATED, SOLVED
 
 PARTS = 8  # of a step: how often the functions are looked at
@@ -20,9 +22,27 @@ ORDER = 0.05  # of the largest value nearby: the derivative that tells of which 
 MOST_ORDER = 5  # of a root
 NEARBY = 0.5  # of the window: how far the root may be from where it was seen
 NEWTON_STEPS = 6
+LOOKED_OUT = -1  # the index of a crossing that a lookout found
 EDGE = 1e-3  # of a part: so near to the ends of a step they are looked at too, so that no extremum hides there
 TOUCH = 100.0  # relative tolerances of a step; so near to zero, against its largest value, a function touches it
 RELATIVE = 4 * np.finfo(float).eps  # of the instant of an event, and one part in 1e12 of the step
+
+
+@dataclass(frozen=True)
+class Measured:
+    """(t n, x n x states) -> the outputs of a function at parameters p, n x outputs."""
+
+    function: RightHandSide
+    p: np.ndarray
+
+    def __call__(self, t: np.ndarray, x: np.ndarray) -> np.ndarray:
+        if len(x) == 1 and np.ndim(t):
+            return self._one(t[0], x[0])[None, :]
+        return self.function.many(t, x, self.p)
+
+    @cached_property
+    def _one(self) -> RateFunction:
+        return self.function.at(self.p)
 
 
 @dataclass(frozen=True)
@@ -38,12 +58,14 @@ class Events:
         floors: what is rounding, of each function, k; of those of either side at the most.
         either: the indices of those that count from either side.
         touch: how near to zero these touch it, against their largest value.
+        measured: the same values as a function that there is in C; None where there is none.
     """
 
     values: Callable[[np.ndarray, np.ndarray], np.ndarray]
     floors: np.ndarray
     either: tuple[int, ...] = ()
     touch: float = CARRIED
+    measured: Measured | None = None
 
 
 @dataclass(frozen=True)

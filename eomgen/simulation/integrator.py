@@ -11,9 +11,10 @@ from typing import Any, Protocol
 import numpy as np
 
 from eomgen.codegen.spheres import SpherePlaces
+from eomgen.simulation.compiled_steps import CompiledSteps
 from eomgen.simulation.constraint_drift import DriftCorrection, Projection
-from eomgen.simulation.event_location import Crossing, Events, EventSearch, sharpened
-from eomgen.simulation.pace import Pace
+from eomgen.simulation.event_location import LOOKED_OUT, Crossing, Events, EventSearch, sharpened
+from eomgen.simulation.pace import LOOK, Pace
 from eomgen.simulation.result import RunStatus
 from eomgen.simulation.solvers import EXPLICIT, NotFinite, Slope, StateRate, put, solver_of, step
 from eomgen.symbolic.numeric.tolerances import COMPUTED, FINEST_RUN, LEAST_RTOL, RUN
@@ -36,14 +37,13 @@ class StepStates:
     every: int = 1
     steps: int = 0
 
-    def add(self, t: float, x: np.ndarray) -> None:
-        """The state after a step."""
-        self.steps += 1
-        if self.steps % self.every:
-            return
-        self.t.append(t)
-        self.x.append(x.copy())
-        if len(self.t) > MOST:
+    def add(self, t: Sequence[float] | np.ndarray, x: Sequence[np.ndarray] | np.ndarray) -> None:
+        """The states after steps, one a row; they are not copied."""
+        first = -(self.steps + 1) % self.every
+        self.steps += len(t)
+        self.t.extend(map(float, t[first :: self.every]))
+        self.x.extend(x[first :: self.every])
+        while len(self.t) > MOST:
             self.t, self.x, self.every = self.t[1::2], self.x[1::2], 2 * self.every
 
     def until(self, end: float) -> StepStates:
@@ -62,7 +62,6 @@ def measured(t: np.ndarray, x: np.ndarray, tracks: Sequence[StepStates]) -> tupl
 
 MOST_STEPS = 10_000_000
 MOST_FINE_STEPS = 200  # from one instant to the next around an event
-LOOKED_OUT = -1  # the index of a crossing that a lookout found
 SHARE = 0.1  # of the tolerances of a run: those of one step
 RATES = (10.0, 10.0)  # of Baumgarte's rows [1/s]
 STABILIZATIONS = ("projection", "baumgarte", "none")
@@ -161,10 +160,11 @@ class _Rows:
     t: list[np.ndarray]
     x: list[np.ndarray]
     track: StepStates
+    end: float
 
     def add(self, span: tuple[float, float], x_new: np.ndarray, dense: Dense) -> None:
         """The instants of a step, its beginning left out, or its end; x_new is the state there."""
-        self.track.add(span[1], x_new)
+        self.track.add([span[1]], [x_new.copy()])
         if self.instants is None:
             self._put(span[1], x_new)
             return
@@ -173,6 +173,15 @@ class _Rows:
             t = self.instants[first:last]
             self.t.append(t)
             self.x.append(self.hold.rows(t, dense()(t).T))
+
+    def take(self, steps: CompiledSteps) -> None:
+        """What has come of steps in C that are done with."""
+        t, x = steps.track
+        self.track.add(t, x)
+        t, x = (t, x) if self.instants is None else steps.rows()
+        if len(t):
+            self.t.append(t)
+            self.x.append(x)
 
     def close(self, t: float, x: np.ndarray) -> None:
         """The state in which a run ended early, unless it is there."""
@@ -222,9 +231,12 @@ def march(
         times = instants if instants is not None and end > start else np.unique([start, end])
         return Run(times, np.tile(x0, (len(times), 1)), end, x0, "finished", _reached(end), 0, 1)
     asked = 1 if instants is None or (instants.size and instants[0] == start) else 0
-    rows = _Rows(instants, hold, [np.array([start])[:asked]], [x0[None, :][:asked]], StepStates([start], [x0]))
-    solver = solver_of(how.method, f, span, x0, rtol=how.rtol, atol=how.atol, slope=slope)
+    rows = _Rows(instants, hold, [np.array([start])[:asked]], [x0[None, :][:asked]], StepStates([start], [x0]), end)
     watch = EventSearch(events, start, x0) if events is not None else None
+    if how.method == "DOP853" and getattr(f, "address", None) is not None:
+        solver: Any = CompiledSteps(f, span, x0, how=how, instants=instants, hold=hold, search=watch, lookout=lookout)
+    else:
+        solver = solver_of(how.method, f, span, x0, rtol=how.rtol, atol=how.atol, slope=slope)
     pace = Pace(f, how.method, start, end, how.most_steps)
     try:
         status, message, steps, crossing = _stepped(f, solver, rows, _Watches(watch, lookout), how, pace)
@@ -250,21 +262,22 @@ def _stepped(
     f: StateRate, solver: Any, rows: _Rows, watches: _Watches, how: Stepping, pace: Pace
 ) -> tuple[RunStatus, str, int, Crossing | None]:
     """(status, message, steps, the event that ended it)."""
-    steps, hold, end = 0, rows.hold, solver.t_bound
+    steps, hold = 0, rows.hold
     while solver.status == "running":
         if steps == how.most_steps:
             return "too many steps", f"Gave up after {steps} steps, at t = {solver.t:.6g} s.", steps, None
         try:
-            with np.errstate(all="ignore"):
-                step(solver, how.breakpoints, end)
+            taken, calm = _advance(solver, rows, how, min(how.most_steps - steps, LOOK - steps % LOOK))
         except NotFinite:
             return "not finite", _no_value(solver.t), steps, None
+        steps += taken
         if solver.status == "failed":
             return *_failed(f, solver), steps, None
-        steps += 1
         check_patience()
-        if hopeless := pace.hopeless(steps, solver.t, solver.y):
+        if taken and (hopeless := pace.hopeless(steps, solver.t, solver.y)):
             return "too many steps", f"Gave up after {steps} steps, at t = {solver.t:.6g} s: {hopeless}.", steps, None
+        if calm:
+            continue
         dense = cache(solver.dense_output)
         crossing = watches.step(solver.t_old, solver.t, solver.y, dense)
         if crossing is not None:
@@ -274,9 +287,26 @@ def _stepped(
             return "event", f"Stopped by an event at t = {crossing.t:.6g} s.", steps, crossing
         x, moved = hold.step(solver.t, solver.y)
         rows.add((solver.t_old, solver.t), x, dense)
+        if isinstance(solver, CompiledSteps):
+            solver.passed(solver.t)
         if moved:
             put(solver, x)
     return "finished", "", steps, None
+
+
+def _advance(solver: Any, rows: _Rows, how: Stepping, most: int) -> tuple[int, bool]:
+    """(steps taken, at most so many; whether all is done about the last of them).
+
+    Raises:
+        NotFinite: the right-hand side or its slope has no value.
+    """
+    if isinstance(solver, CompiledSteps):
+        found = solver.advance(most)
+        rows.take(solver)
+        return found
+    with np.errstate(all="ignore"):
+        step(solver, how.breakpoints, rows.end)
+    return int(solver.status != "failed"), False
 
 
 def _exactly(

@@ -126,15 +126,19 @@ def _events(phase: PhaseModel, t: float, x: np.ndarray, plan: Plan) -> Events | 
     if any(type(x) is not Node for x in asked):
         raise UsageError("nothing in the condition moves: it holds always or never", mend='write "theta = pi/2"')
     further = (*left_of(phase.edges), *asked)
+    if not further and not phase.bounds:
+        return None
+    whole = phase.signals.measured(further)
     if not further:
-        return Events(phase.signals.watched, floors) if phase.bounds else None
+        return Events(phase.signals.watched, floors, measured=whole)
     function = phase.functions.function(further)
 
     def values(t: np.ndarray, x: np.ndarray) -> np.ndarray:
         return np.hstack([phase.signals.watched(t, x), function.many(t, phase.functions.inner(x), phase.p)])
 
     floors = np.append(floors, np.full(len(further), COMPUTED))
-    return Events(values, floors, either=(len(floors) - 1,) if asked else (), touch=TOUCH * plan.how.rtol)
+    either = (len(floors) - 1,) if asked else ()
+    return Events(values, floors, either, TOUCH * plan.how.rtol, whole)
 
 
 def _at_edge(phase: PhaseModel, run: Run) -> Run:

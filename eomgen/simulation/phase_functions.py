@@ -2,13 +2,13 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
-from functools import cached_property
+from collections.abc import Callable, Hashable
+from dataclasses import dataclass, field, replace
 
 import numpy as np
 
 from eomgen.codegen.program import bordered, program_of, right_hand_side
-from eomgen.codegen.rhs import RightHandSide, compiled
+from eomgen.codegen.rhs import RightHandSide, compiled, compiled_together
 from eomgen.mechanics.equations.articulated import with_accelerations
 from eomgen.mechanics.equations.equations_of_motion import EquationsOfMotion
 from eomgen.mechanics.equations.wellposed import refuse_massless
@@ -23,17 +23,42 @@ class PhaseFunctions:
         equations: of motion, friction included.
         p: the parameters' values.
         target: of the emitted code of the right-hand side.
+        made: the functions that have been asked for; those of other values are the same.
     """
 
     equations: EquationsOfMotion
     p: np.ndarray
     target: str | None
+    made: dict[Hashable, RightHandSide] = field(default_factory=dict, repr=False, compare=False)
 
-    @cached_property
+    def at(self, p: np.ndarray) -> PhaseFunctions:
+        """The same at other values of the parameters."""
+        return replace(self, p=p)
+
+    @property
     def rhs(self) -> RightHandSide:
+        return self._once("rhs", self._right_hand_side)
+
+    @property
+    def energies(self) -> RightHandSide:
+        """(T, V)."""
+        self._once("rhs", self._right_hand_side)
+        return self.made["energies"]
+
+    def _right_hand_side(self) -> RightHandSide:
+        """x', and T and V beside it."""
         refuse_massless(self.equations)
         program = right_hand_side(with_accelerations(self.equations))
-        return compiled(program, self.target)
+        energies = program_of(
+            (self.equations.T, self.equations.V), self.equations.symbols, inputs=self.equations.system.inputs
+        )
+        found, self.made["energies"] = compiled_together((program, energies), self.target)
+        return found
+
+    def _once(self, key: Hashable, make: Callable[[], RightHandSide]) -> RightHandSide:
+        if key not in self.made:
+            self.made[key] = make()
+        return self.made[key]
 
     @property
     def places(self) -> int:
@@ -54,6 +79,9 @@ class PhaseFunctions:
 
     def function(self, scalars: tuple[Scalar, ...]) -> RightHandSide:
         """Functions of q, u, t, accelerations and multipliers, compiled."""
+        return self._once(("in motion", scalars), lambda: self._function(scalars))
+
+    def _function(self, scalars: tuple[Scalar, ...]) -> RightHandSide:
         solve = bordered(self.equations) if self.equations.symbols.u else None
         return compiled(
             program_of(scalars, self.equations.symbols, inputs=self.equations.system.inputs, solve=solve), "numpy"
@@ -61,4 +89,8 @@ class PhaseFunctions:
 
     def kinematic(self, scalars: tuple[Scalar, ...]) -> RightHandSide:
         """Functions of q, u and t, compiled."""
-        return compiled(program_of(scalars, self.equations.symbols, inputs=self.equations.system.inputs), "numpy")
+        inputs = self.equations.system.inputs
+        return self._once(
+            ("placed", scalars),
+            lambda: compiled(program_of(scalars, self.equations.symbols, inputs=inputs), "numpy"),
+        )

@@ -26,7 +26,7 @@ from eomgen.simulation.contact_events import ContactEvents, EventFunction
 from eomgen.simulation.contact_signals import ContactSignals
 from eomgen.simulation.phase_functions import PhaseFunctions
 from eomgen.simulation.slopes import slope_of
-from eomgen.simulation.solvers import Slope
+from eomgen.simulation.solvers import Slope, StateRate
 from eomgen.symbolic.expression.derivative import depends_on
 from eomgen.symbolic.numeric.tolerances import COMPUTED
 
@@ -60,6 +60,12 @@ class PhaseModel:
     def functions(self) -> PhaseFunctions:
         return PhaseFunctions(self.equations, self.p, self.target)
 
+    def at(self, p: np.ndarray) -> PhaseModel:
+        """The same at other values of the parameters."""
+        found = replace(self, p=p)
+        vars(found)["functions"] = self.functions.at(p)
+        return found
+
     @cached_property
     def signals(self) -> ContactSignals:
         return ContactSignals(self.watch, self.functions)
@@ -92,10 +98,12 @@ class PhaseModel:
     def speeds(self) -> tuple[str, ...]:
         return tuple(u.name for u in self.system.symbols.u)
 
-    def rate(self, t: float, x: np.ndarray) -> np.ndarray:
-        """x', the slack of loose strings included."""
-        if not self.loose:
-            return self.functions.rhs(t, x, self.p)
+    @cached_property
+    def rate(self) -> StateRate:
+        """(t, x) -> x', the slack of loose strings included."""
+        return self._rate_with_slacks if self.loose else self.functions.rhs.at(self.p)
+
+    def _rate_with_slacks(self, t: float, x: np.ndarray) -> np.ndarray:
         inner = self.functions.inner(x)
         slackening = self._slackening(t, inner, self.p)
         return np.concatenate([self.functions.rhs(t, inner, self.p), slackening])
@@ -163,7 +171,7 @@ class PhaseModel:
 
     def energies(self, t: np.ndarray, x: np.ndarray) -> np.ndarray:
         """(T, V), each n [J]."""
-        return self._energies.many(t, self.functions.inner(x), self.p).T
+        return self.functions.energies.many(t, self.functions.inner(x), self.p).T
 
     @cached_property
     def projection(self) -> Projection | None:
@@ -227,10 +235,6 @@ class PhaseModel:
     @cached_property
     def _rates(self) -> RightHandSide:
         return self.functions.kinematic(self.system.scope.rates)
-
-    @cached_property
-    def _energies(self) -> RightHandSide:
-        return self.functions.kinematic((self.equations.T, self.equations.V))
 
 
 def smallest_speed(values: Values) -> float:

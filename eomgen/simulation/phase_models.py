@@ -98,6 +98,12 @@ class PhaseModels:
         self._made: dict[Configuration, PhaseModel] = {}
         self._slides: dict[Configuration, Slides] = {}
 
+    def at(self, p: np.ndarray) -> PhaseModels:
+        """The same at other values of the parameters, where no tie asks for these: what is compiled is not again."""
+        found = PhaseModels(self.model, p, self.target, self.rates, self._derived)
+        found._made = {configuration: phase.at(p) for configuration, phase in self._made.items()}
+        return found
+
     def of(self, configuration: Configuration) -> PhaseModel:
         """The phase of a configuration.
 

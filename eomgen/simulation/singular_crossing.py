@@ -20,8 +20,8 @@ import numpy as np
 from eomgen.codegen.spheres import SpherePlaces
 from eomgen.simulation.constraint_drift import Projection
 from eomgen.simulation.constraint_rank import PLACE, Nearness, RankLookout
-from eomgen.simulation.event_location import Crossing, Events, EventSearch
-from eomgen.simulation.integrator import LOOKED_OUT, Run, Stepping, march
+from eomgen.simulation.event_location import LOOKED_OUT, Crossing, Events, EventSearch
+from eomgen.simulation.integrator import Run, Stepping, march
 from eomgen.simulation.solvers import Slope, StateRate
 from eomgen.symbolic.numeric.tolerances import FAIR_RUN, FINEST_RUN, WIDE_STEP
 

@@ -12,6 +12,21 @@ from eomgen.codegen.program import Program
 
 
 @dataclass(frozen=True)
+class Address:
+    """Where a compiled right-hand side and its constants lie; `kept` keeps them there.
+
+    Args:
+        evaluate: of the function (t, x, p, c, inputs, dx).
+        p, c: of its parameters and of what they determine.
+    """
+
+    evaluate: int
+    p: int
+    c: int
+    kept: Any
+
+
+@dataclass(frozen=True)
 class Functions:
     """A program in memory.
 
@@ -25,7 +40,7 @@ class Functions:
     constants: Callable[[Any], Any]
     one: Callable[..., np.ndarray]
     many: Callable[..., np.ndarray]
-    address: Callable[[Any], Any] | None = None
+    address: Callable[[Any], Address] | None = None
 
 
 @dataclass(frozen=True)

@@ -176,6 +176,25 @@ def c_functions(program: Program) -> Functions:
     return functions_of(library(_text(made, "eomgen", RHS)), program, "eomgen", made.constants)
 
 
+def c_together(programs: Sequence[Program]) -> tuple[Functions, ...]:
+    """Several programs, compiled as one text."""
+    made = [_lowered(program, f"eomgen{i}", RHS) for i, program in enumerate(programs)]
+    text = "\n".join(_apart(each, f"eomgen{i}") for i, each in enumerate(made))
+    compiled = library(text)
+    return tuple(
+        functions_of(compiled, program, f"eomgen{i}", each.constants)
+        for i, (program, each) in enumerate(zip(programs, made, strict=True))
+    )
+
+
+def _apart(made: Lowered, stem: str) -> str:
+    """The functions of a program, what is hidden in them under names of its own."""
+    hidden = [C.called(op, ["0"] * 3).partition("(")[0] for op in sorted(made.ops & C.defined.keys())]
+    hidden += [*(table.name for table in made.tables), *(function.name for function in made.kernels)]
+    before, after = (f"#define {name} {stem}_hidden_{name}" for name in hidden), (f"#undef {name}" for name in hidden)
+    return "\n".join((*before, _text(made, stem, RHS), *after))
+
+
 def c_files(program: Program, stem: str, description: Description) -> dict[str, str]:
     """NAME_rhs.c and NAME_rhs.h; the former with a self-test: `cc -DEOMGEN_SELFTEST NAME_rhs.c -lm && ./a.out`."""
     role, made = description.role, _lowered(program, stem, description.role, description.remarks)

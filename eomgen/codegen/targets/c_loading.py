@@ -11,8 +11,7 @@ import numpy as np
 
 from eomgen.codegen.build import function_of
 from eomgen.codegen.program import Program
-from eomgen.codegen.targets.base import Functions
-from eomgen.codegen.trial import Address
+from eomgen.codegen.targets.base import Address, Functions
 
 _ADDRESS = ctypes.c_void_p
 

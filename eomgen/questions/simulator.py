@@ -1,0 +1,117 @@
+"""Equations -> Simulator: one motion after another, from other values and starts; derived and compiled once."""
+
+from __future__ import annotations
+
+from collections import OrderedDict
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass, field, replace
+from functools import cached_property
+
+from eomgen.codegen.rhs import parameter_vector
+from eomgen.equations import Equations
+from eomgen.errors import UsageError
+from eomgen.model.fields import WrittenEquation
+from eomgen.model.findings import nearest
+from eomgen.model.parts import Model
+from eomgen.model.replaced import Valued, Values, with_values
+from eomgen.questions.run import phase_models, run
+from eomgen.simulation.configuration import has_phases
+from eomgen.simulation.integrator import Stepping
+from eomgen.simulation.phase_models import PhaseModels
+from eomgen.simulation.result import Trajectory
+
+SAMPLES = 101
+MOST_KEPT = 16  # models whose ties or contacts were derived at other values of the parameters
+REACTIONS = "reactions"
+
+
+@dataclass(frozen=True)
+class Simulator:
+    """simulator(time=10) -> Trajectory, again and again.
+
+    A model without ties is derived once for all values of its parameters. Which ties depend on one another, and which
+    contacts are closed at the start, depends on the values: with other ones such a model is derived anew.
+
+    Args:
+        model: whose values hold where none are given.
+        derive: model -> its equations.
+        how: the integrator's way; its tolerances are those of the run.
+        target: of the emitted code.
+    """
+
+    model: Model
+    derive: Callable[[Model], Equations] = field(repr=False)
+    how: Stepping = Stepping()
+    target: str | None = None
+    _known: OrderedDict[object, tuple[Equations, PhaseModels]] = field(default_factory=OrderedDict, repr=False)
+
+    def __call__(
+        self,
+        time: float = 10.0,
+        parameters: Values | None = None,
+        start: Values | None = None,
+        samples: int | Sequence[float] = SAMPLES,
+        columns: Sequence[str] = (),
+        *,
+        until: WrittenEquation | str | None = None,
+    ) -> Trajectory:
+        """The motion from the start values of the model.
+
+        Args:
+            time: how long [s].
+            parameters, start: values that replace the model's, as `eomgen.simulate` takes them.
+            samples: how many instants are given, or the instants themselves.
+            columns: names of reactions that are wanted beside the states, "reactions" for all.
+            until: an equation: the end, where it first holds.
+        Raises:
+            MissingValues: parameters without a value, all named.
+            UsageError: what is asked makes no sense.
+        """
+        valued = with_values(self.model, parameters, start)
+        equations, models = self._at(valued, bool(parameters))
+        asked = (columns,) if isinstance(columns, str) else tuple(columns)
+        found = run(
+            equations,
+            time=time,
+            start=valued.start,
+            samples=samples,
+            how=self.how,
+            until=until,
+            models=models,
+            reactions=bool(asked),
+        )
+        return found if not asked or REACTIONS in asked else _with_columns(found, asked)
+
+    def _at(self, valued: Valued, changed: bool) -> tuple[Equations, PhaseModels]:
+        """The equations, and their phases, at the values of a model."""
+        model, known = valued.model, self._known
+        starts = valued.start if has_phases(model) else None
+        key = (model.parameters, starts) if changed or starts else None
+        if key not in known:
+            equations = self.derive(model) if self._is_tied else self._equations
+            p = parameter_vector(model)
+            if known and not self._is_tied:
+                models = next(iter(known.values()))[1].at(p)
+            else:
+                models = phase_models(equations, p, self.how, self.target)
+            known[key] = equations, models
+            if len(known) > MOST_KEPT:
+                known.popitem(last=False)
+        return known[key]
+
+    @cached_property
+    def _equations(self) -> Equations:
+        return self.derive(self.model)
+
+    @cached_property
+    def _is_tied(self) -> bool:
+        """Whether what is derived depends on values."""
+        return has_phases(self.model) or bool(self._equations.graph.system.ties.rows)
+
+
+def _with_columns(found: Trajectory, asked: tuple[str, ...]) -> Trajectory:
+    """The run with these reactions alone."""
+    for name in asked:
+        if name not in found.reactions:
+            raise UsageError(f"no column '{name}'", mend=nearest(name, found.reactions) or f"ask for '{REACTIONS}'")
+    return replace(found, reactions={name: found.reactions[name] for name in asked})

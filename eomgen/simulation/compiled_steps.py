@@ -1,0 +1,389 @@
+"""A right-hand side in C -> many steps of DOP853 a call: Python is asked where a step needs a look.
+
+`march.c` takes steps, keeps quaternions and ties, gives states at the instants asked for, as long as no event can lie
+in a step and no singular position near it. Of the step at which it stops nothing but the motion has been changed.
+"""
+
+from __future__ import annotations
+
+import ctypes
+import functools
+import time
+from collections.abc import Callable
+from importlib import resources
+from typing import Any, Protocol
+
+import numpy as np
+
+from eomgen.codegen.build import function_of, library
+from eomgen.codegen.rhs import RightHandSide
+from eomgen.codegen.targets.base import Address
+from eomgen.codegen.targets.c import c_together
+from eomgen.simulation import constraint_drift, constraint_rank, event_location
+from eomgen.simulation.constraint_drift import DriftCorrection, Rows
+from eomgen.simulation.constraint_rank import RankLookout
+from eomgen.simulation.event_location import EventSearch
+from eomgen.symbolic.numeric.tolerances import ITERATED, NEARLY_SINGULAR, ROUNDING, SOLVED
+
+SAFETY, SMALLEST, LARGEST = 0.9, 0.2, 10.0  # factors between two step sizes, as scipy takes them
+SWEEPS = 30  # of turning pairs of rows; a handful does
+MOST_AT_ONCE, FEW = 1024, 8  # steps in a call; in the first
+A_CALL = 0.05  # [s] of a call: after it Python looks whether somebody has lost patience
+_GOES_ON, _LOOK, _REACHED, _TOO_SMALL = range(4)
+
+_CONSTANTS = {
+    "MOST_SWEEPS": SWEEPS,
+    "SQUARE": ROUNDING,
+    "GAP_ROUNDING": constraint_drift.ROUNDING,
+    "ROW_ROUNDING": ROUNDING,
+    "DAMPING": NEARLY_SINGULAR**2,
+    "PUT_BACK_STEPS": constraint_drift.STEPS,
+    "PUT_BACK_FAR": constraint_drift.FAR,
+    "LOST": constraint_drift.LOST,
+    "LARGEST_GROWTH": LARGEST,
+    "SMALLEST_GROWTH": SMALLEST,
+    "SAFETY": SAFETY,
+    "SAME_INSTANT": SOLVED,
+    "RESOLVED": event_location.RESOLVED,
+    "EDGE": event_location.EDGE,
+    "TOUCHES": ITERATED,
+    "STEEP": constraint_rank.STEEP,
+}
+
+_SIZE, _REAL, _AT = ctypes.c_size_t, ctypes.c_double, ctypes.c_void_p
+
+
+class _Function(ctypes.Structure):
+    _fields_ = tuple((name, _AT) for name in ("f", "p", "c", "inputs"))
+
+
+class _Rows(ctypes.Structure):
+    _fields_ = (("f", _Function), ("k", _SIZE), ("n", _SIZE))
+
+
+def _fields(kind: Any, names: str) -> list[tuple[str, Any]]:
+    return [(name, kind) for name in names.split()]
+
+
+class _March(ctypes.Structure):
+    """`struct march`, in its order."""
+
+    _fields_ = (
+        ("n", _SIZE),
+        ("rate", _Function),
+        *_fields(_REAL, "t t_old h h_old end rtol atol"),
+        *_fields(_AT, "x x_old f K F room stops"),
+        *_fields(_SIZE, "n_stops evaluations is_dense"),
+        ("instants", _AT),
+        *_fields(_SIZE, "n_instants next"),
+        *_fields(_AT, "rows track_t track_x"),
+        ("tracked", _SIZE),
+        ("spheres", _AT),
+        *_fields(_SIZE, "n_spheres holds"),
+        ("gaps", _Function),
+        *_fields(_SIZE, "n_gaps placed coordinates speeds"),
+        ("places", _Rows),
+        ("rates", _Rows),
+        ("work", _AT),
+        *_fields(_SIZE, "n_events is_blind"),
+        ("events", _Function),
+        *_fields(_AT, "floors either signs largest looks armed"),
+        ("is_near_watched", _SIZE),
+        ("determinants", _Function),
+        ("ties", _Function),
+        *_fields(_SIZE, "n_determinants n_rows n_columns rank"),
+        *_fields(_REAL, "near before"),
+        ("slopes", _REAL * constraint_rank.REMEMBERED),
+        *_fields(_SIZE, "n_slopes is_armed"),
+        *_fields(_AT, "lengths sizes"),
+    )
+
+
+@functools.cache
+def _library() -> tuple[Any, Any, Any]:
+    """(begin, march, dense) of march.c, compiled."""
+    defined = "\n".join(f"#define {name} {value!r}" for name, value in _CONSTANTS.items())
+    texts = [resources.files("eomgen.codegen").joinpath("dop853.c"), resources.files("eomgen.simulation") / "march.c"]
+    made = library("\n".join([defined, *(text.read_text(encoding="utf-8") for text in texts)]))
+    begin, march, dense = (function_of(made, name) for name in ("march_begin", "march", "march_dense"))
+    begin.argtypes, begin.restype = [_AT], None
+    march.argtypes, march.restype = [_AT, _AT], ctypes.c_int
+    dense.argtypes, dense.restype = [_AT], None
+    return begin, march, dense
+
+
+@functools.lru_cache(maxsize=256)
+def _together(functions: tuple[RightHandSide, ...]) -> tuple[Callable[[np.ndarray], Address], ...]:
+    """Functions of the state in C, whatever they run in otherwise: p -> where each lies."""
+    compiled = c_together([function.program for function in functions])
+
+    def of(each: Any) -> Callable[[np.ndarray], Address]:
+        def found(p: np.ndarray) -> Address:
+            address: Address = each.address(each.constants(p))
+            return address
+
+        return found
+
+    return tuple(map(of, compiled))
+
+
+class Tolerances(Protocol):
+    """What is read of how an integrator goes."""
+
+    @property
+    def rtol(self) -> float: ...
+
+    @property
+    def atol(self) -> float: ...
+
+    @property
+    def breakpoints(self) -> tuple[float, ...]: ...
+
+
+class CompiledSteps:
+    """Steps of DOP853 in C, with the attributes of scipy's integrators; `advance` instead of `step`.
+
+    Args:
+        f: the right-hand side, with its address.
+        span, x0: the first and the last instant, and the state at the first.
+        how: the tolerances of one step, and instants across which no step goes.
+        instants: where states are wanted.
+        hold: what is done to the states after every step.
+        search, lookout: what may end the run; what of it is not in C leaves every step to Python.
+    Raises:
+        RunFailed, ToolMissing: as of `library`.
+    """
+
+    def __init__(
+        self,
+        f: Any,
+        span: tuple[float, float],
+        x0: np.ndarray,
+        *,
+        how: Tolerances,
+        instants: np.ndarray | None,
+        hold: DriftCorrection,
+        search: EventSearch | None,
+        lookout: Any,
+    ) -> None:
+        self._begin, self._march, self._dense = _library()
+        n = len(x0)
+        self.fun, at = f, f.address
+        self._kept: list[Any] = [f]
+        self._x, self._x_old, self._f = np.array(x0, dtype=float), np.array(x0, dtype=float), np.zeros(n)
+        self._F, self._track_t, self._track_x = np.zeros((7, n)), np.zeros(MOST_AT_ONCE), np.zeros((MOST_AT_ONCE, n))
+        self._instants = np.zeros(0) if instants is None else np.ascontiguousarray(instants)
+        self._instants = self._instants[np.searchsorted(self._instants, span[0], side="right") :]
+        self._rows, self._given = np.zeros((len(self._instants), n)), 0
+        m = self._m = _March(n=n, rate=_at(at), t=span[0], t_old=span[0], end=span[1], rtol=how.rtol, atol=how.atol)
+        m.x, m.x_old, m.f, m.F = (self._put(a) for a in (self._x, self._x_old, self._f, self._F))
+        m.K, m.room = self._put(np.zeros((16, n))), self._put(np.zeros((3, n)))
+        m.track_t, m.track_x, m.rows = self._put(self._track_t), self._put(self._track_x), self._put(self._rows)
+        m.stops, m.n_stops = self._put(np.array(how.breakpoints, dtype=float)), len(how.breakpoints)
+        m.instants, m.n_instants = self._put(self._instants), len(self._instants)
+        self._search: EventSearch | None = None
+        self._lookout: RankLookout | None = None
+        self._few, self.status, self.t_bound = FEW, "running", span[1]
+        self._most = _SIZE(0)
+        self._watch(hold, search, lookout)
+        self._begin(ctypes.byref(m))
+
+    # -- what is watched --------------------------------------------------------------------------
+
+    def _watch(self, hold: DriftCorrection, search: EventSearch | None, lookout: Any) -> None:
+        m, projection = self._m, hold.projection
+        m.spheres = self._put(np.array(hold.spheres, dtype=np.int32).reshape(-1, 4))
+        m.n_spheres = len(hold.spheres)
+        functions: list[tuple[str, RightHandSide, np.ndarray]] = []
+        blind = hold.projection is not None and hold.every is not None
+        if projection is not None:
+            functions.append(("gaps", projection.gaps, projection.p))
+            m.holds, m.placed, m.n_gaps = 1, projection.placed, len(projection.gaps.program.outputs)
+            m.coordinates, m.speeds = projection.coordinates, projection.size - projection.coordinates
+            for name, rows in (("places", projection.positions), ("rates", projection.speeds)):
+                if rows is not None:
+                    functions.append((name, rows.function, projection.p))
+                    setattr(m, name, _Rows(k=rows.k, n=rows.n))
+        if search is not None:
+            self._search = search
+            measured = search.events.measured
+            if measured is None:
+                blind = True
+            else:
+                functions.append(("events", measured.function, measured.p))
+                m.n_events = len(search.signs)
+                self._events(search)
+        if lookout is not None:
+            nearness = lookout.nearness if isinstance(lookout, RankLookout) else None
+            parts = [] if nearness is None else [nearness.determinants, nearness.rows and nearness.rows.rows]
+            known = [getattr(part, "function", None) for part in parts if part is not None]
+            if not parts or None in known:
+                blind = True
+            else:
+                self._lookout = lookout
+                self._near(lookout, functions)
+        m.is_blind = blind
+        made = _together(tuple(function for _, function, _ in functions)) if functions and not blind else ()
+        for (name, _, p), address in zip(functions, made, strict=False):
+            found = address(p)
+            self._kept.append(found)
+            place = getattr(m, name)
+            if isinstance(place, _Rows):
+                place.f = _at(found)
+            else:
+                setattr(m, name, _at(found))
+        m.work = self._put(np.zeros(self._room(projection)))
+
+    def _events(self, search: EventSearch) -> None:
+        m, k = self._m, len(search.signs)
+        self._signs, self._largest, self._armed = np.zeros(k), np.zeros(k), np.zeros(k, dtype=np.int32)
+        either = np.zeros(k, dtype=np.int32)
+        either[list(search.events.either)] = 1
+        m.floors, m.either = self._put(np.array(search.events.floors, dtype=float)), self._put(either)
+        m.signs, m.largest, m.armed = self._put(self._signs), self._put(self._largest), self._put(self._armed)
+        m.looks = self._put(np.zeros((event_location.PARTS + 3, k)))
+
+    def _near(self, lookout: RankLookout, functions: list[tuple[str, RightHandSide, np.ndarray]]) -> None:
+        m, nearness = self._m, lookout.nearness
+        m.is_near_watched, m.near = 1, lookout.near
+        if nearness.determinants is not None:
+            measure: Any = nearness.determinants
+            functions.append(("determinants", measure.function, measure.p))
+            m.n_determinants = len(measure.function.program.outputs)
+        if nearness.rows is not None:
+            measure = nearness.rows.rows
+            functions.append(("ties", measure.function, measure.p))
+            m.n_rows, m.rank = len(nearness.rows.ties), nearness.rows.rank
+            m.n_columns = len(measure.function.program.outputs) // m.n_rows
+        self._lengths, self._sizes = np.zeros((m.n_rows, 1)), np.zeros(m.n_determinants + 1)
+        m.lengths, m.sizes = self._put(self._lengths), self._put(self._sizes)
+
+    def _room(self, projection: Any) -> int:
+        """Numbers in between: what a correction of a state takes, and what tells how near a singular position is."""
+        m = self._m
+        near = max(m.n_determinants, m.n_rows * m.n_columns)
+        if projection is None:
+            return int(near + 1)
+        rows: list[Rows] = [each for each in (projection.positions, projection.speeds) if each is not None]
+        n, k = max(each.n for each in rows), max(each.k for each in rows)
+        moves = m.coordinates + m.speeds
+        own = m.n_gaps + 2 * m.n + k + 2 * moves + 2 * n + 2 * (n * n + k * n) + moves * n + n * k + k * k + 2 * k
+        return int(max(near, own) + 1)
+
+    # -- steps --------------------------------------------------------------------------------------
+
+    def advance(self, most: int) -> tuple[int, bool]:
+        """(steps taken, at most so many; whether nothing is left to be done about the last of them)."""
+        self._told()
+        self._most.value = min(most, self._few)
+        began = time.perf_counter()
+        found = self._march(ctypes.byref(self._m), ctypes.byref(self._most))
+        taken = self._most.value
+        spent = time.perf_counter() - began
+        if spent > 0:
+            self._few = max(1, min(MOST_AT_ONCE, int(taken * min(A_CALL / spent, 8.0))))
+        self._heard()
+        if found == _TOO_SMALL:
+            self.status = "failed"
+        elif self._m.t >= self.t_bound:
+            self.status = "finished"
+        return taken, found in (_GOES_ON, _REACHED)
+
+    def _told(self) -> None:
+        """What Python knows, for C."""
+        if self._search is not None and self._m.n_events:
+            self._signs[:], self._armed[:], self._largest[:] = (
+                self._search.signs,
+                self._search.armed,
+                self._search.largest,
+            )
+        if self._lookout is not None:
+            m, nearness = self._m, self._lookout.nearness
+            self._lengths[:], sizes = nearness.lengths, np.atleast_1d(nearness.largest)
+            self._sizes[:] = np.resize(sizes, len(self._sizes)) if sizes.size > 1 else sizes
+            m.before, m.is_armed = self._lookout.before, self._lookout.armed
+            m.n_slopes = len(self._lookout.slopes)
+            m.slopes[: m.n_slopes] = list(self._lookout.slopes)
+
+    def _heard(self) -> None:
+        """The same back."""
+        if self._search is not None and self._m.n_events:
+            self._search.signs, self._search.armed = self._signs.copy(), self._armed.astype(bool)
+            self._search.largest = self._largest.copy()
+        if self._lookout is not None:
+            m, nearness = self._m, self._lookout.nearness
+            nearness.lengths = self._lengths.copy()
+            nearness.largest = self._sizes[: m.n_determinants + (m.n_rows > 0)].copy()
+            self._lookout.before = m.before
+            self._lookout.slopes.clear()
+            self._lookout.slopes.extend(m.slopes[: m.n_slopes])
+
+    @property
+    def track(self) -> tuple[np.ndarray, np.ndarray]:
+        """(instants, states) at the ends of the steps of the last call that are done with."""
+        done = self._m.tracked
+        return self._track_t[:done].copy(), self._track_x[:done].copy()
+
+    def rows(self) -> tuple[np.ndarray, np.ndarray]:
+        """(instants, states) asked for that have come since the last time."""
+        before, self._given = self._given, self._m.next
+        return self._instants[before : self._given], self._rows[before : self._given]
+
+    def passed(self, t: float) -> None:
+        """The instants up to t have been given by Python."""
+        self._given = self._m.next = int(np.searchsorted(self._instants, t, side="right"))
+
+    # -- as scipy's ---------------------------------------------------------------------------------
+
+    @property
+    def t(self) -> float:
+        return float(self._m.t)
+
+    @property
+    def t_old(self) -> float:
+        return float(self._m.t_old)
+
+    @property
+    def nfev(self) -> int:
+        return int(self._m.evaluations)
+
+    @property
+    def y(self) -> np.ndarray:
+        return self._x.copy()
+
+    @y.setter
+    def y(self, x: np.ndarray) -> None:
+        self._x[:] = x
+
+    @property
+    def f(self) -> np.ndarray:
+        """The rate at t."""
+        return self._f.copy()
+
+    @f.setter
+    def f(self, dx: np.ndarray) -> None:
+        self._f[:] = dx
+        self._m.evaluations += 1
+
+    def dense_output(self) -> Any:
+        """t -> x in the last step, before it was put back onto the ties."""
+        self._dense(ctypes.byref(self._m))
+        t_old, h, x_old, F = self.t_old, self.t - self.t_old, self._x_old.copy(), self._F.copy()
+
+        def between(t: Any) -> np.ndarray:
+            part = np.asarray((np.asarray(t) - t_old) / h)[..., None]
+            x = np.zeros_like(x_old)
+            for row, factor in zip(F[::-1], (part, 1 - part) * 4, strict=False):
+                x = (x + row) * factor
+            return np.asarray((x + x_old).T)
+
+        return between
+
+    def _put(self, array: np.ndarray) -> int:
+        """Where an array lies; it stays there."""
+        self._kept.append(array)
+        return int(array.ctypes.data)
+
+
+def _at(address: Address) -> _Function:
+    return _Function(f=address.evaluate, p=address.p, c=address.c, inputs=None)

@@ -1,0 +1,542 @@
+/* x' = f(t, x) for many steps in one call, as long as all is calm: what keeps the ties, what ends a run.
+
+   It stands behind codegen/marching.py, which fills the struct, and goes on here where a call has ended. Python looks at
+   a step itself where an event may lie in it, where it may come near a singular position, or where a tie does not close;
+   then nothing of what is watched has been changed by that step. */
+
+#include <math.h>
+#include <stddef.h>
+#include <string.h>
+
+struct rows { /* M, J, N at a state, one after the other: k rows over n speeds, N of `coordinates` rows */
+    struct rate f;
+    size_t k, n;
+};
+
+struct march {
+    size_t n;
+    struct rate rate;
+    double t, t_old, h, h_old, end, rtol, atol;
+    double *x, *x_old, *f, *K, *F, *room; /* n, n, n, 16 n, 7 n, 3 n */
+    const double *stops;                  /* instants across which no step goes */
+    size_t n_stops;
+    size_t evaluations, is_dense;
+    const double *instants; /* where states are wanted */
+    size_t n_instants, next;
+    double *rows;                       /* n_instants x n */
+    double *track_t, *track_x;          /* the ends of steps */
+    size_t tracked;
+    const int *spheres; /* the places of quaternions, 4 each */
+    size_t n_spheres;
+    size_t holds; /* whether states are put back onto ties */
+    struct rate gaps;
+    size_t n_gaps, placed, coordinates, speeds;
+    struct rows places, rates;
+    double *work;
+    size_t n_events, is_blind; /* blind: Python looks at every step */
+    struct rate events;
+    const double *floors;
+    const int *either;
+    double *signs, *largest, *looks; /* LOOKS x n_events */
+    int *armed;
+    size_t is_near_watched;
+    struct rate determinants, ties;
+    size_t n_determinants, n_rows, n_columns, rank;
+    double near, before, slopes[4];
+    size_t n_slopes, is_armed;
+    double *lengths, *sizes; /* of the rows; of the determinants and of what vanishes with the rank */
+};
+
+enum { PARTS = 8, LOOKS = PARTS + 3 }; /* of a step */
+enum { GOES_ON, LOOK, REACHED, TOO_SMALL };
+
+/* -- dense algebra ---------------------------------------------------------------------------------------------- */
+
+/* A X = B by elimination with pivots, X in B; whether there is one */
+static int solved(size_t n, double *A, size_t m, double *B)
+{
+    for (size_t j = 0; j < n; j++) {
+        size_t best = j;
+        for (size_t i = j + 1; i < n; i++)
+            if (fabs(A[i*n + j]) > fabs(A[best*n + j]))
+                best = i;
+        if (!(fabs(A[best*n + j]) > 0))
+            return 0;
+        if (best != j) {
+            for (size_t k = 0; k < n; k++) {
+                double kept = A[j*n + k];
+                A[j*n + k] = A[best*n + k], A[best*n + k] = kept;
+            }
+            for (size_t k = 0; k < m; k++) {
+                double kept = B[j*m + k];
+                B[j*m + k] = B[best*m + k], B[best*m + k] = kept;
+            }
+        }
+        for (size_t i = j + 1; i < n; i++) {
+            double factor = A[i*n + j]/A[j*n + j];
+            if (factor == 0)
+                continue;
+            for (size_t k = j + 1; k < n; k++)
+                A[i*n + k] -= factor*A[j*n + k];
+            for (size_t k = 0; k < m; k++)
+                B[i*m + k] -= factor*B[j*m + k];
+        }
+    }
+    for (size_t i = n; i-- > 0;)
+        for (size_t k = 0; k < m; k++) {
+            for (size_t j = i + 1; j < n; j++)
+                B[i*m + k] -= A[i*n + j]*B[j*m + k];
+            B[i*m + k] /= A[i*n + i];
+        }
+    return 1;
+}
+
+static double length(size_t n, const double *row)
+{
+    double sum = 0;
+    for (size_t k = 0; k < n; k++)
+        sum += row[k]*row[k];
+    return sqrt(sum);
+}
+
+/* the singular value number `rank` of k rows, the largest being 1, by turning pairs of rows until they are square */
+static double singular_value(size_t k, size_t n, double *J, size_t rank)
+{
+    for (int sweep = 0; sweep < MOST_SWEEPS; sweep++) {
+        int turned = 0;
+        for (size_t i = 0; i + 1 < k; i++)
+            for (size_t j = i + 1; j < k; j++) {
+                double a = 0, b = 0, d = 0;
+                for (size_t m = 0; m < n; m++) {
+                    a += J[i*n + m]*J[i*n + m];
+                    b += J[j*n + m]*J[j*n + m];
+                    d += J[i*n + m]*J[j*n + m];
+                }
+                if (!(fabs(d) > SQUARE*sqrt(a*b)))
+                    continue;
+                double z = (b - a)/(2*d), s = (z < 0 ? -1 : 1)/(fabs(z) + sqrt(1 + z*z)), c = 1/sqrt(1 + s*s);
+                s *= c;
+                turned = 1;
+                for (size_t m = 0; m < n; m++) {
+                    double one = J[i*n + m], other = J[j*n + m];
+                    J[i*n + m] = c*one - s*other;
+                    J[j*n + m] = s*one + c*other;
+                }
+            }
+        if (!turned)
+            break;
+    }
+    double found = INFINITY;
+    for (size_t taken = 0; taken < rank; taken++) {
+        size_t best = 0;
+        double largest = -1;
+        for (size_t i = 0; i < k; i++) {
+            double size = length(n, J + i*n);
+            if (size > largest)
+                largest = size, best = i;
+        }
+        found = largest;
+        for (size_t m = 0; m < n; m++)
+            J[best*n + m] = 0;
+    }
+    return found;
+}
+
+/* -- quaternions and ties --------------------------------------------------------------------------------------- */
+
+static void on_spheres(const struct march *m, double *x)
+{
+    for (size_t i = 0; i < m->n_spheres; i++) {
+        const int *at = m->spheres + 4*i;
+        double norm = sqrt(x[at[0]]*x[at[0]] + x[at[1]]*x[at[1]] + x[at[2]]*x[at[2]] + x[at[3]]*x[at[3]]);
+        for (int j = 0; j < 4 && norm > 0; j++)
+            x[at[j]] /= norm;
+    }
+}
+
+/* the largest of the gaps from `first` to `last`; NaN where one is */
+static double largest_gap(const struct march *m, double t, const double *x, size_t first, size_t last, double *gaps)
+{
+    double largest = 0;
+    CALL(&m->gaps, t, x, gaps);
+    for (size_t i = first; i < last; i++)
+        if (!(fabs(gaps[i]) <= largest))
+            largest = fabs(gaps[i]);
+    return largest;
+}
+
+static double rounding_of(const struct march *m, const double *x)
+{
+    double largest = 1;
+    for (size_t k = 0; k < m->n; k++)
+        largest = fabs(x[k]) > largest ? fabs(x[k]) : largest;
+    return GAP_ROUNDING*largest;
+}
+
+/* change = N ds with the least ds^T M ds for which J ds = right, as `least_change` of constraint_drift.py */
+static int least_change(const struct march *m, const struct rows *rows, const double *values, const double *right,
+                        double *change, double *work)
+{
+    size_t n = rows->n, k = rows->k, moves = rows == &m->places ? m->coordinates : m->speeds;
+    const double *M = values, *given = M + n*n, *N = given + k*n;
+    double *J = work, *A = J + k*n, *moved = A + n*n, *S = moved + n*k, *d = S + k*k, *lam = d + k, *ds = lam + k;
+    double longest = 0, mean = 0;
+    for (size_t i = 0; i < k; i++) {
+        d[i] = length(n, given + i*n);
+        longest = d[i] > longest ? d[i] : longest;
+    }
+    for (size_t i = 0; i < n; i++)
+        mean += M[i*n + i]/(double)n;
+    memcpy(A, M, n*n*sizeof *A);
+    for (size_t i = 0; i < k; i++) {
+        int counts = d[i] > ROW_ROUNDING*longest;
+        for (size_t j = 0; j < n; j++) {
+            J[i*n + j] = counts ? given[i*n + j] : 0;
+            moved[j*k + i] = J[i*n + j];
+        }
+        for (size_t j = 0; j < n && counts; j++)
+            for (size_t l = 0; l < n; l++)
+                A[j*n + l] += mean*(J[i*n + j]/d[i])*(J[i*n + l]/d[i]);
+    }
+    if (!solved(n, A, k, moved))
+        for (size_t i = 0; i < k; i++)
+            for (size_t j = 0; j < n; j++)
+                moved[j*k + i] = J[i*n + j];
+    for (size_t i = 0; i < k; i++)
+        for (size_t j = 0; j < k; j++) {
+            S[i*k + j] = 0;
+            for (size_t l = 0; l < n; l++)
+                S[i*k + j] += J[i*n + l]*moved[l*k + j];
+        }
+    for (size_t i = 0; i < k; i++)
+        d[i] = 1/sqrt(S[i*k + i] > 0 ? S[i*k + i] : 1);
+    for (size_t i = 0; i < k; i++) {
+        lam[i] = d[i]*right[i];
+        for (size_t j = 0; j < k; j++)
+            S[i*k + j] = d[i]*S[i*k + j]*d[j] + (i == j ? DAMPING : 0);
+    }
+    if (!solved(k, S, 1, lam))
+        return 0;
+    for (size_t j = 0; j < n; j++) {
+        ds[j] = 0;
+        for (size_t i = 0; i < k; i++)
+            ds[j] += moved[j*k + i]*d[i]*lam[i];
+    }
+    for (size_t i = 0; i < moves; i++) {
+        change[i] = 0;
+        for (size_t j = 0; j < n; j++)
+            change[i] += N[i*n + j]*ds[j];
+    }
+    return 1;
+}
+
+/* Newton's method: x with its places or its speeds on the ties, as `closed` of constraint_drift.py */
+static void put_back(const struct march *m, const struct rows *rows, double t, double *x, double enough)
+{
+    size_t places = rows == &m->places, q = m->coordinates, n = m->n;
+    size_t first = places ? 0 : m->placed, last = places ? m->placed : m->n_gaps, moves = places ? q : m->speeds;
+    double *gaps = m->work, *best = gaps + m->n_gaps, *before = best + n, *right = before + n, *state = right + rows->k,
+           *change = state + q + (rows->n > m->speeds ? rows->n : m->speeds), *values = change + q + m->speeds,
+           *work = values + rows->n*rows->n + rows->k*rows->n + moves*rows->n;
+    double begun = largest_gap(m, t, x, first, last, gaps), left = INFINITY;
+    memcpy(best, x, n*sizeof *x);
+    memcpy(before, x, n*sizeof *x);
+    for (int step = 0; step < PUT_BACK_STEPS; step++) {
+        double size = largest_gap(m, t, x, first, last, gaps);
+        if (size <= enough)
+            break;
+        if (!(size < left)) {
+            memcpy(x, before, n*sizeof *x);
+            break;
+        }
+        memcpy(state, x, (q + m->speeds)*sizeof *x);
+        if (places)
+            for (size_t k = 0; k < rows->n; k++)
+                state[q + k] = 0;
+        CALL(&rows->f, t, state, values);
+        for (size_t i = 0; i < rows->k; i++)
+            right[i] = i < last - first ? -gaps[first + i] : 0;
+        memcpy(before, x, n*sizeof *x);
+        left = size;
+        if (!least_change(m, rows, values, right, change, work))
+            break;
+        for (size_t k = 0; k < moves; k++)
+            x[(places ? 0 : q) + k] += change[k];
+        on_spheres(m, x);
+    }
+    if (!(largest_gap(m, t, x, first, last, gaps) < begun))
+        memcpy(x, best, n*sizeof *x);
+}
+
+enum { STAYS, MOVED, STAYS_OPEN };
+
+/* a state on the ties and spheres */
+static int held(const struct march *m, double t, double *x, double allowed)
+{
+    if (m->holds) {
+        double rounding = rounding_of(m, x), most = allowed > rounding ? allowed : rounding;
+        if (!(largest_gap(m, t, x, 0, m->n_gaps, m->work) <= most)) {
+            double enough = PUT_BACK_FAR*m->atol;
+            on_spheres(m, x);
+            rounding = rounding_of(m, x);
+            enough = enough > rounding ? enough : rounding;
+            if (m->places.k)
+                put_back(m, &m->places, t, x, enough);
+            if (m->rates.k)
+                put_back(m, &m->rates, t, x, enough);
+            return largest_gap(m, t, x, 0, m->n_gaps, m->work) <= LOST*m->atol ? MOVED : STAYS_OPEN;
+        }
+    }
+    on_spheres(m, x);
+    return m->n_spheres ? MOVED : STAYS;
+}
+
+/* -- one step ----------------------------------------------------------------------------------------------------- */
+
+/* a first step, as scipy's */
+void march_begin(struct march *m)
+{
+    size_t n = m->n;
+    double d0 = 0, d1 = 0, d2 = 0, span = m->end - m->t, h, *x = m->room, *f = x + n;
+    CALL(&m->rate, m->t, m->x, m->f);
+    EACH {
+        double scale = m->atol + fabs(m->x[k])*m->rtol;
+        d0 += pow(m->x[k]/scale, 2)/(double)n;
+        d1 += pow(m->f[k]/scale, 2)/(double)n;
+    }
+    d0 = sqrt(d0), d1 = sqrt(d1);
+    h = d0 < 1e-5 || d1 < 1e-5 ? 1e-6 : 0.01*d0/d1;
+    h = h < span ? h : span;
+    EACH x[k] = m->x[k] + h*m->f[k];
+    CALL(&m->rate, m->t + h, x, f);
+    EACH d2 += pow((f[k] - m->f[k])/(m->atol + fabs(m->x[k])*m->rtol), 2)/(double)n;
+    d2 = sqrt(d2)/h;
+    double next = d1 <= 1e-15 && d2 <= 1e-15 ? fmax(1e-6, h*1e-3) : pow(0.01/fmax(d1, d2), 1.0/8);
+    m->h = fmin(fmin(100*h, next), span);
+    m->evaluations += 2;
+}
+
+/* one step, made smaller until its error is below the tolerance */
+static int stepped(struct march *m)
+{
+    size_t n = m->n;
+    double least = 10*fabs(nextafter(m->t, INFINITY) - m->t), size = fmax(m->h, least), growth = LARGEST_GROWTH;
+    double stop = m->end, *x = m->room, errors[2];
+    while (m->n_stops && m->stops[0] <= m->t + SAME_INSTANT*fmax(1, fabs(m->t)))
+        m->stops++, m->n_stops--;
+    if (m->n_stops && m->stops[0] < stop)
+        stop = m->stops[0];
+    memcpy(m->K, m->f, n*sizeof *x);
+    while (size >= least) {
+        double t = m->t + size < stop ? m->t + size : stop, h = t - m->t;
+        dop853_step(&m->rate, n, m->t, h, m->x, x, m->K);
+        m->evaluations += 12;
+        dop853_errors(n, m->x, x, m->K, m->rtol, m->atol, errors);
+        double whole = errors[0] + 0.01*errors[1], error = whole == 0 ? 0 : h*errors[0]/sqrt(whole*(double)n);
+        double factor = error == 0 ? LARGEST_GROWTH : SAFETY*pow(error, -1.0/8);
+        if (error < 1) {
+            m->h = h*fmin(growth, factor);
+            m->h_old = h, m->t_old = m->t, m->t = t, m->is_dense = 0;
+            memcpy(m->x_old, m->x, n*sizeof *x);
+            memcpy(m->x, x, n*sizeof *x);
+            memcpy(m->f, m->K + 12*n, n*sizeof *x);
+            return 1;
+        }
+        size = h*(factor > SMALLEST_GROWTH ? factor : SMALLEST_GROWTH), growth = 1;
+    }
+    return 0;
+}
+
+/* F, of the last step */
+void march_dense(struct march *m)
+{
+    if (!m->is_dense) {
+        dop853_dense(&m->rate, m->n, m->t_old, m->h_old, m->x_old, m->x, m->room, m->K, m->F);
+        m->evaluations += 3, m->is_dense = 1;
+    }
+}
+
+static void between(struct march *m, double t, double *x)
+{
+    march_dense(m);
+    dop853_between(m->n, (t - m->t_old)/(m->t - m->t_old), m->x_old, m->F, x);
+}
+
+/* -- what ends a run ---------------------------------------------------------------------------------------------- */
+
+/* whether polynomials through every second of the looks tell those between */
+static int is_resolved(const double *g)
+{
+    static const double BETWEEN[PARTS/2][PARTS/2 + 1] = {{35, 140, -70, 28, -5}, {-5, 60, 90, -20, 3}, {3, -20, 90, 60, -5},
+                                         {-5, 28, -70, 140, 35}}; /* /128 */
+    double inner[PARTS + 1], largest = 0;
+    for (int i = 0; i <= PARTS; i++) {
+        inner[i] = g[i == 0 ? 0 : i == PARTS ? LOOKS - 1 : i + 1];
+        largest = fabs(inner[i]) > largest ? fabs(inner[i]) : largest;
+    }
+    for (int i = 0; i < 4; i++) {
+        double guess = 0;
+        for (int j = 0; j < 5; j++)
+            guess += BETWEEN[i][j]/128*inner[2*j];
+        if (!(fabs(guess - inner[2*i + 1]) <= RESOLVED*largest))
+            return 0;
+    }
+    return 1;
+}
+
+/* the functions of the events at the looks into the last step */
+static void look(struct march *m, double *times)
+{
+    double near = EDGE*(m->t - m->t_old)/PARTS;
+    times[0] = m->t_old, times[1] = m->t_old + near, times[LOOKS - 2] = m->t - near, times[LOOKS - 1] = m->t;
+    for (int i = 1; i < PARTS; i++)
+        times[i + 1] = m->t_old + i*((m->t - m->t_old)/PARTS);
+    for (int i = 0; i < LOOKS; i++) {
+        between(m, times[i], m->room + m->n);
+        CALL(&m->events, times[i], m->room + m->n, m->looks + (size_t)i*m->n_events);
+    }
+}
+
+/* whether function j does not come down to zero in the looks, as `EventSearch.step`; its memory where that is kept */
+static int stays_up(struct march *m, size_t j, const double *times, int keep)
+{
+    size_t k = m->n_events;
+    double sign = m->signs[j], floor = m->floors[j], largest = m->largest[j], g[LOOKS];
+    int armed = m->armed[j];
+    for (int i = 0; i < LOOKS; i++) {
+        g[i] = m->looks[(size_t)i*k + j];
+        largest = fabs(g[i]) > largest ? fabs(g[i]) : largest;
+    }
+    if (m->either[j]) {
+        if (!is_resolved(g))
+            return 0;
+        floor = fmin(floor, TOUCHES*largest);
+    }
+    for (int i = 0; i < LOOKS && sign == 0; i++)
+        if (fabs(g[i]) > floor)
+            sign = g[i] < 0 ? -1 : 1;
+    for (int i = 0; i < LOOKS; i++)
+        g[i] *= sign;
+    armed = armed || (g[0] > floor && sign != 0);
+    for (int i = 1; i < LOOKS; i++) {
+        if (!armed) {
+            if (g[i] < -floor)
+                return 0;
+            armed = g[i] > floor;
+            continue;
+        }
+        if (g[i] <= 0)
+            return 0;
+        if (i == 1 || !(g[i - 2] > 0 && g[i - 1] <= g[i - 2] && g[i - 1] <= g[i]))
+            continue;
+        double before = times[i - 1] - times[i - 2], after = times[i] - times[i - 1];
+        double fall = (g[i - 1] - g[i - 2])/before, rise = (g[i] - g[i - 1])/after;
+        double curvature = (rise - fall)/(before + after), slope = (fall*after + rise*before)/(before + after);
+        double vertex = curvature > 0 ? g[i - 1] - slope*slope/(4*curvature) : g[i - 1];
+        if (m->either[j] || !(vertex > 0.5*g[i - 1]))
+            return 0;
+    }
+    if (keep)
+        m->signs[j] = sign, m->armed[j] = armed, m->largest[j] = largest;
+    return 1;
+}
+
+/* how far the end of a step is from a singular position, as `Nearness` */
+static double nearness(struct march *m)
+{
+    double least = 1, *values = m->work, found;
+    if (m->n_determinants)
+        CALL(&m->determinants, m->t, m->x, values);
+    for (size_t i = 0; i <= m->n_determinants; i++) {
+        if (i < m->n_determinants)
+            found = fabs(values[i]) >= 0 ? fabs(values[i]) : 0;
+        else if (m->n_rows) {
+            double longest = 0;
+            CALL(&m->ties, m->t, m->x, values);
+            for (size_t j = 0; j < m->n_rows*m->n_columns; j++)
+                values[j] = isfinite(values[j]) ? values[j] : 0;
+            for (size_t j = 0; j < m->n_rows; j++) {
+                m->lengths[j] = fmax(m->lengths[j], length(m->n_columns, values + j*m->n_columns));
+                longest = fmax(longest, m->lengths[j]);
+            }
+            for (size_t j = 0; j < m->n_rows; j++)
+                for (size_t k = 0; k < m->n_columns; k++)
+                    values[j*m->n_columns + k] *= m->lengths[j] > ROW_ROUNDING*longest ? 1/m->lengths[j] : 0;
+            found = singular_value(m->n_rows, m->n_columns, values, m->rank);
+        } else
+            continue;
+        m->sizes[i] = fmax(m->sizes[i], found);
+        least = fmin(least, m->sizes[i] > 0 ? found/m->sizes[i] : found);
+    }
+    return least;
+}
+
+/* whether the last step cannot have come near a singular position, as `RankLookout`; only then its memory is changed */
+static int is_far(struct march *m)
+{
+    double here = nearness(m), slope = fabs(here - m->before)/(m->t - m->t_old), steepest = slope;
+    size_t n = m->n_slopes < 4 ? m->n_slopes + 1 : 4;
+    for (size_t i = n == m->n_slopes ? 1 : 0; i < m->n_slopes; i++)
+        steepest = fmax(steepest, m->slopes[i]);
+    if (!m->is_armed || n < 4 || !(fmin(m->before, here) > m->near + STEEP*steepest*(m->t - m->t_old)))
+        return 0;
+    if (m->n_slopes == 4)
+        memmove(m->slopes, m->slopes + 1, 3*sizeof *m->slopes);
+    m->slopes[n - 1] = slope, m->n_slopes = n, m->before = here;
+    return 1;
+}
+
+/* whether the last step needs no other eyes; only then the memory of what is watched is changed */
+static int is_calm(struct march *m)
+{
+    double times[LOOKS];
+    if (m->is_blind)
+        return 0;
+    if (m->n_events)
+        look(m, times);
+    for (size_t j = 0; j < m->n_events; j++)
+        if (!stays_up(m, j, times, 0))
+            return 0;
+    if (m->is_near_watched && !is_far(m))
+        return 0;
+    for (size_t j = 0; j < m->n_events; j++)
+        stays_up(m, j, times, 1);
+    return 1;
+}
+
+/* -- all of it ---------------------------------------------------------------------------------------------------- */
+
+/* Steps until one is to be looked at, the end is reached, or `most` are taken; how many were taken is left in it. */
+int march(struct march *m, size_t *most)
+{
+    size_t n = m->n, allowed = *most;
+    m->tracked = *most = 0;
+    while (*most < allowed) {
+        if (!stepped(m))
+            return TOO_SMALL;
+        ++*most;
+        if (!is_calm(m))
+            return LOOK;
+        size_t next = m->next;
+        for (; next < m->n_instants && m->instants[next] <= m->t; next++) {
+            between(m, m->instants[next], m->rows + next*n);
+            if (held(m, m->instants[next], m->rows + next*n, m->atol) == STAYS_OPEN)
+                return LOOK;
+        }
+        memcpy(m->room, m->x, n*sizeof *m->x);
+        int moved = held(m, m->t, m->room, m->atol);
+        if (moved == STAYS_OPEN)
+            return LOOK;
+        m->next = next;
+        if (moved == MOVED) {
+            memcpy(m->x, m->room, n*sizeof *m->x);
+            CALL(&m->rate, m->t, m->x, m->f);
+            m->evaluations++;
+        }
+        m->track_t[m->tracked] = m->t;
+        memcpy(m->track_x + m->tracked++*n, m->x, n*sizeof *m->x);
+        if (m->t >= m->end)
+            return REACHED;
+    }
+    return GOES_ON;
+}

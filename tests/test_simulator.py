@@ -1,0 +1,71 @@
+"""simulator(model): one motion after another from other values, each what `simulate` gives."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+import eomgen
+from eomgen.errors import MissingValues, UsageError
+
+MODELS = Path(__file__).parent.parent / "models"
+
+
+def model(name: str) -> eomgen.Model:
+    return eomgen.load(MODELS / f"{name}.toml")
+
+
+@pytest.mark.parametrize(
+    ("name", "parameters", "start"),
+    [
+        ("double_pendulum", {"g": 1.62}, {"theta1": "20 deg"}),
+        ("four_bar", {"a": 0.3}, {}),
+        ("sliding_ladder", {}, {}),
+        ("cart_pole", {}, {"theta": 0.3}),
+    ],
+)
+def test_it_gives_what_simulate_gives(name, parameters, start):
+    """At the model's own values, at others, and at its own again."""
+    run = eomgen.simulator(model(name))
+    for values, begun in (({}, {}), (parameters, start), ({}, {})):
+        own = run(1.0, parameters=values, start=begun, samples=21)
+        other = eomgen.simulate(model(name), time=1.0, parameters=values, start=begun, samples=21)
+        assert own.t.tolist() == other.t.tolist() and own.x.tolist() == other.x.tolist()
+        assert own.message == other.message and not own.reactions
+
+
+def test_equations_are_derived_once_for_all_parameters_of_a_model_without_ties(monkeypatch):
+    derived = []
+    derive = eomgen.pipeline.derive
+    monkeypatch.setattr(eomgen.pipeline, "derive", lambda m: derived.append(m) or derive(m))
+    run = eomgen.simulator(model("double_pendulum"))
+    ends = [run(0.5, parameters={"g": g}).x[-1] for g in (1.0, 2.0, 3.0)]
+    assert len(derived) == 1 and not np.allclose(ends[0], ends[1]) and not np.allclose(ends[1], ends[2])
+
+
+def test_a_parameter_that_has_no_value_is_given_at_the_call():
+    text = (MODELS / "double_pendulum.toml").read_text().replace("value = 9.81, ", "")
+    run = eomgen.simulator(eomgen.loads(text))
+    with pytest.raises(MissingValues):
+        run(0.1)
+    assert run(0.1, parameters={"g": 9.81}).ok
+
+
+def test_reactions_are_columns_where_they_are_asked_for():
+    run, whole = (
+        eomgen.simulator(model("double_pendulum")),
+        eomgen.simulate(model("double_pendulum"), time=1, samples=11),
+    )
+    name = next(iter(whole.reactions))
+    assert list(run(1, samples=11, columns=[name]).columns()) == [
+        "t",
+        *whole.coordinates,
+        *whole.speeds,
+        "energy",
+        name,
+    ]
+    assert run(1, samples=11, columns="reactions").columns().keys() == whole.columns().keys()
+    with pytest.raises(UsageError, match="no column 'reaction_q'"):
+        run(1, columns=["reaction_q"])
