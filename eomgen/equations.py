@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
@@ -32,8 +32,6 @@ from eomgen.mechanics.formulations import derived_by
 from eomgen.mechanics.initial_state.initial_state import start_state
 from eomgen.mechanics.reactions.inverse import inverse_of
 from eomgen.mechanics.reactions.reactions import Reactions, reactions_of
-from eomgen.mechanics.small_motions.first_order import FirstOrder
-from eomgen.mechanics.small_motions.slopes import slopes_at
 from eomgen.model.findings import nearest
 from eomgen.model.parts import Model
 from eomgen.proof.check import Certificate
@@ -46,6 +44,9 @@ from eomgen.symbolic.numeric.evaluation import FLOAT, evaluate
 from eomgen.symbolic.numeric.gc_pause import growing
 from eomgen.symbolic.numeric.work import Work, doing
 from eomgen.symbolic.print.text import text_size
+
+if TYPE_CHECKING:
+    from eomgen.mechanics.small_motions.first_order import FirstOrder
 
 FEW = 200  # operations of a matrix that a person reads
 
@@ -161,6 +162,8 @@ class Equations(Result):
         Raises:
             MissingValues: parameters without values.
         """
+        from eomgen.mechanics.small_motions.slopes import slopes_at
+
         s = self.graph.symbols
         values = parameter_vector(self.model) if p is None else p
         known: dict[Any, Any] = dict(zip((s.t, *s.parameters.values()), (t, *values), strict=True))
@@ -170,6 +173,8 @@ class Equations(Result):
 
     @cached_property
     def _first_order(self) -> FirstOrder:
+        from eomgen.mechanics.small_motions.first_order import FirstOrder
+
         return FirstOrder(self.system, ())
 
     def subs(self, values: Mapping[Any, Any] | None = None, /, **more: Any) -> Substituted:

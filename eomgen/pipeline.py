@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import warnings
 from collections.abc import Mapping, Sequence
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 from eomgen.codegen.inverse import InverseDynamics
 from eomgen.equations import Equations
@@ -19,13 +19,13 @@ from eomgen.model.fields import WrittenEquation
 from eomgen.model.reader import ModelOrPath, model_at
 from eomgen.model.replaced import Values, with_inputs, with_values
 from eomgen.model.unknowns import refuse_motion
-from eomgen.questions.simulator import REACTIONS, Simulator
-from eomgen.simulation.integrate import SAMPLES as EVENLY
-from eomgen.simulation.integrator import Stepping
-from eomgen.simulation.result import Trajectory
 from eomgen.symbolic.numeric.gc_pause import growing
 from eomgen.symbolic.numeric.tolerances import RUN
 from eomgen.symbolic.numeric.work import doing
+
+if TYPE_CHECKING:  # what moves is loaded where something moves
+    from eomgen.questions.simulator import Simulator
+    from eomgen.simulation.result import Trajectory
 
 
 @growing()
@@ -89,6 +89,9 @@ def simulator(
     Args:
         rtol, atol, target, method, stabilization: as of `simulate`.
     """
+    from eomgen.questions.simulator import Simulator
+    from eomgen.simulation.integrator import Stepping
+
     how = Stepping(method=method, rtol=rtol, atol=atol, stabilization=stabilization)
     return Simulator(model_at(model), derive, how, target)
 
@@ -123,10 +126,13 @@ def simulate(
     Raises:
         MissingValues: parameters without a value, all named.
     """
+    from eomgen.questions.simulator import REACTIONS
+    from eomgen.simulation.integrate import SAMPLES
+
     valued = with_values(model_at(model), parameters, start)
     model = with_inputs(valued.model, inputs or {})
     run = simulator(model, rtol=rtol, atol=atol, target=target, method=method, stabilization=stabilization)
-    samples = EVENLY if samples is None else samples
+    samples = SAMPLES if samples is None else samples
     found = run(time, start=valued.start, samples=samples, columns=REACTIONS, until=until)
     if found.reactions and found.remark:
         warnings.warn(f"{model.name}: {found.remark}", RuntimeWarning, stacklevel=2)

@@ -17,7 +17,6 @@ from functools import cached_property, partial
 from itertools import pairwise
 
 import numpy as np
-from scipy.optimize import nnls
 
 from eomgen.codegen.program import program_of
 from eomgen.codegen.rhs import RightHandSide, compiled
@@ -224,6 +223,8 @@ class _Bodies:
 
     def _left(self, pushes: list[np.ndarray], frees: list[np.ndarray], early: np.ndarray, late: np.ndarray) -> str:
         """That no impulses give the change of momentum: min |J^T Lam - dP|, in units of sqrt(J)."""
+        from scipy.optimize import nnls
+
         n = len(self.system.symbols.u)
         units = self._momenta(late, [*np.eye(n), np.zeros(n)])
         P = self._momenta(late, [early[-n:], late[-n:]])

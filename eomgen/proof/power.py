@@ -14,7 +14,6 @@ from dataclasses import dataclass
 from functools import cached_property
 
 import numpy as np
-from scipy.integrate import DOP853
 
 from eomgen.codegen.program import bordered, program_of
 from eomgen.codegen.rhs import RightHandSide, compiled
@@ -82,6 +81,8 @@ def followed(
 
     y = (x, W), y' = (rates, powers), by Dormand and Prince's formulas of order 8 in so many equal steps.
     """
+    from scipy.integrate import DOP853
+
     y, h = np.column_stack([x, np.zeros(len(t))]), (later - t) / parts
     unsure = np.zeros_like(y)
     for part in range(parts):
