@@ -127,14 +127,14 @@ def beside(folder: Path) -> Iterator[Path]:
 def _write_all(directory: Path, contents: Mapping[str, Content]) -> list[Path]:
     with _undisturbed(), _made(directory), beside(directory) as place:
         for name, content in contents.items():
-            (place / name).parent.mkdir(exist_ok=True)
+            (place / name).parent.mkdir(parents=True, exist_ok=True)
             with open(place / name, "wb") as file:
                 _fill(file, content)
                 file.flush()
                 os.fsync(file.fileno())
         for name in contents:
             target = directory / name
-            target.parent.mkdir(exist_ok=True)
+            target.parent.mkdir(parents=True, exist_ok=True)
             if target.exists():
                 shutil.copymode(target, place / name)
             os.replace(place / name, target)

@@ -9,10 +9,10 @@ from pathlib import Path
 
 from eomgen import files, pipeline
 from eomgen.certificate import certify
-from eomgen.codegen.files import Emitted, texts_of
+from eomgen.codegen.files import texts_of
 from eomgen.codegen.names import identifier
 from eomgen.codegen.rhs import RightHandSide, target_named
-from eomgen.codegen.targets.base import INVERSE, REACTIONS, RHS, Description
+from eomgen.codegen.targets.base import INVERSE, REACTIONS, RHS, Description, Emitted, FileContent
 from eomgen.codegen.vectors import vectors
 from eomgen.equations import Equations
 from eomgen.errors import DerivationError
@@ -77,9 +77,14 @@ class Generated:
         return found.program, replace(self.motion[1], vectors=answers, role=INVERSE, outputs=found.names)
 
     @cached_property
-    def texts(self) -> dict[str, str]:
-        """{path: text} of every file."""
-        return texts_of(self.stem, *self.motion, targets=self.targets, reactions=self.reactions, inverse=self.inverse)
+    def emitted(self) -> tuple[Emitted, ...]:
+        """Every function that is written, the right-hand side first."""
+        return tuple(each for each in (self.motion, self.reactions, self.inverse) if each is not None)
+
+    @cached_property
+    def texts(self) -> dict[str, FileContent]:
+        """{path: content} of every file."""
+        return texts_of(self.stem, self.emitted, targets=self.targets, notes=[self.note] if self.note else [])
 
     def write(self, directory: str | Path) -> list[Path]:
         """The files, all of them or none.
@@ -109,9 +114,8 @@ class Generated:
         if self.inverse is not None:
             judged[INVERSE] = Judged(PhaseMotion(plain.graph), {}, self.inverse[1].outputs)
         for target in self.targets:
-            for emitted in (self.motion, self.reactions, self.inverse):
-                if emitted is not None:
-                    yield judged[emitted[1].role].check(self._written(target, emitted), start)
+            for emitted in self.emitted:
+                yield judged[emitted[1].role].check(self._written(target, emitted), start)
 
     def _written(self, target: str, emitted: Emitted) -> Written:
         program, told = emitted

@@ -72,7 +72,7 @@ def test_what_others_have_put_into_the_cache_is_not_loaded(own_cache, monkeypatc
     old = path.stat().st_mtime_ns if path.exists() else 0
     ran = []
     real = build._ran
-    monkeypatch.setattr(build, "_ran", lambda command: (ran.append(command), real(command))[1])
+    monkeypatch.setattr(build, "_ran", lambda *how: (ran.append(how), real(*how))[1])
     assert build.library(TEXT).twice is not None
     assert len(ran) == 1 and not path.stat().st_mode & 0o022
 

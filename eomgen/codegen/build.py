@@ -18,6 +18,7 @@ import sys
 import tempfile
 import time
 from contextlib import suppress
+from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
@@ -26,24 +27,86 @@ import platformdirs
 from eomgen.errors import RunFailed, ToolMissing
 from eomgen.files import beside
 
-FLAGS = ("-std=c99", "-O2", "-shared", "-fPIC")
-FLAGS_OF_LONG_TEXT = ("-std=c99", "-O1", "-shared", "-fPIC")
-FLAGS_OF_ONE_LOOK = ("-std=c99", "-O0", "-shared", "-fPIC")  # what is called a few times only is made soonest
 LONG_TEXT = 150_000  # characters, some 8 000 operations: there -O2 takes several seconds
 PATIENCE = 20  # seconds: under what a verb has in all, so that numpy still has its time
 MOST_SAID = 2000  # characters of a compiler
 MOST_KEPT, LARGEST, OLDEST = 1000, 2**28, 90 * 86_400.0  # libraries; bytes together; seconds since the last use
 
 
-def compiler() -> str | None:
-    """Path of the C compiler (the environment's CC, else cc, gcc, clang, or ziglang's), or None."""
+@dataclass(frozen=True)
+class Compiler:
+    """What makes a library of a text.
+
+    Args:
+        language: as it is told.
+        suffix: of the text's file.
+        variable: of the environment, which names another command line.
+        names: of the programs, the first that is there.
+        zig: as which ziglang stands in; "" where it cannot.
+        flags: always; last: after the file.
+        once, usual, long: of a text that is called a few times only, so that it is made soonest; of others; of long.
+        mend: where it comes from.
+    """
+
+    language: str
+    suffix: str
+    variable: str
+    names: tuple[str, ...]
+    flags: tuple[str, ...]
+    mend: str
+    zig: str = ""
+    last: tuple[str, ...] = ("-lm",)
+    once: tuple[str, ...] = ("-O0",)
+    usual: tuple[str, ...] = ("-O2",)
+    long: tuple[str, ...] = ("-O1",)
+
+    def command(self) -> list[str]:
+        """The command line, the environment's choice first.
+
+        Raises:
+            ToolMissing: there is none, or the environment's is no command line.
+        """
+        given = os.environ.get(self.variable, "")
+        try:
+            chosen = shlex.split(given)
+        except ValueError as error:
+            raise ToolMissing(
+                f"no {self.language} compiler: {self.variable} is {given!r}: {error}",
+                mend=f"set {self.variable} to a command line, or to none",
+            ) from None
+        for words in [chosen] if chosen else [[name] for name in self.names]:
+            path = shutil.which(words[0])
+            if path:
+                return [path, *words[1:]]
+        if not chosen and self.zig and importlib.util.find_spec("ziglang"):
+            return [sys.executable, "-m", "ziglang", self.zig]
+        raise ToolMissing(f"no {self.language} compiler", mend=self.mend)
+
+    def flags_of(self, text: str, quickly: bool) -> tuple[str, ...]:
+        """The flags for a text."""
+        return (*self.flags, *(self.once if quickly else self.usual if len(text) < LONG_TEXT else self.long))
+
+
+C = Compiler(
+    "C",
+    ".c",
+    "CC",
+    ("cc", "gcc", "clang"),
+    ("-std=c99", "-shared", "-fPIC"),
+    "install cc or `pip install ziglang`, set CC, or take --target numpy",
+    zig="cc",
+)
+
+
+def compiler(of: Compiler = C) -> str | None:
+    """Path of a compiler (the environment's, as CC, else cc, gcc, clang, or ziglang's), or None."""
     try:
-        return _command()[0]
+        return of.command()[0]
     except ToolMissing:
         return None
 
 
-def library(text: str, *, quickly: bool = False) -> ctypes.CDLL:
+def library(text: str, *, quickly: bool = False, by: Compiler = C) -> ctypes.CDLL:
     """The text, compiled and loaded.
 
     Args:
@@ -52,8 +115,7 @@ def library(text: str, *, quickly: bool = False) -> ctypes.CDLL:
         ToolMissing: there is no compiler, or none that starts.
         RunFailed: the compiler refuses the text, does not come back, or makes what is no library.
     """
-    command = _command()
-    flags = FLAGS_OF_ONE_LOOK if quickly else FLAGS if len(text) < LONG_TEXT else FLAGS_OF_LONG_TEXT
+    command, flags = by.command(), by.flags_of(text, quickly)
     key = "\0".join((text, *command, *flags, platform.platform(), platform.machine()))
     folder, name = _cache(), _digest(key.encode())
     for path in folder.glob(f"{name}-*.so"):
@@ -62,15 +124,15 @@ def library(text: str, *, quickly: bool = False) -> ctypes.CDLL:
                 found = ctypes.CDLL(str(path))
                 os.utime(path)
                 return found
-    path = _compile(text, [*command, *flags], folder, name)
+    path = _compile(text, [*command, *flags], folder, name, by)
     try:
         return ctypes.CDLL(str(path))
     except OSError as error:
         path.unlink(missing_ok=True)
-        raise RunFailed(f"the C compiler makes no library: {error}", shlex.join(command)) from None
+        raise RunFailed(f"the {by.language} compiler makes no library: {error}", shlex.join(command)) from None
 
 
-def function_of(made: ctypes.CDLL, name: str) -> Any:
+def function_of(made: ctypes.CDLL, name: str, by: Compiler = C) -> Any:
     """A function of a library.
 
     Raises:
@@ -79,7 +141,9 @@ def function_of(made: ctypes.CDLL, name: str) -> Any:
     try:
         return getattr(made, name)
     except AttributeError:
-        raise RunFailed(f"the C compiler makes a library without the function '{name}'", str(_command()[0])) from None
+        raise RunFailed(
+            f"the {by.language} compiler makes a library without the function '{name}'", by.command()[0]
+        ) from None
 
 
 def _digest(content: bytes) -> str:
@@ -108,16 +172,17 @@ def _others_write(path: Path) -> bool:
     return hasattr(os, "getuid") and bool(path.stat().st_mode & (stat.S_IWGRP | stat.S_IWOTH))
 
 
-def _compile(text: str, command: list[str], folder: Path, name: str) -> Path:
+def _compile(text: str, command: list[str], folder: Path, name: str, by: Compiler) -> Path:
     """Compile beside the target and rename: another process sees all of the library or nothing."""
     try:
         with beside(folder) as place:
-            source, made = place / "program.c", place / "program.so"
+            source, made = place / f"program{by.suffix}", place / "program.so"
             source.write_text(text, encoding="utf-8")
-            code, said = _ran([*command, "-o", str(made), str(source), "-lm"])
+            code, said = _ran([*command, "-o", str(made), str(source), *by.last], by.language, place)
             if code != 0 or not made.is_file():
                 raise RunFailed(
-                    f"the C compiler failed: {said or f'it ended with {code}, and made nothing'}", command[0]
+                    f"the {by.language} compiler failed: {said or f'it ended with {code}, and made nothing'}",
+                    command[0],
                 )
             made.chmod(0o700)  # whatever the umask
             path = folder / _named(name, made)
@@ -128,7 +193,7 @@ def _compile(text: str, command: list[str], folder: Path, name: str) -> Path:
         raise ToolMissing(f"nothing can be compiled: {error}", command[0]) from None
 
 
-def _ran(command: list[str]) -> tuple[int, str]:
+def _ran(command: list[str], language: str, place: Path) -> tuple[int, str]:
     """(the exit code, what it said) of a compiler; it and all that it has started end with this call.
 
     Raises:
@@ -142,12 +207,13 @@ def _ran(command: list[str]) -> tuple[int, str]:
         text=True,
         errors="replace",
         start_new_session=True,
+        cwd=place,  # where modules are left
     )
     try:
         said = started.communicate(timeout=PATIENCE)[1]
         return started.returncode, said.strip()[:MOST_SAID]
     except subprocess.TimeoutExpired:
-        raise RunFailed(f"the C compiler did not come back within {PATIENCE} s", command[0]) from None
+        raise RunFailed(f"the {language} compiler did not come back within {PATIENCE} s", command[0]) from None
     finally:
         if started.poll() is None:
             _end(started)
@@ -174,28 +240,6 @@ def _let_go(folder: Path, new: Path) -> None:
             size += about.st_size
             if path != new and (kept >= MOST_KEPT or size > LARGEST or time.time() - about.st_mtime > OLDEST):
                 path.unlink()
-
-
-def _command() -> list[str]:
-    """The compiler's command line, the environment's choice first.
-
-    Raises:
-        ToolMissing: there is none, or CC is no command line.
-    """
-    given = os.environ.get("CC", "")
-    try:
-        chosen = shlex.split(given)
-    except ValueError as error:
-        raise ToolMissing(
-            f"no C compiler: CC is {given!r}: {error}", mend="set CC to a command line, or to none"
-        ) from None
-    for words in [chosen] if chosen else [["cc"], ["gcc"], ["clang"]]:
-        path = shutil.which(words[0])
-        if path:
-            return [path, *words[1:]]
-    if not chosen and importlib.util.find_spec("ziglang"):
-        return [sys.executable, "-m", "ziglang", "cc"]
-    raise ToolMissing("no C compiler", mend="install cc or `pip install ziglang`, set CC, or take --target numpy")
 
 
 def cache_folder() -> Path | None:

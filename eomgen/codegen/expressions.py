@@ -87,6 +87,8 @@ class ExpressionWriter:
         if x.op == "div" and x.args[1] in self._inverse:
             inverse = self._inverse[x.args[1]]
             return (inverse, ATOM) if x.args[0] == 1 else (f"{held(self._text(x.args[0]), PRODUCT)}*{inverse}", PRODUCT)
+        if x.op == "sampled":
+            return self._call(x.op, [self._text(x.args[0])[0], str(x.args[1])]), ATOM
         arguments = [self._text(a) for a in x.args]
         if x.op in ("add", "sub"):
             a, b = arguments

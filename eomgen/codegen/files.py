@@ -1,4 +1,4 @@
-"""Program -> the texts of files that others can use as they are."""
+"""Programs -> the texts of files that others can use as they are."""
 
 from __future__ import annotations
 
@@ -8,47 +8,46 @@ from collections.abc import Sequence
 from eomgen.codegen.names import identifier
 from eomgen.codegen.program import Program
 from eomgen.codegen.rhs import target_named
-from eomgen.codegen.targets.base import Description
+from eomgen.codegen.targets.base import RHS, Description, Emitted, FileContent, Target, header
 from eomgen.version import SCHEMA_VERSION
-
-Emitted = tuple[Program, Description]
 
 
 def texts_of(
-    name: str,
-    program: Program,
-    description: Description,
-    *,
-    targets: Sequence[str],
-    reactions: Emitted | None = None,
-    inverse: Emitted | None = None,
-) -> dict[str, str]:
-    """{path: text}: NAME_rhs.c, NAME_rhs.h (or the target's own), the same of the reactions, and test_vectors.json.
+    name: str, emitted: Sequence[Emitted], *, targets: Sequence[str], notes: Sequence[str] = ()
+) -> dict[str, FileContent]:
+    """{path: content}: NAME_rhs.c, NAME_rhs.h (or the target's own), the same of the others, README, test_vectors.json.
 
     Args:
         name: of the functions: the model file's stem; what is no identifier is made one.
-        program: the right-hand side.
-        description: title, origin, remarks and test vectors.
+        emitted: the right-hand side first, then reactions and whatever else is asked for.
         targets: names of languages, "c" or "numpy"; the files of one lie in the directory, of several each in its own.
-        reactions: their program and its description, or None where there are none.
-        inverse: the same of inverse dynamics, where they are asked for.
+        notes: what is not in the code, and why, a line each.
     """
-    answers = vectors_text(program, description, reactions, inverse)
-    texts: dict[str, str] = {}
+    answers, stem = vectors_text(emitted), identifier(name)
+    texts: dict[str, FileContent] = {}
     for target in map(target_named, dict.fromkeys(targets)):
         folder = "" if len(set(targets)) == 1 else f"{target.name}/"
-        for emitted in ((program, description), reactions, inverse):
-            if emitted is not None:
-                files = target.files(emitted[0], identifier(name), emitted[1])
-                texts |= {f"{folder}{file}": text for file, text in files.items()}
-        texts[f"{folder}test_vectors.json"] = answers
+        files = target.files(stem, emitted)
+        files |= {"README.md": readme(target, stem, emitted, notes), "test_vectors.json": answers}
+        texts |= {f"{folder}{file}": text for file, text in files.items()}
     return texts
 
 
-def vectors_text(
-    program: Program, description: Description, reactions: Emitted | None = None, inverse: Emitted | None = None
-) -> str:
+def readme(target: Target, stem: str, emitted: Sequence[Emitted], notes: Sequence[str]) -> str:
+    """What lies beside it: the functions, the order of their arguments, how they are used and tested."""
+    lines = [f"# {stem}: {target.about}", ""]
+    for line in target.use:
+        lines.append(f"    {line.format(stem=stem)}")
+    for program, told in emitted:
+        lines += ["", *(f"    {line}".rstrip() for line in header(program, told))]
+    lines += ["", "All in SI and radians; without inputs the model's own act. Right answers are in test_vectors.json."]
+    lines += [line for note in notes for line in ("", f"Not here: {note}")]
+    return "\n".join([*lines, ""])
+
+
+def vectors_text(emitted: Sequence[Emitted]) -> str:
     """The test vectors as JSON, one a line: names in order, then t, x, p, inputs (null: the model's own), result."""
+    program, description = emitted[0]
     symbols = program.symbols
     head = {
         "schema_version": SCHEMA_VERSION,
@@ -58,24 +57,28 @@ def vectors_text(
         "speeds": [x.name for x in symbols.u],
         "parameters": list(symbols.parameters),
         "inputs": list(symbols.inputs),
-        "tolerance": "of |result - given| / max(1, largest |result|); the result is dx, of the reactions out; "
+        "tolerance": "of |result - given| / max(1, largest |result|); the result is dx, of the others out or tau; "
         "null: no value there, not a number",
     }
     lines = [f" {json.dumps(name)}: {json.dumps(value, ensure_ascii=False)}," for name, value in head.items()]
-    if reactions is None:
+    if not any(told.role.name == "reactions" for _, told in emitted):
         lines.append(' "reactions": null,')
-    else:
-        names = json.dumps(list(reactions[1].outputs), ensure_ascii=False)
-        lines += [' "reactions": {', f'  "names": {names},', *_listed(reactions[1], "  "), " },"]
-    if inverse is not None:
-        own = {
-            "names": inverse[1].outputs,
-            "accelerations": [x.name for x in inverse[0].accelerations],
-            "inputs": list(inverse[0].symbols.inputs),
-        }
-        told = [f"  {json.dumps(key)}: {json.dumps(value, ensure_ascii=False)}," for key, value in own.items()]
-        lines += [' "inverse": {', *told, *_listed(inverse[1], "  "), " },"]
+    for other, told in emitted:
+        if told.role is not RHS:
+            lines += _other(other, told)
     return "\n".join(["{", *lines, *_listed(description, " "), "}", ""])
+
+
+def _other(program: Program, told: Description) -> list[str]:
+    """The vectors of a function beside the right-hand side."""
+    own: dict[str, object] = {"names": told.outputs}
+    if program.accelerations:
+        own |= {
+            "accelerations": [x.name for x in program.accelerations],
+            "inputs": list(program.symbols.inputs),
+        }
+    lines = [f"  {json.dumps(key)}: {json.dumps(value, ensure_ascii=False)}," for key, value in own.items()]
+    return [f' "{told.role.name}": {{', *lines, *_listed(told, "  "), " },"]
 
 
 def _listed(description: Description, indent: str) -> list[str]:

@@ -106,7 +106,7 @@ class _Reader:
     def function(self) -> Function:
         tree = self._tree
         about = (ast.get_docstring(tree) or "").split("\n")[0]
-        arguments = tuple((a.arg, self._kinds[a.arg]) for a in tree.args.args)
+        arguments = tuple((self._language.spelled(a.arg), self._kinds[a.arg]) for a in tree.args.args)
         gives = "" if _named(tree.returns) == "None" else _named(tree.returns)
         return Function(tree.name, arguments, self._body(tree.body[1:]), gives, about=about)
 
@@ -119,28 +119,46 @@ class _Reader:
                 new in _NEW
             ):
                 self._kinds[name] = PLACES if new == "places" else CHANGED
-                return Array(name, self._text(size), _NEW[new])
+                return Array(self._language.spelled(name), self._text(size), _NEW[new])
+            case ast.Assign(targets=[ast.Name(id=name)], value=ast.Call(func=ast.Name(id=called)) as call) if (
+                called in _parsed()
+            ):
+                self._kinds[name] = self._kind(call)
+                return self._call(call, name)
             case ast.Assign(targets=[ast.Name(id=name)], value=value):
                 self._kinds[name] = self._kind(value)
-                return Let(name, self._text(value), self._kinds[name])
+                return Let(self._language.spelled(name), self._text(value), self._kinds[name])
             case ast.Assign(targets=[ast.Subscript(value=ast.Name(id=array), slice=index)], value=value):
-                return Put(array, self._text(index), self._text(value))
+                return Put(self._language.spelled(array), self._text(index), self._text(value))
             case ast.AugAssign(
                 target=ast.Subscript(value=ast.Name(id=array), slice=index) as place, op=op, value=value
             ):
-                return Put(array, self._text(index), self._text(ast.BinOp(place, op, value)))
+                return Put(self._language.spelled(array), self._text(index), self._text(ast.BinOp(place, op, value)))
             case ast.For(target=ast.Name(id=name), iter=ast.Call() as over, body=body):
                 self._kinds[name] = INT
                 down = _function(over) == "reversed"
                 bounds = [self._text(x) for x in (over.args[0].args if down else over.args)]  # type: ignore[attr-defined]
-                return For(name, bounds[0] if len(bounds) > 1 else "0", bounds[-1], self._body(body), down)
+                return For(
+                    self._language.spelled(name),
+                    bounds[0] if len(bounds) > 1 else "0",
+                    bounds[-1],
+                    self._body(body),
+                    down,
+                )
             case ast.If(test=test, body=body, orelse=otherwise):
                 return If(self._text(test), self._body(body), self._body(otherwise))
             case ast.Expr(value=ast.Call() as call):
-                return Call(_function(call), tuple(map(self._text, call.args)))
+                return self._call(call)
             case ast.Return(value=value):
                 return Return(self._text(value) if value else "")
         raise NotImplementedError(f"a kernel has no {ast.unparse(s)}")
+
+    def _call(self, call: ast.Call, name: str = "") -> Call:
+        """A function of the kernels that is called, and the name of what it gives."""
+        function, texts = _function(call), tuple(map(self._text, call.args))
+        kinds = [_named(a.annotation) for a in _parsed()[function].args.args]
+        changed = tuple(text for text, kind in zip(texts, kinds, strict=True) if kind in (CHANGED, PLACES))
+        return Call(function, texts, changed, self._language.spelled(name), self._kinds.get(name, INT))
 
     def _text(self, x: ast.expr) -> str:
         return self._strong(x)[0]
@@ -150,11 +168,12 @@ class _Reader:
         match x:
             case ast.Name(id=name):
                 limit = vars(tolerances).get(name)
-                return repr(limit) if limit else words.get(name, name), ATOM
+                spelled = words.get(name) or self._language.spelled(name)
+                return self._language.real(limit) if limit else spelled, ATOM
             case ast.Constant(value=value):
-                return repr(value), ATOM
+                return self._language.real(value) if isinstance(value, float) else repr(value), ATOM
             case ast.Subscript(value=ast.Name(id=array), slice=index):
-                return self._language.place(array, self._text(index)), ATOM
+                return self._language.place(self._language.spelled(array), self._text(index)), ATOM
             case ast.Call(args=arguments):
                 return self._language.called(_function(x), [self._text(a) for a in arguments]), ATOM
             case ast.UnaryOp(op=ast.Not(), operand=operand):
@@ -162,7 +181,10 @@ class _Reader:
             case ast.UnaryOp(op=ast.USub(), operand=operand):
                 return f"-{held(self._strong(operand), PRODUCT)}", SUM
             case ast.Compare(left=left, ops=[op], comparators=[right]):
-                return f"{self._text(left)} {_OPERATORS[type(op)][0]} {self._text(right)}", SUM
+                sign = _OPERATORS[type(op)][0]
+                if isinstance(right, ast.Constant) and self._kind(left) == REAL:
+                    right = ast.Constant(float(right.value))  # type: ignore[arg-type]
+                return f"{self._text(left)} {words.get(sign, sign)} {self._text(right)}", SUM
             case ast.BinOp(left=left, op=op, right=right):
                 sign, strength = _OPERATORS[type(op)]
                 space = " " if strength == SUM else ""

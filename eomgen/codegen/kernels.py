@@ -104,7 +104,8 @@ def solve(M: Work, J: Reals, f: Work, g: Work) -> None:
 
 def solve_plain(M: Work, f: Work) -> None:
     """f becomes a of M a = f (upper triangle of M, which is lost); all nan where M is not positive definite."""
-    if factored(0, ROUNDING, M) == 0:
+    done = factored(0, ROUNDING, M)
+    if done == 0:
         for i in range(N):
             f[i] = nan
         return
@@ -157,7 +158,8 @@ def chosen(M: Reals, J: Reals, L: Work, weight: Work) -> Int:
     """L and D of M (0), or where M is not relied on without the rows, of M + J^T W J (1); -1 of neither."""
     for i in range(N * N):
         L[i] = M[i]
-    if factored(0, DEGENERATE, L) == 1:
+    done = factored(0, DEGENERATE, L)
+    if done == 1:
         return 0
     for i in range(N * N):
         L[i] = M[i]
@@ -167,7 +169,8 @@ def chosen(M: Reals, J: Reals, L: Work, weight: Work) -> Int:
         for e in range(START[K + 1 + m], last):
             for h in range(e, last):
                 L[REACH[e] * N + REACH[h]] += weight[m] * J[m * N + REACH[e]] * J[m * N + REACH[h]]
-    if factored(1, ROUNDING, L) == 1:
+    with_ties = factored(1, ROUNDING, L)
+    if with_ties == 1:
         return 1
     return -1
 
@@ -175,8 +178,11 @@ def chosen(M: Reals, J: Reals, L: Work, weight: Work) -> Int:
 def weigh(M: Reals, J: Reals, weight: Work) -> None:
     """W: with it M + J^T W J is positive definite where M is so on J a = 0 only."""
     mean = zeros(1)
+    count = zeros(1)
     for i in range(N):
-        mean[0] += M[i * N + i] / N
+        mean[0] += M[i * N + i]
+        count[0] += 1.0
+    mean[0] = mean[0] / count[0]
     if not mean[0] > 0:
         mean[0] = 1.0
     for m in range(K):

@@ -139,7 +139,7 @@ class Layout:
         known = [*program.moving, *symbols.parameters.values(), *symbols.inputs.values()]
         known += [x for x in (self.solve.unknowns if self.solve else ()) if x not in known]
         taken = {*self.language.reserved, *(name for name, _ in self.arguments), self.result}
-        words = identifiers([x.name for x in known], taken)
+        words = identifiers([x.name for x in known], taken, self.language.folded)
         return {x: words[x.name] for x in known} | {symbols.t: "t"}
 
     @cached_property
@@ -157,7 +157,7 @@ class Layout:
 
     def called(self, op: str, arguments: list[str]) -> str:
         if op == "sampled":
-            return f"{self.sampled[int(float(arguments[1]))]}({arguments[0]})"
+            return f"{self.sampled[int(arguments[1])]}({arguments[0]})"
         return self.language.called(op, arguments)
 
     # -- parts ------------------------------------------------------------------------------------

@@ -7,15 +7,17 @@ no more. A number that changes is an array of one. Indices count from 0.
 from __future__ import annotations
 
 import re
-from collections.abc import Callable, Iterable, Mapping, Sequence
-from dataclasses import dataclass
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+from dataclasses import dataclass, field
 
 from eomgen.codegen.expressions import RankedText, ranked_number
 from eomgen.symbolic.expression.graph import Number
+from eomgen.symbolic.expression.rational import Fraction
 
 REAL, INT = "Real", "Int"
 READ, CHANGED, INDICES, PLACES = "Reals", "Work", "Ints", "Places"  # arrays: the last two of indices, read and changed
 ROOM = "Room"  # an array of numbers that are written before they are read
+GIVEN = "Given"  # an array that is read, which the caller may leave out: the inputs
 
 
 @dataclass(frozen=True)
@@ -68,10 +70,13 @@ class If:
 
 @dataclass(frozen=True)
 class Call:
-    """A function that changes arrays."""
+    """A function that changes arrays; where it gives a number, the name for that and its kind."""
 
     function: str
     arguments: tuple[str, ...]
+    changed: tuple[str, ...] = ()
+    name: str = ""
+    kind: str = INT
 
 
 @dataclass(frozen=True)
@@ -114,6 +119,16 @@ class Function:
     about: str = ""
     apart: bool = False
 
+    @property
+    def changed(self) -> tuple[str, ...]:
+        """The arrays among the arguments that it changes."""
+        return tuple(name for name, kind in self.arguments if kind in (CHANGED, PLACES))
+
+
+def itself(name: str) -> str:
+    """A name as it is."""
+    return name
+
 
 def one_line(text: str) -> str:
     """Text with blanks for what is not printed."""
@@ -129,22 +144,31 @@ class Language:
         functions: of an op that has another name: its text, with {0}, {1} for the arguments.
         defined: of an op that the language lacks, or where it drops a NaN: its definition; of "solve" and "solve_plain"
             where loops with pivots are not its way.
-        words: of "and or not nan", and "given": the condition that the caller gives inputs.
+        words: of "not nan", of "==" and "!=" where they are said otherwise, and "given": the condition that the caller
+            gives inputs.
         kinds: how a value that stays, an argument and a result of each kind are declared, with {name}.
-        at: a place of an {array} at an {index}.
+        at: a place of an {array} at an {index}; `index` is what stands there for an index that is computed, first that
+            of the first place; `sized` what stands for a {size} that is computed.
         let, put, call, back: statements; back with {value}.
+        changes: a call where arguments cannot be changed, with the {results} that stand for them; "" where they can.
+        leave: the end of a function that gives nothing.
+        gives: how {gives} stands in `function`, by the kind of what it gives.
+        what: how {what} stands there, of one that gives nothing and of one that does.
         arrays: of CHANGED, ROOM and PLACES: with {name}, {size}.
         tables: of INT, INDICES and READ: with {name}, {size}, {values}.
         listed: how the values of a table are held together.
         loop, down: (begin, end) of a loop, with {name}, {first}, {last}.
         branch: (begin, else, end), with {condition}.
-        function: (begin, end), with {declared}, its name and kind, and {arguments}.
+        function: (begin, end), with {declared}, its name and kind, and {arguments}; {results} as in `changes`.
         out: the same of one that gives an array {out} of {size}, with {name}.
         hidden: what stands before a function that others do not call, as {hidden} in `function`.
         remark: of one line, with {text}; harmless: text that cannot end it.
         unused: said of an argument that a function does not need.
         number: the text of an exact number.
         longest: operations of a function, beyond which it is cut into parts; None: never.
+        local: how names and arrays of each kind are declared where they stand at the head of a function, after the
+            arguments; none where they are declared as they come.
+        spelled: the spelling of a name of the kernels; folded: what two names may not have in common.
     """
 
     reserved: frozenset[str]
@@ -171,6 +195,16 @@ class Language:
     number: Callable[[Number], RankedText] = ranked_number
     harmless: Callable[[str], str] = one_line
     longest: int | None = None
+    index: str = "{index}"
+    first: int = 0
+    sized: str = "{size}"
+    changes: str = ""
+    leave: str = "return;"
+    gives: Mapping[str, str] = field(default_factory=dict)
+    what: tuple[str, str] = ("", "")
+    local: Mapping[str, str] = field(default_factory=dict)
+    spelled: Callable[[str], str] = itself
+    folded: Callable[[str], str] = itself
 
     def called(self, op: str, arguments: Sequence[str]) -> str:
         """A function's text."""
@@ -179,7 +213,14 @@ class Language:
 
     def place(self, array: str, index: object) -> str:
         """A place of an array."""
-        return self.at.format(array=array, index=index)
+        text = str(index)
+        computed = self.index.format(index=text)
+        computed = computed.replace(f"({text})", text) if text.isidentifier() else computed
+        return self.at.format(array=array, index=str(int(text) + self.first) if text.isdigit() else computed)
+
+    def real(self, value: float) -> str:
+        """The text of a double."""
+        return self.number(Fraction(value))[0]
 
     def lines(self, statements: Iterable[Statement]) -> list[str]:
         """Statements, a line or a block each."""
@@ -188,12 +229,13 @@ class Language:
     def _said(self, s: Statement) -> list[str]:
         match s:
             case Let():
-                declared = self.kinds[s.kind].format(name=s.name)
-                return [self.let.format(declared=declared, value=s.value) + self._remark(s.remark, " ")]
+                return [self._let(s.name, s.kind, s.value) + self._remark(s.remark, " ")]
             case Put():
                 return [self.put.format(place=self.place(s.array, s.index), value=s.value)]
             case Array():
-                return [self.arrays[s.kind].format(name=s.name, size=s.size)]
+                size = s.size if s.size.isdigit() else self.sized.format(size=s.size)
+                text = self.arrays[s.kind].format(name=s.name, size=size)
+                return [text] if text else []
             case For():
                 begin, end = self.down if s.down else self.loop
                 return _block([(begin.format(name=s.name, first=s.first, last=s.last), self.lines(s.body))], end)
@@ -202,20 +244,36 @@ class Language:
                 blocks = [(begin.format(condition=s.condition), self.lines(s.body))]
                 return _block([*blocks, *([(otherwise, self.lines(s.otherwise))] if s.otherwise else [])], end)
             case Call():
-                return [self.call.format(function=s.function, arguments=", ".join(s.arguments))]
+                return [self._called(s)]
             case Return():
-                return [self.back.format(value=s.value).replace(" ;", ";").rstrip()]  # of nothing: return;
+                return self.back.format(value=s.value).split("\n") if s.value else [self.leave]
+
+    def _let(self, name: str, kind: str, value: str) -> str:
+        return self.let.format(declared=self.kinds[kind].format(name=name), value=value)
+
+    def _called(self, s: Call) -> str:
+        arguments = ", ".join(s.arguments)
+        if self.changes:
+            results = ", ".join([*([s.name] if s.name else []), *s.changed])
+            return self.changes.format(results=results, function=s.function, arguments=arguments)
+        if s.name:
+            return self._let(s.name, s.kind, f"{s.function}({arguments})")
+        return self.call.format(function=s.function, arguments=arguments)
 
     def defines(self, function: Function) -> list[str]:
         """A function."""
         body = self.lines(function.body)
         begin, end = self.out if function.out else self.function
         out, size = function.out or ("", 0)
+        arguments = [self._kind(kind).format(name=name) for name, kind in function.arguments]
         opened = begin.format(
-            name=function.name,
             declared=self.kinds[function.gives].format(name=function.name),
-            arguments=", ".join(self.kinds[kind].format(name=name) for name, kind in function.arguments),
+            name=function.name,
+            arguments=", ".join(arguments),
+            results=", ".join([*(["found"] if function.gives else []), *function.changed]),
             hidden="" if function.apart else self.hidden,
+            gives=self.gives.get(function.gives, ""),
+            what=self.what[bool(function.gives)],
             out=out,
             size=size,
         )
@@ -230,19 +288,59 @@ class Language:
         return [
             *about,
             *opened.split("\n"),
-            *(f"    {line}" for line in inner),
-            *([end.replace("{out}", out)] if end else []),
+            *(f"    {line}" for line in (*self._heads(function), *inner)),
+            *([_ended(end, out, function.name, self.what[bool(function.gives)])] if end else []),
         ]
+
+    def _kind(self, kind: str) -> str:
+        return self.kinds.get(kind, self.kinds[READ]) if kind == GIVEN else self.kinds[kind]
+
+    def _heads(self, function: Function) -> list[str]:
+        """The declarations at the head of a function, where a language has them there."""
+        if not self.local:
+            return []
+        named = {name: kind for name, kind in function.arguments}
+        lines = [self.local[f"argument {kind}"].format(name=name) for name, kind in named.items()]
+        if function.gives:
+            lines.append(self.local[function.gives].format(name="found"))
+        if function.out:
+            lines.append(self.local["out"].format(name=function.out[0], size=function.out[1]))
+        inside = {name: declared for name, declared in _declared(function.body) if name not in named}
+        return [*lines, *(self.local[kind].format(name=name, size=size) for name, (kind, size) in inside.items())]
 
     def holds(self, table: Table) -> str:
         """A table."""
         values = table.values or (0,)  # C knows no array without entries
-        listed = ", ".join(map(repr, values)).join(self.listed)
-        text = self.tables[table.kind].format(name=table.name, size=len(values), values=listed, value=values[0])
+        texts = [self.real(x) if table.kind == READ else str(x) for x in values]
+        listed, name = ", ".join(texts).join(self.listed), self.spelled(table.name)
+        text = self.tables[table.kind].format(
+            name=name, size=len(values), values=listed, value=values[0], last=len(values) - 1
+        )
         return text + self._remark(table.remark, " ")
 
     def _remark(self, text: str, before: str = "") -> str:
         return before + self.remark.format(text=self.harmless(text)) if text else ""
+
+
+def _ended(end: str, out: str, name: str, what: str) -> str:
+    return end.replace("{out}", out).replace("{name}", name).replace("{what}", what)
+
+
+def _declared(statements: Iterable[Statement]) -> Iterator[tuple[str, tuple[str, str]]]:
+    """(name, (kind, size)) of what the statements declare; the kind of an array is that of its numbers."""
+    for s in statements:
+        match s:
+            case Let(name=name, kind=kind):
+                yield name, (kind, "")
+            case Call(name=name, kind=kind) if name:
+                yield name, (kind, "")
+            case Array(name=name, size=size, kind=kind):
+                yield name, (PLACES if kind == PLACES else CHANGED, size)
+            case For(name=name, body=body):
+                yield name, (INT, "")
+                yield from _declared(body)
+            case If(body=body, otherwise=otherwise):
+                yield from _declared((*body, *otherwise))
 
 
 def _block(parts: Sequence[tuple[str, list[str]]], end: str) -> list[str]:

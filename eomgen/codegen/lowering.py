@@ -15,6 +15,7 @@ from eomgen.codegen.kernel_reader import kernel
 from eomgen.codegen.layout import Layout, stripped
 from eomgen.codegen.lowered import (
     CHANGED,
+    GIVEN,
     READ,
     REAL,
     Array,
@@ -53,6 +54,13 @@ class Lowered:
     called: tuple[str, ...]
     bodies: tuple[Function, ...]
 
+    def texts(self, language: Language) -> list[str]:
+        """What the language lacks and the tables, as one text; then each function."""
+        heads = [language.defined[op] for op in sorted(self.ops & language.defined.keys())]
+        heads += map(language.holds, self.tables)
+        functions = ["\n".join(language.defines(f)) for f in (*self.kernels, *self.bodies)]
+        return [*(["\n".join(heads)] if heads else []), *functions]
+
 
 def lowered(
     program: Program, language: Language, result: str, prefix: str = "", remarks: Mapping[str, str] | None = None
@@ -78,7 +86,7 @@ def _functions(layout: Layout) -> list[Function]:
         Function(f"{layout.prefix}part{i}", (*takes, ("between", CHANGED)), _part(layout, i), apart=True)
         for i in pieces
     ]
-    given, out = (*takes, ("inputs", READ)), (layout.result, len(layout.program.outputs))
+    given, out = (*takes, ("inputs", GIVEN)), (layout.result, len(layout.program.outputs))
     return [constants, *cut, Function(f"{layout.prefix}evaluate", given, _evaluate(layout), out=out)]
 
 
@@ -161,7 +169,7 @@ def _solved(layout: Layout, writer: ExpressionWriter) -> list[Statement]:
     for name in arrays:
         held_there = {place: x for place, x in filled[name].items() if type(x) is Node or x != 0}
         lines += [Put(name, str(place), writer.value(x)) for place, x in held_there.items()]
-    lines += [Call(layout.entry, tuple(arrays))]
+    lines += [Call(layout.entry, tuple(arrays), tuple(name for name in arrays if name != "solve_J"))]
     for place, x in enumerate(solve.unknowns):
         text = layout.language.place(*(("solve_f", place) if place < n else ("solve_g", place - n)))
         lines += [layout.stored(x, text)] if x in layout.parts.places else []
@@ -174,7 +182,7 @@ def _computed(layout: Layout, writer: ExpressionWriter, nodes: tuple[Node, ...],
     if not layout.parts.nodes:
         return _lets(writer, nodes, layout.once)
     arguments = (*(name for name, _ in layout.arguments), "c", "between")
-    return [Call(f"{layout.prefix}part{i}", arguments) for i in parts]
+    return [Call(f"{layout.prefix}part{i}", arguments, ("between",)) for i in parts]
 
 
 def _part(layout: Layout, i: int) -> tuple[Statement, ...]:

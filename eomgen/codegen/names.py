@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import re
 import unicodedata
-from collections.abc import Container, Iterable
+from collections.abc import Callable, Container, Iterable
 
 MATH_WORDS = frozenset(
     "acos asin atan atan2 cos sin tan acosh asinh atanh cosh sinh tanh exp exp2 expm1 frexp ilogb ldexp log log10 "
@@ -12,7 +12,10 @@ MATH_WORDS = frozenset(
     "lround trunc fmod remainder remquo copysign nan nextafter fdim fmax fmin fma abs sign j0 j1 jn y0 y1 yn min max "
     "select less less_equal pi np math signgam isnan isinf isfinite signbit div printf size_t".split()
 )
-OWN_WORDS = frozenset("between acting t x p c inputs dx out given n constants evaluate math float SIZE".split())
+OWN_WORDS = frozenset(
+    "between acting t x p c inputs dx out given n constants evaluate math float SIZE "
+    "rhs reactions inverse outputs matrices jacobian".split()
+)
 RESERVED = MATH_WORDS | OWN_WORDS
 # our own variables, functions and macros, and what C keeps for itself
 LOCAL = re.compile(
@@ -20,21 +23,30 @@ LOCAL = re.compile(
 )
 
 
-def identifiers(names: Iterable[str], taken: Container[str]) -> dict[str, str]:
+LONGEST = 31  # what is no longer every language takes
+
+
+def identifiers(
+    names: Iterable[str], taken: Container[str], folded: Callable[[str], str] = lambda word: word
+) -> dict[str, str]:
     """An identifier for every name, by the name's own letters where that can be: theta' -> theta_dot.
 
     Args:
         taken: words of the language, and what stands for something else.
+        folded: what no two identifiers have in common: of a language without capitals, the small letters.
     """
     chosen: dict[str, str] = {}
+    used: set[str] = set()
     for name in names:
-        word = identifier(name)
-        if word in RESERVED or word in taken or LOCAL.fullmatch(word):
+        word = identifier(name)[:LONGEST]
+        word = word if word[0].isalpha() else f"n{word}"
+        if {word, folded(word)} & RESERVED or word in taken or folded(word) in taken or LOCAL.fullmatch(word):
             word += "_"
         unique, number = word, 2
-        while unique in chosen.values():
+        while folded(unique) in used:
             unique, number = f"{word}_{number}", number + 1
         chosen[name] = unique
+        used.add(folded(unique))
     return chosen
 
 

@@ -26,7 +26,7 @@ NEAR = Fraction(1, 10**6)  # of a state: so far from it, what has no value there
 def vectors(
     program: Program, *, x0: Any = None, p0: Any = None, count: int = 6, seed: int = 1
 ) -> tuple[TestVector, ...]:
-    """Right answers near the start (else near 0), half of them with inputs given where there are any.
+    """Right answers near the start (else near 0), half of them with inputs given where there are any; and there.
 
     Args:
         x0, p0: start and parameter values; where None, states near 0 and parameters between 0.5 and 2.
@@ -45,7 +45,16 @@ def vectors(
             (found if all(value == value for value in vector.result) else partial).append(vector)
     if not found:
         raise DerivationError("the equations have no value at any of the states tried for test vectors")
-    return (*found, *partial[:PARTIAL])
+    special = (_vector(program, floats, state) for state in _special(program, found[0], x0))
+    return (*found, *(vector for vector in special if vector is not None), *partial[:PARTIAL])
+
+
+def _special(program: Program, like: TestVector, x0: Any) -> list[TestVector]:
+    """Where pieces and singular positions are met: the start itself, and at rest there; without one, all zero."""
+    x = tuple([0.0] * len(program.states) if x0 is None else [float(v) for v in x0])
+    nq = len(program.symbols.q)
+    states = dict.fromkeys([x, (*x[:nq], *(0.0 for _ in x[nq:]))])
+    return [replace(like, t=0.0, x=state, inputs=None, result=()) for state in states]
 
 
 def outputs_at(program: Program, values: dict[Node, Any], arithmetic: Arithmetic) -> list[Any]:

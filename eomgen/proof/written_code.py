@@ -9,7 +9,7 @@ import numpy as np
 
 from eomgen.codegen.program import Program
 from eomgen.codegen.rhs import target_named
-from eomgen.codegen.targets.base import RHS, Role, TestVector
+from eomgen.codegen.targets.base import RHS, FileContent, Role, TestVector
 from eomgen.errors import RunFailed, ToolMissing
 from eomgen.mechanics.bodies.armature import joint_row
 from eomgen.mechanics.equations.accelerations import accelerations_at
@@ -29,13 +29,13 @@ class Written:
 
     Args:
         target: name of the language.
-        texts: its files, {name: text}.
+        texts: its files, {path: content}.
         program, stem, role: what was written, under which names.
         vectors: the states of its test vectors.
     """
 
     target: str
-    texts: Mapping[str, str]
+    texts: Mapping[str, FileContent]
     program: Program
     stem: str
     role: Role

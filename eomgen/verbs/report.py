@@ -372,8 +372,8 @@ def _downloads(subject: Subject) -> ReportSection | None:
     return ReportSection("downloads", attachments=tuple(found)) if found else None
 
 
-def _archive(texts: Mapping[str, str]) -> bytes:
-    """Texts by path as one file."""
+def _archive(texts: Mapping[str, str | bytes]) -> bytes:
+    """Files by path as one file."""
     archive = io.BytesIO()
     with zipfile.ZipFile(archive, "w", zipfile.ZIP_DEFLATED) as packed:
         for path, text in texts.items():

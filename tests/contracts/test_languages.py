@@ -10,7 +10,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from hand_made import cart_pole, pendulum, spring_row, symbols, tied_pendulum
+from hand_made import PUSHED, cart_pole, pendulum, spring_row, symbols, tied_pendulum
 from tools import needs, tool
 
 import eomgen
@@ -47,16 +47,6 @@ def every_operation() -> Program:
     return program_of(made, s)
 
 
-PUSHED = """
-eomgen = 1
-name = "pushed"
-space = "plane"
-parameters = { m = 2.0 }
-coordinates = { x = 0.5 }
-inputs.F.value = { samples = [[0, 1], [0.5, 3], [1, -2], [2, 0.5]] }
-bodies.b = { mass = "m", joint = { kind = "prismatic", axis = [1, 0], displacement = "x" } }
-forces.f = { kind = "force", point = "b.origin", force = ["F", 0] }
-"""
 PROGRAMS = {
     "every operation": every_operation,
     "pendulum": lambda: right_hand_side(pendulum()),

@@ -112,3 +112,15 @@ def spring_row(n: int) -> EquationsOfMotion:
         total = total + f
     M = [[2 if i == j else 1 for j in range(n)] for i in range(n)]
     return equations_of(s, M, [0] * n, [f + total for f in force])
+
+
+PUSHED = """
+eomgen = 1
+name = "pushed"
+space = "plane"
+parameters = { m = 2.0 }
+coordinates = { x = 0.5 }
+inputs.F.value = { samples = [[0, 1], [0.5, 3], [1, -2], [2, 0.5]] }
+bodies.b = { mass = "m", joint = { kind = "prismatic", axis = [1, 0], displacement = "x" } }
+forces.f = { kind = "force", point = "b.origin", force = ["F", 0] }
+"""

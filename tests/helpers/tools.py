@@ -1,21 +1,36 @@
-"""Programs that some tests run: without one they are skipped by its name, but on CI, where that is a failure."""
+"""Programs that some tests run: without one they are skipped by its name, but on CI, where that is a failure.
+
+EOMGEN_REQUIRE says what must be there: a list of languages and programs ("cpp,rust,chromium"), or 1: all.
+"""
 
 from __future__ import annotations
 
+import importlib.util
 import os
 import shutil
 
 import pytest
 
 from eomgen.codegen import build
-from eomgen.codegen.targets import ALL
+from eomgen.codegen.targets import ALL, cpp, fortran, rust
 
-REQUIRED = bool(os.environ.get("CI") or os.environ.get("EOMGEN_REQUIRE"))
+ASKED = "all" if os.environ.get("CI") else os.environ.get("EOMGEN_REQUIRE", "")
+REQUIRED = None if ASKED in ("1", "all") else frozenset(ASKED.replace(",", " ").split())  # None: all
 NAMES = {"chromium": ("chromium", "chromium-browser", "google-chrome")}
+COMPILERS = {"c": build.C, "cpp": cpp.COMPILER, "rust": rust.COMPILER, "fortran": fortran.COMPILER}
+NEEDS = {  # of a language the programs and packages (with a dot before them) that run it and its own test
+    "c": (),
+    "cpp": (),
+    "rust": ("cargo",),
+    "fortran": (),
+    "javascript": ("node",),
+}
 
 
 def found(name: str) -> str | None:
-    """Where a program is; None where it is not."""
+    """Where a program is, or a package that begins with a dot; None where it is not."""
+    if name.startswith("."):
+        return name if importlib.util.find_spec(name[1:]) else None
     return next(filter(None, map(shutil.which, NAMES.get(name, (name,)))), None)
 
 
@@ -27,13 +42,24 @@ def tool(name: str) -> str:
     return path
 
 
-def needs(*names: str) -> pytest.MarkDecorator:
-    """The mark of a test that runs these programs."""
+def needs(*names: str, what: str = "") -> pytest.MarkDecorator:
+    """The mark of a test that runs these programs.
+
+    Args:
+        what: the language that they are needed for, as EOMGEN_REQUIRE has it.
+    """
     missing = [name for name in names if found(name) is None]
-    return pytest.mark.skipif(bool(missing) and not REQUIRED, reason=f"not on this machine: {', '.join(missing)}")
+    required = REQUIRED is None or not REQUIRED.isdisjoint({*names, what})
+    return pytest.mark.skipif(bool(missing) and not required, reason=f"not on this machine: {', '.join(missing)}")
 
 
-RUNS = {"javascript": needs("node"), "c": pytest.mark.skipif(build.compiler() is None, reason="no C compiler")}
+def language(name: str) -> pytest.MarkDecorator:
+    """The mark of a test that runs a language."""
+    of = COMPILERS.get(name)
+    missing = [f"a compiler of {of.language}"] if of is not None and build.compiler(of) is None else []
+    return needs(*missing, *NEEDS.get(name, ()), what=name)
+
+
 each_target = pytest.mark.parametrize(
-    "target", [pytest.param(target.name, marks=RUNS.get(target.name, ())) for target in ALL]
+    "target", [pytest.param(target.name, marks=language(target.name)) for target in ALL if target.run is not None]
 )

@@ -110,6 +110,10 @@ class Description:
     outputs: tuple[str, ...] = ()
 
 
+FileContent = str | bytes
+Emitted = tuple[Program, Description]
+"""A program and what its files say of it."""
+
 Called = Callable[[float, Sequence[float], Sequence[float], Sequence[float], Sequence[float] | None], Sequence[float]]
 """(t, x, a, p, inputs or None) -> the outputs; a is () where it is no argument."""
 
@@ -122,7 +126,8 @@ class Target:
         name: as the user says it.
         about: the language, and what its files need.
         text: (program, stem, role) -> its functions in the language.
-        files: (program, stem, description) -> {file name: text}, ready to be used by others.
+        files: (stem, what is emitted, the right-hand side first) -> {path: content}, ready to be used by others.
+        use: how they are used and tested, a line each, {stem} among them.
         load: the program, callable.
         run: (those files, program, stem, role) -> (t, x, a, p, inputs or None) -> outputs: the very text that others
             get, run here; None where nothing here runs the language.
@@ -131,9 +136,68 @@ class Target:
     name: str
     about: str
     text: Callable[[Program, str, Role], str]
-    files: Callable[[Program, str, Description], dict[str, str]]
+    files: Callable[[str, Sequence[Emitted]], dict[str, FileContent]]
+    use: tuple[str, ...]
     load: Callable[[Program], Functions]
-    run: Callable[[Mapping[str, str], Program, str, Role], Called] | None = None
+    run: Callable[[Mapping[str, FileContent], Program, str, Role], Called] | None = None
+
+
+Many = Callable[[np.ndarray, np.ndarray, np.ndarray, "np.ndarray | None"], np.ndarray]
+"""(t n, x n x states with a beside it, p, inputs None or n x inputs) -> n x outputs."""
+
+
+def functions_by(many: Many) -> Functions:
+    """A function of many instants as those of a program in memory."""
+
+    def one(t: float, x: Any, p: np.ndarray, inputs: Any) -> np.ndarray:
+        given = None if inputs is None else np.array([inputs], dtype=float)
+        found: np.ndarray = many(np.array([t], dtype=float), np.array([x], dtype=float), p, given)[0]
+        return found
+
+    return Functions(
+        lambda p: np.array(p, dtype=float), one, lambda t, x, p, inputs: many(t, x, np.array(p, dtype=float), inputs)
+    )
+
+
+def called_by(many: Many) -> Called:
+    """The same at one state."""
+
+    def called(t: float, x: Any, a: Any, p: Any, inputs: Any) -> Sequence[float]:
+        given = None if inputs is None else np.array([inputs], dtype=float)
+        state = np.array([[*x, *a]], dtype=float)
+        found: list[float] = many(np.array([t], dtype=float), state, np.array(p, dtype=float), given)[0].tolist()
+        return found
+
+    return called
+
+
+def vector_lines(
+    vectors: Sequence[TestVector],
+    call: str,
+    listed: Callable[[Sequence[float]], str],
+    number: Callable[[float], str],
+    inputs: tuple[str, str],
+) -> list[str]:
+    """A line of a test for each vector.
+
+    Args:
+        call: with {t}, {x}, {a}, {p}, {inputs}, {result} and {tolerance}.
+        listed: the text of an array.
+        number: of a double, of nan too.
+        inputs: what stands for none, and how an array stands for those that are given, with {}.
+    """
+    return [
+        call.format(
+            t=number(v.t),
+            x=listed(v.x),
+            a=listed(v.a),
+            p=listed(v.p),
+            inputs=inputs[0] if v.inputs is None else inputs[1].format(listed(v.inputs)),
+            result=listed(v.result),
+            tolerance=number(v.tolerance),
+        )
+        for v in vectors
+    ]
 
 
 def header(program: Program, description: Description) -> list[str]:

@@ -13,7 +13,7 @@ from eomgen.codegen.build import function_of, library
 from eomgen.codegen.lowered import CHANGED, INDICES, INT, PLACES, READ, REAL, ROOM, Language, one_line
 from eomgen.codegen.lowering import Lowered, lowered
 from eomgen.codegen.program import Program
-from eomgen.codegen.targets.base import RHS, Called, Description, Functions, Role, Target, header
+from eomgen.codegen.targets.base import RHS, Called, Description, Emitted, FileContent, Functions, Role, Target, header
 from eomgen.codegen.targets.c_loading import functions_of
 from eomgen.codegen.targets.c_self_test import self_test
 
@@ -164,10 +164,10 @@ def _lowered(program: Program, stem: str, role: Role, remarks: Mapping[str, str]
 
 
 def _text(made: Lowered, stem: str, role: Role) -> str:
-    lines = ["#include <math.h>\n#include <stddef.h>", *(C.defined[op] for op in sorted(made.ops & C.defined.keys()))]
-    lines += map(C.holds, made.tables)
-    functions = ["\n".join(C.defines(f)) for f in (*made.kernels, *made.bodies)]
-    return "\n\n".join(["\n".join(lines), *functions, _CALLERS.format(**_words(made, stem, role))])
+    first, *functions = made.texts(C)
+    return "\n\n".join(
+        [f"#include <math.h>\n#include <stddef.h>\n\n{first}", *functions, _CALLERS.format(**_words(made, stem, role))]
+    )
 
 
 def c_functions(program: Program) -> Functions:
@@ -195,8 +195,12 @@ def _apart(made: Lowered, stem: str) -> str:
     return "\n".join((*before, _text(made, stem, RHS), *after))
 
 
-def c_files(program: Program, stem: str, description: Description) -> dict[str, str]:
+def c_files(stem: str, emitted: Sequence[Emitted]) -> dict[str, FileContent]:
     """NAME_rhs.c and NAME_rhs.h; the former with a self-test: `cc -DEOMGEN_SELFTEST NAME_rhs.c -lm && ./a.out`."""
+    return {name: text for each in emitted for name, text in _files(stem, *each).items()}
+
+
+def _files(stem: str, program: Program, description: Description) -> dict[str, str]:
     role, made = description.role, _lowered(program, stem, description.role, description.remarks)
     name = role.main(stem)
     guard = f"{name.upper()}_H"
@@ -207,13 +211,13 @@ def c_files(program: Program, stem: str, description: Description) -> dict[str, 
         f"{_DECLARATIONS.format(**_words(made, stem, role))}\n#ifdef __cplusplus\n}}\n#endif\n\n#endif\n"
     )
     defined = f'{head}#include "{name}.h"\n\n{_text(made, stem, role)}'
-    return {f"{name}.c": f"{defined}\n{self_test(program, stem, description.vectors, role)}", f"{name}.h": declared}
+    return {f"{name}.c": f"{defined}\n{self_test(program, name, description.vectors, role)}", f"{name}.h": declared}
 
 
-def run(texts: Mapping[str, str], program: Program, stem: str, role: Role) -> Called:
+def run(texts: Mapping[str, FileContent], program: Program, stem: str, role: Role) -> Called:
     """NAME_rhs of the files, compiled."""
     name = role.main(stem)
-    text = texts[f"{name}.c"].replace(f'#include "{name}.h"\n', texts[f"{name}.h"], 1)
+    text = str(texts[f"{name}.c"]).replace(f'#include "{name}.h"\n', str(texts[f"{name}.h"]), 1)
     function, outputs = function_of(library(text, quickly=True), name), len(program.outputs)
     reals = ctypes.POINTER(ctypes.c_double)
     function.argtypes = [ctypes.c_double, *[reals] * (5 if program.accelerations else 4)]
@@ -231,4 +235,5 @@ def run(texts: Mapping[str, str], program: Program, stem: str, role: Role) -> Ca
     return called
 
 
-TARGET = Target("c", "C99, no dependencies", c_text, c_files, c_functions, run)
+USE = ("cc -O2 -c {stem}_rhs.c", "cc -O2 -DEOMGEN_SELFTEST {stem}_rhs.c -lm -o selftest && ./selftest")
+TARGET = Target("c", "C99, no dependencies", c_text, c_files, USE, c_functions, run)

@@ -8,7 +8,6 @@ from eomgen.codegen.program import Program
 from eomgen.codegen.targets.base import Role, TestVector
 
 _MAIN = """\
-#ifdef EOMGEN_SELFTEST
 #include <stdio.h>
 
 static const struct {{ double t, x[{x}],{a} p[{p}], inputs[{inputs}], {result}[{size}], tolerance; int given; }} \
@@ -34,12 +33,18 @@ int main(void)
     }}
     return wrong;
 }}
-#endif
 """
 
 
-def self_test(program: Program, stem: str, vectors: Sequence[TestVector], role: Role) -> str:
-    """The main, or nothing where there are no vectors."""
+def self_test(
+    program: Program, function: str, vectors: Sequence[TestVector], role: Role, *, guard: str = "EOMGEN_SELFTEST"
+) -> str:
+    """The main, or nothing where there are no vectors.
+
+    Args:
+        function: as it is called.
+        guard: the main is there only where this is defined; "" always.
+    """
     if not vectors:
         return ""
     sizes = {
@@ -49,15 +54,16 @@ def self_test(program: Program, stem: str, vectors: Sequence[TestVector], role: 
         "size": len(program.outputs),
     }
     a = len(program.accelerations)
-    return _MAIN.format(
+    text = _MAIN.format(
         a=f" a[{a}]," if a else "",
         given=" vectors[i].a," if a else "",
         rows=",\n".join(f"    {_row(vector)}" for vector in vectors),
-        main=role.main(stem),
+        main=function,
         result=role.result,
         outputs=sizes["size"],
         **{name: max(size, 1) for name, size in sizes.items()},
     )
+    return f"#ifdef {guard}\n{text}#endif\n" if guard else text
 
 
 def _number(value: float) -> str:

@@ -6,13 +6,13 @@ With it comes a test over the test vectors, run by `node --test`.
 from __future__ import annotations
 
 import json
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import replace
 
 from eomgen.codegen.lowered import CHANGED, INDICES, INT, PLACES, READ, REAL, ROOM, Language
 from eomgen.codegen.lowering import lowered
 from eomgen.codegen.program import Program
-from eomgen.codegen.targets.base import RHS, Called, Description, Functions, Role, Target, header
+from eomgen.codegen.targets.base import RHS, Called, Description, Emitted, FileContent, Functions, Role, Target, header
 from eomgen.codegen.targets.node import module_functions
 
 _OUT = "function {name}({arguments}, {out} = new Float64Array({size})) {{"
@@ -100,15 +100,15 @@ def javascript_expression(program: Program) -> str:
 
 
 def _functions(program: Program, language: Language, role: Role) -> str:
-    made = lowered(program, language, role.result)
-    lines = [language.defined[op] for op in sorted(made.ops & language.defined.keys())]
-    lines += map(language.holds, made.tables)
-    functions = ["\n".join(language.defines(f)) for f in (*made.kernels, *made.bodies)]
-    return "\n\n".join([*(["\n".join(lines)] if lines else []), *functions])
+    return "\n\n".join(lowered(program, language, role.result).texts(language))
 
 
-def javascript_files(program: Program, stem: str, description: Description) -> dict[str, str]:
+def javascript_files(stem: str, emitted: Sequence[Emitted]) -> dict[str, FileContent]:
     """NAME_rhs.mjs and NAME_rhs.test.mjs, which `node --test` finds."""
+    return {name: text for each in emitted for name, text in _files(stem, *each).items()}
+
+
+def _files(stem: str, program: Program, description: Description) -> dict[str, str]:
     role, main = description.role, description.role.main(stem)
     head = "\n".join(f"// {JAVASCRIPT.harmless(line)}".rstrip() for line in header(program, description))
     listed = {
@@ -133,9 +133,9 @@ def javascript_functions(program: Program) -> Functions:
     return module_functions(javascript_text(program), program)
 
 
-def run(texts: Mapping[str, str], program: Program, stem: str, role: Role) -> Called:
+def run(texts: Mapping[str, FileContent], program: Program, stem: str, role: Role) -> Called:
     """The function of the file, run by node."""
-    found = module_functions(texts[f"{role.main(stem)}.mjs"], program)
+    found = module_functions(str(texts[f"{role.main(stem)}.mjs"]), program)
     return lambda t, x, a, p, inputs: found.one(t, [*x, *a], found.constants(p), inputs).tolist()
 
 
@@ -144,6 +144,7 @@ TARGET = Target(
     "an ECMAScript module, for browsers and node",
     javascript_text,
     javascript_files,
+    ('import {{ rhs }} from "./{stem}_rhs.mjs";', "node --test"),
     javascript_functions,
     run,
 )

@@ -10,7 +10,7 @@ from typing import Any
 from eomgen.codegen.lowered import CHANGED, INDICES, INT, PLACES, READ, REAL, ROOM, Language
 from eomgen.codegen.lowering import Lowered, lowered
 from eomgen.codegen.program import Program
-from eomgen.codegen.targets.base import RHS, Called, Description, Functions, Role, Target, header
+from eomgen.codegen.targets.base import RHS, Called, Description, Emitted, FileContent, Functions, Role, Target, header
 
 PYTHON = Language(
     reserved=frozenset(keyword.kwlist) | frozenset(keyword.softkwlist),
@@ -188,17 +188,21 @@ def numpy_functions(program: Program) -> Functions:
     return Functions(constants_of, one, many)
 
 
-def numpy_files(program: Program, stem: str, description: Description) -> dict[str, str]:
+def numpy_files(stem: str, emitted: Sequence[Emitted]) -> dict[str, FileContent]:
     """NAME_rhs.py, a module of its own: it needs numpy and nothing of ours."""
+    return {name: text for each in emitted for name, text in _files(stem, *each).items()}
+
+
+def _files(stem: str, program: Program, description: Description) -> dict[str, str]:
     head = "\n".join(header(program, description)).replace("\\", "/").replace('"""', "'''")
     text = python_text(program, stem, description.role)
     return {f"{description.role.main(stem)}.py": f'"""{head}\n"""\n\n{text}'}
 
 
-def run(texts: Mapping[str, str], program: Program, stem: str, role: Role) -> Called:
+def run(texts: Mapping[str, FileContent], program: Program, stem: str, role: Role) -> Called:
     """NAME_rhs of the file, executed."""
     space: dict[str, Any] = {}
-    exec(compile(texts[f"{role.main(stem)}.py"], role.main(stem), "exec"), space)  # our own text, from the graph
+    exec(compile(str(texts[f"{role.main(stem)}.py"]), role.main(stem), "exec"), space)  # our own text, from the graph
     function = space[role.main(stem)]
 
     def called(
@@ -210,4 +214,5 @@ def run(texts: Mapping[str, str], program: Program, stem: str, role: Role) -> Ca
     return called
 
 
-TARGET = Target("numpy", "Python with numpy", python_text, numpy_files, numpy_functions, run)
+USE = ("from {stem}_rhs import {stem}_rhs", "python -m pytest")
+TARGET = Target("numpy", "Python with numpy", python_text, numpy_files, USE, numpy_functions, run)

@@ -1,0 +1,208 @@
+"""Program -> a C++17 header: `NAME_rhs<Real>::rhs(t, x, p, inputs, dx)`, over any scalar that has its operators.
+
+With it comes a test over the test vectors, a plain main.
+"""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Mapping, Sequence
+
+from eomgen.codegen.build import Compiler
+from eomgen.codegen.expressions import ATOM, PRODUCT, SUM, RankedText, ranked_number
+from eomgen.codegen.lowered import CHANGED, INDICES, INT, PLACES, READ, REAL, ROOM, Language
+from eomgen.codegen.lowering import lowered
+from eomgen.codegen.program import Program
+from eomgen.codegen.targets.base import (
+    RHS,
+    Called,
+    Description,
+    Emitted,
+    FileContent,
+    Functions,
+    Role,
+    Target,
+    called_by,
+    functions_by,
+    header,
+)
+from eomgen.codegen.targets.c import C, comment
+from eomgen.codegen.targets.c_self_test import self_test
+from eomgen.codegen.targets.library_call import many_of, sizes
+from eomgen.symbolic.expression.graph import Number
+
+
+def number(a: Number) -> RankedText:
+    """A number of the scalar's own kind."""
+    text, strength = ranked_number(a)
+    if strength == ATOM:
+        return f"Real({text})", ATOM
+    return (f"-{number(-a)[0]}", SUM) if a < 0 else ("/".join(f"Real({part})" for part in text.split("/")), PRODUCT)
+
+
+CPP = Language(
+    reserved=C.reserved
+    | frozenset(
+        "alignas alignof and and_eq asm bitand bitor catch char16_t char32_t char8_t class co_await co_return co_yield "
+        "compl concept consteval constexpr constinit const_cast decltype delete dynamic_cast explicit export false "
+        "friend mutable namespace new noexcept not not_eq nullptr operator or or_eq private protected public "
+        "reinterpret_cast requires static_assert static_cast template this thread_local throw true try typeid typename "
+        "using virtual wchar_t xor xor_eq std Real".split()
+    ),
+    functions={"abs": "fabs({0})", "select": "pick({0}, {1}, {2})"},
+    defined={
+        "sign": "static Real sign(Real a) { return a > 0 ? Real(1) : a < 0 ? Real(-1) : a; }",
+        "min": "static Real min(Real a, Real b) { return a < b || a != a ? a : b; }",
+        "max": "static Real max(Real a, Real b) { return a > b || a != a ? a : b; }",
+        "less": "static Real less(Real a, Real b) { return a < b ? Real(1) : a >= b ? Real(0) : a + b; }",
+        "less_equal": "static Real less_equal(Real a, Real b) { return a <= b ? Real(1) : a > b ? Real(0) : a + b; }",
+        "select": "static Real pick(Real given, Real a, Real b) "
+        "{ return given == 0 ? b : given == given ? a : given; }",
+    },
+    words={"not": "!", "nan": "std::numeric_limits<Real>::quiet_NaN()", "given": "inputs != nullptr"},
+    kinds={
+        "": "void {name}",
+        REAL: "Real {name}",
+        INT: "long {name}",
+        READ: "const Real *{name}",
+        CHANGED: "Real *{name}",
+        INDICES: "const int *{name}",
+        PLACES: "int *{name}",
+    },
+    at=C.at,
+    let=C.let,
+    put=C.put,
+    call=C.call,
+    back=C.back,
+    arrays={
+        CHANGED: "Real {name}[{size}] = {{}};",
+        ROOM: "Real {name}[{size}];",
+        PLACES: "int {name}[{size}] = {{}};",
+    },
+    tables={
+        INT: "static constexpr long {name} = {value};",
+        INDICES: "static constexpr int {name}[{size}] = {values};",
+        READ: "inline static const Real {name}[{size}] = {values};",
+    },
+    listed=C.listed,
+    loop=C.loop,
+    down=C.down,
+    branch=C.branch,
+    function=("static {declared}({arguments})\n{{", "}"),
+    out=("static void {name}({arguments}, Real *{out})\n{{", "}"),
+    remark="// {text}",
+    harmless=comment,
+    unused=C.unused,
+    number=number,
+    longest=C.longest,
+)
+COMPILER = Compiler(
+    "C++",
+    ".cpp",
+    "CXX",
+    ("c++", "g++", "clang++"),
+    ("-std=c++17", "-shared", "-fPIC", "-fvisibility=hidden"),  # else one process has one eomgen_rhs<double>
+    "install g++ or `pip install ziglang`, or set CXX",
+    zig="c++",
+)
+
+_CLASS = """\
+#include <math.h>
+#include <cstddef>
+#include <limits>
+
+template <class Real>
+struct {main} {{
+{names}
+
+{inner}
+
+    // {result} has {outputs} places; inputs nullptr: the model's own
+    static void {role}(Real t, const Real *x, {a_declared}const Real *p, const Real *inputs, Real *{result})
+    {{
+        Real c[{size}];
+        constants(p, c);
+        evaluate(t, x, {a}p, c, inputs, {result});
+    }}
+}};
+"""
+
+_ENTRY = """
+#include <cstddef>
+extern "C" __attribute__((visibility("default")))
+void {entry}(std::size_t n, const double *t, const double *x, const double *p, const double *inputs, double *out)
+{{
+    double c[{size}];
+    {main}<double>::constants(p, c);
+    for (std::size_t i = 0; i < n; i++)
+        {main}<double>::evaluate(t[i], x + i*{moving}, {a}p, c, inputs ? inputs + i*{inputs} : nullptr,
+            out + i*{outputs});
+}}
+"""
+
+
+def cpp_text(program: Program, stem: str, role: Role = RHS, remarks: Mapping[str, str] | None = None) -> str:
+    """The struct of a program."""
+    made, given = lowered(program, CPP, role.result, remarks=remarks), bool(program.accelerations)
+    symbols, inner = program.symbols, "\n\n".join(made.texts(CPP))
+    listed = {"x_names": [x.name for x in program.states], "p_names": symbols.parameters, "input_names": symbols.inputs}
+    counts = {"states": len(program.states), "parameters": len(symbols.parameters), "inputs": len(symbols.inputs)}
+    lines = [
+        f"    static constexpr std::size_t {k}_size = {n};" for k, n in {**counts, "constants": made.constants}.items()
+    ]
+    lines += [_names(key, list(names)) for key, names in listed.items() if names]
+    return _CLASS.format(
+        **sizes(program, role, stem) | {"inputs": "inputs"},
+        names="\n".join(lines),
+        inner="\n".join(f"    {line}".rstrip() for line in inner.split("\n")),
+        size=max(made.constants, 1),
+        a_declared="const Real *a, " if given else "",
+        a="a, " if given else "",
+    )
+
+
+def _names(key: str, names: Sequence[str]) -> str:
+    return f"    static constexpr const char *{key}[] = {{{', '.join(map(_quoted, names))}}};"
+
+
+def _quoted(name: str) -> str:
+    """A text in quotes; letters that are not of ASCII by their numbers."""
+    return json.dumps(name, ensure_ascii=False).replace("??", "?\\?")
+
+
+def cpp_files(stem: str, emitted: Sequence[Emitted]) -> dict[str, FileContent]:
+    """NAME_rhs.hpp and NAME_rhs_test.cpp."""
+    return {name: text for each in emitted for name, text in _files(stem, *each).items()}
+
+
+def _files(stem: str, program: Program, told: Description) -> dict[str, str]:
+    main = told.role.main(stem)
+    head, guard = "\n".join(f"// {comment(line)}".rstrip() for line in header(program, told)), f"{main.upper()}_HPP"
+    text = cpp_text(program, stem, told.role, told.remarks)
+    test = self_test(program, f"{main}<double>::{told.role.name}", told.vectors, told.role, guard="")
+    return {
+        f"{main}.hpp": f"{head}\n#ifndef {guard}\n#define {guard}\n\n{text}\n#endif\n",
+        f"{main}_test.cpp": f'// Held against its test vectors: exit 0 where all agree\n#include "{main}.hpp"\n{test}',
+    }
+
+
+def _many_text(text: str, program: Program, stem: str, role: Role) -> str:
+    """The header with a function that Python calls."""
+    constants = max(int(text.partition("constants_size = ")[2].partition(";")[0]), 1)
+    a = f"x + i*{len(program.moving)} + {len(program.states)}, " if program.accelerations else ""
+    return text + _ENTRY.format(**sizes(program, role, stem), size=constants, a=a)
+
+
+def functions(program: Program) -> Functions:
+    """The program compiled and callable."""
+    return functions_by(many_of(_many_text(cpp_text(program, "eomgen"), program, "eomgen", RHS), program, COMPILER))
+
+
+def run(texts: Mapping[str, FileContent], program: Program, stem: str, role: Role) -> Called:
+    """The function of the header, compiled."""
+    text = _many_text(str(texts[f"{role.main(stem)}.hpp"]), program, stem, role)
+    return called_by(many_of(text, program, COMPILER, quickly=True))
+
+
+USE = ('#include "{stem}_rhs.hpp"', "g++ -std=c++17 -Wall -Wextra -pedantic {stem}_rhs_test.cpp -o test && ./test")
+TARGET = Target("cpp", "C++17 header, templates over the scalar", cpp_text, cpp_files, USE, functions, run)

@@ -1,0 +1,59 @@
+"""A compiled function of many instants behind ctypes: what every compiled language but C shares.
+
+    void eomgen_many(size_t n, const double *t, const double *x, const double *p, const double *inputs, double *out)
+
+x has a after it in each row, where a is an argument; inputs NULL: the model's own.
+"""
+
+from __future__ import annotations
+
+import ctypes
+
+import numpy as np
+
+from eomgen.codegen.build import Compiler, function_of, library
+from eomgen.codegen.program import Program
+from eomgen.codegen.targets.base import Many, Role
+
+ENTRY = "eomgen_many"
+
+
+def many_of(text: str, program: Program, by: Compiler, *, quickly: bool = False) -> Many:
+    """The function, compiled.
+
+    Raises:
+        ToolMissing, RunFailed: as of `library`.
+    """
+    made, outputs = library(text, quickly=quickly, by=by), len(program.outputs)
+    function = function_of(made, ENTRY, by)
+    function.argtypes, function.restype = [ctypes.c_size_t, *[ctypes.c_void_p] * 5], None
+
+    def many(t: np.ndarray, x: np.ndarray, p: np.ndarray, inputs: np.ndarray | None) -> np.ndarray:
+        out = np.empty((len(t), outputs))
+        t, x, p = (np.ascontiguousarray(part, dtype=float) for part in (t, x, p))
+        given = None if inputs is None else np.ascontiguousarray(inputs, dtype=float)
+        function(
+            len(t), t.ctypes.data, x.ctypes.data, p.ctypes.data, None if given is None else given.ctypes.data,
+            out.ctypes.data,
+        )  # fmt: skip
+        return out
+
+    return many
+
+
+def sizes(program: Program, role: Role, stem: str) -> dict[str, object]:
+    """What stands in templates: names, and how many there are of each."""
+    given = len(program.accelerations)
+    return {
+        "main": role.main(stem),
+        "stem": stem,
+        "role": role.name,
+        "result": role.result,
+        "states": len(program.states),
+        "accelerations": given,
+        "moving": len(program.moving),
+        "parameters": len(program.symbols.parameters),
+        "inputs": len(program.symbols.inputs),
+        "outputs": len(program.outputs),
+        "entry": ENTRY,
+    }
