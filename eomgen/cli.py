@@ -317,10 +317,10 @@ def linearize_command(view: str, over: str | None, **options: Any) -> int:
 @FOLLOW
 @click.option(
     "--view",
-    type=click.Choice(["time", "phase", "resultants", "polar"]),
+    type=click.Choice(["time", "outputs", "phase", "resultants", "polar"]),
     default="time",
     show_default=True,
-    help="What --plot draws: all over time, rates over coordinates, sizes of forces, forces of hinges by direction.",
+    help="What --plot draws: all over time, outputs, rates over coordinates, sizes of forces, forces of hinges.",
 )
 @click.option("--units", is_flag=True, help='In the .csv "theta [deg]", as the file declares it, for names and SI.')
 @click.option("--samples", type=click.IntRange(min=2), help="How many instants are given.  [default: 1001]")
@@ -343,8 +343,8 @@ def simulate_command(
 ) -> int:
     """Integrate the motion from the start values.
 
-    It goes on through every change of contact: what opens, closes, slides or sticks. Reactions are columns. Ties are
-    kept closed, and how well, and how well energy is kept, is said.
+    It goes on through every change of contact: what opens, closes, slides or sticks. Reactions and outputs are
+    columns. Ties are kept closed, and how well, and how well energy is kept, is said.
     """
     from eomgen.simulation.integrator import RATES, Stepping
     from eomgen.verbs.simulate import simulate_document as simulated

@@ -126,14 +126,14 @@ def simulate(
     Raises:
         MissingValues: parameters without a value, all named.
     """
-    from eomgen.questions.simulator import REACTIONS
+    from eomgen.questions.simulator import OUTPUTS, REACTIONS
     from eomgen.simulation.integrate import SAMPLES
 
     valued = with_values(model_at(model), parameters, start)
     model = with_inputs(valued.model, inputs or {})
     run = simulator(model, rtol=rtol, atol=atol, target=target, method=method, stabilization=stabilization)
     samples = SAMPLES if samples is None else samples
-    found = run(time, start=valued.start, samples=samples, columns=REACTIONS, until=until)
-    if found.reactions and found.remark:
+    found = run(time, start=valued.start, samples=samples, columns=(REACTIONS, OUTPUTS), until=until)
+    if (found.reactions or found.outputs) and found.remark:
         warnings.warn(f"{model.name}: {found.remark}", RuntimeWarning, stacklevel=2)
     return found

@@ -66,6 +66,6 @@ def test_reactions_are_columns_where_they_are_asked_for():
         "energy",
         name,
     ]
-    assert run(1, samples=11, columns="reactions").columns().keys() == whole.columns().keys()
+    assert run(1, samples=11, columns=("reactions", "outputs")).columns().keys() == whole.columns().keys()
     with pytest.raises(UsageError, match="no column 'reaction_q'"):
         run(1, columns=["reaction_q"])

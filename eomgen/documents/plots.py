@@ -9,6 +9,8 @@ from typing import Any
 import numpy as np
 
 from eomgen.documents.figures import Picture, mathtext
+from eomgen.errors import RunFailed
+from eomgen.model.own_units import OUTPUT
 from eomgen.simulation.result import Trajectory
 from eomgen.symbolic.expression.units import Unit
 
@@ -57,6 +59,34 @@ def over_time(trajectory: Trajectory, title: str, units: Mapping[str, Unit]) -> 
     return Picture((8, 1.0 + 2.1 * max(count, 1)), fill, title)
 
 
+def outputs_over_time(trajectory: Trajectory, title: str, units: Mapping[str, Unit]) -> Picture:
+    """Outputs over time, one panel a unit.
+
+    Raises:
+        RunFailed: the run has none.
+    """
+    if not trajectory.outputs:
+        raise RunFailed("the run has no outputs: the model asks none that is a function of the state")
+    columns = trajectory.columns()
+    named = {
+        name: name if name in columns and columns[name] is y else f"{name}{OUTPUT}"
+        for name, y in trajectory.outputs.items()
+    }
+    groups: dict[Unit, list[str]] = {}
+    for name, column in named.items():
+        groups.setdefault(units.get(column, PLAIN), []).append(name)
+
+    def fill(figure: Any) -> None:
+        panels = figure.subplots(len(groups), 1, sharex=True, squeeze=False)[:, 0]
+        for panel, (unit, names) in zip(panels, groups.items(), strict=True):
+            _curves(panel, trajectory.t, {name: trajectory.outputs[name] / unit.size for name in names}, unit)
+        panels[-1].set_xlabel("$t$ [s]")
+        panels[-1].margins(x=0.01)
+        figure.align_ylabels(panels)
+
+    return Picture((8, 1.0 + 2.1 * len(groups)), fill, title)
+
+
 def by_unit(trajectory: Trajectory, units: Mapping[str, Unit]) -> dict[Unit, list[str]]:
     """The coordinates of each unit."""
     groups: dict[Unit, list[str]] = {}
@@ -66,8 +96,13 @@ def by_unit(trajectory: Trajectory, units: Mapping[str, Unit]) -> dict[Unit, lis
 
 
 def _coordinates(panel: Any, trajectory: Trajectory, names: list[str], unit: Unit) -> None:
+    _curves(panel, trajectory.t, {name: trajectory[name] / unit.size for name in names}, unit)
+
+
+def _curves(panel: Any, t: np.ndarray, curves: Mapping[str, np.ndarray], unit: Unit) -> None:
     from matplotlib import colormaps
 
+    names = list(curves)
     few = len(names) <= MOST_IN_LEGEND
     colors = (
         colormaps["tab10"](np.arange(10))
@@ -76,7 +111,7 @@ def _coordinates(panel: Any, trajectory: Trajectory, names: list[str], unit: Uni
     )
     labels = [f"${mathtext(name)}$" for name in names]
     for name, label, color in zip(names, labels, colors, strict=False):
-        panel.plot(trajectory.t, trajectory[name] / unit.size, label=label, color=color, linewidth=1.6 if few else 1.0)
+        panel.plot(t, curves[name], label=label, color=color, linewidth=1.6 if few else 1.0)
     shown = ", ".join(labels) if len(labels) <= 3 else f"{labels[0]}, …, {labels[-1]}"
     panel.set_ylabel(f"{shown} [{unit}]" if unit.text else shown)
     if len(names) > 1 and few:

@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 
 from eomgen.documents.figures import Picture, mathtext
-from eomgen.documents.plots import over_time
+from eomgen.documents.plots import outputs_over_time, over_time
 from eomgen.errors import RunFailed, UsageError
 from eomgen.simulation.result import Trajectory
 from eomgen.symbolic.expression.units import Unit
@@ -127,6 +127,7 @@ def _panels(names: list[str], draw: Callable[[Any, str], None], title: str, proj
 
 VIEWS: dict[str, Callable[[Trajectory, str, Mapping[str, Unit]], Picture]] = {
     "time": over_time,
+    "outputs": outputs_over_time,
     "phase": _phase,
     "resultants": _resultants,
     "polar": _polar,

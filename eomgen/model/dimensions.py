@@ -11,6 +11,7 @@ from eomgen.model.catalog import Catalog
 from eomgen.model.fields import Leaf, WrittenEquation, named
 from eomgen.model.findings import Finding, whereabouts
 from eomgen.model.outputs import FUNCTIONS
+from eomgen.model.outputs.base import formula_at
 from eomgen.symbolic.expression.dimensions import (
     NUMBER,
     SECOND,
@@ -77,6 +78,8 @@ class Names:
         function = FUNCTIONS.get(call.name)
         if function is None or max(function.per, default=-1) >= len(call.args):
             return None
+        if function.like is not None:
+            return self.walk().of(formula_at(call, function.like))
         found = dimension_of_unit(function.dimension)
         for k in function.per:
             argument, kind = call.args[k], function.kinds[k]
@@ -85,6 +88,10 @@ class Names:
             rate = kind == "coordinate or speed" and argument.name in self.moves
             found = found.times(self.of(argument.name + "'" * rate), -1)
         return found
+
+    def walk(self) -> Walk:
+        """One pass over a formula, whatever does not fit in it left alone."""
+        return Walk(self.of, self.inference, self.of_call, self.parameters, self.moves, mends=False)
 
     def is_declared(self, name: str) -> bool:
         """By the file itself: what a joint implies of its speeds may hide a factor 1: `couple = ["-w1", 0, 0]`."""

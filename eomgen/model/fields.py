@@ -23,6 +23,7 @@ CONFIGURATION = "parameters, coordinates and time"
 RATES = "parameters, coordinates, their rates and time"
 SPEEDS = "parameters, coordinates, their rates, speeds and time"
 MOTION = "parameters, coordinates, rates, speeds, inputs and time"
+EVERY = "every"  # event of a run
 EVERYTHING = "all names, accelerations and functions of the motion"
 
 Parsed = TypeVar("Parsed")
@@ -327,6 +328,26 @@ class TextRule:
 
     def schema(self, definitions: dict[str, Any]) -> dict[str, Any]:
         return {"enum": list(self.options)} if self.options else {"type": "string"}
+
+
+@dataclass(frozen=True)
+class EventRule:
+    """Which of several events: a number from 1 on, or "every"."""
+
+    def read(self, raw: Any, path: DocumentPath, found: list[Finding]) -> int | str | None:
+        whole = not isinstance(raw, (bool, str)) and isinstance(raw, (int, Decimal)) and raw == int(raw)
+        if raw == EVERY:
+            return EVERY
+        if whole and int(raw) >= 1:
+            return int(raw)
+        found.append(Finding(path, f"the number of an event is needed here, not {shown(raw)}", f'like 2, or "{EVERY}"'))
+        return None
+
+    def leaves(self, value: Any, path: DocumentPath, part: Any) -> Iterator[Leaf]:
+        yield Leaf(path, self, value, part)
+
+    def schema(self, definitions: dict[str, Any]) -> dict[str, Any]:
+        return {"anyOf": [{"type": "integer", "minimum": 1}, {"const": EVERY}]}
 
 
 @dataclass(frozen=True)

@@ -9,11 +9,12 @@ from eomgen.model.catalog import Catalog
 from eomgen.model.dimensions import Names, inferred
 from eomgen.model.outputs import FUNCTIONS
 from eomgen.model.parts import Model
-from eomgen.symbolic.expression.dimensions import Dimension, Walk, dimension_of_unit
+from eomgen.symbolic.expression.dimensions import Dimension, dimension_of_unit
 from eomgen.symbolic.expression.expressions import single_call
 from eomgen.symbolic.expression.units import Unit, parse_unit
 
 ALWAYS = {"t": "s", "energy": "J"}
+OUTPUT = " (output)"  # after the name of an output's column, where another column has that name
 
 
 def in_own_unit(model: Model, name: str, value: float, digits: int = 9) -> str:
@@ -30,11 +31,23 @@ def units_of(model: Model, names: Iterable[str]) -> dict[str, Unit]:
     """The unit of each name or function of the motion that has one: as the file declares it, else that of SI.
 
     Args:
-        names: coordinates, rates, speeds, `t`, `energy`, "reaction_x(A)", "omega(bar)".
+        names: coordinates, rates, speeds, `t`, `energy`, "reaction_x(A)", "omega(bar)", outputs.
     """
     known = inferred(Catalog(model, ())).names
-    found = {name: _unit(known, name) for name in names}
+    found = {name: _of_output(model, known, name) or _unit(known, name) for name in names}
     return {name: unit for name, unit in found.items() if unit is not None}
+
+
+def _of_output(model: Model, known: Names, name: str) -> Unit | None:
+    """The unit of an output's column; None where it is none, or where nobody knows it."""
+    output = name.removesuffix(OUTPUT)
+    if output not in model.outputs or (name == output and name in known.moves):
+        return None
+    part = model.outputs[output]
+    if part.unit is not None:
+        return part.unit
+    dimension = known.inference.reduced(known.walk().of(part.value))
+    return None if dimension.unknowns or str(dimension) == "1" else parse_unit(str(dimension))
 
 
 def units_of_model(model: Model, speeds: Iterable[str]) -> dict[str, dict[str, str]]:
@@ -49,7 +62,7 @@ def units_of_model(model: Model, speeds: Iterable[str]) -> dict[str, dict[str, s
         dimension = reduced(dimension)
         return "?" if dimension.unknowns else str(dimension)
 
-    walk = Walk(known.of, known.inference, known.of_call, known.parameters, known.moves, mends=False)
+    walk = known.walk()
     outputs = {name: part.unit.text if part.unit else told(walk.of(part.value)) for name, part in model.outputs.items()}
     names = {name: known.declared[name].text if name in known.declared else told(x) for name, x in found.found.items()}
     power = dimension_of_unit(parse_unit("W"))
@@ -57,6 +70,8 @@ def units_of_model(model: Model, speeds: Iterable[str]) -> dict[str, dict[str, s
 
 
 def _unit(known: Names, name: str) -> Unit | None:
+    if name.endswith(OUTPUT):
+        return None
     if name in ALWAYS:
         return parse_unit(ALWAYS[name])
     call = single_call(name)

@@ -8,7 +8,17 @@ from eomgen.errors import EomgenError
 from eomgen.model import constraints, forces, joints, shapes
 from eomgen.model.constraints import Constraint
 from eomgen.model.containers import ListRule, TableRule
-from eomgen.model.fields import UNIT, AtRest, EquationRule, InstantRule, NameRule, OutputRule, TextRule, WrittenEquation
+from eomgen.model.fields import (
+    UNIT,
+    AtRest,
+    EquationRule,
+    EventRule,
+    InstantRule,
+    NameRule,
+    OutputRule,
+    TextRule,
+    WrittenEquation,
+)
 from eomgen.model.forces import Force
 from eomgen.model.joints import Joint
 from eomgen.model.joints.base import Turns
@@ -225,6 +235,7 @@ class Output(Part):
         at: the instant: an equation; the first time after the start at which it holds; or "equilibrium".
         from_: "start" or "rest" (`from` in a file).
         side: just before or just after the instant.
+        event: which of the events of a run, from 1 on, or "every".
         unit: in which the result is given (None: SI).
     """
 
@@ -234,6 +245,7 @@ class Output(Part):
     at: Annotated[WrittenEquation | AtRest, InstantRule()] | None = None
     from_: Annotated[str, TextRule(("start", "rest"))] | None = None
     side: Annotated[str, TextRule(("before", "after"))] | None = None
+    event: Annotated[int | str, EventRule()] | None = None
     unit: UnitText | None = None
     about: Text | None = None
 

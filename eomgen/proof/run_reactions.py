@@ -47,7 +47,7 @@ def reaction_columns_hold(run: Trajectory, p: np.ndarray) -> Iterator[Check]:
 
 def _differs(run: Trajectory, phase: Phase, p: np.ndarray, row: int, formulas: Mapping[str, Scalar]) -> str:
     """Which column is not that of the symbols in a row, or ""."""
-    state = _state(run, phase, p, row)
+    state = state_of_row(run, phase, p, row)
     columns = {name: float(run.reactions[name][row]) for name in formulas if name in run.reactions}
     known = {name: x for name, x in columns.items() if np.isfinite(x)}
     if not known:
@@ -62,7 +62,7 @@ def _differs(run: Trajectory, phase: Phase, p: np.ndarray, row: int, formulas: M
     return ""
 
 
-def _state(run: Trajectory, phase: Phase, p: np.ndarray, row: int) -> NumericState:
+def state_of_row(run: Trajectory, phase: Phase, p: np.ndarray, row: int) -> NumericState:
     """The state of a row, in the coordinates and speeds of its phase."""
     assert phase.track is not None
     t, x = phase.track

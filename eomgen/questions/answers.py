@@ -44,6 +44,7 @@ from eomgen.proof.check import Certificate
 from eomgen.questions.at_instant import StateAtInstant, resting
 from eomgen.questions.in_phase import PhaseEquations
 from eomgen.questions.motion_from_start import MotionFromStart
+from eomgen.questions.of_a_run import is_of_a_run
 from eomgen.questions.proof_of_answers import Solver, certificate_of
 from eomgen.symbolic.exact.book_form import book_form
 from eomgen.symbolic.expression.derivative import depends_on, substituted, symbols_of
@@ -89,8 +90,9 @@ class Answers(dict[str, Answer], Result):
 
     @property
     def failed(self) -> str:
-        """Which outputs have no answer, in words; "" as it must be."""
-        unanswered = [name for name, answer in self.items() if not answer.answered]
+        """Which outputs have no answer, in words, those of a whole run left out; "" as it must be."""
+        outputs = self._solver.model.outputs
+        unanswered = [name for name, answer in self.items() if not answer.answered and not is_of_a_run(outputs[name])]
         return f"not answered: {', '.join(unanswered)}" if unanswered else ""
 
     def entries(self) -> dict[str, Any]:
@@ -160,6 +162,8 @@ class _Solver:
             return _unanswered(output, error)
 
     def _answer(self, output: Output) -> Answer:
+        if is_of_a_run(output):
+            raise DerivationError("it is of a whole run", mend="`eomgen simulate` gives it")
         if asks_of(output.value, SMALL_MOTIONS):
             return self._of_small_motions(output)
         if output.at is not None:

@@ -19,16 +19,20 @@ from eomgen.model.parts import Model
 from eomgen.proof import motion
 from eomgen.proof.check import Certificate, Check
 from eomgen.proof.contact_phases import bodies_stand_as_told, changes_follow_impulses, contacts_do_as_told
+from eomgen.proof.run_outputs import output_columns_hold
 from eomgen.proof.run_reactions import reaction_columns_hold
+from eomgen.questions.of_a_run import WholeRun
 from eomgen.simulation.integrate import SAMPLES, instants_of, refuse_bad_run
 from eomgen.simulation.integrator import Run, Stepping
-from eomgen.simulation.joined import joined, thinned, with_reactions
+from eomgen.simulation.joined import joined, thinned, with_outputs, with_reactions
 from eomgen.simulation.motion import Plan, through
+from eomgen.simulation.output_columns import formulas_of
 from eomgen.simulation.phase_change import PhaseStart, at_start
 from eomgen.simulation.phase_models import PhaseModels
 from eomgen.simulation.phase_run import PhaseRun, condition_of
 from eomgen.simulation.result import Phase, Trajectory
 from eomgen.simulation.solvers import breakpoints_of
+from eomgen.symbolic.expression.expressions import Expression
 from eomgen.symbolic.numeric.tolerances import COMPUTED
 from eomgen.symbolic.numeric.work import PatienceEnded, doing, keep_what_there_is
 
@@ -43,12 +47,14 @@ class RunProof:
         equations: as they were derived; None: they are proven elsewhere.
         how: the tolerances of the run.
         models: its phases.
+        whole: the run, asked as a whole.
     """
 
     equations: Equations | None
     p: np.ndarray
     how: Stepping
     models: PhaseModels
+    whole: WholeRun | None = None
 
     @doing("the proof of the run")
     def __call__(self, found: Trajectory) -> Certificate:
@@ -58,7 +64,12 @@ class RunProof:
         projected = self.how.stabilization == "projection" and self.how.every is None
         promise = motion.Promise(self.how.rtol, self.how.atol, found.steps, projected)
         certificate += motion.run_checks(legs, promise)
-        return certificate + reaction_columns_hold(found, self.p) + self._contacts(found)
+        columns = (
+            *reaction_columns_hold(found, self.p),
+            *output_columns_hold(found, self.p, formulas_of(self.models.model)),
+        )
+        certificate += () if self.whole is None else self.whole.checks()
+        return certificate + columns + self._contacts(found)
 
     def _contacts(self, found: Trajectory) -> Iterator[Check]:
         """What contacts do in the phases of a run, and between them."""
@@ -101,6 +112,7 @@ def run(
     until: WrittenEquation | str | None = None,
     models: PhaseModels | None = None,
     reactions: bool = True,
+    outputs: Mapping[str, Expression] | None = None,
 ) -> Trajectory:
     """The motion by equations that are derived already.
 
@@ -113,6 +125,7 @@ def run(
         until: an equation: the run ends where it first holds after the start.
         models: the phases of these equations at these parameters, where they are known; what they hold is used again.
         reactions: whether they are among the columns.
+        outputs: formulas that are, by name; None: the model's, and what these ask of the whole run.
     Raises:
         MissingValues: parameters without a value, all named.
         UsageError: what is asked makes no sense.
@@ -135,8 +148,12 @@ def run(
     words = until.text if isinstance(until, WrittenEquation) else until
     found = _told(joined(models, runs), words)
     found = with_reactions(found, runs) if reactions else found
+    found = with_outputs(found, runs, formulas_of(model) if outputs is None else outputs)
+    whole = WholeRun(model, runs, plan, parameters or {})
+    quantities = whole.outputs() if outputs is None else {}
     assembled = "" if here.begun is None else here.begun.words
-    return thinned(replace(found, assembled=assembled, proof=RunProof(equations, models.p, how, models)), samples)
+    found = replace(found, assembled=assembled, whole=whole.value, quantities=quantities)
+    return thinned(replace(found, proof=RunProof(equations, models.p, how, models, whole)), samples)
 
 
 def phase_models(equations: Equations, p: np.ndarray, how: Stepping, target: str | None) -> PhaseModels:

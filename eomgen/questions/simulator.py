@@ -3,26 +3,31 @@
 from __future__ import annotations
 
 from collections import OrderedDict
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from functools import cached_property
 
 from eomgen.codegen.rhs import parameter_vector
 from eomgen.equations import Equations
-from eomgen.errors import UsageError
+from eomgen.errors import ExpressionError, UsageError
 from eomgen.model.fields import WrittenEquation
 from eomgen.model.findings import nearest
+from eomgen.model.outputs import FUNCTIONS
+from eomgen.model.outputs.base import BALANCE
 from eomgen.model.parts import Model
 from eomgen.model.replaced import Valued, Values, with_values
+from eomgen.questions.of_a_run import asked_of
 from eomgen.questions.run import phase_models, run
 from eomgen.simulation.configuration import has_phases
 from eomgen.simulation.integrator import Stepping
+from eomgen.simulation.output_columns import formulas_of
 from eomgen.simulation.phase_models import PhaseModels
 from eomgen.simulation.result import Trajectory
+from eomgen.symbolic.expression.expressions import Expression, single_call
 
 SAMPLES = 101
 MOST_KEPT = 16  # models whose ties or contacts were derived at other values of the parameters
-REACTIONS = "reactions"
+REACTIONS, OUTPUTS = "reactions", "outputs"
 
 
 @dataclass(frozen=True)
@@ -61,7 +66,8 @@ class Simulator:
             time: how long [s].
             parameters, start: values that replace the model's, as `eomgen.simulate` takes them.
             samples: how many instants are given, or the instants themselves.
-            columns: names of reactions that are wanted beside the states, "reactions" for all.
+            columns: what is wanted beside the states: names of reactions, "reactions" for all, names of outputs or
+                formulas like them, "outputs" for all of the model.
             until: an equation: the end, where it first holds.
         Raises:
             MissingValues: parameters without a value, all named.
@@ -70,6 +76,8 @@ class Simulator:
         valued = with_values(self.model, parameters, start)
         equations, models = self._at(valued, bool(parameters))
         asked = (columns,) if isinstance(columns, str) else tuple(columns)
+        formulas = _formulas(valued.model, asked)
+        reactions = any(name not in formulas for name in asked if name != OUTPUTS)
         found = run(
             equations,
             time=time,
@@ -78,9 +86,10 @@ class Simulator:
             how=self.how,
             until=until,
             models=models,
-            reactions=bool(asked),
+            reactions=reactions,
+            outputs=None if OUTPUTS in asked and formulas == formulas_of(valued.model) else formulas,
         )
-        return found if not asked or REACTIONS in asked else _with_columns(found, asked)
+        return found if not reactions or REACTIONS in asked else _with_columns(found, asked, formulas)
 
     def _at(self, valued: Valued, changed: bool) -> tuple[Equations, PhaseModels]:
         """The equations, and their phases, at the values of a model."""
@@ -109,9 +118,35 @@ class Simulator:
         return has_phases(self.model) or bool(self._equations.graph.system.ties.rows)
 
 
-def _with_columns(found: Trajectory, asked: tuple[str, ...]) -> Trajectory:
-    """The run with these reactions alone."""
+def _formulas(model: Model, asked: tuple[str, ...]) -> dict[str, Expression]:
+    """The outputs among what is asked, and formulas that are no lone reaction."""
+    found = formulas_of(model) if OUTPUTS in asked else {}
     for name in asked:
+        if name in model.outputs:
+            found[name] = model.outputs[name].value
+        elif name not in (OUTPUTS, REACTIONS) and not _is_reaction(name):
+            try:
+                found[name] = asked_of(model, name).value
+            except UsageError as error:
+                raise UsageError(
+                    f"no column {error.what}", mend=f"a reaction, an output, a formula, '{REACTIONS}'"
+                ) from error
+    return found
+
+
+def _is_reaction(text: str) -> bool:
+    """Whether it is a function of the balance alone, which is found by its name among the reactions."""
+    try:
+        call = single_call(text)
+    except ExpressionError:
+        return False
+    return call is not None and call.name in FUNCTIONS and FUNCTIONS[call.name].source == BALANCE
+
+
+def _with_columns(found: Trajectory, asked: tuple[str, ...], formulas: Mapping[str, Expression]) -> Trajectory:
+    """The run with these reactions alone."""
+    names = [name for name in asked if name not in formulas and name != OUTPUTS]
+    for name in names:
         if name not in found.reactions:
             raise UsageError(f"no column '{name}'", mend=nearest(name, found.reactions) or f"ask for '{REACTIONS}'")
-    return replace(found, reactions={name: found.reactions[name] for name in asked})
+    return replace(found, reactions={name: found.reactions[name] for name in names})

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import replace
 
 import numpy as np
@@ -11,10 +11,12 @@ from eomgen.errors import DerivationError
 from eomgen.simulation.configuration import changed
 from eomgen.simulation.integrate import drift_of
 from eomgen.simulation.integrator import measured
+from eomgen.simulation.output_columns import OutputColumns
 from eomgen.simulation.phase_models import PhaseModels
 from eomgen.simulation.phase_run import PhaseRun
 from eomgen.simulation.reaction_columns import ReactionColumns, begun
 from eomgen.simulation.result import Phase, Trajectory
+from eomgen.symbolic.expression.expressions import Expression
 
 
 def joined(models: PhaseModels, runs: Sequence[PhaseRun]) -> Trajectory:
@@ -94,6 +96,25 @@ def with_reactions(full: Trajectory, runs: Sequence[PhaseRun]) -> Trajectory:
     return replace(full, reactions=found, units=_units(made.values()), remark=_remark(full.t, found, tuple(always)))
 
 
+def with_outputs(full: Trajectory, runs: Sequence[PhaseRun], formulas: Mapping[str, Expression]) -> Trajectory:
+    """The trajectory with formulas as columns, in SI; what has none, and why, in its remark."""
+    if not formulas:
+        return full
+    made = {id(s.phase): OutputColumns(s.phase, formulas) for s in runs}
+    found = {name: np.full(len(full.t), np.nan) for name in formulas}
+    for s, phase in zip(runs, full.phases, strict=True):
+        for name, column in made[id(s.phase)].along(s.run.t, s.run.x).items():
+            found[name][slice(*phase.rows)] = column
+    refused = {name: why for columns in made.values() for name, why in columns.refused.items()}
+    nowhere = {name for name in refused if all(name in columns.refused for columns in made.values())}
+    told = [
+        f"{'No column' if name in nowhere else 'In some phases no value'} of '{name}': {why}."
+        for name, why in refused.items()
+    ]
+    given = {name: column for name, column in found.items() if name not in nowhere}
+    return replace(full, outputs=given, remark=" ".join(filter(None, (full.remark, *told))))
+
+
 def thinned(full: Trajectory, samples: int | Sequence[float] | None) -> Trajectory:
     """The motion with one row an instant, at the instants asked for; one that ended early keeps its last row.
 
@@ -114,10 +135,12 @@ def thinned(full: Trajectory, samples: int | Sequence[float] | None) -> Trajecto
         return replace(phase, rows=(int(before[begin]), int(before[end])), first=first, last=last)
 
     energy = None if full.energy is None else full.energy[kept]
-    reactions = {name: column[kept] for name, column in full.reactions.items()}
-    return replace(
-        full, t=full.t[kept], x=full.x[kept], energy=energy, reactions=reactions, phases=tuple(map(of, full.phases))
+    reactions, outputs = (
+        {name: column[kept] for name, column in table.items()} for table in (full.reactions, full.outputs)
     )
+    phases = tuple(map(of, full.phases))
+    kept_rows = {"t": full.t[kept], "x": full.x[kept], "energy": energy, "reactions": reactions, "outputs": outputs}
+    return replace(full, **kept_rows, phases=phases)
 
 
 def phase_text(models: PhaseModels, phase_run: PhaseRun) -> str:

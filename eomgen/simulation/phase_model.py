@@ -2,9 +2,10 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
-from dataclasses import dataclass, replace
+from collections.abc import Hashable, Mapping
+from dataclasses import dataclass, field, replace
 from functools import cached_property
+from typing import Any
 
 import numpy as np
 
@@ -44,6 +45,7 @@ class PhaseModel:
         equations: the equations of motion, friction included.
         p: the parameters' values.
         target: of the emitted code.
+        known: what was made of its equations, whatever the parameters' values.
     """
 
     watch: ContactEvents
@@ -51,6 +53,7 @@ class PhaseModel:
     equations: EquationsOfMotion
     p: np.ndarray
     target: str | None
+    known: dict[Hashable, Any] = field(default_factory=dict, repr=False, compare=False)
 
     @property
     def system(self) -> System:

@@ -36,15 +36,17 @@ class ReactionColumns:
     Args:
         reactions: of the system.
         rhs: its right-hand side.
+        given: what the columns are; None: every reaction by its name.
     """
 
     reactions: Reactions
     rhs: RightHandSide
+    given: tuple[NamedReaction, ...] | None = None
 
     @cached_property
     def asked(self) -> tuple[NamedReaction, ...]:
         """What the columns are, in their order."""
-        return named_reactions(self.reactions.balance)
+        return named_reactions(self.reactions.balance) if self.given is None else self.given
 
     @cached_property
     def names(self) -> tuple[str, ...]:
@@ -53,6 +55,8 @@ class ReactionColumns:
     @cached_property
     def indeterminate(self) -> tuple[str, ...]:
         """Names of those that have no single value at any state."""
+        if self.given is not None:
+            return ()
         known = determinate(self.reactions)
         return tuple(name for name in self.names if name not in known)
 

@@ -15,6 +15,7 @@ import numpy as np
 
 from eomgen import files
 from eomgen.errors import UsageError
+from eomgen.model.own_units import OUTPUT
 from eomgen.symbolic.expression.units import Unit
 
 SHOWN = 80  # characters of names on a line
@@ -74,10 +75,13 @@ class Trajectory:
         steps, evaluations: taken by the integrator.
         reactions: of joints and ties, n each [N, N m]: nan where one has no single value; {} where there are none.
         units: of the reactions, by name.
+        outputs: of the model, n each [SI]: nan where one has no value; one that has no column is in the remark.
         remark: what is missing among them, and why; or "".
         carried: the start and the end of each crossing of a singular position (a change point, a dead centre).
         assembled: what was changed of the start values so that the ties hold there, and of which; or "".
         proof: the run -> its certificate; None where nobody knows its equations.
+        whole: text -> what it asks of the whole run (a RunValue); None where nobody knows its equations.
+        quantities: of the model's outputs those that are of the whole run, each a RunValue.
     """
 
     t: np.ndarray
@@ -94,11 +98,14 @@ class Trajectory:
     evaluations: int
     reactions: Mapping[str, np.ndarray] = field(default_factory=dict)
     units: Mapping[str, str] = field(default_factory=dict)
+    outputs: Mapping[str, np.ndarray] = field(default_factory=dict)
     remark: str = ""
     gap_rate: float | None = None
     carried: tuple[tuple[float, float], ...] = ()
     assembled: str = ""
     proof: Callable[[Trajectory], Any] | None = None
+    whole: Callable[[str], Any] | None = field(default=None, repr=False)
+    quantities: Mapping[str, Any] = field(default_factory=dict)
 
     def certify(self) -> Any:
         """The Certificate of the run: its equations, the code that ran, its steps, energy, ties and reactions.
@@ -109,6 +116,18 @@ class Trajectory:
         if self.proof is None:
             raise UsageError("nothing is known of the equations of this run", mend="take eomgen.simulate(model)")
         return self.proof(self)
+
+    def ask(self, text: str) -> Any:
+        """What is asked of the whole run: "max(reaction_x(A))", "mean(power())", "theta' at theta = 0, event 2".
+
+        A RunValue: value in SI, the instants t at which it is, the message where there is none.
+
+        Raises:
+            UsageError: it cannot be read; or the run is of no model.
+        """
+        if self.whole is None:
+            raise UsageError("nothing is known of the model of this run", mend="take eomgen.simulate(model)")
+        return self.whole(text)
 
     def plot(self, path: str | Path | None = None, view: str = "time") -> Any:
         """A picture of the run, shown in a notebook; written where a path is given.
@@ -136,16 +155,17 @@ class Trajectory:
         return len(self.t)
 
     def __getitem__(self, name: str) -> np.ndarray:
-        """The column of a coordinate or speed, of "t", "energy", or a reaction: "reaction_x(B)"."""
+        """The column of a coordinate or speed, of "t", "energy", a reaction ("reaction_x(B)") or an output."""
         columns = self.columns()
         if name not in columns:
             raise KeyError(f"no column '{name}'; there are {', '.join(columns)}")
         return columns[name]
 
     def columns(self) -> dict[str, np.ndarray]:
-        """Every column by name: t, coordinates, speeds, energy, reactions."""
+        """Every column by name: t, coordinates, speeds, energy, reactions, outputs ("theta (output)" beside theta)."""
         named = {"t": self.t} | dict(zip(self.coordinates + self.speeds, self.x.T, strict=True))
-        return named | ({} if self.energy is None else {"energy": self.energy}) | dict(self.reactions)
+        named |= ({} if self.energy is None else {"energy": self.energy}) | dict(self.reactions)
+        return named | {f"{name}{OUTPUT}" if name in named else name: y for name, y in self.outputs.items()}
 
     def to_csv(self, path: str | Path | IO[str], units: Mapping[str, Unit] | None = None) -> None:
         """A header line and one line an instant; every digit of a double.
@@ -168,7 +188,7 @@ class Trajectory:
             path.write(text.getvalue())
 
     def to_npz(self, path: str | Path) -> None:
-        """numpy's archive: t, x, coordinates, speeds, energy, reactions (n x names) and their names, status, message.
+        """numpy's archive: t, x, coordinates, speeds, energy, reactions, outputs (n x names) and their names, status.
 
         Raises:
             WriteFailed: the file cannot be written; what was there before is then still there.
@@ -177,11 +197,10 @@ class Trajectory:
         arrays |= {"coordinates": np.array(self.coordinates, dtype=str), "speeds": np.array(self.speeds, dtype=str)}
         if self.energy is not None:
             arrays["energy"] = self.energy
-        if self.reactions:
-            arrays |= {
-                "reactions": np.column_stack(list(self.reactions.values())),
-                "reaction_names": np.array(list(self.reactions), dtype=str),
-            }
+        for what, table in (("reaction", self.reactions), ("output", self.outputs)):
+            if table:
+                arrays[f"{what}s"] = np.column_stack(list(table.values()))
+                arrays[f"{what}_names"] = np.array(list(table), dtype=str)
         files.write(path, lambda file: np.savez_compressed(file, **arrays))
 
     def to_pandas(self) -> Any:
@@ -212,7 +231,7 @@ class Trajectory:
         if self.gap is not None:
             speed = "" if self.gap_rate is None else f", their velocities by {_size(self.gap_rate)}"
             parts.append(f"Ties open by at most {_size(self.gap)}{speed}.")
-        return " ".join(parts if self.reactions or not self.remark else [*parts, self.remark])
+        return " ".join(parts if self.reactions or self.outputs or not self.remark else [*parts, self.remark])
 
     def __repr__(self) -> str:
         names = ", ".join((*self.coordinates, *self.speeds))

@@ -61,11 +61,11 @@ def simulate_document(
     if plot:
         from eomgen.documents.run_pictures import run_picture
 
-        run_picture(run, view, title=model.name, units=units_of(model, run.coordinates)).save(plot)
+        run_picture(run, view, title=model.name, units=units_of(model, run.columns())).save(plot)
     assembled = f"The start was {run.assembled}." if run.assembled else ""
     cut = {"interrupted": "it was interrupted", "out of patience": "there was no time left"}.get(run.status, "")
     unproven = f"Nothing of it is proven: {cut}." if certify and cut else ""
-    notes = tuple(note for note in (unproven, assembled, run.remark if run.reactions else "") if note)
+    notes = tuple(note for note in (unproven, assembled, run.remark if run.reactions or run.outputs else "") if note)
     first = _first_instant(equations, run)
     document = plain_document(
         model,
@@ -117,8 +117,37 @@ def _run_statements(model: Model, run: Trajectory) -> tuple[Statement, ...]:
     columns = {name: x / units[name].size if name in units else x for name, x in columns.items()}
     heads = {name: f"{name} [{units[name]}]" if name in units else name for name in columns}
     rows = tuple((heads[name], f"{x[0]:.9g}", f"{x[-1]:.9g}") for name, x in columns.items() if len(x))
-    table = (Grid(("", "start", "end"), rows),) if rows else ()
+    grids = (Grid(("", "start", "end"), rows), Grid(("of the run", "", "at"), _whole(model, run)))
+    table = tuple(grid for grid in grids if grid.rows)
     return (prose(f"{model.name}: {run.summary()}"), *(prose(f"  {line}") for line in lines), *table)
+
+
+def _whole(model: Model, run: Trajectory) -> tuple[tuple[str, str, str], ...]:
+    """A row for each output of the whole run; of every event one."""
+    units = units_of(model, run.quantities)
+    rows: list[tuple[str, str, str]] = []
+    for name, found in run.quantities.items():
+        unit = units.get(name)
+        size, head = (1.0, name) if unit is None else (unit.size, f"{name} [{unit}]")
+        values = found.value if isinstance(found.value, tuple) else (found.value,)
+        for k, value in enumerate(values):
+            when = f"t = {found.t[k]:.9g} s" if k < len(found.t) else ""
+            rows.append((head, found.message if value is None else f"{value / size:.9g}", when))
+    return tuple(rows)
+
+
+def _quantities(model: Model, run: Trajectory) -> dict[str, Any]:
+    """The same for machines, in the output's unit."""
+    told: dict[str, Any] = {}
+    units = units_of(model, run.quantities)
+    for name, found in run.quantities.items():
+        unit = units.get(name)
+        size = 1.0 if unit is None else unit.size
+        value = [x / size for x in found.value] if isinstance(found.value, tuple) else found.value
+        value = value / size if isinstance(value, float) else value
+        told[name] = {"value": value, "unit": "" if unit is None else unit.text, "t": list(found.t)}
+        told[name]["message"] = found.message or None
+    return told
 
 
 def _run_payload(model: Model, run: Trajectory, files: list[str]) -> dict[str, Any]:
@@ -137,6 +166,7 @@ def _run_payload(model: Model, run: Trajectory, files: list[str]) -> dict[str, A
         "evaluations": run.evaluations,
         "remark": run.remark,
         "files": files,
+        "quantities": _quantities(model, run),
         "assembled": run.assembled,
         "passages": [{"start": first, "end": last} for first, last in run.carried],
         "phases": [{"start": phase.start, "end": phase.end, "ended_by": phase.ended_by} for phase in run.phases],

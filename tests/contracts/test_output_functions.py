@@ -19,7 +19,7 @@ from eomgen.mechanics.formulations import recursive
 from eomgen.mechanics.instant.outputs import Quantities
 from eomgen.mechanics.statics.contacts_at_start import contacts_at_start
 from eomgen.model.outputs import ALL, FUNCTIONS, velocity
-from eomgen.model.outputs.base import BALANCE, SMALL_MOTIONS
+from eomgen.model.outputs.base import BALANCE, OF_A_RUN, SMALL_MOTIONS
 from eomgen.proof.at_a_state import NumericState
 from eomgen.proof.second_definitions import second_definition
 from eomgen.symbolic.expression.expressions import parse
@@ -221,6 +221,7 @@ CALLS = {
     "tied": ["tension(rope)"],
     "coupled": ["multiplier(same)"],
 }
+ALONG = [f"{name}(q)" for name in "max min mean rms last time_of_max time_of_min period".split()]
 LINEAR = {"plane": ["mass(x, q)", "damping(q, q)", "stiffness(x, x)", "frequency(1)"]}
 CASES = [(model, call) for model, calls in CALLS.items() for call in calls]
 PROVEN_TWICE = [case for case in CASES if FUNCTIONS[case[1].partition("(")[0]].second is not None]
@@ -278,7 +279,7 @@ def worth(name: str, call: str, *, units: bool = False) -> float:
 def test_every_function_is_named_once_and_has_an_example():
     """FUNCTIONS has as many names as the members together, and each is called above."""
     assert len(FUNCTIONS) == sum(len(function.names) for function in ALL)
-    called = {call.partition("(")[0] for calls in (*CALLS.values(), *LINEAR.values()) for call in calls}
+    called = {call.partition("(")[0] for calls in (*CALLS.values(), *LINEAR.values(), ALONG) for call in calls}
     assert called | {"az", "vz", "z"} >= FUNCTIONS.keys()
 
 
@@ -290,8 +291,8 @@ def test_the_reference_has_its_row(function):
 
 @pytest.mark.parametrize("function", ALL, ids=lambda f: f.names[0])
 def test_what_has_no_second_definition_is_proven_otherwise(function):
-    """By a check of the certificate; by the balance of the bodies, solved twice; as small motions by `linearize`."""
-    otherwise = CERTIFIED.keys() >= {*function.names} or function.source in (BALANCE, SMALL_MOTIONS)
+    """By a check of the certificate; by the balance of the bodies, solved twice; by `linearize`; by a run's samples."""
+    otherwise = CERTIFIED.keys() >= {*function.names} or function.source in (BALANCE, SMALL_MOTIONS, OF_A_RUN)
     assert (function.second is None) == otherwise
 
 
@@ -334,6 +335,15 @@ def test_functions_of_small_motions_are_none_of_a_state():
         with pytest.raises(DerivationError, match="of the linearized system, not of a state"):
             worth("plane", call)
         assert small.value(parse(call, references=True).calls[0])[0] is not None
+
+
+def test_functions_of_a_run_are_none_of_a_state():
+    """Of a state they say so; of a run each has a value, in the unit of its formula."""
+    for call in ALONG:
+        with pytest.raises(DerivationError, match="of a run, not of a state"):
+            worth("plane", call)
+    run = eomgen.simulate(eomgen.loads(MODELS["coupled"]), time=20, samples=5)
+    assert all(math.isfinite(run.ask(call).value) for call in ALONG)
 
 
 def test_a_wrong_value_is_seen_by_the_second_definition(monkeypatch):

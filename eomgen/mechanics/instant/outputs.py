@@ -55,10 +55,12 @@ class Quantities:
     Args:
         system: the system.
         at: exact scalars that stand in place of coordinates, speeds, accelerations and t in the reactions.
+        balance: the balance of the bodies, where it is solved already.
     """
 
     system: System
     at: Mapping[Node, Scalar] = field(default_factory=dict)
+    balance: Reactions | None = None
 
     def value(self, call: Call) -> Scalar:
         """One function at its arguments, in q, u, a, t and the parameters.
@@ -235,7 +237,7 @@ class Quantities:
     @cached_property
     def reactions(self) -> Reactions:
         """All reactions, of generic coordinates or at the given ones."""
-        return reactions_of(self.system, self.at, short=True)
+        return reactions_of(self.system, self.at, short=True) if self.balance is None else self.balance
 
     def is_truss(self, name: str) -> bool:
         """Whether a name is that of a truss."""

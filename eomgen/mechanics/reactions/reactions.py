@@ -53,6 +53,14 @@ class Reactions:
     def components(self) -> tuple[Component, ...]:
         return self.balance.components
 
+    @cached_property
+    def by_components(self) -> tuple[Reactions, tuple[Node, ...]]:
+        """(the same as functions of the components, the symbols of these): what is asked of them is linear in these."""
+        graph, names = self.balance.system.scope.graph, self.balance.names
+        symbols = tuple(graph.symbol(f"component {j} of the balance") for j in range(len(names)))
+        constants: dict[int, Scalar] = dict(enumerate(symbols))
+        return replace(self, solution=Solution(constants, {j: {} for j in constants}, (), ())), symbols
+
     @property
     def indeterminate(self) -> tuple[Component, ...]:
         """The components that have no single value."""

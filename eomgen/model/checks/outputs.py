@@ -64,15 +64,15 @@ def _argument(catalog: Catalog, argument: Any, kind: str) -> tuple[str, str, int
     if kind == "any":
         return None
     if isinstance(argument, Expression):
-        if kind == "number":
+        if kind in ("number", "formula"):
             return None
         start = min((c for c in argument.columns if c >= 0), default=0)
         return f"a {kind} is needed, not '{argument.text}'", "", start, len(argument.text)
     if kind == "side":
         return None if argument.name in SIDES else _unknown(argument, kind, SIDES)
-    if kind == "number":
+    if kind in ("number", "formula"):
         if "." in argument.name:
-            return _unknown(argument, kind, catalog.allowed[""])
+            return _unknown(argument, "name", catalog.allowed[""])
         try:
             return _names_in(catalog, parse(argument.name), argument.column)  # L-c reads like a member
         except ExpressionError as error:

@@ -1,6 +1,6 @@
 """Output functions: the seam of what outputs may ask. Adding one is one file and one name here."""
 
-from eomgen.model.outputs import relative_motion, section_forces, small_motions
+from eomgen.model.outputs import of_a_run, relative_motion, section_forces, small_motions
 from eomgen.model.outputs.acceleration import ACCELERATION, MAGNITUDE_OF_ACCELERATION
 from eomgen.model.outputs.along_coordinates import GENERALIZED_FORCE, MOMENTUM
 from eomgen.model.outputs.angular_momentum import ANGULAR_MOMENTUM
@@ -71,6 +71,7 @@ ALL: tuple[OutputFunction, ...] = (
     ANGULAR_MOMENTUM,
     *small_motions.ENTRIES,
     small_motions.FREQUENCY,
+    *of_a_run.ALONG_A_RUN,
 )
 FUNCTIONS = {name: function for function in ALL for name in function.names}
 """The functions of the motion, by name."""

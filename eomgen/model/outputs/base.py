@@ -11,7 +11,7 @@ from eomgen.model.catalog import Catalog
 from eomgen.model.fields import Leaf
 from eomgen.model.findings import Finding
 from eomgen.model.outputs.context import OutputContext, Trial
-from eomgen.symbolic.expression.expressions import Call, Expression, Reference
+from eomgen.symbolic.expression.expressions import Call, Expression, Reference, parse
 from eomgen.symbolic.expression.spatial import AnyScalar
 from eomgen.symbolic.expression.units import Unit, parse_unit
 
@@ -22,6 +22,7 @@ STATE = ""
 BALANCE = "balance of the bodies"
 MASSES = "distribution of mass"
 SMALL_MOTIONS = "small motions"
+OF_A_RUN = "a run"
 
 ValueOf = Callable[[OutputContext, Call], AnyScalar]
 SecondOf = Callable[[Trial, Call], Any]
@@ -41,11 +42,12 @@ class OutputFunction:
         unit: SI.
         per: the arguments by whose unit it is divided: a coordinate's, the rate's of a "coordinate or speed", the
             gap's of a tie.
+        like: the argument whose unit it has.
         gives: what, in models/README.md.
         value: in q, u, a, lam, t and the parameters.
         second: what it is worth in numbers, by a way that shares only poses and masses with `value`; None: there is
             none here, and what proves it is said where `source` is asked.
-        source: what it is found from: STATE, BALANCE, MASSES or SMALL_MOTIONS.
+        source: what it is found from: STATE, BALANCE, MASSES, SMALL_MOTIONS or OF_A_RUN.
         moves: whether velocities or accelerations stand in it.
         shown: its arguments as models/README.md writes them, where the kinds do not say it.
         findings: what else is wrong with a call of it.
@@ -57,6 +59,7 @@ class OutputFunction:
     more: str = ""
     unit: str
     per: tuple[int, ...] = ()
+    like: int | None = None
     gives: str
     value: ValueOf
     second: SecondOf | None = None
@@ -77,9 +80,15 @@ class OutputFunction:
         return f"({text}{']' * len(optional)})"
 
     @property
+    def is_along_freedoms(self) -> bool:
+        """Whether it depends on which coordinates are free: dT/dq' is another one where fewer are."""
+        return any(kind.startswith("coordinate") for kind in self.kinds)
+
+    @property
     def row(self) -> str:
         """Its line in the table of models/README.md."""
-        unit = self.unit if not self.per else f"{self.unit} per {' and '.join(self.kinds[k] for k in self.per)}"
+        unit = "of the formula" if self.like is not None else self.unit
+        unit = unit if not self.per else f"{self.unit} per {' and '.join(self.kinds[k] for k in self.per)}"
         return f"| `{' '.join(self.names)}` {self.arguments} | {self.gives} | {unit} |"
 
     @property
@@ -117,6 +126,12 @@ def name_at(call: Call, k: int) -> str:
     if not isinstance(argument, Reference):
         raise DerivationError(f"'{call}': names are needed as arguments")
     return argument.name
+
+
+def formula_at(call: Call, k: int) -> Expression:
+    """The argument k of a call, a formula; a lone name or member reads like a reference."""
+    argument = call.args[k]
+    return parse(argument.name, references=True) if isinstance(argument, Reference) else argument
 
 
 def number_at(call: Call, k: int, most: int) -> int:

@@ -34,6 +34,7 @@ DEEPEST = 64  # parentheses, signs and powers inside one another
 # how strongly a sign binds to the value on its left, and to the one on its right
 _SIGNS = {"+": (10, 10), "-": (10, 10), "*": (20, 20), "/": (20, 20), "^": (40, 30), "**": (40, 30)}
 _SIGNED = 30  # a leading minus: looser than a power, tighter than a product
+EXTREMES = ("min", "max")  # of several values; where outputs may stand, of one over a run
 _NO_NUMBERS = ("nan", "inf", "infinity")
 
 
@@ -205,13 +206,19 @@ class _Parser:
             product = f"for a product write {name.text}*(...)"
             mend = rate_of_call(self.text[name.start :]) or error.mend or product
             raise ExpressionError(error.what, error.column, mend, error.length)
-        opening, count = self.advance(), 0
+        opening, count, begun = self.advance(), 0, len(self.code)
         while self.token.text != ")" and (count == 0 or self.token.text == ","):
             if count:
                 self.advance()
             self.operand(0)
             count += 1
+        inner = self.text[opening.end : self.token.start].strip()
         self.close(opening)
+        if count == 1 and self.references and name.text in EXTREMES:
+            formula = Expression(inner, tuple(self.code[begun:]), tuple(self.columns[begun:]))
+            del self.code[begun:], self.columns[begun:]
+            self.emit("call", Call(name.text, (formula,), name.start), name.start)
+            return
         _check_count(name, count)
         self.emit("function", (name.text, count), name.start)
 
@@ -290,9 +297,9 @@ def _checked_name(token: Token) -> str:
 
 def _check_count(name: Token, count: int) -> None:
     least = NAMES[name.text]
-    if count == least or (name.text in ("min", "max") and count > least):
+    if count == least or (name.text in EXTREMES and count > least):
         return
-    needed = ("two or more" if name.text in ("min", "max") else ("one", "two")[least - 1], "" if least == 1 else "s")
+    needed = ("two or more" if name.text in EXTREMES else ("one", "two")[least - 1], "" if least == 1 else "s")
     what = f"{name.text} takes {needed[0]} argument{needed[1]}, not {count}"
     raise ExpressionError(what, name.start, length=len(name.text))
 

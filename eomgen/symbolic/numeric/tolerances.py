@@ -43,6 +43,7 @@ DEGENERATE = 1e-6  # of a determinant, length or diagonal entry that a descripti
 
 # Places, instants and shapes.
 SAME_PLACE = 1e-6  # of coordinates against their size and 1: so near, two places are one (a double root is so wide)
+SAME_PERIOD = 0.05  # of a time between passages: more, and what is damped or modulated has no one period
 SAME_EIGENVALUE = 1e-7  # of two eigenvalues: a double one comes out as two, the root of rounding apart
 NEAR_ROOT = 1e-7  # of scaled equations: so near, Newton's method has a root; a box that is not halved again
 SHARE = 1e-6  # of a row, multiplier or coordinate in a combination: what has a smaller part is not named

@@ -1,0 +1,371 @@
+"""Phases as they were run -> what outputs ask of a whole run: extremes and when, means, periods, values at its events.
+
+A formula is resolved into polynomials between the integrator's steps (`chebyshev`), so that an extreme, a zero and an
+integral are those of the motion and not of its samples.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from dataclasses import dataclass, replace
+from functools import cached_property, partial
+from typing import Any
+
+import numpy as np
+
+from eomgen.errors import DerivationError, ExpressionError, ModelError, RunFailed, UsageError
+from eomgen.mechanics.instant.outputs import asks_of
+from eomgen.model.fields import EVERY, AtRest, WrittenEquation
+from eomgen.model.outputs.base import OF_A_RUN, SMALL_MOTIONS, formula_at
+from eomgen.model.parts import Model, Output
+from eomgen.model.replaced import equation_typed
+from eomgen.model.table import Table
+from eomgen.model.values import numeric_parameters
+from eomgen.proof.check import Check
+from eomgen.proof.tally import Tally
+from eomgen.simulation.dense_motion import DenseMotion, dense_motion
+from eomgen.simulation.motion import Plan
+from eomgen.simulation.output_columns import OutputColumns
+from eomgen.simulation.phase_run import PhaseRun
+from eomgen.symbolic.expression.expressions import Call, Expression, parse
+from eomgen.symbolic.numeric.chebyshev import Pieces, resolved
+from eomgen.symbolic.numeric.tolerances import CARRIED, COMPUTED, SAME_PERIOD, SOLVED
+
+
+@dataclass(frozen=True)
+class RunValue:
+    """What one output is worth of a run.
+
+    Args:
+        value: SI; None where there is none; of every event a value each.
+        t: the instants at which it is [s]; () where it is of none.
+        message: why there is none, or "".
+    """
+
+    value: float | tuple[float, ...] | None
+    t: tuple[float, ...] = ()
+    message: str = ""
+
+
+@dataclass(frozen=True)
+class _Stretch:
+    """A formula along one phase."""
+
+    run: PhaseRun
+    pieces: Pieces | None
+    ends: tuple[float, float]
+
+
+@dataclass(frozen=True)
+class WholeRun:
+    """A motion, asked as a whole.
+
+    Args:
+        model: whose outputs are asked.
+        runs: its phases.
+        plan: by which they were run.
+        parameters: values that replace the model's.
+    """
+
+    model: Model
+    runs: Sequence[PhaseRun]
+    plan: Plan
+    parameters: Mapping[str, float]
+
+    def value(self, text: str) -> RunValue:
+        """What a text asks: "max(reaction_x(A))", "theta' at theta = 0", "x at y = 0, event 2".
+
+        Raises:
+            UsageError: it cannot be read, or names what the model does not have.
+        """
+        return self.of(asked_of(self.model, text))
+
+    def of(self, output: Output) -> RunValue:
+        """One output; what goes wrong is its message."""
+        try:
+            if output.at is not None:
+                return self._at_events(output)
+            if asks_of(output.value, OF_A_RUN):
+                return self._of_whole(output.value)
+            start = float(self.runs[0].here.t)
+            return _valued(self._number(output.value, self.runs[0], start), (start,))
+        except (DerivationError, ExpressionError, RunFailed) as error:
+            return RunValue(None, (), f"{error.what}; {error.mend}" if error.mend else error.what)
+
+    def outputs(self) -> dict[str, RunValue]:
+        """Of the model's outputs those that are of a run, or of its events."""
+        asked = {name: output for name, output in self.model.outputs.items() if is_of_a_run(output)}
+        return {name: self.of(output) for name, output in asked.items()}
+
+    def checks(self) -> Iterator[Check]:
+        """Extremes, means and mean squares of the model's outputs against the samples of the run alone."""
+        tally = Tally("what is of the whole run holds against its samples", "samples as they were integrated")
+        for output in self.model.outputs.values():
+            for call in output.value.calls if is_of_a_run(output) else ():
+                if call.name in ("max", "min", "mean", "rms"):
+                    tally.add(str(call), partial(self._against_samples, call))
+        return tally.checks()
+
+    def _against_samples(self, call: Call) -> str:
+        """No sample is beyond an extreme, one is near to it; the trapezium rule is as near to a mean as it can tell."""
+        formula = formula_at(call, 0)
+        told, power = self._called(call)[0], 2 if call.name == "rms" else 1
+        samples = [self._columns(formula, run).along(run.run.t, run.run.x)["asked"] for run in self.runs]
+        values = np.concatenate(samples)
+        size = float(np.max(np.abs(values)))
+        if call.name in ("max", "min"):
+            sign = 1 if call.name == "max" else -1
+            beyond = float(np.max(sign * values)) - sign * told
+            rise = max(float(np.max(np.abs(np.diff(each)), initial=0.0)) for each in samples)
+            wrong = beyond > CARRIED * size or -beyond > rise + CARRIED * size
+            return f"{told:.10g} for the sample {sign * np.max(sign * values):.10g}" if wrong else ""
+        pairs = [(run.run.t, each**power) for run, each in zip(self.runs, samples, strict=True)]
+        fine, coarse = (sum(float(np.trapezoid(y[::k], t[::k])) for t, y in pairs) / self._duration for k in (1, 2))
+        unsure = 4 * abs(fine - coarse) + CARRIED * size**power + size**power * len(pairs) / len(values)
+        return f"{told:.10g}, squared {told**2:.10g}, for {fine:.10g}" if abs(told**power - fine) > unsure else ""
+
+    # -- of the whole ------------------------------------------------------------------------------
+
+    def _of_whole(self, formula: Expression) -> RunValue:
+        """A formula of what is of the run, and of parameters."""
+        when: list[float] = []
+
+        def value(call: Call) -> float:
+            found, t = self._called(call)
+            when.extend(t)
+            return found
+
+        names = {**numeric_parameters(self.model, self.parameters), "pi": math.pi}
+        strangers = sorted(name for name in formula.names - names.keys() if not self._stands_inside(formula, name))
+        if strangers:
+            what = f"'{strangers[0]}' is of a state, and stands beside what is of a run"
+            raise DerivationError(what, mend=f"ask it of the run too: last({strangers[0]})")
+        found = formula.evaluate({name: float(x) for name, x in names.items()}, value)
+        return _valued(float(found), tuple(when) if len(when) == 1 else ())
+
+    def _stands_inside(self, formula: Expression, name: str) -> bool:
+        return all(what != name for kind, what in formula.code if kind == "name")
+
+    def _called(self, call: Call) -> tuple[float, tuple[float, ...]]:
+        """(a function of the run, the instant that it is at)."""
+        if not asks_of(Expression(str(call), (("call", call),), (0,)), OF_A_RUN):
+            raise DerivationError(f"'{call}' is of a state, and stands beside what is of a run", mend=f"last({call})")
+        formula = formula_at(call, 0)
+        if asks_of(formula, OF_A_RUN):
+            raise DerivationError(f"'{call}': what is of a run has no value along it")
+        return _FUNCTIONS[call.name](self, formula)
+
+    def last(self, formula: Expression) -> tuple[float, tuple[float, ...]]:
+        """At the end of the run."""
+        run = self.runs[-1]
+        return self._number(formula, run, run.run.end), (float(run.run.end),)
+
+    def extreme(self, formula: Expression, sign: int) -> tuple[float, tuple[float, ...]]:
+        """(the largest value of sign * formula times sign, when)."""
+        found = [pieces.extreme(sign) for pieces in self._pieces(formula)]
+        value, t = max(found, key=lambda pair: sign * pair[0])
+        return value, (t,)
+
+    def when(self, formula: Expression, sign: int) -> tuple[float, tuple[float, ...]]:
+        """When it is largest."""
+        _, t = self.extreme(formula, sign)
+        return t[0], t
+
+    def mean(self, formula: Expression) -> tuple[float, tuple[float, ...]]:
+        """1/T times the integral over the run."""
+        return sum(pieces.integral() for pieces in self._pieces(formula)) / self._duration, ()
+
+    def rms(self, formula: Expression) -> tuple[float, tuple[float, ...]]:
+        """The root of the mean square."""
+        squares = (resolved(_squared(pieces), _edges(pieces)) for pieces in self._pieces(formula))
+        return math.sqrt(sum(square.integral() for square in squares) / self._duration), ()
+
+    def period(self, formula: Expression) -> tuple[float, tuple[float, ...]]:
+        """The mean time between upward passages through the mean.
+
+        Raises:
+            DerivationError: there are fewer than two, or the times between them differ: it repeats nothing.
+        """
+        level = self.mean(formula)[0]
+        lifted = [resolved(_less(pieces, level), _edges(pieces)) for pieces in self._pieces(formula)]
+        t = [when for pieces in lifted for when, way in pieces.zeros() if way > 0]
+        if len(t) < 2:
+            raise DerivationError(
+                f"'{formula.text}' passes its mean upward {len(t)} times: no period", mend="a longer run"
+            )
+        apart = np.diff(t)
+        if np.max(apart) - np.min(apart) > SAME_PERIOD * np.mean(apart):
+            low, high = np.min(apart), np.max(apart)
+            what = f"'{formula.text}' has no period: from {low:.6g} to {high:.6g} s between upward passages of its mean"
+            raise DerivationError(what)
+        return float(np.mean(apart)), ()
+
+    # -- at events -----------------------------------------------------------------------------------
+
+    def _at_events(self, output: Output) -> RunValue:
+        """The value at the n-th event, or at every one."""
+        if not isinstance(output.at, WrittenEquation) or output.from_ is not None:
+            raise DerivationError("it is of no run from the start", mend="`eomgen solve` answers it")
+        if asks_of(output.value, OF_A_RUN) or asks_of(output.value, SMALL_MOTIONS):
+            raise DerivationError(f"'{output.value.text}' is of no instant", mend="leave out `at`")
+        events = self.events(output.at)
+        if output.event == EVERY:
+            found = [self._at(output, *event) for event in events]
+            return RunValue(tuple(found), tuple(t for _, t in events))
+        n = 1 if output.event is None else int(output.event)
+        if len(events) < n:
+            count = f"is met {len(events)} times" if events else "is not met"
+            return RunValue(None, (), f"'{output.at.text}' {count} in the run")
+        return _valued(self._at(output, *events[n - 1]), (events[n - 1][1],))
+
+    def _at(self, output: Output, k: int, t: float) -> float:
+        """The value at an instant of a phase, or just after its end."""
+        run = self.runs[k]
+        if output.side == "after" and t == run.run.end and k + 1 < len(self.runs):
+            run = self.runs[k + 1]
+        return self._number(output.value, run, t)
+
+    def events(self, condition: WrittenEquation) -> list[tuple[int, float]]:
+        """(phase, instant) of each event after the start: where both sides come to be equal, ascending."""
+        difference = condition.left - condition.right
+        found: list[tuple[int, float]] = []
+        before = 0.0
+        for k, pieces in self._phases(difference):
+            run = self.runs[k]
+            start, end = run.here.t, run.run.end
+            first, last = (float(pieces.g(np.array([t]))[0]) for t in (start, end))
+            size = max(abs(pieces.extreme(sign)[0]) for sign in (1, -1))
+            floor = COMPUTED * max(size, SOLVED)
+            if before * first < 0 and abs(first) > floor:
+                found.append((k - 1, float(self.runs[k - 1].run.end)))
+            near = COMPUTED * max(1.0, end - start)
+            found += [(k, t) for t, _ in pieces.zeros() if t - start > near and end - t > near]
+            if abs(last) <= floor < size:
+                found.append((k, end))
+            before = last if abs(last) > floor else 0.0
+        return found
+
+    # -- formulas along the run ------------------------------------------------------------------------
+
+    def _pieces(self, formula: Expression) -> list[Pieces]:
+        """The formula in every phase that is longer than an instant."""
+        return [pieces for _, pieces in self._phases(formula)]
+
+    def _phases(self, formula: Expression) -> list[tuple[int, Pieces]]:
+        """(the phase, the formula in it, resolved).
+
+        Raises:
+            DerivationError: it has no value somewhere.
+        """
+        found = [(k, resolved(self._function(formula, k), dense.edges)) for k, dense in self._dense.items()]
+        if not found:
+            raise DerivationError("the run is one instant")
+        if not all(np.isfinite(pieces.c).all() for _, pieces in found):
+            raise DerivationError(f"'{formula.text}' has no value at some instants of the run")
+        return found
+
+    def _function(self, formula: Expression, k: int) -> Callable[[np.ndarray], np.ndarray]:
+        """t -> the formula in a phase."""
+        run, columns = self.runs[k], self._columns(formula, self.runs[k])
+        return lambda t: columns.along(t, self._states(run, t))["asked"]
+
+    def _number(self, formula: Expression, run: PhaseRun, t: float) -> float:
+        """The formula at one instant of a phase; at its ends by the states that were integrated."""
+        if t == run.run.end:
+            x = run.run.last
+        else:
+            x = run.phase.state(run.here.values) if t == run.here.t else self._states(run, np.array([t]))[0]
+        return float(self._columns(formula, run).along(np.array([t]), x[None, :])["asked"][0])
+
+    def _columns(self, formula: Expression, run: PhaseRun) -> OutputColumns:
+        """One formula along a phase.
+
+        Raises:
+            DerivationError: it has no meaning there.
+        """
+        key = (formula, id(run.phase))
+        if key not in self._made:
+            columns = OutputColumns(run.phase, {"asked": formula})
+            if columns.refused:
+                raise DerivationError(columns.refused["asked"])
+            self._made[key] = columns
+        return self._made[key]
+
+    def _states(self, run: PhaseRun, t: np.ndarray) -> np.ndarray:
+        return self._dense[next(k for k, each in enumerate(self.runs) if each is run)].at(t)
+
+    @cached_property
+    def _dense(self) -> dict[int, DenseMotion]:
+        return {k: dense_motion(run, self.plan) for k, run in enumerate(self.runs) if run.run.end > run.here.t}
+
+    @cached_property
+    def _made(self) -> dict[tuple[Expression, int], OutputColumns]:
+        return {}
+
+    @property
+    def _duration(self) -> float:
+        return float(self.runs[-1].run.end - self.runs[0].here.t)
+
+
+_FUNCTIONS: dict[str, Callable[[WholeRun, Expression], tuple[float, tuple[float, ...]]]] = {
+    "max": lambda run, formula: run.extreme(formula, 1),
+    "min": lambda run, formula: run.extreme(formula, -1),
+    "time_of_max": lambda run, formula: run.when(formula, 1),
+    "time_of_min": lambda run, formula: run.when(formula, -1),
+    "mean": WholeRun.mean,
+    "rms": WholeRun.rms,
+    "last": WholeRun.last,
+    "period": WholeRun.period,
+}
+
+
+def is_of_a_run(output: Output) -> bool:
+    """Whether an output asks what no state tells: extremes, means, or the n-th event."""
+    return output.event is not None or asks_of(output.value, OF_A_RUN)
+
+
+def _valued(value: float, t: tuple[float, ...]) -> RunValue:
+    return RunValue(value + 0.0, t) if math.isfinite(value) else RunValue(None, t, "it has no finite value")
+
+
+def _edges(pieces: Pieces) -> np.ndarray:
+    return np.append(pieces.a, pieces.b[-1:])
+
+
+def _squared(pieces: Pieces) -> Callable[[np.ndarray], np.ndarray]:
+    return lambda t: pieces.g(t) ** 2
+
+
+def _less(pieces: Pieces, level: float) -> Callable[[np.ndarray], np.ndarray]:
+    return lambda t: pieces.g(t) - level
+
+
+# -- as it is typed ------------------------------------------------------------------------------------------
+
+
+def asked_of(model: Model, text: str) -> Output:
+    """The output that a text asks: an output's name, a formula, or "FORMULA at EQUATION" with ", event 2" or "every".
+
+    Raises:
+        UsageError: it cannot be read, or names what the model does not have.
+    """
+    if text in model.outputs:
+        return model.outputs[text]
+    formula, at, condition = text.partition(" at ")
+    condition, comma, event = condition.partition(", event")
+    try:
+        output = Output(value=parse(formula.strip(), references=True))
+        if at:
+            when: Any = AtRest() if condition.strip() == AtRest.text else equation_typed(model, condition.strip())[0]
+            output = replace(output, at=when)
+        if comma:
+            output = replace(output, event=EVERY if event.strip() == EVERY else int(event))
+        replace(model, outputs=Table({"asked": output}))
+    except ValueError as error:
+        raise UsageError(f"'{text}': '{event.strip()}' is no number of an event", mend=f"2, or {EVERY}") from error
+    except ExpressionError as error:
+        raise UsageError(f"'{text}': {error.what}", mend=error.mend) from error
+    except ModelError as error:
+        raise UsageError(f"'{text}': {error.problems[0].what}", mend=error.problems[0].mend) from error
+    return output
