@@ -366,7 +366,7 @@ def simulate_command(
 @JSON
 @FORMAT
 @click.option(
-    "-o", "--output", required=True, type=click.Path(dir_okay=False), help="Write .gif, .mp4, or a strip .png."
+    "-o", "--output", required=True, type=click.Path(dir_okay=False), help="Write .gif, .mp4, .html, or a strip .png."
 )
 @click.option("--time", type=float, default=10.0, show_default=True, help="How long the motion is [s].")
 @with_values
@@ -375,9 +375,10 @@ def simulate_command(
 @click.option("--trail", multiple=True, metavar="POINT", help="A point that leaves a trail: arm2.end.")
 @click.option("--forces", is_flag=True, help="Show forces and reactions as arrows.")
 @click.option("--modes", type=click.IntRange(min=1), metavar="N", help="Show the N slowest small motions instead.")
+@click.option("--virtual", metavar="REACTION", help="Show the virtual displacement that gives it: reaction_y(A).")
 @click.option("--frames", type=click.IntRange(min=1), default=6, show_default=True, help="Of a strip.")
 def animate_command(model: str, wants_json: bool, format_: str | None, output: str, **options: Any) -> int:
-    """Show the motion, or small motions, as a moving picture."""
+    """Show the motion, small motions or a virtual displacement as a moving picture."""
     from eomgen.verbs.animate import Showing, animate_document, refuse_ending
 
     refuse_ending(output)

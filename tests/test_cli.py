@@ -8,6 +8,7 @@ import resource
 import subprocess
 import sys
 import tomllib
+from importlib import metadata
 from pathlib import Path
 
 import click
@@ -669,10 +670,19 @@ def test_the_schema_fits_the_models():
 
 
 def test_doctor_names_what_is_there_and_what_is_missing(monkeypatch):
-    """Without a compiler: what still works."""
+    """Without a compiler, or a package that pages take: what still works, and what to install."""
     monkeypatch.setenv("CC", "/nowhere/cc")
+    version = metadata.version
+
+    def found(package):
+        if package in ("typst", "math-core"):
+            raise metadata.PackageNotFoundError(package)
+        return version(package)
+
+    monkeypatch.setattr(metadata, "version", found)
     result = run("doctor")
     assert result.exit_code == 0
+    assert "formulas      not found: no report as .html" in result.stdout and "eomgen[pdf]" in result.stdout
     assert "C compiler    not found: equations run in numpy" in result.stdout
 
 

@@ -18,8 +18,13 @@ from eomgen.codegen.program import program_of
 from eomgen.codegen.rhs import compiled
 from eomgen.documents import moving_picture
 from eomgen.documents.linearize.result import linearize
-from eomgen.documents.motion_frames import FINE, SWING, frame_times, mode_movies, movie_of
+from eomgen.documents.motion_frames import FINE, frame_times, mode_movies, movie_of
+from eomgen.scene.bodies import parameters_as_drawn
+from eomgen.scene.forms import ArrowForm, CoupleForm
 from eomgen.scene.phase_frames import phase_frames
+from eomgen.scene.virtual import SWING, VirtualDisplacement
+from eomgen.symbolic.numeric.evaluation import FLOAT, evaluate
+from eomgen.verbs.animate import released
 
 pytestmark = pytest.mark.slow
 MODELS = Path(__file__).parent.parent / "models"
@@ -90,6 +95,50 @@ def test_each_phase_of_a_moving_picture_is_drawn_by_its_own_system(name, body):
             assert np.abs(np.column_stack(found) - right).max() < 2e-3
 
 
+STRUCTURES = ("gerber_beam", "fink_truss", "three_hinged_arch", "strut_frame", "tripod", "cantilever", "k_truss")
+
+
+@pytest.mark.parametrize("name", STRUCTURES)
+def test_the_drawn_virtual_displacement_gives_the_reaction_that_the_balance_of_bodies_gives(name):
+    """R u_R + sum of F u + sum of M phi = 0 over the arrows of the picture, u and phi as far as the picture moves them.
+
+    R is taken from the balance of the bodies, which knows of no displacement.
+    """
+    found = eomgen.statics(MODELS / f"{name}.toml").found
+    looked = 0
+    for reaction in found.reactions:
+        if reaction.work is None or not reaction.work.plan.moving:
+            continue
+        displaced = VirtualDisplacement(found.structure, reaction)
+        numbers = displaced.along(np.array([0.0, 0.5 * np.pi]))
+        known = parameters_as_drawn(found.system)
+        R = float(evaluate((reaction.balanced,), known, FLOAT)[0])
+        held = displaced.effects[0].link
+        works = [_work(numbers, mark, held) * (R if mark.role == "reaction" else 1) for mark in numbers.scene.marks]
+        assert abs(sum(works)) <= 1e-9 * max(map(abs, works)), reaction.name
+        looked += R != 0
+    assert looked > 2
+
+
+def _work(numbers, mark, held):
+    """Of an arrow of force on the way from the first frame to the second; of a couple on the body that it holds."""
+    form = mark.form
+    if mark.role not in ("force", "reaction"):
+        return 0.0
+    if isinstance(form, ArrowForm):
+        return float(numbers.way(form.vector, mark)[0] @ np.diff(numbers.spot(form.at, mark), axis=0)[0])
+    if isinstance(form, CoupleForm):
+        system = numbers.scene.system
+        loads = [load for force in system.loads.applied if force.name == mark.of for load in force.loads]
+        link = system.motion.index[loads[0].body] if loads else held
+        before, after = numbers.poses[link + 1][0][:, :, 0]
+        return float(numbers.value(form.vector[2])[0] * (before[0] * after[1] - before[1] * after[0]))
+    a, b = (numbers.spot(place, mark) for place in (form.a, form.b))
+    p, q = (numbers.way(v, mark)[0] for v in (form.at_a, form.at_b))
+    (da,), (db,) = np.diff(a, axis=0), np.diff(b, axis=0)
+    return float(np.linalg.norm((b - a)[0]) / 6 * (2 * p @ da + p @ db + q @ da + 2 * q @ db))
+
+
 def test_a_gif_has_a_picture_for_each_frame_and_one_palette(run):
     """n frames of 1/fps; the same bytes every time; its white is white."""
     movies = [movie_of(run, frame_times(1.0, 25, 1))]
@@ -138,6 +187,30 @@ def test_what_cannot_be_written_is_said_before_any_work(tmp_path, monkeypatch, r
     with pytest.raises(eomgen.ToolMissing, match="ffmpeg") as missing:
         run.animate(tmp_path / "motion.mp4")
     assert missing.value.exit_code == 4 and not (tmp_path / "motion.mp4").exists()
+
+
+@pytest.mark.parametrize("ending", ("gif", "png", "html"))
+def test_the_verb_shows_what_moves_when_a_reaction_is_released(ending, tmp_path):
+    """Its equation of work is said; a reaction that there is not, or that is indeterminate, has no picture."""
+    target, beam = tmp_path / f"virtual.{ending}", str(MODELS / "gerber_beam.toml")
+    done = CliRunner().invoke(main, ["animate", beam, "--virtual", "reaction_y(E)", "-o", str(target)])
+    assert done.exit_code == 0 and "reaction_y(E) = 7*p*a" in done.output and target.stat().st_size
+    wrong = CliRunner().invoke(main, ["animate", beam, "--virtual", "reaction_y(F)", "-o", str(target)])
+    assert wrong.exit_code == 2 and "there is no reaction" in wrong.output
+    both = CliRunner().invoke(main, ["animate", beam, "--virtual", "reaction_y(E)", "--modes", "1", "-o", str(target)])
+    assert both.exit_code == 2
+
+
+def test_of_a_mechanism_other_freedoms_stand_still_where_a_reaction_is_released():
+    """The crank's pin gives way along x alone: its displacement is 1 along x, 0 along y."""
+    found, stands = released(eomgen.load(MODELS / "four_bar.toml"), "reaction_x(crank)")
+    v = [
+        float(x)
+        for x in evaluate(
+            found.equation.plan.velocity(("crank", (0, 0, 0))), parameters_as_drawn(found.structure.system), FLOAT
+        )
+    ]
+    assert not stands and v[0] and v[1:] == [0, 0]
 
 
 def test_an_mp4_is_what_ffmpeg_makes_of_all_frames(tmp_path, monkeypatch, run):

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
@@ -20,13 +20,13 @@ from eomgen.scene.plane_strokes import plane_drawing
 from eomgen.scene.scene import Scene, SceneFrame
 from eomgen.scene.space_strokes import space_drawing
 from eomgen.scene.strokes import Drawing, SceneNumbers
+from eomgen.scene.virtual import VirtualDisplacement, swing_of
 from eomgen.simulation.result import Trajectory
 from eomgen.symbolic.numeric.tolerances import COMPUTED, WIDE_STEP
 
 MOST_FRAMES = 5000
 FINE = 8  # places of a trail in a frame
 PERIOD = 2.0  # of a mode as it is shown, and how long it is [s]
-SWING = 0.12  # of the extent, by which the point of a mode that moves most is swung out
 
 
 @dataclass(frozen=True)
@@ -38,6 +38,7 @@ class Movie:
         times: of each frame in the motion [s].
         trails: name of a point -> its places, FINE of them a frame, d each.
         title: what is said above it.
+        timed: the times of frames are told.
     """
 
     drawing: Drawing
@@ -45,6 +46,7 @@ class Movie:
     plane: bool
     trails: Mapping[str, np.ndarray]
     title: str = ""
+    timed: bool = True
 
 
 def frame_times(end: float, fps: float, speed: float) -> np.ndarray:
@@ -142,7 +144,11 @@ def swing(scene: Scene, at: DrawnState, swung: np.ndarray) -> float:
     """How far a mode is swung out: so that what moves most moves by a part of the picture."""
     states = np.vstack([at.x[None, :], at.x + WIDE_STEP * swung])
     numbers = SceneNumbers(scene, frames_along(scene, np.full(len(states), at.t), states, at.p))
-    drawing = (plane_drawing if scene.plane else space_drawing)(numbers)
-    solid = [s.path.reshape(len(states), -1) for s in drawing.strokes if s.role in ("body", "inertia", "member")]
-    moved = max((float(np.nanmax(np.abs(path - path[0]))) for path in solid if path.size), default=0.0)
-    return SWING * drawing.sizes.extent * WIDE_STEP / moved if moved > 0 else 0.0
+    return swing_of(numbers, WIDE_STEP)
+
+
+def virtual_movie(found: VirtualDisplacement, fps: float) -> Movie:
+    """A virtual displacement to and fro, once."""
+    times = PERIOD * np.arange(int(PERIOD * fps)) / int(PERIOD * fps)
+    numbers = found.along(2 * np.pi * times / PERIOD)
+    return replace(_movie(numbers, times, {}, f"{found.reaction.name} released"), timed=False)

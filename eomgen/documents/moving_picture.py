@@ -211,7 +211,8 @@ def strip(movie: Movie, count: int) -> bytes:
             box = (column / columns, 1 - (row + 1) / rows, 1 / columns, 0.9 / rows)
             stage = Stage(figure.add_axes(box), movie)
             stage.show(frame)
-            stage.panel.set_title(f"t = {movie.times[frame]:.3g} s", fontsize=9)
+            if movie.timed:
+                stage.panel.set_title(f"t = {movie.times[frame]:.3g} s", fontsize=9)
         figure.savefig(page, format="png")
     return page.getvalue()
 

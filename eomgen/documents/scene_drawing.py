@@ -75,7 +75,8 @@ def artist_of(panel: Any, stroke: Stroke, frame: int, colors: Mapping[str, str],
     color = own or color
     x, y = stroke.path[frame].T
     if stroke.dot:
-        return panel.plot(x, y, marker="o", markersize=7, color=color, zorder=layer, linestyle="none")[0]
+        size = 3.5 if stroke.role == "center" else 7
+        return panel.plot(x, y, marker="o", markersize=size, color=color, zorder=layer, linestyle="none")[0]
     if stroke.filled:
         solid = stroke.role not in FILLS and not stroke.hole
         fill = color if solid else PAPER if stroke.hole else _tinted(own) if own else FILLS[stroke.role]

@@ -13,6 +13,7 @@ from eomgen.documents.scene_drawing import BODY, FILLS, FINE, INK, LINES, MARGIN
 from eomgen.scene.strokes import Drawing
 
 AZIMUTH, ELEVATION = math.radians(-58), math.radians(22)
+SHADES = 24  # of a colour
 LIGHT = np.array([0.35, -0.5, 0.79])
 CLEAR = {"inertia": 0.35, "track": 0.12, "hole": 0.2}  # how much of what is behind these hide
 TOWARDS = 0.02  # lines lie so much nearer than the faces around them, of the extent
@@ -36,7 +37,7 @@ class SpacePicture:
         self.drawing, self.colors, self.view = drawing, colors or {}, sight()
         panel.set_aspect("equal")
         panel.axis("off")
-        self.pieces = PolyCollection([], closed=False, capstyle="round", joinstyle="round")
+        self.pieces = PolyCollection([], closed=False, capstyle="round", joinstyle="round", clip_on=False)
         panel.add_collection(self.pieces, autolim=False)
         low, high = self.limits()
         panel.set_xlim(low[0], high[0])
@@ -80,7 +81,7 @@ class SpacePicture:
         lengths = np.linalg.norm(normal, axis=1, keepdims=True)
         normal = normal / np.where(lengths > 0, lengths, 1.0)
         page = corners @ self.view.T
-        light = 0.62 + 0.38 * np.abs(normal @ LIGHT)
+        light = 0.62 + 0.38 * np.round(SHADES * np.abs(normal @ LIGHT)) / SHADES
         alpha = CLEAR.get(stroke.role, 1.0)
         base = _rgb(FILLS.get(stroke.role, color) if stroke.of not in self.colors else color)
         edge = (*_rgb(color), 0.25 if len(corners) > 12 else 0.8 * max(alpha, 0.4))

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import re
 import tempfile
+from collections import Counter
 from dataclasses import replace
 from pathlib import Path
 
@@ -15,7 +16,19 @@ from eomgen.page.contents import ReportFigure
 from eomgen.page.markup import Html
 
 SIZE = (8.0, 4.2)  # of the rest picture [inches]
+OFTEN = 4  # times that a look is said before it has a name
 _SVG = re.compile(r'<svg[^>]*viewBox="0 0 ([\d.]+) ([\d.]+)"[^>]*>(.*)</svg>', re.DOTALL)
+
+_PATH = re.compile(r' d="([^"]*)"')
+_ID = re.compile(r'( id="|href="#|url\(#)')
+_GAPS = re.compile(r"\s*([A-Za-z])\s*")
+_STYLE = re.compile(r' style="([^"]*)"')
+_DIGITS = re.compile(r"-?\d+\.\d{3,}")
+_HALO = re.compile(
+    r'<path d="([^"]*)" style="fill: (#\w+); stroke: #ffffff; stroke-width: ([\d.]+)"/>\s*'
+    r'<path d="\1" style="fill: \2"/>'
+)
+"""A letter with its white edge, and the same letter again."""
 
 
 def rest_figure(model: Model) -> ReportFigure:
@@ -34,10 +47,30 @@ def figure_of(picture: Picture, key: str, caption: str) -> ReportFigure:
         found = _SVG.search(path.read_text(encoding="utf-8"))
     assert found is not None
     size = float(found[1]), float(found[2])
-    return ReportFigure(key, caption, size, Html(_lean(found[3])), save=picture.save, fixed=True)
+    return ReportFigure(key, caption, size, Html(_lean(found[3], key)), save=picture.save, fixed=True)
 
 
-def _lean(marks: str) -> str:
-    """Without what says nothing to a browser: metadata and comments."""
+def _lean(marks: str, key: str) -> str:
+    """Without what says nothing to a browser: metadata, comments, unseen digits, what is said again and again.
+
+    Args:
+        key: what the names in it begin with: no two figures of a page have the same.
+    """
     marks = re.sub(r"<metadata>.*?</metadata>|<!--.*?-->", "", marks, flags=re.DOTALL)
-    return re.sub(r"\n\s*", "\n", marks)
+    marks = _ID.sub(rf"\1{key}-", re.sub(r'<g id="[^"]*"', "<g", marks))
+    marks = _PATH.sub(lambda found: f' d="{_GAPS.sub(_letter, _DIGITS.sub(_plain, found[1])).strip()}"', marks)
+    marks = _HALO.sub(r'<path d="\1" style="fill: \2; stroke: #ffffff; stroke-width: \3; paint-order: stroke"/>', marks)
+    looks = [look for look, times in Counter(_STYLE.findall(marks)).items() if times > OFTEN]
+    names = {look: f"{key}-{k}" for k, look in enumerate(looks)}
+    marks = _STYLE.sub(lambda found: f' class="{names[found[1]]}"' if found[1] in names else found[0], marks)
+    rules = "".join(f".{name}{{{look}}}" for look, name in names.items())
+    return (f"<style>{rules}</style>" if rules else "") + re.sub(r"\n\s*", "\n", marks)
+
+
+def _letter(found: re.Match[str]) -> str:
+    return found[1]
+
+
+def _plain(number: re.Match[str]) -> str:
+    """A number to the hundredth of a point."""
+    return f"{float(number[0]):.2f}".rstrip("0").rstrip(".")

@@ -103,10 +103,15 @@ class PlayedRun:
         arrows = reaction_marks(self.phase.system, single_reactions(self.phase))
         return replace(scene, marks=(*scene.marks, *arrows))
 
+    @property
+    def moves(self) -> bool:
+        """Whether the model lives in the page."""
+        return self.options.moves and not self.rests
+
     def told(self) -> dict[str, Any]:
         """What the player is told."""
         run, names = self.run, (*self.run.coordinates, *self.run.speeds)
-        moves = self.options.moves and not self.rests
+        moves = self.moves
         columns = self.live.columns if self.live else {name: ("x", k) for k, name in enumerate(names)}
         plotted = [name for name in columns if not name.endswith("'") or name in names]
         units = units_of(self.model, [*plotted, "energy"])
@@ -141,16 +146,16 @@ class PlayedRun:
     def _recorded(self) -> dict[str, Any]:
         """The run: states as they are integrated, or of contacts that change as they are named, with frames."""
         run = self.run
-        told = {"t": _doubles(run.t), "message": "" if run.ok else run.message}
+        told = {"t": doubles_text(run.t), "message": "" if run.ok else run.message}
         if self.live is not None:
             assert run.phases[0].track is not None
             times, states = run.phases[0].track
             x = states[np.searchsorted(times, run.t)]
-            return {**told, "x": _doubles(x), "states": x.shape[1]}
+            return {**told, "x": doubles_text(x), "states": x.shape[1]}
         frames = self.drawn[1]
         assert frames is not None
-        recorded = {"x": _doubles(run.x), "states": run.x.shape[1], "slots": frames.shape[1]}
-        return {**told, **recorded, "frames": _coded(frames.astype("<f4"))}
+        recorded = {"x": doubles_text(run.x), "states": run.x.shape[1], "slots": frames.shape[1]}
+        return {**told, **recorded, "frames": coded_text(frames.astype("<f4"))}
 
     def _parameters(self) -> list[dict[str, Any]]:
         names = self.phase.declared.symbols.parameters
@@ -233,9 +238,11 @@ def _unit(unit: Any) -> dict[str, Any]:
     return {"unit": "" if unit is None else unit.text, "size": 1.0 if unit is None else float(unit.size)}
 
 
-def _doubles(values: Sequence[float] | np.ndarray) -> str:
-    return _coded(np.ascontiguousarray(values, dtype="<f8"))
+def doubles_text(values: Sequence[float] | np.ndarray) -> str:
+    """Numbers as a page reads them: the bytes of doubles, base64."""
+    return coded_text(np.ascontiguousarray(values, dtype="<f8"))
 
 
-def _coded(values: np.ndarray) -> str:
+def coded_text(values: np.ndarray) -> str:
+    """The bytes of numbers, base64."""
     return base64.b64encode(values.tobytes()).decode("ascii")

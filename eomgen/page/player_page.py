@@ -9,9 +9,12 @@ import json
 import re
 from dataclasses import dataclass
 from importlib import resources
+from typing import Any, Protocol
 
 from eomgen.codegen.targets.javascript import javascript_expression
 from eomgen.errors import ToolMissing, visible
+from eomgen.model.parts import Model
+from eomgen.page.live import Live
 from eomgen.page.player_data import PlayedRun, PlayerOptions
 from eomgen.simulation.result import Trajectory
 from eomgen.version import __version__
@@ -62,19 +65,40 @@ class PlayerParts:
     script: str
 
 
+class Playable(Protocol):
+    """What a player shows.
+
+    Attributes:
+        live: the model as the page evaluates it, or None: what was computed is played.
+        moves: whether it lives in the page.
+    """
+
+    @property
+    def model(self) -> Model: ...
+    @property
+    def live(self) -> Live | None: ...
+    @property
+    def moves(self) -> bool: ...
+    def told(self) -> dict[str, Any]: ...
+
+
 def player_parts(run: Trajectory, options: PlayerOptions | None = None, identity: str = "player") -> PlayerParts:
     """The player of a run, to be put into a page.
 
     Args:
         identity: of its element; no two in a page are alike.
     """
-    return _parts(PlayedRun(run, options or PlayerOptions()), identity, page=False)
+    return player_parts_of(PlayedRun(run, options or PlayerOptions()), identity)
 
 
 def player_page(run: Trajectory, options: PlayerOptions | None = None) -> str:
     """The player of a run as a page."""
-    played = PlayedRun(run, options or PlayerOptions())
-    parts = _parts(played, "player", page=True)
+    return player_page_of(PlayedRun(run, options or PlayerOptions()))
+
+
+def player_page_of(played: Playable) -> str:
+    """A player as a page."""
+    parts = player_parts_of(played, "player", page=True)
     return _PAGE.format(
         version=__version__,
         title=html.escape(visible(played.model.name)),
@@ -84,19 +108,14 @@ def player_page(run: Trajectory, options: PlayerOptions | None = None) -> str:
     )
 
 
-def _parts(played: PlayedRun, identity: str, *, page: bool) -> PlayerParts:
+def player_parts_of(played: Playable, identity: str, *, page: bool = False) -> PlayerParts:
+    """A player, to be put into a page, or alone in one."""
     library = {} if played.model.space == "plane" else {"three": three_js()}
     told = json.dumps({**played.told(), **library, "page": page}, separators=(",", ":"), allow_nan=False)
     for letter in "<>&\u2028\u2029":
         told = told.replace(letter, f"\\u{ord(letter):04x}")
     live = played.live
-    needed = (
-        ()
-        if live is None
-        else live.programs
-        if played.options.moves and not played.rests
-        else ("begin", "rate", "frame")
-    )
+    needed = () if live is None else live.programs if played.moves else ("begin", "rate", "frame")
     programs = ",\n".join(f"{name}: {javascript_expression(live.programs[name])}" for name in needed) if live else ""
     text = "\n".join(map(_in_a_script, map(_asset, SCRIPTS)))
     begin = f'begun(document.getElementById("{identity}"), {told}, {{{programs}}});'
@@ -127,9 +146,11 @@ def _asset(name: str) -> str:
 
 
 def _in_a_script(module: str) -> str:
-    """A module as a statement that gives its names to those after it."""
+    """A module as a statement that gives its names to those after it; without comments of a line of their own."""
     names = ", ".join(_EXPORT.findall(module))
-    return f"const {{ {names} }} = (() => {{\n{_EXPORT.sub('', _IMPORT.sub('', module))}return {{ {names} }};\n}})();"
+    text = _EXPORT.sub("", _IMPORT.sub("", module))
+    lines = [line for each in text.splitlines() if (line := each.strip()) and not line.startswith(("//", "/*", "*"))]
+    return f"const {{ {names} }} = (() => {{\n{chr(10).join(lines)}\nreturn {{ {names} }};\n}})();"
 
 
 def _harmless(text: str) -> str:

@@ -11,12 +11,21 @@ import numpy as np
 
 from eomgen import files, pipeline
 from eomgen.documents.document import Document, plain_document
-from eomgen.documents.motion_frames import FINE, Movie, frame_times, mode_movies, movie_of
+from eomgen.documents.motion_frames import FINE, Movie, frame_times, mode_movies, movie_of, virtual_movie
 from eomgen.documents.moving_picture import Progress, gif, mp4, on_stderr, strip
 from eomgen.documents.statements import prose
+from eomgen.documents.statics.equilibrium_result import has_freedoms
+from eomgen.documents.statics.work_steps import virtual_work_step
 from eomgen.errors import UsageError
+from eomgen.mechanics.equations.system import system_of
+from eomgen.mechanics.equilibria.static_equations import with_drives_held
+from eomgen.mechanics.statics.rest_contacts import modes_at_rest
+from eomgen.mechanics.statics.two_ways import released_in
+from eomgen.mechanics.structures.loose_motion import refuse_loose
+from eomgen.mechanics.structures.structure import structure_of
 from eomgen.model.parts import Model
 from eomgen.questions.run import run as simulated
+from eomgen.scene.virtual import VirtualDisplacement
 from eomgen.simulation.integrator import Stepping
 from eomgen.simulation.result import Trajectory
 from eomgen.symbolic.numeric.tolerances import COMPUTED
@@ -55,10 +64,21 @@ class Showing:
 
 
 def animate_document(
-    model: Model, *, output: str, time: float, start: Mapping[str, float], showing: Showing, modes: int | None
+    model: Model,
+    *,
+    output: str,
+    time: float,
+    start: Mapping[str, float],
+    showing: Showing,
+    modes: int | None = None,
+    virtual: str | None = None,
 ) -> Document:
     """The picture is written; the document says what it holds."""
     run: Trajectory | None = None
+    if virtual is not None:
+        if modes is not None:
+            raise UsageError("--modes and --virtual are two pictures", mend="leave one of them out")
+        return _virtual_document(model, virtual, output, showing)
     if modes is not None:
         if Path(output).suffix.lower() == ".html":
             raise UsageError("small motions have no page", mend="write a .gif")
@@ -73,6 +93,43 @@ def animate_document(
         movies, summary = [_shown(run, times, showing)], run.summary()
     write_movies(movies, output, showing, on_stderr)
     return _told(model, summary, len(movies[0].times), output, showing, run)
+
+
+def _virtual_document(model: Model, reaction: str, output: str, showing: Showing) -> Document:
+    """The displacement that gives a reaction is written; of a structure its equation of work is said."""
+    found, stands = released(model, reaction)
+    if Path(output).suffix.lower() == ".html":
+        from eomgen.page.player_page import player_page_of
+        from eomgen.page.released import PlayedDisplacements
+
+        files.write(output, player_page_of(PlayedDisplacements((found,))))
+        count = 1
+    else:
+        movie = virtual_movie(found, showing.fps)
+        write_movies([movie], output, showing, on_stderr)
+        count = len(movie.times)
+    name = found.reaction.name
+    payload = {"name": model.name, "files": [output], "frames": count, "fps": showing.fps, "virtual": name}
+    summary = f"{model.name}: the virtual displacement that gives {name}"
+    said = prose(summary if stands else f"{summary}; freedoms besides it stand still")
+    symbol = found.structure.system.symbols.graph.symbol(name)
+    steps = virtual_work_step(found.reaction, symbol).statements if stands else ()
+    return plain_document(model, lambda: payload, said, *steps, prose(f"{count} frames: {output}"))
+
+
+def released(model: Model, reaction: str) -> tuple[VirtualDisplacement, bool]:
+    """(the model where it starts with one reaction released, whether it is a structure that stands).
+
+    Raises:
+        UsageError: there is no such reaction.
+        DerivationError: released, nothing can move; bodies can move that no coordinate describes.
+    """
+    system = system_of(model, modes_at_rest(model))
+    stands = not has_freedoms(system)
+    structure = structure_of(with_drives_held(system)[0] if stands else system)
+    if stands:
+        refuse_loose(structure)
+    return VirtualDisplacement(structure, released_in(structure, reaction)), stands
 
 
 def _told(model: Model, summary: str, count: int, output: str, showing: Showing, run: Trajectory | None) -> Document:

@@ -9,7 +9,12 @@ from importlib import metadata
 
 from eomgen.codegen.build import cache_folder, compiler
 from eomgen.documents.document import Document, lines_document
+from eomgen.documents.moving_picture import ffmpeg
+from eomgen.errors import ToolMissing
 from eomgen.version import __version__
+
+EXTRAS = {"formulas": "math-core", "PDF": "typst", "space": "jupyter-threejs-sage", "notebooks": "nbclient"}
+"""What a page, a paper or a notebook takes -> the package that gives it."""
 
 
 def doctor_document() -> Document:
@@ -23,6 +28,13 @@ def doctor_document() -> Document:
     rows.append(("C compiler", compiler()))
     rows.append(("cache", _cache()))
     rows.append(("LaTeX", next(filter(None, map(shutil.which, ("pdflatex", "lualatex", "xelatex", "tectonic"))), None)))
+    for what, package in EXTRAS.items():
+        try:
+            rows.append((what, f"{package} {metadata.version(package)}"))
+        except metadata.PackageNotFoundError:
+            rows.append((what, None))
+    rows.append(("node", shutil.which("node")))
+    rows.append(("ffmpeg", _ffmpeg()))
     lines = [f"{what:<12}  {found or 'not found' + _without(what)}" for what, found in rows]
     return lines_document(lambda: {"found": dict(rows)}, *lines)
 
@@ -33,7 +45,20 @@ def _without(what: str) -> str:
         "C compiler": ": equations run in numpy, some 30 times slower; install cc or `pip install ziglang`",
         "cache": ": it cannot be written, code is compiled anew each time",
         "LaTeX": ": derivations are written as .tex, but cannot be typeset here",
+        "formulas": ": no report as .html, no notebook: pip install 'eomgen[report]'",
+        "PDF": ": a report as .pdf takes LaTeX then: pip install 'eomgen[pdf]'",
+        "space": ": pages do not play motions in space: pip install 'eomgen[space]'",
+        "notebooks": ": no report as .ipynb: pip install 'eomgen[notebook]'",
+        "node": ": what runs in pages is not proven here, and not run by `--target javascript`",
+        "ffmpeg": ": no .mp4, GIFs are written: pip install 'eomgen[video]'",
     }.get(what, f": pip install {what}")
+
+
+def _ffmpeg() -> str | None:
+    try:
+        return ffmpeg()
+    except ToolMissing:
+        return None
 
 
 def _cache() -> str | None:

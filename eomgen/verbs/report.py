@@ -18,7 +18,7 @@ from eomgen.documents.latex import with_listings_typeset
 from eomgen.documents.linearize.result import linearize
 from eomgen.documents.result import Result
 from eomgen.documents.statements import Lines
-from eomgen.documents.statics.result import statics
+from eomgen.documents.statics.result import Statics, statics
 from eomgen.equations import Equations
 from eomgen.errors import DerivationError, MissingValues, RunFailed, UsageError
 from eomgen.generated import Generated
@@ -30,18 +30,21 @@ from eomgen.page.contents import SECTIONS, Attachment, Report, ReportFigure, Rep
 from eomgen.page.curves import motion_drawings
 from eomgen.page.figure import figure_of, rest_figure
 from eomgen.page.formats import FORMATS, written_as
-from eomgen.page.markup import Html
-from eomgen.page.player_data import PlayerOptions
-from eomgen.page.player_page import player_parts
+from eomgen.page.markup import Html, element, in_a_row
+from eomgen.page.player_data import PlayedRun, PlayerOptions
+from eomgen.page.player_page import Playable, player_parts_of
+from eomgen.page.released import PlayedDisplacements
 from eomgen.proof.check import Certificate
 from eomgen.questions import answers
 from eomgen.questions.run import run as simulated
 from eomgen.questions.velocities import kinematics
+from eomgen.scene.virtual import VirtualDisplacement
 from eomgen.simulation.result import Trajectory
 from eomgen.symbolic.numeric.work import doing
 from eomgen.verbs.assignments import nearest_name
 
 SAMPLES = 401  # instants of the motion, in drawings and in the table that is offered
+MOST_RELEASED = 8  # reactions whose virtual displacement a page plays
 LANGUAGES = ("c", "numpy")
 SETTING = ("assumptions", "data", "freedom", "coordinates")  # steps that say what is given
 UNFIT = (DerivationError, MissingValues, RunFailed)  # why a section that nobody asked for is empty
@@ -341,14 +344,35 @@ def _figure(subject: Subject) -> ReportSection | None:
 
 
 def _motion(subject: Subject) -> ReportSection | None:
-    """The motion as a player; what moves when a structure is released has its words in its steps."""
+    """The motion as a player; of a structure the virtual displacements that give its reactions."""
+    if subject.main[0] == "statics":
+        return _released(subject.found["statics"])
     if subject.main[0] != "derivation":
         return None
-    run = subject.run
+    return _played(PlayedRun(subject.run, PlayerOptions()))
+
+
+def _released(found: Result) -> ReportSection | None:
+    """One released reaction after the other; of a system that finds its rest nothing."""
+    if not isinstance(found, Statics):
+        return None
+    structure, reactions = found.found.structure, found.found.reactions
+    moved = [r for r in reactions if r.work is not None and r.work.plan.moving]
+    if not moved:
+        return None
+    shown = PlayedDisplacements(tuple(VirtualDisplacement(structure, r) for r in moved[:MOST_RELEASED]))
+    left = [r.name for r in moved[MOST_RELEASED:]]
+    more = f"Not shown: {', '.join(left)}; `eomgen animate --virtual` shows each." if left else ""
+    return _played(shown, f"The virtual displacement of each released reaction, to the first order. {more}".strip())
+
+
+def _played(played: Playable, words: str = "") -> ReportSection:
+    """What moves in a page, under words of its own."""
 
     def live() -> Html:
-        parts = player_parts(run, PlayerOptions(), "motion-player")
-        return Html(f"<style>{parts.style}</style>{parts.body}{parts.script}")
+        parts = player_parts_of(played, "motion-player")
+        above = [element("p", words)] if words else []
+        return in_a_row(*above, Html(f"<style>{parts.style}</style>{parts.body}{parts.script}"))
 
     return ReportSection("motion", live=live)
 

@@ -9,7 +9,7 @@ from eomgen.documents.statements import Cell, Formula, Grid, Piece, Prose, State
 from eomgen.mechanics.bodies.inertia import mass_properties
 from eomgen.mechanics.statics.two_ways import StaticReaction
 from eomgen.mechanics.statics.virtual_work import Acting, WorkEquation, WorkTerm
-from eomgen.mechanics.structures.blocks import RigidBlock, blocks_of, members_of, resting_blocks
+from eomgen.mechanics.structures.blocks import RigidBlock, blocks_of, members_of, numeral, resting_blocks
 from eomgen.mechanics.structures.velocity_plan import VelocityPlan
 from eomgen.model.forces.load import BodyPoint, Couple, PointForce, SpreadLoad
 from eomgen.model.trusses import is_node
@@ -83,7 +83,7 @@ def _mechanism(plan: VelocityPlan, blocks: Sequence[RigidBlock], delta: Node) ->
         place: tuple[Cell, Cell] = ("at infinity", "") if center.place is None else (center.place[0], center.place[1])
         moved = [plan.simple(x) for x in center.direction or (0, 0, 0)]
         shift = ("", "") if center.place is not None else (moved[0] * delta, moved[1] * delta)
-        rows.append((_numeral(number), _parts(plan, block, blocks), *place, block.spin[2] * delta, *shift))
+        rows.append((numeral(number), _parts(plan, block, blocks), *place, block.spin[2] * delta, *shift))
     return _narrow(("block", "moves", "centre x", "centre y", "rotation", "shift x", "shift y"), rows)
 
 
@@ -95,7 +95,7 @@ def _mechanism_in_space(plan: VelocityPlan, blocks: Sequence[RigidBlock], delta:
             continue
         moved = plan.center_velocity(block.bodies[0])
         spin = tuple(plan.simple(x) * delta for x in block.spin)
-        rows.append((_numeral(number), _parts(plan, block, blocks), *spin, *(x * delta for x in moved)))
+        rows.append((numeral(number), _parts(plan, block, blocks), *spin, *(x * delta for x in moved)))
     nodes = tuple(node for block in blocks for node in block.nodes)
     if nodes:
         rows.append(("nodes", _listed(nodes), *("",) * 6))
@@ -113,15 +113,6 @@ def _parts(plan: VelocityPlan, block: RigidBlock, blocks: Sequence[RigidBlock]) 
     whole = [truss for truss, number in inside.items() if number == of_truss[truss]]
     single = [f"{truss} {member}" for truss, member in block.members if truss not in whole]
     return _listed((*block.bodies, *(f"truss {truss}" for truss in whole), *single, *block.nodes))
-
-
-def _numeral(number: int) -> str:
-    """I, II, III, IV, ..."""
-    text = ""
-    for value, letters in ((10, "X"), (9, "IX"), (5, "V"), (4, "IV"), (1, "I")):
-        text += letters * (number // value)
-        number %= value
-    return text
 
 
 # -- works -------------------------------------------------------------------------------------------

@@ -11,7 +11,7 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from functools import cached_property
 
-from eomgen.errors import ExpressionError, UsageError
+from eomgen.errors import DerivationError, ExpressionError, UsageError
 from eomgen.mechanics.balance.balance_solution import Indeterminate
 from eomgen.mechanics.balance.named_reactions import NamedReaction, name_of
 from eomgen.mechanics.constraints.freedom import counted
@@ -151,6 +151,26 @@ def reactions_in(structure: Structure, *, only: str | None = None) -> StaticReac
         solved, unit = balance.unknowns.get(unknown), unit_of_unknown(structure, unknown)
         found.append(StaticReaction(unknown.name, unit, None, solved, positive, work))
     return StaticReactions(structure, tuple(found), balance)
+
+
+def released_in(structure: Structure, name: str) -> StaticReaction:
+    """One reaction, or unknown of the loads, by its virtual work alone; other freedoms of the bodies stand still.
+
+    Raises:
+        UsageError: there is no such reaction.
+        DerivationError: released, nothing can move.
+    """
+    asked, unknowns = asked_reactions(structure), {unknown.name: unknown for unknown in structure.unknowns}
+    one = _one_of((*asked, *unknowns), name)
+    named = asked.get(one)
+    unit = unit_of_unknown(structure, unknowns[one]) if named is None else named.unit
+    work = unknown_by_virtual_work(structure, unknowns[one]) if named is None else by_virtual_work(structure, named)
+    if work is None:
+        what = f"{one} is statically indeterminate: released, the other reactions hold the bodies without it"
+        raise DerivationError(what, mend="take a redundant tie away")
+    if not work.plan.moving:
+        raise DerivationError(f"{one} holds nothing: its tie leaves this motion free")
+    return StaticReaction(one, unit, named, None, structure.system.scope.positive, work)
 
 
 def unit_of_unknown(structure: Structure, unknown: Node) -> str:

@@ -79,6 +79,15 @@ def resting_blocks(plan: VelocityPlan) -> tuple[str, ...]:
     return (*bodies, *(name for name in trusses if name not in awake))
 
 
+def numeral(number: int) -> str:
+    """By which a textbook names a block: I, II, III, IV, ..."""
+    text = ""
+    for value, letters in ((10, "X"), (9, "IX"), (5, "V"), (4, "IV"), (1, "I")):
+        text += letters * (number // value)
+        number %= value
+    return text
+
+
 def members_of(system: System) -> list[tuple[str, str, tuple[str, str]]]:
     """(truss, member, its two nodes) of every truss."""
     trusses = trusses_of(system.scope.model.constraints)

@@ -145,6 +145,12 @@ export class PlaneView {
         const at = (point, value) => [this.k*value(point[0]), -this.k*value(point[1])];
         const shown = (made, d) => { if (d.includes("NaN")) made.setAttribute("display", "none"); else { made.removeAttribute("display"); made.setAttribute("d", d); } };
         const text = (name = "text") => { const made = element(name, {}, holder); made.textContent = mark.text; return made; };
+        const put = (words, x, y) => {
+            if (!Number.isFinite(x + y)) { words.setAttribute("display", "none"); return; }
+            words.removeAttribute("display");
+            words.setAttribute("x", x.toFixed(1));
+            words.setAttribute("y", y.toFixed(1));
+        };
         const path = () => element("path", {}, holder);
         const made = ["label"].includes(mark.kind) ? null : mark.kind === "symbol" ? element("g", {}, holder) : path();
         switch (mark.kind) {
@@ -172,8 +178,7 @@ export class PlaneView {
                 const words = text();
                 return (frame, value) => {
                     const [x, y] = at(mark.at, value);
-                    words.setAttribute("x", (x + 0.6*this.text).toFixed(1));
-                    words.setAttribute("y", (y - 0.5*this.text).toFixed(1));
+                    put(words, x + 0.6*this.text, y - 0.5*this.text);
                 };
             }
             case "arrow": {
@@ -186,13 +191,17 @@ export class PlaneView {
                     holder.setAttribute("display", hidden ? "none" : "inline");
                     if (hidden) return;
                     shown(made, arrow(from, to, Math.min(this.unit, size)));
-                    if (words) { words.setAttribute("x", (from[0] + 0.4*this.text).toFixed(1)); words.setAttribute("y", (from[1] - 0.3*this.text).toFixed(1)); }
+                    if (words) put(words, from[0] + 0.4*this.text, from[1] - 0.3*this.text);
                 };
             }
-            case "couple": return (frame, value) => {
-                const turn = value(mark.vector[2] ?? mark.vector[0]);
-                shown(made, couple(at(mark.at, value), turn, 1.5*this.unit));
-            };
+            case "couple": {
+                const words = mark.text ? text() : null;
+                return (frame, value) => {
+                    const turn = value(mark.vector[2] ?? mark.vector[0]), [x, y] = at(mark.at, value);
+                    shown(made, couple([x, y], turn, 1.5*this.unit));
+                    if (words) put(words, Math.abs(turn) > 0 ? x + 1.5*this.unit : NaN, y - 1.5*this.unit);
+                };
+            }
             case "load": return (frame, value) => shown(made, load(mark, value, at, 2*this.unit));
             default: return () => {};
         }

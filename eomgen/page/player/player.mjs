@@ -114,6 +114,8 @@ export class Player {
         this.scrub.value = this.t;
         this.scrub.setAttribute("aria-valuetext", `${this.t.toFixed(2)} s`);
         this.clock.textContent = `${this.t.toFixed(2)} s`;
+        const said = (this.told.captions ?? []).findLast(([from]) => from <= this.t)?.[1] ?? "";
+        if (this.caption.textContent !== said) this.caption.textContent = said;
         for (const plot of this.plots) plot.cursor(this.t);
     }
 
@@ -224,9 +226,10 @@ export class Player {
             told.scene.marks.some(mark => mark.kind === "label") && !space ? box("names", "names", false) : null);
         this.note = made("p", { class: "note", role: "status", hidden: true });
         this.energy = made("p", { class: "energy" });
+        this.caption = made("p", { class: "caption", hidden: !told.captions });
         this.plots = [];
         this.plotting = made("div", { class: "plots" });
-        const seen = [this.stage, made("div", { class: "controls" }, this.button, this.scrub, this.clock), options, this.note, this.energy];
+        const seen = [this.stage, made("div", { class: "controls" }, this.button, this.scrub, this.clock), this.caption, options, this.note, this.energy];
         const sliders = this._sliders(), plots = this._plotted();
         root.append(made("div", { class: "seen" }, ...seen, ...(plots ? [plots] : [])), ...(sliders ? [made("div", { class: "beside" }, sliders)] : []));
         root.tabIndex = -1;
