@@ -70,18 +70,19 @@ def _asked(
     from eomgen.verbs.assignments import typed
 
     valued, rest = typed(_followed(source.model, follow), options)
-    if "time" in rest:  # a motion holds to the starts that are typed
-        rest["start"] = valued.start
     document = replace(made(valued.model, **rest, **more), taken=valued.taken)
     return source.warned(document, valued.model)
 
 
-def _write_result(found: Callable[..., Result], *, plot: str | None, certify: bool, **options: Any) -> int:
-    """What a verb finds, drawn and proven where that is asked."""
-    from eomgen.verbs.outcome import shown
+def _write_result(
+    found: Callable[..., Result], *, plot: str | None, certify: bool, at_start: bool = False, **options: Any
+) -> int:
+    """What a verb finds, at the start or elsewhere, drawn and proven where that is asked."""
+    from eomgen.verbs.outcome import shown, with_start_told
 
     def made(declared: Model, **asked: Any) -> Document:
-        return shown(found(declared, **asked), plot=plot, certify=certify)
+        document = shown(found(declared, **asked), plot=plot, certify=certify)
+        return with_start_told(document, declared) if at_start else document
 
     return _write(made, **options)
 
@@ -225,7 +226,7 @@ def kinematics_command(**options: Any) -> int:
     """
     from eomgen.verbs.kinematics import kinematics_asked
 
-    return _write_result(kinematics_asked, **options)
+    return _write_result(kinematics_asked, at_start=True, **options)
 
 
 @main.command("inertia")
@@ -241,7 +242,7 @@ def inertia_command(**options: Any) -> int:
     """
     from eomgen.documents.inertia.result import inertia
 
-    return _write_result(inertia, **options)
+    return _write_result(inertia, at_start=True, **options)
 
 
 @main.command("linearize")
@@ -277,7 +278,7 @@ def linearize_command(view: str, over: str | None, **options: Any) -> int:
         wanted = None if over is None else range_of(model, over)
         return replace(linearize(model, **asked), drawn=view, over=wanted)
 
-    return _write_result(found, **options)
+    return _write_result(found, at_start=options["about"] == "start", **options)
 
 
 @main.command("simulate")

@@ -17,7 +17,7 @@ from eomgen.mechanics.reactions.reactions import reactions_of
 from eomgen.mechanics.statics.contacts_at_start import ContactsAtStart, contacts_at_start
 from eomgen.model.fields import WrittenEquation
 from eomgen.model.reader import ModelOrPath, model_at
-from eomgen.model.replaced import Values, with_inputs, with_values
+from eomgen.model.replaced import Values, with_inputs
 from eomgen.model.unknowns import refuse_motion
 from eomgen.symbolic.numeric.gc_pause import growing
 from eomgen.symbolic.numeric.tolerances import RUN
@@ -129,11 +129,10 @@ def simulate(
     from eomgen.questions.simulator import OUTPUTS, REACTIONS
     from eomgen.simulation.integrate import SAMPLES
 
-    valued = with_values(model_at(model), parameters, start)
-    model = with_inputs(valued.model, inputs or {})
+    model = with_inputs(model_at(model, parameters, start), inputs or {})
     run = simulator(model, rtol=rtol, atol=atol, target=target, method=method, stabilization=stabilization)
     samples = SAMPLES if samples is None else samples
-    found = run(time, start=valued.start, samples=samples, columns=(REACTIONS, OUTPUTS), until=until)
+    found = run(time, samples=samples, columns=(REACTIONS, OUTPUTS), until=until)
     if (found.reactions or found.outputs) and found.remark:
         warnings.warn(f"{model.name}: {found.remark}", RuntimeWarning, stacklevel=2)
     return found

@@ -13,8 +13,48 @@ from eomgen.errors import MissingValues, UsageError
 MODELS = Path(__file__).parent.parent / "models"
 
 
+STRETCHED = """
+eomgen = 1
+space = "plane"
+parameters = { l = 1, k = 10 }
+coordinates = { x = { start = "l/2" } }
+points = { A = [-1, 0] }
+[bodies.b]
+shape = { kind = "particle", mass = 1 }
+joint = { kind = "prismatic", axis = [1, 0], displacement = "x" }
+[forces.s]
+kind = "spring"
+points = ["A", "b.center"]
+stiffness = "k"
+length = "start"
+[forces.weight]
+kind = "gravity"
+acceleration = [9.81, 0]
+"""
+"""where it starts follows from a parameter, and so does its spring"""
+GEARED = """
+eomgen = 1
+space = "plane"
+coordinates = { a = 0.2, b = { start = 0.1, speed = 1 } }
+[bodies.one]
+shape = { kind = "rod", mass = 1, length = 1 }
+joint = { kind = "revolute", angle = "a" }
+[bodies.two]
+shape = { kind = "disc", mass = 1, radius = 1 }
+joint = { kind = "revolute", at = [3, 0], angle = "b" }
+[constraints.wheels]
+kind = "gear"
+bodies = ["one", "two"]
+ratio = -2
+[forces.weight]
+kind = "gravity"
+acceleration = [0, -9.81]
+"""
+"""which teeth mesh is said by the start"""
+
+
 def model(name: str) -> eomgen.Model:
-    return eomgen.load(MODELS / f"{name}.toml")
+    return eomgen.loads(name) if "\n" in name else eomgen.load(MODELS / f"{name}.toml")
 
 
 @pytest.mark.parametrize(
@@ -24,12 +64,16 @@ def model(name: str) -> eomgen.Model:
         ("four_bar", {"a": 0.3}, {}),
         ("sliding_ladder", {}, {}),
         ("cart_pole", {}, {"theta": 0.3}),
+        ("four_bar", {}, {"alpha": 0.3, "beta": 1}),
+        (STRETCHED, {"l": 3}, {}),
+        (STRETCHED, {"l": 3}, {"x": 2}),
+        (GEARED, {}, {"a": 0.5}),
     ],
 )
 def test_it_gives_what_simulate_gives(name, parameters, start):
-    """At the model's own values, at others, and at its own again."""
+    """At other values than the model's own, at its own, and at the others again."""
     run = eomgen.simulator(model(name))
-    for values, begun in (({}, {}), (parameters, start), ({}, {})):
+    for values, begun in ((parameters, start), ({}, {}), (parameters, start)):
         own = run(1.0, parameters=values, start=begun, samples=21)
         other = eomgen.simulate(model(name), time=1.0, parameters=values, start=begun, samples=21)
         assert own.t.tolist() == other.t.tolist() and own.x.tolist() == other.x.tolist()

@@ -90,7 +90,7 @@ def with_values(
         _refuse_given(model, name, options[1])
         found = _settled(typing, name, typed, options[1])
         settled.append(found)
-        base, value = name.rstrip("'"), found.value
+        base, value = name.rstrip("'"), replace(found.value, typed=True)
         if name in speeds:
             speeds[name] = altered(speeds[name], start=value)
         elif name == base:

@@ -23,7 +23,7 @@ from eomgen.mechanics.balance.friction import with_rest
 from eomgen.mechanics.bodies.scope import Scope
 from eomgen.mechanics.bodies.tree import branches_of
 from eomgen.mechanics.constraints.closure import gaps_of
-from eomgen.mechanics.constraints.consistency import is_guess
+from eomgen.mechanics.constraints.consistency import is_guess, is_typed
 from eomgen.mechanics.constraints.edges import left_of
 from eomgen.mechanics.equations.articulated import with_accelerations
 from eomgen.mechanics.equations.system import System
@@ -203,6 +203,7 @@ class Live:
             "near": [k for k, x in enumerate(q) if x in sought and parts[x.name].near is not None],
             "own": [k for k, x in enumerate(q) if x in standing and x not in sought and not parts[x.name].driven],
             "guesses": [x.name for x in (*q, *u) if is_guess(model, x.name)],
+            "typed": [x.name for x in (*q, *u) if is_typed(model, x.name)],
             "breaks": breakpoints_of(model),
             "edges": [edge.words for edge in self.phase.edges],
             "columns": self.columns,

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from functools import cached_property
 from pathlib import Path
@@ -111,20 +111,20 @@ def play(
     Raises:
         UsageError: nothing moves; a slider of what there is not.
     """
-    valued = with_values(model_at(model), parameters, start)
-    options = PlayerOptions(slider_ranges(valued.model, sliders), True, trail, forces, speed)
-    found = played(valued.model, valued.start, time, options)
+    model = model_at(model, parameters, start)
+    options = PlayerOptions(slider_ranges(model, sliders), True, trail, forces, speed)
+    found = played(model, time, options)
     if path is not None:
         found.write(path)
     return found
 
 
 @doing("the page of the model")
-def played(model: Model, start: Mapping[str, float], time: float, options: PlayerOptions) -> Played:
+def played(model: Model, time: float, options: PlayerOptions) -> Played:
     """The page of a model whose values stand."""
     if not model.coordinates:
         raise UsageError("nothing moves: the model has no coordinates", mend="`statics` and `kinematics` answer it")
-    found = run(pipeline.derive(model), time=time, start=start, samples=SAMPLES)
+    found = run(pipeline.derive(model), time=time, samples=SAMPLES)
     made = Played(PlayedRun(found, options))
     points = [point["name"] for point in made.played.drawn[0]["points"]]
     if options.trail and options.trail not in points:

@@ -4,18 +4,18 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
+from typing import Any
 
 import numpy as np
 
 from eomgen.certificate import certify
 from eomgen.codegen.rhs import parameter_vector
 from eomgen.equations import Equations
-from eomgen.errors import DerivationError, UsageError
+from eomgen.errors import DerivationError
 from eomgen.mechanics.balance.friction import with_friction
 from eomgen.mechanics.equations.stabilization import stabilized
 from eomgen.mechanics.formulations import recursive
 from eomgen.model.fields import WrittenEquation
-from eomgen.model.parts import Model
 from eomgen.proof import motion
 from eomgen.proof.check import Certificate, Check
 from eomgen.proof.contact_phases import bodies_stand_as_told, changes_follow_impulses, contacts_do_as_told
@@ -104,7 +104,7 @@ def run(
     equations: Equations,
     *,
     time: float,
-    parameters: Mapping[str, float] | None = None,
+    parameters: Mapping[str, Any] | None = None,
     start: Mapping[str, float] | None = None,
     target: str | None = None,
     samples: int | Sequence[float] | None = None,
@@ -118,7 +118,7 @@ def run(
 
     Args:
         time: how long [s].
-        parameters, start: values, start values and speeds that replace the model's.
+        parameters, start: values in place of the model's own, where equations of other ones are used again.
         target: of the emitted code.
         samples: as of `integrate`.
         how: the integrator's way; its tolerances are those of the run, and a step takes a tenth of them.
@@ -134,7 +134,6 @@ def run(
     model = equations.model
     condition = None if until is None else condition_of(model, until)
     refuse_bad_run(0.0, time, how)
-    _refuse_given(model, start or {})
     models = models or phase_models(equations, parameter_vector(model, parameters), how, target)
     here = at_start(models, 0.0, parameters, start)
     _refuse_fork_at_rest(models, here)
@@ -186,17 +185,6 @@ def _cut(run: Run, stop: BaseException) -> Run:
     keep_what_there_is()
     message = f"Gave up at t = {run.end:.6g} s: the time to wait (--patience) is over."
     return replace(run, status="out of patience", message=message)
-
-
-def _refuse_given(model: Model, start: Mapping[str, float]) -> None:
-    """Refuses a start of what is given at every instant.
-
-    Raises:
-        UsageError: a coordinate with a `motion`.
-    """
-    for name in start:
-        if name in model.coordinates and model.coordinates[name].motion is not None:
-            raise UsageError(f"'{name}' starts where its `motion` says", mend="give no other start")
 
 
 def _refuse_fork_at_rest(models: PhaseModels, here: PhaseStart) -> None:

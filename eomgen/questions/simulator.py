@@ -15,7 +15,8 @@ from eomgen.model.findings import nearest
 from eomgen.model.outputs import FUNCTIONS
 from eomgen.model.outputs.base import BALANCE
 from eomgen.model.parts import Model
-from eomgen.model.replaced import Valued, Values, with_values
+from eomgen.model.replaced import Values, with_values
+from eomgen.proof.kept_ties import rows_that_stay
 from eomgen.questions.of_a_run import asked_of
 from eomgen.questions.run import phase_models, run
 from eomgen.simulation.configuration import has_phases
@@ -74,13 +75,15 @@ class Simulator:
             UsageError: what is asked makes no sense.
         """
         valued = with_values(self.model, parameters, start)
-        equations, models = self._at(valued, bool(parameters))
+        equations, models = self._at(valued.model if self._keeps_start else with_values(self.model, parameters).model)
+        own = {name: valued.model.parameters[name].value for name in parameters or {}}
         asked = (columns,) if isinstance(columns, str) else tuple(columns)
         formulas = _formulas(valued.model, asked)
         reactions = any(name not in formulas for name in asked if name != OUTPUTS)
         found = run(
             equations,
             time=time,
+            parameters=own,
             start=valued.start,
             samples=samples,
             how=self.how,
@@ -91,15 +94,14 @@ class Simulator:
         )
         return found if not reactions or REACTIONS in asked else _with_columns(found, asked, formulas)
 
-    def _at(self, valued: Valued, changed: bool) -> tuple[Equations, PhaseModels]:
+    def _at(self, model: Model) -> tuple[Equations, PhaseModels]:
         """The equations, and their phases, at the values of a model."""
-        model, known = valued.model, self._known
-        starts = valued.start if has_phases(model) else None
-        key = (model.parameters, starts) if changed or starts else None
+        known, key = self._known, (model.parameters, model.coordinates, model.speeds)
         if key not in known:
-            equations = self.derive(model) if self._is_tied else self._equations
+            anew = self._is_tied or self._keeps_start
+            equations = self.derive(model) if anew else self._equations
             p = parameter_vector(model)
-            if known and not self._is_tied:
+            if known and not anew:
                 models = next(iter(known.values()))[1].at(p)
             else:
                 models = phase_models(equations, p, self.how, self.target)
@@ -116,6 +118,14 @@ class Simulator:
     def _is_tied(self) -> bool:
         """Whether what is derived depends on values."""
         return has_phases(self.model) or bool(self._equations.graph.system.ties.rows)
+
+    @cached_property
+    def _keeps_start(self) -> bool:
+        """Whether what is derived depends on where the motion starts: contacts, ties and springs that keep a length."""
+        elements = (force.element for force in self.model.forces.values())
+        if has_phases(self.model) or any(each.slack == "start" for each in elements if each is not None):
+            return True
+        return bool(rows_that_stay(self._equations.graph.system))
 
 
 def _formulas(model: Model, asked: tuple[str, ...]) -> dict[str, Expression]:

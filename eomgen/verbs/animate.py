@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import html
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
 
@@ -29,6 +29,7 @@ from eomgen.scene.virtual import VirtualDisplacement
 from eomgen.simulation.integrator import Stepping
 from eomgen.simulation.result import Trajectory
 from eomgen.symbolic.numeric.tolerances import COMPUTED
+from eomgen.verbs.outcome import with_start_told
 
 ENDINGS = (".gif", ".mp4", ".png", ".html")
 
@@ -68,7 +69,6 @@ def animate_document(
     *,
     output: str,
     time: float,
-    start: Mapping[str, float],
     showing: Showing,
     modes: int | None = None,
     virtual: str | None = None,
@@ -86,7 +86,7 @@ def animate_document(
         summary = f"{len(movies)} mode{'s' * (len(movies) > 1)}"
     else:
         times = frame_times(time, showing.fps, showing.speed)
-        run = _run(model, times, start)
+        run = _run(model, times)
         if Path(output).suffix.lower() == ".html":
             files.write(output, player(run, showing))
             return _told(model, run.summary(), len(times), output, showing, run)
@@ -138,6 +138,7 @@ def _told(model: Model, summary: str, count: int, output: str, showing: Showing,
     payload = {"name": model.name, "files": [output], "frames": count, "fps": showing.fps, "speed": showing.speed}
     told = (prose(f"{model.name}: {summary}"), prose(f"{count} frames: {output}"))
     document = plain_document(model, lambda: payload, *told, failed=failed)
+    document = document if run is None else with_start_told(document, model)
     return replace(document, interrupted=run is not None and run.status == "interrupted")
 
 
@@ -188,10 +189,10 @@ def refuse_ending(path: str) -> None:
         raise UsageError(f"no moving picture can be written as '{path}'", mend=f"endings are {', '.join(ENDINGS)}")
 
 
-def _run(model: Model, times: np.ndarray, start: Mapping[str, float]) -> Trajectory:
+def _run(model: Model, times: np.ndarray) -> Trajectory:
     equations = pipeline.derive(model)
     end = float(times[-1]) or 1.0
-    return simulated(equations, time=end, start=start, samples=FINE * max(len(times) - 1, 1) + 1, how=Stepping())
+    return simulated(equations, time=end, samples=FINE * max(len(times) - 1, 1) + 1, how=Stepping())
 
 
 def _shown(run: Trajectory, times: np.ndarray, showing: Showing) -> Movie:

@@ -43,7 +43,7 @@ def typed(model: Model, options: Mapping[str, Any]) -> tuple[Valued, dict[str, A
         pairs = [_equation(valued.model, text, OPTIONS["given"]) for text in left["given"]]
         left["given"] = tuple(equation for equation, _ in pairs)
         taken += [each for _, found in pairs for each in found]
-    return Valued(valued.model, tuple(taken), valued.start), left
+    return Valued(valued.model, tuple(taken)), left
 
 
 def split_words(given: Iterable[str]) -> list[str]:

@@ -1,11 +1,17 @@
-"""A result -> its document."""
+"""A result -> its document; what its start had to become."""
 
 from __future__ import annotations
 
 from collections.abc import Iterable
+from dataclasses import replace
 
 from eomgen.documents.document import Document
 from eomgen.documents.result import Result
+from eomgen.errors import DerivationError, ModelError
+from eomgen.mechanics.equations.system import system_of
+from eomgen.mechanics.initial_state.initial_state import start_of_motion
+from eomgen.mechanics.statics.contacts_at_start import contacts_at_start
+from eomgen.model.parts import Model
 
 
 def shown(found: Result, *, plot: str | None = None, certify: bool = True) -> Document:
@@ -13,6 +19,17 @@ def shown(found: Result, *, plot: str | None = None, certify: bool = True) -> Do
     if plot is not None:
         found.plot(plot)
     return found.document.proven(found.certify() if certify else None)
+
+
+def with_start_told(document: Document, model: Model) -> Document:
+    """The document; where its model could not start as it is written, with a note of what was changed."""
+    if not (model.coordinates and model.constraints):
+        return document
+    try:
+        words = start_of_motion(system_of(model, contacts_at_start(model).modes)).words
+    except (DerivationError, ModelError):  # told by the verb, where it needs a start
+        return document
+    return replace(document, notes=(*document.notes, f"The start was {words}.")) if words else document
 
 
 def listed(names: Iterable[str]) -> str:

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
 from dataclasses import replace
 from pathlib import Path
 from typing import Any
@@ -13,6 +12,7 @@ from eomgen.errors import UsageError
 from eomgen.model.parts import Model
 from eomgen.page.play import played, slider_ranges
 from eomgen.page.player_data import PlayerOptions
+from eomgen.verbs.outcome import with_start_told
 
 
 def play_document(
@@ -20,7 +20,6 @@ def play_document(
     *,
     output: str,
     time: float,
-    start: Mapping[str, float],
     sliders: tuple[str, ...],
     trail: str,
     forces: bool,
@@ -29,7 +28,7 @@ def play_document(
 ) -> Document:
     """The page, written, and what it holds."""
     options = PlayerOptions(slider_ranges(model, sliders), True, trail, forces, speed)
-    found = played(model, start, time, options)
+    found = played(model, time, options)
     found.write(output)
 
     def payload() -> dict[str, Any]:
@@ -40,7 +39,7 @@ def play_document(
     run = found.played.run
     document = plain_document(model, payload, Lines((output,)), failed="" if run.ok else run.message)
     document = replace(document, notes=(found.rests,) if found.rests else ())
-    return document.proven(found.certify() if certify else None)
+    return with_start_told(document, model).proven(found.certify() if certify else None)
 
 
 def refuse_other_endings(output: str) -> None:

@@ -43,7 +43,7 @@ from eomgen.symbolic.expression.expressions import parse
 from eomgen.symbolic.numeric.tolerances import ROUNDING
 from eomgen.symbolic.numeric.work import doing
 from eomgen.verbs.assignments import assignments, refuse_no_place, split_words
-from eomgen.verbs.outcome import listed
+from eomgen.verbs.outcome import listed, with_start_told
 
 NO_VALUE = "it has no single value at the start"
 OPEN = "statically indeterminate"  # how a message begins to say that a reaction has no single value
@@ -138,6 +138,7 @@ def reactions_document(
         failed=f"not answered: {listed(failed)}" if failed else broken,
         notes=() if found else ("nothing reacts: no body is held by joints or ties",),
     )
+    document = with_start_told(document, _at_rest(model, from_rest))
     return document.proven(found.certify() if certify and found else None)
 
 

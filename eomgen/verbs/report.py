@@ -42,6 +42,7 @@ from eomgen.scene.virtual import VirtualDisplacement
 from eomgen.simulation.result import Trajectory
 from eomgen.symbolic.numeric.work import doing
 from eomgen.verbs.assignments import nearest_name
+from eomgen.verbs.outcome import with_start_told
 
 SAMPLES = 401  # instants of the motion, in drawings and in the table that is offered
 MOST_RELEASED = 8  # reactions whose virtual displacement a page plays
@@ -62,7 +63,6 @@ class Subject:
     """A model, and what is asked of it; each result is found once.
 
     Args:
-        start: values that replace those of the model at the start of the motion.
         time: how long the motion is followed [s].
         certify: whether results are proven.
         origin: the name of the model's file, "" for none.
@@ -70,7 +70,6 @@ class Subject:
     """
 
     model: Model
-    start: Mapping[str, float]
     time: float
     certify: bool
     origin: str
@@ -129,7 +128,7 @@ class Subject:
         Raises:
             MissingValues: parameters without a value.
         """
-        return simulated(self.equations, time=self.time, start=self.start, samples=SAMPLES)
+        return simulated(self.equations, time=self.time, samples=SAMPLES)
 
     @cached_property
     def code(self) -> Generated:
@@ -179,7 +178,7 @@ def report(
     is_file = not isinstance(model, Model)
     source = bytes_at(str(model)).decode() if is_file else ""
     origin = Path(str(model)).name if is_file else ""
-    subject = Subject(model_at(model, parameters, start), {}, time, certify, origin, source)
+    subject = Subject(model_at(model, parameters, start), time, certify, origin, source)
     found = report_of(subject, with_, without)
     if form is not None and path is not None:
         files.write_all(Path(path).parent, written_as(found, form, Path(path).name))
@@ -203,7 +202,6 @@ def report_document(
     *,
     output: str,
     time: float,
-    start: Mapping[str, float],
     with_: Sequence[str] = (),
     without: Sequence[str] = (),
     origin: str = "",
@@ -212,7 +210,7 @@ def report_document(
 ) -> Document:
     """The report in its file, and what was written."""
     form = form_of(output)
-    found = report_of(Subject(model, start, time, certify, origin, text), with_, without)
+    found = report_of(Subject(model, time, certify, origin, text), with_, without)
     paths = files.write_all(Path(output).parent, written_as(found, form, Path(output).name))
     sections = [section.key for section in found.sections]
     remarks = {section.key: section.remark for section in found.sections if section.remark}
@@ -224,7 +222,7 @@ def report_document(
         failed=found.head.failed,
         notes=tuple(f"{key}: {remark}" for key, remark in remarks.items()),
     )
-    return document.proven(found.certificate)
+    return with_start_told(document, model).proven(found.certificate)
 
 
 def report_of(subject: Subject, with_: Sequence[str] = (), without: Sequence[str] = ()) -> Report:

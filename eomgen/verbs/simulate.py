@@ -32,7 +32,6 @@ def simulate_document(
     model: Model,
     *,
     time: float,
-    start: Mapping[str, float],
     how: Stepping,
     target: str | None,
     samples: int | None,
@@ -49,7 +48,6 @@ def simulate_document(
     run = simulated(
         equations,
         time=time,
-        start=start,
         target=target,
         samples=samples,
         how=how,

@@ -7,6 +7,7 @@ from dataclasses import replace
 from eomgen.documents.document import Document
 from eomgen.model.parts import Model
 from eomgen.questions import answers
+from eomgen.verbs.outcome import with_start_told
 
 LATE = "there was no time left"
 
@@ -14,8 +15,9 @@ LATE = "there was no time left"
 def solve_document(model: Model, *, certify: bool = True) -> Document:
     """Every entry of [outputs]."""
     found = answers.solve(model)
+    document = with_start_told(found.document, model)
     if found.stopped:
         note = f"Nothing of it is proven: {'it was interrupted' if found.stopped == 'interrupted' else LATE}."
-        document = found.document.proven(None)
+        document = document.proven(None)
         return replace(document, interrupted=found.stopped == "interrupted", notes=(*document.notes, note))
-    return found.document.proven(found.certify() if certify and found else None)
+    return document.proven(found.certify() if certify and found else None)

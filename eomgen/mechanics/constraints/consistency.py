@@ -22,6 +22,7 @@ from eomgen.mechanics.constraints.closure import closed, gaps_of, generic_state,
 from eomgen.mechanics.constraints.ties import Ties
 from eomgen.model.parts import Model
 from eomgen.symbolic.expression.derivative import depends_on, jacobian
+from eomgen.symbolic.expression.expressions import Expression
 from eomgen.symbolic.expression.graph import Node, Scalar
 from eomgen.symbolic.expression.node import State
 from eomgen.symbolic.numeric.dense import balanced
@@ -141,14 +142,28 @@ def far(ties: Ties, before: State, after: State, given: Sequence[Node]) -> bool:
 
 def is_guess(model: Model, name: str) -> bool:
     """Whether nobody gave the start of a coordinate or speed."""
+    return not _given(model, name)
+
+
+def is_typed(model: Model, name: str) -> bool:
+    """Whether a person typed the start of a coordinate or speed, in place of what the model declares."""
+    return any(value.typed for value in _given(model, name))
+
+
+def _given(model: Model, name: str) -> list[Expression]:
+    """What says where a coordinate or speed starts; of a declared speed without a start the speeds of its rates."""
     if name in model.coordinates:
         part = model.coordinates[name]
-        return part.start is None or part.near is not None
-    if name in model.speeds:
-        speed = model.speeds[name]
-        rates = [] if speed.rate is None else [x for x in speed.rate.names if x[:-1] in model.coordinates]
-        return speed.start is None and all(model.coordinates[rate[:-1]].speed is None for rate in rates)
-    return name[:-1] in model.coordinates and model.coordinates[name[:-1]].speed is None
+        found = [part.start if part.near is None else None]
+    elif name in model.speeds and model.speeds[name].start is None:
+        rate = model.speeds[name].rate
+        rates = [] if rate is None else [x[:-1] for x in rate.names if x[:-1] in model.coordinates]
+        found = [model.coordinates[q].speed for q in rates]
+    elif name in model.speeds:
+        found = [model.speeds[name].start]
+    else:
+        found = [model.coordinates[name[:-1]].speed if name[:-1] in model.coordinates else None]
+    return [value for value in found if value is not None]
 
 
 # -- positions ---------------------------------------------------------------------------------------

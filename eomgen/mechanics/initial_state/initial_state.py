@@ -18,7 +18,7 @@ from eomgen.errors import DerivationError, MissingValues, UsageError
 from eomgen.mechanics.bodies.tree import branches_of
 from eomgen.mechanics.constraints.bifurcations import Fork, fork_at, is_at_rest, leads_on, speeds_along
 from eomgen.mechanics.constraints.closure import closed, gaps_of, of_50_digits
-from eomgen.mechanics.constraints.consistency import bilateral, is_guess, nearest_places, nearest_speeds
+from eomgen.mechanics.constraints.consistency import bilateral, is_guess, is_typed, nearest_places, nearest_speeds
 from eomgen.mechanics.constraints.elimination import dependent_coordinates
 from eomgen.mechanics.constraints.ties import Row, Ties
 from eomgen.mechanics.equations.system import System
@@ -112,20 +112,21 @@ def start_of_motion(
     before = _numbers(system, values, parameters)
     sought = fixed_by_position(system)
     state = (closed(system.ties, before, sought) or before) if sought else before
-    state, open_gaps = _with_gaps_closed(system, state, start or {})
+    called = _called(system, start or {})
+    state, open_gaps = _with_gaps_closed(system, state, called)
     refuse_open_gaps(system, state)
-    state, open_rates = _with_rates_closed(system, state, start or {}, parameters)
+    state, open_rates = _with_rates_closed(system, state, called, parameters)
     refuse_open_rates(system, state)
-    state, fork, turned = _along_a_branch(system, state, start or {})
+    state, fork, turned = _along_a_branch(system, state, called)
     names = tuple(dict.fromkeys((*open_gaps, *open_rates, *turned)))
     found = {node.name: _rounded(state[node], values[node.name]) for node in (*system.symbols.q, *system.symbols.u)}
-    return Start(found, _changes(system, values, found, start or {}) if names else (), names, fork)
+    return Start(found, _changes(system, values, found, called) if names else (), names, fork)
 
 
 # -- values at which the ties hold -------------------------------------------------------------------
 
 
-def _with_gaps_closed(system: System, state: State, start: Mapping[str, float]) -> tuple[State, tuple[str, ...]]:
+def _with_gaps_closed(system: System, state: State, called: frozenset[str]) -> tuple[State, tuple[str, ...]]:
     """(the nearest state in which positions agree with the ties, the ties that did not hold)."""
     rows = [row for row in system.ties.rows if row.gap is not None and not row.identical]
     apart = _apart(((row, row.gap) for row in rows if row.gap is not None), system.symbols.q, state)
@@ -136,14 +137,12 @@ def _with_gaps_closed(system: System, state: State, start: Mapping[str, float]) 
     model, standing = system.scope.model, set(symbols_of(gaps_of(ties)))
     sought = fixed_by_position(system)
     own = [q for q in system.symbols.q if q in standing and q not in sought and not model.coordinates[q.name].driven]
-    called = [q for q in own if q.name in start]
-    silent = [q for q in own if q not in called and is_guess(model, q.name)]
-    tiers = ([*sought, *silent], [q for q in own if q not in called and q not in silent], called)
-    return nearest_places(ties, state, tiers, (*sought, *silent)) or state, opened
+    silent, given, typed = _tiers(model, own, called)
+    return nearest_places(ties, state, ([*sought, *silent], given, typed), (*sought, *silent)) or state, opened
 
 
 def _with_rates_closed(
-    system: System, state: State, start: Mapping[str, float], parameters: Mapping[str, Any] | None
+    system: System, state: State, called: frozenset[str], parameters: Mapping[str, Any] | None
 ) -> tuple[State, tuple[str, ...]]:
     """(the nearest state in which speeds agree with the ties, the ties that did not hold)."""
     apart = _apart(((row, row.velocity) for row in system.ties.closing), system.symbols.u, state)
@@ -152,7 +151,8 @@ def _with_rates_closed(
     if not opened:
         return state, ()
     M = _inertia(system, state, parameters)
-    return nearest_speeds(ties, state, _speeds(system, start), M) or state, opened
+    tiers = _tiers(system.scope.model, system.symbols.u, called)
+    return nearest_speeds(ties, state, tiers, M) or state, opened
 
 
 def _inertia(system: System, state: State, parameters: Mapping[str, Any] | None) -> np.ndarray | None:
@@ -168,9 +168,7 @@ def _inertia(system: System, state: State, parameters: Mapping[str, Any] | None)
     return M if np.all(np.isfinite(M)) else None
 
 
-def _along_a_branch(
-    system: System, state: State, start: Mapping[str, float]
-) -> tuple[State, Fork | None, tuple[str, ...]]:
+def _along_a_branch(system: System, state: State, called: frozenset[str]) -> tuple[State, Fork | None, tuple[str, ...]]:
     """(the nearest state whose speeds lead along a branch, where branches meet, the ties that they did not keep).
 
     Raises:
@@ -182,19 +180,24 @@ def _along_a_branch(
         return state, None, ()
     if fork is None or is_at_rest(system.ties, state) or leads_on(system.ties, fork, state):
         return state, fork, ()
-    found = speeds_along(system.ties, fork, state, _speeds(system, start))
+    found = speeds_along(system.ties, fork, state, _tiers(system.scope.model, system.symbols.u, called))
     if found is None:
         what = f"the start lies in {fork.words}, and no motion goes on with its speeds"
         raise DerivationError(what, f"constraints.{fork.ties[0]}", "give other speeds, or start beside that position")
     return found, fork, fork.ties
 
 
-def _speeds(system: System, start: Mapping[str, float]) -> tuple[list[Node], list[Node], list[Node]]:
-    """The speeds that nobody gave, those of the model, those that the caller gave."""
-    u, model = system.symbols.u, system.scope.model
-    called = [node for node in u if node.name in start]
-    silent = [node for node in u if node not in called and is_guess(model, node.name)]
-    return silent, [node for node in u if node not in called and node not in silent], called
+def _called(system: System, start: Mapping[str, float]) -> frozenset[str]:
+    """The coordinates and speeds whose start a person typed, or a caller gave: these are changed last."""
+    names = (node.name for node in (*system.symbols.q, *system.symbols.u))
+    return frozenset(name for name in names if name in start or is_typed(system.scope.model, name))
+
+
+def _tiers(model: Model, own: Sequence[Node], called: frozenset[str]) -> tuple[list[Node], list[Node], list[Node]]:
+    """Coordinates or speeds in the order in which they are changed: nobody's, those of the model, those called."""
+    silent = [node for node in own if node.name not in called and is_guess(model, node.name)]
+    typed = [node for node in own if node.name in called]
+    return silent, [node for node in own if node not in silent and node not in typed], typed
 
 
 def _apart(pairs: Iterable[tuple[Row, Scalar]], symbols: Sequence[Node], state: State) -> tuple[str, ...]:
@@ -209,12 +212,12 @@ def _that_stay(system: System, apart: Sequence[str]) -> Ties:
 
 
 def _changes(
-    system: System, before: Mapping[str, float], after: Mapping[str, float], start: Mapping[str, float]
+    system: System, before: Mapping[str, float], after: Mapping[str, float], called: frozenset[str]
 ) -> tuple[Change, ...]:
     """What differs, dependent coordinates left out."""
     own = [x for x in (*system.symbols.q, *system.symbols.u) if x.name not in dependent_coordinates(system.scope)]
     return tuple(
-        _change(system.scope.model, x.name, (before[x.name], after[x.name]), x.name in start)
+        _change(system.scope.model, x.name, (before[x.name], after[x.name]), x.name in called)
         for x in own
         if abs(after[x.name] - before[x.name]) > COMPUTED * (1 + abs(before[x.name]))
     )

@@ -128,10 +128,15 @@ export class Motion {
         return Array.from({ length: this.told.coordinates.length }, (_, j) => columns.includes(j) ? (sizes ? sizes[j] : 1) : 0);
     }
 
+    /** Whether a start was typed, here or for the page. */
+    _called(name, given) {
+        return name in given || this.told.typed.includes(name);
+    }
+
     /** The nearest place at which the ties hold: guesses move first, then what the model gives, at last what was called. */
     _nearest(x, given) {
         const { coordinates, sought, own, guesses } = this.told;
-        const called = own.filter(k => coordinates[k] in given);
+        const called = own.filter(k => this._called(coordinates[k], given));
         const silent = own.filter(k => !called.includes(k) && guesses.includes(coordinates[k]));
         const guessed = [...sought, ...silent];
         const free = [];
@@ -171,7 +176,7 @@ export class Motion {
         const { coordinates, speeds, guesses } = this.told, nq = coordinates.length, n = speeds.length;
         const [J, left] = this.start.speedRows(0, x);
         const M = this.of.inertia(0, x);
-        const kind = speeds.map(name => name in given ? 2 : guesses.includes(name) ? 0 : 1);
+        const kind = speeds.map(name => this._called(name, given) ? 2 : guesses.includes(name) ? 0 : 1);
         for (const tier of [2, 1, 0]) {
             const columns = speeds.map((_, j) => j).filter(j => kind[j] === tier);
             if (!columns.length) continue;

@@ -51,11 +51,13 @@ class Expression:
         text: what the user wrote (not compared: `a+b` equals `a + b`).
         code: the tree in postfix order.
         columns: of each piece of code, where it stands in the text, from 0 (-1: it stands nowhere).
+        typed: whether a person typed it in place of what a model declares.
     """
 
     text: str = field(compare=False)
     code: tuple[Instruction, ...]
     columns: tuple[int, ...] = field(compare=False, repr=False)
+    typed: bool = field(default=False, repr=False)
 
     @staticmethod
     def number(value: int | Fraction) -> Expression:
