@@ -17,6 +17,7 @@ from eomgen.cli import main
 from eomgen.errors import EomgenError
 from eomgen.questions import answers
 from eomgen.questions.run import run
+from eomgen.simulation import motion as simulation_motion
 from eomgen.simulation import pace
 from eomgen.simulation.integrator import Stepping, march
 from eomgen.symbolic.exact.expansion import expanded
@@ -274,6 +275,34 @@ def test_a_long_run_that_comes_on_is_not_stopped():
         how=Stepping(rtol=1e-6, atol=1e-6),
     )
     assert found.status == "finished" and found.steps > 2 * pace.LOOK
+
+
+PUSHED = """
+eomgen = 1
+space = "plane"
+parameters = { mu = 0.5, g = 9.81 }
+coordinates = { s = { start = 0 } }
+[bodies.block]
+shape = { kind = "particle", mass = 2 }
+joint = { kind = "placed", at = ["s", 0] }
+[constraints]
+floor = { kind = "support", point = "block.center", normal = [0, 1], friction = "mu" }
+[forces]
+weight = { kind = "gravity", acceleration = [0, "-g"] }
+push = { kind = "force", point = "block.center", force = ["11.772*sin(2*pi*t)", 0] }
+"""
+"""it slips and sticks four times a second, as long as it is followed"""
+
+
+@pytest.mark.slow
+def test_a_run_of_many_phases_goes_on_where_its_end_is_in_reach_and_keeps_what_it_has_where_it_is_not(monkeypatch):
+    """Four phases a second: 60 of them are followed; 4e6 are not begun, and those that were stay."""
+    monkeypatch.setattr(simulation_motion, "LOOK_PHASES", 20)
+    model = eomgen.loads(PUSHED)
+    assert len(eomgen.simulate(model, time=10, target="numpy").phases) > 40
+    found = eomgen.simulate(model, time=1e6, target="numpy", samples=[0.0, 1.0, 1e6])
+    assert not found.ok and "after 20 phases the contacts 'floor' still change" in found.message
+    assert "4.0e+06 more of them are left to t = 1e+06 s" in found.message and 4.5 < found.phases[-1].end < 5.5
 
 
 def test_more_samples_than_fit_are_refused():
