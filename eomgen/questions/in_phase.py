@@ -8,7 +8,7 @@ are put into the equations first, and these are solved there: so nothing is divi
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from functools import cached_property
 from typing import Any
@@ -155,20 +155,30 @@ class PhaseEquations:
         Args:
             numbers: of t, q, u and the parameters.
         """
-        inputs = {node: self.system.inputs[name] for name, node in self.system.symbols.inputs.items()}
-        (closed,) = substituted((self.eliminated(self.raw(formula)),), inputs)
-        found = number_of(closed, numbers)
-        if math.isfinite(found) and self._is_stable(found, closed, numbers):
-            return found
-        return number_of(self._solved_at(formula, exact_numbers(numbers), readable=False), numbers)
+        return self.numbers((formula,), numbers)[0]
 
-    def _is_stable(self, found: float, closed: Scalar, numbers: Mapping[Node, Scalar | float]) -> bool:
-        """Whether a form that divides by what may vanish there has the same value in floats: no pivot vanishes."""
+    def numbers(self, formulas: Sequence[Expression], numbers: Mapping[Node, Scalar | float]) -> list[float]:
+        """The numbers of several formulas at a state: what they share is found once."""
+        inputs = {node: self.system.inputs[name] for name, node in self.system.symbols.inputs.items()}
+        closed = substituted(tuple(self.eliminated(self.raw(formula)) for formula in formulas), inputs)
+        found = numbers_of(closed, numbers)
+        stable = self._are_stable(found, closed, numbers)
+        for k, formula in enumerate(formulas):
+            if not (math.isfinite(found[k]) and stable[k]):
+                found[k] = number_of(self._solved_at(formula, exact_numbers(numbers), readable=False), numbers)
+        return found
+
+    def _are_stable(
+        self, found: Sequence[float], closed: Sequence[Scalar], numbers: Mapping[Node, Scalar | float]
+    ) -> list[bool]:
+        """Whether forms that divide by what may vanish there have the same values in floats: no pivot vanishes."""
         if not self.system.ties.closing:
-            return True
+            return [True] * len(found)
         exact = exact_numbers(numbers)
         floats = dict(zip(exact, numbers_of(exact.values()), strict=True))
-        return math.isclose(found, evaluate((closed,), floats, FLOAT)[0], rel_tol=COMPUTED, abs_tol=COMPUTED)
+        rounded = evaluate(tuple(closed), floats, FLOAT)
+        pairs = zip(found, rounded, strict=True)
+        return [math.isclose(x, y, rel_tol=COMPUTED, abs_tol=COMPUTED) for x, y in pairs]
 
     def at(self, formula: Expression, state: Mapping[Node, Any]) -> Scalar:
         """The formula at a state that is given exactly, in the parameters alone.

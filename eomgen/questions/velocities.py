@@ -164,7 +164,7 @@ def _with_accelerations(phase: PhaseEquations, moving: State, numbers: Mapping[N
             state = phase.complete(moving)
             return (state if all(a in state for a in symbols.a) else {}), False
         values = {**parameters_of(phase), **numbers}
-        found = [phase.number(Expression(a.name, (("name", a.name),), (-1,)), values) for a in symbols.a]
+        found = phase.numbers([Expression(a.name, (("name", a.name),), (-1,)) for a in symbols.a], values)
     except (ModelError, DerivationError):  # no motion goes on from there, or no numbers are known
         return {}, False
     if not all(map(isfinite, found)):

@@ -37,7 +37,7 @@ def mechanism_steps(state: KinematicState) -> tuple[Step, ...]:
         steps.append(_centers(state, state.mechanism))
     steps.append(_velocities(state))
     if state.accelerated:
-        steps.append(_accelerations(replace(state, exact=state.exact and not state.rounded)))
+        steps.append(_accelerations(state))
     return tuple(steps)
 
 
@@ -195,13 +195,14 @@ def _velocities(state: KinematicState) -> Step:
 
 
 def _accelerations(state: KinematicState) -> Step:
+    shown = replace(state, exact=False) if state.rounded else state
     return Step(
         "accelerations",
         "Accelerations",
         (
-            *_spins(state, "Angular accelerations:", "epsilon", {n: f.e for n, f in state.turning.items()}),
+            *_spins(shown, "Angular accelerations:", "epsilon", {n: f.e for n, f in state.turning.items()}),
             prose("Accelerations of points, ground axes:"),
-            _vectors(state, "a", [(names, a) for names, _, _, a in state.points if a is not None]),
+            _vectors(shown, "a", [(names, a) for names, _, _, a in state.points if a is not None]),
         ),
     )
 

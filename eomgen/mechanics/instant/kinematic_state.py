@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 from functools import cached_property
+from typing import Any
 
 from eomgen.mechanics.bodies.kinematics import BodyLink
 from eomgen.mechanics.constraints.freedom import is_particle
@@ -94,16 +95,26 @@ class KinematicState:
     @cached_property
     def points(self) -> tuple[tuple[str, Vector, Vector, Vector | None], ...]:
         """(names, place, velocity, acceleration) of every named point; those of a hinge stand together."""
-        found: list[tuple[list[str], Vector, Vector, Vector | None]] = []
-        for link in self.system.motion.links:
-            for name, place in self._named(link):
-                r, v, a = self._of(link.name, place)
-                home = next((entry for entry in found if self._same(entry[1:], (r, v, a))), None)
-                if home is None:
-                    found.append(([name], r, v, a))
-                else:
-                    home[0].append(name)
-        return tuple((", ".join(names), r, v, a) for names, r, v, a in found)
+        links = self.system.motion.links
+        named = [(name, *self._of(link.name, place)) for link in links for name, place in self._named(link)]
+        found: list[tuple[list[str], int]] = []
+        values = self._values([vectors for _, *vectors in named])
+        for k, (name, *_) in enumerate(named):
+            home = next((names for names, first in found if self._same(values[first], values[k])), None)
+            if home is None:
+                found.append(([name], k))
+            else:
+                home.append(name)
+        return tuple((", ".join(names), *named[k][1:]) for names, k in found)
+
+    def _values(self, named: Sequence[Sequence[Vector | None]]) -> list[list[Any]]:
+        """What the vectors of every point are worth, those that are not known left out."""
+        flat = [[x for v in vectors if v is not None for x in v] for vectors in named]
+        values = iter(self.worth.of(x for vectors in flat for x in vectors))
+        return [[next(values) for _ in vectors] for vectors in flat]
+
+    def _same(self, one: Sequence[Any], other: Sequence[Any]) -> bool:
+        return all(abs(x - y) < self.worth.tolerance for x, y in zip(one, other, strict=True))
 
     def _named(self, link: BodyLink) -> Iterable[tuple[str, Vector]]:
         motion = self.system.motion
@@ -124,11 +135,6 @@ class KinematicState:
     def put(self, scalars: Sequence[Scalar]) -> Vector:
         """A vector at the instant, readable."""
         return self.simple.vector(substituted(tuple(scalars), self.state))
-
-    def _same(self, one: Sequence[Vector | None], other: Sequence[Vector | None]) -> bool:
-        """Whether places, velocities and accelerations (None: not known) are the same."""
-        pairs = ((u, v) for u, v in zip(one, other, strict=True) if u is not None and v is not None)
-        return self.worth.vanish(x - y for u, v in pairs for x, y in zip(u, v, strict=True))
 
     @cached_property
     def simple(self) -> Legibly:
