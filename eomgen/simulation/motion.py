@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Iterator
 from dataclasses import dataclass, replace
 
@@ -22,7 +23,8 @@ from eomgen.simulation.solvers import IMPLICIT
 from eomgen.symbolic.expression.graph import Node
 from eomgen.symbolic.numeric.tolerances import COMPUTED, FINEST_RUN
 
-MOST_PHASES = 1000
+LOOK_PHASES = 1000  # from one look at how fast they follow one another to the next
+MOST_PHASES = 100_000  # that may be left to the end: about half an hour of work
 STEPS_AGAIN = 10_000  # of the finer integration across one instant
 MOST_AT_ONCE = 20  # phases that end as soon as they begin, one after the other
 
@@ -54,9 +56,12 @@ def passed(models: PhaseModels, here: PhaseStart, plan: Plan) -> Iterator[PhaseR
     """The phases one after the other; the last is the one that ends with the time, the condition, or in failure."""
     ended: frozenset[Configuration] = frozenset()
     hasty = count = 0
+    looked = here.t
     while True:
         phase = models.of(here.configuration)
-        failure = here.failure or _endless(phase, count, hasty)
+        failure = here.failure or _hasty(phase, hasty)
+        if not failure and count and count % LOOK_PHASES == 0:
+            failure, looked = _endless(phase, count, (looked, here.t, plan.end)), here.t
         if failure:
             yield _standstill(phase, here, failure)
             return
@@ -169,12 +174,27 @@ def _finer(tolerance: float) -> float:
     return max(tolerance / 1000, FINEST_RUN)
 
 
-def _endless(phase: PhaseModel, count: int, hasty: int) -> str:
-    """Why there are too many phases; "" while there are not."""
-    names = ", ".join(f"'{contact.name}'" for contact in phase.contacts)
-    if hasty == MOST_AT_ONCE:
-        return f"the contacts {names} change without end at one instant"
-    return f"after {count} phases the contacts {names} still change" if count == MOST_PHASES else ""
+def _hasty(phase: PhaseModel, hasty: int) -> str:
+    """That phases follow one another without time going on; "" where they do not."""
+    return f"the contacts {_contacts(phase)} change without end at one instant" if hasty == MOST_AT_ONCE else ""
+
+
+def _endless(phase: PhaseModel, count: int, instants: tuple[float, float, float]) -> str:
+    """Why the end is out of reach at the pace of the last phases; "" where it is not.
+
+    Args:
+        instants: of the last look, now, and of the end [s].
+    """
+    looked, now, end = instants
+    left = LOOK_PHASES * (end - now) / (now - looked) if now > looked else math.inf
+    if left <= MOST_PHASES:
+        return ""
+    coming = f"{left:.1e} more of them are left to t = {end:.6g} s"
+    return f"after {count} phases the contacts {_contacts(phase)} still change, {coming}"
+
+
+def _contacts(phase: PhaseModel) -> str:
+    return ", ".join(f"'{contact.name}'" for contact in phase.contacts)
 
 
 def _standstill(phase: PhaseModel, here: PhaseStart, failure: str) -> PhaseRun:
