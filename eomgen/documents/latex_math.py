@@ -17,11 +17,10 @@ from eomgen.symbolic.expression.rational import Fraction
 from eomgen.symbolic.expression.splines import sampled_of
 from eomgen.symbolic.print.decimals import decimal_of
 from eomgen.symbolic.print.layout import SUMS, Factor, Product, is_base, is_part_of_turn, is_time
-from eomgen.symbolic.print.printed import summands
+from eomgen.symbolic.print.printed import TRIGONOMETRIC, is_bare_argument, summands
 
 ATOM, TALL, SUM = range(3)  # a symbol or number; what needs parentheses under an exponent; a sum or a product
-TRIGONOMETRIC = {op: rf"\{op}" for op in ("sin", "cos", "tan", "sinh", "cosh", "tanh")}
-FUNCTIONS = TRIGONOMETRIC | {
+FUNCTIONS = {op: rf"\{op}" for op in ("sin", "cos", "tan", "sinh", "cosh", "tanh")} | {
     "asin": r"\arcsin",
     "acos": r"\arccos",
     "atan": r"\arctan",
@@ -140,7 +139,7 @@ class Setter:
         base, exponent = factor
         found = self._set[base]
         if exponent != 1 and base.op in TRIGONOMETRIC:
-            name = TRIGONOMETRIC[base.op]
+            name = FUNCTIONS[base.op]
             return Set(name + f"^{{{exponent}}}" + found.tex.removeprefix(name).lstrip(), found.width + 1, TALL)
         if found.hold == SUM or (found.hold == TALL and exponent != 1):
             found = bracketed(found)
@@ -156,7 +155,7 @@ class Setter:
             return Set(tex, width_of(tex))
         arguments = [self._set[a] if type(a) is Node else _number(a) for a in node.args]
         if op == "sqrt":
-            arguments = [self._under_root(node.args[0])]
+            arguments = [self._in_one_fraction(node.args[0])]
         inside = ", ".join(a.tex for a in arguments)
         width = sum(a.width + 1 for a in arguments)
         if op in WRAPPED:
@@ -168,12 +167,12 @@ class Setter:
         if op == "pow":
             base = arguments[0] if arguments[0].hold == ATOM else bracketed(arguments[0])
             return Set(f"{base.tex}^{{{arguments[1].tex}}}", width, TALL)
-        plain = type(node.args[0]) is Node and len(arguments) == 1 and node.args[0].op in ("symbol", "pi")
-        if plain:
+        if len(arguments) == 1 and is_bare_argument(op, node.args[0]):
+            inside = self._in_one_fraction(node.args[0]).tex
             return Set(FUNCTIONS[op] + (inside if inside.startswith("\\") else f" {inside}"), width + len(op), TALL)
         return Set(rf"{FUNCTIONS[op]}\left({inside}\right)", width + len(op) + 1, TALL)
 
-    def _under_root(self, x: Scalar) -> Set:
+    def _in_one_fraction(self, x: Scalar) -> Set:
         """x, a product with a broken number as one fraction: 14 l/3."""
         if type(x) is Node and x.op == "mul" and type(x.args[0]) is Fraction and decimal_of(x.args[0]) is None:
             return self.product(self.summands(x)[0], one_fraction=True)

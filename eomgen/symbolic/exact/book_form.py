@@ -18,7 +18,7 @@ from dataclasses import dataclass, field
 from eomgen.symbolic.exact.by_parameters import by_parameters
 from eomgen.symbolic.exact.expansion import Expansion, expanded
 from eomgen.symbolic.exact.normal_form import in_whole_numbers, quotients
-from eomgen.symbolic.exact.quotient import reduced
+from eomgen.symbolic.exact.quotient import in_half_angles, reduced
 from eomgen.symbolic.exact.rational_polynomial import RationalPolynomial
 from eomgen.symbolic.exact.terms import AngleSum, Terms, TooLarge, common_number
 from eomgen.symbolic.exact.writing import Writer
@@ -29,8 +29,10 @@ from eomgen.symbolic.expression.rational import Fraction
 from eomgen.symbolic.expression.traversal import order
 from eomgen.symbolic.numeric.work import Work
 from eomgen.symbolic.print.decimals import decimal_of
-from eomgen.symbolic.print.layout import has_nested_quotient, is_base, rebuilt_as_written
+from eomgen.symbolic.print.layout import is_base, rebuilt_as_written
 from eomgen.symbolic.print.length import length_of
+from eomgen.symbolic.print.printed import has_nested_quotient
+from eomgen.symbolic.print.text import text_size, to_text
 
 MOST_FACTORED = 40  # terms of a sum that is looked through for factors
 MOST_NESTED = 12  # terms of a sum of which parts have a factor in common: a + b*(c + d)
@@ -40,6 +42,8 @@ DEEPER = 10  # marks that parentheses within parentheses must save
 INSIDE = 1  # marks that a number must save in the parentheses before which it stands: (1/3*m1 + m2)*l1^2
 MERGED = 6  # marks that one coefficient of several accelerations and rates must save
 MOST_SHARED = 4  # factors that several terms of a sum hold, of which each is tried outside of them
+LONGEST = 3000  # characters of a quotient that is written anew
+AGAIN = 3  # times that a quotient is written anew, until it stays as it is
 MOST_TRIED = 150  # sums that are formed for one scalar in search of shorter ones
 
 Base = int | tuple[str, AngleSum]  # an atom, or the sine or cosine of an angle
@@ -56,12 +60,29 @@ def book_form(x: Scalar, limit: int = Work.ENTRY, positive: Collection[Node] = (
     """
     if type(x) is not Node:
         return x
+    found = [_written(x, limit, positive)]
+    if text_size(found[0]) > LONGEST or not any(node.op == "div" for node in order((x,))):
+        return found[0]
+    texts = [to_text(found[0])]
+    for _ in range(AGAIN):  # a quotient may be parted in several ways: the shortest of those that it comes back to
+        again = _written(rebuilt_as_written(found[-1]), limit, positive)
+        text = to_text(again)
+        if text in texts:
+            cycle = list(zip(found, texts, strict=True))[texts.index(text) :]
+            return min(cycle, key=lambda each: (_length(each[0]), each[1]))[0]
+        found.append(again)
+        texts.append(text)
+    return found[-1]
+
+
+def _written(x: Scalar, limit: int, positive: Collection[Node]) -> Scalar:
+    """The shortest of its forms."""
     try:
         expansion, (terms,) = expanded((x,), limit, positive)
         writer = Writer(expansion)
         book = _Book(expansion, writer)
         divided = any(e < 0 for monomial, _ in terms for _, e in monomial)
-        forms = [_quotient(expansion, writer, book, terms)] if divided else []
+        forms = _quotients(expansion, writer, book, terms) if divided else []
         forms.append(book.sum(book.coordinates_first(_parts(writer, terms))))
         if any(expansion.atoms.is_a(atom, "sqrt") for monomial, _ in terms for atom, _ in monomial):
             forms += map(rebuilt_as_written, quotients(expansion, writer, terms))
@@ -97,8 +118,27 @@ def _of_its_parameters(expansion: Expansion, writer: Writer, book: _Book, terms:
 
 def _quotient(expansion: Expansion, writer: Writer, book: _Book, terms: Terms) -> Scalar:
     """numerator / denominator, without common factor."""
-    above, below = in_whole_numbers(writer, *reduced(expansion, terms))
-    return expansion.graph.div(book.product(_parts(writer, above)), book.product(_parts(writer, below)))
+    return _quotients(expansion, writer, book, terms)[0]
+
+
+def _quotients(expansion: Expansion, writer: Writer, book: _Book, terms: Terms) -> list[Scalar]:
+    """numerator / denominator, without common factor; the same in half angles, and in tangents of one that rests."""
+    quotient = reduced(expansion, terms)
+    halves = in_half_angles(expansion, *quotient)
+    forms = []
+    for found in (quotient, halves):
+        if found is not None:
+            above, below = (_parts(writer, part) for part in in_whole_numbers(writer, *found))
+            forms += [(above, below), *book.in_tangents(above, below)]
+    return [expansion.graph.div(book.product(above), book.product(below)) for above, below in forms]
+
+
+def _in_tangents(parts: Parts, angle: AngleSum) -> Parts:
+    """sin(x)^i*cos(x)^j as tan(x)^i, in each of the terms."""
+    as_tangent: dict[Base, Base] = {("sin", angle): ("tan", angle)}
+    return [
+        (c, tuple((as_tangent.get(base, base), e) for base, e in powers if base != ("cos", angle))) for c, powers in parts
+    ]
 
 
 def _parts(writer: Writer, terms: Terms) -> Parts:
@@ -275,9 +315,29 @@ class _Book:
             factors.append((written, n))
         return [([(number, ())], 1), *factors] if number != 1 else factors
 
+    def in_tangents(self, above: Parts, below: Parts) -> list[tuple[Parts, Parts]]:
+        """Both over cos(x)^n: a*sin(x)^2/(a*sin(x)^2 + b*cos(x)^2) is a*tan(x)^2/(a*tan(x)^2 + b)."""
+        held = [powers for _, powers in (*above, *below)]
+        if len(below) > 1:
+            for base in dict.fromkeys(base for powers in held for base, _ in powers):
+                if not isinstance(base, int) and not self._moves(base):
+                    both = (("sin", base[1]), ("cos", base[1]))
+                    if len({sum(e for b, e in powers if b in both) for powers in held}) == 1:
+                        return [(_in_tangents(above, base[1]), _in_tangents(below, base[1]))]
+        return []
+
     # -- nodes --------------------------------------------------------------------------------
 
     def _term(self, c: Number, powers: Powers) -> Scalar:
+        """c * powers; sin(a)*cos(a) as sin(2*a)/2 where that is shorter."""
+        plain = self._product_of(c, powers)
+        doubled = _doubled(c, powers)
+        if doubled is None:
+            return plain
+        double = self._product_of(*doubled)
+        return double if length_of(double) < length_of(plain) else plain
+
+    def _product_of(self, c: Number, powers: Powers) -> Scalar:
         monomial = tuple(sorted((base, e) for base, e in powers if isinstance(base, int)))
         factors = tuple((*base, e) for base, e in powers if not isinstance(base, int))
         return self.writer.term(tidy(c), monomial, factors)
@@ -309,6 +369,17 @@ class _Book:
         if isinstance(base, int):
             return base >= 0 and not graph.is_constant(nodes[base])
         return any(angle >= 0 and not graph.is_constant(nodes[angle]) for angle, _ in base[1])
+
+
+def _doubled(c: Number, powers: Powers) -> Part | None:
+    """c*sin(a)^n*cos(a)^n as c/2^n*sin(2*a)^n; None where no angle has both."""
+    exponents = dict(powers)
+    for (kind, angle), e in ((base, e) for base, e in powers if not isinstance(base, int)):
+        if kind == "sin" and e > 0 and exponents.get(("cos", angle)) == e:
+            twice: Base = ("sin", tuple((a, 2 * k) for a, k in angle))
+            rest = _times_powers(powers, ((("sin", angle), -e), (("cos", angle), -e), (twice, e)))
+            return tidy(Fraction(c) / 2**e), rest
+    return None
 
 
 def _depth(x: Scalar) -> int:

@@ -24,7 +24,8 @@ from eomgen.symbolic.expression.node import Owner
 from eomgen.symbolic.expression.spatial import Vector, vector_of
 from eomgen.symbolic.expression.traversal import order, united
 from eomgen.symbolic.numeric.work import Work
-from eomgen.symbolic.print.layout import has_nested_quotient, rebuilt_as_written
+from eomgen.symbolic.print.layout import rebuilt_as_written
+from eomgen.symbolic.print.printed import has_nested_quotient
 from eomgen.symbolic.print.text import text_size
 
 __all__ = [

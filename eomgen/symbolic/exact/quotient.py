@@ -7,7 +7,8 @@ from math import gcd
 
 from eomgen.symbolic.exact.expansion import Expansion
 from eomgen.symbolic.exact.polynomials import Polynomials
-from eomgen.symbolic.exact.terms import Key, Terms, TooLarge, common_monomial, constant
+from eomgen.symbolic.exact.terms import HALF, Key, Terms, TooLarge, common_monomial, constant
+from eomgen.symbolic.expression.exact_numbers import tidy
 
 MOST_TERMS = 40  # of a sum that is looked at for powers
 LARGEST_PRODUCT = 20_000  # terms of the numerator times terms of the denominator, for a common divisor to be sought
@@ -39,6 +40,21 @@ def fraction_of(expansion: Expansion, terms: Terms) -> tuple[Terms, Terms]:
             numerator = expansion.product(numerator, {(below, ()): 1})
             denominator = expansion.product(denominator, {(below, ()): 1})
     return numerator, denominator
+
+
+def in_half_angles(expansion: Expansion, numerator: Terms, denominator: Terms) -> tuple[Terms, Terms] | None:
+    """The quotient in sines and cosines of x/2, reduced: sin(x)/(1 + cos(x)) is sin(x/2)/cos(x/2).
+
+    None where neither of the two holds 1 + cos(x) or 1 - cos(x).
+    """
+    for part in (denominator, numerator):
+        for monomial, w in part:
+            whole = w and w[0] == "cos" and part.get((monomial, ()), 0)
+            if w and whole and abs(whole) == abs(part[monomial, w]):
+                half: Terms = {((), ("cos", tuple((angle, tidy(c * HALF)) for angle, c in w[1]))): 1}
+                times = (expansion.product(x, half) for x in (numerator, denominator))
+                return _without_common_divisor(expansion, *times)
+    return None
 
 
 def _without_common_divisor(expansion: Expansion, numerator: Terms, denominator: Terms) -> tuple[Terms, Terms]:

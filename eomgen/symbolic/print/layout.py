@@ -203,9 +203,10 @@ def factors(x: Scalar, named: Container[Node] = ()) -> Product:
     return Product(tidy(coefficient), above, tuple((base, -power) for base, power in bases if power < 0))
 
 
-def _symbols_in(base: Node) -> list[Node]:
-    """Its symbols in the order of their declaration; [] where it is long."""
+def _made_of(base: Node) -> tuple[list[Node], tuple[str, ...]]:
+    """(its symbols in the order of their declaration, its numbers and operations); nothing where it is long."""
     found: dict[int, Node] = {}
+    rest = [base.op]
     stack, seen = [base], 1
     while stack:
         for a in stack.pop().args:
@@ -214,9 +215,13 @@ def _symbols_in(base: Node) -> list[Node]:
                 stack.append(a)
                 if a.op == "symbol":
                     found[a.index] = a
+                else:
+                    rest.append(a.op)
+            else:
+                rest.append(str(a))
         if seen > SHORT_SUM:
-            return []
-    return [found[k] for k in sorted(found)]
+            return [], ()
+    return [found[k] for k in sorted(found)], (str(len(rest)), *sorted(rest))
 
 
 def rebuilt_as_written(x: Scalar) -> Scalar:
@@ -233,25 +238,6 @@ def rebuilt_as_written(x: Scalar) -> Scalar:
             below = below * base**power
         total = total + (above if type(below) is int else above / below)
     return total
-
-
-def has_nested_quotient(x: Scalar) -> bool:
-    """True where a sum in a quotient has quotients itself, (a + b/c)/d, functions not looked into."""
-    stack: list[tuple[Scalar, bool]] = [(x, False)]
-    seen = set()
-    while stack:
-        entry = stack.pop()
-        node, within = entry
-        if not isinstance(node, Node) or is_base(node) or entry in seen:
-            continue
-        seen.add(entry)
-        for product in products_of(node):
-            broken = product.coefficient.denominator > 1 and decimal_of(product.coefficient) is None
-            if within and (product.denominator or broken):
-                return True
-            sums = [base for base, _ in (*product.numerator, *product.denominator) if base.op in SUMS]
-            stack += [(base, within or bool(product.denominator)) for base in sums]
-    return False
 
 
 def is_part_of_turn(product: Product) -> bool:
@@ -278,16 +264,16 @@ def _parts(node: Node) -> tuple[tuple[Scalar, int], ...] | None:
     return None
 
 
-def _rank(factor: Factor) -> tuple[int, tuple[int, ...], str, int]:
-    """Where a factor stands: by what it is made of, and by its age only where that is long."""
+def _rank(factor: Factor) -> tuple[int, tuple[int, ...], str, tuple[str, ...], int]:
+    """Where a factor stands: by what it is made of, and by its age only where that is long or the same."""
     base = factor[0]
     if base.op == "symbol":
         kind = 5 if base.name.startswith("lam(") else 4 if base.name.endswith("'") else 6 if is_time(base) else 1
-        return kind, (base.index,), "", 0
-    symbols = _symbols_in(base)
+        return kind, (base.index,), "", (), 0
+    symbols, rest = _made_of(base)
     inside = tuple(x.index for x in symbols)
     if base.op in SUMS:
         still = symbols and all(map(base.graph.is_constant, symbols))
-        return 1 if still else 2, inside, "sum", base.index
+        return 1 if still else 2, inside, "sum", rest, base.index
     kind = 0 if base.op == "pi" or (base.op == "sqrt" and type(base.args[0]) is not Node) else 3
-    return kind, inside, base.op, base.index
+    return kind, inside, base.op, rest, base.index

@@ -15,11 +15,10 @@ from eomgen.symbolic.expression.rational import Fraction
 from eomgen.symbolic.expression.splines import sampled_of
 from eomgen.symbolic.print.decimals import decimal_of
 from eomgen.symbolic.print.layout import Factor, Product, is_base, is_part_of_turn
-from eomgen.symbolic.print.printed import summands
+from eomgen.symbolic.print.printed import TRIGONOMETRIC, is_bare_argument, summands
 from eomgen.symbolic.print.symbols import index_latex, symbol_of
 
 ATOM, TALL, SUM = range(3)  # a symbol or number; what needs parentheses under an exponent; a sum or a product
-TRIGONOMETRIC = frozenset("sin cos tan sinh cosh tanh".split())
 Marks = tuple[int, int]  # how many, and how they hang together
 
 _MULTIPLIER = re.compile(r"lam\((?P<tie>.*), (?P<row>\d+)\)")
@@ -169,7 +168,7 @@ def _base(node: Node, known: Mapping[Node, Marks]) -> Marks:
     parts = [known[a] if type(a) is Node else _number(a) for a in node.args]
     inside = sum(marks for marks, _ in parts)
     if op == "sqrt":
-        return _under_root(node.args[0], parts[0], known) + 1, TALL
+        return _in_one_fraction(node.args[0], parts[0], known) + 1, TALL
     if op in ("exp", "abs"):
         return inside + (1 if op == "exp" else 2), TALL if op == "exp" else ATOM
     if op in ("less", "less_equal"):
@@ -178,11 +177,12 @@ def _base(node: Node, known: Mapping[Node, Marks]) -> Marks:
         return inside + 1, ATOM
     if op == "pow":
         return inside + 2 * (parts[0][1] != ATOM), TALL
-    plain = len(parts) == 1 and type(node.args[0]) is Node and node.args[0].op in ("symbol", "pi")
-    return inside + (1 if plain else 2 + len(parts)), TALL
+    if len(parts) == 1 and is_bare_argument(op, node.args[0]):
+        return _in_one_fraction(node.args[0], parts[0], known) + 1, TALL
+    return inside + 2 + len(parts), TALL
 
 
-def _under_root(x: Scalar, found: Marks, known: Mapping[Node, Marks]) -> int:
+def _in_one_fraction(x: Scalar, found: Marks, known: Mapping[Node, Marks]) -> int:
     """x with its broken number and the rest as one fraction."""
     if type(x) is Node and x.op == "mul" and type(x.args[0]) is Fraction and decimal_of(x.args[0]) is None:
         return _product(summands(x)[0], known, one_fraction=True)[0]

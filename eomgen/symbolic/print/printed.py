@@ -9,18 +9,43 @@ from eomgen.symbolic.expression.exact_numbers import tidy
 from eomgen.symbolic.expression.graph import Node, Scalar
 from eomgen.symbolic.expression.rational import Fraction
 from eomgen.symbolic.print.decimals import decimal_of
-from eomgen.symbolic.print.layout import Factor, Product, plus_first, products_of
+from eomgen.symbolic.print.layout import SUMS, Factor, Product, is_base, plus_first, products_of
+
+TRIGONOMETRIC = frozenset("sin cos tan sinh cosh tanh".split())
+_OTHER = {"sin": "cos", "cos": "sin"}
 
 
 def summands(x: Scalar, named: Container[Node] = ()) -> list[Product]:
     """x as a sum of products for print, in the order of `terms`.
 
-    k*(1 - l/r) rather than -k*(l/r - 1), sqrt(14*l/3) rather than 1/3*sqrt(42*l), and k*(b - a) rather than
-    -k*(a - b) where that is all.
+    k*(1 - l/r) rather than -k*(l/r - 1), sqrt(14*l/3) rather than 1/3*sqrt(42*l), tan(x) rather than sin(x)/cos(x),
+    and k*(b - a) rather than -k*(a - b) where that is all.
     """
-    products = products_of(x, named)
+    products = [_with_tangents(p, named) for p in products_of(x, named)]
     alone = len(products) == 1
     return plus_first([_with_shorter_roots(_with_plus(p, named, alone=alone), named) for p in products])
+
+
+def _with_tangents(product: Product, named: Container[Node]) -> Product:
+    """sin(a)/cos(a) as tan(a), cos(a)^2/sin(a) as cos(a)/tan(a); sin(a)/cos(a)^2 as it is."""
+    for below, n in product.denominator:
+        if (other := _OTHER.get(below.op)) is None or below in named:
+            continue
+        for above, m in product.numerator:
+            if above.op == other and above.args[0] is below.args[0] and m >= n and above not in named:
+                tangent = (_for_print(above, above.args, "tan"), n)
+                rest = [(above, m - n)] if m > n else []
+                top, bottom = (rest, [tangent]) if other == "cos" else ([*rest, tangent], [])
+                product = Product(
+                    product.coefficient,
+                    _replaced(product.numerator, above, top),
+                    _replaced(product.denominator, below, bottom),
+                )
+    return product
+
+
+def _replaced(factors: tuple[Factor, ...], base: Node, by: list[Factor]) -> tuple[Factor, ...]:
+    return tuple(f for factor in factors for f in (by if factor[0] is base else [factor]))
 
 
 def _with_plus(product: Product, named: Container[Node], *, alone: bool) -> Product:
@@ -41,6 +66,17 @@ def _turned(factors: tuple[Factor, ...], named: Container[Node]) -> tuple[Factor
     return None
 
 
+def is_bare_argument(op: str, x: Scalar) -> bool:
+    """Whether x stands behind the function without parentheses: sin x, and of an angle cos 2 x and sin omega t."""
+    if type(x) is not Node:
+        return False
+    if is_base(x) or op not in TRIGONOMETRIC:
+        return x.op in ("symbol", "pi")
+    alone, *others = products_of(x)
+    bases = [factor for factor in (*alone.numerator, *alone.denominator)]
+    return not others and alone.coefficient > 0 and all(base.op in ("symbol", "pi") and e == 1 for base, e in bases)
+
+
 def _with_shorter_roots(product: Product, named: Container[Node]) -> Product:
     """What the number below the line and the number under a root share goes under the root.
 
@@ -58,9 +94,9 @@ def _with_shorter_roots(product: Product, named: Container[Node]) -> Product:
     return Product(c, tuple(above), product.denominator)
 
 
-def _for_print(base: Node, args: tuple[Scalar, ...]) -> Node:
-    """The operation at other arguments, as the graph would not hold it; the graph does not learn of it."""
-    return Node(base.graph, base.op, args, base.index)
+def _for_print(base: Node, args: tuple[Scalar, ...], op: str | None = None) -> Node:
+    """An operation as the graph would not hold it; the graph does not learn of it."""
+    return Node(base.graph, op or base.op, args, base.index)
 
 
 def _number_under(base: Node) -> int:
@@ -69,3 +105,22 @@ def _number_under(base: Node) -> int:
     if type(inside) is Node and inside.op == "mul" and type(inside.args[0]) is int:
         return inside.args[0]
     return 1
+
+
+def has_nested_quotient(x: Scalar) -> bool:
+    """True where a sum in a quotient has quotients itself, (a + b/c)/d, functions not looked into."""
+    stack: list[tuple[Scalar, bool]] = [(x, False)]
+    seen = set()
+    while stack:
+        entry = stack.pop()
+        node, within = entry
+        if not isinstance(node, Node) or is_base(node) or entry in seen:
+            continue
+        seen.add(entry)
+        for product in summands(node):
+            broken = product.coefficient.denominator > 1 and decimal_of(product.coefficient) is None
+            if within and (product.denominator or broken):
+                return True
+            sums = [base for base, _ in (*product.numerator, *product.denominator) if base.op in SUMS]
+            stack += [(base, within or bool(product.denominator)) for base in sums]
+    return False

@@ -12,7 +12,7 @@ from eomgen.symbolic.expression.splines import sampled_of
 from eomgen.symbolic.expression.traversal import order
 from eomgen.symbolic.print.decimals import decimal_of, number_length, number_text
 from eomgen.symbolic.print.layout import Factor, Product, is_base, is_part_of_turn, is_time
-from eomgen.symbolic.print.printed import summands
+from eomgen.symbolic.print.printed import TRIGONOMETRIC, summands
 
 ATOM, POWER, LOOSE = range(3)  # how a text hangs together: theta', x^(1/3), a*b or a + b
 Printed = dict[Node, tuple[str, int]]
@@ -116,9 +116,9 @@ def _base_text(node: Node, printed: Printed, plans: Mapping[Node, list[Product]]
         return sampled_of(node.args[1]).name, ATOM
     if node.op == "pow":
         return "^".join(_tight(a, printed) for a in node.args), POWER
-    products = plans.get(node.args[0], []) if node.op == "sqrt" else []
+    products = plans.get(node.args[0], []) if node.op == "sqrt" or node.op in TRIGONOMETRIC else []
     if len(products) == 1 and products[0].coefficient > 0:
-        return f"sqrt({_product_text(products[0], printed, one_line=True)[0]})", ATOM
+        return f"{node.op}({_product_text(products[0], printed, one_line=True)[0]})", ATOM
     inside = (printed[a][0] if type(a) is Node else number_text(a) for a in node.args)
     return f"{node.op}({', '.join(inside)})", ATOM
 
