@@ -22,11 +22,11 @@ from eomgen.documents.reaction_steps import letters_of
 from eomgen.documents.result import Result
 from eomgen.documents.setting_steps import assumption_steps
 from eomgen.errors import DerivationError, MissingValues, UsageError
-from eomgen.mechanics.balance.friction import with_rest
+from eomgen.mechanics.balance.friction import equations_of_motion, with_rest
 from eomgen.mechanics.equations.articulated import with_accelerations
 from eomgen.mechanics.equations.equations_of_motion import EquationsOfMotion
 from eomgen.mechanics.equations.matrices import coriolis_of, gravity_of, jacobian_of_point
-from eomgen.mechanics.equations.system import System
+from eomgen.mechanics.equations.system import System, system_of
 from eomgen.mechanics.equations.wellposed import refuse_massless
 from eomgen.mechanics.formulations import derived_by
 from eomgen.mechanics.initial_state.initial_state import start_state
@@ -309,9 +309,25 @@ class Equations(Result):
         return InverseDynamics(inverse_of(self.system, actuated))
 
     @cached_property
+    def in_print(self) -> EquationsOfMotion:
+        """The equations in which long rates and accelerations of what is driven stand by their names, psi' and psi''.
+
+        The same as `graph` where there are none, or where it takes their laws to see that a tie holds.
+        """
+        if not any(part.driven for part in self.model.coordinates.values()):
+            return self.graph
+        system = system_of(self.model, self.system.modes, with_laws=True)
+        alike = len(system.ties.closing) == len(self.system.ties.closing) and len(system.symbols.u) == len(self.speeds)
+        return equations_of_motion(system) if system.scope.laws and alike else self.graph
+
+    @cached_property
     def derivation(self) -> Document:
         """The derivation, step by step."""
-        return self._with_assumptions(derivation_of(self.graph, self.method))
+        return self._derivation(full=False)
+
+    def _derivation(self, *, full: bool) -> Document:
+        in_time = None if self.in_print is self.graph else self.graph
+        return self._with_assumptions(derivation_of(self.in_print, self.method, full=full, in_time=in_time))
 
     def _with_assumptions(self, derivation: Document) -> Document:
         """What had to be assumed stands first."""
@@ -322,8 +338,7 @@ class Equations(Result):
         """The document; `full`: everything is printed, however long."""
         if not full:
             return replace(self.derivation, entries=self.entries)
-        derivation = derivation_of(self.graph, self.method, full=True)
-        return replace(self._with_assumptions(derivation), entries=self.entries)
+        return replace(self._derivation(full=True), entries=self.entries)
 
     def entries(self) -> dict[str, Any]:
         """What `derive --json` carries."""

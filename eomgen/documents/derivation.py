@@ -44,7 +44,9 @@ FROM_THE_START = frozenset(("data", "freedom", "coordinates", "constraints", "al
 SHORT = 900  # characters of the derivatives of T that are printed where rates of dependent coordinates stand in them
 
 
-def derivation_of(equations: EquationsOfMotion, method: str, *, full: bool = False) -> Document:
+def derivation_of(
+    equations: EquationsOfMotion, method: str, *, full: bool = False, in_time: EquationsOfMotion | None = None
+) -> Document:
     """The derivation of the equations of motion of a system.
 
     By "lagrange" the energies are differentiated in the form in which they are printed, so that each step follows
@@ -54,6 +56,7 @@ def derivation_of(equations: EquationsOfMotion, method: str, *, full: bool = Fal
     Args:
         equations: those that a user gets; printed with named sub-expressions where the method's own are long.
         full: everything is printed, however long, the long and the repeated parts with names of their own.
+        in_time: the same with all that is driven as functions of time; None: they are so.
     """
     system = equations.system
     model = system.scope.model
@@ -64,7 +67,7 @@ def derivation_of(equations: EquationsOfMotion, method: str, *, full: bool = Fal
     last = reactions_step(equations, reader, letters, table=not known)
     if method == "kinetostatic" and not isinstance(letters, str):
         last = (*last, *along_the_motion(equations, reader, letters))
-    last = (*integral_steps(equations, reader), *last)
+    last = (*integral_steps(equations, reader, in_time), *last)
     written = Written((*setting_steps(system), *steps, *result.steps, *last), result.equations, result.definitions)
     graph, taken = equations.symbols.graph, {*system.scope.names, *(symbol.name for symbol, _ in result.definitions)}
     taken |= set() if isinstance(letters, str) else letters.names

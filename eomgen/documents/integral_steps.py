@@ -29,9 +29,16 @@ ENERGY_AND_WORK = Law("T + V - W", "T + V - W")
 JACOBI = Law("sum u_k*dT/du_k - T + V", r"\sum u_{k} \frac{\partial T}{\partial u_{k}} - T + V")
 
 
-def integral_steps(equations: EquationsOfMotion, reader: Reader) -> tuple[Step, ...]:
-    """First integrals, and laws of motion from the model's start; no step where there are none."""
-    return (*_integrals(equations, reader), *_laws(equations, reader))
+def integral_steps(
+    equations: EquationsOfMotion, reader: Reader, in_time: EquationsOfMotion | None = None
+) -> tuple[Step, ...]:
+    """First integrals, and laws of motion from the model's start; no step where there are none.
+
+    Args:
+        in_time: the same with all that is driven as functions of time; None: they are so.
+    """
+    laws = _laws(equations, reader) if in_time is None else _laws(in_time, Reader(gathers=reader.gathers))
+    return (*_integrals(equations, reader), *laws)
 
 
 def _integrals(equations: EquationsOfMotion, reader: Reader) -> tuple[Step, ...]:

@@ -192,7 +192,9 @@ def _as_given(scope: Scope, q: Node, rate: Scalar) -> list[Statement]:
         if law is not None and law.sampled is not None:
             return [prose(what, q, f" is {law.text}.")]
     motion = [] if part.motion is None else [Formula((q, scope.value(part.motion)))]
-    return [*motion, Formula((Rate(q), rate))]
+    laws = {x.name: law for x, law in scope.laws.items()}
+    second = [Formula((scope.names[name], laws[name]))] if (name := f"{q.name}''") in laws else []
+    return [*motion, Formula((Rate(q), laws.get(f"{q.name}'", rate))), *second]
 
 
 def _speeds(system: System) -> list[Meaning]:

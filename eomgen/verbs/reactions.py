@@ -39,9 +39,11 @@ from eomgen.proof.check import Certificate, Check
 from eomgen.proof.reaction_texts import reaction_numbers, reaction_texts
 from eomgen.questions import answers
 from eomgen.simulation.reaction_columns import ReactionColumns
+from eomgen.symbolic.exact.book_form import book_form
 from eomgen.symbolic.expression.expressions import parse
 from eomgen.symbolic.numeric.tolerances import ROUNDING
 from eomgen.symbolic.numeric.work import doing
+from eomgen.symbolic.print.text import to_text
 from eomgen.verbs.assignments import assignments, refuse_no_place, split_words
 from eomgen.verbs.outcome import listed, with_start_told
 
@@ -130,10 +132,13 @@ def reactions_document(
     failed = [name for name, answer in found.items() if not answer.answered and name not in open_]
     broken = why_not_at_rest(model, system)
     space = null_space(equations.graph) if open_ and equations is not None else []
+    laws = {} if equations is None else _laws_in(equations, found)
+    more = {**({"laws": laws} if laws else {}), **({"null_space": space} if space else {})}
     document = plain_document(
         model,
-        lambda: {"name": model.name, "reactions": found, **({"null_space": space} if space else {})},
+        lambda: {"name": model.name, "reactions": found, **more},
         _listing(system, asked, found, bool(space)),
+        *_law_statements(laws),
         *_open_statements(space),
         failed=f"not answered: {listed(failed)}" if failed else broken,
         notes=() if found else ("nothing reacts: no body is held by joints or ties",),
@@ -151,7 +156,7 @@ def _function(name: str) -> str:
 
 def _formulas(equations: Equations, asked: list[NamedReaction]) -> dict[str, Quantity]:
     """Every reaction as a formula, and its value at the start."""
-    found = reaction_formulas(equations.graph)
+    found = reaction_formulas(equations.in_print)
     values, missing = _at_start(equations)
     answered = {}
     for named in asked:
@@ -271,6 +276,22 @@ def _listing(system: System, asked: Iterable[NamedReaction], found: dict[str, Qu
             answer = replace(answer, message=f"{OPEN}, see below")
         rows.append(Found(named.name, answer, said(balance, named)))
     return Listing(tuple(rows))
+
+
+def _laws_in(equations: Equations, found: Mapping[str, Quantity]) -> dict[str, str]:
+    """{psi': law, psi'': law} of the names of driven rates and accelerations that stand in the formulas."""
+    texts = [answer.exact for answer in found.values() if answer.exact is not None]
+    names = {name for text in texts for kind, name in parse(text, longest=len(text)).code if kind == "name"}
+    laws = equations.in_print.system.scope.laws
+    return {x.name: to_text(book_form(law)) for x, law in laws.items() if x.name in names}
+
+
+def _law_statements(laws: Mapping[str, str]) -> Iterable[Statement]:
+    """How that moves which is driven, once."""
+    if laws:
+        yield prose("")
+        yield prose("What is driven moves as given:")
+        yield Lines(tuple(f"    {name} = {law}" for name, law in laws.items()))
 
 
 def _open_statements(space: list[dict[str, str]]) -> Iterable[Statement]:

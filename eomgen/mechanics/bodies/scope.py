@@ -7,7 +7,8 @@ speeds take the place of rates last of all (`declared_speeds`); until then their
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
+from collections.abc import Mapping
+from dataclasses import dataclass, field, replace
 from functools import cached_property
 
 from eomgen.errors import DerivationError
@@ -27,6 +28,9 @@ from eomgen.symbolic.expression.spatial import Vector, vector_of
 from eomgen.symbolic.expression.splines import Sampled
 from eomgen.symbolic.expression.symbols import Symbols
 from eomgen.symbolic.expression.traversal import order
+from eomgen.symbolic.print.length import length_of
+
+LONGEST_LAW = 3  # marks of a constant rate or acceleration that is put in where it stands: 2 n
 
 
 @dataclass(frozen=True)
@@ -40,6 +44,7 @@ class Scope:
         names: what each name of an expression stands for: parameters, unknowns, q, u, `theta'`, `theta''`, inputs,
             t, pi.
         quaternions: four coordinates each, whose squares add up to 1.
+        laws: {psi': law, psi'': law} of driven coordinates whose rates and accelerations are names, for print.
     """
 
     model: Model
@@ -48,6 +53,7 @@ class Scope:
     nu: tuple[Scalar, ...]
     names: dict[str, Scalar]
     quaternions: tuple[tuple[Node, ...], ...] = ()
+    laws: Mapping[Node, Scalar] = field(default_factory=dict)
 
     @property
     def graph(self) -> Graph:
@@ -81,8 +87,10 @@ class Scope:
 
     @cached_property
     def flow(self) -> dict[Node, Scalar]:
-        """The seeds of d/dt at a = 0: q -> q', t -> 1."""
-        return {self.symbols.t: 1, **dict(zip(self.symbols.q, self.rates, strict=True))}
+        """The seeds of d/dt at a = 0: q -> q', t -> 1, psi' -> psi'' of what has a law."""
+        derivatives = {x: tangent((law,), {self.symbols.t: 1})[0] for x, law in self.laws.items()}
+        derivatives = {x: self.names.get(f"{x.name}'", rate) for x, rate in derivatives.items()}
+        return {self.symbols.t: 1, **dict(zip(self.symbols.q, self.rates, strict=True)), **derivatives}
 
     @cached_property
     def composites(self) -> dict[str, Composite]:
@@ -118,11 +126,13 @@ class Scope:
         return tangent(outputs, flow)
 
 
-def scope_of(model: Model) -> Scope:
+def scope_of(model: Model, *, with_laws: bool = False) -> Scope:
     """The symbols of a model, its kinematic equations, and the meaning of its names.
 
     Every rate is a speed of its own here, of dependent coordinates and of those of a quaternion too.
 
+    Args:
+        with_laws: rates and accelerations of driven coordinates are names, psi' and psi'', where they are long.
     Raises:
         DerivationError: a given acceleration whose integral has no closed form.
     """
@@ -141,6 +151,7 @@ def scope_of(model: Model) -> Scope:
     names |= {name: symbol for name, symbol in zip(model.coordinates, q, strict=True)}
     N: list[tuple[Scalar, ...]] = []
     nu: list[Scalar] = []
+    laws: dict[Node, Scalar] = {}
     speed = dict(zip(free, range(len(free)), strict=True))
     for name, coordinate in model.coordinates.items():
         if name in speed:
@@ -149,13 +160,16 @@ def scope_of(model: Model) -> Scope:
             nu.append(0)
         else:
             rate = driven_rate(coordinate, names, t, f"coordinates.{name}")
-            names[name + "'"], names[name + "''"] = rate, tangent((rate,), {t: 1})[0]
+            given = {name + "'": rate, name + "''": tangent((rate,), {t: 1})[0]}
+            long = {graph.symbol(each): law for each, law in given.items() if with_laws and _is_long(law, t)}
+            laws |= long
+            names |= {**given, **{x.name: x for x in long}}
             N.append((0,) * len(free))
-            nu.append(rate)
+            nu.append(names[name + "'"])
     quaternions = tuple(tuple(graph.symbol(e) for e in each.coordinates) for each in quaternions_of(model))
     for four in quaternions:
         graph.hold_on_sphere(four)
-    return with_speeds_named(Scope(model, symbols, tuple(N), tuple(nu), names, quaternions))
+    return with_speeds_named(Scope(model, symbols, tuple(N), tuple(nu), names, quaternions, laws))
 
 
 def with_speeds_named(scope: Scope) -> Scope:
@@ -168,6 +182,13 @@ def with_speeds_named(scope: Scope) -> Scope:
     rates = scope.with_accelerations(tuple(found.values()))
     found |= {f"{name}'": rate for name, rate in zip(found, rates, strict=True)}
     return replace(scope, names={**names, **found})
+
+
+def _is_long(law: Scalar, t: Node) -> bool:
+    """Whether a given rate or acceleration reads better by a name: a function of t, or a long constant; no samples."""
+    if type(law) is not Node or law.op == "sampled":
+        return False
+    return depends_on(law, (t,)) or length_of(law) > LONGEST_LAW
 
 
 def driven_rate(coordinate: Coordinate, names: dict[str, Scalar], t: Node, where: str) -> Scalar:

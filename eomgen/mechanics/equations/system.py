@@ -68,22 +68,23 @@ class System:
         return replace(symbols, lam=lam)
 
 
-def system_of(model: Model, modes: ContactModes | None = None) -> System:
+def system_of(model: Model, modes: ContactModes | None = None, *, with_laws: bool = False) -> System:
     """Motion, loads and ties of a model, dependent coordinates eliminated.
 
     Args:
         modes: how contacts are that can end, rub or stick, by tie.
+        with_laws: for print: long rates and accelerations of driven coordinates are names (`Scope.laws`).
     Raises:
         NotYet: a kind of joint, force or constraint that this version does not derive.
         DerivationError: what the model says cannot be derived.
     """
-    free = free_system_of(model, modes)
+    free = free_system_of(model, modes, with_laws=with_laws)
     return reduced_system(free) if dependent_coordinates(free.scope) or model.speeds else free
 
 
-def free_system_of(model: Model, modes: ContactModes | None = None) -> System:
+def free_system_of(model: Model, modes: ContactModes | None = None, *, with_laws: bool = False) -> System:
     """Motion, loads and ties of a model in which dependent coordinates are as free as others."""
-    motion = motion_of(scope_of(model))
+    motion = motion_of(scope_of(model, with_laws=with_laws))
     return System(motion, loads_of(motion), ties_of(motion, modes=modes), modes or {})
 
 

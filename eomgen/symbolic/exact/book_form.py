@@ -137,7 +137,8 @@ def _in_tangents(parts: Parts, angle: AngleSum) -> Parts:
     """sin(x)^i*cos(x)^j as tan(x)^i, in each of the terms."""
     as_tangent: dict[Base, Base] = {("sin", angle): ("tan", angle)}
     return [
-        (c, tuple((as_tangent.get(base, base), e) for base, e in powers if base != ("cos", angle))) for c, powers in parts
+        (c, tuple((as_tangent.get(base, base), e) for base, e in powers if base != ("cos", angle)))
+        for c, powers in parts
     ]
 
 
@@ -221,8 +222,9 @@ class _Book:
         apart = self.added([self._with(key, part) for key, part in groups.items()])
         if not 1 < len(groups) <= len(parts) <= MOST_FACTORED:
             return apart
-        merged = self._merged(groups)
-        return merged if merged is not None and length_of(merged) + MERGED <= length_of(apart) else apart
+        forms = [form for form in (self._merged(groups), self._by_coefficients(parts)) if form is not None]
+        best = min(forms, key=length_of, default=apart)
+        return best if length_of(best) + MERGED <= length_of(apart) else apart
 
     def _merged(self, groups: Mapping[Powers, Parts]) -> Scalar | None:
         """coefficient*(a sum of what moves) for all that has the same coefficient: m*l*(cos(q)*q'' - sin(q)*q'^2)."""
@@ -238,6 +240,23 @@ class _Book:
         for (still, alike), inside in sums.items():
             number, common, left = _without_common(inside)
             factors = [*self._factors(list(alike)), *self._factors(left)]
+            terms.append(self._times(number, _times_powers(still, common), factors))
+        return self.added(terms)
+
+    def _by_coefficients(self, parts: Parts) -> Scalar | None:
+        """coefficient*(what moves), each sum of what moves once: m*b*(sin(a)*(p'' + q'') + cos(a)*(p' + q')^2)."""
+        parameters = _grouped(parts, lambda base: not self._moves(base))
+        groups = parameters if len(parameters) > 1 else _grouped(parts, lambda base: not self._is_kinetic(base))
+        if not 1 < len(groups) < len(parts):
+            return None
+        sums: dict[tuple[Powers, tuple[Part, ...]], Parts] = {}
+        for key, inside in groups.items():
+            number, common, rest = _without_common(inside)
+            sums.setdefault((common, tuple(rest)), []).append((number, key))
+        terms = []
+        for (common, moving), coefficients in sums.items():
+            number, still, rest = _without_common(coefficients)
+            factors = [*self._factors(rest), *self._factors(list(moving))]
             terms.append(self._times(number, _times_powers(still, common), factors))
         return self.added(terms)
 

@@ -16,7 +16,6 @@ from eomgen.symbolic.expression.graph import Node, Number, Scalar
 from eomgen.symbolic.expression.rational import Fraction
 from eomgen.symbolic.expression.traversal import order
 from eomgen.symbolic.numeric.evaluation import FLOAT, evaluate
-from eomgen.symbolic.print.decimals import decimal_of
 
 SUMS = frozenset(("add", "sub", "neg"))
 SHORT_SUM = 40  # nodes of a sum that is looked through for what moves

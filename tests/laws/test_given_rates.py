@@ -1,0 +1,85 @@
+"""Rates and accelerations of what is driven, as names with their laws stated once."""
+
+from __future__ import annotations
+
+import re
+
+import pytest
+
+import eomgen
+from eomgen.documents.statements import Formula
+from eomgen.documents.text import side_text
+from eomgen.proof.at_a_state import read_back
+from eomgen.symbolic.exact.equality import equal_at_random_states
+from eomgen.symbolic.print.text import to_text
+
+ARM = """
+eomgen = 1
+name = "Rod on a crank"
+space = "plane"
+[parameters]
+m1 = {{ value = 2 }}
+m2 = {{ value = 1 }}
+l = {{ value = 0.7 }}
+b = {{ value = 0.1 }}
+A = {{ value = 0.1 }}
+W = {{ value = 3 }}
+g = {{ value = 9.81 }}
+[coordinates]
+psi = {{ {law} }}
+phi = {{ start = 0.3 }}
+[bodies.crank]
+shape = {{ kind = "rod", mass = "m1", length = "l" }}
+joint = {{ kind = "revolute", angle = "psi" }}
+[bodies.rod]
+shape = {{ kind = "rod", mass = "m2", length = "b" }}
+joint = {{ kind = "revolute", on = "crank.end", angle = "phi" }}
+[forces.weight]
+kind = "gravity"
+acceleration = [0, "-g"]
+"""
+LAWS = ['motion = "A*sin(W*t)"', 'rate = "W + A*t^2"', 'acceleration = "A*exp(-W*t)", speed = "W"']
+CONSTANT = ['rate = "W"', 'motion = "W*t"']
+
+
+def arm(law: str) -> eomgen.Equations:
+    return eomgen.derive(eomgen.loads(ARM.format(law=law)))
+
+
+@pytest.mark.parametrize("law", LAWS)
+def test_equations_with_names_are_those_with_the_laws_put_in(law: str) -> None:
+    """M, c, Q at psi' = f(t), psi'' = f'(t)"""
+    equations = arm(law)
+    named, plain = equations.in_print, equations.graph
+    assert [x.name for x in named.system.scope.laws] == ["psi'", "psi''"]
+    for ours, theirs in (
+        (named.c, plain.c),
+        (named.Q, plain.Q),
+        (named.M[0], plain.M[0]),
+        (named.forcing, plain.forcing),
+    ):
+        read = [read_back(equations.system, to_text(x)) for x in ours]
+        assert equal_at_random_states(zip(read, theirs, strict=True)).equal
+
+
+@pytest.mark.parametrize("law", LAWS)
+def test_laws_stand_once_and_formulas_hold_the_names(law: str) -> None:
+    """The law is a formula of the coordinates; W stands in no reaction and no equation."""
+    equations = arm(law)
+    steps = {step.key: [s for s in step.statements if isinstance(s, Formula)] for step in equations.derivation.steps}
+    stated = [side_text(formula.sides[0]) for formula in steps["coordinates"]]
+    assert stated[-2:] == ["psi'", "psi''"]
+    printed = [side_text(side) for key in ("equations", "solved", "reactions") for f in steps[key] for side in f.sides]
+    printed += [found.exact for found in eomgen.reactions(equations.model).values()]
+    assert not any(re.search(r"\b[AW]\b|\bt\b", text) for text in printed)
+    assert any("psi''" in text for text in printed)
+    assert equations.certify().ok
+    assert eomgen.reactions(equations.model).certify().ok
+
+
+@pytest.mark.parametrize("law", CONSTANT)
+def test_a_rate_that_is_one_letter_stands_for_itself(law: str) -> None:
+    """psi' = W: W^2, as an author writes it"""
+    equations = arm(law)
+    assert equations.in_print is equations.graph
+    assert "W^2" in side_text(equations.derivation.equations[0].left)
