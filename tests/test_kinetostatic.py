@@ -251,7 +251,7 @@ def test_reactions_along_the_motion_are_those_of_the_energy_theorem():
     """bar released from the horizontal: theta'^2 = 3 g sin/l, 5/2 M g below the hinge"""
     text = rendered(equations("ch17_p3", "kinetostatic").derivation, "text")
     assert "    theta'^2 = 3*g*sin(theta)/l\n" in text
-    assert "    R_bar_x = -9/4*M*g*cos(theta)*sin(theta)\n" in text
+    assert "    R_bar_x = -9/8*M*g*sin(2*theta)\n" in text
     assert "    R_bar_y = 1/4*M*g*(1 + 9*sin(theta)^2)\n" in text
 
 
