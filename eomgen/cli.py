@@ -293,15 +293,15 @@ def linearize_command(view: str, over: str | None, **options: Any) -> int:
 @click.option("--atol", type=float, default=RUN, show_default=True, help="Absolute tolerance of the run.")
 @click.option(
     "--method",
-    default="DOP853",
+    default="auto",
     show_default=True,
     metavar="NAME",
-    help="DOP853, RK45, RK23; for stiff systems Radau, BDF, LSODA.",
+    help="auto (DOP853, and Radau where it is stiff), DOP853, RK45, RK23; for stiff systems Radau, BDF, LSODA.",
 )
 @click.option("--until", metavar="EQUATION", help='End where it first holds: "theta = pi/2", "reaction_n(A) = 0".')
 @click.option(
     "--stabilize",
-    type=click.Choice(["projection", "baumgarte", "none"]),
+    type=click.Choice(["projection", "energy", "baumgarte", "none"]),
     default="projection",
     show_default=True,
     help="What keeps ties closed.",

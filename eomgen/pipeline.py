@@ -81,7 +81,7 @@ def simulator(
     rtol: float = RUN,
     atol: float = RUN,
     target: str | None = None,
-    method: str = "DOP853",
+    method: str = "auto",
     stabilization: str = "projection",
 ) -> Simulator:
     """`simulator(time=10, parameters=None, start=None, samples=101, columns=())` -> Trajectory: derived, compiled once.
@@ -107,7 +107,7 @@ def simulate(
     atol: float = RUN,
     target: str | None = None,
     samples: int | Sequence[float] | None = None,
-    method: str = "DOP853",
+    method: str = "auto",
     stabilization: str = "projection",
     until: WrittenEquation | str | None = None,
 ) -> Trajectory:
@@ -120,8 +120,8 @@ def simulate(
         rtol, atol: tolerances of the integration; ties are kept closed to a tenth of atol.
         target: of the emitted code: "numpy", "c", or None for the fastest there is.
         samples: how many instants are given, or the instants themselves.
-        method: DOP853, RK45, RK23; Radau, BDF, LSODA for stiff systems.
-        stabilization: what keeps ties closed: "projection", "baumgarte" or "none".
+        method: "auto" is DOP853, and Radau where a motion is stiff; DOP853, RK45, RK23; Radau, BDF, LSODA.
+        stabilization: what keeps ties closed: "projection", "baumgarte" or "none"; "energy" keeps the energy too.
         until: an equation such as "theta = 90 deg" or "reaction_n(wall) = 0": the end, where it first holds.
     Raises:
         MissingValues: parameters without a value, all named.

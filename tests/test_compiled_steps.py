@@ -84,3 +84,71 @@ def test_a_run_in_c_is_that_of_scipy(name, time):
         assert phase.end == pytest.approx(expected.end, abs=1e-8)
     assert own.x == pytest.approx(other.x, abs=1e-7 * (1 + np.max(np.abs(other.x))))
     assert own.gap is None or own.gap < 1e-9
+
+
+def van_der_pol_like(stiffness: float) -> eomgen.Model:
+    """m x'' = -k x - d x' with a damper that makes it stiff, driven slowly."""
+    return eomgen.loads(f"""
+        eomgen = 1
+        space = "plane"
+        inputs.F = "sin(t)"
+        coordinates.x = 0
+        [bodies.load]
+        mass = 1
+        inertia = 1
+        joint = {{ kind = "prismatic", axis = [1, 0], displacement = "x" }}
+        [forces.push]
+        kind = "force"
+        point = "load.origin"
+        force = ["F - {stiffness}*x - {stiffness}*x'", 0]
+    """)
+
+
+@pytest.mark.parametrize("target", ["c", "numpy"])
+def test_what_is_stiff_goes_over_to_radau_by_itself(target):
+    """x'' + d x' + d x = sin(t), d = 1e5: few steps, told in the message, the end that of the linear equation."""
+    run = eomgen.simulate(van_der_pol_like(1e5), time=5, samples=51, rtol=1e-7, atol=1e-9, target=target)
+    d = 1e5
+    steady = ((d - 1) * np.sin(run.t) - d * np.cos(run.t)) / ((d - 1) ** 2 + d**2)
+    slow = -(d - np.sqrt(d * d - 4 * d)) / 2
+    begun = d / ((d - 1) ** 2 + d**2)  # x(0) = 0; of the fast part nothing is left
+    assert "Stiff from" in run.message and run.steps < 2000
+    assert run["x"][1:] == pytest.approx((steady + begun * np.exp(slow * run.t))[1:], abs=2e-9)
+
+
+def test_what_is_not_stiff_stays_with_dop853():
+    """The same steps, whether auto or not, of pendulums and of a chain that swings."""
+    for name in ("double_pendulum", "four_bar", "chain20"):
+        model = eomgen.load(MODELS / f"{name}.toml")
+        own, other = (eomgen.simulate(model, time=1, method=method, samples=11) for method in ("auto", "DOP853"))
+        assert own.message == other.message and own.x.tolist() == other.x.tolist()
+
+
+ORDERS = {"DOP853": 8, "Radau": 5}
+
+
+@pytest.mark.parametrize("target", ["c", "numpy"])
+@pytest.mark.parametrize("method", ORDERS)
+def test_the_order_of_each_method_is_measured(method, target):
+    """error ~ steps^-order, against a run of the finest tolerance; with an estimate of order q it is at least that."""
+    simulator = eomgen.simulator(MODELS / "double_pendulum.toml", rtol=1e-13, atol=1e-13)
+    exact = simulator(1.5).x[-1]
+    tolerances = [1e-5, 1e-7, 1e-9] if method == "Radau" else [1e-5, 1e-7, 1e-9, 1e-10]
+    found = []
+    for tolerance in tolerances:
+        how = {"method": method, "target": target, "rtol": tolerance, "atol": tolerance}
+        run = eomgen.simulate(MODELS / "double_pendulum.toml", time=1.5, samples=2, **how)
+        found.append((run.steps, np.max(np.abs(run.x[-1] - exact))))
+    steps, errors = np.log(np.array(found)).T
+    order = -np.polyfit(steps, errors, 1)[0]
+    assert ORDERS[method] - 1.2 < order < ORDERS[method] + 2.5
+
+
+@pytest.mark.parametrize("name", ["double_pendulum", "n_four_bar", "flyball_governor", "tumbling_body"])
+def test_radau_in_c_is_that_of_scipy(name):
+    """The same states within the tolerance, and as many steps but a few."""
+    model = eomgen.load(MODELS / f"{name}.toml")
+    how = {"time": 0.5, "samples": 11, "method": "Radau", "rtol": 1e-6, "atol": 1e-6}
+    own, other = (eomgen.simulate(model, target=target, **how) for target in ("c", "numpy"))
+    assert own.status == other.status and abs(own.steps - other.steps) <= 2 + other.steps // 50
+    assert own.x == pytest.approx(other.x, abs=2e-5 * (1 + np.max(np.abs(other.x))))

@@ -17,6 +17,12 @@
 #define DOP853_STAGES 16 /* rows of n in K: 12, the rate after the step, 3 for what is between */
 #define DOP853_DENSE 7   /* rows of n in F */
 
+/* by which rates, times h, the states of the last two stages differ: both look at the end of the step */
+#define DOP853_APART \
+    -2.2190164133999692, 0.0, 0.0, 10.53449546673725, 2.0008720582248625, \
+    22.409244755871207, -26.05736663010546, -2.9422056828755614, 9.18402130048845, -12.51272812545682, \
+    -0.44202734521173326, 0.04471061572777259
+
 struct rate {
     void (*f)(REAL t, const REAL *x, const REAL *p, const REAL *c, const REAL *inputs, REAL *dx);
     const REAL *p, *c, *inputs;

@@ -61,7 +61,7 @@ class RunProof:
         """The proof of the equations, then that of the run."""
         certificate = Certificate(()) if self.equations is None else certify(self.equations.graph)
         legs = [leg for phase in found.phases for leg in self._legs(phase, found)]
-        projected = self.how.stabilization == "projection" and self.how.every is None
+        projected = self.how.stabilization in ("projection", "energy") and self.how.every is None
         promise = motion.Promise(self.how.rtol, self.how.atol, found.steps, projected)
         certificate += motion.run_checks(legs, promise)
         columns = (

@@ -1,4 +1,4 @@
-"""A right-hand side in C -> many steps of DOP853 a call: Python is asked where a step needs a look.
+"""A right-hand side in C -> many steps of DOP853 or Radau a call: Python is asked where a step needs a look.
 
 `march.c` takes steps, keeps quaternions and ties, gives states at the instants asked for, as long as no event can lie
 in a step and no singular position near it. Of the step at which it stops nothing but the motion has been changed.
@@ -23,13 +23,18 @@ from eomgen.simulation import constraint_drift, constraint_rank, event_location
 from eomgen.simulation.constraint_drift import DriftCorrection, Rows
 from eomgen.simulation.constraint_rank import RankLookout
 from eomgen.simulation.event_location import EventSearch
-from eomgen.symbolic.numeric.tolerances import ITERATED, NEARLY_SINGULAR, ROUNDING, SOLVED
+from eomgen.simulation.slopes import ExactSlope
+from eomgen.simulation.solvers import AUTO, FORGOTTEN, HELD_SHORT, SEEN, LateSlope, stiff_words
+from eomgen.symbolic.numeric.tolerances import DIFFERENCE_STEP, ITERATED, NEARLY_SINGULAR, PIVOT, ROUNDING, SOLVED
 
 SAFETY, SMALLEST, LARGEST = 0.9, 0.2, 10.0  # factors between two step sizes, as scipy takes them
+COMPILED = (AUTO, "DOP853", "Radau")  # the methods that there are in C
 SWEEPS = 30  # of turning pairs of rows; a handful does
 MOST_AT_ONCE, FEW = 1024, 8  # steps in a call; in the first
+NEWTON_STEPS = 6  # of Radau's method, as scipy's
+EASY = HELD_SHORT / 2  # h |lambda| of implicit steps with which DOP853 would go as far
 A_CALL = 0.05  # [s] of a call: after it Python looks whether somebody has lost patience
-_GOES_ON, _LOOK, _REACHED, _TOO_SMALL = range(4)
+_GOES_ON, _LOOK, _REACHED, _TOO_SMALL, _STIFF = range(5)
 
 _CONSTANTS = {
     "MOST_SWEEPS": SWEEPS,
@@ -40,6 +45,7 @@ _CONSTANTS = {
     "PUT_BACK_STEPS": constraint_drift.STEPS,
     "PUT_BACK_FAR": constraint_drift.FAR,
     "LOST": constraint_drift.LOST,
+    "SLOW": constraint_drift.SLOW,
     "LARGEST_GROWTH": LARGEST,
     "SMALLEST_GROWTH": SMALLEST,
     "SAFETY": SAFETY,
@@ -48,6 +54,12 @@ _CONSTANTS = {
     "EDGE": event_location.EDGE,
     "TOUCHES": ITERATED,
     "STEEP": constraint_rank.STEEP,
+    "SLOPE_STEP": DIFFERENCE_STEP,
+    "REGULAR_PIVOT": PIVOT,
+    "HELD_SHORT": HELD_SHORT,
+    "EASY": EASY,
+    "FORGOTTEN": FORGOTTEN,
+    "RADAU_STEPS": NEWTON_STEPS,
 }
 
 _SIZE, _REAL, _AT = ctypes.c_size_t, ctypes.c_double, ctypes.c_void_p
@@ -66,7 +78,7 @@ def _fields(kind: Any, names: str) -> list[tuple[str, Any]]:
 
 
 class _March(ctypes.Structure):
-    """`struct march`, in its order."""
+    """`struct march` of march.c, in its order."""
 
     _fields_ = (
         ("n", _SIZE),
@@ -96,15 +108,24 @@ class _March(ctypes.Structure):
         ("slopes", _REAL * constraint_rank.REMEMBERED),
         *_fields(_SIZE, "n_slopes is_armed"),
         *_fields(_AT, "lengths sizes"),
+        *_fields(_SIZE, "is_implicit is_auto dense_of stiff_seen easy_seen most_seen implicit_steps"),
+        ("slope", _Function),
+        *_fields(_SIZE, "has_slope slope_speeds slope_rows has_slope_values is_fresh has_lu"),
+        *_fields(_REAL, "fastest h_older error_old"),
+        *_fields(_AT, "jac real both Z pivots"),
+        ("energies", _Function),
+        ("keeps_energy", _SIZE),
+        *_fields(_REAL, "energy most_kinetic"),
     )
 
 
 @functools.cache
 def _library() -> tuple[Any, Any, Any]:
     """(begin, march, dense) of march.c, compiled."""
-    defined = "\n".join(f"#define {name} {value!r}" for name, value in _CONSTANTS.items())
-    texts = [resources.files("eomgen.codegen").joinpath("dop853.c"), resources.files("eomgen.simulation") / "march.c"]
-    made = library("\n".join([defined, *(text.read_text(encoding="utf-8") for text in texts)]))
+    defined = [f"#define {name} {value!r}" for name, value in _CONSTANTS.items()]
+    here = resources.files("eomgen.simulation")
+    texts = [resources.files("eomgen.codegen") / "dop853.c", here / "march.c", here / "radau.c"]
+    made = library("\n".join([*defined, *(text.read_text(encoding="utf-8") for text in texts)]))
     begin, march, dense = (function_of(made, name) for name in ("march_begin", "march", "march_dense"))
     begin.argtypes, begin.restype = [_AT], None
     march.argtypes, march.restype = [_AT, _AT], ctypes.c_int
@@ -127,6 +148,10 @@ def _together(functions: tuple[RightHandSide, ...]) -> tuple[Callable[[np.ndarra
     return tuple(map(of, compiled))
 
 
+Watched = tuple[DriftCorrection, EventSearch | None, Any]
+"""What keeps the states where they belong; the search for events; the lookout for singular positions."""
+
+
 class Tolerances(Protocol):
     """What is read of how an integrator goes."""
 
@@ -139,17 +164,21 @@ class Tolerances(Protocol):
     @property
     def breakpoints(self) -> tuple[float, ...]: ...
 
+    @property
+    def method(self) -> str: ...
+
 
 class CompiledSteps:
-    """Steps of DOP853 in C, with the attributes of scipy's integrators; `advance` instead of `step`.
+    """Steps of DOP853 or Radau in C, with the attributes of scipy's integrators; `advance` instead of `step`.
 
     Args:
         f: the right-hand side, with its address.
         span, x0: the first and the last instant, and the state at the first.
         how: the tolerances of one step, and instants across which no step goes.
         instants: where states are wanted.
-        hold: what is done to the states after every step.
-        search, lookout: what may end the run; what of it is not in C leaves every step to Python.
+        watched: what is done to the states after every step, and what may end the run; what of it is not in C leaves
+            every step to Python.
+        slope: df/dx, asked for where steps are implicit.
     Raises:
         RunFailed, ToolMissing: as of `library`.
     """
@@ -162,13 +191,12 @@ class CompiledSteps:
         *,
         how: Tolerances,
         instants: np.ndarray | None,
-        hold: DriftCorrection,
-        search: EventSearch | None,
-        lookout: Any,
+        watched: Watched,
+        slope: LateSlope,
     ) -> None:
         self._begin, self._march, self._dense = _library()
         n = len(x0)
-        self.fun, at = f, f.address
+        self._fun, at = f, f.address
         self._kept: list[Any] = [f]
         self._x, self._x_old, self._f = np.array(x0, dtype=float), np.array(x0, dtype=float), np.zeros(n)
         self._F, self._track_t, self._track_x = np.zeros((7, n)), np.zeros(MOST_AT_ONCE), np.zeros((MOST_AT_ONCE, n))
@@ -185,7 +213,13 @@ class CompiledSteps:
         self._lookout: RankLookout | None = None
         self._few, self.status, self.t_bound = FEW, "running", span[1]
         self._most = _SIZE(0)
-        self._watch(hold, search, lookout)
+        self._watch(*watched)
+        self._slope, m.most_seen = slope, SEEN
+        self.stiff_from: float | None = None
+        m.is_auto = how.method == AUTO
+        m.pivots = self._put(np.zeros(max(3 * n, self._most_rows), dtype=np.int32))
+        if how.method == "Radau":
+            self._stiffen()
         self._begin(ctypes.byref(m))
 
     # -- what is watched --------------------------------------------------------------------------
@@ -204,6 +238,11 @@ class CompiledSteps:
                 if rows is not None:
                     functions.append((name, rows.function, projection.p))
                     setattr(m, name, _Rows(k=rows.k, n=rows.n))
+        if hold.level is not None:
+            level = hold.level
+            functions.append(("energies", level.function, level.p))
+            m.keeps_energy, m.energy, m.most_kinetic = 1, level.energy, level.most
+            m.coordinates, m.speeds = level.coordinates, level.size - level.coordinates
         if search is not None:
             self._search = search
             measured = search.events.measured
@@ -232,7 +271,9 @@ class CompiledSteps:
                 place.f = _at(found)
             else:
                 setattr(m, name, _at(found))
-        m.work = self._put(np.zeros(self._room(projection)))
+        self._work = self._room(projection)
+        self._most_rows = max(m.places.k, m.places.n, m.rates.k, m.rates.n)
+        m.work = self._put(np.zeros(self._work))
 
     def _events(self, search: EventSearch) -> None:
         m, k = self._m, len(search.signs)
@@ -257,6 +298,23 @@ class CompiledSteps:
             m.n_columns = len(measure.function.program.outputs) // m.n_rows
         self._lengths, self._sizes = np.zeros((m.n_rows, 1)), np.zeros(m.n_determinants + 1)
         m.lengths, m.sizes = self._put(self._lengths), self._put(self._sizes)
+
+    def _stiffen(self) -> None:
+        """From now on implicit steps."""
+        m, n = self._m, int(self._m.n)
+        self.stiff_from = self.t if self.stiff_from is None else self.stiff_from
+        slope = self._slope()
+        if not m.jac:
+            m.jac, m.real, m.both, m.Z = (self._put(np.zeros(k)) for k in (n * n, n * n, 4 * n * n, 7 * n))
+            if isinstance(slope, ExactSlope):
+                (made,) = _together((slope.function,))
+                found = made(slope.p)
+                self._kept.append(found)
+                m.slope, m.has_slope, m.slope_speeds, m.slope_rows = _at(found), 1, slope.n, slope.k
+                s = slope.n + slope.k
+                m.work = self._put(np.zeros(max(self._work, len(slope.function.program.outputs) + s * s)))
+                m.pivots = self._put(np.zeros(max(3 * n, s, self._most_rows), dtype=np.int32))
+        m.is_implicit, m.has_slope_values, m.error_old = 1, 0, 0.0
 
     def _room(self, projection: Any) -> int:
         """Numbers in between: what a correction of a state takes, and what tells how near a singular position is."""
@@ -283,11 +341,13 @@ class CompiledSteps:
         if spent > 0:
             self._few = max(1, min(MOST_AT_ONCE, int(taken * min(A_CALL / spent, 8.0))))
         self._heard()
+        if found == _STIFF:
+            self._stiffen()
         if found == _TOO_SMALL:
             self.status = "failed"
         elif self._m.t >= self.t_bound:
             self.status = "finished"
-        return taken, found in (_GOES_ON, _REACHED)
+        return taken, found in (_GOES_ON, _REACHED, _STIFF)
 
     def _told(self) -> None:
         """What Python knows, for C."""
@@ -317,6 +377,11 @@ class CompiledSteps:
             self._lookout.before = m.before
             self._lookout.slopes.clear()
             self._lookout.slopes.extend(m.slopes[: m.n_slopes])
+
+    @property
+    def words(self) -> str:
+        """How much of it was stiff; "" where nothing was, or all was meant to be."""
+        return stiff_words(self.stiff_from if self._m.is_auto else None, self._m.implicit_steps)
 
     @property
     def track(self) -> tuple[np.ndarray, np.ndarray]:
@@ -351,28 +416,22 @@ class CompiledSteps:
     def y(self) -> np.ndarray:
         return self._x.copy()
 
-    @y.setter
-    def y(self, x: np.ndarray) -> None:
-        self._x[:] = x
-
-    @property
-    def f(self) -> np.ndarray:
-        """The rate at t."""
-        return self._f.copy()
-
-    @f.setter
-    def f(self, dx: np.ndarray) -> None:
-        self._f[:] = dx
+    def put(self, x: np.ndarray) -> None:
+        """Go on from another state nearby; the instants up to here have been given by Python."""
+        self._x[:], self._f[:] = x, self._fun(self.t, x)
         self._m.evaluations += 1
 
     def dense_output(self) -> Any:
         """t -> x in the last step, before it was put back onto the ties."""
         self._dense(ctypes.byref(self._m))
+        implicit = bool(self._m.dense_of)
         t_old, h, x_old, F = self.t_old, self.t - self.t_old, self._x_old.copy(), self._F.copy()
 
         def between(t: Any) -> np.ndarray:
             part = np.asarray((np.asarray(t) - t_old) / h)[..., None]
             x = np.zeros_like(x_old)
+            if implicit:
+                return np.asarray((x_old + part * (F[0] + part * (F[1] + part * F[2]))).T)
             for row, factor in zip(F[::-1], (part, 1 - part) * 4, strict=False):
                 x = (x + row) * factor
             return np.asarray((x + x_old).T)

@@ -244,12 +244,46 @@ def _rounding(x: np.ndarray) -> float:
     return ROUNDING * max(1.0, float(np.abs(x).max(initial=0.0)))
 
 
+SLOW = 1e-3  # of the largest T so far: below it speeds say too little of the energy to be changed by it
+
+
+@dataclass
+class EnergyLevel:
+    """The energy that a motion began with: u <- u sqrt((E - V) / T), the least change of u that puts it back.
+
+    Args:
+        function: (t, x, p) -> (T, V).
+        p: the parameters' values.
+        coordinates, size: how many, and of (q, u).
+        energy: E [J].
+        most: the largest T so far.
+    Source: Hairer, Lubich & Wanner, Geometric Numerical Integration, 2nd ed., IV.4.
+    """
+
+    function: RightHandSide
+    p: np.ndarray
+    coordinates: int
+    size: int
+    energy: float
+    most: float = 0.0
+
+    def at(self, t: float, x: np.ndarray) -> np.ndarray:
+        """The state on the level; itself where it is slow, or has no energy left to move by."""
+        T, V = self.function(t, x[: self.size], self.p)
+        self.most = max(self.most, float(T))
+        if not (T > SLOW * self.most and self.energy > V):
+            return x
+        found = x.copy()
+        found[self.coordinates : self.size] *= math.sqrt((self.energy - V) / T)
+        return found
+
+
 LOST = 100.0  # absolute tolerances of a step by which a tie that cannot be closed may be open without a word
 
 
 @dataclass
 class DriftCorrection:
-    """Keeps the states of one run on the ties and the norms of quaternions at 1.
+    """Keeps the states of one run on the ties, the norms of quaternions at 1, and the energy where it is asked to.
 
     Args:
         spheres: the places of quaternions.
@@ -258,6 +292,7 @@ class DriftCorrection:
         every: put back at each so many steps, needed or not; None: where a tie is open by more than atol.
         steps: taken so far.
         lost: the first instant at which a tie stayed open by more than LOST tolerances, and by how much.
+        level: the energy that is kept; None where it is only watched.
     """
 
     spheres: Sequence[SpherePlaces]
@@ -266,6 +301,7 @@ class DriftCorrection:
     every: int | None = None
     steps: int = 0
     lost: tuple[float, float] | None = field(default=None)
+    level: EnergyLevel | None = None
 
     def step(self, t: float, x: np.ndarray) -> tuple[np.ndarray, bool]:
         """(the state from which the run goes on after a step, whether it was put back)."""
@@ -276,7 +312,11 @@ class DriftCorrection:
         return (x, False) if found is x else (found, True)
 
     def at(self, t: float, x: np.ndarray, *, forced: bool = False) -> np.ndarray:
-        """A state on the ties; itself where it is near enough."""
+        """A state on the ties and on the level of the energy; itself where it is near enough."""
+        found = self._on_ties(t, x, forced)
+        return found if self.level is None else self.level.at(t, found)
+
+    def _on_ties(self, t: float, x: np.ndarray, forced: bool) -> np.ndarray:
         if self.projection is None or not (forced or self.projection.is_open(t, x, self.atol)):
             return on_spheres(x, self.spheres) if self.spheres else x
         found, left = self.projection.closed(t, x, self.atol)
@@ -287,6 +327,8 @@ class DriftCorrection:
     def rows(self, t: np.ndarray, x: np.ndarray) -> np.ndarray:
         """States between steps, one a row, on the ties too."""
         found = on_spheres(x, self.spheres)
+        if self.level is not None:
+            return np.array([self.at(float(s), row) for s, row in zip(t, found, strict=True)])
         if self.projection is None or self.every is not None or not len(t):
             return np.asarray(found)
         for i in np.flatnonzero(~(np.max(self.projection.open(t, found), axis=1) <= self.atol)):

@@ -77,7 +77,7 @@ def integrate(
 
     rhs(start, x0, p, () if inputs is None else inputs(start))  # refuses what is too short or too long
     f = rhs.at(p) if inputs is None else lambda t, x: rhs(t, x, p, inputs(t))
-    flow = Flow(f, how, rhs.spheres, projection, slope)
+    flow = Flow(f, how, rhs.spheres, projection, lambda: slope)
     run = march_across(flow, (start, end), x0, nearness, instants=instants, events=events)
     E, drift = (None, None) if energy is None else _energy(run, energy, conservative)
     track = measured(run.t, run.x, run.tracks)

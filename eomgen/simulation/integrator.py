@@ -11,12 +11,12 @@ from typing import Any, Protocol
 import numpy as np
 
 from eomgen.codegen.spheres import SpherePlaces
-from eomgen.simulation.compiled_steps import CompiledSteps
-from eomgen.simulation.constraint_drift import DriftCorrection, Projection
+from eomgen.simulation.compiled_steps import COMPILED, CompiledSteps, Watched
+from eomgen.simulation.constraint_drift import DriftCorrection, EnergyLevel, Projection
 from eomgen.simulation.event_location import LOOKED_OUT, Crossing, Events, EventSearch, sharpened
 from eomgen.simulation.pace import LOOK, Pace
 from eomgen.simulation.result import RunStatus
-from eomgen.simulation.solvers import EXPLICIT, NotFinite, Slope, StateRate, put, solver_of, step
+from eomgen.simulation.solvers import AUTO, EXPLICIT, LateSlope, NotFinite, ScipySteps, StateRate
 from eomgen.symbolic.numeric.tolerances import COMPUTED, FINEST_RUN, LEAST_RTOL, RUN
 from eomgen.symbolic.numeric.work import PatienceEnded, check_patience, keep_what_there_is
 
@@ -64,9 +64,10 @@ MOST_STEPS = 10_000_000
 MOST_FINE_STEPS = 200  # from one instant to the next around an event
 SHARE = 0.1  # of the tolerances of a run: those of one step
 RATES = (10.0, 10.0)  # of Baumgarte's rows [1/s]
-STABILIZATIONS = ("projection", "baumgarte", "none")
+STABILIZATIONS = ("projection", "energy", "baumgarte", "none")
 
 Dense = Callable[[], Callable[[Any], np.ndarray]]
+Steps = CompiledSteps | ScipySteps
 
 
 @dataclass(frozen=True)
@@ -74,10 +75,11 @@ class Stepping:
     """How an integrator goes.
 
     Args:
-        method: one of METHODS.
+        method: one of METHODS; "auto" is DOP853, and Radau where a motion is stiff.
         rtol, atol: tolerances of one step.
         most_steps: after so many it gives up.
         stabilization: what keeps the ties closed, one of STABILIZATIONS: "projection" puts states back onto them,
+            "energy" also onto the energy that they began with,
             "baumgarte" lets the equations pull towards them, "none" leaves them alone.
         every: project at each so many steps; None: where a tie is open by more than atol.
         rates: alpha and beta of Baumgarte's rows [1/s].
@@ -99,10 +101,12 @@ class Stepping:
         """The tolerances of a whole run cut down to one step's: errors of many steps add up."""
         return replace(self, rtol=max(SHARE * self.rtol, LEAST_RTOL), atol=SHARE * self.atol)
 
-    def hold(self, spheres: Sequence[SpherePlaces], projection: Projection | None) -> DriftCorrection:
+    def hold(
+        self, spheres: Sequence[SpherePlaces], projection: Projection | None, level: EnergyLevel | None = None
+    ) -> DriftCorrection:
         """What keeps the states of one run where they belong; the norms of quaternions always."""
-        kept = projection if self.stabilization == "projection" else None
-        return DriftCorrection(spheres, kept, self.atol, self.every)
+        kept = projection if self.stabilization in ("projection", "energy") else None
+        return DriftCorrection(spheres, kept, self.atol, self.every, level=level)
 
 
 @dataclass(frozen=True)
@@ -211,8 +215,9 @@ def march(
     events: Events | None = None,
     spheres: Sequence[SpherePlaces] = (),
     projection: Projection | None = None,
-    slope: Slope | None = None,
+    slope: LateSlope | None = None,
     lookout: Lookout | None = None,
+    level: EnergyLevel | None = None,
 ) -> Run:
     """Step from the first instant of the span to the second, or to an event, or until it goes no further.
 
@@ -220,10 +225,11 @@ def march(
         instants: where states are wanted, in order; None: at the integrator's own steps.
         spheres: the places of quaternions in x: each is put back to norm 1 after every step.
         projection: onto the ties, which keep at the states between the steps too.
-        slope: (t, x) -> df/dx for implicit methods.
+        slope: df/dx, asked for where steps are implicit.
+        level: the energy that is kept.
     """
     start, end = span
-    hold = how.hold(spheres, projection)
+    hold = how.hold(spheres, projection, level)
     x0 = hold.at(start, x0)
     if not np.all(np.isfinite(f(start, x0))):
         return Run(np.array([start]), x0[None, :], start, x0, "not finite", _no_value(start), 0, 1)
@@ -233,10 +239,13 @@ def march(
     asked = 1 if instants is None or (instants.size and instants[0] == start) else 0
     rows = _Rows(instants, hold, [np.array([start])[:asked]], [x0[None, :][:asked]], StepStates([start], [x0]), end)
     watch = EventSearch(events, start, x0) if events is not None else None
-    if how.method == "DOP853" and getattr(f, "address", None) is not None:
-        solver: Any = CompiledSteps(f, span, x0, how=how, instants=instants, hold=hold, search=watch, lookout=lookout)
+    late = slope if slope is not None else lambda: None
+    if how.method in COMPILED and getattr(f, "address", None) is not None:
+        watched: Watched = (hold, watch, lookout)
+        solver: Steps = CompiledSteps(f, span, x0, how=how, instants=instants, watched=watched, slope=late)
     else:
-        solver = solver_of(how.method, f, span, x0, rtol=how.rtol, atol=how.atol, slope=slope)
+        tolerances = {"rtol": how.rtol, "atol": how.atol}
+        solver = ScipySteps(how.method, f, span, x0, breakpoints=how.breakpoints, slope=late, **tolerances)
     pace = Pace(f, how.method, start, end, how.most_steps)
     try:
         status, message, steps, crossing = _stepped(f, solver, rows, _Watches(watch, lookout), how, pace)
@@ -253,13 +262,13 @@ def march(
         status, message, steps, crossing = "interrupted", f"Interrupted at t = {t:.6g} s.", rows.track.steps, None
     if status != "finished":
         rows.close(t, x)
-    message = " ".join(part for part in (message or _reached(end), hold.remark) if part)
+    message = " ".join(part for part in (message or _reached(end), solver.words, hold.remark) if part)
     times, states = np.concatenate(rows.t), np.concatenate(rows.x)
     return Run(times, states, t, x, status, message, steps, solver.nfev, crossing, (rows.track,))
 
 
 def _stepped(
-    f: StateRate, solver: Any, rows: _Rows, watches: _Watches, how: Stepping, pace: Pace
+    f: StateRate, solver: Steps, rows: _Rows, watches: _Watches, how: Stepping, pace: Pace
 ) -> tuple[RunStatus, str, int, Crossing | None]:
     """(status, message, steps, the event that ended it)."""
     steps, hold = 0, rows.hold
@@ -267,9 +276,11 @@ def _stepped(
         if steps == how.most_steps:
             return "too many steps", f"Gave up after {steps} steps, at t = {solver.t:.6g} s.", steps, None
         try:
-            taken, calm = _advance(solver, rows, how, min(how.most_steps - steps, LOOK - steps % LOOK))
+            taken, calm = solver.advance(min(how.most_steps - steps, LOOK - steps % LOOK))
         except NotFinite:
             return "not finite", _no_value(solver.t), steps, None
+        if isinstance(solver, CompiledSteps):
+            rows.take(solver)
         steps += taken
         if solver.status == "failed":
             return *_failed(f, solver), steps, None
@@ -290,30 +301,15 @@ def _stepped(
         if isinstance(solver, CompiledSteps):
             solver.passed(solver.t)
         if moved:
-            put(solver, x)
+            solver.put(x)
     return "finished", "", steps, None
-
-
-def _advance(solver: Any, rows: _Rows, how: Stepping, most: int) -> tuple[int, bool]:
-    """(steps taken, at most so many; whether all is done about the last of them).
-
-    Raises:
-        NotFinite: the right-hand side or its slope has no value.
-    """
-    if isinstance(solver, CompiledSteps):
-        found = solver.advance(most)
-        rows.take(solver)
-        return found
-    with np.errstate(all="ignore"):
-        step(solver, how.breakpoints, rows.end)
-    return int(solver.status != "failed"), False
 
 
 def _exactly(
     f: StateRate, watches: _Watches, crossing: Crossing, span: tuple[float, float], x: np.ndarray, how: Stepping
 ) -> Crossing:
     """A crossing in the step over a span that began in x, by finer steps that end there."""
-    if watches.watch is None or crossing.index == LOOKED_OUT or how.method not in EXPLICIT:
+    if watches.watch is None or crossing.index == LOOKED_OUT or how.method not in (AUTO, *EXPLICIT):
         return crossing
     before, after = bisect_right(how.breakpoints, span[0]), bisect_left(how.breakpoints, crossing.t)
     near = [abs(crossing.t - t) for t in how.breakpoints[max(before - 1, 0) : after + 1]]

@@ -4,6 +4,7 @@
    a step itself where an event may lie in it, where it may come near a singular position, or where a tie does not close;
    then nothing of what is watched has been changed by that step. */
 
+#include <float.h>
 #include <math.h>
 #include <stddef.h>
 #include <string.h>
@@ -45,50 +46,78 @@ struct march {
     double near, before, slopes[4];
     size_t n_slopes, is_armed;
     double *lengths, *sizes; /* of the rows; of the determinants and of what vanishes with the rank */
+    size_t is_implicit, is_auto, dense_of; /* dense_of: whether F is that of an implicit step */
+    size_t stiff_seen, easy_seen, most_seen, implicit_steps;
+    struct rate slope;
+    size_t has_slope, slope_speeds, slope_rows, has_slope_values, is_fresh, has_lu;
+    double fastest, h_older, error_old;
+    double *jac, *real, *both, *Z; /* n n, n n, 4 n n, 7 n */
+    int *pivots;                   /* 3 n, or as many as speeds and rows */
+    struct rate energies;          /* T, V */
+    size_t keeps_energy;
+    double energy, most_kinetic;
 };
 
+static int stepped_implicitly(struct march *m);
+
 enum { PARTS = 8, LOOKS = PARTS + 3 }; /* of a step */
-enum { GOES_ON, LOOK, REACHED, TOO_SMALL };
+enum { GOES_ON, LOOK, REACHED, TOO_SMALL, STIFF };
 
 /* -- dense algebra ---------------------------------------------------------------------------------------------- */
 
-/* A X = B by elimination with pivots, X in B; whether there is one */
-static int solved(size_t n, double *A, size_t m, double *B)
+/* A = L U in its place, with pivots; whether every pivot is more than that part of the largest entry */
+static int factored(size_t n, double *A, int *pivots, double smallest)
 {
+    double largest = 0;
+    for (size_t i = 0; i < n*n; i++)
+        largest = fabs(A[i]) > largest ? fabs(A[i]) : largest;
     for (size_t j = 0; j < n; j++) {
         size_t best = j;
         for (size_t i = j + 1; i < n; i++)
             if (fabs(A[i*n + j]) > fabs(A[best*n + j]))
                 best = i;
-        if (!(fabs(A[best*n + j]) > 0))
+        if (!(fabs(A[best*n + j]) > smallest*largest))
             return 0;
-        if (best != j) {
-            for (size_t k = 0; k < n; k++) {
-                double kept = A[j*n + k];
-                A[j*n + k] = A[best*n + k], A[best*n + k] = kept;
-            }
-            for (size_t k = 0; k < m; k++) {
-                double kept = B[j*m + k];
-                B[j*m + k] = B[best*m + k], B[best*m + k] = kept;
-            }
+        pivots[j] = (int)best;
+        for (size_t k = 0; best != j && k < n; k++) {
+            double kept = A[j*n + k];
+            A[j*n + k] = A[best*n + k], A[best*n + k] = kept;
         }
         for (size_t i = j + 1; i < n; i++) {
-            double factor = A[i*n + j]/A[j*n + j];
-            if (factor == 0)
-                continue;
-            for (size_t k = j + 1; k < n; k++)
+            double factor = A[i*n + j] /= A[j*n + j];
+            for (size_t k = j + 1; factor != 0 && k < n; k++)
                 A[i*n + k] -= factor*A[j*n + k];
-            for (size_t k = 0; k < m; k++)
-                B[i*m + k] -= factor*B[j*m + k];
         }
     }
+    return 1;
+}
+
+/* A X = B, m columns, X in B */
+static void back(size_t n, const double *A, const int *pivots, size_t m, double *B)
+{
+    for (size_t j = 0; j < n; j++)
+        for (size_t k = 0; k < m; k++) {
+            double kept = B[j*m + k];
+            B[j*m + k] = B[(size_t)pivots[j]*m + k], B[(size_t)pivots[j]*m + k] = kept;
+        }
+    for (size_t j = 0; j < n; j++)
+        for (size_t i = j + 1; i < n; i++)
+            for (size_t k = 0; A[i*n + j] != 0 && k < m; k++)
+                B[i*m + k] -= A[i*n + j]*B[j*m + k];
     for (size_t i = n; i-- > 0;)
         for (size_t k = 0; k < m; k++) {
             for (size_t j = i + 1; j < n; j++)
                 B[i*m + k] -= A[i*n + j]*B[j*m + k];
             B[i*m + k] /= A[i*n + i];
         }
-    return 1;
+}
+
+static int solved(size_t n, double *A, int *pivots, size_t m, double *B)
+{
+    int regular = factored(n, A, pivots, 0);
+    if (regular)
+        back(n, A, pivots, m, B);
+    return regular;
 }
 
 static double length(size_t n, const double *row)
@@ -198,7 +227,7 @@ static int least_change(const struct march *m, const struct rows *rows, const do
             for (size_t l = 0; l < n; l++)
                 A[j*n + l] += mean*(J[i*n + j]/d[i])*(J[i*n + l]/d[i]);
     }
-    if (!solved(n, A, k, moved))
+    if (!solved(n, A, m->pivots, k, moved))
         for (size_t i = 0; i < k; i++)
             for (size_t j = 0; j < n; j++)
                 moved[j*k + i] = J[i*n + j];
@@ -215,7 +244,7 @@ static int least_change(const struct march *m, const struct rows *rows, const do
         for (size_t j = 0; j < k; j++)
             S[i*k + j] = d[i]*S[i*k + j]*d[j] + (i == j ? DAMPING : 0);
     }
-    if (!solved(k, S, 1, lam))
+    if (!solved(k, S, m->pivots, 1, lam))
         return 0;
     for (size_t j = 0; j < n; j++) {
         ds[j] = 0;
@@ -270,8 +299,7 @@ static void put_back(const struct march *m, const struct rows *rows, double t, d
 
 enum { STAYS, MOVED, STAYS_OPEN };
 
-/* a state on the ties and spheres */
-static int held(const struct march *m, double t, double *x, double allowed)
+static int on_ties(const struct march *m, double t, double *x, double allowed)
 {
     if (m->holds) {
         double rounding = rounding_of(m, x), most = allowed > rounding ? allowed : rounding;
@@ -291,9 +319,25 @@ static int held(const struct march *m, double t, double *x, double allowed)
     return m->n_spheres ? MOVED : STAYS;
 }
 
+/* a state on the ties, spheres and the level of the energy, as `DriftCorrection.at` */
+static int held(struct march *m, double t, double *x, double allowed)
+{
+    int found = on_ties(m, t, x, allowed);
+    double parts[2]; /* T, V */
+    if (!m->keeps_energy)
+        return found;
+    CALL(&m->energies, t, x, parts);
+    m->most_kinetic = parts[0] > m->most_kinetic ? parts[0] : m->most_kinetic;
+    if (!(parts[0] > SLOW*m->most_kinetic && m->energy > parts[1]))
+        return found;
+    for (size_t k = 0; k < m->speeds; k++)
+        x[m->coordinates + k] *= sqrt((m->energy - parts[1])/parts[0]);
+    return found == STAYS_OPEN ? STAYS_OPEN : MOVED;
+}
+
 /* -- one step ----------------------------------------------------------------------------------------------------- */
 
-/* a first step, as scipy's */
+/* the rate at the start and a first step, as scipy's */
 void march_begin(struct march *m)
 {
     size_t n = m->n;
@@ -311,9 +355,48 @@ void march_begin(struct march *m)
     CALL(&m->rate, m->t + h, x, f);
     EACH d2 += pow((f[k] - m->f[k])/(m->atol + fabs(m->x[k])*m->rtol), 2)/(double)n;
     d2 = sqrt(d2)/h;
-    double next = d1 <= 1e-15 && d2 <= 1e-15 ? fmax(1e-6, h*1e-3) : pow(0.01/fmax(d1, d2), 1.0/8);
+    double order = m->is_implicit ? 4 : 8;
+    double next = d1 <= 1e-15 && d2 <= 1e-15 ? fmax(1e-6, h*1e-3) : pow(0.01/fmax(d1, d2), 1/order);
     m->h = fmin(fmin(100*h, next), span);
     m->evaluations += 2;
+}
+
+/* the instant that the next step does not pass */
+static double next_stop(struct march *m)
+{
+    while (m->n_stops && m->stops[0] <= m->t + SAME_INSTANT*fmax(1, fabs(m->t)))
+        m->stops++, m->n_stops--;
+    return m->n_stops && m->stops[0] < m->end ? m->stops[0] : m->end;
+}
+
+/* h |lambda| of the eigenvalue that the last step has met: the change of the rate over that of the state, where two
+   stages look at one instant. Source: Hairer & Wanner, IV.2. */
+static double met_rate(const struct march *m)
+{
+    static const double APART[12] = {DOP853_APART};
+    size_t n = m->n;
+    double rates = 0, states = 0;
+    for (size_t k = 0; k < n; k++) {
+        double change = m->K[12*n + k] - m->K[11*n + k], moved = 0;
+        for (size_t j = 0; j < 12; j++)
+            moved += APART[j]*m->K[j*n + k];
+        rates += change*change, states += moved*moved;
+    }
+    return states > 0 ? sqrt(rates/states) : 0;
+}
+
+/* whether the way of stepping is to change */
+static int is_to_change(struct march *m)
+{
+    int held_short = m->is_implicit ? !(m->h_old*m->fastest < EASY) : met_rate(m) > HELD_SHORT;
+    if (held_short != (int)m->is_implicit)
+        m->stiff_seen++, m->easy_seen = 0;
+    else if (++m->easy_seen == FORGOTTEN)
+        m->stiff_seen = m->easy_seen = 0;
+    if (m->stiff_seen < m->most_seen)
+        return 0;
+    m->stiff_seen = m->easy_seen = 0;
+    return 1;
 }
 
 /* one step, made smaller until its error is below the tolerance */
@@ -321,11 +404,7 @@ static int stepped(struct march *m)
 {
     size_t n = m->n;
     double least = 10*fabs(nextafter(m->t, INFINITY) - m->t), size = fmax(m->h, least), growth = LARGEST_GROWTH;
-    double stop = m->end, *x = m->room, errors[2];
-    while (m->n_stops && m->stops[0] <= m->t + SAME_INSTANT*fmax(1, fabs(m->t)))
-        m->stops++, m->n_stops--;
-    if (m->n_stops && m->stops[0] < stop)
-        stop = m->stops[0];
+    double stop = next_stop(m), *x = m->room, errors[2];
     memcpy(m->K, m->f, n*sizeof *x);
     while (size >= least) {
         double t = m->t + size < stop ? m->t + size : stop, h = t - m->t;
@@ -336,7 +415,7 @@ static int stepped(struct march *m)
         double factor = error == 0 ? LARGEST_GROWTH : SAFETY*pow(error, -1.0/8);
         if (error < 1) {
             m->h = h*fmin(growth, factor);
-            m->h_old = h, m->t_old = m->t, m->t = t, m->is_dense = 0;
+            m->h_old = h, m->t_old = m->t, m->t = t, m->is_dense = m->dense_of = 0;
             memcpy(m->x_old, m->x, n*sizeof *x);
             memcpy(m->x, x, n*sizeof *x);
             memcpy(m->f, m->K + 12*n, n*sizeof *x);
@@ -358,8 +437,13 @@ void march_dense(struct march *m)
 
 static void between(struct march *m, double t, double *x)
 {
+    size_t n = m->n;
+    double part = (t - m->t_old)/(m->t - m->t_old);
     march_dense(m);
-    dop853_between(m->n, (t - m->t_old)/(m->t - m->t_old), m->x_old, m->F, x);
+    if (m->dense_of)
+        EACH x[k] = m->x_old[k] + part*(m->F[k] + part*(m->F[n + k] + part*m->F[2*n + k]));
+    else
+        dop853_between(n, part, m->x_old, m->F, x);
 }
 
 /* -- what ends a run ---------------------------------------------------------------------------------------------- */
@@ -512,7 +596,7 @@ int march(struct march *m, size_t *most)
     size_t n = m->n, allowed = *most;
     m->tracked = *most = 0;
     while (*most < allowed) {
-        if (!stepped(m))
+        if (!(m->is_implicit ? stepped_implicitly(m) : stepped(m)))
             return TOO_SMALL;
         ++*most;
         if (!is_calm(m))
@@ -537,6 +621,11 @@ int march(struct march *m, size_t *most)
         memcpy(m->track_x + m->tracked++*n, m->x, n*sizeof *m->x);
         if (m->t >= m->end)
             return REACHED;
+        if (m->is_auto && is_to_change(m)) {
+            if (!m->is_implicit)
+                return STIFF;
+            m->is_implicit = m->has_slope_values = 0, m->most_seen *= 2;
+        }
     }
     return GOES_ON;
 }

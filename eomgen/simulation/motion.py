@@ -19,7 +19,6 @@ from eomgen.simulation.phase_models import PhaseModels
 from eomgen.simulation.phase_run import PhaseCondition, PhaseRun, ended
 from eomgen.simulation.singular import ended_where_singular
 from eomgen.simulation.singular_crossing import Flow, march_across
-from eomgen.simulation.solvers import IMPLICIT
 from eomgen.symbolic.expression.graph import Node
 from eomgen.symbolic.numeric.tolerances import COMPUTED, FINEST_RUN
 
@@ -88,8 +87,8 @@ def advance(phase: PhaseModel, here: PhaseStart, plan: Plan) -> Run:
     _refuse_coarse(phase, here.t, x)
     wanted = None if plan.instants is None else np.concatenate([[here.t], plan.instants[plan.instants > here.t]])
     events = _events(phase, here.t, x, plan)
-    slope = phase.slope if plan.how.method in IMPLICIT else None
-    flow = Flow(phase.rate, plan.how, phase.functions.rhs.spheres, phase.projection, slope)
+    level = phase.level(here.t, x) if plan.how.stabilization == "energy" else None
+    flow = Flow(phase.rate, plan.how, phase.functions.rhs.spheres, phase.projection, lambda: phase.slope, level)
     run = march_across(flow, (here.t, plan.end), x, phase.nearness, instants=wanted, events=events)
     return _determined(phase, _named(phase, _at_edge(phase, run), here.t), plan.how)
 

@@ -12,7 +12,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from eomgen.simulation.solvers import IMPLICIT, StateRate
+from eomgen.simulation.solvers import EXPLICIT, StateRate
 from eomgen.symbolic.numeric.tolerances import DIFFERENCE_STEP
 
 LOOK = 10_000  # steps from one look to the next
@@ -68,7 +68,7 @@ class Pace:
 
     def _is_stiff(self, rate: complex, h: float) -> bool:
         held = HELD[0] <= h * abs(rate) <= HELD[1]
-        return self.method not in IMPLICIT and held and -rate.real > abs(rate.imag)
+        return self.method in EXPLICIT and held and -rate.real > abs(rate.imag)
 
     def _fastest(self, t: float, x: np.ndarray) -> complex:
         """The eigenvalue of df/dx of the largest size, by differences; 0 where it has no value."""

@@ -10,6 +10,7 @@ from typing import Any
 import numpy as np
 
 from eomgen.codegen.rhs import RightHandSide
+from eomgen.errors import UsageError
 from eomgen.mechanics.balance.friction import equations_of_motion
 from eomgen.mechanics.constraints.edges import edges_of
 from eomgen.mechanics.equations.equations_of_motion import EquationsOfMotion
@@ -21,13 +22,13 @@ from eomgen.mechanics.reactions.reactions import Reactions
 from eomgen.model.constraints.row import Edge
 from eomgen.model.contacts import Contact
 from eomgen.simulation.configuration import Configuration
-from eomgen.simulation.constraint_drift import Projection, projection_of
+from eomgen.simulation.constraint_drift import EnergyLevel, Projection, projection_of
 from eomgen.simulation.constraint_rank import Nearness, Undetermined, nearness_of, undetermined_of
 from eomgen.simulation.contact_events import ContactEvents, EventFunction
 from eomgen.simulation.contact_signals import ContactSignals
 from eomgen.simulation.phase_functions import PhaseFunctions
-from eomgen.simulation.slopes import slope_of
-from eomgen.simulation.solvers import Slope, StateRate
+from eomgen.simulation.slopes import ExactSlope, slope_of
+from eomgen.simulation.solvers import StateRate
 from eomgen.symbolic.expression.derivative import depends_on
 from eomgen.symbolic.numeric.tolerances import COMPUTED
 
@@ -176,6 +177,19 @@ class PhaseModel:
         """(T, V), each n [J]."""
         return self.functions.energies.many(t, self.functions.inner(x), self.p).T
 
+    def level(self, t: float, x: np.ndarray) -> EnergyLevel:
+        """The energy of a state, to be kept from there on.
+
+        Raises:
+            UsageError: energy need not stay.
+        """
+        if not self.conservative:
+            what = "energy is not kept: something drives, brakes or carries the model"
+            raise UsageError(what, mend='take stabilization "projection"')
+        places, size = len(self.coordinates), len(self.coordinates) + len(self.speeds)
+        energy = float(self.energies(np.array([t]), x[None, :]).sum())
+        return EnergyLevel(self.functions.energies, self.p, places, size, energy)
+
     @cached_property
     def projection(self) -> Projection | None:
         """Onto the ties that hold; None where none closes."""
@@ -204,7 +218,7 @@ class PhaseModel:
         return undetermined_of(self.equations, self.p, self.declared)
 
     @cached_property
-    def slope(self) -> Slope | None:
+    def slope(self) -> ExactSlope | None:
         """d(x')/dx; None where it is found by differences."""
         return None if self.loose else slope_of(self.equations, self.p, self.target)
 

@@ -18,11 +18,11 @@ from typing import Any
 import numpy as np
 
 from eomgen.codegen.spheres import SpherePlaces
-from eomgen.simulation.constraint_drift import Projection
+from eomgen.simulation.constraint_drift import EnergyLevel, Projection
 from eomgen.simulation.constraint_rank import PLACE, Nearness, RankLookout
 from eomgen.simulation.event_location import LOOKED_OUT, Crossing, Events, EventSearch
 from eomgen.simulation.integrator import Run, Stepping, march
-from eomgen.simulation.solvers import Slope, StateRate
+from eomgen.simulation.solvers import LateSlope, StateRate
 from eomgen.symbolic.numeric.tolerances import FAIR_RUN, FINEST_RUN, WIDE_STEP
 
 NEARNESS = (1e-2, 2e-3, 5e-4)  # of s, against its largest value: where the motion is carried across
@@ -56,13 +56,16 @@ class Flow:
         f: x' = f(t, x).
         how: the integration.
         projection: onto the ties.
+        slope: df/dx, asked for where steps are implicit.
+        level: the energy that is kept.
     """
 
     f: StateRate
     how: Stepping
     spheres: Sequence[SpherePlaces] = ()
     projection: Projection | None = None
-    slope: Slope | None = None
+    slope: LateSlope | None = None
+    level: EnergyLevel | None = None
 
     def march(
         self,
@@ -84,6 +87,7 @@ class Flow:
             projection=self.projection,
             slope=self.slope,
             lookout=lookout,
+            level=self.level,
         )
 
 

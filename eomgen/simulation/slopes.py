@@ -8,12 +8,13 @@ from the same matrix, nothing is inverted in symbols:
 
 from __future__ import annotations
 
+from dataclasses import dataclass
+
 import numpy as np
 
 from eomgen.codegen.program import bordered, kinematic_rates, program_of
-from eomgen.codegen.rhs import compiled
+from eomgen.codegen.rhs import RightHandSide, compiled
 from eomgen.mechanics.equations.equations_of_motion import EquationsOfMotion
-from eomgen.simulation.solvers import Slope
 from eomgen.symbolic.expression.derivative import jacobian
 from eomgen.symbolic.expression.graph import Scalar
 from eomgen.symbolic.numeric.tolerances import LEAST_CHANGE
@@ -22,7 +23,7 @@ LONG = 60_000  # operations from which on differences are cheaper than the deriv
 SHORT = 400  # operations up to which a function is not worth a compiler
 
 
-def slope_of(equations: EquationsOfMotion, p: np.ndarray, target: str | None = None) -> Slope | None:
+def slope_of(equations: EquationsOfMotion, p: np.ndarray, target: str | None = None) -> ExactSlope | None:
     """(t, x) -> d(x')/dx; None where the derivative is so long that differences are cheaper.
 
     Args:
@@ -30,7 +31,7 @@ def slope_of(equations: EquationsOfMotion, p: np.ndarray, target: str | None = N
         target: in which language a long function is run.
     """
     states = equations.symbols.q + equations.symbols.u
-    n, k, m = len(equations.M), len(equations.J), len(states)
+    n, k = len(equations.M), len(equations.J)
     parts = (
         jacobian(kinematic_rates(equations), states),
         jacobian(_residual(equations), states),
@@ -43,17 +44,32 @@ def slope_of(equations: EquationsOfMotion, p: np.ndarray, target: str | None = N
     )
     if program.count.total > LONG:
         return None
-    function = compiled(program, target if program.count.total > SHORT else "numpy")
-    ends = np.cumsum([len(equations.N) * m, (n + k) * m, n * n])
+    return ExactSlope(compiled(program, target if program.count.total > SHORT else "numpy"), p, n, k)
 
-    def slope(t: float, x: np.ndarray) -> np.ndarray:
-        rates, residual, M, J = np.split(np.asarray(function(t, x, p)), ends)
+
+@dataclass(frozen=True)
+class ExactSlope:
+    """(t, x) -> d(x')/dx.
+
+    Args:
+        function: the derivatives of q' and of M a - J^T lam - forcing, J a + gamma, at fixed a and lam; M, J.
+        p: the parameters' values.
+        n, k: speeds and rows of ties.
+    """
+
+    function: RightHandSide
+    p: np.ndarray
+    n: int
+    k: int
+
+    def __call__(self, t: float, x: np.ndarray) -> np.ndarray:
+        n, k, m = self.n, self.k, len(x)
+        ends = np.cumsum([(m - n) * m, (n + k) * m, n * n])
+        rates, residual, M, J = np.split(np.asarray(self.function(t, x, self.p)), ends)
         M, J = M.reshape(n, n), J.reshape(k, n)
         matrix = np.block([[M, -J.T], [J, np.zeros((k, k))]])
         solved = np.linalg.lstsq(matrix, -residual.reshape(n + k, m), rcond=LEAST_CHANGE)[0]
         return np.vstack([rates.reshape(-1, m), solved[:n]])
-
-    return slope
 
 
 def _residual(equations: EquationsOfMotion) -> tuple[Scalar, ...]:

@@ -7,6 +7,7 @@ from __future__ import annotations
 
 from bisect import bisect_right
 from collections.abc import Callable, Sequence
+from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
@@ -48,12 +49,37 @@ def step(solver: Any, breakpoints: Sequence[float], end: float) -> None:
         solver.status = "running"
 
 
+AUTO = "auto"  # DOP853, and Radau where stability alone holds its steps short
 EXPLICIT = ("DOP853", "RK45", "RK23")
 IMPLICIT = ("Radau", "BDF", "LSODA")
-METHODS = EXPLICIT + IMPLICIT
+METHODS = (AUTO, *EXPLICIT, *IMPLICIT)
+
+HELD_SHORT = 6.1  # h |lambda|: at the edge of the stability of DOP853 (Hairer & Wanner, IV.2)
+SEEN, FORGOTTEN = 15, 6  # steps that are held short until the method changes; others between them until it begins anew
 
 StateRate = Callable[[float, np.ndarray], np.ndarray]
 Slope = Callable[[float, np.ndarray], np.ndarray]
+LateSlope = Callable[[], Slope | None]
+"""A slope that is made where it is needed."""
+
+
+@dataclass
+class StiffnessWatch:
+    """Whether stability alone holds the steps of scipy's DOP853 short."""
+
+    seen: int = 0
+    easy: int = 0
+
+    def step(self, solver: Any) -> bool:
+        """After a step: whether it is time for an implicit method."""
+        moved = float(np.linalg.norm((solver.B - solver.A[-1]) @ solver.K[:12]))  # two stages look at one instant
+        rate = float(np.linalg.norm(solver.K[12] - solver.K[11])) / moved if moved > 0 else 0.0
+        if rate > HELD_SHORT:
+            self.seen, self.easy = self.seen + 1, 0
+        else:
+            self.easy += 1
+            self.seen = 0 if self.easy >= FORGOTTEN else self.seen
+        return self.seen >= SEEN
 
 
 class NotFinite(ArithmeticError):
@@ -77,6 +103,8 @@ def solver_of(
         slope: (t, x) -> df/dx, for the implicit methods; None: by differences.
     """
     import scipy.integrate
+
+    method = EXPLICIT[0] if method == AUTO else method
 
     def finite(t: float, x: np.ndarray) -> np.ndarray:
         dx = f(t, x)
@@ -104,3 +132,89 @@ def put(solver: Any, x: np.ndarray) -> None:
         solver._lsoda_solver._integrator.rwork[20 : 20 + len(x)] = x
     else:  # BDF
         solver.D[0] = x
+
+
+class ScipySteps:
+    """One of scipy's integrators, one step a call; "auto" goes over to Radau where DOP853 is held short.
+
+    Args:
+        method: one of METHODS.
+        span, x0: the first and the last instant, and the state at the first.
+        rtol, atol: of one step.
+        breakpoints: instants across which no step goes.
+        slope: df/dx, asked for where steps are implicit.
+    """
+
+    def __init__(
+        self,
+        method: str,
+        f: StateRate,
+        span: tuple[float, float],
+        x0: np.ndarray,
+        *,
+        rtol: float,
+        atol: float,
+        breakpoints: Sequence[float],
+        slope: LateSlope,
+    ) -> None:
+        self._f, self._end, self._breakpoints, self._slope = f, span[1], breakpoints, slope
+        self._tolerances = {"rtol": rtol, "atol": atol}
+        self._solver = self._begun(method, span[0], x0)
+        self._stiffness = StiffnessWatch() if method == AUTO else None
+        self._before, self._implicit_steps = 0, 0
+        self.stiff_from: float | None = None
+
+    def _begun(self, method: str, t: float, x: np.ndarray) -> Any:
+        slope = self._slope() if method in IMPLICIT else None
+        return solver_of(method, self._f, (t, self._end), x, slope=slope, **self._tolerances)
+
+    def advance(self, _: int) -> tuple[int, bool]:
+        """(1, whether nothing is left to be done about it), or no step where it failed.
+
+        Raises:
+            NotFinite: the right-hand side or its slope has no value.
+        """
+        if self._stiffness is not None and self._solver.t_old is not None and self._stiffness.step(self._solver):
+            self._stiffness, self.stiff_from, self._before = None, self.t, self._solver.nfev
+            self._solver = self._begun("Radau", self.t, self.y)
+        with np.errstate(all="ignore"):
+            step(self._solver, self._breakpoints, self._end)
+        self._implicit_steps += self.stiff_from is not None
+        return int(self.status != "failed"), False
+
+    @property
+    def status(self) -> str:
+        return str(self._solver.status)
+
+    @property
+    def t(self) -> float:
+        return float(self._solver.t)
+
+    @property
+    def t_old(self) -> float:
+        return float(self._solver.t_old)
+
+    @property
+    def y(self) -> np.ndarray:
+        return np.asarray(self._solver.y)
+
+    @property
+    def nfev(self) -> int:
+        return int(self._before + self._solver.nfev)
+
+    @property
+    def words(self) -> str:
+        return stiff_words(self.stiff_from, self._implicit_steps)
+
+    def dense_output(self) -> Any:
+        """t -> x in the last step."""
+        return self._solver.dense_output()
+
+    def put(self, x: np.ndarray) -> None:
+        """Go on from another state nearby."""
+        put(self._solver, x)
+
+
+def stiff_words(since: float | None, steps: int) -> str:
+    """How much of a run was stiff; "" where nothing was."""
+    return "" if since is None else f"Stiff from t = {since:.3g} s on: {steps} steps by Radau's method."
