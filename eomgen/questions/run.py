@@ -22,6 +22,7 @@ from eomgen.proof.contact_phases import bodies_stand_as_told, changes_follow_imp
 from eomgen.proof.run_outputs import output_columns_hold
 from eomgen.proof.run_reactions import reaction_columns_hold
 from eomgen.questions.of_a_run import WholeRun
+from eomgen.simulation.accuracy import Accuracy, accuracy_of, finer
 from eomgen.simulation.integrate import SAMPLES, instants_of, refuse_bad_run
 from eomgen.simulation.integrator import Run, Stepping
 from eomgen.simulation.joined import joined, thinned, with_outputs, with_reactions
@@ -147,12 +148,29 @@ def run(
     words = until.text if isinstance(until, WrittenEquation) else until
     found = _told(joined(models, runs), words)
     found = with_reactions(found, runs) if reactions else found
+    again = replace(how, rtol=finer(how.rtol), atol=finer(how.atol))
+
+    def estimated(found: Trajectory) -> Accuracy | None:
+        other = run(
+            equations,
+            time=time,
+            start=start,
+            samples=samples,
+            how=again,
+            until=until,
+            models=models,
+            reactions=False,
+            outputs={},
+        )
+        return accuracy_of(found, other, min(1.0, how.rtol / again.rtol))
+
     found = with_outputs(found, runs, formulas_of(model) if outputs is None else outputs)
     whole = WholeRun(model, runs, plan, parameters or {})
     quantities = whole.outputs() if outputs is None else {}
     assembled = "" if here.begun is None else here.begun.words
+    proof = RunProof(equations, models.p, how, models, whole)
     found = replace(found, assembled=assembled, whole=whole.value, quantities=quantities)
-    return thinned(replace(found, proof=RunProof(equations, models.p, how, models, whole)), samples)
+    return thinned(replace(found, proof=proof, estimate=estimated), samples)
 
 
 def phase_models(equations: Equations, p: np.ndarray, how: Stepping, target: str | None) -> PhaseModels:

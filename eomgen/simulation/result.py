@@ -7,6 +7,7 @@ import html
 import io
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field
+from functools import cached_property
 from importlib import import_module
 from pathlib import Path
 from typing import IO, Any, Literal
@@ -82,6 +83,7 @@ class Trajectory:
         proof: the run -> its certificate; None where nobody knows its equations.
         whole: text -> what it asks of the whole run (a RunValue); None where nobody knows its equations.
         quantities: of the model's outputs those that are of the whole run, each a RunValue.
+        estimate: the run -> its Accuracy, by another run; None where nobody knows its equations.
     """
 
     t: np.ndarray
@@ -106,6 +108,18 @@ class Trajectory:
     proof: Callable[[Trajectory], Any] | None = None
     whole: Callable[[str], Any] | None = field(default=None, repr=False)
     quantities: Mapping[str, Any] = field(default_factory=dict)
+    estimate: Callable[[Trajectory], Any] | None = None
+
+    @cached_property
+    def accuracy(self) -> Any:
+        """Its `Accuracy`: how many digits hold at the end, by a run with finer tolerances; None where none compares.
+
+        Raises:
+            UsageError: as of `certify`.
+        """
+        if self.estimate is None:
+            raise UsageError("nothing is known of the equations of this run", mend="take eomgen.simulate(model)")
+        return self.estimate(self)
 
     def certify(self) -> Any:
         """The Certificate of the run: its equations, the code that ran, its steps, energy, ties and reactions.

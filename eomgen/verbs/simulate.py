@@ -21,11 +21,13 @@ from eomgen.model.fields import WrittenEquation
 from eomgen.model.own_units import units_of
 from eomgen.model.parts import Model
 from eomgen.questions.run import run as simulated
+from eomgen.simulation.accuracy import Accuracy
 from eomgen.simulation.integrator import Stepping
 from eomgen.simulation.result import Trajectory
 from eomgen.symbolic.expression.units import Unit
 
 MOST_TOLD = 20  # phases in the text
+MOST_AGAIN = 500_000  # evaluations of a run that is made again, finer, to know its error
 
 
 def simulate_document(
@@ -117,7 +119,15 @@ def _run_statements(model: Model, run: Trajectory) -> tuple[Statement, ...]:
     rows = tuple((heads[name], f"{x[0]:.9g}", f"{x[-1]:.9g}") for name, x in columns.items() if len(x))
     grids = (Grid(("", "start", "end"), rows), Grid(("of the run", "", "at"), _whole(model, run)))
     table = tuple(grid for grid in grids if grid.rows)
-    return (prose(f"{model.name}: {run.summary()}"), *(prose(f"  {line}") for line in lines), *table)
+    accuracy = _accuracy(run)
+    told = [] if accuracy is None else [str(accuracy)]
+    return (prose(" ".join([f"{model.name}: {run.summary()}", *told])), *(prose(f"  {line}") for line in lines), *table)
+
+
+def _accuracy(run: Trajectory) -> Accuracy | None:
+    """How many digits hold, where that is known with as much work again."""
+    cut = run.status in ("interrupted", "out of patience") or run.evaluations > MOST_AGAIN
+    return None if cut or not len(run.t) else run.accuracy
 
 
 def _whole(model: Model, run: Trajectory) -> tuple[tuple[str, str, str], ...]:
@@ -150,6 +160,7 @@ def _quantities(model: Model, run: Trajectory) -> dict[str, Any]:
 
 def _run_payload(model: Model, run: Trajectory, files: list[str]) -> dict[str, Any]:
     columns = {name: [_finite(x) for x in column.tolist()] for name, column in run.columns().items()}
+    accuracy = _accuracy(run)
     payload = {
         "name": model.name,
         "status": run.status,
@@ -162,6 +173,7 @@ def _run_payload(model: Model, run: Trajectory, files: list[str]) -> dict[str, A
         "gap_rate": _finite(run.gap_rate),
         "steps": run.steps,
         "evaluations": run.evaluations,
+        "accuracy": None if accuracy is None else accuracy.as_dict(),
         "remark": run.remark,
         "files": files,
         "quantities": _quantities(model, run),
