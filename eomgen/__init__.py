@@ -16,6 +16,7 @@
     eomgen.play(model, "play.html")           # a page in which the model is alive, offline
     eomgen.scene_of(model)                    # Scene: what can be drawn at a state, as data over the parameters
     eomgen.report(model, "report.html")       # Report: a page, a paper (.pdf, .tex), text (.md), a notebook (.ipynb)
+    eomgen.import_robot("robot.urdf")         # Model of a robot's file of another program
     eomgen.freedom_of(model)                  # Freedom: degrees of freedom by rank, redundant ties
     with eomgen.patience(30): ...             # any of these, for 30 s at the most
 
@@ -33,6 +34,7 @@ from eomgen.version import __version__ as __version__
 
 _HOMES = {
     "questions.answers": ("Answer", "solve"),
+    "robots.importing": ("import_robot",),
     "proof.check": ("Certificate", "Check"),
     "errors": (
         "DerivationError",

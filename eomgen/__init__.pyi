@@ -57,6 +57,7 @@ from eomgen.questions.answers import Answer as Answer
 from eomgen.questions.answers import solve as solve
 from eomgen.questions.simulator import Simulator as Simulator
 from eomgen.questions.velocities import kinematics as kinematics
+from eomgen.robots.importing import import_robot as import_robot
 from eomgen.scene.making import scene_of as scene_of
 from eomgen.scene.scene import Scene as Scene
 from eomgen.simulation.result import Trajectory as Trajectory

@@ -118,6 +118,24 @@ def examples_command(wants_json: bool, output: str | None) -> int:
     return deliver(shipped(), form_asked(wants_json, None, output), output)
 
 
+@main.command("import")
+@click.argument("file", type=click.Path(exists=True, dir_okay=False))
+@JSON
+@click.option("-o", "--output", type=click.Path(dir_okay=False), help="The model file, .toml.  [default: stdout]")
+@click.option("--floating", is_flag=True, help="Of URDF: nothing holds the base; else it is fixed to the ground.")
+def import_command(file: str, wants_json: bool, output: str | None, floating: bool) -> int:
+    """Make a model file of a robot's URDF.
+
+    Bodies, joints, inertias, dampers, motors as inputs, joints that mimic others as constraints, limits as remarks.
+    What has no counterpart is listed: on stderr, at the end of the file, and as left_out in JSON.
+    """
+    from eomgen.verbs.importing import import_document, refuse_other_endings
+
+    refuse_other_endings(output)
+    document = import_document(file, output=output, floating=floating)
+    return deliver(document, form_asked(wants_json, None))
+
+
 @main.command("check")
 @click.argument("models", nargs=-1, required=True, type=click.Path(exists=True, dir_okay=False, allow_dash=True))
 @JSON

@@ -41,6 +41,7 @@ OSCILLATIONS = (MODELS / "seeds" / "ch22_p3.toml").read_text() + 'omega3 = "freq
 VERBS = [
     "new",
     "examples",
+    "import",
     "check",
     "derive",
     "solve",
@@ -401,11 +402,15 @@ def test_an_ending_that_no_form_has_is_refused_before_any_work(verb, tmp_path):
     for ending in sorted({".html", ".pdf", ".docx", ".xlsx", ".PDF"} - own):
         path = tmp_path / f"w{ending}"
         words = (verb, *(() if verb in ("schema", "doctor") else (SEED,)), "-o", str(path))
-        has_form = verb not in ("schema", "doctor", "codegen", "simulate", "play", "report")
+        has_form = verb not in ("schema", "doctor", "codegen", "simulate", "play", "report", "import")
         for result in (run(*words), run(*words, *(("--format", "text") if has_form else ("--json",)))):
             assert result.exit_code == 2 and not list(tmp_path.iterdir())
             endings = {"simulate": ".csv, .npz", "codegen": "-o names the folder", "play": "the ending is .html"}
-            endings |= {"report": ".html, .pdf, .tex, .md, .ipynb", "animate": ".gif, .mp4, .png, .html"}
+            endings |= {
+                "report": ".html, .pdf, .tex, .md, .ipynb",
+                "animate": ".gif, .mp4, .png, .html",
+                "import": ".toml",
+            }
             assert endings.get(verb, ".txt, .tex, .md, .json") in result.stderr
 
 

@@ -13,6 +13,7 @@ CHAIN = (
     ("files",),
     ("symbolic",),
     ("model",),
+    ("robots",),
     ("mechanics",),
     ("codegen",),
     ("simulation",),

@@ -1,0 +1,1 @@
+"""Robot files of other programs <-> model files: URDF, MJCF, SDF."""

@@ -1,0 +1,157 @@
+"""What the readers of robot files share: legal names, joints in a row, what was left out; tables of a model file."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import dataclass, field
+from decimal import Decimal
+from typing import Any
+
+from eomgen.robots.numbers import ONE, ORIGIN, ZERO, Matrix, Vector, apply, computed, plus
+
+RESERVED = ("t", "pi", "nan", "inf", "infinity", "ground")
+ILLEGAL = re.compile(r"[^A-Za-z0-9_]+")
+Table = dict[str, Any]
+
+
+@dataclass(frozen=True)
+class LeftOut:
+    """Things of one sort in a file that a model has no counterpart for.
+
+    Args:
+        what: their sort: "collision".
+        where: each of them.
+        why: why there is none, or how a model says it.
+    """
+
+    what: str
+    where: tuple[str, ...]
+    why: str
+
+    def __str__(self) -> str:
+        listed = ", ".join(dict.fromkeys(self.where))
+        return f"{self.what} ({self.why}): {listed}" if listed else f"{self.what} ({self.why})"
+
+    def as_dict(self) -> dict[str, Any]:
+        return {"what": self.what, "where": list(self.where), "why": self.why}
+
+
+@dataclass(frozen=True)
+class Imported:
+    """A robot file as the tables of a model file.
+
+    Args:
+        tables: what a TOML reader would give.
+        left_out: what has no counterpart.
+    """
+
+    tables: Table
+    left_out: tuple[LeftOut, ...] = ()
+
+
+@dataclass
+class Names:
+    """Legal names, each given once, like those that the file uses."""
+
+    given: set[str] = field(default_factory=lambda: set(RESERVED))
+
+    def new(self, wanted: str, otherwise: str = "x") -> str:
+        """The name nearest to the one wanted that is legal and free."""
+        plain = ILLEGAL.sub("_", wanted).strip("_") or otherwise
+        if not plain[0].isalpha():
+            plain = f"{otherwise}_{plain}"
+        name, k = plain, 1
+        while name in self.given:
+            k += 1
+            name = f"{plain}_{k}"
+        self.given.add(name)
+        return name
+
+
+@dataclass(frozen=True)
+class Seat:
+    """Where something hangs: on a body, at a place and in axes of it.
+
+    Args:
+        turns: the rotation R as turns of a model file.
+    """
+
+    on: str | None
+    at: Vector = ORIGIN
+    R: Matrix = ONE
+    turns: Sequence[Table] = ()
+
+    def fields(self, beyond: Vector = ORIGIN) -> Table:
+        """The keys of a joint there, `beyond` further on in the turned axes."""
+        at = plus(self.at, apply(self.R, beyond)) if any(beyond) else self.at
+        found: Table = {} if self.on is None else {"on": self.on}
+        if any(at):
+            found["at"] = written(at)
+        if self.turns:
+            found["turned"] = self.turns[0] if len(self.turns) == 1 else list(self.turns)
+        return found
+
+
+@dataclass(frozen=True)
+class Moved:
+    """One joint: its keys beside those of its seat, and the point of the body at which it sits, body axes."""
+
+    keys: Table
+    pivot: Vector = ORIGIN
+    name: str = ""
+
+
+def hung(name: str, body: Table, seat: Seat, joints: Sequence[Moved], names: Names) -> dict[str, Table]:
+    """A body on its joints, one after the other; between them frames without mass.
+
+    Each but the first sits at its pivot in the axes of the frame before, which are the body's own where it is at rest.
+    """
+    if not joints:
+        return {name: {**body, "joint": {"kind": "fixed", **seat.fields()}}}
+    found: dict[str, Table] = {}
+    for k, joint in enumerate(joints):
+        last = k == len(joints) - 1
+        own: Table = dict(body) if last else {"about": f"between the joints of {name}"}
+        where = seat.fields(joint.pivot)
+        if any(joint.pivot):
+            pivot = "pivot" if last and "pivot" not in own.get("points", {}) else "joint"
+            own["points"] = {**own.get("points", {}), pivot: written(joint.pivot)}
+            where["point"] = pivot
+        own["joint"] = {"kind": joint.keys["kind"], **where, **joint.keys}
+        frame = name if last else names.new(f"{name}_{joint.name}")
+        found[frame] = own
+        seat = Seat(frame)
+    return found
+
+
+def written(v: Iterable[Decimal]) -> list[Decimal]:
+    """A vector as it stands in a model file."""
+    return [computed(x) for x in v]
+
+
+def signed_sum(terms: Iterable[tuple[Decimal, str]], constant: Decimal = ZERO) -> str:
+    """The sum of numbers times names, and a constant, as a person writes it."""
+    pieces: list[str] = []
+    for factor, name in (*terms, (constant, "")):
+        if factor == 0 and (name or pieces):
+            continue
+        size = f"{abs(factor).normalize():f}" if abs(factor) >= Decimal("1e-9") or factor == 0 else str(abs(factor))
+        shown = name if name and abs(factor) == 1 else f"{size}*{name}" if name else size
+        sign = "-" if factor < 0 else "+"
+        pieces.append(f"{sign} {shown}" if pieces else f"-{shown}" if sign == "-" else shown)
+    return " ".join(pieces) or "0"
+
+
+def breaks_triangle(inertia: Sequence[Decimal]) -> bool:
+    """Whether no body of positive density has these moments of inertia: one is more than the sum of the others."""
+    import numpy as np
+
+    xx, yy, zz, xy, yz, zx = (*map(float, inertia), *([0.0] * (6 - len(inertia))))
+    a, b, c = np.linalg.eigvalsh([[xx, xy, zx], [xy, yy, yz], [zx, yz, zz]])
+    return bool(a < 0 or a + b < c * (1 - 1e-12))
+
+
+def without_empty(tables: Mapping[str, Any]) -> Table:
+    """The tables that hold something."""
+    return {key: value for key, value in tables.items() if value not in ({}, None, [])}

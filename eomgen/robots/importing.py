@@ -1,0 +1,65 @@
+"""A robot file of another program -> the text of a model file, what was left out of it, the model."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from pathlib import Path
+
+from eomgen.errors import ModelError
+from eomgen.files import read
+from eomgen.model.parts import Model
+from eomgen.model.reader import loads
+from eomgen.robots.drawn_up import Imported, LeftOut
+from eomgen.robots.toml_text import toml_text
+from eomgen.robots.urdf import urdf
+
+LARGEST = 20_000_000  # bytes of a robot file
+
+
+@dataclass(frozen=True)
+class ImportedRobot:
+    """A robot of another program's file.
+
+    Args:
+        text: the model file.
+        model: what it declares.
+        left_out: what of the robot's file has no counterpart in it.
+    """
+
+    text: str
+    model: Model
+    left_out: tuple[LeftOut, ...]
+
+
+def imported(path: str | Path, *, floating: bool = False) -> ImportedRobot:
+    """The robot in a file: URDF.
+
+    Args:
+        floating: of URDF: nothing holds the base; else it is fixed to the ground.
+    Raises:
+        ModelError: it cannot be read, is no robot, or one that is none for eomgen.
+    """
+    path = Path(path)
+    try:
+        data = read(path, LARGEST)
+    except OSError as error:
+        raise ModelError(f"cannot be read: {error.strerror or error}", str(path), "check the path") from error
+    found = _tables(path, data, floating)
+    after = [f"left out: {each}" for each in found.left_out]
+    text = toml_text(found.tables, [f"Imported from {path.name}."], after)
+    return ImportedRobot(text, loads(text, path.with_suffix(".toml").name, path.stem), found.left_out)
+
+
+def import_robot(path: str | Path, *, floating: bool = False) -> Model:
+    """The model of a robot in a file of another program; `imported` has its text and what was left out.
+
+    Args:
+        floating: of URDF: nothing holds the base; else it is fixed to the ground.
+    Raises:
+        ModelError: it cannot be read, is no robot, or one that is none for eomgen.
+    """
+    return imported(path, floating=floating).model
+
+
+def _tables(path: Path, data: bytes, floating: bool) -> Imported:
+    return urdf(data, str(path), floating=floating)

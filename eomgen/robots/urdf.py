@@ -1,0 +1,368 @@
+"""URDF -> tables of a model file. http://wiki.ros.org/urdf/XML
+
+A link is a body whose axes are those of its joint; R = Rz(yaw) Ry(pitch) Rx(roll) of `rpy`; an axis that is not given
+is x. A joint that mimics another is one of its own, with the equation between the two.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from decimal import Decimal
+from typing import Any
+
+from eomgen.errors import ModelError
+from eomgen.model.findings import nearest
+from eomgen.robots.drawn_up import (
+    Imported,
+    LeftOut,
+    Moved,
+    Names,
+    Seat,
+    Table,
+    breaks_triangle,
+    hung,
+    signed_sum,
+    without_empty,
+    written,
+)
+from eomgen.robots.numbers import ONE, ORIGIN, ZERO, Matrix, Vector, inertia_in, roll_pitch_yaw, six, tensor_of, vector
+from eomgen.robots.xml_tree import Element, xml_tree
+
+ONE_AXIS = {"revolute": "rad", "continuous": "rad", "prismatic": "m"}
+KINDS = (*ONE_AXIS, "fixed", "floating", "planar")
+LEFT_OUT = {  # what has no counterpart, and why
+    "visual": "pictures only",
+    "material": "pictures only",
+    "collision": "no contact is declared by a shape: see [constraints]",
+    "gazebo": "settings of a simulator",
+    "sensor": "not mechanics; outputs ask for what is measured",
+    "joint of <mimic>": "no joint that moves is called so",
+    "calibration": "not mechanics",
+    "safety_controller": "limits of a controller",
+    "ros2_control": "settings of a controller",
+    "mechanicalReduction": "the input acts at the joint",
+    "hardwareInterface": "settings of a controller",
+    "friction": 'of Coulomb in a joint; sliding it is torque = "... - friction*sign(rate)", which cannot stick',
+}
+LEFT_OUT |= {f"{key} of <inertia>": "below zero by rounding: 0" for key in ("ixx", "iyy", "izz")}
+ROUNDING = Decimal("1e-12")  # a moment of inertia that is not below -ROUNDING is 0 [kg m^2]
+GRAVITY = {"kind": "gravity", "acceleration": [0, 0, "-g"]}
+
+
+def urdf(data: bytes, name: str, *, floating: bool) -> Imported:
+    """The tables of a robot.
+
+    Args:
+        name: stands for the file in messages.
+        floating: nothing holds the base; else it is fixed to the ground.
+    Raises:
+        ModelError: no robot, or one that is not a tree.
+    """
+    root = xml_tree(data, name)
+    if root.tag != "robot":
+        raise ModelError(f"the root is <{root.tag}>, of a URDF file it is <robot>", root.where, "name a URDF file")
+    return _Reading.of(root).tables(floating)
+
+
+def placed(element: Element | None) -> tuple[Vector, Matrix, list[Table]]:
+    """(place, rotation, its turns) of an <origin>."""
+    if element is None:
+        return ORIGIN, ONE, []
+    R, turns = roll_pitch_yaw(element.vector("rpy", "0 0 0"))
+    return element.vector("xyz", "0 0 0"), R, turns
+
+
+def massive(inertial: Element | None) -> Table:
+    """Mass, mass centre and inertia of a body: the axes of the inertia are turned into the body's."""
+    if inertial is None:
+        return {}
+    center, R, _ = placed(inertial.one("origin"))
+    mass = inertial.one("mass")
+    kilograms = ZERO if mass is None else mass.number("value")
+    if mass is not None and kilograms < 0:
+        raise ModelError(f"a negative mass: {kilograms}", mass.where, "give a mass of 0 or more")
+    tensor, found = inertial.one("inertia"), {"mass": kilograms}
+    moments = [ZERO] * 3
+    if tensor is not None:
+        entries = [tensor.number(key, "0") for key in ("ixx", "iyy", "izz", "ixy", "iyz", "ixz")]
+        for k, key in enumerate(("ixx", "iyy", "izz")):
+            if entries[k] < -ROUNDING:
+                raise ModelError(
+                    f"a negative moment of inertia: {entries[k]}", tensor.where, f"give {key} of 0 or more"
+                )
+            if entries[k] < 0:
+                tensor.read.discard(key)
+                entries[k] = ZERO
+        moments = six(inertia_in(R, tensor_of(*entries)) if R != ONE else tensor_of(*entries))
+    return with_mass(found, center, moments)
+
+
+def with_mass(found: Table, center: Vector, moments: list[Decimal]) -> Table:
+    """A body with its centre and its inertia; a body that has neither mass nor inertia is a frame."""
+    if found["mass"] == 0 and not any(moments):
+        return {}
+    if any(center):
+        found["center"] = written(center)
+    found["inertia"] = moments
+    if breaks_triangle(moments):
+        found["measured"] = True
+    return found
+
+
+@dataclass(frozen=True)
+class _Reading:
+    """A robot's elements, by name.
+
+    Args:
+        above: of each link the joint by which it hangs.
+        coordinates, bodies: the legal names, of joints and of links.
+    """
+
+    robot: Element
+    links: Mapping[str, Element]
+    joints: Mapping[str, Element]
+    above: Mapping[str, str]
+    names: Names
+    bodies: Names
+    body: Mapping[str, str]
+    coordinate: Mapping[str, str]
+
+    @classmethod
+    def of(cls, robot: Element) -> _Reading:
+        links, joints = _by_name(robot, "link"), _by_name(robot, "joint")
+        if not links:
+            mend = "expand it by xacro first" if robot.children else "name a URDF file"
+            raise ModelError("the robot has no <link>", robot.where, mend)
+        above: dict[str, str] = {}
+        for name, joint in joints.items():
+            for end in ("parent", "child"):
+                link = _need(joint, end).need("link")
+                if link not in links:
+                    mend = nearest(link, links) or f"one of {', '.join(links)}"
+                    raise ModelError(f"joint '{name}' names a link that there is not: '{link}'", joint.where, mend)
+            child = _need(joint, "child").need("link")
+            if child in above:
+                what = f"link '{child}' hangs on two joints, '{above[child]}' and '{name}'"
+                raise ModelError(what, joint.where, "URDF is of trees")
+            above[child] = name
+        names, bodies = Names(), Names()
+        body = {link: bodies.new(link, "link") for link in links}
+        coordinate = {name: names.new(name, "q") for name in joints if _need_kind(joints[name]) != "fixed"}
+        return cls(robot, links, joints, above, names, bodies, body, coordinate)
+
+    def tables(self, floating: bool) -> Imported:
+        title = self.robot.get("name") or "robot"
+        roots = [link for link in self.links if link not in self.above]
+        ordered = [link for root in roots for link in self._below(root)]
+        if len(ordered) != len(self.links):
+            lost = next(link for link in self.links if link not in ordered)
+            raise ModelError(f"link '{lost}' hangs in a ring of joints", self.links[lost].where, "URDF is of trees")
+        found: Table = {key: {} for key in ("coordinates", "speeds", "inputs", "bodies", "constraints")}
+        driven = self._driven()
+        for link in ordered:
+            self._add(found, link, floating and link in roots, driven)
+        g = self.names.new("g")
+        weight = {**GRAVITY, "acceleration": [0, 0, f"-{g}"]}
+        head = {"eomgen": 1, "name": title, "space": "space"}
+        parameters = {g: {"value": Decimal("9.81"), "unit": "m/s^2"}}
+        tables = {**head, "parameters": parameters, **without_empty(found), "forces": {"weight": weight}}
+        return Imported(tables, left_out(self.robot, LEFT_OUT))
+
+    def _below(self, root: str) -> list[str]:
+        """A link and all that hang on it, each after what it hangs on."""
+        order, waiting = [], [root]
+        children: dict[str, list[str]] = {}
+        for child, joint in self.above.items():
+            children.setdefault(_need(self.joints[joint], "parent").need("link"), []).append(child)
+        while waiting:
+            link = waiting.pop()
+            order.append(link)
+            waiting += reversed(children.get(link, []))
+        return order
+
+    def _driven(self) -> set[str]:
+        """The joints that have a motor: those of the transmissions, without any each joint that mimics no other."""
+        named = set()
+        for transmission in self.robot.all("transmission"):
+            transmission.get("name")
+            transmission.get("type"), transmission.one("type")  # whatever carries it over, the input acts at the joint
+            for joint in transmission.all("joint"):
+                named.add(joint.get("name") or "")
+            for actuator in transmission.all("actuator"):
+                actuator.get("name")
+        own = {name for name, joint in self.joints.items() if joint.one("mimic") is None}
+        return (named & own) or own
+
+    def _add(self, found: Table, link: str, free: bool, driven: set[str]) -> None:
+        """A link, its joint, and what that brings."""
+        element = self.links[link]
+        element.get("type")
+        name = self.body[link]
+        body = {"about": f"link {link}"} if name != link else {}
+        body |= massive(element.one("inertial"))
+        if link not in self.above:
+            joints = [self._floating(found, name)] if free else []
+            found["bodies"] |= hung(name, body, Seat(None), joints, self.bodies)
+            return
+        raw = self.above[link]
+        joint = self.joints[raw]
+        at, R, turns = placed(joint.one("origin"))
+        seat = Seat(self.body[_need(joint, "parent").need("link")], at, R, turns)
+        found["bodies"] |= hung(name, body, seat, self._joints(found, raw, joint, raw in driven), self.bodies)
+
+    def _joints(self, found: Table, raw: str, joint: Element, driven: bool) -> list[Moved]:
+        kind = _need_kind(joint)
+        if kind == "fixed":
+            for extra in ("axis", "limit", "dynamics"):  # mean nothing here
+                if (element := joint.one(extra)) is not None:
+                    element.read |= set(element.attributes)
+            return []
+        if kind == "floating":
+            return [self._floating(found, self.coordinate[raw])]
+        element = joint.one("axis")
+        axis = vector([1, 0, 0]) if element is None else element.vector("xyz", "1 0 0")
+        if not any(axis):
+            raise ModelError(
+                f"the axis of joint '{raw}' has no direction", joint.where, "give three numbers, not all 0"
+            )
+        if kind == "planar":
+            return self._planar(found, raw, axis)
+        return [self._one_axis(found, raw, joint, axis, driven)]
+
+    def _one_axis(self, found: Table, raw: str, joint: Element, axis: Vector, driven: bool) -> Moved:
+        """A hinge or a slide, its coordinate with its limits as a remark, its motor and its damper."""
+        q, kind = self.coordinate[raw], _need_kind(joint)
+        unit = ONE_AXIS[kind]
+        turns = unit == "rad"
+        slides = "revolute" if turns else "prismatic"
+        found["coordinates"][q] = {"unit": unit, **_limits(raw, q, joint, unit)}
+        keys: Table = {"kind": slides, "axis": list(axis), "angle" if turns else "displacement": q}
+        if (mimic := joint.one("mimic")) is not None:
+            self._mimic(found, raw, mimic)
+        elif driven:
+            effort = self.names.new(f"{'tau' if turns else 'F'}_{q}")
+            found["inputs"][effort] = {"value": 0, "unit": "N*m" if turns else "N"}
+            keys["torque" if turns else "force"] = effort
+        if (dynamics := joint.one("dynamics")) is not None:
+            if (damping := dynamics.number("damping", "0")) != 0:
+                keys["damping"] = damping
+            if Decimal(dynamics.attributes.get("friction", "0") or "0") == 0:
+                dynamics.get("friction")
+        return Moved(keys, name=q)
+
+    def _mimic(self, found: Table, raw: str, mimic: Element) -> None:
+        q, other = self.coordinate[raw], mimic.need("joint")
+        if other not in self.coordinate:  # some files have it so: it is told among what is left out
+            mimic.read.discard("joint")
+            return
+        factor, offset = mimic.number("multiplier", "1"), mimic.number("offset", "0")
+        if offset:
+            found["coordinates"][q]["start"] = offset
+        gap = signed_sum([(Decimal(1), q), (-factor, self.coordinate[other])], -offset)
+        found["constraints"][self.bodies.new(f"mimic_{q}")] = {"kind": "equation", "gap": gap}
+
+    def _planar(self, found: Table, raw: str, normal: Vector) -> list[Moved]:
+        """Two slides across the normal and a turn about it."""
+        k = min(range(3), key=lambda i: abs(normal[i]))
+        e = vector(int(i == k) for i in range(3))
+        first = _cross(e, normal)
+        across = [first, _cross(normal, first)]
+        if normal[0] == normal[1] == 0:
+            across = [vector([1, 0, 0]), vector([0, 1, 0])]
+        q = self.coordinate[raw]
+        joints = []
+        for letter, axis in zip("xy", across, strict=True):
+            name = self.names.new(f"{q}_{letter}")
+            found["coordinates"][name] = {"unit": "m"}
+            joints.append(Moved({"kind": "prismatic", "axis": written(axis), "displacement": name}, name=letter))
+        found["coordinates"][q] = {"unit": "rad", "about": f"the turn of joint {raw}"}
+        return [*joints, Moved({"kind": "revolute", "axis": list(normal), "angle": q})]
+
+    def _floating(self, found: Table, stem: str) -> Moved:
+        return freed(found, stem, self.names)
+
+
+def freed(found: Table, stem: str, names: Names, start: Vector = ORIGIN, turn: Any = (1, 0, 0, 0)) -> Moved:
+    """A joint in which nothing is held, its turn by a quaternion."""
+    places = [names.new(f"{stem}_{letter}") for letter in "xyz"]
+    found["coordinates"] |= {
+        name: {"start": x, "unit": "m"} if x else {"unit": "m"} for name, x in zip(places, start, strict=True)
+    }
+    return Moved({"kind": "free", "position": places, **turned_freely(found, stem, names, turn)}, name=stem)
+
+
+def turned_freely(found: Table, stem: str, names: Names, turn: Any = (1, 0, 0, 0)) -> Table:
+    """A quaternion and the speeds that go with it."""
+    parts = [names.new(f"{stem}_e{k}") for k in range(4)]
+    spins = [names.new(f"{stem}_w{letter}") for letter in "xyz"]
+    found["coordinates"] |= {name: {"start": x} for name, x in zip(parts, turn, strict=True)}
+    found["speeds"] |= {name: {} for name in spins}
+    return {"orientation": "quaternion", "quaternion": parts, "omega": spins}
+
+
+def left_out(root: Element, why: Mapping[str, str]) -> tuple[LeftOut, ...]:
+    """What nobody has read, in groups of one kind."""
+    groups: dict[str, list[str]] = {}
+
+    def named(element: Element) -> str:
+        name = element.attributes.get("name") or element.attributes.get("reference")
+        return f"{element.tag} {name}" if name else f"{element.tag} (line {element.where.split(':')[-2]})"
+
+    def walk(element: Element, above: str) -> None:
+        if not element.seen:
+            groups.setdefault(element.tag, []).append(above if element.tag in why and above else named(element))
+            return
+        for key in element.attributes:
+            if key not in element.read and not key.startswith("xmlns"):
+                label = key if key in why else f"{key} of <{element.tag}>"
+                groups.setdefault(label, []).append(above if "name" not in element.attributes else named(element))
+        for child in element.children:
+            walk(child, named(element) if element.attributes.get("name") and element is not root else above)
+
+    walk(root, "")
+    known = "eomgen has no counterpart"
+    return tuple(LeftOut(what, tuple(where), why.get(what, known)) for what, where in groups.items())
+
+
+def _limits(raw: str, q: str, joint: Element, unit: str) -> Table:
+    """A remark: the joint's name where it is another, and its limits."""
+    said = [f"joint {raw}"] if q != raw else []
+    if (limit := joint.one("limit")) is not None:
+        lower, upper, effort, speed = (limit.get(key) for key in ("lower", "upper", "effort", "velocity"))
+        if _need_kind(joint) != "continuous" and (lower or upper):
+            said.append(f"from {lower or 0} to {upper or 0} {unit}")
+        if effort:
+            said.append(f"at most {effort} {'N*m' if unit == 'rad' else 'N'}")
+        if speed:
+            said.append(f"at most {speed} {unit}/s")
+    return {"about": ", ".join(said)} if said else {}
+
+
+def _by_name(robot: Element, tag: str) -> dict[str, Element]:
+    found: dict[str, Element] = {}
+    for element in robot.all(tag):
+        name = element.need("name")
+        if name in found:
+            raise ModelError(f"two <{tag}> are called '{name}'", element.where, "give each a name of its own")
+        found[name] = element
+    return found
+
+
+def _need(element: Element, tag: str) -> Element:
+    found = element.one(tag)
+    if found is None:
+        raise ModelError(f"<{element.tag}> has no <{tag}>", element.where, "give one")
+    return found
+
+
+def _need_kind(joint: Element) -> str:
+    kind = joint.need("type")
+    if kind not in KINDS:
+        mend = nearest(kind, KINDS) or f"one of {', '.join(KINDS)}"
+        raise ModelError(f"unknown type of a joint: '{kind}'", joint.where, mend)
+    return kind
+
+
+def _cross(v: Vector, w: Vector) -> Vector:
+    return vector([v[1] * w[2] - v[2] * w[1], v[2] * w[0] - v[0] * w[2], v[0] * w[1] - v[1] * w[0]])

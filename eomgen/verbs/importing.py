@@ -1,0 +1,48 @@
+"""eomgen import: a robot of another program's file as a model file; what was left out is said."""
+
+from __future__ import annotations
+
+import shlex
+from dataclasses import replace
+from pathlib import Path
+
+from eomgen import files
+from eomgen.documents.document import Document, lines_document
+from eomgen.errors import UsageError
+from eomgen.robots.importing import imported
+
+
+def refuse_other_endings(output: str | None) -> None:
+    """Before any work.
+
+    Raises:
+        UsageError: the file that is to be written is called like no model file.
+    """
+    if output is not None and Path(output).suffix.lower() != ".toml":
+        raise UsageError(f"'{output}' is no name for a model file: the ending is .toml", mend="name it so")
+
+
+def import_document(file: str, *, output: str | None = None, floating: bool = False) -> Document:
+    """The model file, written where that is asked; what of the robot's file has no counterpart in it.
+
+    Raises:
+        ModelError: no robot can be read from the file.
+        WriteFailed: it cannot be written.
+    """
+    robot = imported(file, floating=floating)
+    model, left_out = robot.model, [each.as_dict() for each in robot.left_out]
+    if output is not None:
+        files.write(output, robot.text)
+    entries = {
+        "name": model.name,
+        "file": output,
+        "text": None if output else robot.text,
+        "bodies": list(model.bodies),
+        "coordinates": list(model.coordinates),
+        "inputs": list(model.inputs),
+        "constraints": list(model.constraints),
+        "left_out": left_out,
+    }
+    document = lines_document(lambda: entries, *([output] if output else robot.text.splitlines()))
+    told = tuple(f"left out: {each}" for each in robot.left_out)
+    return replace(document, notes=(*told, *([f"now try: eomgen check {shlex.quote(output)}"] if output else ())))
