@@ -8,11 +8,12 @@ from dataclasses import dataclass, field
 from decimal import Decimal
 from typing import Any
 
-from eomgen.robots.numbers import ONE, ORIGIN, ZERO, Matrix, Vector, apply, computed, plus
+from eomgen.robots.numbers import ORIGIN, ZERO, Nine, Triple, computed
+from eomgen.symbolic.expression.spatial import IDENTITY, apply, plus
 
 RESERVED = ("t", "pi", "nan", "inf", "infinity", "ground")
 ILLEGAL = re.compile(r"[^A-Za-z0-9_]+")
-Table = dict[str, Any]
+Entries = dict[str, Any]
 
 
 @dataclass(frozen=True)
@@ -46,12 +47,12 @@ class Imported:
         left_out: what has no counterpart.
     """
 
-    tables: Table
+    tables: Entries
     left_out: tuple[LeftOut, ...] = ()
 
 
 @dataclass
-class Names:
+class LegalNames:
     """Legal names, each given once, like those that the file uses."""
 
     given: set[str] = field(default_factory=lambda: set(RESERVED))
@@ -78,16 +79,16 @@ class Seat:
     """
 
     on: str | None
-    at: Vector = ORIGIN
-    R: Matrix = ONE
-    turns: Sequence[Table] = ()
+    at: Triple = ORIGIN
+    R: Nine = IDENTITY
+    turns: Sequence[Entries] = ()
 
-    def fields(self, beyond: Vector = ORIGIN) -> Table:
+    def fields(self, beyond: Triple = ORIGIN) -> Entries:
         """The keys of a joint there, `beyond` further on in the turned axes."""
         at = plus(self.at, apply(self.R, beyond)) if any(beyond) else self.at
-        found: Table = {} if self.on is None else {"on": self.on}
+        found: Entries = {} if self.on is None else {"on": self.on}
         if any(at):
-            found["at"] = written(at)
+            found["at"] = in_file(at)
         if self.turns:
             found["turned"] = self.turns[0] if len(self.turns) == 1 else list(self.turns)
         return found
@@ -97,26 +98,26 @@ class Seat:
 class Moved:
     """One joint: its keys beside those of its seat, and the point of the body at which it sits, body axes."""
 
-    keys: Table
-    pivot: Vector = ORIGIN
+    keys: Entries
+    pivot: Triple = ORIGIN
     name: str = ""
 
 
-def hung(name: str, body: Table, seat: Seat, joints: Sequence[Moved], names: Names) -> dict[str, Table]:
+def hung(name: str, body: Entries, seat: Seat, joints: Sequence[Moved], names: LegalNames) -> dict[str, Entries]:
     """A body on its joints, one after the other; between them frames without mass.
 
     Each but the first sits at its pivot in the axes of the frame before, which are the body's own where it is at rest.
     """
     if not joints:
         return {name: {**body, "joint": {"kind": "fixed", **seat.fields()}}}
-    found: dict[str, Table] = {}
+    found: dict[str, Entries] = {}
     for k, joint in enumerate(joints):
         last = k == len(joints) - 1
-        own: Table = dict(body) if last else {"about": f"between the joints of {name}"}
+        own: Entries = dict(body) if last else {"about": f"between the joints of {name}"}
         where = seat.fields(joint.pivot)
         if any(joint.pivot):
             pivot = "pivot" if last and "pivot" not in own.get("points", {}) else "joint"
-            own["points"] = {**own.get("points", {}), pivot: written(joint.pivot)}
+            own["points"] = {**own.get("points", {}), pivot: in_file(joint.pivot)}
             where["point"] = pivot
         own["joint"] = {"kind": joint.keys["kind"], **where, **joint.keys}
         frame = name if last else names.new(f"{name}_{joint.name}")
@@ -125,7 +126,7 @@ def hung(name: str, body: Table, seat: Seat, joints: Sequence[Moved], names: Nam
     return found
 
 
-def written(v: Iterable[Decimal]) -> list[Decimal]:
+def in_file(v: Iterable[Any]) -> list[Decimal]:
     """A vector as it stands in a model file."""
     return [computed(x) for x in v]
 
@@ -152,6 +153,6 @@ def breaks_triangle(inertia: Sequence[Decimal]) -> bool:
     return bool(a < 0 or a + b < c * (1 - 1e-12))
 
 
-def without_empty(tables: Mapping[str, Any]) -> Table:
+def without_empty(tables: Mapping[str, Any]) -> Entries:
     """The tables that hold something."""
     return {key: value for key, value in tables.items() if value not in ({}, None, [])}

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from decimal import localcontext
 from pathlib import Path
 
 from eomgen.errors import ModelError
@@ -10,6 +11,7 @@ from eomgen.files import read
 from eomgen.model.parts import Model
 from eomgen.model.reader import loads
 from eomgen.robots.drawn_up import Imported, LeftOut
+from eomgen.robots.numbers import EXACTLY
 from eomgen.robots.toml_text import toml_text
 from eomgen.robots.urdf import urdf
 
@@ -44,7 +46,8 @@ def imported(path: str | Path, *, floating: bool = False) -> ImportedRobot:
         data = read(path, LARGEST)
     except OSError as error:
         raise ModelError(f"cannot be read: {error.strerror or error}", str(path), "check the path") from error
-    found = _tables(path, data, floating)
+    with localcontext(EXACTLY):
+        found = _tables(path, data, floating)
     after = [f"left out: {each}" for each in found.left_out]
     text = toml_text(found.tables, [f"Imported from {path.name}."], after)
     return ImportedRobot(text, loads(text, path.with_suffix(".toml").name, path.stem), found.left_out)

@@ -9,8 +9,10 @@ from typing import Any
 
 import mpmath
 
-Vector = tuple[Decimal, Decimal, Decimal]
-Matrix = tuple[Vector, Vector, Vector]
+from eomgen.symbolic.expression.spatial import IDENTITY, product, rotation, transposed
+
+Triple = tuple[Any, Any, Any]
+Nine = tuple[Triple, Triple, Triple]
 
 DIGITS = 40
 WRITTEN = 17  # digits of a number that had to be computed: what a double holds
@@ -18,17 +20,18 @@ SURE = 13  # digits by which a decimal is taken for a part of pi
 PARTS = 24  # of pi, that people write
 
 ZERO = Decimal(0)
-ORIGIN: Vector = (ZERO, ZERO, ZERO)
-_CONTEXT = Context(prec=DIGITS)
+ORIGIN: Triple = (ZERO, ZERO, ZERO)
+EXACTLY = Context(prec=DIGITS)
+"""in which robots are read"""
 
 
-def vector(values: Iterable[Any]) -> Vector:
+def decimals(values: Iterable[Any]) -> Triple:
     """Three decimals."""
-    x, y, z = (value if isinstance(value, Decimal) else Decimal(value) for value in values)
+    x, y, z = (Decimal(value) for value in values)
     return x, y, z
 
 
-def shortest(x: float) -> Decimal:
+def decimal_of_double(x: float) -> Decimal:
     """A double as a decimal: with 15 digits where it is the next but few to that, else as it is."""
     short = Decimal(f"{x:.15g}")
     return short if len(short.as_tuple().digits) < 12 and abs(float(short) - x) <= 4e-16 * abs(x) else Decimal(repr(x))
@@ -62,7 +65,7 @@ def angle_text(angle: Decimal) -> Decimal | str:
     return top if part.denominator == 1 else f"{top}/{part.denominator}"
 
 
-def sine_cosine(angle: Decimal) -> tuple[Decimal, Decimal]:
+def sine_cosine(angle: Decimal) -> tuple[Any, Any]:
     """(sin, cos) of an angle, by DIGITS; of a part of pi exactly that part's."""
     part = part_of_pi(angle)
     with mpmath.workdps(DIGITS + 5):
@@ -72,62 +75,28 @@ def sine_cosine(angle: Decimal) -> tuple[Decimal, Decimal]:
     return sine, cosine
 
 
-def about(axis: Vector, angle: Decimal) -> Matrix:
-    """The rotation by an angle about an axis of any length: n n^T + cos (1 - n n^T) + sin n~."""
+def turning(axis: Sequence[Decimal], angle: Decimal) -> Nine:
+    """The rotation by an angle about an axis of any length."""
     sine, cosine = sine_cosine(angle)
-    with localcontext(_CONTEXT):
+    with localcontext(EXACTLY):
         length = sum((x * x for x in axis), ZERO).sqrt()
-        n = tuple(x / length for x in axis)
-        cross = ((0, -n[2], n[1]), (n[2], 0, -n[0]), (-n[1], n[0], 0))
-        return rows([((i == j) - n[i] * n[j]) * cosine + n[i] * n[j] + sine * cross[i][j] for j in range(3)]
-                    for i in range(3))  # fmt: skip
+        n: Any = tuple(x / length for x in axis)
+        return rotation(n, cosine, sine)
 
 
-def rows(given: Iterable[Sequence[Decimal]]) -> Matrix:
-    """A matrix of its rows."""
-    first, second, third = (vector(row) for row in given)
-    return first, second, third
-
-
-ONE: Matrix = rows(([1, 0, 0], [0, 1, 0], [0, 0, 1]))  # type: ignore[list-item]
-
-
-def transposed(A: Matrix) -> Matrix:
-    return rows(zip(*A, strict=True))
-
-
-def product(A: Matrix, B: Matrix) -> Matrix:
-    with localcontext(_CONTEXT):
-        return rows([sum((A[i][k] * B[k][j] for k in range(3)), ZERO) for j in range(3)] for i in range(3))
-
-
-def apply(A: Matrix, v: Vector) -> Vector:
-    with localcontext(_CONTEXT):
-        return vector(sum((a * x for a, x in zip(row, v, strict=True)), ZERO) for row in A)
-
-
-def plus(v: Vector, w: Vector) -> Vector:
-    with localcontext(_CONTEXT):
-        return vector(x + y for x, y in zip(v, w, strict=True))
-
-
-def minus(v: Vector) -> Vector:
-    return vector(-x for x in v)
-
-
-def roll_pitch_yaw(angles: Vector) -> tuple[Matrix, list[dict[str, Any]]]:
+def roll_pitch_yaw(angles: Triple) -> tuple[Nine, list[dict[str, Any]]]:
     """R = Rz(yaw) Ry(pitch) Rx(roll), and the turns of a model file that make it, those by 0 left out."""
-    R, turns = ONE, []
+    R, turns = IDENTITY, []
     for axis, angle in zip(((0, 0, 1), (0, 1, 0), (1, 0, 0)), reversed(angles), strict=True):
         if angle != 0:
-            R = product(R, about(vector(axis), angle))
+            R = product(R, turning(decimals(axis), angle))
             turns.append({"axis": list(axis), "angle": angle_text(angle)})
     return R, turns
 
 
-def quaternion_of(R: Matrix) -> tuple[Decimal, Decimal, Decimal, Decimal]:
+def quaternion_of(R: Nine) -> tuple[Decimal, Decimal, Decimal, Decimal]:
     """The quaternion of a rotation, scalar first, from its largest component."""
-    with localcontext(_CONTEXT):
+    with localcontext(EXACTLY):
         d = [R[i][i] for i in range(3)]
         squares = [1 + d[0] + d[1] + d[2], *(1 + 2 * d[i] - d[0] - d[1] - d[2] for i in range(3))]
         k = max(range(4), key=lambda i: squares[i])
@@ -145,7 +114,7 @@ def quaternion_of(R: Matrix) -> tuple[Decimal, Decimal, Decimal, Decimal]:
 
 def turn_of(quaternion: Sequence[Decimal]) -> list[dict[str, Any]]:
     """The turn of a model file that a quaternion is, scalar first: [] for none, else one about an axis."""
-    with localcontext(_CONTEXT):
+    with localcontext(EXACTLY):
         w, *v = quaternion
         length = sum((x * x for x in v), ZERO).sqrt()
         if length < Decimal("1e-14"):
@@ -169,17 +138,17 @@ def _plain(x: Decimal) -> Decimal:
     return short.normalize() if abs(short - x) < Decimal("1e-14") else computed(x)
 
 
-def inertia_in(R: Matrix, tensor: Matrix) -> Matrix:
+def inertia_in(R: Nine, tensor: Nine) -> Nine:
     """R I R^T."""
     return product(product(R, tensor), transposed(R))
 
 
-def tensor_of(xx: Decimal, yy: Decimal, zz: Decimal, xy: Decimal, yz: Decimal, zx: Decimal) -> Matrix:
+def tensor_of(xx: Decimal, yy: Decimal, zz: Decimal, xy: Decimal, yz: Decimal, zx: Decimal) -> Nine:
     """A symmetric matrix."""
-    return rows(([xx, xy, zx], [xy, yy, yz], [zx, yz, zz]))
+    return (xx, xy, zx), (xy, yy, yz), (zx, yz, zz)
 
 
-def six(I: Matrix) -> list[Decimal]:
+def six(I: Nine) -> list[Decimal]:
     """xx, yy, zz, xy, yz, zx of a tensor; of a diagonal one three."""
     found = [computed(x) for x in (I[0][0], I[1][1], I[2][2], I[0][1], I[1][2], I[0][2])]
     return found if any(found[3:]) else found[:3]

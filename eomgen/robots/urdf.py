@@ -14,20 +14,21 @@ from typing import Any
 from eomgen.errors import ModelError
 from eomgen.model.findings import nearest
 from eomgen.robots.drawn_up import (
+    Entries,
     Imported,
     LeftOut,
+    LegalNames,
     Moved,
-    Names,
     Seat,
-    Table,
     breaks_triangle,
     hung,
+    in_file,
     signed_sum,
     without_empty,
-    written,
 )
-from eomgen.robots.numbers import ONE, ORIGIN, ZERO, Matrix, Vector, inertia_in, roll_pitch_yaw, six, tensor_of, vector
-from eomgen.robots.xml_tree import Element, xml_tree
+from eomgen.robots.numbers import ORIGIN, ZERO, Nine, Triple, decimals, inertia_in, roll_pitch_yaw, six, tensor_of
+from eomgen.robots.xml_tree import XmlElement, xml_tree
+from eomgen.symbolic.expression.spatial import IDENTITY, cross
 
 ONE_AXIS = {"revolute": "rad", "continuous": "rad", "prismatic": "m"}
 KINDS = (*ONE_AXIS, "fixed", "floating", "planar")
@@ -65,19 +66,19 @@ def urdf(data: bytes, name: str, *, floating: bool) -> Imported:
     return _Reading.of(root).tables(floating)
 
 
-def placed(element: Element | None) -> tuple[Vector, Matrix, list[Table]]:
+def origin_of(element: XmlElement | None) -> tuple[Triple, Nine, list[Entries]]:
     """(place, rotation, its turns) of an <origin>."""
     if element is None:
-        return ORIGIN, ONE, []
+        return ORIGIN, IDENTITY, []
     R, turns = roll_pitch_yaw(element.vector("rpy", "0 0 0"))
     return element.vector("xyz", "0 0 0"), R, turns
 
 
-def massive(inertial: Element | None) -> Table:
+def massive(inertial: XmlElement | None) -> Entries:
     """Mass, mass centre and inertia of a body: the axes of the inertia are turned into the body's."""
     if inertial is None:
         return {}
-    center, R, _ = placed(inertial.one("origin"))
+    center, R, _ = origin_of(inertial.one("origin"))
     mass = inertial.one("mass")
     kilograms = ZERO if mass is None else mass.number("value")
     if mass is not None and kilograms < 0:
@@ -94,16 +95,16 @@ def massive(inertial: Element | None) -> Table:
             if entries[k] < 0:
                 tensor.read.discard(key)
                 entries[k] = ZERO
-        moments = six(inertia_in(R, tensor_of(*entries)) if R != ONE else tensor_of(*entries))
+        moments = six(inertia_in(R, tensor_of(*entries)) if R != IDENTITY else tensor_of(*entries))
     return with_mass(found, center, moments)
 
 
-def with_mass(found: Table, center: Vector, moments: list[Decimal]) -> Table:
+def with_mass(found: Entries, center: Triple, moments: list[Decimal]) -> Entries:
     """A body with its centre and its inertia; a body that has neither mass nor inertia is a frame."""
     if found["mass"] == 0 and not any(moments):
         return {}
     if any(center):
-        found["center"] = written(center)
+        found["center"] = in_file(center)
     found["inertia"] = moments
     if breaks_triangle(moments):
         found["measured"] = True
@@ -119,17 +120,17 @@ class _Reading:
         coordinates, bodies: the legal names, of joints and of links.
     """
 
-    robot: Element
-    links: Mapping[str, Element]
-    joints: Mapping[str, Element]
+    robot: XmlElement
+    links: Mapping[str, XmlElement]
+    joints: Mapping[str, XmlElement]
     above: Mapping[str, str]
-    names: Names
-    bodies: Names
+    names: LegalNames
+    bodies: LegalNames
     body: Mapping[str, str]
     coordinate: Mapping[str, str]
 
     @classmethod
-    def of(cls, robot: Element) -> _Reading:
+    def of(cls, robot: XmlElement) -> _Reading:
         links, joints = _by_name(robot, "link"), _by_name(robot, "joint")
         if not links:
             mend = "expand it by xacro first" if robot.children else "name a URDF file"
@@ -146,7 +147,7 @@ class _Reading:
                 what = f"link '{child}' hangs on two joints, '{above[child]}' and '{name}'"
                 raise ModelError(what, joint.where, "URDF is of trees")
             above[child] = name
-        names, bodies = Names(), Names()
+        names, bodies = LegalNames(), LegalNames()
         body = {link: bodies.new(link, "link") for link in links}
         coordinate = {name: names.new(name, "q") for name in joints if _need_kind(joints[name]) != "fixed"}
         return cls(robot, links, joints, above, names, bodies, body, coordinate)
@@ -158,7 +159,7 @@ class _Reading:
         if len(ordered) != len(self.links):
             lost = next(link for link in self.links if link not in ordered)
             raise ModelError(f"link '{lost}' hangs in a ring of joints", self.links[lost].where, "URDF is of trees")
-        found: Table = {key: {} for key in ("coordinates", "speeds", "inputs", "bodies", "constraints")}
+        found: Entries = {key: {} for key in ("coordinates", "speeds", "inputs", "bodies", "constraints")}
         driven = self._driven()
         for link in ordered:
             self._add(found, link, floating and link in roots, driven)
@@ -194,7 +195,7 @@ class _Reading:
         own = {name for name, joint in self.joints.items() if joint.one("mimic") is None}
         return (named & own) or own
 
-    def _add(self, found: Table, link: str, free: bool, driven: set[str]) -> None:
+    def _add(self, found: Entries, link: str, free: bool, driven: set[str]) -> None:
         """A link, its joint, and what that brings."""
         element = self.links[link]
         element.get("type")
@@ -207,11 +208,11 @@ class _Reading:
             return
         raw = self.above[link]
         joint = self.joints[raw]
-        at, R, turns = placed(joint.one("origin"))
+        at, R, turns = origin_of(joint.one("origin"))
         seat = Seat(self.body[_need(joint, "parent").need("link")], at, R, turns)
         found["bodies"] |= hung(name, body, seat, self._joints(found, raw, joint, raw in driven), self.bodies)
 
-    def _joints(self, found: Table, raw: str, joint: Element, driven: bool) -> list[Moved]:
+    def _joints(self, found: Entries, raw: str, joint: XmlElement, driven: bool) -> list[Moved]:
         kind = _need_kind(joint)
         if kind == "fixed":
             for extra in ("axis", "limit", "dynamics"):  # mean nothing here
@@ -221,7 +222,7 @@ class _Reading:
         if kind == "floating":
             return [self._floating(found, self.coordinate[raw])]
         element = joint.one("axis")
-        axis = vector([1, 0, 0]) if element is None else element.vector("xyz", "1 0 0")
+        axis = decimals([1, 0, 0]) if element is None else element.vector("xyz", "1 0 0")
         if not any(axis):
             raise ModelError(
                 f"the axis of joint '{raw}' has no direction", joint.where, "give three numbers, not all 0"
@@ -230,14 +231,14 @@ class _Reading:
             return self._planar(found, raw, axis)
         return [self._one_axis(found, raw, joint, axis, driven)]
 
-    def _one_axis(self, found: Table, raw: str, joint: Element, axis: Vector, driven: bool) -> Moved:
+    def _one_axis(self, found: Entries, raw: str, joint: XmlElement, axis: Triple, driven: bool) -> Moved:
         """A hinge or a slide, its coordinate with its limits as a remark, its motor and its damper."""
         q, kind = self.coordinate[raw], _need_kind(joint)
         unit = ONE_AXIS[kind]
         turns = unit == "rad"
         slides = "revolute" if turns else "prismatic"
         found["coordinates"][q] = {"unit": unit, **_limits(raw, q, joint, unit)}
-        keys: Table = {"kind": slides, "axis": list(axis), "angle" if turns else "displacement": q}
+        keys: Entries = {"kind": slides, "axis": list(axis), "angle" if turns else "displacement": q}
         if (mimic := joint.one("mimic")) is not None:
             self._mimic(found, raw, mimic)
         elif driven:
@@ -251,7 +252,7 @@ class _Reading:
                 dynamics.get("friction")
         return Moved(keys, name=q)
 
-    def _mimic(self, found: Table, raw: str, mimic: Element) -> None:
+    def _mimic(self, found: Entries, raw: str, mimic: XmlElement) -> None:
         q, other = self.coordinate[raw], mimic.need("joint")
         if other not in self.coordinate:  # some files have it so: it is told among what is left out
             mimic.read.discard("joint")
@@ -262,28 +263,28 @@ class _Reading:
         gap = signed_sum([(Decimal(1), q), (-factor, self.coordinate[other])], -offset)
         found["constraints"][self.bodies.new(f"mimic_{q}")] = {"kind": "equation", "gap": gap}
 
-    def _planar(self, found: Table, raw: str, normal: Vector) -> list[Moved]:
+    def _planar(self, found: Entries, raw: str, normal: Triple) -> list[Moved]:
         """Two slides across the normal and a turn about it."""
         k = min(range(3), key=lambda i: abs(normal[i]))
-        e = vector(int(i == k) for i in range(3))
-        first = _cross(e, normal)
-        across = [first, _cross(normal, first)]
+        e = decimals(int(i == k) for i in range(3))
+        first = cross(e, normal)
+        across = [first, cross(normal, first)]
         if normal[0] == normal[1] == 0:
-            across = [vector([1, 0, 0]), vector([0, 1, 0])]
+            across = [decimals([1, 0, 0]), decimals([0, 1, 0])]
         q = self.coordinate[raw]
         joints = []
         for letter, axis in zip("xy", across, strict=True):
             name = self.names.new(f"{q}_{letter}")
             found["coordinates"][name] = {"unit": "m"}
-            joints.append(Moved({"kind": "prismatic", "axis": written(axis), "displacement": name}, name=letter))
+            joints.append(Moved({"kind": "prismatic", "axis": in_file(axis), "displacement": name}, name=letter))
         found["coordinates"][q] = {"unit": "rad", "about": f"the turn of joint {raw}"}
         return [*joints, Moved({"kind": "revolute", "axis": list(normal), "angle": q})]
 
-    def _floating(self, found: Table, stem: str) -> Moved:
-        return freed(found, stem, self.names)
+    def _floating(self, found: Entries, stem: str) -> Moved:
+        return free_joint(found, stem, self.names)
 
 
-def freed(found: Table, stem: str, names: Names, start: Vector = ORIGIN, turn: Any = (1, 0, 0, 0)) -> Moved:
+def free_joint(found: Entries, stem: str, names: LegalNames, start: Triple = ORIGIN, turn: Any = (1, 0, 0, 0)) -> Moved:
     """A joint in which nothing is held, its turn by a quaternion."""
     places = [names.new(f"{stem}_{letter}") for letter in "xyz"]
     found["coordinates"] |= {
@@ -292,7 +293,7 @@ def freed(found: Table, stem: str, names: Names, start: Vector = ORIGIN, turn: A
     return Moved({"kind": "free", "position": places, **turned_freely(found, stem, names, turn)}, name=stem)
 
 
-def turned_freely(found: Table, stem: str, names: Names, turn: Any = (1, 0, 0, 0)) -> Table:
+def turned_freely(found: Entries, stem: str, names: LegalNames, turn: Any = (1, 0, 0, 0)) -> Entries:
     """A quaternion and the speeds that go with it."""
     parts = [names.new(f"{stem}_e{k}") for k in range(4)]
     spins = [names.new(f"{stem}_w{letter}") for letter in "xyz"]
@@ -301,15 +302,15 @@ def turned_freely(found: Table, stem: str, names: Names, turn: Any = (1, 0, 0, 0
     return {"orientation": "quaternion", "quaternion": parts, "omega": spins}
 
 
-def left_out(root: Element, why: Mapping[str, str]) -> tuple[LeftOut, ...]:
+def left_out(root: XmlElement, why: Mapping[str, str]) -> tuple[LeftOut, ...]:
     """What nobody has read, in groups of one kind."""
     groups: dict[str, list[str]] = {}
 
-    def named(element: Element) -> str:
+    def named(element: XmlElement) -> str:
         name = element.attributes.get("name") or element.attributes.get("reference")
         return f"{element.tag} {name}" if name else f"{element.tag} (line {element.where.split(':')[-2]})"
 
-    def walk(element: Element, above: str) -> None:
+    def walk(element: XmlElement, above: str) -> None:
         if not element.seen:
             groups.setdefault(element.tag, []).append(above if element.tag in why and above else named(element))
             return
@@ -325,7 +326,7 @@ def left_out(root: Element, why: Mapping[str, str]) -> tuple[LeftOut, ...]:
     return tuple(LeftOut(what, tuple(where), why.get(what, known)) for what, where in groups.items())
 
 
-def _limits(raw: str, q: str, joint: Element, unit: str) -> Table:
+def _limits(raw: str, q: str, joint: XmlElement, unit: str) -> Entries:
     """A remark: the joint's name where it is another, and its limits."""
     said = [f"joint {raw}"] if q != raw else []
     if (limit := joint.one("limit")) is not None:
@@ -339,8 +340,8 @@ def _limits(raw: str, q: str, joint: Element, unit: str) -> Table:
     return {"about": ", ".join(said)} if said else {}
 
 
-def _by_name(robot: Element, tag: str) -> dict[str, Element]:
-    found: dict[str, Element] = {}
+def _by_name(robot: XmlElement, tag: str) -> dict[str, XmlElement]:
+    found: dict[str, XmlElement] = {}
     for element in robot.all(tag):
         name = element.need("name")
         if name in found:
@@ -349,20 +350,16 @@ def _by_name(robot: Element, tag: str) -> dict[str, Element]:
     return found
 
 
-def _need(element: Element, tag: str) -> Element:
+def _need(element: XmlElement, tag: str) -> XmlElement:
     found = element.one(tag)
     if found is None:
         raise ModelError(f"<{element.tag}> has no <{tag}>", element.where, "give one")
     return found
 
 
-def _need_kind(joint: Element) -> str:
+def _need_kind(joint: XmlElement) -> str:
     kind = joint.need("type")
     if kind not in KINDS:
         mend = nearest(kind, KINDS) or f"one of {', '.join(KINDS)}"
         raise ModelError(f"unknown type of a joint: '{kind}'", joint.where, mend)
     return kind
-
-
-def _cross(v: Vector, w: Vector) -> Vector:
-    return vector([v[1] * w[2] - v[2] * w[1], v[2] * w[0] - v[0] * w[2], v[0] * w[1] - v[1] * w[0]])

@@ -8,13 +8,13 @@ from decimal import Decimal, InvalidOperation
 from xml.parsers import expat
 
 from eomgen.errors import ModelError
-from eomgen.robots.numbers import Vector
+from eomgen.robots.numbers import Triple
 
 DEEPEST = 200  # elements one within the other
 
 
 @dataclass(eq=False)
-class Element:
+class XmlElement:
     """An element of an XML file. Asking for a child or an attribute marks it as read.
 
     Args:
@@ -27,7 +27,7 @@ class Element:
     tag: str
     attributes: Mapping[str, str]
     where: str
-    children: list[Element] = field(default_factory=list)
+    children: list[XmlElement] = field(default_factory=list)
     text: str = ""
     read: set[str] = field(default_factory=set)
     seen: bool = False
@@ -52,7 +52,7 @@ class Element:
         """A number among the attributes, exactly as it is written."""
         return self._decimals(self.get(key, default) if default is not None else self.need(key), 1, key)[0]
 
-    def vector(self, key: str, default: str) -> Vector:
+    def vector(self, key: str, default: str) -> Triple:
         """Three numbers in an attribute."""
         x, y, z = self._decimals(self.get(key, default) or default, 3, key)
         return x, y, z
@@ -61,21 +61,21 @@ class Element:
         """The numbers that stand in the element."""
         return self._decimals(self.text, size, "")
 
-    def all(self, tag: str) -> list[Element]:
+    def all(self, tag: str) -> list[XmlElement]:
         """Its children of this name."""
         found = [child for child in self.children if child.tag == tag]
         for child in found:
             child.seen = True
         return found
 
-    def one(self, tag: str) -> Element | None:
+    def one(self, tag: str) -> XmlElement | None:
         """Its child of this name, None where there is none; of several the first."""
         found = next((child for child in self.children if child.tag == tag), None)
         if found is not None:
             found.seen = True
         return found
 
-    def left(self) -> Iterator[tuple[Element, str]]:
+    def left(self) -> Iterator[tuple[XmlElement, str]]:
         """Whatever of it and below nobody has read: an element whole ("" beside it), or an attribute by its name."""
         if not self.seen:
             yield self, ""
@@ -96,15 +96,15 @@ class Element:
         return found
 
 
-def xml_tree(data: bytes, name: str) -> Element:
+def xml_tree(data: bytes, name: str) -> XmlElement:
     """The root of an XML text. A document type is refused: entities can blow up a text, and no robot needs them.
 
     Raises:
         ModelError: no well-formed XML, or one with a document type.
     """
     parser = expat.ParserCreate()
-    top = Element("", {}, name, seen=True)
-    open_: list[Element] = [top]
+    top = XmlElement("", {}, name, seen=True)
+    open_: list[XmlElement] = [top]
 
     def here() -> str:
         return f"{name}:{parser.CurrentLineNumber}:{parser.CurrentColumnNumber + 1}"
@@ -112,7 +112,7 @@ def xml_tree(data: bytes, name: str) -> Element:
     def start(tag: str, attributes: dict[str, str]) -> None:
         if len(open_) > DEEPEST:
             raise ModelError(f"more than {DEEPEST} elements stand one in the other", here(), "make it flatter")
-        element = Element(tag, attributes, here())
+        element = XmlElement(tag, attributes, here())
         open_[-1].children.append(element)
         open_.append(element)
 
