@@ -9,6 +9,7 @@ from decimal import Decimal
 from typing import Any
 
 from eomgen.robots.numbers import ORIGIN, ZERO, Nine, Triple, computed
+from eomgen.robots.toml_text import decimal_text
 from eomgen.symbolic.expression.spatial import IDENTITY, apply, plus
 
 RESERVED = ("t", "pi", "nan", "inf", "infinity", "ground")
@@ -137,20 +138,11 @@ def signed_sum(terms: Iterable[tuple[Decimal, str]], constant: Decimal = ZERO) -
     for factor, name in (*terms, (constant, "")):
         if factor == 0 and (name or pieces):
             continue
-        size = f"{abs(factor).normalize():f}" if abs(factor) >= Decimal("1e-9") or factor == 0 else str(abs(factor))
+        size = decimal_text(abs(factor))
         shown = name if name and abs(factor) == 1 else f"{size}*{name}" if name else size
         sign = "-" if factor < 0 else "+"
         pieces.append(f"{sign} {shown}" if pieces else f"-{shown}" if sign == "-" else shown)
     return " ".join(pieces) or "0"
-
-
-def breaks_triangle(inertia: Sequence[Decimal]) -> bool:
-    """Whether no body of positive density has these moments of inertia: one is more than the sum of the others."""
-    import numpy as np
-
-    xx, yy, zz, xy, yz, zx = (*map(float, inertia), *([0.0] * (6 - len(inertia))))
-    a, b, c = np.linalg.eigvalsh([[xx, xy, zx], [xy, yy, yz], [zx, yz, zz]])
-    return bool(a < 0 or a + b < c * (1 - 1e-12))
 
 
 def without_empty(tables: Mapping[str, Any]) -> Entries:

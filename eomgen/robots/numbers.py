@@ -10,6 +10,7 @@ from typing import Any
 import mpmath
 
 from eomgen.symbolic.expression.spatial import IDENTITY, product, rotation, transposed
+from eomgen.symbolic.numeric.tolerances import ROUNDED_AWAY, SAME_TURN
 
 Triple = tuple[Any, Any, Any]
 Nine = tuple[Triple, Triple, Triple]
@@ -39,7 +40,7 @@ def decimal_of_double(x: float) -> Decimal:
 
 def computed(x: Decimal) -> Decimal:
     """A computed number, rounded to what is written; what is nothing but rounding is 0."""
-    if abs(x) < Decimal("1e-30"):
+    if abs(x) < ROUNDED_AWAY:
         return ZERO
     return Context(prec=WRITTEN).plus(x).normalize()
 
@@ -71,7 +72,7 @@ def sine_cosine(angle: Decimal) -> tuple[Any, Any]:
     with mpmath.workdps(DIGITS + 5):
         x = mpmath.mpf(str(angle)) if part is None else mpmath.pi * part.numerator / part.denominator
         pair = [Decimal(mpmath.nstr(y, DIGITS)) for y in (mpmath.sin(x), mpmath.cos(x))]
-    sine, cosine = (ZERO if abs(y) < Decimal("1e-35") else y for y in pair)
+    sine, cosine = (ZERO if abs(y) < ROUNDED_AWAY else y for y in pair)
     return sine, cosine
 
 
@@ -117,7 +118,7 @@ def turn_of(quaternion: Sequence[Decimal]) -> list[dict[str, Any]]:
     with localcontext(EXACTLY):
         w, *v = quaternion
         length = sum((x * x for x in v), ZERO).sqrt()
-        if length < Decimal("1e-14"):
+        if length < SAME_TURN:
             return []
         largest = max(v, key=abs)
         axis = [_plain(x / abs(largest)) for x in v]
@@ -135,7 +136,7 @@ def turn_of(quaternion: Sequence[Decimal]) -> list[dict[str, Any]]:
 def _plain(x: Decimal) -> Decimal:
     """A ratio, made short where it is so to 14 digits."""
     short = Context(prec=6).plus(x)
-    return short.normalize() if abs(short - x) < Decimal("1e-14") else computed(x)
+    return short.normalize() if abs(short - x) < SAME_TURN else computed(x)
 
 
 def inertia_in(R: Nine, tensor: Nine) -> Nine:

@@ -55,11 +55,11 @@ def _value(value: Any) -> str:
     if isinstance(value, (list, tuple)):
         return f"[{', '.join(map(_value, value))}]"
     if isinstance(value, Decimal):
-        return _decimal(value)
+        return decimal_text(value)
     return str(value) if isinstance(value, int) else json.dumps(value, ensure_ascii=False)
 
 
-def _decimal(value: Decimal) -> str:
+def decimal_text(value: Decimal) -> str:
     """As written by people: no zeros at its end, a power of ten only where it is short."""
     value = value.normalize() if value else Decimal(0)
     exponent = value.adjusted()

@@ -12,6 +12,7 @@ from decimal import Decimal
 from typing import Any
 
 from eomgen.errors import ModelError
+from eomgen.model.checks.triangle import possible
 from eomgen.model.findings import nearest
 from eomgen.robots.drawn_up import (
     Entries,
@@ -20,7 +21,6 @@ from eomgen.robots.drawn_up import (
     LegalNames,
     Moved,
     Seat,
-    breaks_triangle,
     hung,
     in_file,
     signed_sum,
@@ -29,6 +29,7 @@ from eomgen.robots.drawn_up import (
 from eomgen.robots.numbers import ORIGIN, ZERO, Nine, Triple, decimals, inertia_in, roll_pitch_yaw, six, tensor_of
 from eomgen.robots.xml_tree import XmlElement, xml_tree
 from eomgen.symbolic.expression.spatial import IDENTITY, cross
+from eomgen.symbolic.numeric.tolerances import NOT_NEGATIVE
 
 ONE_AXIS = {"revolute": "rad", "continuous": "rad", "prismatic": "m"}
 KINDS = (*ONE_AXIS, "fixed", "floating", "planar")
@@ -47,7 +48,6 @@ LEFT_OUT = {  # what has no counterpart, and why
     "friction": 'of Coulomb in a joint; sliding it is torque = "... - friction*sign(rate)", which cannot stick',
 }
 LEFT_OUT |= {f"{key} of <inertia>": "below zero by rounding: 0" for key in ("ixx", "iyy", "izz")}
-ROUNDING = Decimal("1e-12")  # a moment of inertia that is not below -ROUNDING is 0 [kg m^2]
 GRAVITY = {"kind": "gravity", "acceleration": [0, 0, "-g"]}
 
 
@@ -88,7 +88,7 @@ def massive(inertial: XmlElement | None) -> Entries:
     if tensor is not None:
         entries = [tensor.number(key, "0") for key in ("ixx", "iyy", "izz", "ixy", "iyz", "ixz")]
         for k, key in enumerate(("ixx", "iyy", "izz")):
-            if entries[k] < -ROUNDING:
+            if entries[k] < -NOT_NEGATIVE:
                 raise ModelError(
                     f"a negative moment of inertia: {entries[k]}", tensor.where, f"give {key} of 0 or more"
                 )
@@ -106,7 +106,7 @@ def with_mass(found: Entries, center: Triple, moments: list[Decimal]) -> Entries
     if any(center):
         found["center"] = in_file(center)
     found["inertia"] = moments
-    if breaks_triangle(moments):
+    if not possible([float(x) for x in moments]):
         found["measured"] = True
     return found
 

@@ -55,6 +55,9 @@ GAP_CLOSED = 1e-11  # [m or rad] a gap that an iteration in doubles has closed
 LARGEST_AT_50 = 1e15  # [SI] a coordinate or speed: beyond it a difference with a step of 1e-15 is lost
 LARGEST_SQUARED = 1e150  # [SI] of what is multiplied in doubles: beyond it its square has no value
 COORDINATE_AT_50 = 1e-18  # [SI] a coordinate or speed after the last step in 50 digits: it is 0
+NOT_NEGATIVE = 1e-12  # [kg m^2] a moment of inertia in a robot's file below zero by no more is 0, by rounding
+ROUNDED_AWAY = 1e-30  # [SI] a place, a sine or an inertia by 40 digits: what is smaller is its rounding
+SAME_TURN = 1e-14  # [1 or rad] of ratios and angles that were doubles: so near, they are what a person writes
 
 # Accuracy that is asked of a run in time: rtol and atol of a step.
 RUN = 1e-9  # of the user's runs, where nothing else is asked
