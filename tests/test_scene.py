@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 import math
+from collections.abc import Callable
 from dataclasses import MISSING, fields
 from pathlib import Path
 from typing import Any
@@ -16,13 +17,13 @@ from matplotlib.figure import Figure
 import eomgen
 from eomgen.documents.letters import PageBox
 from eomgen.documents.letters_artist import NamesArtist
-from eomgen.documents.scene_drawing import draw
-from eomgen.documents.space_drawing import draw_space
+from eomgen.documents.rest_picture import rest_picture
 from eomgen.scene import forms, plane_strokes, space_strokes
 from eomgen.scene.instant import drawn_start, frame_at
 from eomgen.scene.scene import ROLES, Mark, Scene
 from eomgen.scene.strokes import PictureSizes, SceneNumbers
 from eomgen.symbolic.numeric.evaluation import FLOAT, evaluate
+from eomgen.symbolic.print.declared_symbol import COMMANDS, SIGNS, parse_symbol
 
 MODELS = Path(__file__).parent.parent / "models"
 ALL = [str(path.relative_to(MODELS))[:-5] for path in sorted((*MODELS.glob("*.toml"), *MODELS.glob("seeds/*.toml")))]
@@ -215,30 +216,73 @@ def test_each_kind_is_drawn_by_each_drawer(kind, space):
             assert np.allclose(one.path.reshape(-1, d) @ R[0].T + p[0], other.path.reshape(-1, d), equal_nan=True)
 
 
-def boxes_of(name: str) -> list[tuple[str, PageBox]]:
-    """Every name of a model's picture, and where it stands."""
-    scene = scene_named(name)
-    numbers = SceneNumbers(scene, frame_at(scene, drawn_start(scene.system))[None, :])
-    figure = Figure(figsize=(6, 5), layout="constrained")
+Areas = list[tuple[str, tuple[PageBox, ...]]]
+"""Every name of a picture, and where it stands."""
+
+
+def areas_of(fill: Callable[[Figure], None], size: tuple[float, float]) -> list[Areas]:
+    """Of each panel of a picture that names what it shows."""
+    figure = Figure(figsize=size, layout="constrained")
     FigureCanvasAgg(figure)
-    panel = figure.subplots()
-    if scene.plane:
-        draw(panel, plane_strokes.plane_drawing(numbers, dimensions=True))
-    else:
-        draw_space(panel, space_strokes.space_drawing(numbers, dimensions=True))
+    fill(figure)
     figure.draw_without_rendering()
-    (names,) = (artist for artist in panel.get_children() if isinstance(artist, NamesArtist))
-    return names.boxes
+    panels = figure.axes
+    named = [[artist for artist in panel.get_children() if isinstance(artist, NamesArtist)] for panel in panels]
+    for panel, artists in zip(panels, named, strict=True):
+        assert not artists or not any(text.get_text() for text in panel.texts), "what is written without a look"
+    return [artists[0].areas for artists in named if artists]
+
+
+def covering(areas: Areas) -> list[tuple[str, str]]:
+    """The pairs of names of which one covers the other."""
+    pairs = ((one, other) for k, one in enumerate(areas) for other in areas[:k])
+    return [(a, b) for (a, p), (b, q) in pairs if any(box.meets(there) for box in p for there in q)]
 
 
 @pytest.mark.parametrize("name", [pytest.param(n, marks=() if n in SOME else pytest.mark.slow) for n in ALL])
 def test_names_do_not_cover_one_another(name):
     """Of the boxes of all names in a model's picture no two meet, and there are names."""
-    boxes = boxes_of(name)
-    assert boxes
-    for k, (text, box) in enumerate(boxes):
-        for other, there in boxes[:k]:
-            assert not box.meets(there), f"{text} covers {other}"
+    picture = rest_picture(eomgen.load(MODELS / f"{name}.toml"))
+    (areas,) = areas_of(picture.fill, (6, 5))
+    assert areas and covering(areas) == []
+
+
+RESULTS = {
+    "statics": "a_frame bolt_cutter fink_truss gerber_beam gerber_frame k_truss strut_frame three_hinged_arch".split(),
+    "kinematics": "four_bar quick_return slider_crank seeds/ch11_p4".split(),
+    "inertia": "atwood chain20 double_pendulum seeds/ch13_p2".split(),
+}
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize(("verb", "name"), [(verb, name) for verb, names in RESULTS.items() for name in names])
+def test_names_of_a_result_do_not_cover_one_another(verb, name):
+    """Forces of members along them, reactions, centres of rotation, axes: no two meet either."""
+    picture = getattr(eomgen, verb)(MODELS / f"{name}.toml").picture
+    first, *_ = areas_of(picture.fill, picture.size)
+    assert first and covering(first) == []
+
+
+def test_every_symbol_that_can_be_declared_can_be_drawn():
+    """matplotlib's mathematics knows each sign, accent and style of the grammar of symbols."""
+    from matplotlib.mathtext import MathTextParser
+
+    parser = MathTextParser("agg")
+    for command in COMMANDS:
+        text = command if command in SIGNS else rf"{command}{{x}}"
+        assert parser.parse(f"${parse_symbol(text).tex}$").width > 0
+
+
+def test_a_picture_has_the_symbols_that_a_model_declares():
+    """A coordinate, a length, a body: by what stands in `symbol`, not by their names."""
+    text = (MODELS / "simple_pendulum.toml").read_text()
+    model = eomgen.loads(text)
+    before = {name for name, _ in areas_of(rest_picture(model).fill, (6, 5))[0]}
+    assert r"$\theta$" in before
+    declared = text.replace("theta = { start", "theta = { symbol = '\\hat\\varphi', start")
+    assert declared != text
+    after = {name for name, _ in areas_of(rest_picture(eomgen.loads(declared)).fill, (6, 5))[0]}
+    assert r"$\theta$" not in after and any("varphi" in name for name in after)
 
 
 def test_a_scene_leaves_the_interpreter_as_it_was():

@@ -2,13 +2,14 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
 from typing import Any
 
 import numpy as np
 
+from eomgen.documents.latex_names import notation_of
 from eomgen.documents.letters import PlacedName
 from eomgen.documents.scene_drawing import LOAD, REACTION, draw, limits
 from eomgen.mechanics.bodies.kinematics import BodyLink
@@ -20,7 +21,7 @@ from eomgen.symbolic.expression.graph import Node, Scalar
 from eomgen.symbolic.expression.spatial import Vector
 from eomgen.symbolic.numeric.sure_numbers import numbers_of
 
-__all__ = ["ARROW", "LOAD", "REACTION", "PagePoint", "Sketch", "draw_model", "name_beside"]
+__all__ = ["ARROW", "LOAD", "REACTION", "PagePoint", "Sketch", "draw_model", "name_along", "name_beside"]
 
 PagePoint = tuple[float, float]
 ARROW = 0.13  # length of the longest arrow, of the extent
@@ -88,7 +89,7 @@ def draw_model(panel: Any, sketch: Sketch, *, names: bool = True, colors: Mappin
         colors: of bodies, where they have one of their own.
     """
     before = panel.dataLim.get_points() if panel.has_data() else None
-    draw(panel, sketch.drawing, names=names, colors=colors)
+    draw(panel, sketch.drawing, notation_of(sketch.system.scope.model), names=names, colors=colors)
     corners = np.array(limits(sketch.drawing))
     panel.dataLim.set_points(corners)
     if before is not None:
@@ -99,11 +100,22 @@ def draw_model(panel: Any, sketch: Sketch, *, names: bool = True, colors: Mappin
 
 def name_beside(panel: Any, text: str, at: PagePoint, color: str) -> None:
     """One more name of a model that is drawn: it is placed where it covers no other one."""
+    panel.plot(*at, alpha=0)  # so that the axes hold it
+    _named(panel, PlacedName(text, at, color))
+
+
+def name_along(panel: Any, text: str, ends: Sequence[Any], color: str) -> None:
+    """A name written along a line; the others keep off it."""
+    (x, y), (u, v) = ends
+    if text:
+        _named(panel, PlacedName(text, (float(x), float(y)), color, 8.0, -1, (float(u), float(v))))
+
+
+def _named(panel: Any, name: PlacedName) -> None:
     from eomgen.documents.letters_artist import NamesArtist
 
-    panel.plot(*at, alpha=0)  # so that the axes hold it
     shown = [artist for artist in panel.artists if isinstance(artist, NamesArtist)]
     if shown:
-        shown[0].add(PlacedName(text, at, color))
+        shown[0].add(name)
     else:
-        panel.add_artist(NamesArtist([PlacedName(text, at, color)], []))
+        panel.add_artist(NamesArtist([name], []))

@@ -15,6 +15,8 @@ import numpy as np
 RINGS = (5.0, 9.0, 14.0, 20.0, 28.0, 38.0)  # from the place to the name [points]
 TURNS = tuple(math.pi * k / 8 for k in (2, 1, 14, 6, 3, 13, 10, 5, 0, 4, 12, 8, 15, 7, 11, 9))  # where one looks first
 APART = 1.0  # between two names [points]
+SHARES = (0.5, 0.4, 0.6, 0.3, 0.7, 0.22, 0.78)  # of a line, where the middle of what is written along it may stand
+BESIDE = 1.5  # of that from the line [points]
 STEP = 4.0  # of the dots that stand for a line that should not be covered [points]
 
 
@@ -28,6 +30,7 @@ class PlacedName:
     Args:
         at: data coordinates.
         rank: those with a smaller one choose first; what finds no room is left out.
+        along: the other end of the line along which it is written, from `at`; None: it is upright, beside its place.
     """
 
     text: str
@@ -35,6 +38,7 @@ class PlacedName:
     color: str = "#202020"
     size: float = 9.0
     rank: int = 0
+    along: tuple[float, float] | None = None
 
 
 @dataclass(frozen=True)
@@ -102,6 +106,36 @@ def room_for(
             if cost < best[0]:
                 best = (cost, box)
     return best[1]
+
+
+def slices_along(a: np.ndarray, b: np.ndarray, size: tuple[float, float], share: float, away: float) -> list[PageBox]:
+    """A text of a size written along the line from a to b: the boxes of its pieces, as long as it is high.
+
+    Args:
+        share: of the line, where its middle is.
+        away: of its middle, to the left of the line.
+    """
+    e = (b - a) / (float(np.hypot(*(b - a))) or 1.0)
+    middle = a + share * (b - a) + away * np.array([-e[1], e[0]])
+    count = max(1, math.ceil(size[0] / size[1]))
+    half = 0.5 * (abs(e) * size[0] / count + abs(e[::-1]) * size[1])
+    places = (middle + ((k + 0.5) / count - 0.5) * size[0] * e for k in range(count))
+    return [PageBox(x - half[0], y - half[1], x + half[0], y + half[1]) for x, y in places]
+
+
+def place_along(
+    a: np.ndarray, b: np.ndarray, size: tuple[float, float], taken: Sequence[PageBox], point: float
+) -> tuple[float, float, list[PageBox]]:
+    """(share, away, boxes) of the best place of a text along a line: at its middle, else nearer to an end, or below."""
+    found = []
+    for side in (1, -1):
+        for order, share in enumerate(SHARES):
+            away = side * (0.5 * size[1] + BESIDE * point)
+            boxes = slices_along(a, b, size, share, away)
+            met = sum(box.meets(other) for box in boxes for other in taken)
+            found.append((met, side < 0, order, share, away, boxes))
+    *_, share, away, boxes = min(found, key=lambda each: each[:3])
+    return share, away, boxes
 
 
 def dots_along(lines: Sequence[np.ndarray], step: float) -> np.ndarray:

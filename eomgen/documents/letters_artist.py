@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Sequence
 from typing import Any
 
@@ -10,7 +11,7 @@ from matplotlib.artist import Artist
 from matplotlib.text import Text
 
 from eomgen.documents.figures import halo
-from eomgen.documents.letters import STEP, PageBox, PlacedName, dots_along, room_for
+from eomgen.documents.letters import STEP, PageBox, PlacedName, dots_along, place_along, room_for
 
 
 class NamesArtist(Artist):
@@ -27,8 +28,8 @@ class NamesArtist(Artist):
         super().__init__()
         self.names = sorted(dict.fromkeys(names), key=lambda name: name.rank)
         self.lines = lines
-        self.boxes: list[tuple[str, PageBox]] = []
-        """(text, box in dots) of every name as it was drawn last."""
+        self.areas: list[tuple[str, tuple[PageBox, ...]]] = []
+        """(text, boxes in dots) of every name as it was drawn last; one that is turned has several, end to end."""
 
     def add(self, name: PlacedName) -> None:
         """One more, which chooses its place by its rank."""
@@ -44,14 +45,37 @@ class NamesArtist(Artist):
         dots = dots_along([page(line) for line in self.lines], STEP * point)
         window = self.axes.get_window_extent(renderer)
         inside = PageBox(window.x0, window.y0, window.x1, window.y1)
-        self.boxes = []
+        self.areas = []
+        taken = self._others(renderer)
         for name in self.names:
             text = Text(0, 0, name.text, color=name.color, fontsize=name.size, path_effects=halo())
             text.set_figure(figure)
             size = text.get_window_extent(renderer)
-            x, y = page(name.at)
-            box = room_for((x, y), (size.width, size.height), [b for _, b in self.boxes], dots, inside, point)
-            if box is not None:
-                self.boxes.append((name.text, box))
+            (x, y), wide = page(name.at), (size.width, size.height)
+            if name.along is not None:
+                found = self._along(text, page(np.array([name.at, name.along])), wide, taken, point)
+                self.areas.append((name.text, found))
+                taken += found
+                text.draw(renderer)
+            elif (box := room_for((x, y), wide, taken, dots, inside, point)) is not None:
+                self.areas.append((name.text, (box,)))
+                taken.append(box)
                 text.set_position((box.left - size.x0, box.bottom - size.y0))
                 text.draw(renderer)
+
+    def _others(self, renderer: Any) -> list[PageBox]:
+        """The boxes of what else is written on the panel."""
+        texts = [text for text in self.axes.texts if text.get_visible() and text.get_text()] if self.axes else []
+        return [PageBox(*text.get_window_extent(renderer).extents) for text in texts]
+
+    @staticmethod
+    def _along(
+        text: Text, ends: np.ndarray, size: tuple[float, float], taken: list[PageBox], point: float
+    ) -> tuple[PageBox, ...]:
+        """A text turned along a line, readable from below or from the right, and its boxes."""
+        a, b = ends if ends[1, 0] - ends[0, 0] > -0.5 * point else ends[::-1]
+        share, away, boxes = place_along(a, b, size, taken, point)
+        e = (b - a) / (float(np.hypot(*(b - a))) or 1.0)
+        text.set_position(tuple(a + share * (b - a) + away * np.array([-e[1], e[0]])))
+        text.set(ha="center", va="center", rotation=math.degrees(math.atan2(e[1], e[0])), rotation_mode="anchor")
+        return tuple(boxes)

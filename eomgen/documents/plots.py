@@ -9,6 +9,7 @@ from typing import Any
 import numpy as np
 
 from eomgen.documents.figures import Picture, mathtext
+from eomgen.documents.latex_names import Notation, notation_of
 from eomgen.errors import RunFailed
 from eomgen.model.own_units import OUTPUT
 from eomgen.simulation.result import Trajectory
@@ -79,12 +80,19 @@ def outputs_over_time(trajectory: Trajectory, title: str, units: Mapping[str, Un
     def fill(figure: Any) -> None:
         panels = figure.subplots(len(groups), 1, sharex=True, squeeze=False)[:, 0]
         for panel, (unit, names) in zip(panels, groups.items(), strict=True):
-            _curves(panel, trajectory.t, {name: trajectory.outputs[name] / unit.size for name in names}, unit)
+            curves = {name: trajectory.outputs[name] / unit.size for name in names}
+            _curves(panel, trajectory.t, curves, unit, Notation())
         panels[-1].set_xlabel("$t$ [s]")
         panels[-1].margins(x=0.01)
         figure.align_ylabels(panels)
 
     return Picture((8, 1.0 + 2.1 * len(groups)), fill, title)
+
+
+def notation_of_run(run: Trajectory) -> Notation:
+    """What the model of a run declares of its names; nothing where nobody knows it."""
+    known = run.phases[0].model if run.phases else None
+    return Notation() if known is None else notation_of(known.declared.scope.model)
 
 
 def by_unit(trajectory: Trajectory, units: Mapping[str, Unit]) -> dict[Unit, list[str]]:
@@ -96,10 +104,11 @@ def by_unit(trajectory: Trajectory, units: Mapping[str, Unit]) -> dict[Unit, lis
 
 
 def _coordinates(panel: Any, trajectory: Trajectory, names: list[str], unit: Unit) -> None:
-    _curves(panel, trajectory.t, {name: trajectory[name] / unit.size for name in names}, unit)
+    curves = {name: trajectory[name] / unit.size for name in names}
+    _curves(panel, trajectory.t, curves, unit, notation_of_run(trajectory))
 
 
-def _curves(panel: Any, t: np.ndarray, curves: Mapping[str, np.ndarray], unit: Unit) -> None:
+def _curves(panel: Any, t: np.ndarray, curves: Mapping[str, np.ndarray], unit: Unit, notation: Notation) -> None:
     from matplotlib import colormaps
 
     names = list(curves)
@@ -109,7 +118,7 @@ def _curves(panel: Any, t: np.ndarray, curves: Mapping[str, np.ndarray], unit: U
         if len(names) <= 10
         else colormaps["viridis"](np.linspace(0, 0.92, len(names)))
     )
-    labels = [f"${mathtext(name)}$" for name in names]
+    labels = [f"${mathtext(name, notation)}$" for name in names]
     for name, label, color in zip(names, labels, colors, strict=False):
         panel.plot(t, curves[name], label=label, color=color, linewidth=1.6 if few else 1.0)
     shown = ", ".join(labels) if len(labels) <= 3 else f"{labels[0]}, …, {labels[-1]}"

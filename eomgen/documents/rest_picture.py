@@ -5,6 +5,7 @@ from __future__ import annotations
 from typing import Any
 
 from eomgen.documents.figures import Picture
+from eomgen.documents.latex_names import notation_of
 from eomgen.documents.scene_drawing import draw
 from eomgen.documents.space_drawing import draw_space
 from eomgen.model.parts import Model
@@ -28,6 +29,6 @@ def rest_picture(model: Model) -> Picture:
     drawing = (plane_drawing if scene.plane else space_drawing)(numbers, dimensions=True)
 
     def fill(figure: Any) -> None:
-        (draw if scene.plane else draw_space)(figure.subplots(), drawing)
+        (draw if scene.plane else draw_space)(figure.subplots(), drawing, notation_of(scene.system.scope.model))
 
     return Picture(SIZE, fill, model.name)

@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 
 from eomgen.documents.figures import Picture, mathtext
-from eomgen.documents.plots import outputs_over_time, over_time
+from eomgen.documents.plots import notation_of_run, outputs_over_time, over_time
 from eomgen.errors import RunFailed, UsageError
 from eomgen.simulation.result import Trajectory
 from eomgen.symbolic.expression.units import Unit
@@ -47,6 +47,8 @@ def _phase(run: Trajectory, title: str, units: Mapping[str, Unit]) -> Picture:
     if not names:
         raise RunFailed("no coordinate has its rate among the speeds: there is no phase portrait")
 
+    notation = notation_of_run(run)
+
     def draw(panel: Any, name: str) -> None:
         unit = units.get(name)
         size, text = (1.0, "") if unit is None else (unit.size, unit.text)
@@ -55,8 +57,8 @@ def _phase(run: Trajectory, title: str, units: Mapping[str, Unit]) -> Picture:
             rows = slice(phase.rows[0], phase.rows[1])
             panel.plot(x[rows], y[rows], color=LINE, linewidth=1.2)
         panel.plot(x[:1], y[:1], "o", color=START, markersize=4)
-        panel.set_xlabel(f"${mathtext(name)}$" + (f" [{text}]" if text else ""))
-        panel.set_ylabel(f"${mathtext(name + chr(39))}$" + (f" [{text}/s]" if text else ""))
+        panel.set_xlabel(f"${mathtext(name, notation)}$" + (f" [{text}]" if text else ""))
+        panel.set_ylabel(f"${mathtext(name + chr(39), notation)}$" + (f" [{text}/s]" if text else ""))
 
     return _panels(names, draw, title)
 

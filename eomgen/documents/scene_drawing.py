@@ -8,6 +8,7 @@ from typing import Any
 import numpy as np
 
 from eomgen.documents.figures import mathtext
+from eomgen.documents.latex_names import Notation
 from eomgen.documents.letters import PlacedName
 from eomgen.scene.strokes import Drawing, Letter, Stroke
 
@@ -43,11 +44,17 @@ SMALLEST = 22.0  # side of a picture [symbol units]
 
 
 def draw(
-    panel: Any, drawing: Drawing, frame: int = 0, *, names: bool = True, colors: Mapping[str, str] | None = None
+    panel: Any,
+    drawing: Drawing,
+    notation: Notation,
+    *,
+    names: bool = True,
+    colors: Mapping[str, str] | None = None,
 ) -> list[tuple[Any, Stroke]]:
-    """A scene in the plane at one of its frames, on matplotlib axes with equal scales and no frame.
+    """A scene in the plane at its first frame, on matplotlib axes with equal scales and no frame.
 
     Args:
+        notation: how the names of the model are set.
         names: bodies and points are named.
         colors: of bodies that have one of their own.
     Returns:
@@ -56,15 +63,15 @@ def draw(
     panel.set_aspect("equal")
     panel.axis("off")
     strokes = [stroke for stroke in drawing.strokes if stroke.path.size]
-    shown = [(artist_of(panel, s, frame, colors or {}, 1 + k / len(strokes)), s) for k, s in enumerate(strokes)]
+    shown = [(artist_of(panel, s, 0, colors or {}, 1 + k / len(strokes)), s) for k, s in enumerate(strokes)]
     low, high = limits(drawing)
     panel.set_xlim(low[0], high[0])
     panel.set_ylim(low[1], high[1])
     if names:
         from eomgen.documents.letters_artist import NamesArtist
 
-        lines = [stroke.path[frame] for stroke in drawing.strokes if stroke.role != "label"]
-        panel.add_artist(NamesArtist(tuple(letter_names(drawing.letters, frame, colors or {})), lines))
+        lines = [stroke.path[0] for stroke in drawing.strokes if stroke.role != "label"]
+        panel.add_artist(NamesArtist(tuple(letter_names(drawing.letters, colors or {}, notation)), lines))
     return shown
 
 
@@ -107,11 +114,11 @@ def limits(drawing: Drawing) -> tuple[np.ndarray, np.ndarray]:
     return middle - 0.5 * size, middle + 0.5 * size
 
 
-def letter_names(letters: Sequence[Letter], frame: int, colors: Mapping[str, str]) -> Iterable[PlacedName]:
+def letter_names(letters: Sequence[Letter], colors: Mapping[str, str], notation: Notation) -> Iterable[PlacedName]:
     """The names of a picture; of several points at one place the first."""
     there: set[tuple[str, int, int]] = set()
     for letter in letters:
-        x, y = (float(v) for v in letter.at[frame])
+        x, y = (float(v) for v in letter.at[0])
         if not np.isfinite([x, y]).all():
             continue
         key = (letter.role, round(x * 1e6), round(y * 1e6))
@@ -119,11 +126,16 @@ def letter_names(letters: Sequence[Letter], frame: int, colors: Mapping[str, str
             continue
         there.add(key)
         color = colors.get(letter.of, BODY) if letter.role == "label" else LINES.get(letter.role, (INK, 1.0))[0]
-        yield PlacedName(written(letter), (x, y), color, 9.0, RANKS.get(letter.role, 4))
+        yield PlacedName(written(letter, notation), (x, y), color, 9.0, RANKS.get(letter.role, 4))
 
 
-def written(letter: Letter) -> str:
-    """A name as matplotlib sets it: of bodies and forces as it is, of points and lengths as mathematics."""
+def written(letter: Letter, notation: Notation) -> str:
+    """A name as matplotlib sets it: of bodies and forces as it is, of points and lengths as mathematics.
+
+    A body that declares its symbol is called by that.
+    """
+    if letter.role == "label" and letter.of in notation.indices:
+        return f"${notation.indices[letter.of]}$"
     if letter.role in ("label", "force", "reaction"):
         return letter.text.replace("$", r"\$")
-    return f"${mathtext(letter.text)}$"
+    return f"${mathtext(letter.text, notation)}$"

@@ -8,6 +8,7 @@ from typing import Any
 
 import numpy as np
 
+from eomgen.documents.latex_names import Notation
 from eomgen.documents.letters import PlacedName
 from eomgen.documents.scene_drawing import BODY, FILLS, FINE, INK, LINES, MARGIN, NARROWEST, RANKS, SMALLEST, written
 from eomgen.scene.strokes import Drawing
@@ -113,8 +114,8 @@ class SpacePicture:
             if np.isfinite([a, b]).all()
         ]
 
-    def names(self, frame: int) -> list[PlacedName]:
-        """The names beside their places on the page."""
+    def names(self, frame: int, notation: Notation) -> list[PlacedName]:
+        """The names beside their places on the page, as a notation has them."""
         found: dict[tuple[str, int, int], PlacedName] = {}
         for letter in self.drawing.letters:
             at = letter.at[frame] @ self.view.T
@@ -122,7 +123,9 @@ class SpacePicture:
                 color = (
                     self.colors.get(letter.of, BODY) if letter.role == "label" else LINES.get(letter.role, (INK, 1))[0]
                 )
-                name = PlacedName(written(letter), (float(at[0]), float(at[1])), color, 9.0, RANKS.get(letter.role, 4))
+                name = PlacedName(
+                    written(letter, notation), (float(at[0]), float(at[1])), color, 9.0, RANKS.get(letter.role, 4)
+                )
                 found.setdefault((letter.role, round(at[0] * 1e6), round(at[1] * 1e6)), name)
         return list(found.values())
 
@@ -138,12 +141,15 @@ def _rgb(color: str) -> np.ndarray:
     return np.array(to_rgb(color))
 
 
-def draw_space(panel: Any, drawing: Drawing, frame: int = 0, *, names: bool = True) -> SpacePicture:
-    """A scene in space at one of its frames, on matplotlib axes with equal scales and no frame."""
-    picture = SpacePicture(panel, drawing)
-    picture.show(frame)
-    if names:
-        from eomgen.documents.letters_artist import NamesArtist
+def draw_space(panel: Any, drawing: Drawing, notation: Notation) -> SpacePicture:
+    """A scene in space at its first frame, on matplotlib axes with equal scales and no frame.
 
-        panel.add_artist(NamesArtist(tuple(picture.names(frame)), picture.lines(frame)))
+    Args:
+        notation: how the names of the model are set.
+    """
+    from eomgen.documents.letters_artist import NamesArtist
+
+    picture = SpacePicture(panel, drawing)
+    picture.show(0)
+    panel.add_artist(NamesArtist(tuple(picture.names(0, notation)), picture.lines(0)))
     return picture

@@ -13,7 +13,15 @@ from typing import Any
 import numpy as np
 
 from eomgen.documents.figures import Picture, mathtext
-from eomgen.documents.plots import by_unit, component_of, largest_reactions, owner_of, reactions_by_unit
+from eomgen.documents.latex_names import Notation
+from eomgen.documents.plots import (
+    by_unit,
+    component_of,
+    largest_reactions,
+    notation_of_run,
+    owner_of,
+    reactions_by_unit,
+)
 from eomgen.documents.statements import Code, Piece, prose
 from eomgen.page.contents import INKS, LegendEntry, ReportFigure
 from eomgen.page.markup import Html, element, in_a_row
@@ -112,17 +120,17 @@ def _coordinates(run: Trajectory, names: Sequence[str], unit: Unit, key: str) ->
     ]
     more = f"; {len(names) - len(lines)} more are not drawn" if len(names) > len(lines) else ""
     measured = f" [{unit}]" if unit.text else ""
-    return panel(run.t, lines, key, f"Coordinates{measured} over time [s]{more}")
+    return panel(run, lines, key, f"Coordinates{measured} over time [s]{more}")
 
 
 def _energy(run: Trajectory) -> ReportFigure:
     energy = run.energy
     assert energy is not None
     if run.drift is None:
-        return panel(run.t, [Line(energy, "curve c7", ())], "energy", "Energy T + V [J] over time [s]")
+        return panel(run, [Line(energy, "curve c7", ())], "energy", "Energy T + V [J] over time [s]")
     within = " in each phase" if len(run.phases) > 1 else ""
     caption = f"Energy: T + V less its value at the start [J] over time [s]; relative drift {run.drift:.1e}{within}"
-    return panel(run.t, [Line(energy - energy[:1], "curve c7", ())], "energy", caption)
+    return panel(run, [Line(energy - energy[:1], "curve c7", ())], "energy", caption)
 
 
 def _reactions(run: Trajectory, names: Sequence[str], unit: str, number: int) -> ReportFigure:
@@ -140,11 +148,12 @@ def _reactions(run: Trajectory, names: Sequence[str], unit: str, number: int) ->
         for name in owners[owner]
     ]
     few = f"; the largest, at {len(shown)} of {len(owners)} joints and ties" if len(shown) < len(owners) else ""
-    return panel(run.t, lines, f"reactions{number}", f"Reactions [{unit.replace('*', '·')}] over time [s]{few}")
+    return panel(run, lines, f"reactions{number}", f"Reactions [{unit.replace('*', '·')}] over time [s]{few}")
 
 
-def panel(t: np.ndarray, lines: Sequence[Line], key: str, caption: str) -> ReportFigure:
-    """Curves over time with their axes."""
+def panel(run: Trajectory, lines: Sequence[Line], key: str, caption: str) -> ReportFigure:
+    """Curves of a run over time with their axes."""
+    t = run.t
     values = np.concatenate([line.values for line in lines]) if lines else np.zeros(1)
     finite = values[np.isfinite(values)]
     low, high = (float(finite.min()), float(finite.max())) if len(finite) else (0.0, 0.0)
@@ -163,10 +172,12 @@ def panel(t: np.ndarray, lines: Sequence[Line], key: str, caption: str) -> Repor
     )
     marks += [element("path", d=path, class_=line.style) for line in lines if (path := _path(x(t), y(line.values)))]
     legend = tuple(LegendEntry(line.style, prose(*line.name)) for line in lines if line.name)
-    return ReportFigure(key, caption, (WIDTH, HEIGHT), in_a_row(*marks), legend, partial(_save, t, tuple(lines)))
+    return ReportFigure(
+        key, caption, (WIDTH, HEIGHT), in_a_row(*marks), legend, partial(_save, t, tuple(lines), notation_of_run(run))
+    )
 
 
-def _save(t: np.ndarray, lines: Sequence[Line], path: Path) -> None:
+def _save(t: np.ndarray, lines: Sequence[Line], notation: Notation, path: Path) -> None:
     """The same by matplotlib, for formats that carry pictures as files."""
 
     def fill(figure: Any) -> None:
@@ -175,7 +186,7 @@ def _save(t: np.ndarray, lines: Sequence[Line], path: Path) -> None:
             words = line.style.split()
             dash = next((LINES[word] for word in words if word in LINES), "-")
             label = "".join(
-                f"${mathtext(p.name)}$" if isinstance(p, Node) else getattr(p, "text", "") for p in line.name
+                f"${mathtext(p.name, notation)}$" if isinstance(p, Node) else getattr(p, "text", "") for p in line.name
             )
             color = next(INKS[int(word[1:])] for word in words if re.fullmatch(r"c\d", word))
             panel.plot(t, line.values, dash, color=color, linewidth=1.4, label=label or None)

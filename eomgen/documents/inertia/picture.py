@@ -7,7 +7,7 @@ from typing import Any
 
 import numpy as np
 
-from eomgen.documents.drawing import Sketch, draw_model
+from eomgen.documents.drawing import Sketch, draw_model, name_beside
 from eomgen.documents.figures import Picture
 from eomgen.errors import RunFailed
 from eomgen.mechanics.equations.system import System
@@ -61,6 +61,6 @@ def _body(panel: Any, sketch: Sketch, body: str, rows: np.ndarray) -> None:
         if np.linalg.norm(along) > 0.5:
             ends = np.array([center - 0.45 * sketch.extent * along, center + 0.45 * sketch.extent * along])
             panel.plot(*ends.T, color=AXIS, linewidth=1.0, linestyle=(0, (6, 3)), zorder=4)
-            panel.annotate(str(number), ends[1], color=AXIS, fontsize=9, zorder=6)
+            name_beside(panel, str(number), (float(ends[1, 0]), float(ends[1, 1])), AXIS)
     panel.plot(*center, marker="x", markersize=7, markeredgewidth=2, color=CENTER, zorder=7)
-    panel.annotate("C", center, color=CENTER, fontsize=9, xytext=(5, 5), textcoords="offset points", zorder=7)
+    name_beside(panel, "C", center, CENTER)

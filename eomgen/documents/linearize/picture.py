@@ -8,6 +8,7 @@ from typing import Any
 
 from eomgen.documents.drawing import Sketch, draw_model
 from eomgen.documents.figures import Picture, mathtext
+from eomgen.documents.latex_names import notation_of
 from eomgen.errors import RunFailed
 from eomgen.mechanics.equations.system import System
 from eomgen.mechanics.small_motions.modes import Modes
@@ -76,7 +77,8 @@ def _size(system: System, values: Mapping[Node, float], mode: Mode, here: Sketch
 
 def _bars(panel: Any, modes: Modes, mode: Mode) -> None:
     """The shape, a bar for each coordinate."""
-    names = [f"${mathtext(q.name)}$" for q in mode.shape]
+    notation = notation_of(modes.small.reference.system.scope.model)
+    names = [f"${mathtext(q.name, notation)}$" for q in mode.shape]
     panel.bar(names, [x.real for x in mode.shape.values()], color=BAR)
     panel.axhline(0, color="#808080", linewidth=0.8)
     panel.set_ylim(-1.1, 1.1)

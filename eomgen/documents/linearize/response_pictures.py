@@ -9,6 +9,7 @@ from typing import Any
 import numpy as np
 
 from eomgen.documents.figures import Picture, mathtext
+from eomgen.documents.latex_names import notation_of
 from eomgen.errors import RunFailed
 from eomgen.mechanics.small_motions.linearization import SmallMotions, state_matrix_of
 from eomgen.mechanics.small_motions.reduction import LinearEquations
@@ -38,6 +39,7 @@ def bode_picture(small: SmallMotions) -> Picture:
     _refuse_unvalued(small)
     A, B = small.state_matrix, small.input_matrix
     omega = _frequencies(A)
+    notation = notation_of(small.reference.system.scope.model)
     n = len(A)
     response = np.array([np.linalg.solve(1j * w * np.eye(n) - A, B) for w in omega])
     pairs = [(j, k) for j in range(len(e.coordinates)) for k in range(len(e.inputs))]
@@ -48,7 +50,7 @@ def bode_picture(small: SmallMotions) -> Picture:
         size, phase = figure.subplots(2, 1, sharex=True)
         for j, k in pairs:
             W = response[:, j, k]
-            label = f"${mathtext(e.coordinates[j].name)}/{mathtext(e.inputs[k].name)}$"
+            label = f"${mathtext(e.coordinates[j].name, notation)}/{mathtext(e.inputs[k].name, notation)}$"
             size.loglog(omega, np.abs(W), label=label, linewidth=1.4)
             phase.semilogx(omega, phases[j, k], linewidth=1.4)
         size.set_ylabel("$|W|$")
@@ -87,6 +89,8 @@ def locus_picture(small: SmallMotions, over: Range) -> Picture:
     roots = roots_over(small, over.name, over.values)
     named = np.array(over.values) / over.size
 
+    notation = notation_of(small.reference.system.scope.model)
+
     def fill(figure: Any) -> None:
         panel = figure.subplots()
         of_all = np.repeat(named, roots.shape[1])
@@ -97,7 +101,7 @@ def locus_picture(small: SmallMotions, over: Range) -> Picture:
         panel.set_xlabel(r"Re $s$ [1/s]")
         panel.set_ylabel(r"Im $s$ [1/s]")
         bar = figure.colorbar(points, ax=panel)
-        bar.set_label(f"${mathtext(over.name)}$" + (f" [{over.unit}]" if over.unit else ""))
+        bar.set_label(f"${mathtext(over.name, notation)}$" + (f" [{over.unit}]" if over.unit else ""))
 
     return Picture((6.4, 4.8), fill, small.reference.system.scope.model.name)
 

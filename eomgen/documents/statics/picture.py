@@ -11,8 +11,8 @@ from typing import Any
 import numpy as np
 
 from eomgen.documents.arrows import arrow, distributed, is_freer_outward, moment_arc
-from eomgen.documents.drawing import ARROW, LOAD, REACTION, PagePoint, Sketch, draw_model
-from eomgen.documents.figures import Picture, Scale, halo, scale_of
+from eomgen.documents.drawing import ARROW, LOAD, REACTION, PagePoint, Sketch, draw_model, name_along
+from eomgen.documents.figures import Picture, Scale, scale_of
 from eomgen.documents.statics.diagrams import diagram_panels, influence_panel
 from eomgen.documents.statics.section_steps import Sections
 from eomgen.errors import RunFailed
@@ -273,22 +273,9 @@ def _members(panel: Any, scene: StaticScene) -> None:
             continue
         (value,) = scene.sketch.numbers((reaction.value,))
         a, b = (np.array(scene.sketch.position((node, ZERO))) for node in (first, second))
-        turn = math.degrees(math.atan2(b[1] - a[1], b[0] - a[0]))
-        turn = turn - 180 if turn > 90 else turn + 180 if turn <= -90 else turn
         small = abs(value) < COMPUTED * scene.largest
         color = "#808080" if small else TENSION if value > 0 else COMPRESSION
-        panel.annotate(
-            "0" if small else scene.label(reaction.value),
-            (a + b) / 2,
-            rotation=turn,
-            rotation_mode="anchor",
-            ha="center",
-            va="bottom",
-            color=color,
-            fontsize=8,
-            zorder=8,
-            path_effects=halo(),
-        )
+        name_along(panel, "0" if small else scene.label(reaction.value), (a, b), color)
         panel.plot(*np.array([a, b]).T, color=color, linewidth=1.8, zorder=2)
         drawn = True
     if drawn:
