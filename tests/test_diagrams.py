@@ -7,6 +7,7 @@ import pytest
 from matplotlib.figure import Figure
 
 import eomgen
+from eomgen.documents.letters_artist import NamesArtist
 from eomgen.documents.statics.diagrams import diagram_panels, influence_panel
 from eomgen.mechanics.equations.system import system_of
 from eomgen.mechanics.reactions.reactions import reactions_of
@@ -35,7 +36,7 @@ def curves(panel) -> np.ndarray:
 
 
 def written(panel) -> set[str]:
-    return {text.get_text() for text in panel.texts}
+    return {name.text for artist in panel.artists if isinstance(artist, NamesArtist) for name in artist.names}
 
 
 def test_the_diagrams_show_the_section_forces_and_write_their_corners():

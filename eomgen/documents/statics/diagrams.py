@@ -7,7 +7,9 @@ from typing import Any
 
 import numpy as np
 
-from eomgen.documents.figures import Scale, figures, halo
+from eomgen.documents.figures import Scale, figures
+from eomgen.documents.letters import PlacedName
+from eomgen.documents.scene_drawing import INK
 from eomgen.mechanics.statics.influence import InfluenceLine
 from eomgen.mechanics.statics.section_forces import KINDS, Extreme, SectionForces, SectionPiece
 from eomgen.symbolic.expression.graph import Node, Scalar
@@ -87,25 +89,18 @@ def _filled(panel: Any, curves: Iterable[tuple[np.ndarray, np.ndarray]], color: 
 
 def _labels(panel: Any, points: Iterable[tuple[float, ...]]) -> None:
     """The values, each once at a place; zeros left out."""
+    from eomgen.documents.letters_artist import NamesArtist
+
     points = list(points)
     largest = max((abs(y) for _, y in points), default=0.0)
     width = max((abs(x) for x, _ in points), default=1.0) or 1.0
     shown: list[tuple[float, ...]] = []
-    for x, y in points:
+    for x, y in sorted(points, key=lambda point: -abs(point[1])):  # the largest choose their places first
         twin = any(abs(x - a) < SAME_PLACE * width and abs(y - b) <= COMPUTED * largest for a, b in shown)
         if abs(y) > COMPUTED * largest and not twin:
             shown.append((x, y))
-            up = (y > 0) != panel.yaxis_inverted()
-            panel.annotate(
-                figures(y),
-                (x, y),
-                xytext=(0, 3 if up else -3),
-                textcoords="offset points",
-                fontsize=8,
-                path_effects=halo(),
-                ha="center",
-                va="bottom" if up else "top",
-            )
+    names = [PlacedName(figures(y), (x, y), INK, 8.0, rank) for rank, (x, y) in enumerate(shown)]
+    panel.add_artist(NamesArtist(names, [np.column_stack(line.get_data()) for line in panel.lines[1:]]))
     panel.margins(x=0.03, y=0.22)
     if not largest:
         panel.set_yticks([0])
