@@ -69,7 +69,7 @@ class Ours:
         s = self.symbols
         values = {s.t: 0.0, **dict(zip(s.parameters.values(), self._parameters(), strict=True))}
         values |= {node: q[node.name] for node in s.q} | {node: u[node.name] for node in s.u}
-        values |= {node: w.get(name, 0.0) for name, node in s.inputs.items()}
+        values |= {node: w[name] if w else 0.0 for name, node in s.inputs.items()}
         n = len(s.u)
         entries = [x for row in self.graph.M for x in row]
         found = evaluate((*entries, *self.graph.c, *self.graph.Q), values, FLOAT)
@@ -156,6 +156,12 @@ def against_mujoco(text_or_path: str | Path, ours: Ours, rng: Any) -> float:
 
     spec = mujoco.MjSpec.from_string(text_or_path) if isinstance(text_or_path, str) else _spec(text_or_path)
     model = spec.compile()
+    for limited in (model.actuator_forcelimited, model.jnt_actfrclimited, model.tendon_actfrclimited):
+        limited[:] = 0
+    model.actuator_actearly[:] = False
+    for j in range(model.njnt):  # rotors of free and ball joints are among what is left out
+        if model.jnt_type[j] < 2:
+            model.dof_armature[model.jnt_dofadr[j] : model.jnt_dofadr[j] + 6 - 3 * model.jnt_type[j]] = 0
     data = mujoco.MjData(model)
     worst = 0.0
     for _ in range(STATES):
@@ -178,9 +184,15 @@ def against_mujoco(text_or_path: str | Path, ours: Ours, rng: Any) -> float:
             own_u |= dict(zip(fast, u, strict=True))
             rows |= {name_: iv + i for i, name_ in enumerate(fast)}
         w = {}
-        for k in range(model.nu):
-            data.ctrl[k] = 0.3 * rng.uniform(-1, 1)
-            w[legal(model.actuator(k).name or f"motor{k}")] = float(data.ctrl[k])
+        for k in range(model.nactuator):
+            push, raw = 0.3 * rng.uniform(-1, 1), model.actuator(k).name or f"motor{k}"
+            told = [x for x, part in ours.model.inputs.items() if x == raw or part.about == f"motor {raw}"]
+            if not told:
+                continue
+            filtered = model.actuator_actadr[k] >= 0
+            where = data.act if filtered else data.ctrl
+            where[model.actuator_actadr[k] if filtered else model.actuator_ctrladr[k]] = push
+            w[told[0]] = push
         model.opt.disableflags |= mujoco.mjtDisableBit.mjDSBL_CLAMPCTRL
         mujoco.mj_forward(model, data)
         full = np.zeros((model.nv, model.nv))
@@ -188,7 +200,7 @@ def against_mujoco(text_or_path: str | Path, ours: Ours, rng: Any) -> float:
             mujoco.mj_fullM(model, data, full)
         except TypeError:
             mujoco.mj_fullM(model, full, data.qM)
-        bias = data.qfrc_bias - data.qfrc_passive - data.qfrc_actuator
+        bias = data.qfrc_bias - data.qfrc_spring - data.qfrc_damper - data.qfrc_gravcomp - data.qfrc_actuator
         M, h = ours.at(own_q, own_u, w)
         order = [rows[u.name] for u in ours.symbols.u]
         worst = max(worst, distance(M, full[np.ix_(order, order)]), distance(h, bias[order]))

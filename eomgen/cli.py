@@ -124,7 +124,7 @@ def examples_command(wants_json: bool, output: str | None) -> int:
 @click.option("-o", "--output", type=click.Path(dir_okay=False), help="The model file, .toml.  [default: stdout]")
 @click.option("--floating", is_flag=True, help="Of URDF: nothing holds the base; else it is fixed to the ground.")
 def import_command(file: str, wants_json: bool, output: str | None, floating: bool) -> int:
-    """Make a model file of a robot's URDF.
+    """Make a model file of a robot's URDF, MJCF or SDF.
 
     Bodies, joints, inertias, dampers, motors as inputs, joints that mimic others as constraints, limits as remarks.
     What has no counterpart is listed: on stderr, at the end of the file, and as left_out in JSON.

@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+import importlib
 import json
+import sys
 from typing import Any
 
 import numpy as np
@@ -11,9 +13,10 @@ from click.testing import CliRunner
 
 import eomgen
 from eomgen.cli import main
-from eomgen.errors import ModelError
+from eomgen.errors import ModelError, ToolMissing
 from eomgen.robots.importing import imported
 from eomgen.symbolic.numeric.evaluation import FLOAT, evaluate
+from tests.helpers.tools import needs
 from tests.helpers.urdf_by_hand import ByHand, random_robot
 
 ARM = """<?xml version="1.0"?>
@@ -180,3 +183,83 @@ def test_a_file_that_is_no_robot_is_refused(tmp_path):
         robot(tmp_path, "<svg/>")
     with pytest.raises(ModelError, match="cannot be read"):
         eomgen.import_robot(tmp_path / "nothing.urdf")
+
+
+MJCF = """<mujoco model="tester">
+  <compiler angle="degree"/>
+  <option gravity="0.3 0 -9.81"/>
+  <default><joint damping="0.2" armature="0.01"/><geom density="500"/></default>
+  <worldbody>
+    <body name="cart/one" pos="0.1 0 1" euler="20 0 30">
+      <joint name="slide" type="slide" axis="1 2 0" pos="0.3 0 0" stiffness="3" springref="0.2"/>
+      <joint name="turn" axis="0 1 1" pos="0.1 0.2 0.3" ref="15"/>
+      <joint name="lean" axis="1 0 0" pos="0 0.1 0" range="-40 50"/>
+      <geom type="box" size="0.1 0.2 0.3" pos="0.1 0.1 0" euler="10 20 30"/>
+      <body name="ball" pos="0 0.5 0" quat="0.8 0.6 0 0">
+        <joint name="socket" type="ball" pos="0.1 0 -0.2" armature="0"/>
+        <geom type="capsule" fromto="0 0 0 0.1 0.2 0.3" size="0.05"/>
+        <body name="last" pos="0 0 0.4"><joint name="wrist" axis="0 0 1"/><geom size="0.1" pos="0.2 0 0"/>
+          <site name="nozzle" pos="0.1 0 0" euler="0 40 0"/></body>
+      </body>
+    </body>
+    <body name="bird" pos="1 2 3" euler="0 90 0"><freejoint name="fly"/>
+      <geom type="ellipsoid" size="0.1 0.2 0.3"/></body>
+  </worldbody>
+  <tendon><fixed name="cable" stiffness="7" damping="0.3" springlength="0.1 0.4">
+    <joint joint="slide" coef="2"/><joint joint="wrist" coef="-0.5"/></fixed></tendon>
+  <equality><joint joint1="lean" joint2="wrist" polycoef="0.1 2 0.5 0 0"/></equality>
+  <actuator>
+    <motor name="push" joint="slide" gear="3"/>
+    <position name="hold" joint="turn" kp="20" kv="2"/>
+    <motor name="pull" tendon="cable" gear="2"/>
+    <motor name="jet" site="nozzle" gear="1 0 2 0 0.5 0"/>
+    <general name="muscle" joint="lean" dyntype="filter" gainprm="4"/>
+  </actuator>
+</mujoco>"""
+
+
+@needs(".mujoco", what="mujoco")
+def test_mjcf_means_what_mujoco_computes(tmp_path):
+    """M, all forces at random states and controls, and the rows of ties, against MuJoCo; several joints in a body, off
+    its origin, ball and free joints, springs with slack, motors on joints, tendons and sites."""
+    mujoco: Any = importlib.import_module("mujoco")
+    found = robot(tmp_path, MJCF, "xml")
+    model = found.model
+    compiled = mujoco.MjModel.from_xml_string(MJCF)
+    compiled.opt.jacobian = 0
+    data, rng = mujoco.MjData(compiled), np.random.default_rng(3)
+    equations = eomgen.derive(model)
+    graph, s = equations.graph, equations.graph.symbols
+    for _ in range(3):
+        data.qpos[:], data.qvel[:] = rng.normal(size=compiled.nq), rng.normal(size=compiled.nv)
+        mujoco.mj_normalizeQuat(compiled, data.qpos)
+        data.ctrl[:4], data.act[:] = rng.normal(size=4), 0.7
+        mujoco.mj_forward(compiled, data)
+        slides = ["slide", "turn", "lean", "socket_e0", "socket_e1", "socket_e2", "socket_e3", "wrist"]
+        q = dict(zip([*slides, *(f"fly_{x}" for x in ("x", "y", "z", "e0", "e1", "e2", "e3"))], data.qpos, strict=True))
+        rates = ["slide'", "turn'", "lean'", "socket_wx", "socket_wy", "socket_wz", "wrist'"]
+        rates += [*(f"fly_{x}'" for x in "xyz"), *(f"fly_w{x}" for x in "xyz")]
+        u = dict(zip(rates, data.qvel, strict=True))
+        w = dict(zip(("push", "hold", "pull", "jet"), data.ctrl, strict=False)) | {"muscle": 0.7}
+        known: dict[Any, Any] = {s.t: 0.0} | {x: q[x.name] for x in s.q} | {x: u[x.name] for x in s.u}
+        known |= {x: w[x.name] for x in s.inputs.values()}
+        n, order = len(s.u), [rates.index(x.name) for x in s.u]
+        entries = [*(x for row in graph.M for x in row), *graph.c, *graph.Q, *(x for row in graph.J for x in row)]
+        numbers = np.array(evaluate(entries, known, FLOAT), dtype=float)
+        full = np.zeros((n, n))
+        for k in range(n):
+            mujoco.mj_mulM(compiled, data, full[k], np.eye(n)[k])
+        forces = data.qfrc_passive + data.qfrc_actuator - data.qfrc_bias
+        M, Q = numbers[: n * n].reshape(n, n), numbers[n * n + n : n * n + 2 * n] - numbers[n * n : n * n + n]
+        assert np.allclose(M, full[np.ix_(order, order)], atol=1e-11) and np.allclose(Q, forces[order], atol=1e-9)
+        J, tie = numbers[n * n + 2 * n :].reshape(-1, n), data.efc_J.reshape(-1, n)[0][order]
+        assert len(J) == 1 and abs(abs(J[0] @ tie) - np.linalg.norm(J[0]) * np.linalg.norm(tie)) < 1e-10
+    assert equations.certify().ok
+    assert {each.what for each in found.left_out} == {"geoms that touch", "filters of motors", "softness of equalities"}
+
+
+def test_mjcf_without_mujoco_names_the_wheel(tmp_path, monkeypatch):
+    """Exit 4: which tool is missing, and how to get it."""
+    monkeypatch.setitem(sys.modules, "mujoco", None)
+    with pytest.raises(ToolMissing, match="pip install mujoco"):
+        robot(tmp_path, MJCF, "xml")

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from dataclasses import dataclass
 from decimal import localcontext
 from pathlib import Path
@@ -11,10 +12,13 @@ from eomgen.files import read
 from eomgen.model.parts import Model
 from eomgen.model.reader import loads
 from eomgen.robots.drawn_up import Imported, LeftOut
+from eomgen.robots.mjcf import mjcf
 from eomgen.robots.numbers import EXACTLY
 from eomgen.robots.toml_text import toml_text
 from eomgen.robots.urdf import urdf
 
+COMMENT = re.compile(rb"<!--.*?-->", re.S)
+ROOT = re.compile(rb"<\s*([A-Za-z][A-Za-z0-9]*)")  # the first element
 LARGEST = 20_000_000  # bytes of a robot file
 
 
@@ -34,7 +38,7 @@ class ImportedRobot:
 
 
 def imported(path: str | Path, *, floating: bool = False) -> ImportedRobot:
-    """The robot in a file: URDF.
+    """The robot in a file: URDF, or MJCF (by the extra `[mujoco]`).
 
     Args:
         floating: of URDF: nothing holds the base; else it is fixed to the ground.
@@ -65,4 +69,8 @@ def import_robot(path: str | Path, *, floating: bool = False) -> Model:
 
 
 def _tables(path: Path, data: bytes, floating: bool) -> Imported:
+    """By what the root of the file says."""
+    root = ROOT.search(COMMENT.sub(b"", data))
+    if root is not None and root[1] == b"mujoco":
+        return mjcf(path)
     return urdf(data, str(path), floating=floating)

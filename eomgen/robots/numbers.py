@@ -36,7 +36,7 @@ def decimals(values: Iterable[Any]) -> Triple:
 def decimal_of_double(x: float) -> Decimal:
     """A double as a decimal: with 15 digits where it is the next but few to that, else as it is."""
     short, close = Decimal(f"{x:.15g}"), 2 * sys.float_info.epsilon * abs(x)
-    return short if len(short.as_tuple().digits) < 12 and abs(float(short) - x) <= close else Decimal(repr(x))
+    return short if len(short.as_tuple().digits) < 12 and abs(float(short) - x) <= close else Decimal(repr(float(x)))
 
 
 def computed(x: Decimal) -> Decimal:
