@@ -169,6 +169,80 @@ def test_a_strangers_text_is_text_in_a_page(tmp_path):
     assert visited(play(model, time=0.5).html, script).found == ["ok", None, name]
 
 
+DRAG = """
+    const stage = document.querySelector(".stage"), box = () => stage.getBoundingClientRect();
+    await new Promise(done => setTimeout(done, 400));
+    const point = (type, clientX, clientY, on = stage) =>
+        on.dispatchEvent(new PointerEvent(type, { clientX, clientY, pointerId: 1, bubbles: true, cancelable: true }));
+    const before = eomgen.state(0);
+    %s
+    for (let k = 1; k <= 8; k++) point("pointermove", x + k*dx/8, y + k*dy/8);
+    point("pointerup", x + dx, y + dy);
+    return { before, after: eomgen.state(0), names: eomgen.names, box: [box().width, box().height] };
+"""
+IN_THE_PLANE = """
+    const body = document.querySelector('[data-frame="%d"].body');
+    const { left, top, width, height } = body.getBoundingClientRect();
+    const [x, y, dx, dy] = [left + width/2, top + height/2, %d, %d];
+    point("pointerdown", x, y, body.firstChild);
+"""
+IN_SPACE = """
+    const { left, top, width, height } = box();
+    let x, y, taken = false;
+    for (let i = 0; i < 400 && !taken; i++) {
+        [x, y] = [left + width*(0.1 + 0.04*(i % 20)), top + height*(0.1 + 0.04*Math.floor(i/20))];
+        taken = !point("pointerdown", x, y);
+        if (!taken) point("pointerup", x, y);
+    }
+    if (!taken) throw new Error("no body is under any place of the picture");
+    const [dx, dy] = [60, -25];
+"""
+
+
+@pytest.mark.parametrize(
+    ("name", "taken"),
+    [
+        ("double_pendulum", IN_THE_PLANE % (2, 40, -30)),
+        ("four_bar", IN_THE_PLANE % (1, 30, -20)),  # a closed loop
+        ("heavy_top", IN_SPACE),
+        ("arm3", IN_SPACE),
+    ],
+)
+def test_a_body_is_drawn_to_where_the_pointer_goes(name, taken):
+    """The start is another then, one at which the ties hold; the motion from there is a simulation's."""
+    seen = visited(page(name), DRAG % taken)
+    assert seen.console == ()
+    found, model = seen.found, eomgen.load(MODELS / f"{name}.toml")
+    before, after = (dict(zip(found["names"], found[key], strict=True)) for key in ("before", "after"))
+    moved = {q: after[q] for q in model.coordinates if q in after}
+    assert max(abs(after[q] - before[q]) for q in moved) > 0.02
+    start = {q: x for q, x in moved.items() if not model.coordinates[q].dependent}
+    run = eomgen.simulate(model, time=0.01, start=start)
+    assert run.x[0, : len(run.coordinates)] == pytest.approx([after[q] for q in run.coordinates], abs=1e-6)
+
+
+def test_names_are_shown_in_space():
+    """Beside their bodies, on the screen, once they are asked for."""
+    script = """
+        const box = [...document.querySelectorAll("label")].find(each => each.textContent.includes("names")).firstChild;
+        await new Promise(done => setTimeout(done, 400));
+        const stage = document.querySelector(".stage").getBoundingClientRect();
+        const shown = [...document.querySelectorAll(".word.label")];
+        const seen = () => shown.filter(each => each.offsetParent !== null).map(each => {
+            const { left, top } = each.getBoundingClientRect();
+            const inside = left > stage.left && left < stage.right && top > stage.top - 20 && top < stage.bottom;
+            return [each.textContent, inside];
+        });
+        const before = seen();
+        box.click();
+        return { before, after: seen() };
+    """
+    seen = visited(page("arm3"), script)
+    assert seen.console == () and seen.found["before"] == []
+    names = dict(seen.found["after"])
+    assert set(names) >= set(eomgen.load(MODELS / "arm3.toml").bodies) and all(names.values())
+
+
 def test_play_writes_its_page_and_proves_its_programs(tmp_path):
     """The certificate has the page's programs; the same bytes twice; a slider that makes no sense is refused."""
     path, model = tmp_path / "p.html", str(MODELS / "cart_pole.toml")

@@ -131,6 +131,7 @@ class PlayedRun:
             "energy": energy,
             "run": self._recorded(),
             "live": self.live.told() if self.live else None,
+            "moves": moves,
             "parameters": self._parameters(),
             "sliders": self._sliders() if self.options.moves else [],
             "rests": self.rests if self.options.moves else "",

@@ -52,6 +52,7 @@ class PlayedDisplacements:
             "energy": False,
             "run": {**run, "frames": frames},
             "live": None,
+            "moves": False,
             "parameters": [],
             "sliders": [],
             "rests": "",

@@ -20,13 +20,14 @@ const hasSlots = mark => Object.values(mark).some(function slotted(v) {
     return Array.isArray(v) && (v.length === 1 && Number.isInteger(v[0]) || v.some(slotted));
 });
 
-/** The place in the ground of a point of a frame. */
-export function inGround(scene, frame, k, [x, y]) {
+/** The place in the ground of a point of a frame, in the plane or in space. */
+export function inGround(scene, frame, k, point) {
     for (; k > 0; k = scene.frames[k].parent) {
-        const [px, py, c, s] = spotIn(frame, scene.frames[k].pose);
-        [x, y] = [px + c*x - s*y, py + s*x + c*y];
+        const pose = spotIn(frame, scene.frames[k].pose), d = point.length, [c, s] = pose.slice(2);
+        const R = d === 2 ? [c, -s, s, c] : pose.slice(3);
+        point = point.map((_, i) => pose[i] + point.reduce((sum, v, j) => sum + R[d*i + j]*v, 0));
     }
-    return [x, y];
+    return point;
 }
 
 /** The points of a mark that a picture has to hold, in its own frame. */
@@ -127,6 +128,12 @@ export class PlaneView {
     /** The way of a point: [x, y] in the ground, or none. */
     trailed(points) {
         this.trail.setAttribute("points", points.map(([x, y]) => `${(this.k*x).toFixed(1)},${(-this.k*y).toFixed(1)}`).join(" "));
+    }
+
+    /** The body under the pointer, by its frame, and where it is taken; or null. */
+    picked(event) {
+        const k = +(event.target.closest?.("[data-frame]")?.dataset.frame ?? 0);
+        return k ? { k, place: this.placeOf(event) } : null;
     }
 
     /** Where the pointer is, in the ground's axes. */

@@ -3,6 +3,7 @@
 import { Motion } from "./motion.mjs";
 import { PlaneView, inGround } from "./plane.mjs";
 import { SpaceView } from "./space.mjs";
+import { solved } from "./ties.mjs";
 
 const FRAMES_TO_FIT = 60;
 const POINTS = 400;  // of a curve
@@ -134,7 +135,7 @@ export class Player {
         this._shown();
     }
 
-    _refuseUnlessLive() { if (!this.motion) throw new Error(this.told.rests); }
+    _refuseUnlessLive() { if (!this.told.moves) throw new Error(this.told.rests || "this page plays a run as it was computed"); }
 
     _rerun() {
         const began = performance.now();
@@ -223,7 +224,7 @@ export class Player {
             made("option", { value: "" }, "no trail"), ...told.scene.points.filter(p => p.at.some(v => typeof v !== "number")).map(p => made("option", { value: p.name, selected: p.name === this.trailed }, `trail of ${p.name}`)));
         const options = made("div", { class: "options" }, speeds, trails,
             roles.has("force") || roles.has("reaction") ? box("forces", "forces", told.forces ?? false) : null,
-            told.scene.marks.some(mark => mark.kind === "label") && !space ? box("names", "names", false) : null);
+            told.scene.marks.some(mark => mark.kind === "label") ? box("names", "names", false) : null);
         this.note = made("p", { class: "note", role: "status", hidden: true });
         this.energy = made("p", { class: "energy" });
         this.caption = made("p", { class: "caption", hidden: !told.captions });
@@ -235,7 +236,7 @@ export class Player {
         root.tabIndex = -1;
         this._energy();
         this._trail();
-        if (this.motion && !space) this._draggable();
+        if (told.moves && told.sliders.some(each => each.kind === "coordinate")) this._draggable();
         new ResizeObserver(() => { this.view.resized(); this.view.update(this.frame(this.t)); }).observe(this.stage);
         matchMedia("(prefers-color-scheme: dark)").addEventListener("change", () => this.view.resized());
     }
@@ -265,7 +266,7 @@ export class Player {
         if (!told.length && !this.told.rests) return null;
         const fields = told.map(each => {
             const input = name => made("input", { type: name, min: each.min/each.size, max: each.max/each.size, step: name === "range" ? (each.max - each.min)/each.size/400 : "any",
-                "aria-label": `${each.name}${each.unit ? ` in ${each.unit}` : ""}${name === "number" ? ", typed" : ""}`, disabled: !this.motion });
+                "aria-label": `${each.name}${each.unit ? ` in ${each.unit}` : ""}${name === "number" ? ", typed" : ""}`, disabled: !this.told.moves });
             const range = input("range"), typed = input("number");
             typed.removeAttribute("min"), typed.removeAttribute("max");
             const shown = value => { range.value = value/each.size; typed.value = rounded(value/each.size); range.setAttribute("aria-valuetext", `${rounded(value/each.size)} ${each.unit}`); };
@@ -280,7 +281,7 @@ export class Player {
         const rests = this.told.rests ? made("p", { class: "rests" }, this.told.rests) : null;
         if (!told.length) return rests;
         const buttons = made("div", { class: "options" },
-            made("button", { type: "button", onclick: () => { this.reset(); this._fitted(); this.seek(this.t); }, disabled: !this.motion }, "as in the file"));
+            made("button", { type: "button", onclick: () => { this.reset(); this._fitted(); this.seek(this.t); }, disabled: !this.told.moves }, "as in the file"));
         const shown = made("details", { class: "sliders", open: true }, made("summary", {}, "Parameters and start"), rests, made("div", { class: "fields" }, ...fields), buttons);
         return shown;
     }
@@ -316,27 +317,31 @@ export class Player {
 
     _draggable() {
         let held = null;
+        this.root.classList.add("takes");
         this.stage.addEventListener("pointerdown", event => {
-            const k = +(event.target.closest?.("[data-frame]")?.dataset.frame ?? 0);
-            if (!k) return;
+            const picked = this.view.picked(event);
+            if (!picked) return;
             event.preventDefault();
-            this.stage.setPointerCapture(event.pointerId);
+            event.stopImmediatePropagation();  // the picture stays as it is turned
+            try { this.stage.setPointerCapture(event.pointerId); } catch { /* the pointer is gone already */ }
             this.play(false);
             this.seek(0);
-            held = { k, local: this._local(k, this.view.placeOf(event)) };
+            held = { ...picked, local: this._local(picked.k, picked.place) };
         });
-        this.stage.addEventListener("pointermove", event => { if (held) this._drawn(held, this.view.placeOf(event)); });
+        this.stage.addEventListener("pointermove", event => { if (held) this._drawn(held, this.view.placeOf(event, held.place)); });
         const loose = () => { if (held) { held = null; this._rerun(); this._fitted(); this.seek(0); } };
         this.stage.addEventListener("pointerup", loose);
         this.stage.addEventListener("pointercancel", loose);
     }
 
     /** A place of the ground in a body's axes, as it stands now. */
-    _local(k, [x, y]) {
-        const { scene } = this.told, frame = this.frame(this.t);
-        const o = inGround(scene, frame, k, [0, 0]), e = inGround(scene, frame, k, [1, 0]);
-        const [c, s] = [e[0] - o[0], e[1] - o[1]], [dx, dy] = [x - o[0], y - o[1]];
-        return [c*dx + s*dy, c*dy - s*dx];
+    _local(k, place) {
+        const { scene } = this.told, frame = this.frame(this.t), none = place.map(() => 0);
+        const o = inGround(scene, frame, k, none), left = place.map((v, i) => v - o[i]);
+        return none.map((_, j) => {
+            const e = inGround(scene, frame, k, none.map((_, i) => +(i === j)));
+            return left.reduce((sum, v, i) => sum + v*(e[i] - o[i]), 0);
+        });
     }
 
     /** Start values at which the point of the body comes nearest to the place: Gauss and Newton, damped. */
@@ -352,17 +357,17 @@ export class Player {
         for (let step = 0; step < 3; step++) {
             const here = at(this.given);
             if (!here) return;
-            const left = [wanted[0] - here.place[0], wanted[1] - here.place[1]];
+            const left = wanted.map((v, i) => v - here.place[i]);
             const values = names.map(name => here.x[live.coordinates.indexOf(name)]);
             const columns = names.map((name, i) => {
                 const there = at({ ...this.given, [name]: values[i] + 1e-6 });
-                return there ? [(there.place[0] - here.place[0])*1e6, (there.place[1] - here.place[1])*1e6] : [0, 0];
+                return left.map((_, j) => there ? (there.place[j] - here.place[j])*1e6 : 0);
             });
             const sum = (a, b) => columns.reduce((total, c) => total + c[a]*c[b], 0);
-            const damped = 1e-3*(sum(0, 0) + sum(1, 1)) + 1e-12, a = sum(0, 0) + damped, b = sum(0, 1), d = sum(1, 1) + damped, det = a*d - b*b;
-            const lam = [(d*left[0] - b*left[1])/det, (a*left[1] - b*left[0])/det];
+            const damped = 1e-3*left.reduce((total, _, j) => total + sum(j, j), 0) + 1e-12;
+            const lam = solved(left.map((_, a) => left.map((_, b) => sum(a, b) + (a === b ? damped : 0))), left.slice());
             const next = { ...this.given };
-            names.forEach((name, i) => { next[name] = values[i] + columns[i][0]*lam[0] + columns[i][1]*lam[1]; });
+            names.forEach((name, i) => { next[name] = values[i] + columns[i].reduce((total, v, j) => total + v*lam[j], 0); });
             if (!at(next)) return;
             this.given = next;
         }
@@ -406,7 +411,7 @@ export class Player {
 
     /** What the link says: "#m=2&theta=0.5", SI. */
     recalled() {
-        if (!this.motion || location.hash.length < 2) return;
+        if (!this.told.moves || location.hash.length < 2) return;
         const known = [...this.told.live.parameters, ...this.told.live.coordinates, ...this.told.live.speeds];
         for (const pair of location.hash.slice(1).split("&")) {
             const [name, value] = pair.split("=").map(decodeURIComponent);

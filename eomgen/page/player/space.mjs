@@ -110,6 +110,13 @@ export class SpaceView {
             (k && parent > 0 ? this.groups[parent] : this.world).add(group);
         });
         this.parts = this.scene.marks.filter(mark => !AT_REST.includes(mark.kind)).map(mark => this._part(mark));
+        this.words = this.scene.marks.filter(mark => mark.text && ["label", "arrow", "couple"].includes(mark.kind)).map(mark => {
+            const word = document.createElement("span");
+            word.className = `word ${mark.role}`;
+            word.textContent = mark.text;
+            root.append(word);
+            return { mark, word };
+        });
         this.trail = new three.Line(new three.BufferGeometry(), this._material("force", true));
         this.world.add(this.trail);
         this._handled();
@@ -313,6 +320,45 @@ export class SpaceView {
         camera.far = 20*away;
         camera.updateProjectionMatrix();
         this.renderer.render(this.world, camera);
+        this._worded();
+    }
+
+    /** Names beside their places on the screen. */
+    _worded() {
+        if (!this.frame) return;
+        const { width, height } = this.root.getBoundingClientRect();
+        for (const { mark, word } of this.words) {
+            const at = new this.three.Vector3(...mark.at.map(v => typeof v === "number" ? v : this.frame[v[0]]));
+            at.applyMatrix4(this.groups[mark.frame].matrixWorld).project(this.camera);
+            const seen = Number.isFinite(at.x + at.y);
+            word.style.visibility = seen ? "visible" : "hidden";
+            if (seen) word.style.transform = `translate(${(0.5*(at.x + 1)*width + 6).toFixed(1)}px, ${(0.5*(1 - at.y)*height - 18).toFixed(1)}px)`;
+        }
+    }
+
+    // -- what is under the pointer --------------------------------------------------------------------
+
+    _ray(event) {
+        const { left, top, width, height } = this.root.getBoundingClientRect(), ray = new this.three.Raycaster();
+        ray.setFromCamera({ x: 2*(event.clientX - left)/width - 1, y: 1 - 2*(event.clientY - top)/height }, this.camera);
+        return ray;
+    }
+
+    /** The body under the pointer, by its frame, and where it is taken; or null. */
+    picked(event) {
+        if (!this.center) return null;
+        const parts = this.parts.filter(({ mark, holder }) => mark.frame && ["body", "inertia", "member"].includes(mark.role) && holder.visible);
+        const [hit] = this._ray(event).intersectObjects(parts.map(part => part.holder), true).filter(({ object }) => object.isMesh);
+        if (!hit) return null;
+        const { mark } = parts.find(({ holder }) => { for (let o = hit.object; o; o = o.parent) if (o === holder) return true; return false; });
+        return { k: mark.frame, place: hit.point.toArray() };
+    }
+
+    /** Where the pointer is, in the ground's axes, as far away as the place that was taken. */
+    placeOf(event, taken) {
+        const through = new this.three.Vector3(...taken), across = this.camera.getWorldDirection(new this.three.Vector3());
+        const plane = new this.three.Plane().setFromNormalAndCoplanarPoint(across, through);
+        return (this._ray(event).ray.intersectPlane(plane, new this.three.Vector3()) ?? through).toArray();
     }
 
     _handled() {
@@ -320,7 +366,7 @@ export class SpaceView {
         const turned = (dx, dy) => { this.turn -= dx; this.lift = Math.min(1.5, Math.max(-1.5, this.lift + dy)); this._seen(); };
         const nearer = factor => { this.near = Math.min(8, Math.max(0.3, this.near*factor)); this._seen(); };
         let held = null;
-        root.addEventListener("pointerdown", event => { held = [event.clientX, event.clientY]; root.setPointerCapture(event.pointerId); });
+        root.addEventListener("pointerdown", event => { held = [event.clientX, event.clientY]; try { root.setPointerCapture(event.pointerId); } catch { /* the pointer is gone already */ } });
         root.addEventListener("pointermove", event => {
             if (!held) return;
             turned((event.clientX - held[0])/160, (event.clientY - held[1])/160);
