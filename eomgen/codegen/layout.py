@@ -117,11 +117,16 @@ class Layout:
 
     @cached_property
     def ops(self) -> frozenset[str]:
-        return frozenset((*(x.op for x in (*self.hoisted, *self.preamble, *self.moving)), *self.kernels))
+        return frozenset((*(x.op for x in (*self.hoisted, *self.preamble, *self.moving)), *self.called_kernels))
 
     @cached_property
     def kernels(self) -> tuple[str, ...]:
         return (*((self.entry,) if self.solve else ()), *self.sampled.values())
+
+    @cached_property
+    def called_kernels(self) -> frozenset[str]:
+        """The kernels among the ops, by the names that a language may define in its own way."""
+        return frozenset((*self.kernels[: 1 if self.solve else 0], *(["through_samples"] if self.sampled else [])))
 
     @cached_property
     def sampled(self) -> dict[int, str]:

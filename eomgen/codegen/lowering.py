@@ -206,7 +206,8 @@ def _kernels(layout: Layout) -> tuple[tuple[Table, ...], tuple[Function, ...]]:
         functions |= {f.name: f for f in called}
     for number, name in layout.sampled.items():
         own, function = _samples(sampled_of(number), name)
-        _, called = kernel("through_samples", (), layout.language)
+        own_way = "through_samples" in layout.language.defined
+        called = [] if own_way else kernel("through_samples", (), layout.language)[1]
         tables |= {t.name: t for t in own}
         functions |= {f.name: f for f in (*called, function)}
     return tuple(tables.values()), tuple(functions.values())

@@ -8,6 +8,7 @@ from __future__ import annotations
 import importlib.util
 import os
 import shutil
+from collections.abc import Iterable
 
 import pytest
 
@@ -24,7 +25,12 @@ NEEDS = {  # of a language the programs and packages (with a dot before them) th
     "rust": ("cargo",),
     "fortran": (),
     "javascript": ("node",),
+    "matlab": ("octave-cli",),
+    "jax": (".jax",),
+    "casadi": (".casadi",),
+    "numba": (".numba",),
 }
+SLOW = ("matlab", "jax", "casadi", "numba")  # to start, or to compile: they take part in few tests
 
 
 def found(name: str) -> str | None:
@@ -60,6 +66,11 @@ def language(name: str) -> pytest.MarkDecorator:
     return needs(*missing, *NEEDS.get(name, ()), what=name)
 
 
-each_target = pytest.mark.parametrize(
-    "target", [pytest.param(target.name, marks=language(target.name)) for target in ALL if target.run is not None]
-)
+def marked(names: Iterable[str]) -> pytest.MarkDecorator:
+    """The test runs for each of these languages."""
+    return pytest.mark.parametrize("target", [pytest.param(name, marks=language(name)) for name in names])
+
+
+RUN_HERE = [target.name for target in ALL if target.run is not None]
+each_target = marked(name for name in RUN_HERE if name not in SLOW)
+every_target = marked(RUN_HERE)

@@ -9,7 +9,7 @@ from pathlib import Path
 import pytest
 from click.testing import CliRunner
 from forked import needs_sh
-from tools import each_target
+from tools import each_target, every_target
 
 import eomgen
 from eomgen.cli import main
@@ -99,7 +99,7 @@ joint = { kind = "revolute", angle = "lambda", torque = 1 }
 """
 
 
-@each_target
+@every_target
 def test_nothing_that_a_model_says_is_executed_when_its_files_are_run(target, tmp_path):
     """Names and remarks of a stranger stand in headers and comments; no quote and no line end leaves them."""
     mark = tmp_path / "mark"

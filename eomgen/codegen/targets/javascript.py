@@ -12,8 +12,20 @@ from dataclasses import replace
 from eomgen.codegen.lowered import CHANGED, INDICES, INT, PLACES, READ, REAL, ROOM, Language
 from eomgen.codegen.lowering import lowered
 from eomgen.codegen.program import Program
-from eomgen.codegen.targets.base import RHS, Called, Description, Emitted, FileContent, Functions, Role, Target, header
-from eomgen.codegen.targets.node import module_functions
+from eomgen.codegen.targets.base import (
+    RHS,
+    Called,
+    Description,
+    Emitted,
+    FileContent,
+    Functions,
+    Role,
+    Target,
+    called_by,
+    functions_by,
+    header,
+)
+from eomgen.codegen.targets.node import many_of_module
 
 _OUT = "function {name}({arguments}, {out} = new Float64Array({size})) {{"
 JAVASCRIPT = Language(
@@ -130,13 +142,12 @@ def _files(stem: str, program: Program, description: Description) -> dict[str, s
 
 def javascript_functions(program: Program) -> Functions:
     """The program run by node."""
-    return module_functions(javascript_text(program), program)
+    return functions_by(many_of_module(javascript_text(program), program))
 
 
 def run(texts: Mapping[str, FileContent], program: Program, stem: str, role: Role) -> Called:
     """The function of the file, run by node."""
-    found = module_functions(str(texts[f"{role.main(stem)}.mjs"]), program)
-    return lambda t, x, a, p, inputs: found.one(t, [*x, *a], found.constants(p), inputs).tolist()
+    return called_by(many_of_module(str(texts[f"{role.main(stem)}.mjs"]), program))
 
 
 TARGET = Target(

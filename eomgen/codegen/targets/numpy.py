@@ -10,7 +10,8 @@ from typing import Any
 from eomgen.codegen.lowered import CHANGED, INDICES, INT, PLACES, READ, REAL, ROOM, Language
 from eomgen.codegen.lowering import Lowered, lowered
 from eomgen.codegen.program import Program
-from eomgen.codegen.targets.base import RHS, Called, Description, Emitted, FileContent, Functions, Role, Target, header
+from eomgen.codegen.targets.base import RHS, Called, Description, Emitted, FileContent, Functions, Role, Target
+from eomgen.codegen.targets.python_files import module_files
 
 PYTHON = Language(
     reserved=frozenset(keyword.kwlist) | frozenset(keyword.softkwlist),
@@ -189,14 +190,12 @@ def numpy_functions(program: Program) -> Functions:
 
 
 def numpy_files(stem: str, emitted: Sequence[Emitted]) -> dict[str, FileContent]:
-    """NAME_rhs.py, a module of its own: it needs numpy and nothing of ours."""
+    """NAME_rhs.py, a module of its own: it needs numpy and nothing of ours; and its test."""
     return {name: text for each in emitted for name, text in _files(stem, *each).items()}
 
 
-def _files(stem: str, program: Program, description: Description) -> dict[str, str]:
-    head = "\n".join(header(program, description)).replace("\\", "/").replace('"""', "'''")
-    text = python_text(program, stem, description.role)
-    return {f"{description.role.main(stem)}.py": f'"""{head}\n"""\n\n{text}'}
+def _files(stem: str, program: Program, told: Description) -> dict[str, str]:
+    return module_files(python_text(program, stem, told.role), told.role.main(stem), stem, program, told)
 
 
 def run(texts: Mapping[str, FileContent], program: Program, stem: str, role: Role) -> Called:

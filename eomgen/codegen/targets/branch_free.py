@@ -1,0 +1,41 @@
+"""The Solve of a program where loops with pivots cannot run: matrices, for languages that trace their functions.
+
+A = M + J^T J with rows and columns of one size, S = J A^-1 J^T + little, then what is left is solved for once more, and
+again: where rows follow from others their multipliers share the force, and a is right all the same.
+"""
+
+LITTLE = 1e-7  # of S, whose largest eigenvalue is below 1: what is left of lam after each round is so much less
+ROUNDS = 4
+
+TEXT = f'''
+def solve(M, J, f, g):
+    """f, g become a, lam of M a - J^T lam = f, J a = g (upper triangle of M); of dependent rows lam is the least."""
+    n, k = len(f), len(g)
+    rows = [[M[min(i, j)*n + max(i, j)] for j in range(n)] for i in range(n)]
+    mean = sum((rows[i][i] for i in range(n)), 0.0)/n
+    d = [1/sqrt(_where_positive(rows[i][i], rows[i][i], mean)) for i in range(n)]
+    J = [[J[m*n + i]*d[i] for i in range(n)] for m in range(k)]
+    sizes = [1/sqrt(sum((x*x for x in row), {1e-300!r})) for row in J]
+    J = _matrix([[x*size for x in row] for row, size in zip(J, sizes)], k, n)
+    M = _matrix([[rows[i][j]*d[i]*d[j] for j in range(n)] for i in range(n)], n, n)
+    right, gap = _matrix([[x*y] for x, y in zip(f, d)], n, 1), _matrix([[x*y] for x, y in zip(g, sizes)], k, 1)
+    A = _factors(M + J.T @ J)
+    S = _factors(J @ _solved(A, J.T) + {LITTLE!r}*_one(k))
+    a, lam = 0*right, 0*gap
+    for _ in range({ROUNDS}):
+        left, open_ = right - M @ a + J.T @ lam, gap - J @ a
+        more = _solved(A, left + J.T @ open_)
+        pull = _solved(S, open_ - J @ more)
+        a, lam = a + more + _solved(A, J.T @ pull), lam + pull + open_
+    f[:] = [a[i, 0]*d[i] for i in range(n)]
+    g[:] = [lam[m, 0]*sizes[m] for m in range(k)]
+'''
+
+PLAIN = '''
+def solve_plain(M, f):
+    """f becomes a of M a = f (upper triangle of M)."""
+    n = len(f)
+    M = _matrix([[M[min(i, j)*n + max(i, j)] for j in range(n)] for i in range(n)], n, n)
+    a = _solved(_factors(M), _matrix([[x] for x in f], n, 1))
+    f[:] = [a[i, 0] for i in range(n)]
+'''

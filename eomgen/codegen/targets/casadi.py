@@ -1,0 +1,143 @@
+"""Program -> a module for CasADi: `NAME_rhs(t, x, p, inputs=None)`; `rhs` and `jacobian` are SX functions."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import replace
+
+from eomgen.codegen.lowering import lowered
+from eomgen.codegen.program import Program
+from eomgen.codegen.targets import branch_free
+from eomgen.codegen.targets.base import RHS, Called, Emitted, FileContent, Functions, Role, Target
+from eomgen.codegen.targets.library_call import sizes
+from eomgen.codegen.targets.numpy import PYTHON
+from eomgen.codegen.targets.python_files import called_each, executed, functions_each, module_files
+
+UNARY = "sin cos asin acos atan sinh cosh tanh exp log sqrt".split()
+_ARRAYS = """
+def _matrix(rows, n, k):
+    return ca.SX(n, k) if not rows else ca.vertcat(*(ca.horzcat(*row) for row in rows))
+
+
+def _where_positive(x, a, b):
+    return ca.if_else(x > 0, a, b)
+
+
+def _factors(A):
+    return ca.chol(ca.densify(A))
+
+
+def _solved(factors, B):
+    return ca.solve(factors, ca.solve(factors.T, ca.densify(B)))
+
+
+_one = ca.SX.eye
+"""
+CASADI = replace(
+    PYTHON,
+    functions={
+        **{op: f"ca.{op}({{0}})" for op in UNARY},
+        "abs": "ca.fabs({0})",
+        "atan2": "ca.atan2({0}, {1})",
+        "pow": "ca.power({0}, {1})",
+        "select": "select({0}, {1}, {2})",
+    },
+    defined={
+        "sign": "def sign(a):\n    return ca.if_else(a > 0, 1, ca.if_else(a < 0, -1, a))\n\n",
+        "min": "def min(a, b):\n    return ca.if_else(ca.logic_or(a < b, a != a), a, b)\n\n",
+        "max": "def max(a, b):\n    return ca.if_else(ca.logic_or(a > b, a != a), a, b)\n\n",
+        "less": 'def less(a, b):\n    return ca.if_else(a < b, 1, ca.if_else(a >= b, 0, float("nan")))\n\n',
+        "less_equal": 'def less_equal(a, b):\n    return ca.if_else(a <= b, 1, ca.if_else(a > b, 0, float("nan")))\n\n',
+        "select": "def select(given, a, b):\n"
+        '    return ca.if_else(given == 0, b, ca.if_else(ca.logic_or(given > 0, given < 0), a, float("nan")))\n\n',
+        "solve": branch_free.TEXT,
+        "solve_plain": branch_free.PLAIN,
+        "through_samples": """
+def through_samples(t, n, closed, steps, depth, bounds, degree, v):
+    found = 0
+    for k in range(n + 1):
+        s, value = t - v[(degree + 1)*(n + 1) + k], 0.0
+        for i in range(degree + 1):
+            value = value*s + v[i*(n + 1) + k]
+        last = closed == 1 and k == n
+        found = value if k == 0 else ca.if_else(t > bounds[k - 1] if last else t >= bounds[k - 1], value, found)
+    return found
+
+""",
+    },
+)
+
+_TEXT = '''\
+import casadi as ca
+
+sqrt = ca.sqrt
+{arrays}
+{functions}
+
+
+def _made(given):
+    t, x, p = ca.SX.sym("t"), ca.SX.sym("x", {states}), ca.SX.sym("p", {parameters})
+    {a_made}inputs = ca.SX.sym("inputs", {inputs})
+    arguments = [t, x, {a}p, *([inputs] if given else [])]
+    names = ["t", "x", {a_name}"p", *(["inputs"] if given else [])]
+    {result} = evaluate(t, x, {a}p, constants(p), inputs if given else None)
+    {result} = ca.vertcat(*{result}) if {result} else ca.SX(0, 1)
+    slopes = [ca.jacobian({result}, x), *([ca.jacobian({result}, inputs)] if given else [])]
+    slope_names = ["by_x", *(["by_inputs"] if given else [])]
+    return (
+        ca.Function("{role}", arguments, [{result}], names, ["{result}"]),
+        ca.Function("{role}_by_x", arguments, slopes, names, slope_names),
+    )
+
+
+own, own_jacobian = _made(False)  # of (t, x, {a}p), by the model's own inputs
+{role}, jacobian = _made(True)  # of (t, x, {a}p, inputs)
+
+
+def {main}(t, x, {a}p, inputs=None):
+    """{result}: {outputs} numbers, or expressions where the arguments are; inputs None: the model's own."""
+    return own(t, x, {a}p) if inputs is None else {role}(t, x, {a}p, inputs)
+'''
+
+
+def casadi_text(program: Program, stem: str, role: Role = RHS, remarks: Mapping[str, str] | None = None) -> str:
+    """The module of a program."""
+    made, given = lowered(program, CASADI, role.result, remarks=remarks), len(program.accelerations)
+    return _TEXT.format(
+        **sizes(program, role, stem),
+        arrays=_ARRAYS if made.ops & {"solve", "solve_plain"} else "",
+        functions="\n\n".join(made.texts(CASADI)),
+        a="a, " if given else "",
+        a_name='"a", ' if given else "",
+        a_made=f'a = ca.SX.sym("a", {given})\n    ' if given else "",
+    )
+
+
+def casadi_files(stem: str, emitted: Sequence[Emitted]) -> dict[str, FileContent]:
+    """NAME_casadi.py of the right-hand side, NAME_reactions_casadi.py, and the tests."""
+    return {
+        name: text
+        for program, told in emitted
+        for name, text in module_files(
+            casadi_text(program, stem, told.role, told.remarks), module(stem, told.role), stem, program, told
+        ).items()
+    }
+
+
+def module(stem: str, role: Role) -> str:
+    """The name of the module of a function."""
+    return f"{role.others(stem)}_casadi"
+
+
+def functions(program: Program) -> Functions:
+    """The program as a function of CasADi."""
+    return functions_each(executed(casadi_text(program, "eomgen"), "eomgen_casadi", "casadi")["eomgen_rhs"], program)
+
+
+def run(texts: Mapping[str, FileContent], program: Program, stem: str, role: Role) -> Called:
+    """The function of the file."""
+    return called_each(texts, module(stem, role), program, stem, role, "casadi")
+
+
+USE = ("from {stem}_casadi import rhs, jacobian", "python -m pytest")
+TARGET = Target("casadi", "SX functions of CasADi with their jacobians", casadi_text, casadi_files, USE, functions, run)

@@ -1,0 +1,137 @@
+"""Program -> a module for JAX in doubles: `NAME_rhs(t, x, p, inputs=None)`, to be jitted, mapped and differentiated."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import replace
+
+from eomgen.codegen.lowering import lowered
+from eomgen.codegen.program import Program
+from eomgen.codegen.targets import branch_free
+from eomgen.codegen.targets.base import RHS, Called, Emitted, FileContent, Functions, Role, Target
+from eomgen.codegen.targets.numpy import PYTHON
+from eomgen.codegen.targets.python_files import called_each, executed, functions_each, module_files
+
+UNARY = {
+    **{op: f"jnp.{op}" for op in "sin cos sinh cosh tanh exp log abs sign".split()},
+    **{"asin": "jnp.arcsin", "acos": "jnp.arccos", "atan": "jnp.arctan"},
+}
+BINARY = {"atan2": "jnp.arctan2", "pow": "jnp.power", "min": "jnp.minimum", "max": "jnp.maximum"}
+_ARRAYS = """
+def _matrix(rows, n, k):
+    return jnp.array([x for row in rows for x in row]).reshape(n, k)
+
+
+def _where_positive(x, a, b):
+    return jnp.where(x > 0, a, b)
+
+
+def _factors(A):
+    return cho_factor(A)
+
+
+def _solved(factors, B):
+    return cho_solve(factors, B)
+
+
+_one = jnp.eye
+"""
+JAX = replace(
+    PYTHON,
+    functions={
+        **{op: f"{name}({{0}})" for op, name in UNARY.items()},
+        **{op: f"{name}({{0}}, {{1}})" for op, name in BINARY.items()},
+    },
+    defined={
+        "less": "def less(a, b):\n    return jnp.where(a < b, 1.0, jnp.where(a >= b, 0.0, jnp.nan))\n\n",
+        "less_equal": "def less_equal(a, b):\n    return jnp.where(a <= b, 1.0, jnp.where(a > b, 0.0, jnp.nan))\n\n",
+        "select": "def select(given, a, b):\n"
+        "    return jnp.where(given == 0, b, jnp.where(given == given, a, jnp.nan))\n\n",
+        "solve": branch_free.TEXT,
+        "solve_plain": branch_free.PLAIN,
+        "through_samples": """
+def through_samples(t, n, closed, steps, depth, bounds, degree, v):
+    bounds, v = jnp.array(bounds), jnp.array(v).reshape(degree + 2, n + 1)
+    k = jnp.searchsorted(bounds, t, side="right")
+    k = jnp.where((closed == 1) & (t == bounds[-1]), n - 1, k)
+    s, value = t - v[degree + 1, k], 0.0
+    for i in range(degree + 1):
+        value = value*s + v[i, k]
+    return value
+
+""",
+    },
+    out=("def {name}({arguments}):\n    {out} = [0.0]*{size}", "    return jnp.array({out}, dtype=float)"),
+)
+
+_TEXT = '''\
+import jax
+import jax.numpy as jnp
+from jax.scipy.linalg import cho_factor, cho_solve
+
+jax.config.update("jax_enable_x64", True)
+
+
+def sqrt(a):
+    """sqrt with the slope 0 at 0, where that of a choice between it and something else would be nan."""
+    return jnp.where(a > 0, jnp.sqrt(jnp.where(a > 0, a, 1.0)), jnp.where(a == 0, 0.0, jnp.nan))
+
+{arrays}
+{functions}
+
+
+@jax.jit
+def {main}(t, x, {a}p, inputs=None):
+    """{result}: an array of {outputs}; inputs None: the model's own. jax.vmap({main}, (None, 0, None)): many states."""
+    t, x, {a}p = jnp.asarray(t, dtype=float), jnp.asarray(x, dtype=float), {a_array}jnp.asarray(p, dtype=float)
+    inputs = None if inputs is None else jnp.asarray(inputs, dtype=float)
+    return evaluate(t, x, {a}p, constants(p), inputs)
+
+
+{jacobian} = jax.jit(jax.jacfwd({main}, argnums=1))  # d {result}/d x
+'''
+
+
+def jax_text(program: Program, stem: str, role: Role = RHS, remarks: Mapping[str, str] | None = None) -> str:
+    """The module of a program."""
+    given, made = bool(program.accelerations), lowered(program, JAX, role.result, remarks=remarks)
+    return _TEXT.format(
+        arrays=_ARRAYS if made.ops & {"solve", "solve_plain"} else "",
+        functions="\n\n".join(made.texts(JAX)),
+        main=role.main(stem),
+        jacobian=f"{role.main(stem)}_by_x",
+        result=role.result,
+        outputs=len(program.outputs),
+        a="a, " if given else "",
+        a_array="jnp.asarray(a, dtype=float), " if given else "",
+    )
+
+
+def jax_files(stem: str, emitted: Sequence[Emitted]) -> dict[str, FileContent]:
+    """NAME_jax.py of the right-hand side, NAME_reactions_jax.py, and the tests."""
+    return {
+        name: text
+        for program, told in emitted
+        for name, text in module_files(
+            jax_text(program, stem, told.role, told.remarks), module(stem, told.role), stem, program, told
+        ).items()
+    }
+
+
+def module(stem: str, role: Role) -> str:
+    """The name of the module of a function."""
+    return f"{role.others(stem)}_jax"
+
+
+def functions(program: Program) -> Functions:
+    """The program compiled by JAX."""
+    return functions_each(executed(jax_text(program, "eomgen"), "eomgen_jax", "jax")["eomgen_rhs"], program)
+
+
+def run(texts: Mapping[str, FileContent], program: Program, stem: str, role: Role) -> Called:
+    """The function of the file."""
+    return called_each(texts, module(stem, role), program, stem, role, "jax")
+
+
+USE = ("from {stem}_jax import {stem}_rhs", "python -m pytest")
+TARGET = Target("jax", "Python with JAX, in doubles: jit, vmap, grad", jax_text, jax_files, USE, functions, run)

@@ -1,0 +1,106 @@
+"""Program -> Python compiled by numba when it is first called: `NAME_rhs(t, x, p, inputs=None)`, an array."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import replace
+
+from eomgen.codegen.lowered import CHANGED, INDICES, PLACES, READ, ROOM
+from eomgen.codegen.lowering import lowered
+from eomgen.codegen.program import Program
+from eomgen.codegen.targets.base import RHS, Called, Emitted, FileContent, Functions, Role, Target
+from eomgen.codegen.targets.numpy import PYTHON
+from eomgen.codegen.targets.python_files import called_each, executed, functions_each, module_files
+
+_DEFINED = {
+    "abs": ("value", "math.fabs(value)"),
+    "sign": ("value", "1.0 if value > 0 else -1.0 if value < 0 else value"),
+    "min": ("a, b", "a if a < b or a != a else b"),
+    "max": ("a, b", "a if a > b or a != a else b"),
+    "less": ("a, b", "1.0 if a < b else 0.0 if a >= b else math.nan"),
+    "less_equal": ("a, b", "1.0 if a <= b else 0.0 if a > b else math.nan"),
+    "select": ("given, a, b", "b if given == 0 else a if given == given else given"),
+}
+MATH = "sqrt sin cos asin acos atan sinh cosh tanh exp log atan2 pow".split()
+NUMBA = replace(
+    PYTHON,
+    functions={
+        **{op: f"math.{op}({{0}})" for op in MATH},
+        **{op: f"math.{op}({{0}}, {{1}})" for op in ("atan2", "pow")},
+        **{
+            op: f"own_{op}({', '.join(f'{{{k}}}' for k in range(len(a.split(','))))})"
+            for op, (a, _) in _DEFINED.items()
+        },
+    },
+    defined={op: f"@_compiled\ndef own_{op}({a}):\n    return {value}\n\n" for op, (a, value) in _DEFINED.items()},
+    arrays=dict.fromkeys((CHANGED, ROOM), "{name} = np.zeros({size})")
+    | {PLACES: "{name} = np.zeros({size}, dtype=np.int64)"},
+    tables={**PYTHON.tables, INDICES: "{name} = np.array({values})", READ: "{name} = np.array({values})"},
+    function=("\n\n@_compiled\ndef {declared}({arguments}):", ""),
+    out=("\n\n@_compiled\ndef {name}({arguments}):\n    {out} = np.zeros({size})", "    return {out}"),
+)
+
+_TEXT = '''\
+import math
+
+import numpy as np
+from numba import njit
+
+_compiled = njit(error_model="numpy")  # 1/0 is inf, as in C
+{functions}
+
+
+@_compiled
+def _one(t, x, {a}p, inputs):
+    return evaluate(t, x, {a}p, constants(p), inputs)
+
+
+def {main}(t, x, {a}p, inputs=None):
+    """{result}: an array of {outputs}; inputs None: the model's own."""
+    x, {a}p = np.asarray(x, dtype=np.float64), {a_array}np.asarray(p, dtype=np.float64)
+    return _one(float(t), x, {a}p, None if inputs is None else np.asarray(inputs, dtype=np.float64))
+'''
+
+
+def numba_text(program: Program, stem: str, role: Role = RHS, remarks: Mapping[str, str] | None = None) -> str:
+    """The module of a program."""
+    given = bool(program.accelerations)
+    return _TEXT.format(
+        functions="\n".join(lowered(program, NUMBA, role.result, remarks=remarks).texts(NUMBA)),
+        main=role.main(stem),
+        result=role.result,
+        outputs=len(program.outputs),
+        a="a, " if given else "",
+        a_array="np.asarray(a, dtype=np.float64), " if given else "",
+    )
+
+
+def numba_files(stem: str, emitted: Sequence[Emitted]) -> dict[str, FileContent]:
+    """NAME_numba.py of the right-hand side, NAME_reactions_numba.py, and the tests."""
+    return {
+        name: text
+        for program, told in emitted
+        for name, text in module_files(
+            numba_text(program, stem, told.role, told.remarks), module(stem, told.role), stem, program, told
+        ).items()
+    }
+
+
+def module(stem: str, role: Role) -> str:
+    """The name of the module of a function."""
+    return f"{role.others(stem)}_numba"
+
+
+def functions(program: Program) -> Functions:
+    """The program compiled by numba."""
+    space = executed(numba_text(program, "eomgen"), "eomgen_numba", "numba")
+    return functions_each(space["eomgen_rhs"], program)
+
+
+def run(texts: Mapping[str, FileContent], program: Program, stem: str, role: Role) -> Called:
+    """The function of the file."""
+    return called_each(texts, module(stem, role), program, stem, role, "numba")
+
+
+USE = ("from {stem}_numba import {stem}_rhs", "python -m pytest")
+TARGET = Target("numba", "Python compiled by numba", numba_text, numba_files, USE, functions, run)
