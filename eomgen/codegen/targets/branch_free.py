@@ -4,8 +4,9 @@ A = M + J^T J with rows and columns of one size, S = J A^-1 J^T + little, then w
 again: where rows follow from others their multipliers share the force, and a is right all the same.
 """
 
-LITTLE = 1e-7  # of S, whose largest eigenvalue is below 1: what is left of lam after each round is so much less
-ROUNDS = 4
+from eomgen.symbolic.numeric.tolerances import DEPENDENT_EASE, TINIEST
+
+ROUNDS = 4  # what is left of lam after each is less by the ease: the eigenvalues of S lie between 0 and 1
 
 TEXT = f'''
 def solve(M, J, f, g):
@@ -15,12 +16,12 @@ def solve(M, J, f, g):
     mean = sum((rows[i][i] for i in range(n)), 0.0)/n
     d = [1/sqrt(_where_positive(rows[i][i], rows[i][i], mean)) for i in range(n)]
     J = [[J[m*n + i]*d[i] for i in range(n)] for m in range(k)]
-    sizes = [1/sqrt(sum((x*x for x in row), {1e-300!r})) for row in J]
+    sizes = [1/sqrt(sum((x*x for x in row), {TINIEST!r})) for row in J]
     J = _matrix([[x*size for x in row] for row, size in zip(J, sizes)], k, n)
     M = _matrix([[rows[i][j]*d[i]*d[j] for j in range(n)] for i in range(n)], n, n)
     right, gap = _matrix([[x*y] for x, y in zip(f, d)], n, 1), _matrix([[x*y] for x, y in zip(g, sizes)], k, 1)
     A = _factors(M + J.T @ J)
-    S = _factors(J @ _solved(A, J.T) + {LITTLE!r}*_one(k))
+    S = _factors(J @ _solved(A, J.T) + {DEPENDENT_EASE!r}*_one(k))
     a, lam = 0*right, 0*gap
     for _ in range({ROUNDS}):
         left, open_ = right - M @ a + J.T @ lam, gap - J @ a

@@ -36,6 +36,7 @@ RANK_NEARBY = 1e-7  # at a place that was found in doubles, or is met on the way
 LEAST_CHANGE = 1e-11  # of the least change that closes gaps: near a singular place it must still be made
 REGULAR = 1e-12  # of a scaled mass matrix, 1 / condition number, below which it is singular
 PIVOT = 1e-11  # of a row's pivot in emitted code: the squared sine of its angle to the rows before it
+DEPENDENT_EASE = 1e-7  # of J A^-1 J^T, added to its diagonal: dependent rows are solved without pivots, in rounds
 NEARLY_SINGULAR = 1e-5  # at a place that is known to half of the digits only, or where ties resist too little
 BRANCHES_MEET = 1e-4  # of the largest singular value: two branches meet so near that neither is told from the other
 WIDE_SPECTRUM = 1e-4  # of the smallest eigenvalue against the largest, below which more digits are used
