@@ -16,6 +16,7 @@ from eomgen.cli import main
 from eomgen.errors import ModelError, ToolMissing
 from eomgen.robots.importing import imported
 from eomgen.symbolic.numeric.evaluation import FLOAT, evaluate
+from tests.helpers.sdf_of_urdf import sdf_of_urdf
 from tests.helpers.tools import needs
 from tests.helpers.urdf_by_hand import ByHand, random_robot
 
@@ -263,3 +264,59 @@ def test_mjcf_without_mujoco_names_the_wheel(tmp_path, monkeypatch):
     monkeypatch.setitem(sys.modules, "mujoco", None)
     with pytest.raises(ToolMissing, match="pip install mujoco"):
         robot(tmp_path, MJCF, "xml")
+
+
+@pytest.mark.parametrize(("seed", "in_model"), [(0, True), (1, False), (2, False)])
+def test_sdf_and_urdf_of_one_robot_have_one_mass_matrix_and_one_bias(seed, in_model, tmp_path):
+    """Poses in the model's axes, joints off the child's origin in axes of their own: M and c - Q are the URDF's."""
+    text = random_robot(seed)
+    first = robot(tmp_path, text).model
+    second = robot(tmp_path, sdf_of_urdf(text, in_model=in_model), "sdf").model
+    rng = np.random.default_rng(seed)
+    q = {name: float(rng.uniform(-2, 2)) for name in first.coordinates}
+    u = {f"{name}'": float(rng.uniform(-1, 1)) for name in q}
+    still = dict.fromkeys(u, 0.0)
+    (M, h), (M0, h0) = dynamics(second, q, u), dynamics(first, q, u)
+    (_, g), (_, g0) = dynamics(second, q, still), dynamics(first, q, still)
+    order = [list(first.coordinates).index(name) for name in second.coordinates]
+    assert np.allclose(M, M0[np.ix_(order, order)], atol=1e-10)
+    assert np.allclose(h - g, (h0 - g0)[order], atol=1e-9)
+    assert np.allclose(g / 9.8, g0[order] / 9.81, atol=1e-10)
+
+
+SDF = """<sdf version="1.9"><world name="w"><gravity>0 0 -3.7</gravity><light name="sun"/><model name="rover">
+  <link name="hull"><pose>1 2 3 0 0 1.5707963267948966</pose><inertial><mass>5</mass>
+    <inertia><ixx>1</ixx><iyy>1.5</iyy><izz>2</izz></inertia></inertial></link>
+  <link name="mast"><pose relative_to="hull">0 0 0.5 0 0 0</pose><inertial><mass>2</mass></inertial></link>
+  <link name="eye"><pose relative_to="top">0 0.1 0 0 0 0</pose><inertial><mass>1</mass></inertial></link>
+  <frame name="top" attached_to="mast"><pose>0 0 1 0 0 0</pose></frame>
+  <joint name="tilt" type="universal"><parent>hull</parent><child>mast</child>
+    <axis><xyz>1 0 0</xyz><dynamics><damping>0.1</damping><friction>0</friction><spring_stiffness>4</spring_stiffness>
+      <spring_reference>0.2</spring_reference></dynamics><limit><lower>-1</lower><upper>1e16</upper></limit></axis>
+    <axis2><xyz>0 1 0</xyz></axis2></joint>
+  <joint name="screwed" type="screw"><screw_thread_pitch>0.02</screw_thread_pitch>
+    <parent>mast</parent><child>eye</child>
+    <axis><xyz>0 0 1</xyz><mimic joint="tilt"><multiplier>2</multiplier><offset>0.5</offset></mimic></axis></joint>
+  <plugin name="driver" filename="x.so"/>
+</model></world></sdf>"""
+
+
+def test_sdf_has_frames_springs_screws_and_links_that_nothing_holds(tmp_path):
+    """Poses by frames, a universal joint as two hinges, a free hull where it stands, gravity of the world."""
+    found = robot(tmp_path, SDF, "sdf")
+    bodies, model = found.model.bodies, found.model
+    assert [body.joint.kind for body in bodies.values()] == ["free", "revolute", "revolute", "screw"]
+    assert [model.coordinates[f"hull_{x}"].start.text for x in "xyz"] == ["1", "2", "3"]
+    assert [x.text for x in bodies["eye"].joint.at] == ["0", "0.1", "1"]
+    assert bodies["eye"].joint.pitch.text == "0.02/(2*pi)" and model.parameters["g"].value.text == "3.7"
+    hinge = bodies["mast_tilt"].joint
+    assert (hinge.stiffness.text, hinge.rest.text, hinge.damping.text) == ("4", "0.2", "0.1")
+    assert model.constraints["mimic_screwed"].gap.text == "screwed - 2*tilt - 0.5"
+    assert {each.what for each in found.left_out} == {"light", "plugin"}
+    assert eomgen.derive(model).certify().ok
+    for change, what in [
+        (("<child>eye", "<child>mast"), "two joints"),
+        (('"top">0 0.1', '"to">0 0.1'), "there is not"),
+    ]:
+        with pytest.raises(ModelError, match=what):
+            robot(tmp_path, SDF.replace(*change), "sdf")

@@ -14,6 +14,7 @@ from eomgen.model.reader import loads
 from eomgen.robots.drawn_up import Imported, LeftOut
 from eomgen.robots.mjcf import mjcf
 from eomgen.robots.numbers import EXACTLY
+from eomgen.robots.sdf import sdf
 from eomgen.robots.toml_text import toml_text
 from eomgen.robots.urdf import urdf
 
@@ -38,7 +39,7 @@ class ImportedRobot:
 
 
 def imported(path: str | Path, *, floating: bool = False) -> ImportedRobot:
-    """The robot in a file: URDF, or MJCF (by the extra `[mujoco]`).
+    """The robot in a file: URDF, SDF, or MJCF (by the extra `[mujoco]`).
 
     Args:
         floating: of URDF: nothing holds the base; else it is fixed to the ground.
@@ -73,4 +74,6 @@ def _tables(path: Path, data: bytes, floating: bool) -> Imported:
     root = ROOT.search(COMMENT.sub(b"", data))
     if root is not None and root[1] == b"mujoco":
         return mjcf(path)
+    if root is not None and root[1] == b"sdf":
+        return sdf(data, str(path))
     return urdf(data, str(path), floating=floating)

@@ -102,7 +102,7 @@ def quaternion_of(R: Nine) -> tuple[Decimal, Decimal, Decimal, Decimal]:
         d = [R[i][i] for i in range(3)]
         squares = [1 + d[0] + d[1] + d[2], *(1 + 2 * d[i] - d[0] - d[1] - d[2] for i in range(3))]
         k = max(range(4), key=lambda i: squares[i])
-        s = squares[k].sqrt()
+        s = Decimal(squares[k]).sqrt()
         skew = [R[2][1] - R[1][2], R[0][2] - R[2][0], R[1][0] - R[0][1]]
         if k == 0:
             e = [s, *(x / s for x in skew)]

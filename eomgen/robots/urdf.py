@@ -131,7 +131,7 @@ class _Reading:
 
     @classmethod
     def of(cls, robot: XmlElement) -> _Reading:
-        links, joints = _by_name(robot, "link"), _by_name(robot, "joint")
+        links, joints = by_name(robot, "link"), by_name(robot, "joint")
         if not links:
             mend = "expand it by xacro first" if robot.children else "name a URDF file"
             raise ModelError("the robot has no <link>", robot.where, mend)
@@ -340,7 +340,8 @@ def _limits(raw: str, q: str, joint: XmlElement, unit: str) -> Entries:
     return {"about": ", ".join(said)} if said else {}
 
 
-def _by_name(robot: XmlElement, tag: str) -> dict[str, XmlElement]:
+def by_name(robot: XmlElement, tag: str) -> dict[str, XmlElement]:
+    """Elements of a name each."""
     found: dict[str, XmlElement] = {}
     for element in robot.all(tag):
         name = element.need("name")

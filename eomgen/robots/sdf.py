@@ -1,0 +1,318 @@
+"""SDF -> tables of a model file. http://sdformat.org/spec
+
+A link is a body. Poses are of links, joints and frames, each relative to another (`relative_to`), a link's to the
+model, a joint's to its child. A joint sits at its own place in the child; where nothing joins a link to the world it
+is free, unless the model is static.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from decimal import Decimal
+from typing import Any
+
+from eomgen.errors import ModelError
+from eomgen.model.findings import nearest
+from eomgen.robots.drawn_up import Entries, Imported, LegalNames, Moved, Seat, hung, in_file, signed_sum, without_empty
+from eomgen.robots.numbers import ORIGIN, decimals, inertia_in, quaternion_of, roll_pitch_yaw, six, tensor_of, turn_of
+from eomgen.robots.urdf import LEFT_OUT, by_name, free_joint, left_out, turned_freely, with_mass
+from eomgen.robots.xml_tree import XmlElement, xml_tree
+from eomgen.symbolic.expression.spatial import IDENTITY, Pose, apply
+
+ONE_AXIS = {"revolute": "rad", "continuous": "rad", "prismatic": "m", "screw": "rad"}
+TWO_AXES = ("universal", "revolute2")
+KINDS = (*ONE_AXIS, *TWO_AXES, "fixed", "ball")
+ENDLESS = Decimal(10) ** 15  # a limit beyond it is none
+STANDARD = "0 0 -9.8"  # gravity, where the file says nothing
+WHY = LEFT_OUT | {
+    "plugin": "code of a simulator",
+    "physics": "settings of a simulator",
+    "self_collide": "no contact is declared by a shape: see [constraints]",
+    "include": "put the model of that file in its place",
+    "model": "models within a model: import each by itself",
+}
+
+
+def sdf(data: bytes, name: str) -> Imported:
+    """The tables of a model, or of the first one of a world.
+
+    Args:
+        name: stands for the file in messages.
+    Raises:
+        ModelError: no model, or one whose links are no tree.
+    """
+    root = xml_tree(data, name)
+    old = _version(root) < (1, 5)
+    world = root.one("world")
+    top = root if world is None else world
+    top.get("name")
+    model = top.one("model")
+    if model is None:
+        raise ModelError("the file holds no <model>", root.where, "name an SDF file with one")
+    gravity = None if world is None else world.one("gravity")
+    acceleration = gravity.value(3) if gravity is not None else decimals(STANDARD.split())
+    found = _Reading.of(model, old).tables(acceleration)
+    return Imported(found, left_out(root, WHY))
+
+
+def _version(root: XmlElement) -> tuple[int, ...]:
+    text = root.get("version", "1.10") or "1.10"
+    return tuple(int(part) for part in text.split(".") if part.isdigit())
+
+
+@dataclass
+class _Reading:
+    """A model's elements, by name, and what is made of them.
+
+    Args:
+        old: an axis is given in the model's axes.
+        above: of each link the joint by which it hangs.
+    """
+
+    model: XmlElement
+    links: Mapping[str, XmlElement]
+    joints: Mapping[str, XmlElement]
+    frames: Mapping[str, XmlElement]
+    old: bool
+    above: dict[str, str] = field(default_factory=dict)
+    names: LegalNames = field(default_factory=LegalNames)
+    bodies: LegalNames = field(default_factory=LegalNames)
+    body: dict[str, str] = field(default_factory=dict)
+    coordinate: dict[str, str] = field(default_factory=dict)
+    found: Entries = field(default_factory=dict)
+
+    @classmethod
+    def of(cls, model: XmlElement, old: bool) -> _Reading:
+        links, joints, frames = (by_name(model, tag) for tag in ("link", "joint", "frame"))
+        made = cls(model, links, joints, frames, old)
+        for name, joint in made.joints.items():
+            parent, child = made._end(joint, "parent"), made._end(joint, "child")
+            if child == "world":
+                raise ModelError(f"the world hangs on joint '{name}'", joint.where, "let it be the parent")
+            if child in made.above:
+                what = f"link '{child}' hangs on two joints, '{made.above[child]}' and '{name}'"
+                raise ModelError(what, joint.where, "take one out and say it by a constraint")
+            made.above[child] = name
+            for link in (parent, child):
+                if link not in made.links and link != "world":
+                    mend = nearest(link, made.links) or f"one of {', '.join(made.links)}"
+                    raise ModelError(f"joint '{name}' names a link that there is not: '{link}'", joint.where, mend)
+        made.body = {link: made.bodies.new(link, "link") for link in made.links}
+        made.coordinate = {name: made.names.new(name, "q") for name in made.joints}
+        return made
+
+    def tables(self, gravity: Any) -> Entries:
+        keys = ("coordinates", "speeds", "inputs", "bodies", "constraints")
+        self.found = {key: {} for key in keys}
+        static = self.model.one("static")
+        fixed = static is not None and static.text in ("true", "1")
+        for link in self._ordered():
+            self._link(link, fixed)
+        g = self.names.new("g")
+        weight: Entries = {"kind": "gravity", "acceleration": [0, 0, f"-{g}"]}
+        parameters: Entries = {g: {"value": -gravity[2], "unit": "m/s^2"}}
+        if any(gravity[:2]) or gravity[2] >= 0:
+            weight["acceleration"], parameters = list(gravity), {}
+        name = self.model.get("name") or "robot"
+        head = {"eomgen": 1, "name": name, "space": "space"}
+        forces = {"forces": {"weight": weight}} if any(gravity) else {}
+        return {**head, **without_empty({"parameters": parameters, **self.found}), **forces}
+
+    def _end(self, joint: XmlElement, tag: str) -> str:
+        found = joint.one(tag)
+        if found is None:
+            raise ModelError(f"<joint> has no <{tag}>", joint.where, "give one")
+        return found.text
+
+    def _ordered(self) -> list[str]:
+        """Each link after that on which it hangs."""
+        order: list[str] = []
+
+        def add(link: str, below: tuple[str, ...]) -> None:
+            if link in below:
+                raise ModelError(f"link '{link}' hangs in a ring of joints", self.links[link].where, "cut it")
+            if link in order or link == "world":
+                return
+            if link in self.above:
+                add(self._end(self.joints[self.above[link]], "parent"), (*below, link))
+            order.append(link)
+
+        for link in self.links:
+            add(link, ())
+        return order
+
+    # poses
+
+    def _pose(self, name: str, below: tuple[str, ...] = ()) -> Pose:
+        """Of a link, joint or frame in the model's axes."""
+        if name in ("__model__", "", "world"):
+            return Pose(IDENTITY, ORIGIN)
+        element = self.links.get(name) or self.joints.get(name) or self.frames.get(name)
+        if element is None or name in below:
+            what = "is relative to itself" if name in below else "there is not"
+            raise ModelError(f"a pose names a frame that {what}: '{name}'", self.model.where, "mend relative_to")
+        pose = element.one("pose")
+        base = "__model__"
+        if element.tag == "joint":
+            base = self._end(element, "child")
+        elif element.tag == "frame":
+            base = element.get("attached_to") or base
+        if pose is not None:
+            base = pose.get("relative_to") or base
+        return self._pose(base, (*below, name)).then(own_pose(pose))
+
+    # links and joints
+
+    def _link(self, raw: str, fixed: bool) -> None:
+        name, element = self.body[raw], self.links[raw]
+        body: Entries = {"about": f"link {raw}"} if name != raw else {}
+        body |= _massive(element.one("inertial"))
+        joint = self.joints.get(self.above.get(raw, ""))
+        parent = "world" if joint is None else self._end(joint, "parent")
+        apart = self._pose(parent).inverse().then(self._pose(raw))
+        turn = quaternion_of(apart.R)
+        if joint is None and not fixed:
+            moved = [free_joint(self.found, name, self.names, apart.p, in_file(turn))]
+            self.found["bodies"] |= hung(name, body, Seat(None), moved, self.bodies)
+            return
+        seat = Seat(None if parent == "world" else self.body[parent], apart.p, apart.R, turn_of(turn))
+        moved = [] if joint is None else self._joints(self.above[raw], joint, raw)
+        self.found["bodies"] |= hung(name, body, seat, moved, self.bodies)
+
+    def _joints(self, raw: str, joint: XmlElement, child: str) -> list[Moved]:
+        kind = joint.need("type")
+        if kind not in KINDS:
+            mend = nearest(kind, KINDS) or f"one of {', '.join(KINDS)}"
+            raise ModelError(f"a joint of a type that is not imported: '{kind}'", joint.where, mend)
+        at = self._pose(child).inverse().then(self._pose(raw))
+        q = self.coordinate[raw]
+        if kind == "fixed":
+            return []
+        if kind == "ball":
+            return [Moved({"kind": "spherical", **turned_freely(self.found, q, self.names)}, at.p, q)]
+        tags = ("axis", "axis2") if kind in TWO_AXES else ("axis",)
+        return [self._one_axis(raw, joint, tag, at, child, kind) for tag in tags]
+
+    def _one_axis(self, raw: str, joint: XmlElement, tag: str, at: Pose, child: str, kind: str) -> Moved:
+        element = joint.one(tag)
+        if element is None:
+            raise ModelError(f"joint '{raw}' has no <{tag}>", joint.where, "give one")
+        q = self.coordinate[raw] if tag == "axis" else self.names.new(f"{self.coordinate[raw]}_2")
+        unit = ONE_AXIS.get(kind, "rad")
+        about = [f"joint {raw}"] if q != raw else []
+        keys: Entries = {"kind": {"m": "prismatic"}.get(unit, "screw" if kind == "screw" else "revolute")}
+        keys["axis"] = self._axis(element, joint, at, child)
+        keys["displacement" if unit == "m" else "angle"] = q
+        if kind == "screw":
+            pitch = joint.one("screw_thread_pitch")
+            if pitch is None:
+                raise ModelError(f"screw '{raw}' has no <screw_thread_pitch>", joint.where, "give it in m a turn")
+            keys["pitch"] = f"{pitch.value()[0]}/(2*pi)"
+        about += self._limit(element.one("limit"), unit)
+        self.found["coordinates"][q] = {"unit": unit, **({"about": ", ".join(about)} if about else {})}
+        mimic = element.one("mimic")
+        if mimic is None or not self._mimic(q, mimic):
+            effort = self.names.new(f"{'F' if unit == 'm' else 'tau'}_{q}")
+            self.found["inputs"][effort] = {"value": 0, "unit": "N" if unit == "m" else "N*m"}
+            keys["force" if unit == "m" else "torque"] = effort
+        keys |= self._dynamics(element.one("dynamics"))
+        return Moved(keys, at.p, q)
+
+    def _axis(self, element: XmlElement, joint: XmlElement, at: Pose, child: str) -> list[Decimal]:
+        """The axis in the child's axes."""
+        xyz = element.one("xyz")
+        axis: Any = decimals([0, 0, 1]) if xyz is None else xyz.value(3)
+        if not any(axis):
+            raise ModelError("an axis has no direction", element.where, "give three numbers, not all 0")
+        frame = None if xyz is None else xyz.get("expressed_in")
+        flag = element.one("use_parent_model_frame")
+        if flag is not None and flag.text in ("true", "1"):
+            frame = "__model__"
+        if frame is None and self.old and flag is None:
+            frame = "__model__"
+        if frame is None:
+            return in_file(apply(at.R, axis))
+        R = self._pose(child).inverse().then(self._pose(frame)).R
+        return in_file(apply(R, axis))
+
+    def _limit(self, limit: XmlElement | None, unit: str) -> list[str]:
+        """Limits as remarks."""
+        if limit is None:
+            return []
+        found = {tag: limit.one(tag) for tag in ("lower", "upper", "effort", "velocity")}
+        values = {tag: _finite(element) for tag, element in found.items() if element is not None}
+        low, high = (values.get(tag) for tag in ("lower", "upper"))
+        said = [f"from {low} to {high} {unit}"] if low is not None and high is not None else []
+        force = "N" if unit == "m" else "N*m"
+        for tag, of in (("effort", force), ("velocity", f"{unit}/s")):
+            if (most := values.get(tag)) is not None and most >= 0:
+                said.append(f"at most {most} {of}")
+        return said
+
+    def _dynamics(self, dynamics: XmlElement | None) -> Entries:
+        """Dampers and springs; friction is left out."""
+        keys: Entries = {}
+        if dynamics is None:
+            return keys
+        tags = {"spring_stiffness": "stiffness", "spring_reference": "rest", "damping": "damping"}
+        for tag, key in tags.items():
+            if (element := dynamics.one(tag)) is not None and (value := element.value()[0]):
+                keys[key] = value
+        if "stiffness" not in keys:
+            keys.pop("rest", None)
+        friction = next((child for child in dynamics.children if child.tag == "friction"), None)
+        if friction is not None and not friction.value()[0]:
+            friction.seen = True
+        return keys
+
+    def _mimic(self, q: str, mimic: XmlElement) -> bool:
+        """q = multiplier (other - reference) + offset; whether that other is there."""
+        other = self.coordinate.get(mimic.attributes.get("joint", ""))
+        if other is None:
+            return False
+        mimic.get("joint"), mimic.get("axis")
+        tags = {tag: mimic.one(tag) for tag in ("multiplier", "offset", "reference")}
+        factor, offset, reference = (Decimal(0) if x is None else x.value()[0] for x in tags.values())
+        constant = offset - factor * reference
+        gap = signed_sum([(Decimal(1), q), (-factor, other)], -constant)
+        if constant:
+            self.found["coordinates"][q]["start"] = constant
+        self.found["constraints"][self.bodies.new(f"mimic_{q}")] = {"kind": "equation", "gap": gap}
+        return True
+
+
+def own_pose(pose: XmlElement | None) -> Pose:
+    """What a <pose> says, x y z roll pitch yaw."""
+    if pose is None or not pose.text:
+        return Pose(IDENTITY, ORIGIN)
+    numbers = pose.value(6)
+    if pose.get("degrees") in ("true", "1"):
+        raise ModelError("a pose in degrees is not imported", pose.where, "give its angles in radians")
+    R, _ = roll_pitch_yaw(decimals(numbers[3:]))
+    return Pose(R, decimals(numbers[:3]))
+
+
+def _massive(inertial: XmlElement | None) -> Entries:
+    """Mass, centre and inertia of a link, turned into its axes."""
+    if inertial is None:
+        return {}
+    pose, mass, tensor = own_pose(inertial.one("pose")), inertial.one("mass"), inertial.one("inertia")
+    kilograms = Decimal(1) if mass is None else mass.value()[0]
+    if kilograms < 0:
+        raise ModelError(f"a negative mass: {kilograms}", inertial.where, "give a mass of 0 or more")
+    entries = {"ixx": Decimal(1), "iyy": Decimal(1), "izz": Decimal(1), "ixy": Decimal(0), "iyz": Decimal(0)}
+    entries["ixz"] = Decimal(0)
+    for key in entries if tensor is not None else ():
+        element = None if tensor is None else tensor.one(key)
+        if element is not None:
+            entries[key] = element.value()[0]
+    return with_mass({"mass": kilograms}, pose.p, six(inertia_in(pose.R, tensor_of(*entries.values()))))
+
+
+def _finite(element: XmlElement) -> Decimal | None:
+    """A limit; None where it is none."""
+    if element.text.lstrip("+-").lower() in ("inf", "infinity"):
+        return None
+    value = element.value()[0]
+    return value if abs(value) < ENDLESS else None
