@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 from eomgen.documents.bounded import page
@@ -9,7 +10,7 @@ from eomgen.documents.motion_steps import Pair, axes, component_pairs
 from eomgen.documents.reading import Reader
 from eomgen.documents.setting_steps import moved_coordinates
 from eomgen.documents.statements import Law, Name, Partial, Rate, Side, Statement, Step, prose
-from eomgen.mechanics.bodies.inertia import BodyEnergy, armature_energy
+from eomgen.mechanics.bodies.inertia import BodyEnergy, armature_energy, body_energies
 from eomgen.mechanics.bodies.loads import Applied, JointEffort
 from eomgen.mechanics.equations.system import System
 from eomgen.mechanics.equations.work import effort_row, force_row, per_speed
@@ -56,6 +57,16 @@ def momenta_of(system: System, reader: Reader, T: Scalar) -> Momenta:
 
 def kinetic_energy_step(system: System, reader: Reader, energies: tuple[BodyEnergy, ...], total: Scalar) -> Step:
     """T of each body, then of the whole."""
+    formulas = _of_bodies(system, energies)
+    if len(formulas) <= 1:
+        return Step("kinetic_energy", "Kinetic energy", (prose(KINETIC, ":"), *page(reader, [(T, total)])))
+    statements = (prose("Of each body ", KINETIC, ":"), *page(reader, formulas), prose("Together:"))
+    together = reader.as_sum(total, [x for _, x in formulas])
+    return Step("kinetic_energy", "Kinetic energy", (*statements, *page(reader, [(T, together)])))
+
+
+def _of_bodies(system: System, energies: Sequence[BodyEnergy]) -> list[Pair]:
+    """The kinetic energy of each body, and of each rotor."""
     formulas: list[Pair] = []
     for link, energy in zip(system.motion.links, energies, strict=True):
         of_body = energy.translation + energy.rotation
@@ -64,11 +75,15 @@ def kinetic_energy_step(system: System, reader: Reader, energies: tuple[BodyEner
         rotor = armature_energy(system.motion, link)
         if not is_zero(rotor):
             formulas.append((Name("T", f"{link.name}, rotor"), rotor))
-    if len(formulas) <= 1:
-        return Step("kinetic_energy", "Kinetic energy", (prose(KINETIC, ":"), *page(reader, [(T, total)])))
-    statements = (prose("Of each body ", KINETIC, ":"), *page(reader, formulas), prose("Together:"))
-    together = reader.as_sum(total, [x for _, x in formulas])
-    return Step("kinetic_energy", "Kinetic energy", (*statements, *page(reader, [(T, together)])))
+    return formulas
+
+
+def energies_by_parts(system: System, reader: Reader, T: Scalar) -> tuple[Scalar, Scalar]:
+    """(T, V), each as the sum over bodies or forces where that is shorter."""
+    bodies = [x for _, x in _of_bodies(system, body_energies(system.motion))]
+    V = system.loads.potential_energy
+    potentials = [reader.as_square(force.potential) for force in system.loads.applied if force.potential is not None]
+    return reader.as_sum(T, bodies), reader.as_sum(V, potentials)
 
 
 def work_step(system: System, reader: Reader, forces: tuple[Scalar, ...]) -> Step:

@@ -6,6 +6,7 @@ from collections.abc import Sequence
 from itertools import groupby
 
 from eomgen.documents.bounded import page
+from eomgen.documents.energy_steps import energies_by_parts
 from eomgen.documents.reading import Reader
 from eomgen.documents.setting_steps import listed_symbols
 from eomgen.documents.statements import Formula, Law, Name, Partial, Prose, Statement, Step, prose
@@ -14,7 +15,12 @@ from eomgen.mechanics.equations.equations_of_motion import EquationsOfMotion
 from eomgen.mechanics.equations.explicit_accelerations import short_accelerations
 from eomgen.mechanics.equations.system import System
 from eomgen.mechanics.first_integrals.constants_of_motion import Constant, momenta_of_the_whole
-from eomgen.mechanics.first_integrals.integrals import Integral, energy_integral, momentum_integrals
+from eomgen.mechanics.first_integrals.integrals import (
+    Integral,
+    energy_integral,
+    momentum_integrals,
+    work_of_constant_forces,
+)
 from eomgen.mechanics.first_integrals.laws import laws_of_motion
 from eomgen.symbolic.expression.derivative import depends_on
 from eomgen.symbolic.expression.graph import Node, Scalar
@@ -95,6 +101,10 @@ def _energy(reader: Reader, equations: EquationsOfMotion, energy: Integral) -> l
         words = ("The energy less the work of the constant forces, ", law, ", stays constant")
     if any(node.op == "select" for node in order((energy.expression,))):
         return [prose(*words, ".")]
+    if law is not JACOBI:
+        T, V = energies_by_parts(equations.system, reader, equations.T)
+        parts = [T, V, *([-work_of_constant_forces(equations.system)] if law is ENERGY_AND_WORK else [])]
+        return [prose(*words, ":"), *page(reader, [(law, reader.as_sum(energy.expression, parts))])]
     return [prose(*words, ":"), *page(reader, [(law, energy.expression)])]
 
 

@@ -40,6 +40,7 @@ LARGEST_DEGREE = 16  # of a sum that is looked through for factors
 BRACKETS = 1  # marks that a sum may be longer in factors: (M + m)*g is M*g + m*g
 DEEPER = 10  # marks that parentheses within parentheses must save
 INSIDE = 1  # marks that a number must save in the parentheses before which it stands: (1/3*m1 + m2)*l1^2
+LARGEST_RATIO = 99  # of two decimals that stand as whole numbers behind a common one: 0.02*(2*a + b)
 MERGED = 6  # marks that one coefficient of several accelerations and rates must save
 MOST_SHARED = 4  # factors that several terms of a sum hold, of which each is tried outside of them
 LONGEST = 3000  # characters of a quotient that is written anew
@@ -128,9 +129,18 @@ def _quotients(expansion: Expansion, writer: Writer, book: _Book, terms: Terms) 
     forms = []
     for found in (quotient, halves):
         if found is not None:
-            above, below = (_parts(writer, part) for part in in_whole_numbers(writer, *found))
+            above, below = _as_measured(*(_parts(writer, part) for part in in_whole_numbers(writer, *found)))
             forms += [(above, below), *book.in_tangents(above, below)]
     return [expansion.graph.div(book.product(above), book.product(below)) for above, below in forms]
+
+
+def _as_measured(above: Parts, below: Parts) -> tuple[Parts, Parts]:
+    """(0.0041*m - 0.0284*n)/b, and not (41*m - 284*n)/(10000*b)."""
+    number = common_number(c for c, _ in below)
+    over = [(tidy(Fraction(c) / number), powers) for c, powers in above]
+    if all(decimal_of(c) is None for c, _ in over) or not any(abs(c) > LARGEST_RATIO for c, _ in above):
+        return above, below
+    return over, [(tidy(Fraction(c) / number), powers) for c, powers in below]
 
 
 def _in_tangents(parts: Parts, angle: AngleSum) -> Parts:
@@ -187,6 +197,10 @@ class _Book:
 
     def _times(self, number: Number, common: Powers, factors: Sequence[tuple[Parts, int]]) -> Scalar:
         """number * common * factors, a minus in front only where no factor can take it."""
+        for part, e in factors:
+            if len(part) == 1 and not part[0][1]:
+                number = tidy(number * Fraction(part[0][0]) ** e)
+        factors = [(part, e) for part, e in factors if len(part) > 1 or part[0][1]]
         minus = number * (-1) ** sum(e for part, e in factors if _is_negative(part)) < 0
         written = [(_turned(part) if _is_negative(part) else part, e) for part, e in factors]
         if minus:
@@ -204,7 +218,8 @@ class _Book:
             return apart
         written[inside] = ([(tidy(size * c), powers) for c, powers in written[inside][0]], 1)
         within = self._product(self._term(sign, common), written)
-        return within if length_of(within) + INSIDE < length_of(apart) else apart
+        measured = decimal_of(size) is not None and any(abs(c) > LARGEST_RATIO for part, _ in factors for c, _ in part)
+        return within if measured or length_of(within) + INSIDE < length_of(apart) else apart
 
     def _product(self, total: Scalar, factors: Sequence[tuple[Parts, int]]) -> Scalar:
         graph = self.writer.graph
@@ -448,7 +463,8 @@ def _times_powers(a: Powers, b: Powers) -> Powers:
 def _without_common(parts: Parts) -> tuple[Number, Powers, Parts]:
     """(number, powers, rest): what all terms hold, and what is left of them; a negative number if all are."""
     number: Number = common_number(c for c, _ in parts)
-    number = 1 if decimal_of(number) is not None else number  # of 0.00018125 and 0.000161 nobody takes out 2.5e-7
+    if decimal_of(number) is not None and any(abs(c) != number for c, _ in parts):
+        number = 1  # of 0.00018125 and 0.000161 nobody takes out 2.5e-7
     number = -number if _is_negative(parts) else number
     bases: Iterable[Base] = dict.fromkeys(base for _, powers in parts for base, _ in powers)
     exponents = [dict(powers) for _, powers in parts]
