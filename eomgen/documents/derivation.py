@@ -74,7 +74,7 @@ def derivation_of(
     written = with_roots_named(written, graph, taken, reader.roots)
     if full:
         written = with_parts_named(written, graph, taken, reader.raw)
-    notation = notation_step(written.steps, system.scope.names)
+    notation = notation_step(written.steps, system.scope.names, result.meanings)
     declared = {} if isinstance(letters, str) else letters.declared
     document = with_symbols(document_of(model, method, (*written.steps, notation)), declared)
     return replace(document, equations=written.equations, definitions=written.definitions)

@@ -6,6 +6,7 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 
 from eomgen.documents.bounded import elsewhere
+from eomgen.documents.coefficient_names import with_coefficients_named
 from eomgen.documents.friction_steps import friction_of
 from eomgen.documents.reading import (
     LARGEST_DIVISOR,
@@ -20,7 +21,7 @@ from eomgen.documents.reading import (
     shortened,
 )
 from eomgen.documents.setting_steps import moved_coordinates
-from eomgen.documents.statements import Equation, Formula, Omitted, Piece, Prose, Statement, Step, prose
+from eomgen.documents.statements import Equation, Formula, Meaning, Omitted, Piece, Prose, Statement, Step, prose
 from eomgen.mechanics.equations.equations_of_motion import EquationsOfMotion
 from eomgen.mechanics.equations.system import System
 from eomgen.symbolic.exact.book_form import book_form
@@ -30,7 +31,7 @@ from eomgen.symbolic.expression.graph import Graph, Node, Scalar, is_zero
 from eomgen.symbolic.expression.traversal import operations
 from eomgen.symbolic.numeric.work import Work
 from eomgen.symbolic.print.decimals import number_text
-from eomgen.symbolic.print.layout import factors, products_of
+from eomgen.symbolic.print.layout import Factor, factors, products_of
 from eomgen.symbolic.print.length import length_of
 from eomgen.symbolic.print.text import text_size
 
@@ -51,11 +52,17 @@ class Sides:
 
 @dataclass(frozen=True)
 class EquationSteps:
-    """The equations as printed, and the steps that print them."""
+    """The equations as printed, and the steps that print them.
+
+    Args:
+        definitions: (name, what it stands for) of what has a name in them.
+        meanings: of names of coefficients, for the table of symbols.
+    """
 
     equations: tuple[Equation, ...]
     definitions: tuple[tuple[Node, Scalar], ...]
     steps: tuple[Step, ...]
+    meanings: tuple[Meaning, ...] = ()
 
 
 def multiplier_forces(equations: EquationsOfMotion) -> tuple[Scalar, ...]:
@@ -94,7 +101,8 @@ def equations_of(
         sides = [Sides(row.left, row.right + force) for row, force in zip(sides, friction.forces, strict=True)]
         result = _equations(equations, reader, sides, rule)
         steps = (friction.step, *result.steps, *friction.solved)
-        return EquationSteps(result.equations, (*friction.definitions, *result.definitions), steps)
+        definitions = (*friction.definitions, *result.definitions)
+        return EquationSteps(result.equations, definitions, steps, result.meanings)
     return _equations(equations, reader, sides, rule)
 
 
@@ -103,9 +111,11 @@ def _equations(
 ) -> EquationSteps:
     written = readable_equations(reader, equations, sides)
     if written is not None:
-        statements = (Prose(rule), *printed(equations.system, written), *closing(reader, equations))
-        steps = (Step("equations", "Equations of motion", statements), *_solved(reader, equations, written))
-        return EquationSteps(tuple(written), (), steps)
+        named = with_coefficients_named(equations.system.scope, written, taken_in(equations))
+        lines = (*named.statements, *printed(equations.system, named.equations), *closing(reader, equations))
+        first = Step("equations", "Equations of motion", (Prose(rule), *lines))
+        steps = (first, *_solved(reader, equations, named.equations))
+        return EquationSteps(named.equations, named.definitions, steps, named.meanings)
     found = _whole(reader, equations) if reader.full else _named(reader, equations)
     if found is None:
         count = operations((*(x for row in equations.M for x in row), *equations.forcing)).total
@@ -166,6 +176,11 @@ def _named(
     return [Equation(u, next(texts), next(texts)) for u in equations.symbols.u], found.definitions
 
 
+def taken_in(equations: EquationsOfMotion) -> set[str]:
+    """The names that stand in the equations, and those of the model."""
+    return {*equations.system.scope.names, *(node.name for node in _symbols(equations))}
+
+
 def _symbols(equations: EquationsOfMotion) -> tuple[Node, ...]:
     s = equations.symbols
     return (s.t, *s.parameters.values(), *s.inputs.values(), *s.q, *s.u, *s.a, *s.lam)
@@ -184,14 +199,30 @@ def printed(system: System, equations: Sequence[Equation]) -> list[Statement]:
 
 
 def _divided(system: System, divisor: Scalar) -> tuple[Piece, ...]:
-    """By what both sides were divided, and that it must not vanish where it can."""
-    number = factors(divisor).coefficient
-    words: tuple[Piece, ...] = (f"multiplied by {number.denominator}",) if number.numerator == 1 != number else ()
-    rest = divisor * number.denominator if words else divisor
-    if not isinstance(rest, Node):
-        return words or (f"divided by {number_text(rest)}",)
-    moving = depends_on(rest, system.symbols.q)
-    return (*words, " and " if words else "", "divided by ", rest, " (where that is not zero)" if moving else "")
+    """By what both sides were multiplied and divided, and that the divisor must not vanish where it can."""
+    found = factors(divisor)
+    number, graph = found.coefficient, system.scope.graph
+    above, below = (_product(graph, part) for part in (found.numerator, found.denominator))
+    if number.numerator == 1:
+        below, number = number.denominator * below, 1
+    divided = number * above
+    words: list[Piece] = [] if below == 1 else ["multiplied by ", _piece(below)]
+    if divided != 1 or not words:
+        moving = depends_on(divided, system.symbols.q)
+        words += [" and "] if words else []
+        words += ["divided by ", _piece(divided), " (where that is not zero)" if moving else ""]
+    return tuple(words)
+
+
+def _product(graph: Graph, found: Sequence[Factor]) -> Scalar:
+    total: Scalar = 1
+    for base, e in found:
+        total = total * graph.pow(base, e)
+    return total
+
+
+def _piece(x: Scalar) -> Piece:
+    return x if isinstance(x, Node) else number_text(x)
 
 
 def closing(reader: Reader, equations: EquationsOfMotion) -> list[Statement]:

@@ -10,6 +10,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
+from eomgen.documents.coefficient_names import with_coefficients_named
 from eomgen.documents.energy_steps import Momenta
 from eomgen.documents.equation_steps import (
     EquationSteps,
@@ -18,6 +19,7 @@ from eomgen.documents.equation_steps import (
     multiplier_forces,
     printed,
     readable_equations,
+    taken_in,
 )
 from eomgen.documents.reading import Reader
 from eomgen.documents.statements import Formula, Law, Omitted, Step, prose
@@ -60,15 +62,19 @@ def maggi_equations(
         return None
     law = WITH_TIES if equations.J else MAGGI
     words = "Lagrange's equations of all coordinates, put together along the motions that the constraints allow, "
+    named = with_coefficients_named(system.scope, written, taken_in(equations))
     statements = (
         prose(words, law, ":"),
-        *printed(system, written),
+        *named.statements,
+        *printed(system, named.equations),
         *closing(reader, equations),
         prose("The dependent coordinates follow, their rates as above:"),
         *map(Formula, shown[len(shown) // 2 :]),
     )
     definitions = tuple((symbol, x) for symbol, x in shown if not isinstance(x, Omitted))
-    return EquationSteps(tuple(written), definitions, (Step("equations", "Equations of motion", statements),))
+    definitions = (*named.definitions, *definitions)
+    steps = (Step("equations", "Equations of motion", statements),)
+    return EquationSteps(named.equations, definitions, steps, named.meanings)
 
 
 def _followers(system: System, free: System, N: Sequence[ScalarRow]) -> list[tuple[Node, Scalar]]:

@@ -48,10 +48,11 @@ MEANINGS = {
 """letter -> what it stands for, and its unit ("" where that depends on the coordinate)"""
 
 
-def notation_step(steps: Sequence[Step], taken: Container[str]) -> Step:
+def notation_step(steps: Sequence[Step], taken: Container[str], more: Sequence[Meaning] = ()) -> Step:
     """The letters that the steps use.
 
     Args:
+        more: names that were given on the way.
         taken: the model's own names; where one of them is such a letter, the table says so.
     """
     letters = {name.letter for step in steps for statement in step.statements for name in quantities(statement)}
@@ -60,7 +61,7 @@ def notation_step(steps: Sequence[Step], taken: Container[str]) -> Step:
         for letter, (meaning, unit) in MEANINGS.items()
         if letter in letters
     )
-    return Step("notation", "Notation", (Table(("symbol", "meaning", "unit", ""), rows),))
+    return Step("notation", "Notation", (Table(("symbol", "meaning", "unit", ""), (*rows, *more)),))
 
 
 def quantities(statement: Statement) -> Iterator[Name]:

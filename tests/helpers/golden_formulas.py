@@ -24,7 +24,7 @@ from eomgen.documents.statements import Formula, Side
 from eomgen.documents.text import side_text
 from eomgen.questions.answers import Answers
 from eomgen.symbolic.exact.equality import equal_at_random_states
-from eomgen.symbolic.expression.derivative import derivative
+from eomgen.symbolic.expression.derivative import derivative, substituted
 from eomgen.symbolic.expression.expressions import parse
 from eomgen.symbolic.expression.graph import Graph, Node, Scalar, is_zero
 from eomgen.symbolic.print.length import length_of_latex
@@ -100,7 +100,7 @@ def ours_of(golden: Golden) -> Ours:
 def _equation(path: Path, name: str) -> Ours:
     derivation = _derived(path).derivation
     (sides,) = [(e.left, e.right) for e in derivation.equations if e.speed.name in (name, f"{name}'")]
-    return _joined(setter_of(derivation), sides)
+    return _joined(setter_of(derivation), substituted(sides, dict(derivation.definitions)))  # as if it had no names
 
 
 def _formula(path: Path, left: str) -> Ours:
