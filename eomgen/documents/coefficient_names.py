@@ -72,7 +72,7 @@ def with_coefficients_named(scope: Scope, equations: Sequence[Equation], taken: 
     units = [_unit(scope, part) for part in large]
     set_as = {symbol_of(name).tex for name in taken}
     names = {letter: free_names(f"{letter}_") for letter in (*LETTERS.values(), OTHER)}
-    known: dict[Node, Scalar] = {}
+    known: dict[Node, Node] = {}
     for part, unit in zip(large, units, strict=True):
         name = next(n for n in names[LETTERS.get(unit, OTHER)] if symbol_of(n).tex not in set_as)
         known[part] = scope.graph.constant(name)

@@ -138,7 +138,7 @@ def _as_measured(above: Parts, below: Parts) -> tuple[Parts, Parts]:
     """(0.0041*m - 0.0284*n)/b, and not (41*m - 284*n)/(10000*b)."""
     number = common_number(c for c, _ in below)
     over = [(tidy(Fraction(c) / number), powers) for c, powers in above]
-    if all(decimal_of(c) is None for c, _ in over) or not any(abs(c) > LARGEST_RATIO for c, _ in above):
+    if all(decimal_of(c) is None for c, _ in over) or not any(abs(Fraction(c)) > LARGEST_RATIO for c, _ in above):
         return above, below
     return over, [(tidy(Fraction(c) / number), powers) for c, powers in below]
 
@@ -218,7 +218,9 @@ class _Book:
             return apart
         written[inside] = ([(tidy(size * c), powers) for c, powers in written[inside][0]], 1)
         within = self._product(self._term(sign, common), written)
-        measured = decimal_of(size) is not None and any(abs(c) > LARGEST_RATIO for part, _ in factors for c, _ in part)
+        measured = decimal_of(size) is not None and any(
+            abs(Fraction(c)) > LARGEST_RATIO for part, _ in factors for c, _ in part
+        )
         return within if measured or length_of(within) + INSIDE < length_of(apart) else apart
 
     def _product(self, total: Scalar, factors: Sequence[tuple[Parts, int]]) -> Scalar:
@@ -463,7 +465,7 @@ def _times_powers(a: Powers, b: Powers) -> Powers:
 def _without_common(parts: Parts) -> tuple[Number, Powers, Parts]:
     """(number, powers, rest): what all terms hold, and what is left of them; a negative number if all are."""
     number: Number = common_number(c for c, _ in parts)
-    if decimal_of(number) is not None and any(abs(c) != number for c, _ in parts):
+    if decimal_of(number) is not None and any(abs(Fraction(c)) != number for c, _ in parts):
         number = 1  # of 0.00018125 and 0.000161 nobody takes out 2.5e-7
     number = -number if _is_negative(parts) else number
     bases: Iterable[Base] = dict.fromkeys(base for _, powers in parts for base, _ in powers)
