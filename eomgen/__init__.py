@@ -6,6 +6,7 @@
     equations.rhs()(0.0, x, p)                # the right-hand side, x = coordinates then speeds; C or numpy
     eomgen.simulate(model, time=10)           # Trajectory: t, x, energy, drift, status, message
     eomgen.simulator(model)(time=10)          # the same as often as one likes: derived and compiled once
+    eomgen.simulate_many(model, time=10, parameters={"m": [1, 2]})  # Runs: many of them at once
     eomgen.generate(model, ("c", "numpy"))    # Generated: texts, write(directory)
     eomgen.inverse_dynamics(model)            # InverseDynamics: the forces that given accelerations take, as code
     eomgen.solve(model)                       # {name: Answer} of the model's outputs: exact, value
@@ -73,7 +74,8 @@ _HOMES = {
     "generated": ("Generated", "generate"),
     "page.contents": ("Report",),
     "page.play": ("Played", "play"),
-    "pipeline": ("derive", "inverse_dynamics", "simulate", "simulator"),
+    "pipeline": ("derive", "inverse_dynamics", "simulate", "simulate_many", "simulator"),
+    "questions.many_runs": ("Runs",),
     "questions.simulator": ("Simulator",),
     "documents.inertia.result": ("Inertia", "inertia"),
     "documents.linearize.result": ("Linearization", "linearize"),

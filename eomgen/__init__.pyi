@@ -50,11 +50,13 @@ from eomgen.page.play import play as play
 from eomgen.pipeline import derive as derive
 from eomgen.pipeline import inverse_dynamics as inverse_dynamics
 from eomgen.pipeline import simulate as simulate
+from eomgen.pipeline import simulate_many as simulate_many
 from eomgen.pipeline import simulator as simulator
 from eomgen.proof.check import Certificate as Certificate
 from eomgen.proof.check import Check as Check
 from eomgen.questions.answers import Answer as Answer
 from eomgen.questions.answers import solve as solve
+from eomgen.questions.many_runs import Runs as Runs
 from eomgen.questions.simulator import Simulator as Simulator
 from eomgen.questions.velocities import kinematics as kinematics
 from eomgen.robots.importing import import_robot as import_robot

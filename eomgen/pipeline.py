@@ -24,6 +24,7 @@ from eomgen.symbolic.numeric.tolerances import RUN
 from eomgen.symbolic.numeric.work import doing
 
 if TYPE_CHECKING:  # what moves is loaded where something moves
+    from eomgen.questions.many_runs import Runs
     from eomgen.questions.simulator import Simulator
     from eomgen.simulation.result import Trajectory
 
@@ -94,6 +95,37 @@ def simulator(
 
     how = Stepping(method=method, rtol=rtol, atol=atol, stabilization=stabilization)
     return Simulator(model_at(model), derive, how, target)
+
+
+def simulate_many(
+    model: ModelOrPath,
+    *,
+    time: float,
+    parameters: Mapping[str, Any] | None = None,
+    start: Mapping[str, Any] | None = None,
+    inputs: Mapping[str, Any] | None = None,
+    samples: int | Sequence[float] = 101,
+    rtol: float = RUN,
+    atol: float = RUN,
+    method: str = "auto",
+    target: str | None = None,
+    threads: int = 1,
+) -> Runs:
+    """Many motions of one model, derived and compiled once; a run that fails is recorded, and the rest go on.
+
+    A model without ties and contacts is stepped in the lanes of vectors, each with its own steps; others one by one.
+
+    Args:
+        time: how long [s].
+        parameters, start, inputs: arrays, one number a run in SI, or what all runs share, as `simulate` takes it.
+        samples, rtol, atol, method, target: as of `simulate`.
+        threads: among which the runs are divided.
+    """
+    from eomgen.questions.many_runs import many_runs
+
+    run = simulator(model, rtol=rtol, atol=atol, target=target, method=method)
+    asked = {"parameters": parameters, "start": start, "inputs": inputs}
+    return many_runs(run, time=time, samples=samples, threads=threads, **asked)
 
 
 def simulate(

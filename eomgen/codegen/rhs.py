@@ -5,10 +5,12 @@ from __future__ import annotations
 import sys
 from collections.abc import Mapping, Sequence
 from contextlib import suppress
+from functools import cached_property
 from typing import Any
 
 import numpy as np
 
+from eomgen.codegen.batching import States
 from eomgen.codegen.program import Program
 from eomgen.codegen.spheres import spheres_of
 from eomgen.codegen.targets import ALL
@@ -70,7 +72,7 @@ class RightHandSide:
         return RateFunction(self._functions, self._constants(p))
 
     def many(self, t: Any, x: Any, p: Any, inputs: Any = ()) -> np.ndarray:
-        """dx at n states at once: t n or one number, x n x states, inputs () or n x inputs -> n x outputs."""
+        """dx at n states: t n or one number, x n x states, p of all or n x parameters, inputs () or n x inputs."""
         x = np.ascontiguousarray(x, dtype=float)
         if x.ndim != 2 or x.shape[1] != self._states:
             raise UsageError(f"x is {' x '.join(map(str, x.shape))}, not n x {self._states}")
@@ -78,7 +80,20 @@ class RightHandSide:
         given = None
         if np.size(inputs):
             given = np.ascontiguousarray(np.broadcast_to(inputs, (len(x), len(self.inputs))), dtype=float)
-        return self._functions.many(t, x, self._checked(p), given)
+        if np.ndim(p) == 1:
+            return self._functions.many(t, x, self._checked(p), given)
+        p = np.ascontiguousarray(p, dtype=float)
+        if p.shape != (len(x), len(self.parameters)):
+            raise UsageError(f"p is {' x '.join(map(str, p.shape))}, not {len(x)} x {len(self.parameters)}")
+        if self.target == "c":
+            return self._in_lanes(t, x, p, given)
+        rows = ((t[i : i + 1], x[i : i + 1], p[i], None if given is None else given[i : i + 1]) for i in range(len(x)))
+        return np.vstack([np.empty((0, len(self.program.outputs))), *(self._functions.many(*row) for row in rows)])
+
+    @cached_property
+    def _in_lanes(self) -> States:
+        """The program in lanes."""
+        return States(self.program)
 
     @property
     def source(self) -> str:

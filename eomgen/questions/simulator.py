@@ -43,13 +43,14 @@ class Simulator:
         derive: model -> its equations.
         how: the integrator's way; its tolerances are those of the run.
         target: of the emitted code.
+        known: what was derived, by the values that it depends on.
     """
 
     model: Model
     derive: Callable[[Model], Equations] = field(repr=False)
     how: Stepping = Stepping()
     target: str | None = None
-    _known: OrderedDict[object, tuple[Equations, PhaseModels]] = field(default_factory=OrderedDict, repr=False)
+    known: OrderedDict[object, tuple[Equations, PhaseModels]] = field(default_factory=OrderedDict, repr=False)
 
     def __call__(
         self,
@@ -75,7 +76,7 @@ class Simulator:
             UsageError: what is asked makes no sense.
         """
         valued = with_values(self.model, parameters, start)
-        equations, models = self._at(valued.model if self._keeps_start else with_values(self.model, parameters).model)
+        equations, models = self._at(valued.model if self.keeps_start else with_values(self.model, parameters).model)
         own = {name: valued.model.parameters[name].value for name in parameters or {}}
         asked = (columns,) if isinstance(columns, str) else tuple(columns)
         formulas = _formulas(valued.model, asked)
@@ -96,10 +97,10 @@ class Simulator:
 
     def _at(self, model: Model) -> tuple[Equations, PhaseModels]:
         """The equations, and their phases, at the values of a model."""
-        known, key = self._known, (model.parameters, model.coordinates, model.speeds)
+        known, key = self.known, (model.parameters, model.coordinates, model.speeds)
         if key not in known:
-            anew = self._is_tied or self._keeps_start
-            equations = self.derive(model) if anew else self._equations
+            anew = self.is_tied or self.keeps_start
+            equations = self.derive(model) if anew else self.equations
             p = parameter_vector(model)
             if known and not anew:
                 models = next(iter(known.values()))[1].at(p)
@@ -111,21 +112,22 @@ class Simulator:
         return known[key]
 
     @cached_property
-    def _equations(self) -> Equations:
+    def equations(self) -> Equations:
+        """Those of the model at its own values."""
         return self.derive(self.model)
 
     @cached_property
-    def _is_tied(self) -> bool:
+    def is_tied(self) -> bool:
         """Whether what is derived depends on values."""
-        return has_phases(self.model) or bool(self._equations.graph.system.ties.rows)
+        return has_phases(self.model) or bool(self.equations.graph.system.ties.rows)
 
     @cached_property
-    def _keeps_start(self) -> bool:
+    def keeps_start(self) -> bool:
         """Whether what is derived depends on where the motion starts: contacts, ties and springs that keep a length."""
         elements = (force.element for force in self.model.forces.values())
         if has_phases(self.model) or any(each.slack == "start" for each in elements if each is not None):
             return True
-        return bool(rows_that_stay(self._equations.graph.system))
+        return bool(rows_that_stay(self.equations.graph.system))
 
 
 def _formulas(model: Model, asked: tuple[str, ...]) -> dict[str, Expression]:

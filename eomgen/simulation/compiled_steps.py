@@ -62,6 +62,9 @@ _CONSTANTS = {
     "RADAU_STEPS": NEWTON_STEPS,
 }
 
+BATCHED = {name: _CONSTANTS[name] for name in ("LARGEST_GROWTH", "SMALLEST_GROWTH", "SAFETY", "SAME_INSTANT")}
+BATCHED |= {"HELD_SHORT": HELD_SHORT, "FORGOTTEN": FORGOTTEN, "SEEN": SEEN}  # what batch.c is told
+
 _SIZE, _REAL, _AT = ctypes.c_size_t, ctypes.c_double, ctypes.c_void_p
 
 

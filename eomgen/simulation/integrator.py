@@ -365,3 +365,14 @@ def _no_value(t: float) -> str:
 
 def _reached(end: float) -> str:
     return f"Reached t = {end:.6g} s."
+
+
+def ended_words(status: str, t: float, steps: int) -> str:
+    """How a run ended, as a sentence."""
+    if status == "finished":
+        return _reached(t)
+    if status == "not finite":
+        return _no_value(t)
+    if status == "step too small":
+        return f"Stopped at t = {t:.6g} s: the step size went to zero."
+    return f"Gave up after {steps} steps, at t = {t:.6g} s."

@@ -1,0 +1,202 @@
+"""Program -> States, Batch: many states, or runs, at once in the lanes of vectors; runs in as many threads as asked."""
+
+from __future__ import annotations
+
+import ctypes
+import functools
+import threading
+from collections.abc import Callable, Mapping, Sequence
+from concurrent.futures import ThreadPoolExecutor
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+
+from eomgen.codegen.build import function_of, library
+from eomgen.codegen.program import Program
+from eomgen.codegen.spheres import SpherePlaces
+from eomgen.codegen.targets.c_lanes import constants_of, lanes_text, text_of, vector_compiler
+
+STATUS = ("running", "finished", "not finite", "step too small", "too many steps", "stiff")
+ROUNDS = 2000  # of a call: between two calls somebody may have lost patience
+LOOKED_AT = 16  # steps from one look for stiffness to the next
+_SIZE, _REAL, _AT = ctypes.c_size_t, ctypes.c_double, ctypes.c_void_p
+
+
+@dataclass(frozen=True)
+class Asked:
+    """What is asked of all runs alike.
+
+    Args:
+        span: the first and the last instant [s].
+        instants: where states are wanted, ascending.
+        rtol, atol: of one step.
+        most_steps: of one run.
+        stops: instants across which no step goes.
+        spheres: the places of quaternions in x.
+    """
+
+    span: tuple[float, float]
+    instants: np.ndarray
+    rtol: float
+    atol: float
+    most_steps: int
+    stops: tuple[float, ...] = ()
+    spheres: tuple[SpherePlaces, ...] = ()
+
+
+@dataclass(frozen=True)
+class Found:
+    """What came of runs: states runs x instants x n, which of STATUS, how far each came, its steps."""
+
+    x: np.ndarray
+    status: np.ndarray
+    reached: np.ndarray
+    steps: np.ndarray
+
+
+def _fields(kind: Any, names: str) -> list[tuple[str, Any]]:
+    return [(name, kind) for name in names.split()]
+
+
+@functools.cache
+def _struct(lanes: int) -> Any:
+    """`struct batch` of batch.c, in its order."""
+
+    class Struct(ctypes.Structure):
+        _fields_ = (
+            *_fields(_SIZE, "n parameters constants samples next last"),
+            *_fields(_REAL, "start end rtol atol"),
+            ("most_steps", _SIZE),
+            *_fields(_AT, "instants x0 p x reached status steps stops"),
+            ("n_stops", _SIZE),
+            ("spheres", _AT),
+            *_fields(_SIZE, "n_spheres begun"),
+            ("work", _AT),
+            *_fields(_SIZE * lanes, "run sample stop taken stiff easy"),
+            ("h", _REAL * lanes),
+            *_fields(ctypes.c_int * lanes, "is_new is_over rejected"),
+        )
+
+    return Struct
+
+
+class States:
+    """A program at many states, in the lanes of vectors.
+
+    Raises:
+        RunFailed, ToolMissing: as of `library`.
+    """
+
+    def __init__(self, program: Program) -> None:
+        self.lanes, text = lanes_text(program)
+        made = library(f"{text}\n{text_of('many.c')}", by=vector_compiler())
+        self._many = function_of(made, "lanes_many")
+        self._many.argtypes, self._many.restype = [_SIZE, *[_AT] * 4, _SIZE, *[_AT] * 3], None
+        self.program, self._constants = program, constants_of(program)
+
+    def __call__(self, t: np.ndarray, x: np.ndarray, p: np.ndarray, inputs: np.ndarray | None) -> np.ndarray:
+        """Outputs at n states: t n, x n x states, p of all or n x parameters, inputs None or n x inputs."""
+        program = self.program
+        given, outputs = len(program.symbols.inputs), len(program.outputs)
+        sizes = np.array([x.shape[1], p.shape[-1], given, outputs], dtype=np.uintp)
+        found = np.empty((len(x), outputs))
+        room = _aligned((int(sizes.sum()) + self._constants + 1) * self.lanes)
+        t, x, p = (np.ascontiguousarray(each, dtype=float) for each in (t, x, p))
+        at = None if inputs is None else np.ascontiguousarray(inputs, dtype=float)
+        self._many(
+            len(x),
+            *(each.ctypes.data for each in (sizes, t, x, p)),
+            p.ndim - 1,
+            None if at is None else at.ctypes.data,
+            found.ctypes.data,
+            room.ctypes.data,
+        )
+        return found
+
+
+class Batch:
+    """Runs of a program, in the lanes of vectors.
+
+    Args:
+        program: the right-hand side.
+        defined: numbers that batch.c is told.
+    Raises:
+        RunFailed, ToolMissing: as of `library`.
+    """
+
+    def __init__(self, program: Program, defined: Mapping[str, float]) -> None:
+        self.lanes, text = lanes_text(program)
+        told = [f"#define {name} {value!r}" for name, value in {**defined, "LOOKED_AT": LOOKED_AT}.items()]
+        made = library("\n".join([text, *told, text_of("dop853.c"), text_of("batch.c")]), by=vector_compiler())
+        self._batch = function_of(made, "batch")
+        self._batch.argtypes, self._batch.restype = [_AT, _SIZE], ctypes.c_int
+        self._constants = constants_of(program)
+
+    def runs(self, x0: np.ndarray, p: np.ndarray, asked: Asked, *, threads: int, check: Callable[[], None]) -> Found:
+        """The runs from x0 (runs x n) with parameters p (runs x parameters).
+
+        Args:
+            threads: among which they are divided.
+            check: called now and then; what it raises ends all runs.
+        """
+        x0, p = np.ascontiguousarray(x0, dtype=float), np.ascontiguousarray(p, dtype=float)
+        runs, n = x0.shape
+        found = Found(
+            np.full((runs, len(asked.instants), n), np.nan),
+            np.zeros(runs, dtype=np.int32),
+            np.full(runs, asked.span[0]),
+            np.zeros(runs, dtype=np.uintp),
+        )
+        stop = threading.Event()
+        edges = np.linspace(0, runs, max(1, min(threads, -(-runs // self.lanes))) + 1).astype(int)
+        pieces = list(zip(edges[:-1].tolist(), edges[1:].tolist(), strict=True))
+        with ThreadPoolExecutor(len(pieces)) as pool:
+            begun = [pool.submit(self._piece, x0, p, asked, found, piece, stop) for piece in pieces]
+            try:
+                while not all(each.done() for each in begun):
+                    check()
+                    _wait(begun)
+            except BaseException:
+                stop.set()
+                raise
+            for each in begun:
+                each.result()
+        return found
+
+    def _piece(
+        self,
+        x0: np.ndarray,
+        p: np.ndarray,
+        asked: Asked,
+        found: Found,
+        piece: tuple[int, int],
+        stop: threading.Event,
+    ) -> None:
+        """The runs from one number on to another, in one thread."""
+        n, instants = x0.shape[1], np.ascontiguousarray(asked.instants, dtype=float)
+        stops, spheres = np.array(asked.stops, dtype=float), np.array(asked.spheres, dtype=np.int32).reshape(-1, 4)
+        work = _aligned((29 * n + p.shape[1] + self._constants + 2) * self.lanes)
+        b = _struct(self.lanes)(n=n, parameters=p.shape[1], constants=self._constants, samples=len(instants))
+        b.next, b.last, b.start, b.end = *piece, *asked.span
+        b.rtol, b.atol, b.most_steps = asked.rtol, asked.atol, asked.most_steps
+        b.n_stops, b.n_spheres = len(stops), len(spheres)
+        arrays = {"instants": instants, "x0": x0, "p": p, "x": found.x, "reached": found.reached}
+        arrays |= {"status": found.status, "steps": found.steps, "stops": stops, "spheres": spheres, "work": work}
+        for name, array in arrays.items():
+            setattr(b, name, array.ctypes.data)
+        while not stop.is_set() and self._batch(ctypes.byref(b), ROUNDS):
+            pass
+
+
+def _wait(begun: Sequence[Any]) -> None:
+    from concurrent.futures import wait
+
+    wait(begun, timeout=0.05)
+
+
+def _aligned(count: int) -> np.ndarray:
+    """So many zeros at a place that vectors can be read from at once."""
+    room = np.zeros(count + 8)
+    first = -room.ctypes.data % 64 // 8
+    return room[first : first + count]

@@ -1,0 +1,352 @@
+"""Simulator, values of many runs -> Runs: in the lanes of vectors where the model allows it, else one after another.
+
+Lanes take what has no ties, no contacts that change and no quaternion's tie: a motion x' = f(t, x, p) whose start
+follows from numbers. What is stiff leaves its lane and is run alone, by Radau.
+"""
+
+from __future__ import annotations
+
+import contextvars
+from collections.abc import Callable, Mapping, Sequence
+from concurrent.futures import ThreadPoolExecutor
+from dataclasses import dataclass, field, replace
+from functools import cached_property
+from typing import Any
+
+import numpy as np
+
+from eomgen.codegen.batching import STATUS, Asked, Batch, Found
+from eomgen.codegen.rhs import parameter_vector
+from eomgen.errors import EomgenError, RunFailed, ToolMissing, UsageError
+from eomgen.mechanics.initial_state.initial_state import start_of_motion
+from eomgen.model.findings import nearest
+from eomgen.model.part import altered
+from eomgen.model.parts import Model, Parameter
+from eomgen.model.replaced import with_inputs, with_values
+from eomgen.model.table import Table
+from eomgen.proof.check import Certificate
+from eomgen.questions.simulator import SAMPLES, Simulator
+from eomgen.simulation.compiled_steps import BATCHED
+from eomgen.simulation.configuration import has_phases
+from eomgen.simulation.integrate import drift_of, instants_of, refuse_bad_run
+from eomgen.simulation.integrator import ended_words
+from eomgen.simulation.phase_model import PhaseModel
+from eomgen.simulation.phase_models import one_phase
+from eomgen.simulation.solvers import AUTO, breakpoints_of
+from eomgen.symbolic.expression.expressions import Expression
+from eomgen.symbolic.numeric.work import check_patience, doing
+
+Many = Mapping[str, Any]
+"""Values by name: arrays, one number a run, or what all runs share."""
+
+
+@dataclass(frozen=True, eq=False, repr=False)
+class Runs:
+    """Many motions of one model.
+
+    Args:
+        t: the instants, k [s].
+        x: states (q, u), runs x k x states; nan all along in a run that failed.
+        names: of the coordinates and speeds.
+        status: "finished", or why a run failed; message: the same as a sentence.
+        steps: taken by each.
+        given: the values of each run, by name, of those that are not the same in all.
+        proof: -> the certificate of the equations.
+        drifts: (t, x) -> of each run how far its energy went; None where it need not stay.
+    """
+
+    t: np.ndarray
+    x: np.ndarray
+    names: tuple[str, ...]
+    status: np.ndarray
+    message: np.ndarray
+    steps: np.ndarray
+    given: Mapping[str, np.ndarray]
+    proof: Callable[[], Certificate] = field(repr=False)
+    drifts: Callable[[np.ndarray, np.ndarray], np.ndarray] | None = field(default=None, repr=False)
+
+    def __len__(self) -> int:
+        return len(self.x)
+
+    def __getitem__(self, name: str) -> np.ndarray:
+        """A coordinate or speed, runs x instants."""
+        if name not in self.names:
+            raise KeyError(f"no column '{name}'; there are {', '.join(self.names)}")
+        return np.asarray(self.x[:, :, self.names.index(name)])
+
+    @cached_property
+    def drift(self) -> np.ndarray | None:
+        """Of each run the largest |E - E(0)| over the energy that moves; None where it need not stay."""
+        return None if self.drifts is None else self.drifts(self.t, self.x)
+
+    def certify(self) -> Certificate:
+        """The proof of the equations that all runs share."""
+        return self.proof()
+
+    def to_pandas(self) -> Any:
+        """All runs as one DataFrame over (run, t) (needs pandas)."""
+        import pandas
+
+        index = pandas.MultiIndex.from_product([range(len(self)), self.t], names=["run", "t"])
+        return pandas.DataFrame(self.x.reshape(-1, len(self.names)), index=index, columns=list(self.names))
+
+    def to_xarray(self) -> Any:
+        """A Dataset over (run, time) (needs xarray)."""
+        import xarray
+
+        columns = {name: (("run", "time"), self[name]) for name in self.names}
+        of_runs = {"status": self.status, "message": self.message, "steps": self.steps, **self.given}
+        told = {name: ("run", np.asarray(values)) for name, values in of_runs.items()}
+        return xarray.Dataset({**columns, **told}, coords={"run": np.arange(len(self)), "time": self.t})
+
+    def __repr__(self) -> str:
+        failed = int(np.sum(self.status != "finished"))
+        return f"<{len(self)} runs of {', '.join(self.names)}: {len(self.t)} instants, {failed} failed>"
+
+
+@dataclass(frozen=True)
+class _Plan:
+    """What differs from run to run.
+
+    Args:
+        simulator: of the model with all that the runs share.
+        parameters, start: an array for each name.
+        time, instants: of all runs.
+    """
+
+    simulator: Simulator
+    runs: int
+    parameters: Mapping[str, np.ndarray]
+    start: Mapping[str, np.ndarray]
+    time: float
+    instants: np.ndarray
+
+    @property
+    def model(self) -> Model:
+        return self.simulator.model
+
+    def of(self, i: int) -> tuple[dict[str, float], dict[str, float]]:
+        """(parameters, start) of one run."""
+        parameters, start = ({n: float(v[i]) for n, v in each.items()} for each in (self.parameters, self.start))
+        return parameters, start
+
+
+@doing("the runs")
+def many_runs(
+    simulator: Simulator,
+    *,
+    time: float,
+    parameters: Many | None = None,
+    start: Many | None = None,
+    inputs: Many | None = None,
+    samples: int | Sequence[float] = SAMPLES,
+    threads: int = 1,
+) -> Runs:
+    """The runs, each as `simulator(time, parameters, start)` gives it; one that fails does not stop the rest.
+
+    Raises:
+        UsageError: a name that there is not, arrays of several lengths, values that are no finite numbers.
+    """
+    how = simulator.how
+    refuse_bad_run(0.0, time, how)
+    if threads < 1:
+        raise UsageError(f"{threads} threads make no sense", mend="give 1 or more")
+    plan = _planned(simulator, time, parameters or {}, start or {}, inputs or {}, samples)
+    found = _in_lanes(plan, threads)
+    names, status, message, x, steps = found if found is not None else _one_by_one(plan, range(plan.runs), threads)
+    x[status != "finished"] = np.nan
+    equations, phase = _known(plan.simulator)
+    given = {**plan.parameters, **plan.start}
+    drifts = _drifts(plan, phase) if phase.conservative and not has_phases(plan.model) else None
+    return Runs(plan.instants, x, names, status, message, steps, given, equations.certify, drifts)
+
+
+def _planned(
+    simulator: Simulator, time: float, parameters: Many, start: Many, inputs: Many, samples: int | Sequence[float]
+) -> _Plan:
+    """The model with what all runs share, and the arrays."""
+    arrays = {kind: {name: _array(name, v) for name, v in given.items() if _is_array(v)} for kind, given in (
+        ("parameters", parameters), ("start", start), ("inputs", inputs))}  # fmt: skip
+    sizes = {name: len(values) for each in arrays.values() for name, values in each.items()}
+    if len(set(sizes.values())) > 1:
+        told = ", ".join(f"'{name}' {size}" for name, size in sizes.items())
+        raise UsageError(f"arrays of several lengths: {told}", mend="give one value a run to each")
+    shared = [{n: v for n, v in given.items() if n not in arrays[kind]} for kind, given in (
+        ("parameters", parameters), ("start", start))]  # fmt: skip
+    model = with_inputs(simulator.model, {n: v for n, v in inputs.items() if n not in arrays["inputs"]})
+    model = with_values(model, *shared).model
+    first = {kind: {n: float(v[0]) for n, v in each.items()} for kind, each in arrays.items() if kind != "inputs"}
+    with_values(model, first["parameters"], first["start"])  # refuses what there is not
+    model, of_inputs = _inputs_as_parameters(model, arrays["inputs"])
+    instants = instants_of(samples, 0.0, time)
+    assert instants is not None
+    changed = replace(simulator, model=model, known=type(simulator.known)())
+    own = changed if shared[0] or shared[1] or inputs else simulator
+    runs = next(iter(sizes.values()), 1)
+    return _Plan(own, runs, {**arrays["parameters"], **of_inputs}, arrays["start"], time, instants)
+
+
+def _is_array(value: Any) -> bool:
+    return isinstance(value, (np.ndarray, list)) and np.ndim(value) == 1
+
+
+def _array(name: str, value: Any) -> np.ndarray:
+    found = np.asarray(value, dtype=float)
+    if not len(found) or not np.all(np.isfinite(found)):
+        raise UsageError(f"the values of '{name}' must be finite numbers, one a run")
+    return found
+
+
+def _inputs_as_parameters(model: Model, inputs: Mapping[str, np.ndarray]) -> tuple[Model, dict[str, np.ndarray]]:
+    """An input that differs from run to run is a parameter of its own."""
+    found, added = {}, {}
+    for name, values in inputs.items():
+        if name not in model.inputs:
+            raise UsageError(f"there is no input '{name}'", mend=nearest(name, model.inputs))
+        own = f"{name}_given"
+        while own in model.parameters:
+            own += "_"
+        added[own], found[own] = Parameter(), values
+    if not added:
+        return model, found
+    model = altered(model, parameters=Table({**model.parameters, **added}))
+    return with_inputs(model, dict(zip(inputs, added, strict=True))), found
+
+
+# -- in lanes ------------------------------------------------------------------------------------------
+
+
+Told = tuple[tuple[str, ...], np.ndarray, np.ndarray, np.ndarray, np.ndarray]
+"""names, status, message, x, steps."""
+
+
+def _known(simulator: Simulator) -> tuple[Any, PhaseModel]:
+    """(the equations, the one phase that has the coordinates and speeds of the start)."""
+    equations = simulator.equations
+    p = np.zeros(len(equations.graph.symbols.parameters))
+    return equations, one_phase(equations.graph.system, equations.graph, p, simulator.target)
+
+
+def _in_lanes(plan: _Plan, threads: int) -> Told | None:
+    """All runs in lanes; None where the model, the method or the machine does not allow it."""
+    simulator, how = plan.simulator, plan.simulator.how
+    steps = how.method in (AUTO, "DOP853") and how.stabilization in ("projection", "none")
+    if simulator.is_tied or simulator.keeps_start or not steps or simulator.target == "numpy":
+        return None
+    equations, phase = _known(simulator)
+    try:
+        batch = Batch(phase.functions.rhs.program, BATCHED)
+    except (RunFailed, ToolMissing):
+        if simulator.target == "c":
+            raise
+        return None
+    p = _parameters(plan)
+    step = how.of_one_step()
+    asked = Asked(
+        (0.0, plan.time), plan.instants, step.rtol, step.atol, step.most_steps,
+        breakpoints_of(plan.model), tuple(phase.functions.rhs.spheres),
+    )  # fmt: skip
+    found = batch.runs(_starts(plan, phase, equations), p, asked, threads=threads, check=check_patience)
+    status, message = np.array(STATUS, dtype=object)[found.status], _messages(found)
+    again = np.flatnonzero(status == "stiff")
+    if len(again):
+        told = _one_by_one(plan, again.tolist(), threads)
+        _, status[again], message[again], found.x[again], found.steps[again] = told
+    names = phase.coordinates + phase.shown
+    return names, status.astype(str), message, found.x, found.steps.astype(int)
+
+
+def _messages(found: Found) -> np.ndarray:
+    words = [
+        ended_words(STATUS[s], float(t), int(n))
+        for s, t, n in zip(found.status, found.reached, found.steps, strict=True)
+    ]
+    return np.array(words, dtype=object)
+
+
+def _parameters(plan: _Plan) -> np.ndarray:
+    """The parameters of every run; those that are formulas of others follow."""
+    model = plan.model
+    names = list(model.parameters)
+    follow = any(_names(part.value) & plan.parameters.keys() for part in model.parameters.values())
+    if follow:
+        return np.array([parameter_vector(model, plan.of(i)[0]) for i in range(plan.runs)])
+    first = parameter_vector(model, plan.of(0)[0])
+    found = np.tile(first, (plan.runs, 1))
+    for name, values in plan.parameters.items():
+        found[:, names.index(name)] = values
+    return found
+
+
+def _starts(plan: _Plan, phase: PhaseModel, equations: Any) -> np.ndarray:
+    """The state at the start of every run."""
+    model, system = plan.model, phase.declared
+    parts = [*model.coordinates.values()]
+    written = [each for part in parts for each in (part.start, part.speed, part.rate, part.motion, part.near)]
+    varied = plan.parameters.keys() | _following(model, plan.parameters)
+    follow = any(_names(each) & varied for each in written) or bool(model.speeds or system.scope.quaternions)
+    if follow:
+        rows = []
+        for i in range(plan.runs):
+            parameters, start = plan.of(i)
+            rows.append(phase.state(start_of_motion(system, parameters, start).values))
+        return np.array(rows)
+    names = [*phase.coordinates, *phase.speeds]
+    parameters, start = plan.of(0)
+    found = np.tile(phase.state(start_of_motion(system, parameters, start).values), (plan.runs, 1))
+    for name, values in plan.start.items():
+        found[:, names.index(name)] = values
+    return found
+
+
+def _following(model: Model, varied: Mapping[str, Any]) -> set[str]:
+    """The parameters whose formulas hold others that differ."""
+    return {name for name, part in model.parameters.items() if _names(part.value) & varied.keys()}
+
+
+def _names(expression: Expression | None) -> frozenset[str]:
+    return frozenset() if expression is None else frozenset(expression.names)
+
+
+def _drifts(plan: _Plan, phase: PhaseModel) -> Callable[[np.ndarray, np.ndarray], np.ndarray]:
+    """Of each run how far its energy went, at the instants."""
+
+    def found(t: np.ndarray, x: np.ndarray) -> np.ndarray:
+        p, energies = _parameters(plan), phase.functions.energies
+        return np.array([drift_of(*energies.many(t, each, own).T) for each, own in zip(x, p, strict=True)])
+
+    return found
+
+
+# -- one by one ----------------------------------------------------------------------------------------
+
+
+def _one_by_one(plan: _Plan, which: Sequence[int], threads: int) -> Told:
+    """Some of the runs, each by the simulator of one."""
+    context = contextvars.copy_context()
+
+    def run(i: int) -> tuple[tuple[str, ...], str, str, np.ndarray | None, int]:
+        check_patience()
+        parameters, start = plan.of(i)
+        try:
+            found = plan.simulator(plan.time, parameters, start, samples=plan.instants.tolist())
+        except EomgenError as error:
+            return (), "refused", str(error), None, 0
+        whole = found.status == "finished" and len(found.t) == len(plan.instants)
+        names = found.coordinates + found.speeds
+        return names, found.status, found.message, found.x if whole else None, found.steps
+
+    if threads == 1 or len(which) < 2:
+        told = list(map(run, which))
+    else:
+        run(which[0])  # derives and compiles, once
+        with ThreadPoolExecutor(threads) as pool:
+            told = list(pool.map(lambda i: context.copy().run(run, i), which))
+    phase = _known(plan.simulator)[1]
+    names = next((each[0] for each in told if each[3] is not None), phase.coordinates + phase.shown)
+    x = np.full((len(told), len(plan.instants), len(names)), np.nan)
+    for row, each in zip(x, told, strict=True):
+        if each[3] is not None and each[0] == names:
+            row[:] = each[3]
+    status, message = (np.array([each[k] for each in told], dtype=object) for k in (1, 2))
+    return names, status.astype(str), message, x, np.array([each[4] for each in told], dtype=int)
