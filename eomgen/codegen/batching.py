@@ -1,4 +1,4 @@
-"""Program -> States, Batch: many states, or runs, at once in the lanes of vectors; runs in as many threads as asked."""
+"""Program -> ProgramInLanes, Batch: many states, or runs, at once in the lanes of vectors; runs in as many threads as asked."""
 
 from __future__ import annotations
 
@@ -46,7 +46,7 @@ class Asked:
 
 
 @dataclass(frozen=True)
-class Found:
+class FoundRuns:
     """What came of runs: states runs x instants x n, which of STATUS, how far each came, its steps."""
 
     x: np.ndarray
@@ -81,7 +81,7 @@ def _struct(lanes: int) -> Any:
     return Struct
 
 
-class States:
+class ProgramInLanes:
     """A program at many states, in the lanes of vectors.
 
     Raises:
@@ -133,7 +133,9 @@ class Batch:
         self._batch.argtypes, self._batch.restype = [_AT, _SIZE], ctypes.c_int
         self._constants = constants_of(program)
 
-    def runs(self, x0: np.ndarray, p: np.ndarray, asked: Asked, *, threads: int, check: Callable[[], None]) -> Found:
+    def runs(
+        self, x0: np.ndarray, p: np.ndarray, asked: Asked, *, threads: int, check: Callable[[], None]
+    ) -> FoundRuns:
         """The runs from x0 (runs x n) with parameters p (runs x parameters).
 
         Args:
@@ -142,7 +144,7 @@ class Batch:
         """
         x0, p = np.ascontiguousarray(x0, dtype=float), np.ascontiguousarray(p, dtype=float)
         runs, n = x0.shape
-        found = Found(
+        found = FoundRuns(
             np.full((runs, len(asked.instants), n), np.nan),
             np.zeros(runs, dtype=np.int32),
             np.full(runs, asked.span[0]),
@@ -169,7 +171,7 @@ class Batch:
         x0: np.ndarray,
         p: np.ndarray,
         asked: Asked,
-        found: Found,
+        found: FoundRuns,
         piece: tuple[int, int],
         stop: threading.Event,
     ) -> None:

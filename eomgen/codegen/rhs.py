@@ -10,7 +10,7 @@ from typing import Any
 
 import numpy as np
 
-from eomgen.codegen.batching import States
+from eomgen.codegen.batching import ProgramInLanes
 from eomgen.codegen.program import Program
 from eomgen.codegen.spheres import spheres_of
 from eomgen.codegen.targets import ALL
@@ -91,9 +91,9 @@ class RightHandSide:
         return np.vstack([np.empty((0, len(self.program.outputs))), *(self._functions.many(*row) for row in rows)])
 
     @cached_property
-    def _in_lanes(self) -> States:
+    def _in_lanes(self) -> ProgramInLanes:
         """The program in lanes."""
-        return States(self.program)
+        return ProgramInLanes(self.program)
 
     @property
     def source(self) -> str:

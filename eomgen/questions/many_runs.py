@@ -15,7 +15,7 @@ from typing import Any
 
 import numpy as np
 
-from eomgen.codegen.batching import STATUS, Asked, Batch, Found
+from eomgen.codegen.batching import STATUS, Asked, Batch, FoundRuns
 from eomgen.codegen.rhs import parameter_vector
 from eomgen.errors import EomgenError, RunFailed, ToolMissing, UsageError
 from eomgen.mechanics.initial_state.initial_state import start_of_motion
@@ -36,7 +36,7 @@ from eomgen.simulation.solvers import AUTO, breakpoints_of
 from eomgen.symbolic.expression.expressions import Expression
 from eomgen.symbolic.numeric.work import check_patience, doing
 
-Many = Mapping[str, Any]
+OfRuns = Mapping[str, Any]
 """Values by name: arrays, one number a run, or what all runs share."""
 
 
@@ -136,9 +136,9 @@ def many_runs(
     simulator: Simulator,
     *,
     time: float,
-    parameters: Many | None = None,
-    start: Many | None = None,
-    inputs: Many | None = None,
+    parameters: OfRuns | None = None,
+    start: OfRuns | None = None,
+    inputs: OfRuns | None = None,
     samples: int | Sequence[float] = SAMPLES,
     threads: int = 1,
 ) -> Runs:
@@ -162,7 +162,7 @@ def many_runs(
 
 
 def _planned(
-    simulator: Simulator, time: float, parameters: Many, start: Many, inputs: Many, samples: int | Sequence[float]
+    simulator: Simulator, time: float, parameters: OfRuns, start: OfRuns, inputs: OfRuns, samples: int | Sequence[float]
 ) -> _Plan:
     """The model with what all runs share, and the arrays."""
     arrays = {kind: {name: _array(name, v) for name, v in given.items() if _is_array(v)} for kind, given in (
@@ -256,7 +256,7 @@ def _in_lanes(plan: _Plan, threads: int) -> Told | None:
     return names, status.astype(str), message, found.x, found.steps.astype(int)
 
 
-def _messages(found: Found) -> np.ndarray:
+def _messages(found: FoundRuns) -> np.ndarray:
     words = [
         ended_words(STATUS[s], float(t), int(n))
         for s, t, n in zip(found.status, found.reached, found.steps, strict=True)

@@ -118,7 +118,7 @@ def solver_of(
         return getattr(scipy.integrate, method)(f if explicit else finite, span[0], x0, span[1], **options)
 
 
-def put(solver: Any, x: np.ndarray) -> None:
+def put_state(solver: Any, x: np.ndarray) -> None:
     """Let an integrator go on from another state that is near its own.
 
     Methods of one step begin anew from it; in those of several the state is an entry of their history, whose
@@ -212,7 +212,7 @@ class ScipySteps:
 
     def put(self, x: np.ndarray) -> None:
         """Go on from another state nearby."""
-        put(self._solver, x)
+        put_state(self._solver, x)
 
 
 def stiff_words(since: float | None, steps: int) -> str:
