@@ -1,4 +1,4 @@
-"""Program -> ProgramInLanes, Batch: many states, or runs, at once in the lanes of vectors; runs in as many threads as asked."""
+"""Program -> ProgramInLanes, Batch: many states, or runs in threads, at once in the lanes of vectors."""
 
 from __future__ import annotations
 
