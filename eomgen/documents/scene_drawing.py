@@ -33,6 +33,7 @@ LINES: Mapping[str, tuple[str, float]] = {  # colour and width [points]
     "dimension": ("#7a5c3e", 0.9),
     "center": ("#8e44ad", 1.2),
     "velocity": (VELOCITY, 1.5),
+    "drive": (VELOCITY, 1.3),
     "force": (LOAD, 1.5),
     "reaction": (REACTION, 1.5),
 }
@@ -115,16 +116,16 @@ def limits(drawing: Drawing) -> tuple[np.ndarray, np.ndarray]:
 
 
 def letter_names(letters: Sequence[Letter], colors: Mapping[str, str], notation: Notation) -> Iterable[PlacedName]:
-    """The names of a picture; of several points at one place the first."""
-    there: set[tuple[str, int, int]] = set()
+    """The names of a picture; of several points at one place the first, of a length or coordinate the first time."""
+    there: set[tuple[str, int, int] | str] = set()
     for letter in letters:
         x, y = (float(v) for v in letter.at[0])
         if not np.isfinite([x, y]).all():
             continue
         key = (letter.role, round(x * 1e6), round(y * 1e6))
-        if letter.role == "point" and key in there:
+        if (letter.role == "point" and key in there) or (letter.role == "dimension" and letter.text in there):
             continue
-        there.add(key)
+        there |= {key, letter.text} if letter.role == "dimension" else {key}
         color = colors.get(letter.of, BODY) if letter.role == "label" else LINES.get(letter.role, (INK, 1.0))[0]
         yield PlacedName(written(letter, notation), (x, y), color, 9.0, RANKS.get(letter.role, 4))
 

@@ -100,7 +100,7 @@ class SpacePicture:
 
     def _line(self, stroke: Any, frame: int, color: str, width: float) -> list[Any]:
         page = stroke.path[frame] @ self.view.T
-        near = TOWARDS * self.drawing.sizes.extent
+        near = math.inf if stroke.role == "axes" else TOWARDS * self.drawing.sizes.extent
         ink = (*_rgb(color), 1.0)
         if stroke.dot:
             turn = np.linspace(0, math.tau, 17)

@@ -23,6 +23,7 @@ from eomgen.model.constraints.strand import Stop, Strand
 from eomgen.model.forces.load import Couple, PointForce
 from eomgen.model.joints.base import unit
 from eomgen.model.shapes.forms import ArcForm, EllipsoidForm, LineForm
+from eomgen.scene.anchors import walls
 from eomgen.scene.bodies import is_block, seen
 from eomgen.scene.forms import DamperForm, RodForm, SpringForm, SymbolForm, TrackForm, WheelForm
 from eomgen.scene.scene import Mark
@@ -101,7 +102,9 @@ def _joint_elements(system: System, link: BodyLink, frame: int, turns: bool) -> 
     if turns:
         return [Mark(SymbolForm("coil", link.point), frame, "spring", link.name)] if springs else []
     above = system.motion.links[link.parent].pose if link.parent != GROUND else Pose()
-    return elements(above.point(link.before.p), link.pose.point(link.point), springs, dampers, link.name)
+    a, b = above.point(link.before.p), link.pose.point(link.point)
+    held = walls(system, (a,), b, link.name) if link.parent == GROUND else []
+    return [*held, *elements(a, b, springs, dampers, link.name)]
 
 
 def elements(a: Vector, b: Vector, spring: bool, damper: bool, of: str) -> list[Mark]:
@@ -123,7 +126,12 @@ def force_elements(system: System) -> list[Mark]:
             found.append(Mark(SymbolForm("coil", motion.link(body).point), motion.index[body] + 1, "spring", name))
         if len(element.points) != 2:
             continue
-        a, b = (motion.position(motion.place(point)) for point in element.points)
+        places = [motion.place(point) for point in element.points]
+        a, b = map(motion.position, places)
+        if element.stiffness is not None or element.damping is not None:
+            free = b if places[0][0] is None else a
+            grounded = [at for at, (body, _) in zip((a, b), places, strict=True) if body is None]
+            found += walls(system, grounded, free, name)
         found += elements(a, b, element.stiffness is not None, element.damping is not None, name)
         if element.pull is not None:
             found.append(Mark(LineForm((a, b), fine=True), 0, "spring", name))

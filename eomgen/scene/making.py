@@ -10,6 +10,7 @@ from eomgen.mechanics.equations.system import System, system_of
 from eomgen.mechanics.statics.contacts_at_start import contacts_at_start
 from eomgen.model.reader import ModelOrPath, model_at
 from eomgen.model.trusses import is_node
+from eomgen.scene.anchors import drive_marks
 from eomgen.scene.applied import applied_marks, field_marks
 from eomgen.scene.bodies import body_marks, piece_marks, places_of_body
 from eomgen.scene.connections import force_elements, joint_marks, ordered, tie_marks
@@ -35,7 +36,13 @@ def scene_of_system(system: System, equations: EquationsOfMotion | None = None) 
         frames += pieces
         marks += drawn + joint_marks(system, link, k)
     marks += tie_marks(system) + force_elements(system)
-    marks += [*size_marks(system, marks), *field_marks(system), *applied_marks(system), *name_marks(system)]
+    marks += [
+        *size_marks(system, marks),
+        *drive_marks(system),
+        *field_marks(system),
+        *applied_marks(system),
+        *name_marks(system),
+    ]
     if system.scope.model.space == "space":
         marks.append(Mark(AxesForm(ZERO), 0, "axes", ""))
     points = tuple(named_points(system))

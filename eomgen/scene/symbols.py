@@ -16,7 +16,7 @@ from eomgen.symbolic.expression.spatial import ZERO, Vector
 TEETH = 8  # of a spring
 
 SymbolParts = tuple[tuple[str, Form], ...]
-"""(role, form): "joint" is filled with paper, "solid" with ink, "ground" is a thin line."""
+"""(role, form): "joint" is filled with paper, "solid" with ink, "ground" is a thin line, "drive" is green."""
 
 
 def _exact(x: float) -> Fraction:
@@ -58,6 +58,20 @@ def _spiral() -> Form:
     return _line(*((round(r * math.cos(a), 3), round(r * math.sin(a), 3)) for a in angles for r in (0.5 + 0.09 * a,)))
 
 
+def _bow(radius: float) -> Form:
+    """An arc above the place."""
+    angles = [math.radians(30 + 5 * k) for k in range(23)]
+    return _line(*((radius * math.cos(a), radius * math.sin(a)) for a in angles))
+
+
+def _head(radius: float, angle: float) -> Form:
+    """Of an arrow that runs counter-clockwise round the place, its tip at an angle."""
+    back = angle - 0.6 / radius
+    ends = [(r * math.cos(back), r * math.sin(back)) for r in (radius + 0.35, radius - 0.35)]
+    tip = (radius * math.cos(angle + 0.25), radius * math.sin(angle + 0.25))
+    return _polygon(tip, *ends)
+
+
 HINGE: SymbolParts = (("joint", _circle(0, 0, 0.42)),)
 WHEELS = tuple(("joint", _circle(x, -1.7, 0.28)) for x in (-0.55, 0.55))
 PLANE: dict[str, SymbolParts] = {
@@ -69,6 +83,9 @@ PLANE: dict[str, SymbolParts] = {
     "slider": (("joint", _polygon((-0.9, -0.5), (0.9, -0.5), (0.9, 0.5), (-0.9, 0.5))), *HINGE),
     "block": (("joint", _polygon((-1.1, -0.6), (1.1, -0.6), (1.1, 0.6), (-1.1, 0.6))),),
     "coil": (("ground", _spiral()),),
+    "wall": hatched(0, 1.4),
+    "turned": (("drive", _bow(1.7)), ("drive", _head(1.7, math.radians(150)))),
+    "shifted": (("drive", _line((-1.6, 1.5), (1.0, 1.5))), ("drive", _polygon((1.9, 1.5), (0.8, 1.85), (0.8, 1.15)))),
     "blade": (("joint", _polygon((-1.6, 0), (-1, 0.3), (1, 0.3), (1.6, 0), (1, -0.3), (-1, -0.3))),),
 }
 
