@@ -7,6 +7,7 @@
     eomgen.simulate(model, time=10)           # Trajectory: t, x, energy, drift, status, message
     eomgen.simulator(model)(time=10)          # the same as often as one likes: derived and compiled once
     eomgen.simulate_many(model, time=10, parameters={"m": [1, 2]})  # Runs: many of them at once
+    eomgen.sweep(model, over={"k": [1, 2]}, ask="max(x)")  # Sweep: a row for each run, to_pandas(), plot()
     eomgen.generate(model, ("c", "numpy"))    # Generated: texts, write(directory)
     eomgen.inverse_dynamics(model)            # InverseDynamics: the forces that given accelerations take, as code
     eomgen.solve(model)                       # {name: Answer} of the model's outputs: exact, value
@@ -76,6 +77,7 @@ _HOMES = {
     "page.play": ("Played", "play"),
     "pipeline": ("derive", "inverse_dynamics", "simulate", "simulate_many", "simulator"),
     "questions.many_runs": ("Runs",),
+    "sweeps.sweep": ("Sweep", "sweep"),
     "questions.simulator": ("Simulator",),
     "documents.inertia.result": ("Inertia", "inertia"),
     "documents.linearize.result": ("Linearization", "linearize"),

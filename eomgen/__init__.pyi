@@ -63,6 +63,8 @@ from eomgen.robots.importing import import_robot as import_robot
 from eomgen.scene.making import scene_of as scene_of
 from eomgen.scene.scene import Scene as Scene
 from eomgen.simulation.result import Trajectory as Trajectory
+from eomgen.sweeps.sweep import Sweep as Sweep
+from eomgen.sweeps.sweep import sweep as sweep
 from eomgen.symbolic.numeric.work import OutOfPatience as OutOfPatience
 from eomgen.symbolic.numeric.work import patience as patience
 from eomgen.verbs.animate import animate as animate

@@ -380,6 +380,70 @@ def simulate_command(
     return deliver(document, form_asked(wants_json, format_), on_stderr=output is not None and not asked, strict=strict)
 
 
+@main.command("sweep")
+@click.argument("where", metavar="MODEL", type=click.Path(exists=True, allow_dash=True))
+@JSON
+@click.option("-o", "--output", metavar="DIR", type=click.Path(), help="The folder of the sweep; of --replay a .csv.")
+@click.option("--over", multiple=True, metavar="RANGE", help='"k=100:1000:10" (both ends, how many), "log:k=1:9:5".')
+@click.option("--random", multiple=True, metavar="LAW", help='"phi=normal(0, 0.1)", uniform, loguniform, lognormal.')
+@click.option("--runs", type=click.IntRange(min=1), metavar="N", help="How many are drawn.  [default: 1]")
+@click.option(
+    "--design",
+    type=click.Choice(["random", "sobol", "lhs"]),
+    default="random",
+    show_default=True,
+    help="How they are drawn: by chance, quasi-random, or a Latin hypercube.",
+)
+@click.option("--seed", type=click.IntRange(min=0), default=0, show_default=True, help="Of all chance in the sweep.")
+@click.option(
+    "--ask", multiple=True, metavar="EXPR", help='An output, "max(reaction_x(A))", "x at y = 0", "frequency(1)".'
+)
+@click.option("--critical", default="", metavar="EXPR", help="Seek where it changes its sign along the first range.")
+@click.option("--time", type=float, default=10.0, show_default=True, help="How long each run is [s].")
+@click.option("--rtol", type=float, default=RUN, show_default=True, help="Relative tolerance of a run.")
+@click.option("--atol", type=float, default=RUN, show_default=True, help="Absolute tolerance of a run.")
+@click.option("--method", default="DOP853", show_default=True, metavar="NAME", help="As of simulate.")
+@click.option("--workers", type=click.IntRange(min=1), default=1, show_default=True, help="Processes here.")
+@with_values
+@click.option(
+    "--replay", type=click.IntRange(min=0), metavar="RUN", help="Make this run of the sweep in DIR once more."
+)
+@click.option("--samples", type=click.IntRange(min=2), help="Of --replay, how many instants.  [default: 1001]")
+@PLOT
+@click.option(
+    "--view", type=click.Choice(["lines", "heat", "scatter"]), help="What --plot draws.  [default: what fits]"
+)
+@click.option("--units", is_flag=True, help='In table.csv "k [N/m]", as the file declares it, for names and SI.')
+@CERTIFY
+def sweep_command(where: str, wants_json: bool, output: str | None, strict: bool, **options: Any) -> int:
+    """Make many runs over parameters, resumably.
+
+    Every parameter and start of --over with every other, and draws of --random at each point; a row for each run in
+    DIR/table.csv, what failed with its message. The same command goes on where it was stopped. `--replay RUN DIR` makes
+    one run once more.
+    """
+    from eomgen.sweeps.plan import Stepped
+    from eomgen.verbs.sweep import SweepAsked, replay_document, sweep_document
+
+    form = form_asked(wants_json, None)
+    replay, samples = options.pop("replay"), options.pop("samples")
+    shown = {name: options.pop(name) for name in ("plot", "view", "units", "certify")}
+    if replay is not None:
+        return deliver(replay_document(where, replay, output=output, samples=samples), form, strict=strict)
+    if Path(where).is_dir():
+        raise click.UsageError(f"'{where}' is a folder: give a model, or --replay RUN")
+    if output is not None:
+        folder(click.get_current_context(), click.Option(["-o"]), output)
+    how = Stepped(**{name: options.pop(name) for name in ("time", "rtol", "atol", "method")})
+    with reading(where) as source:
+        title = "model" if where == "-" else Path(where).stem
+        asked = SweepAsked(how=how, **options)
+        text = source.data.decode()
+        document = sweep_document(source.model, asked, text=text, title=title, output=output, **shown)
+        document = source.warned(document, source.model)
+    return deliver(document, form, strict=strict)
+
+
 @main.command("animate")
 @MODEL
 @JSON

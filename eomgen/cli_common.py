@@ -28,7 +28,7 @@ if TYPE_CHECKING:
     from eomgen.documents.document import Document
     from eomgen.model.parts import Model
 
-LATER = ("verify", "sweep")
+LATER = ("verify",)
 ONE_THREAD = ("OPENBLAS_NUM_THREADS", "1")  # numpy's matrices are small here: its threads would wait for one another
 
 

@@ -51,6 +51,7 @@ VERBS = [
     "inertia",
     "linearize",
     "simulate",
+    "sweep",
     "animate",
     "codegen",
     "play",
@@ -402,7 +403,7 @@ def test_an_ending_that_no_form_has_is_refused_before_any_work(verb, tmp_path):
     for ending in sorted({".html", ".pdf", ".docx", ".xlsx", ".PDF"} - own):
         path = tmp_path / f"w{ending}"
         words = (verb, *(() if verb in ("schema", "doctor") else (SEED,)), "-o", str(path))
-        has_form = verb not in ("schema", "doctor", "codegen", "simulate", "play", "report", "import")
+        has_form = verb not in ("schema", "doctor", "codegen", "simulate", "play", "report", "import", "sweep")
         for result in (run(*words), run(*words, *(("--format", "text") if has_form else ("--json",)))):
             assert result.exit_code == 2 and not list(tmp_path.iterdir())
             endings = {"simulate": ".csv, .npz", "codegen": "-o names the folder", "play": "the ending is .html"}
@@ -410,6 +411,7 @@ def test_an_ending_that_no_form_has_is_refused_before_any_work(verb, tmp_path):
                 "report": ".html, .pdf, .tex, .md, .ipynb",
                 "animate": ".gif, .mp4, .png, .html",
                 "import": ".toml",
+                "sweep": "-o names the folder",
             }
             assert endings.get(verb, ".txt, .tex, .md, .json") in result.stderr
 

@@ -24,6 +24,7 @@ CHAIN = (
     ("equations",),
     ("questions",),
     ("pipeline",),
+    ("sweeps",),
     ("generated",),
     ("page",),
     ("verbs", "notebook"),

@@ -16,7 +16,7 @@ import eomgen
 from eomgen.cli import main
 from eomgen.errors import UsageError
 from eomgen.model.table import Table
-from eomgen.symbolic.numeric.chebyshev import Pieces, resolved
+from eomgen.symbolic.numeric.chebyshev import ChebyshevPieces, resolved_curve
 
 MODELS = Path(__file__).parents[1] / "models"
 
@@ -129,13 +129,13 @@ def test_the_n_th_event_agrees_with_a_run_that_ends_there():
 def test_a_kink_and_a_jump_are_enclosed():
     """max of |sin|-like and stepped functions; integrals across both."""
     edges = np.linspace(0, 10, 8)
-    kink = resolved(lambda t: np.abs(np.sin(5 * t) - 0.3), edges)
+    kink = resolved_curve(lambda t: np.abs(np.sin(5 * t) - 0.3), edges)
     assert kink.extreme(1)[0] == pytest.approx(1.3, abs=1e-10)
     assert kink.extreme(-1)[0] == pytest.approx(0, abs=1e-8)
-    step = resolved(lambda t: np.where(t < np.pi, 1.0, -1.0), edges)
+    step = resolved_curve(lambda t: np.where(t < np.pi, 1.0, -1.0), edges)
     assert step.integral() == pytest.approx(2 * np.pi - 10, abs=1e-9)
     assert [t for t, _ in step.zeros()] == pytest.approx([np.pi], abs=1e-9)
-    wild = resolved(lambda t: np.sin(200 * t), np.array([0.0, 10.0]))
+    wild = resolved_curve(lambda t: np.sin(200 * t), np.array([0.0, 10.0]))
     assert len(wild.zeros()) == math.floor(2000 / math.pi) and wild.extreme(1)[0] == pytest.approx(1, rel=1e-12)
 
 
@@ -196,5 +196,5 @@ def test_a_wrong_extreme_fails_the_proof(monkeypatch):
     run = eomgen.simulate(model, time=4, samples=101)
     whole = run.proof.whole
     assert [check.status for check in whole.checks()] == ["holds"]
-    monkeypatch.setattr(Pieces, "extreme", lambda self, sign: (0.9 * max(self.c[:, 0]), 0.0))
+    monkeypatch.setattr(ChebyshevPieces, "extreme", lambda self, sign: (0.9 * max(self.c[:, 0]), 0.0))
     assert [check.status for check in whole.checks()] == ["fails"]

@@ -1,13 +1,19 @@
-"""Text -> Range: values of a parameter, "k=100:1000:10" (both ends, how many), "log:k=1:100:50", "k=0.5,1,2"."""
+"""Text -> Range: values of a parameter or start, "k=100:1000:10" (both ends, how many), "log:k=1:9:5", "k=0.5,1"."""
 
 from __future__ import annotations
 
 import math
+from collections.abc import Callable
 from dataclasses import dataclass
+from functools import cached_property
 
-from eomgen.errors import UsageError
+from eomgen.errors import ExpressionError, UsageError
+from eomgen.model.arithmetic import value_of
 from eomgen.model.findings import nearest
 from eomgen.model.parts import Model
+from eomgen.model.typed import Typing
+from eomgen.model.values import exact_parameters
+from eomgen.symbolic.expression.units import Unit
 
 LIKE = '"k=100:1000:10", "log:k=1:100:50" or "k=0.5,1,2"'
 MOST = 10_000  # values
@@ -15,7 +21,7 @@ MOST = 10_000  # values
 
 @dataclass(frozen=True)
 class Range:
-    """Values that a parameter takes one after the other.
+    """Values that a parameter or start takes one after the other.
 
     Args:
         values: in SI.
@@ -28,9 +34,71 @@ class Range:
     size: float
 
 
-def range_of(model: Model, text: str) -> Range:
-    """The values that a text means, in the unit that the file declares.
+@dataclass(frozen=True)
+class TypedNumbers:
+    """Numbers as a person types them for one name: "45", "45 deg", "pi/4 rad".
 
+    Args:
+        declared: whether plain numbers are in the unit that the file declares; else they are in SI.
+    """
+
+    model: Model
+    name: str
+    declared: bool = True
+
+    @cached_property
+    def unit(self) -> Unit | None:
+        """The unit that the file declares; of a rate per second."""
+        base = self.name.rstrip("'")
+        part = self.model.parameters.get(base) or self.model.coordinates.get(base)
+        unit = None if part is None else part.unit
+        for _ in range(len(self.name) - len(base)):
+            unit = None if unit is None else unit.rate
+        return unit
+
+    @property
+    def size(self) -> float:
+        """Of a plain number, in SI."""
+        return 1.0 if self.unit is None or not self.declared else self.unit.size
+
+    def number(self, text: str) -> float:
+        """In SI.
+
+        Raises:
+            ValueError: it is no number.
+            ExpressionError: a unit does not fit.
+        """
+        try:
+            return float(text) * self.size
+        except ValueError:
+            value = Typing(self.model, self.declared).value(self.name, text.strip()).value
+        found = value_of(value, {**exact_parameters(self.model), "pi": math.pi})
+        if found is None:
+            raise ValueError(text)
+        return float(found)
+
+
+def refuse_what_is_not_set(model: Model, name: str, *, starts: bool) -> None:
+    """Refuses a name of what takes no values.
+
+    Args:
+        starts: coordinates, rates and speeds may, too.
+    Raises:
+        UsageError: it is named.
+    """
+    moving = [*model.coordinates, *(f"{q}'" for q in model.coordinates), *model.speeds] if starts else []
+    known = [*model.parameters, *moving]
+    if name not in known:
+        what = f"no parameter '{name}'" if not starts else f"no parameter, coordinate, rate or speed '{name}'"
+        raise UsageError(what, mend=nearest(name, known) or LIKE)
+
+
+def range_of(model: Model, text: str, *, starts: bool = False, declared: bool = True) -> Range:
+    """The values that a text means.
+
+    Args:
+        starts: starts of coordinates, rates and speeds may take values too.
+        declared: plain numbers are in the unit that the file declares; else in SI.
     Raises:
         UsageError: no parameter of that name, or no values.
     """
@@ -39,25 +107,26 @@ def range_of(model: Model, text: str) -> Range:
     name = name.strip()
     if not equals:
         raise UsageError(f"'{text}' is no range", mend=LIKE)
-    if name not in model.parameters:
-        raise UsageError(f"no parameter '{name}'", mend=nearest(name, model.parameters) or LIKE)
-    unit = model.parameters[name].unit
-    values = _values(rest, logarithmic, text)
-    size = 1.0 if unit is None else unit.size
-    return Range(name, tuple(x * size for x in values), "" if unit is None else unit.text, size)
+    refuse_what_is_not_set(model, name, starts=starts)
+    typed = TypedNumbers(model, name, declared)
+    try:
+        values = _values(rest, logarithmic, text, typed.number)
+    except ExpressionError as error:
+        raise UsageError(f"'{text}' is no range: {error.what}", mend=error.mend or LIKE) from error
+    return Range(name, tuple(values), "" if typed.unit is None else typed.unit.text, typed.size)
 
 
-def _values(rest: str, logarithmic: bool, text: str) -> list[float]:
-    """The numbers as they were given.
+def _values(rest: str, logarithmic: bool, text: str, number: Callable[[str], float]) -> list[float]:
+    """The numbers in SI.
 
     Raises:
         UsageError: they are none.
     """
     try:
         if ":" not in rest:
-            return _finite([float(x) for x in rest.split(",")], text)
+            return _finite([number(x) for x in rest.split(",")], text)
         start, stop, count = rest.split(":")
-        low, high, n = float(start), float(stop), int(count)
+        low, high, n = number(start), number(stop), int(count)
     except ValueError as error:
         raise UsageError(f"'{text}' is no range", mend=LIKE) from error
     if not 2 <= n <= MOST or (logarithmic and min(low, high) <= 0):

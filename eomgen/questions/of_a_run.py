@@ -29,7 +29,7 @@ from eomgen.simulation.motion import Plan
 from eomgen.simulation.output_columns import OutputColumns
 from eomgen.simulation.phase_run import PhaseRun
 from eomgen.symbolic.expression.expressions import Call, Expression, parse
-from eomgen.symbolic.numeric.chebyshev import Pieces, resolved
+from eomgen.symbolic.numeric.chebyshev import ChebyshevPieces, resolved_curve
 from eomgen.symbolic.numeric.tolerances import CARRIED, COMPUTED, SAME_PERIOD, SOLVED
 
 
@@ -53,7 +53,7 @@ class _Stretch:
     """A formula along one phase."""
 
     run: PhaseRun
-    pieces: Pieces | None
+    pieces: ChebyshevPieces | None
     ends: tuple[float, float]
 
 
@@ -73,13 +73,13 @@ class WholeRun:
     plan: Plan
     parameters: Mapping[str, float]
 
-    def value(self, text: str) -> RunValue:
-        """What a text asks: "max(reaction_x(A))", "theta' at theta = 0", "x at y = 0, event 2".
+    def value(self, asked: str | Output) -> RunValue:
+        """What an output, or a text, asks: "max(reaction_x(A))", "theta' at theta = 0", "x at y = 0, event 2".
 
         Raises:
             UsageError: it cannot be read, or names what the model does not have.
         """
-        return self.of(asked_of(self.model, text))
+        return self.of(asked_of(self.model, asked) if isinstance(asked, str) else asked)
 
     def of(self, output: Output) -> RunValue:
         """One output; what goes wrong is its message."""
@@ -178,7 +178,7 @@ class WholeRun:
 
     def rms(self, formula: Expression) -> tuple[float, tuple[float, ...]]:
         """The root of the mean square."""
-        squares = (resolved(_squared(pieces), _edges(pieces)) for pieces in self._pieces(formula))
+        squares = (resolved_curve(_squared(pieces), _edges(pieces)) for pieces in self._pieces(formula))
         return math.sqrt(sum(square.integral() for square in squares) / self._duration), ()
 
     def period(self, formula: Expression) -> tuple[float, tuple[float, ...]]:
@@ -188,7 +188,7 @@ class WholeRun:
             DerivationError: there are fewer than two, or the times between them differ: it repeats nothing.
         """
         level = self.mean(formula)[0]
-        lifted = [resolved(_less(pieces, level), _edges(pieces)) for pieces in self._pieces(formula)]
+        lifted = [resolved_curve(_less(pieces, level), _edges(pieces)) for pieces in self._pieces(formula)]
         t = [when for pieces in lifted for when, way in pieces.zeros() if way > 0]
         if len(t) < 2:
             raise DerivationError(
@@ -248,17 +248,17 @@ class WholeRun:
 
     # -- formulas along the run ------------------------------------------------------------------------
 
-    def _pieces(self, formula: Expression) -> list[Pieces]:
+    def _pieces(self, formula: Expression) -> list[ChebyshevPieces]:
         """The formula in every phase that is longer than an instant."""
         return [pieces for _, pieces in self._phases(formula)]
 
-    def _phases(self, formula: Expression) -> list[tuple[int, Pieces]]:
+    def _phases(self, formula: Expression) -> list[tuple[int, ChebyshevPieces]]:
         """(the phase, the formula in it, resolved).
 
         Raises:
             DerivationError: it has no value somewhere.
         """
-        found = [(k, resolved(self._function(formula, k), dense.edges)) for k, dense in self._dense.items()]
+        found = [(k, resolved_curve(self._function(formula, k), dense.edges)) for k, dense in self._dense.items()]
         if not found:
             raise DerivationError("the run is one instant")
         if not all(np.isfinite(pieces.c).all() for _, pieces in found):
@@ -329,15 +329,15 @@ def _valued(value: float, t: tuple[float, ...]) -> RunValue:
     return RunValue(value + 0.0, t) if math.isfinite(value) else RunValue(None, t, "it has no finite value")
 
 
-def _edges(pieces: Pieces) -> np.ndarray:
+def _edges(pieces: ChebyshevPieces) -> np.ndarray:
     return np.append(pieces.a, pieces.b[-1:])
 
 
-def _squared(pieces: Pieces) -> Callable[[np.ndarray], np.ndarray]:
+def _squared(pieces: ChebyshevPieces) -> Callable[[np.ndarray], np.ndarray]:
     return lambda t: pieces.g(t) ** 2
 
 
-def _less(pieces: Pieces, level: float) -> Callable[[np.ndarray], np.ndarray]:
+def _less(pieces: ChebyshevPieces, level: float) -> Callable[[np.ndarray], np.ndarray]:
     return lambda t: pieces.g(t) - level
 
 

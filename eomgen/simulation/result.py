@@ -106,7 +106,7 @@ class Trajectory:
     carried: tuple[tuple[float, float], ...] = ()
     assembled: str = ""
     proof: Callable[[Trajectory], Any] | None = None
-    whole: Callable[[str], Any] | None = field(default=None, repr=False)
+    whole: Callable[[Any], Any] | None = field(default=None, repr=False)
     quantities: Mapping[str, Any] = field(default_factory=dict)
     estimate: Callable[[Trajectory], Any] | None = None
 
@@ -131,10 +131,10 @@ class Trajectory:
             raise UsageError("nothing is known of the equations of this run", mend="take eomgen.simulate(model)")
         return self.proof(self)
 
-    def ask(self, text: str) -> Any:
+    def ask(self, text: Any) -> Any:
         """What is asked of the whole run: "max(reaction_x(A))", "mean(power())", "theta' at theta = 0, event 2".
 
-        A RunValue: value in SI, the instants t at which it is, the message where there is none.
+        A RunValue, also of an Output: value in SI, the instants t at which it is, the message where there is none.
 
         Raises:
             UsageError: it cannot be read; or the run is of no model.

@@ -23,7 +23,7 @@ LAST = 3  # coefficients that vanish where a piece is resolved
 MOST_HALVINGS = 50
 MOST_PIECES = 200_000
 
-Function = Callable[[np.ndarray], np.ndarray]
+Curve = Callable[[np.ndarray], np.ndarray]
 
 
 def nodes_between(edges: np.ndarray, degree: int = DEGREE) -> np.ndarray:
@@ -43,7 +43,7 @@ def transform(degree: int) -> np.ndarray:
 
 
 @dataclass(frozen=True)
-class Pieces:
+class ChebyshevPieces:
     """A function, resolved.
 
     Args:
@@ -52,7 +52,7 @@ class Pieces:
         c: coefficients of each, pieces x (DEGREE + 1).
     """
 
-    g: Function
+    g: Curve
     a: np.ndarray
     b: np.ndarray
     c: np.ndarray
@@ -131,7 +131,7 @@ def _roots(c: np.ndarray) -> np.ndarray:
     return np.asarray(roots.real[(np.abs(roots.imag) < CARRIED) & (np.abs(roots.real) < 1)])
 
 
-def resolved(g: Function, edges: np.ndarray) -> Pieces:
+def resolved_curve(g: Curve, edges: np.ndarray) -> ChebyshevPieces:
     """A function between the edges, halved until polynomials are it; nan where it has no value in a piece.
 
     Args:
@@ -168,4 +168,4 @@ def resolved(g: Function, edges: np.ndarray) -> Pieces:
         above = np.repeat(left, 2)
     starts, ends, coefficients = (np.concatenate(parts) for parts in zip(*done, strict=True))
     order = np.argsort(starts, kind="stable")
-    return Pieces(g, starts[order], ends[order], coefficients[order])
+    return ChebyshevPieces(g, starts[order], ends[order], coefficients[order])

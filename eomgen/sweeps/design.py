@@ -1,0 +1,240 @@
+"""Ranges, distributions, a seed -> the values of run k: by its number alone, whatever was run before and where.
+
+A run is a point of the grid and a draw: k = point * draws + draw. Draws are u in (0, 1)^d, and a distribution gives the
+value that belongs to a share u of all.
+"""
+
+from __future__ import annotations
+
+import math
+import warnings
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass
+from functools import cached_property
+from typing import Any, Literal, get_args
+
+import numpy as np
+
+from eomgen.errors import ExpressionError, UsageError
+from eomgen.model.findings import nearest
+from eomgen.model.parts import Model
+from eomgen.model.ranges import TypedNumbers, refuse_what_is_not_set
+
+DesignKind = Literal["random", "sobol", "lhs"]
+DESIGNS: tuple[str, ...] = get_args(DesignKind)
+LIKE = '"phi=normal(0, 0.1)" or "m=uniform(1, 2)"'
+ORDERS = 1  # the first number of a spawn key that is of no run
+
+
+@dataclass(frozen=True)
+class Distribution:
+    """A distribution.
+
+    Args:
+        arguments: what they are called; `plain` of them have no unit.
+        quantile: (u, arguments) -> the value below which a share u of all lies.
+    """
+
+    arguments: tuple[str, ...]
+    quantile: Callable[..., np.ndarray]
+    plain: frozenset[str] = frozenset()
+    positive: frozenset[str] = frozenset()
+
+
+def _normal(u: np.ndarray, mean: float, deviation: float) -> np.ndarray:
+    from scipy.special import ndtri
+
+    return np.asarray(mean + deviation * ndtri(u))
+
+
+def _triangular(u: np.ndarray, low: float, mode: float, high: float) -> np.ndarray:
+    share = (mode - low) / (high - low)
+    rising = low + np.sqrt(u * (high - low) * (mode - low))
+    falling = high - np.sqrt((1 - u) * (high - low) * (high - mode))
+    return np.where(u < share, rising, falling)
+
+
+LAWS: dict[str, Distribution] = {
+    "normal": Distribution(("mean", "deviation"), _normal, positive=frozenset(["deviation"])),
+    "uniform": Distribution(("low", "high"), lambda u, low, high: low + (high - low) * u),
+    "loguniform": Distribution(
+        ("low", "high"), lambda u, low, high: low * (high / low) ** u, positive=frozenset(["low", "high"])
+    ),
+    "lognormal": Distribution(
+        ("median", "deviation"),
+        lambda u, median, deviation: median * np.exp(_normal(u, 0.0, deviation)),
+        frozenset(["deviation"]),
+        frozenset(["median", "deviation"]),
+    ),
+    "triangular": Distribution(("low", "mode", "high"), _triangular),
+}
+
+
+@dataclass(frozen=True)
+class DrawnValues:
+    """How one name is distributed: its law and its arguments in SI."""
+
+    name: str
+    law: str
+    arguments: tuple[float, ...]
+
+    def at(self, u: np.ndarray) -> np.ndarray:
+        """The values that belong to shares u."""
+        return LAWS[self.law].quantile(u, *self.arguments)
+
+
+def spread_of(model: Model, text: str, *, declared: bool = True) -> DrawnValues:
+    """The distribution that a text means: "phi=normal(0, 0.1)".
+
+    Raises:
+        UsageError: no parameter or start of that name, no law, or arguments that are none of it.
+    """
+    name, equals, law = (part.strip() for part in text.partition("="))
+    word, opened, inside = law.partition("(")
+    if not equals or not opened or not inside.endswith(")"):
+        raise UsageError(f"'{text}' is no distribution", mend=LIKE)
+    refuse_what_is_not_set(model, name, starts=True)
+    known = LAWS.get(word.strip())
+    if known is None:
+        raise UsageError(f"'{text}': no distribution '{word}'", mend=nearest(word, LAWS) or f"one of {', '.join(LAWS)}")
+    given = inside[:-1].split(",")
+    shown = f"{word}({', '.join(known.arguments)})"
+    if len(given) != len(known.arguments):
+        raise UsageError(f"'{text}' has {len(given)} arguments", mend=shown)
+    typed = TypedNumbers(model, name, declared)
+    try:
+        pairs = zip(known.arguments, given, strict=True)
+        numbers = tuple(float(x) if what in known.plain else typed.number(x) for what, x in pairs)
+    except ValueError as error:
+        raise UsageError(f"'{text}': its arguments are no numbers", mend=shown) from error
+    except ExpressionError as error:
+        raise UsageError(f"'{text}': {error.what}", mend=error.mend) from error
+    _refuse_no_law(text, known, numbers)
+    return DrawnValues(name, word.strip(), numbers)
+
+
+def _refuse_no_law(text: str, law: Distribution, numbers: Sequence[float]) -> None:
+    by_name = dict(zip(law.arguments, numbers, strict=True))
+    if not all(map(math.isfinite, numbers)):
+        raise UsageError(f"'{text}': its arguments are no numbers", mend=LIKE)
+    for what in law.positive:
+        if by_name[what] <= 0:
+            raise UsageError(f"'{text}': its {what} is not above 0", mend=LIKE)
+    ordered = [x for what, x in by_name.items() if what in ("low", "mode", "high")]
+    if ordered != sorted(ordered) or (ordered and ordered[0] == ordered[-1]):
+        raise UsageError(f"'{text}': {', '.join(law.arguments)} do not ascend", mend=LIKE)
+
+
+@dataclass(frozen=True)
+class Design:
+    """All runs of a sweep.
+
+    Args:
+        grid: the values of each name over which it goes, in SI.
+        spreads: of each name that is drawn.
+        draws: at each point of the grid.
+        kind: how they are drawn.
+    """
+
+    grid: Mapping[str, tuple[float, ...]]
+    spreads: tuple[DrawnValues, ...]
+    draws: int
+    kind: str
+    seed: int
+
+    @property
+    def names(self) -> tuple[str, ...]:
+        """What is set, in order."""
+        return (*self.grid, *(spread.name for spread in self.spreads))
+
+    @property
+    def points(self) -> int:
+        return math.prod(len(values) for values in self.grid.values())
+
+    @property
+    def count(self) -> int:
+        """How many runs."""
+        return self.points * self.draws
+
+    def runs(self, first: int, last: int) -> tuple[list[int], np.ndarray]:
+        """(a seed of each below 2^63, what is set in it [SI], runs x names) of the runs from `first` up to `last`."""
+        runs = np.arange(first, last)
+        seeds = [_seed_of(self.seed, int(k)) for k in runs]
+        columns, point = [], runs // self.draws
+        for values in reversed(tuple(self.grid.values())):
+            point, place = np.divmod(point, len(values))
+            columns.append(np.asarray(values)[place])
+        drawn = self._drawn(runs, seeds)
+        columns = columns[::-1] + [spread.at(drawn[:, k]) for k, spread in enumerate(self.spreads)]
+        return seeds, np.column_stack(columns) if columns else np.zeros((len(runs), 0))
+
+    def _drawn(self, runs: np.ndarray, seeds: Sequence[int]) -> np.ndarray:
+        """u of each run, runs x spreads."""
+        many, draws = len(self.spreads), runs % self.draws
+        if not many or self.kind == "random":
+            return _chance(seeds, many)
+        if self.kind == "sobol":
+            return self._sobol(draws)
+        own = seeds if self.draws == self.count else [_seed_of(self.seed, int(k)) for k in draws]
+        strata = np.column_stack([order[draws] for order in self._orders])
+        return np.asarray((strata + _chance(own, many)) / self.draws)
+
+    def _sobol(self, draws: np.ndarray) -> np.ndarray:
+        """Points of a scrambled Sobol sequence by their numbers."""
+        from scipy.stats import qmc
+
+        found = np.empty((len(draws), len(self.spreads)))
+        start = 0
+        for stop in [*(np.flatnonzero(np.diff(draws) != 1) + 1).tolist(), len(draws)]:
+            sequence = qmc.Sobol(len(self.spreads), scramble=True, bits=MOST_BITS, seed=self._order_generator(0))
+            if draws[start]:
+                sequence.fast_forward(int(draws[start]))
+            with warnings.catch_warnings():
+                warnings.simplefilter("ignore", UserWarning)  # so many runs as the user wants, a power of 2 or not
+                found[start:stop] = sequence.random(stop - start)
+            start = stop
+        half = 0.5**MOST_BITS / 2
+        return np.clip(found, half, 1 - half)
+
+    @cached_property
+    def _orders(self) -> list[np.ndarray]:
+        """Of each name the order in which its strata are drawn."""
+        return [self._order_generator(d).permutation(self.draws) for d in range(len(self.spreads))]
+
+    def _order_generator(self, d: int) -> np.random.Generator:
+        return np.random.default_rng(np.random.SeedSequence(self.seed, spawn_key=(ORDERS, d)))
+
+
+MOST_BITS = 30
+_GOLDEN = 0x9E3779B97F4A7C15
+
+
+def _seed_of(seed: int, run: int) -> int:
+    """Of a run, by its number: numpy's SeedSequence with the number as its spawn key."""
+    return int(np.random.SeedSequence(seed, spawn_key=(0, run)).generate_state(1, np.uint64)[0] >> np.uint64(1))
+
+
+def _chance(seeds: Sequence[int], many: int) -> np.ndarray:
+    """Numbers between 0 and 1, neither of them, so many of each seed: the generator SplitMix64 begun there.
+
+    Source: Steele, Lea & Flood, Fast splittable pseudorandom number generators, OOPSLA 2014.
+    """
+    z = np.asarray(seeds, dtype=np.uint64)[:, None] + np.arange(1, many + 1, dtype=np.uint64) * np.uint64(_GOLDEN)
+    z = (z ^ (z >> np.uint64(30))) * np.uint64(0xBF58476D1CE4E5B9)
+    z = (z ^ (z >> np.uint64(27))) * np.uint64(0x94D049BB133111EB)
+    z ^= z >> np.uint64(31)
+    return np.asarray(((z >> np.uint64(11)).astype(float) + 0.5) * 2.0**-53)
+
+
+def refuse_bad_design(kind: Any, runs: Any, seed: Any) -> None:
+    """Refuses what is no design.
+
+    Raises:
+        UsageError: its kind, the number of its runs or its seed.
+    """
+    if kind not in DESIGNS:
+        raise UsageError(f"no design '{kind}'", mend=f"one of {', '.join(DESIGNS)}")
+    if not isinstance(runs, int) or isinstance(runs, bool) or runs < 1:
+        raise UsageError(f"{runs} runs make no sense", mend="give 1 or more")
+    if not isinstance(seed, int) or isinstance(seed, bool) or seed < 0:
+        raise UsageError(f"the seed {seed} is no whole number from 0 on")

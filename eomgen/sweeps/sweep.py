@@ -1,0 +1,435 @@
+"""Model, ranges, distributions -> Sweep: a row for each run, kept in a ledger from which a killed sweep goes on."""
+
+from __future__ import annotations
+
+import csv
+import io
+import json
+import math
+from collections.abc import Iterable, Iterator, Mapping, Sequence
+from dataclasses import dataclass, replace
+from pathlib import Path
+from typing import IO, Any
+
+import numpy as np
+
+from eomgen import files
+from eomgen.errors import RunFailed, UsageError
+from eomgen.model.own_units import units_of
+from eomgen.model.parts import Model
+from eomgen.model.ranges import TypedNumbers, range_of
+from eomgen.model.reader import ModelOrPath, bytes_at, loads
+from eomgen.model.table import Table
+from eomgen.questions.of_a_run import asked_of
+from eomgen.simulation.result import Trajectory
+from eomgen.sweeps.critical import critical_values
+from eomgen.sweeps.design import refuse_bad_design, spread_of
+from eomgen.sweeps.kernel import SampleRow, SweepKernel, payload_of
+from eomgen.sweeps.ledger import SweepLedger, ledger_at
+from eomgen.sweeps.plan import FIXED, Stepped, SweepPlan, plan_of, texts
+from eomgen.sweeps.progress import progress_of
+from eomgen.sweeps.workers import UNKNOWN_WORKERS, Chunk, Pool, rows_by, rows_here
+from eomgen.symbolic.numeric.tolerances import RUN
+
+PLAN, LEDGER, TABLE, PARQUET, CRITICAL = "plan.json", "ledger.sqlite", "table.csv", "table.parquet", "critical.csv"
+BLOCK = 100_000  # runs whose rows are looked for at once
+ROWS_OF_PARQUET = 50_000
+
+
+@dataclass(frozen=True, repr=False)
+class Sweep:
+    """What was found of every run.
+
+    Args:
+        plan: what was to be run.
+        ledger: its rows.
+        folder: where they are; None: in memory.
+    """
+
+    plan: SweepPlan
+    ledger: SweepLedger
+    folder: Path | None = None
+
+    @property
+    def columns(self) -> tuple[str, ...]:
+        """run, seed, status, message, what was set, what was asked."""
+        return self.plan.columns
+
+    @property
+    def table(self) -> dict[str, np.ndarray]:
+        """Every column as an array, by the numbers of the runs; SI, nan where a run has no value."""
+        rows = list(self.ledger.rows())
+        kinds = (np.int64, np.int64, object, object, *[float] * (len(self.columns) - len(FIXED)))
+        pairs = zip(self.columns, kinds, strict=True)
+        return {name: np.array([row[k] for row in rows], dtype=kind) for k, (name, kind) in enumerate(pairs)}
+
+    def __getitem__(self, name: str) -> np.ndarray:
+        return self.table[name]
+
+    def __len__(self) -> int:
+        return self.ledger.count
+
+    @property
+    def critical(self) -> list[dict[str, Any]]:
+        """The critical values: what stays, the name, its value, what is left there, a message."""
+        names = ("at", "name", "value", "left", "message")
+        return [dict(zip(names, (json.loads(row[1]), *row[2:]), strict=True)) for row in self.ledger.critical()]
+
+    @property
+    def failed(self) -> int:
+        """How many runs did not end as they should."""
+        good = ("finished", "event", "computed")
+        return sum(count for status, count in self.ledger.statuses().items() if status not in good)
+
+    def to_pandas(self) -> Any:
+        """The table as a DataFrame over the runs (needs pandas)."""
+        import pandas
+
+        table = self.table
+        return pandas.DataFrame(table).set_index("run")
+
+    def to_csv(self, path: str | Path, *, units: bool = False) -> None:
+        """A header line and a line for each run; SI, or (`units`) in the units of the file, "k [N/m]"."""
+        files.write(path, lambda file: _write_csv(file, self, units))
+
+    def in_units(self) -> tuple[dict[str, float], dict[str, str]]:
+        """(the size in SI, the head "k [N/m]") of every column that has a unit, as the file declares it."""
+        model = self.plan.model
+        asked = {f"asked{k}": asked_of(model, text) for k, text in enumerate(self.plan.asked)}
+        found = units_of(replace(model, outputs=Table(asked)), asked)
+        units = units_of(model, self.plan.runs.names)
+        columns = self.columns[-len(asked) :]
+        units |= {column: found[name] for name, column in zip(asked, columns, strict=True) if name in found}
+        sizes = {name: unit.size for name, unit in units.items()}
+        return sizes, {name: f"{name} [{unit}]" for name, unit in units.items()}
+
+    def plot(self, path: str | Path | None = None, view: str = "") -> Any:
+        """A picture: "lines", "heat", "scatter"; "" takes what fits."""
+        from eomgen.sweeps.pictures import sweep_picture
+
+        picture = sweep_picture(self, view)
+        if path is not None:
+            picture.save(path)
+        return picture
+
+    def replay(self, run: int, samples: int = 1001) -> Trajectory:
+        """A run once more, as it was, with all its columns.
+
+        Raises:
+            UsageError: there is no such run.
+            RunFailed: it asks no motion, or its model is not known here.
+        """
+        _refuse_no_run(self.plan, run)
+        kernel = SweepKernel(_known(self.plan))
+        _, values = self.plan.runs.runs(run, run + 1)
+        set_ = dict(zip(self.plan.runs.names, values[0].tolist(), strict=True))
+        return kernel.motion(set_, samples, ("reactions",))
+
+    def again(self, run: int) -> SampleRow:
+        """The row of a run, computed once more by the same kernel."""
+        _refuse_no_run(self.plan, run)
+        return SweepKernel(_known(self.plan)).rows(run, run + 1)[0]
+
+    def __repr__(self) -> str:
+        where = "" if self.folder is None else f" in {self.folder}"
+        return f"<sweep of {', '.join(self.plan.runs.names)}: {len(self)} of {self.plan.runs.count} runs{where}>"
+
+
+def _known(plan: SweepPlan) -> SweepPlan:
+    if not plan.text and plan.made is None:
+        raise RunFailed(
+            "the model of this sweep was made in Python", mend="call eomgen.sweep with it, and .replay(run)"
+        )
+    return plan
+
+
+def _refuse_no_run(plan: SweepPlan, run: int) -> None:
+    if not 0 <= run < plan.runs.count:
+        raise UsageError(f"there is no run {run}", mend=f"from 0 to {plan.runs.count - 1}")
+
+
+# -- as a user asks for it ---------------------------------------------------------------------------------
+
+
+def sweep(
+    model: ModelOrPath,
+    *,
+    over: Mapping[str, Any] | None = None,
+    random: Mapping[str, str] | None = None,
+    runs: int | None = None,
+    design: str = "random",
+    seed: int = 0,
+    ask: Sequence[str] | str = (),
+    critical: str = "",
+    time: float = 10.0,
+    workers: int = 1,
+    executor: Any = None,
+    out: str | Path | None = None,
+    rtol: float = RUN,
+    atol: float = RUN,
+    method: str = "DOP853",
+) -> Sweep:
+    """Many runs of a model, each by its number alone; what is done already in `out` is not done again.
+
+    Args:
+        over: values of parameters and starts, every one with every other: numbers in SI, or a text "100:1000:10",
+            "log:1:100:5".
+        random: distributions: "normal(0, 0.1)", "uniform(1, 2)", "loguniform", "lognormal", "triangular".
+        runs: how many are drawn (at each point of the grid).
+        design: "random", "sobol" or "lhs" (Latin hypercube).
+        ask: what is asked of each run: outputs by name, "max(reaction_x(A))", "theta' at theta = 0", "frequency(1)".
+        critical: an expression whose changes of sign are sought along what is first in `over`.
+        workers: processes here.
+        executor: anything with `submit`, instead of them: of dask.distributed, loky, mpi4py.futures.
+        out: a folder for plan.json, ledger.sqlite, table.csv.
+    Raises:
+        UsageError: what is asked makes no sense; another plan is in `out`.
+    """
+    text, title, made = _source(model)
+    declared = made if made is not None else loads(text, str(model), title)
+    grid = {name: _values(declared, name, values) for name, values in (over or {}).items()}
+    spreads = [spread_of(declared, f"{name}={law}", declared=False) for name, law in (random or {}).items()]
+    plan = planned(
+        declared,
+        text=text,
+        title=title,
+        made=made,
+        over=grid,
+        random=tuple((spread.name, spread.law, spread.arguments) for spread in spreads),
+        runs=runs,
+        design=design,
+        seed=seed,
+        ask=texts(ask),
+        critical=critical,
+        how=Stepped(time, rtol, atol, method),
+    )
+    return swept(plan, workers=workers, executor=executor, out=out)
+
+
+def _source(model: ModelOrPath) -> tuple[str, str, Model | None]:
+    """(text, title, the model where there is no text)."""
+    if isinstance(model, Model):
+        return "", model.name, model
+    return bytes_at(str(model)).decode(), Path(model).stem, None
+
+
+def _values(model: Model, name: str, given: Any) -> tuple[float, ...]:
+    """Values of a name in SI; a plain number in Python is."""
+    if isinstance(given, str):
+        logarithmic = given.startswith("log:")
+        text = f"{'log:' * logarithmic}{name}={given.removeprefix('log:')}"
+        return range_of(model, text, starts=True, declared=False).values
+    typed = TypedNumbers(model, name, declared=False)
+    range_of(model, f"{name}=0", starts=True, declared=False)  # refuses other names
+    values = tuple(typed.number(x) if isinstance(x, str) else float(x) for x in np.atleast_1d(given).tolist())
+    if not values or not all(map(math.isfinite, values)):
+        raise UsageError(f"over: the values of '{name}' are no numbers", mend="give one or more")
+    return values
+
+
+def planned(model: Model, *, runs: int | None, **fields: Any) -> SweepPlan:
+    """The plan of a sweep, checked before anything is run.
+
+    Raises:
+        UsageError: what is asked makes no sense.
+    """
+    draws = 1 if runs is None else runs
+    refuse_bad_design(fields["design"], draws, fields["seed"])
+    if not fields["over"] and not fields["random"]:
+        raise UsageError(
+            "nothing changes from run to run", mend='--over "k=100:1000:10", --random "phi=normal(0, 0.1)"'
+        )
+    if runs is not None and runs > 1 and not fields["random"]:
+        raise UsageError(
+            f"{runs} runs of the same values", mend='give --random "phi=normal(0, 0.1)", or leave --runs out'
+        )
+    names = [*fields["over"], *(name for name, _, _ in fields["random"])]
+    twice = [name for name in names if names.count(name) > 1]
+    if twice:
+        raise UsageError(f"'{twice[0]}' is set twice", mend="once in --over or once in --random")
+    if fields["critical"] and not fields["over"]:
+        raise UsageError("a critical value is sought along a range", mend='give --over "k=100:1000:10"')
+    if fields["critical"] and fields["random"] and fields["design"] == "random":
+        what = "neighbours of the grid have other draws: nothing but the first range may change where a sign is sought"
+        raise UsageError(what, mend="--design sobol or lhs, which draw the same at every point")
+    plan = SweepPlan(draws=draws, **fields)
+    if not plan.asked:
+        raise UsageError("nothing is asked of the runs", mend='--ask "max(theta)"')
+    if not (fields["how"].time > 0 and math.isfinite(fields["how"].time)):
+        raise UsageError(f"the time {fields['how'].time:g} s makes no sense", mend="give one above 0")
+    for text in plan.asked:
+        output = asked_of(model, text)
+        if output.event is not None and not isinstance(output.event, int):
+            raise UsageError(f"'{text}' is of several instants", mend="ask for one of them: event 1")
+    return plan
+
+
+def swept(plan: SweepPlan, *, workers: int = 1, executor: Any = None, out: str | Path | None = None) -> Sweep:
+    """All runs of a plan that its ledger lacks, then the table.
+
+    Raises:
+        UsageError: another plan is in the folder.
+    """
+    if workers < 1:
+        raise UsageError(f"{workers} workers make no sense", mend="give 1 or more")
+    folder = None if out is None else Path(out)
+    if folder is not None:
+        _begun(plan, folder)
+    ledger = ledger_at(None if folder is None else folder / LEDGER, plan)
+    found = Sweep(plan, ledger, folder)
+    pool = Pool(workers if executor is None else _workers_of(executor), executor)
+    payload = payload_of(plan)
+    try:
+        with progress_of(plan.runs.count, ledger.count) as told:
+            if workers == 1 and executor is None:
+                rows = rows_here(payload, _missing(ledger))
+            else:
+                rows = rows_by(pool, payload, _missing(ledger), lambda run: plan.runs.runs(run, run + 1)[0][0])
+            for some in rows:
+                told(ledger.add([_whole(plan, row) for row in some]))
+        if plan.critical:
+            ledger.add_critical(critical_values(plan, ledger, pool if pool.workers > 1 else None))
+    finally:
+        pool.close()
+        if folder is not None:
+            _write_tables(found, folder)
+    return found
+
+
+def _whole(plan: SweepPlan, row: SampleRow) -> SampleRow:
+    """The row of a run that no worker survived has what was set, and nothing that was asked."""
+    if len(row) == len(plan.columns):
+        return row
+    values = plan.runs.runs(row[0], row[0] + 1)[1][0].tolist()
+    return (*row, *values, *[None] * len(plan.asked))
+
+
+def _workers_of(executor: Any) -> int:
+    return int(getattr(executor, "_max_workers", 0) or UNKNOWN_WORKERS)
+
+
+def _missing(ledger: SweepLedger) -> Iterator[Chunk]:
+    """Stretches of runs that are not done, block by block."""
+    count = ledger.plan.runs.count
+    for first in range(0, count, BLOCK):
+        yield from ledger.missing(first, min(first + BLOCK, count))
+
+
+def _begun(plan: SweepPlan, folder: Path) -> None:
+    """plan.json, written before the first run.
+
+    Raises:
+        UsageError: that of another plan is there.
+    """
+    path = folder / PLAN
+    if not path.exists():
+        if (folder / LEDGER).exists():
+            raise UsageError(f"'{folder}' has a ledger and no {PLAN}", mend="give -o another folder")
+        files.write(path, plan.written())
+        return
+    there = _plan_told(folder)
+    if there.get("hash") != plan.hash:
+        changed = _changed(plan.as_dict(), there)
+        raise UsageError(f"'{folder}' holds another plan: {changed}", mend="give -o another folder, or the same plan")
+
+
+def _plan_told(folder: Path) -> dict[str, Any]:
+    try:
+        told = json.loads((folder / PLAN).read_text(encoding="utf-8"))
+    except OSError as error:
+        raise UsageError(f"'{folder}' holds no {PLAN}: no sweep was begun there") from error
+    except ValueError as error:
+        raise UsageError(f"'{folder / PLAN}' is no plan of a sweep: {error}") from error
+    if not isinstance(told, dict):
+        raise UsageError(f"'{folder / PLAN}' is no plan of a sweep")
+    return told
+
+
+def _changed(mine: Mapping[str, Any], there: Mapping[str, Any]) -> str:
+    names = [name for name, x in mine.items() if there.get(name) != json.loads(json.dumps(x))]
+    return ", ".join("the model" if name in ("text", "model_hash") else name for name in names) or "its hash"
+
+
+def sweep_at(folder: str | Path) -> Sweep:
+    """The sweep in a folder, as far as it is done.
+
+    Raises:
+        UsageError: there is none.
+    """
+    folder = Path(folder)
+    plan = plan_of(_plan_told(folder))
+    if not (folder / LEDGER).exists():
+        raise UsageError(f"'{folder}' holds no {LEDGER}: no run was begun")
+    told = _plan_told(folder)["hash"]
+    if plan.hash != told and plan.text:
+        raise UsageError(f"'{folder / PLAN}' was changed by hand: its hash is not that of what it says")
+    object.__setattr__(plan, "hash", told) if not plan.text else None
+    return Sweep(plan, ledger_at(folder / LEDGER, plan), folder)
+
+
+# -- files --------------------------------------------------------------------------------------------------
+
+
+def _write_tables(found: Sweep, folder: Path) -> None:
+    found.to_csv(folder / TABLE)
+    if found.plan.critical:
+        rows = found.critical
+        text = io.StringIO()
+        writer = csv.writer(text, lineterminator="\n")
+        staying = [name for name in found.plan.over][1:]
+        writer.writerow([*staying, next(iter(found.plan.over)), found.plan.critical, "message"])
+        for row in rows:
+            writer.writerow([*(repr(row["at"][name]) for name in staying), row["value"], row["left"], row["message"]])
+        files.write(folder / CRITICAL, text.getvalue())
+    _write_parquet(found, folder / PARQUET)
+
+
+def _write_csv(file: IO[bytes], found: Sweep, units: bool) -> None:
+    sizes, heads = found.in_units() if units else ({}, {})
+    text = io.TextIOWrapper(file, encoding="utf-8", newline="")
+    writer = csv.writer(text, lineterminator="\n")
+    writer.writerow(heads.get(name, name) for name in found.columns)
+    factors = [sizes.get(name, 1.0) for name in found.columns]
+    for row in found.ledger.rows():
+        writer.writerow(_told(x, size) for x, size in zip(row, factors, strict=True))
+    text.flush()
+    text.detach()
+
+
+def _told(x: Any, size: float) -> str:
+    if x is None:
+        return "nan"
+    return repr(x if size == 1.0 else x / size) if isinstance(x, float) else str(x)
+
+
+def _write_parquet(found: Sweep, path: Path) -> None:
+    """table.parquet, where pyarrow is."""
+    try:
+        import pyarrow
+        import pyarrow.parquet
+    except ImportError:
+        return
+    kinds = [pyarrow.int64(), pyarrow.int64(), pyarrow.string(), pyarrow.string()]
+    kinds += [pyarrow.float64()] * (len(found.columns) - len(FIXED))
+    schema = pyarrow.schema(list(zip(found.columns, kinds, strict=True)))
+
+    def fill(file: IO[bytes]) -> None:
+        with pyarrow.parquet.ParquetWriter(file, schema) as writer:
+            for some in _several(found.ledger.rows(), ROWS_OF_PARQUET):
+                columns = [
+                    pyarrow.array(column, kind) for column, kind in zip(zip(*some, strict=True), kinds, strict=True)
+                ]
+                writer.write_table(pyarrow.Table.from_arrays(columns, schema=schema))
+
+    files.write(path, fill)
+
+
+def _several(rows: Iterable[SampleRow], many: int) -> Iterator[list[SampleRow]]:
+    some: list[SampleRow] = []
+    for row in rows:
+        some.append(row)
+        if len(some) == many:
+            yield some
+            some = []
+    if some:
+        yield some

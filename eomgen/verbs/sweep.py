@@ -1,0 +1,207 @@
+"""eomgen sweep: many runs, a row for each; and one of them once more."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, replace
+from pathlib import Path
+from typing import Any
+
+from eomgen.documents.document import Document, plain_document
+from eomgen.documents.statements import Grid, prose
+from eomgen.errors import EomgenError, RunFailed, UsageError
+from eomgen.model.parts import Model
+from eomgen.model.ranges import range_of
+from eomgen.model.table import Table
+from eomgen.pipeline import simulate
+from eomgen.proof.check import Certificate, Check
+from eomgen.questions.answers import solve
+from eomgen.questions.of_a_run import asked_of
+from eomgen.sweeps.design import spread_of
+from eomgen.sweeps.kernel import SweepKernel
+from eomgen.sweeps.plan import Stepped
+from eomgen.sweeps.sweep import CRITICAL, LEDGER, PARQUET, PLAN, TABLE, Sweep, planned, sweep_at, swept
+from eomgen.verbs.assignments import assignments, typed
+
+FEW = 5  # failed runs that are named
+MOST_IN_JSON = 10_000  # runs whose rows stand in it
+
+
+@dataclass(frozen=True)
+class SweepAsked:
+    """What is typed beside the model."""
+
+    over: tuple[str, ...]
+    random: tuple[str, ...]
+    runs: int | None
+    design: str
+    seed: int
+    ask: tuple[str, ...]
+    critical: str
+    how: Stepped
+    workers: int
+    set_: tuple[str, ...] = ()
+    start: tuple[str, ...] = ()
+
+
+def sweep_document(
+    model: Model,
+    asked: SweepAsked,
+    *,
+    text: str,
+    title: str,
+    output: str | None,
+    plot: str | None = None,
+    view: str = "",
+    units: bool = False,
+    certify: bool = True,
+) -> Document:
+    """The runs that the folder lacks are made; the document says what they gave."""
+    valued, _ = typed(model, {"set_": asked.set_, "start": asked.start})
+    ranges = [range_of(model, word, starts=True) for word in asked.over]
+    spreads = [spread_of(model, word) for word in asked.random]
+    names = [each.name for each in ranges]
+    if len(set(names)) < len(names):
+        raise UsageError("--over: one name twice", mend="give each range once")
+    plan = planned(
+        valued.model,
+        text=text,
+        title=title,
+        over={each.name: each.values for each in ranges},
+        random=tuple((each.name, each.law, each.arguments) for each in spreads),
+        runs=asked.runs,
+        design=asked.design,
+        seed=asked.seed,
+        ask=asked.ask,
+        critical=asked.critical,
+        how=asked.how,
+        given=dict(assignments(asked.set_, "--set m=2")),
+        start=dict(assignments(asked.start, "--start theta=1")),
+    )
+    found = swept(plan, workers=asked.workers, out=output)
+    if units and found.folder is not None:
+        found.to_csv(found.folder / TABLE, units=True)
+    if plot:
+        found.plot(plot, view)
+    document = _told(valued.model, found, [plot] if plot else [])
+    return replace(document.proven(_proof(found) if certify else None), taken=valued.taken)
+
+
+def _told(model: Model, found: Sweep, files: list[str]) -> Document:
+    statuses, failed = found.ledger.statuses(), found.failed
+    ended = ", ".join(f"{count} {status}" for status, count in statuses.items())
+    where = "" if found.folder is None else f" In {found.folder}."
+    lines = [f"{model.name}: {len(found)} runs: {ended}.{where}"]
+    told = [f"run {run}, {status}: {message}" for run, status, message in found.ledger.messages(FEW)]
+    sizes, heads = found.in_units()
+    numbers = {name: found.ledger.summary(found.columns.index(name)) for name in found.columns[4:]}
+    rows = tuple(
+        (heads.get(name, name), str(n), *(_number(x, sizes.get(name, 1.0)) for x in (low, mean, high)))
+        for name, (n, low, mean, high) in numbers.items()
+    )
+    critical = tuple(
+        prose(f"  {found.plan.critical} changes its sign at {_critical(row, sizes, heads)}") for row in found.critical
+    )
+    names = (PLAN, LEDGER, TABLE, PARQUET, CRITICAL)
+    there = (
+        [] if found.folder is None else [str(found.folder / name) for name in names if (found.folder / name).exists()]
+    )
+    grid = Grid(("", "runs", "least", "mean", "largest"), rows)
+    return plain_document(
+        model,
+        lambda: _payload(found, [*there, *files]),
+        *map(prose, lines),
+        grid,
+        *critical,
+        *(prose(f"  {line}") for line in told),
+        failed="no run came to its end" if failed == len(found) else "",
+        notes=(f"{failed} of {len(found)} runs have no result: column `message`",) if 0 < failed < len(found) else (),
+    )
+
+
+def _critical(row: Mapping[str, Any], sizes: Mapping[str, float], heads: Mapping[str, str]) -> str:
+    staying = {**row["at"], row["name"]: row["value"]}
+    if row["value"] is None:
+        return f"no place that was found: {row['message']}"
+    told = ", ".join(f"{heads.get(name, name)} = {x / sizes.get(name, 1.0):.12g}" for name, x in staying.items())
+    return f"{told} ({row['message']})" if row["message"] else told
+
+
+def _number(x: float | None, size: float) -> str:
+    return "" if x is None else f"{x / size:.9g}"
+
+
+def _payload(found: Sweep, files: list[str]) -> dict[str, Any]:
+    numbers = {name: found.ledger.summary(found.columns.index(name)) for name in found.columns[4:]}
+    summary = {
+        name: {"runs": n, "least": low, "mean": mean, "largest": high} for name, (n, low, mean, high) in numbers.items()
+    }
+    told: dict[str, Any] = {
+        "name": found.plan.model.name,
+        "runs": len(found),
+        "failed": found.failed,
+        "statuses": found.ledger.statuses(),
+        "hash": found.plan.hash,
+        "columns": list(found.columns),
+        "summary": summary,
+        "critical": found.critical,
+        "files": files,
+    }
+    if len(found) <= MOST_IN_JSON:
+        rows = list(found.ledger.rows())
+        told["table"] = {name: [row[k] for row in rows] for k, name in enumerate(found.columns)}
+    return told
+
+
+def _proof(found: Sweep) -> Certificate | None:
+    """That of the first run that came to its end: its equations, its motion, what is asked of it; and made again."""
+    first = next((row for row in found.ledger.rows() if row[2] in ("finished", "computed")), None)
+    if first is None:
+        return None
+    kernel, plan = SweepKernel(found.plan), found.plan
+    set_ = dict(zip(plan.runs.names, first[4:], strict=False))
+    model = kernel.valued(set_)
+    asked = {f"asked{k}": asked_of(plan.model, text) for k, text in enumerate(plan.asked)}
+    model = replace(model, outputs=Table(asked))
+    how = plan.how
+    if first[2] == "computed":
+        certificate = solve(model).certify()
+    else:
+        run = simulate(model, time=how.time, rtol=how.rtol, atol=how.atol, method=how.method)
+        certificate = run.certify()
+    same = found.again(first[0]) == first
+    again = Check(
+        "a run made again has the same bits", "holds" if same else "fails", f"run {first[0]}, by the same kernel"
+    )
+    return Certificate((*certificate.checks, again))
+
+
+def replay_document(folder: str, run: int, *, output: str | None, samples: int | None) -> Document:
+    """One run of a sweep once more; what it gives is what stands in the table, bit for bit."""
+    if output is not None and Path(output).suffix.lower() not in (".csv", ".npz"):
+        raise UsageError(f"no trajectory can be written as '{output}'", mend="endings are .csv, .npz")
+    found = sweep_at(folder)
+    row = found.again(run)
+    stood = found.ledger.row(run)
+    messages: list[str] = []
+    if output is not None:
+        try:
+            motion = found.replay(run, samples or 1001)
+        except EomgenError as error:
+            raise RunFailed(f"run {run} has no motion: {error.what}", mend=error.mend) from error
+        (motion.to_npz if Path(output).suffix.lower() == ".npz" else motion.to_csv)(output)
+        messages.append(motion.summary())
+    differ = [name for name, x, y in zip(found.columns, row, stood or row, strict=True) if x != y]
+    columns = dict(zip(found.columns, row, strict=True))
+    heads = tuple(
+        (name, "" if x is None else repr(x) if isinstance(x, float) else str(x)) for name, x in columns.items()
+    )
+    same = "not in the table yet" if stood is None else "as in the table, bit for bit" if not differ else "other"
+    return plain_document(
+        found.plan.model,
+        lambda: {"row": columns, "differ": differ, "in_table": stood is not None, "files": [output] if output else []},
+        prose(f"{found.plan.model.name}: run {run}, {same}."),
+        Grid(("", ""), heads),
+        *(prose(message) for message in messages),
+        failed=f"run {run} differs from the table in {', '.join(differ)}" if differ else "",
+    )

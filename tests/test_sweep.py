@@ -1,0 +1,426 @@
+"""Sweeps: each run by its number alone, in the table once, whoever is killed; what is asked is what verbs give."""
+
+from __future__ import annotations
+
+import csv
+import json
+import math
+import os
+import signal
+import sqlite3
+import subprocess
+import sys
+import time
+from concurrent.futures import Future, ProcessPoolExecutor, ThreadPoolExecutor
+from pathlib import Path
+
+import numpy as np
+import pytest
+from click.testing import CliRunner
+from scipy import stats
+
+import eomgen
+from eomgen.cli import main
+from eomgen.errors import UsageError
+from eomgen.sweeps import kernel, workers
+from eomgen.sweeps.design import DESIGNS, Design, DrawnValues, spread_of
+from eomgen.sweeps.sweep import sweep_at
+
+ROOT = Path(__file__).parents[1]
+MODELS = ROOT / "models"
+SPRING = """
+eomgen = 1
+name = "spring"
+space = "plane"
+[parameters]
+m = { value = 2, unit = "kg" }
+k = { value = 50, unit = "N/m" }
+M = 1
+[coordinates]
+x = { start = 10, unit = "cm" }
+[bodies.mass]
+shape = { kind = "particle", mass = "m*M" }
+joint = { kind = "prismatic", axis = [1, 0], displacement = "x", stiffness = "k" }
+[outputs]
+amplitude = { value = "max(x)", unit = "cm" }
+"""
+
+
+@pytest.fixture
+def spring(tmp_path):
+    path = tmp_path / "spring.toml"
+    path.write_text(SPRING)
+    return str(path)
+
+
+def swept(*words: str) -> subprocess.Popen:
+    """The command in a process of its own."""
+    environment = {**os.environ, "PYTHONPATH": str(ROOT)}
+    return subprocess.Popen(
+        [sys.executable, "-m", "eomgen", "sweep", *words],
+        env=environment,
+        stdout=subprocess.PIPE,
+        stderr=subprocess.PIPE,
+        text=True,
+    )
+
+
+def table_at(folder: Path) -> list[dict[str, str]]:
+    with (folder / "table.csv").open() as file:
+        return list(csv.DictReader(file))
+
+
+# -- the design ------------------------------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize("kind", DESIGNS)
+def test_a_run_is_drawn_by_its_number_alone(kind):
+    """All runs at once, one by one, in any order: the same values; another seed gives others."""
+    laws = (DrawnValues("a", "normal", (1.0, 0.1)), DrawnValues("b", "uniform", (2.0, 3.0)))
+    design = Design({"k": (1.0, 2.0, 4.0)}, laws, 7, kind, 5)
+    seeds, values = design.runs(0, design.count)
+    apart = [design.runs(k, k + 1) for k in reversed(range(design.count))][::-1]
+    assert [seed for (seed,), _ in apart] == seeds and len(set(seeds)) == 21
+    assert np.array_equal(np.vstack([found for _, found in apart]), values)
+    assert values[:, 0].tolist() == [1.0] * 7 + [2.0] * 7 + [4.0] * 7
+    assert not np.array_equal(Design({"k": (1.0, 2.0, 4.0)}, laws, 7, kind, 6).runs(0, 21)[1], values)
+    same = kind != "random"
+    assert np.array_equal(values[:7, 1:], values[7:14, 1:]) == same
+
+
+@pytest.mark.parametrize(
+    ("text", "law"),
+    [
+        ("m=normal(3, 0.5)", stats.norm(3, 0.5)),
+        ("m=uniform(1, 4)", stats.uniform(1, 3)),
+        ("m=loguniform(1, 100)", stats.loguniform(1, 100)),
+        ("m=lognormal(2, 0.3)", stats.lognorm(0.3, scale=2)),
+        ("m=triangular(1, 2, 5)", stats.triang(0.25, 1, 4)),
+    ],
+)
+@pytest.mark.parametrize("kind", DESIGNS)
+def test_draws_have_their_distribution(text, law, kind):
+    """Kolmogorov and Smirnov, against scipy's laws; quasi-random points are far nearer than chance."""
+    model = eomgen.loads(SPRING)
+    values = Design({}, (spread_of(model, text),), 2048, kind, 3).runs(0, 2048)[1][:, 0]
+    test = stats.kstest(values, law.cdf)
+    assert test.pvalue > 1e-3 and np.isfinite(values).all()
+    if kind != "random":
+        assert test.statistic < 2e-3
+
+
+def test_values_are_typed_in_the_units_of_the_file_and_in_python_in_si(spring, tmp_path):
+    """--over x=5:15:3 of a start in cm; "0.2 m" brings its unit; over={"x": [0.05]} is SI."""
+    done = CliRunner().invoke(
+        main, ["sweep", spring, "--over", "x=5:15:3", "--ask", "amplitude", "--time", "2", "-o", str(tmp_path / "a")]
+    )
+    assert done.exit_code == 0, done.output
+    rows = table_at(tmp_path / "a")
+    assert [float(row["x"]) for row in rows] == pytest.approx([0.05, 0.1, 0.15])
+    assert [float(row["amplitude"]) for row in rows] == pytest.approx([0.05, 0.1, 0.15], rel=1e-8)
+    other = CliRunner().invoke(
+        main,
+        [
+            "sweep",
+            spring,
+            "--over",
+            "x=0.2 m,7",
+            "--ask",
+            "amplitude",
+            "--time",
+            "2",
+            "--units",
+            "-o",
+            str(tmp_path / "b"),
+        ],
+    )
+    rows = table_at(tmp_path / "b")
+    assert [float(row["x [cm]"]) for row in rows] == pytest.approx([20, 7]), other.output
+    assert [float(row["amplitude [cm]"]) for row in rows] == pytest.approx([20, 7], rel=1e-8)
+    found = eomgen.sweep(spring, over={"x": [0.05, "7 cm"]}, ask="amplitude", time=2)
+    assert found["x"] == pytest.approx([0.05, 0.07]) and found["amplitude"] == pytest.approx([0.05, 0.07], rel=1e-8)
+
+
+# -- what is asked ---------------------------------------------------------------------------------------------
+
+
+def test_what_is_asked_is_what_the_verbs_give(spring):
+    """Frequency, period, places of rest and reactions of each run: closed forms, and eomgen.simulate at its values."""
+    found = eomgen.sweep(
+        spring,
+        over={"k": "10:90:3", "m": [1, 2]},
+        ask=[
+            "frequency(1)",
+            "period(x)",
+            "last(x)",
+            "max(x')",
+            "x at equilibrium",
+            "x' at x = 0",
+            "max(reaction_n(mass))",
+        ],
+        time=12,
+    )
+    table = found.table
+    w = np.sqrt(table["k"] / table["m"])
+    assert list(table) == ["run", "seed", "status", "message", "k", "m", *found.plan.asked]
+    assert table["frequency(1)"] == pytest.approx(w, rel=1e-12)
+    assert table["period(x)"] == pytest.approx(2 * math.pi / w, rel=1e-8)
+    assert table["last(x)"] == pytest.approx(0.1 * np.cos(12 * w), abs=1e-7)
+    assert table["max(x')"] == pytest.approx(0.1 * w, rel=1e-7)
+    assert table["x' at x = 0"] == pytest.approx(-0.1 * w, rel=1e-7)
+    assert np.all(table["x at equilibrium"] == 0) and set(table["status"]) == {"finished"}
+    run = eomgen.simulate(spring, time=12, parameters={"k": 50, "m": 1}, samples=5)
+    assert table["last(x)"][2] == pytest.approx(run["x"][-1], abs=1e-9)
+    assert found.to_pandas().loc[2, "k"] == 50
+
+
+def test_critical_values_are_where_the_sign_changes(spring):
+    """cos(sqrt(k/m) T) = 0: every place where the mass ends in the middle, for each m."""
+    found = eomgen.sweep(spring, over={"k": "10:90:30", "m": [1, 2]}, critical="last(x)", time=1)
+    values = [(row["at"]["m"], row["value"]) for row in found.critical]
+    wanted = [(m, m * (math.pi * (n + 0.5)) ** 2) for m in (1, 2) for n in range(5)]
+    wanted = [(m, k) for m, k in wanted if 10 < k < 90]
+    assert sorted(values) == [(m, pytest.approx(k, rel=1e-8)) for m, k in sorted(wanted)] and values
+    jump = eomgen.sweep(spring, over={"k": "10:90:30"}, critical="sign(last(x))", time=1)
+    assert {row["message"] for row in jump.critical} == {"it jumps there"}
+
+
+def test_a_run_that_fails_is_a_row_with_its_message(spring):
+    """A negative mass is no model; a run that ends early has its status; the others have their values."""
+    found = eomgen.sweep(spring, over={"m": [-1, 1, 2]}, ask="last(x)", time=1)
+    table = found.table
+    assert list(table["status"]) == ["failed", "finished", "finished"] and found.failed == 1
+    assert "mass" in table["message"][0] and math.isnan(table["last(x)"][0])
+    assert np.isfinite(table["last(x)"][1:]).all()
+    ladder = eomgen.sweep(MODELS / "simple_pendulum.toml", over={"theta": [1, 2]}, ask="t at theta = 3", time=1)
+    assert np.isnan(ladder["t at theta = 3"]).all() and "is not met" in ladder["message"][0]
+
+
+# -- once, whoever is killed -----------------------------------------------------------------------------------
+
+
+SWEEP = ["--over", "k=10:90:12", "--random", "x=normal(10, 1)", "--runs", "25", "--ask", "last(x)", "--time", "3"]
+
+
+def same_rows(folder: Path, spring: str) -> None:
+    """Every run once, with the bits of a sweep that nobody disturbed."""
+    rows = table_at(folder)
+    assert [int(row["run"]) for row in rows] == list(range(300))
+    calm = eomgen.sweep(
+        spring, over={"k": "10:90:12"}, random={"x": "normal(0.1, 0.01)"}, runs=25, ask="last(x)", time=3
+    )
+    assert [float(row["last(x)"]) for row in rows] == calm["last(x)"].tolist()
+    assert [int(row["seed"]) for row in rows] == calm["seed"].tolist()
+
+
+def done_runs(folder: Path) -> int:
+    try:
+        with sqlite3.connect(f"file:{folder / 'ledger.sqlite'}?mode=ro", uri=True) as ledger:
+            return int(ledger.execute("SELECT COUNT(*) FROM runs").fetchone()[0])
+    except sqlite3.OperationalError:
+        return 0
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("count", [1, 2])
+def test_a_sweep_that_is_killed_goes_on_and_has_each_run_once(spring, tmp_path, count):
+    """SIGKILL of the parent again and again, at whatever instant; its workers end by themselves; the bits are those
+    of a sweep that nobody disturbed."""
+    folder, kills = tmp_path / "out", 0
+    words = (spring, *SWEEP, "--workers", str(count), "-o", str(folder), "--no-certify")
+    for wait in (1, 30, 90, 170, 260):
+        process = swept(*words)
+        while process.poll() is None and done_runs(folder) < wait:
+            time.sleep(0.02)
+        if process.poll() is None:
+            process.send_signal(signal.SIGKILL)
+            kills += 1
+        process.wait()
+        process.communicate()
+    last = swept(*words)
+    out, err = last.communicate(timeout=300)
+    assert last.returncode == 0, err
+    assert kills >= 2 and "300 runs: 300 finished" in out
+    same_rows(folder, spring)
+
+
+@pytest.mark.slow
+def test_workers_that_are_killed_are_replaced(spring, tmp_path):
+    """SIGKILL of the workers of a running sweep: a new pool does what the ledger lacks."""
+    folder = tmp_path / "out"
+    process = swept(spring, *SWEEP, "--workers", "2", "-o", str(folder), "--no-certify")
+    for wait in (20, 120):
+        while process.poll() is None and done_runs(folder) < wait:
+            time.sleep(0.02)
+        children = Path(f"/proc/{process.pid}/task/{process.pid}/children")
+        for child in children.read_text().split() if children.exists() else []:
+            os.kill(int(child), signal.SIGKILL)
+    out, err = process.communicate(timeout=300)
+    assert process.returncode == 0, err
+    assert "300 runs: 300 finished" in out
+    same_rows(folder, spring)
+
+
+def test_a_run_that_kills_its_worker_is_a_row(spring, monkeypatch):
+    """The pool breaks at one run, whichever chunk holds it: that run fails with a message, all others are done."""
+
+    class Deadly:
+        """An executor that runs here, and breaks at run 13."""
+
+        def submit(self, function, payload, first, last):
+            future: Future = Future()
+            if first <= 13 < last:
+                future.set_exception(workers.BrokenExecutor())
+            else:
+                future.set_result(function(payload, first, last))
+            return future
+
+    monkeypatch.setattr(workers.Pool, "renew", lambda self: None)
+    found = eomgen.sweep(spring, over={"k": "10:90:40"}, ask="last(x)", time=0.5, executor=Deadly())
+    assert len(found) == 40 and found["run"].tolist() == list(range(40))
+    assert [run for run, status in enumerate(found["status"]) if status != "finished"] == [13]
+    assert "died 3 times" in found["message"][13] and found["k"][13] == pytest.approx(10 + 13 * 80 / 39)
+
+
+def test_any_executor_with_submit_gives_the_same_bits(spring):
+    """Threads, a pool of processes of the user, futures that only say `done`: what one process gives."""
+
+    class Polled:
+        def __init__(self, value):
+            self.value = value
+
+        def done(self):
+            return True
+
+        def result(self):
+            return self.value
+
+    class Plain:
+        def submit(self, function, *arguments):
+            return Polled(function(*arguments))
+
+    asked = {"over": {"k": "10:90:9"}, "ask": ["last(x)", "max(x)"], "time": 1}
+    alone = eomgen.sweep(spring, **asked)
+    for make in (lambda: ThreadPoolExecutor(1), lambda: ProcessPoolExecutor(2)):
+        with make() as executor:
+            found = eomgen.sweep(spring, executor=executor, **asked)
+        assert list(found.ledger.rows()) == list(alone.ledger.rows())
+    assert list(eomgen.sweep(spring, executor=Plain(), **asked).ledger.rows()) == list(alone.ledger.rows())
+    made = eomgen.sweep(eomgen.load(spring), workers=2, **asked)
+    assert list(made.ledger.rows()) == list(alone.ledger.rows())
+
+
+@pytest.mark.slow
+def test_dask_gives_the_same_bits(spring):
+    """A cluster of processes of dask.distributed on this machine."""
+    distributed = pytest.importorskip("distributed")
+    asked = {"over": {"k": "10:90:9"}, "ask": ["last(x)"], "time": 1}
+    alone = eomgen.sweep(spring, **asked)
+    with distributed.Client(n_workers=2, threads_per_worker=1, processes=True, dashboard_address=None) as client:
+        found = eomgen.sweep(spring, executor=client, **asked)
+    assert list(found.ledger.rows()) == list(alone.ledger.rows())
+
+
+@pytest.mark.slow
+def test_loky_gives_the_same_bits(spring):
+    loky = pytest.importorskip("loky")
+    asked = {"over": {"k": "10:90:9"}, "ask": ["last(x)"], "time": 1}
+    found = eomgen.sweep(spring, executor=loky.get_reusable_executor(2), **asked)
+    assert list(found.ledger.rows()) == list(eomgen.sweep(spring, **asked).ledger.rows())
+
+
+# -- files -----------------------------------------------------------------------------------------------------
+
+
+def test_a_folder_resumes_its_own_plan_alone_and_replays_bit_for_bit(spring, tmp_path):
+    folder = str(tmp_path / "out")
+    words = ["sweep", spring, "--over", "k=10:90:4", "--ask", "last(x)", "--time", "2", "-o", folder]
+    first = CliRunner().invoke(main, words)
+    assert first.exit_code == 0 and "4 runs: 4 finished" in first.output
+    plan = json.loads((tmp_path / "out" / "plan.json").read_text())
+    assert plan["text"] == SPRING and plan["versions"]["eomgen"] and plan["seed"] == 0 and plan["runs"] == 4
+    table = (tmp_path / "out" / "table.csv").read_bytes()
+    with sqlite3.connect(tmp_path / "out" / "ledger.sqlite") as ledger:
+        ledger.execute("DELETE FROM runs WHERE run IN (1, 3)")
+    again = CliRunner().invoke(main, [*words, "--json"])
+    assert json.loads(again.output)["runs"] == 4 and (tmp_path / "out" / "table.csv").read_bytes() == table
+    other = CliRunner().invoke(main, [*words[:3], "k=10:90:5", *words[4:]])
+    assert other.exit_code == 2 and "another plan: over" in other.output
+    replay = CliRunner().invoke(main, ["sweep", "--replay", "2", folder, "-o", str(tmp_path / "run.csv"), "--json"])
+    told = json.loads(replay.output)
+    assert replay.exit_code == 0 and told["in_table"] and told["differ"] == []
+    with (tmp_path / "run.csv").open() as file:
+        rows = list(csv.reader(file))
+    assert float(rows[-1][rows[0].index("x")]) == pytest.approx(told["row"]["last(x)"], abs=1e-12)
+    assert sweep_at(folder).again(2) == sweep_at(folder).ledger.row(2)
+    with sqlite3.connect(tmp_path / "out" / "ledger.sqlite") as ledger:
+        ledger.execute('UPDATE runs SET "last(x)" = "last(x)" + 1e-15 WHERE run = 2')
+    changed = CliRunner().invoke(main, ["sweep", "--replay", "2", folder])
+    assert changed.exit_code == 3 and "differs from the table in last(x)" in changed.output
+    assert CliRunner().invoke(main, ["sweep", "--replay", "9", folder]).exit_code == 2
+
+
+def test_names_that_sqlite_takes_for_one_are_two_columns(spring, tmp_path):
+    """m and M; what is asked under the name of what is set."""
+    found = eomgen.sweep(spring, over={"m": [1, 2], "M": [3.0]}, ask=["m", "k"], time=0.1, out=tmp_path / "out")
+    assert found.columns[4:] == ("m", "M", "m (asked)", "k")
+    assert found["m (asked)"].tolist() == [1, 2] and found["M"].tolist() == [3, 3]
+
+
+@pytest.mark.parametrize(
+    ("words", "message"),
+    [
+        ([], "nothing changes from run to run"),
+        (["--over", "q=1,2", "--ask", "k"], "no parameter, coordinate, rate or speed 'q'"),
+        (["--over", "k=1:2", "--ask", "k"], "is no range"),
+        (["--over", "k=1,2"], "nothing is asked"),
+        (["--over", "k=1,2", "--over", "k=3", "--ask", "k"], "one name twice"),
+        (["--over", "k=1,2", "--random", "k=uniform(0, 1)", "--ask", "k"], "'k' is set twice"),
+        (["--random", "k=gauss(0, 1)", "--ask", "k"], "no distribution 'gauss'"),
+        (["--random", "k=normal(0)", "--ask", "k"], "1 arguments"),
+        (["--random", "k=normal(0, -1)", "--ask", "k"], "deviation is not above 0"),
+        (["--random", "k=uniform(2, 1)", "--ask", "k"], "do not ascend"),
+        (["--random", "k=normal(1, 3 kg)", "--ask", "k"], "kg"),
+        (["--over", "k=1,2", "--ask", "speed(nobody)"], "nobody"),
+        (["--over", "k=1,2", "--ask", "x at x = 0, event every"], "is of several instants"),
+        (["--over", "k=1,2", "--runs", "5", "--ask", "k"], "5 runs of the same values"),
+        (["--random", "k=uniform(1, 2)", "--critical", "k"], "along a range"),
+        (["--over", "k=1,2", "--random", "m=uniform(1, 2)", "--critical", "k-1"], "--design sobol or lhs"),
+        (["--over", "k=1,2", "--ask", "k", "--time", "-1"], "makes no sense"),
+    ],
+)
+def test_what_makes_no_sense_is_refused_before_any_run(spring, words, message):
+    done = CliRunner().invoke(main, ["sweep", spring, *words])
+    assert done.exit_code == 2 and message in done.output, done.output
+
+
+def test_pictures_and_proof(spring, tmp_path):
+    """Lines, a heat map and a scatter matrix; the proof is that of the first run, and that it has the same bits."""
+    for over, view in ((["k=10:90:4"], "lines"), (["k=10:90:4", "m=1,2"], "heat")):
+        words = [word for each in over for word in ("--over", each)]
+        path = tmp_path / f"{view}.png"
+        done = CliRunner().invoke(
+            main, ["sweep", spring, *words, "--ask", "max(x')", "--time", "1", "--plot", str(path), "--json"]
+        )
+        told = json.loads(done.output)
+        assert path.stat().st_size > 5000 and told["certificate"]["ok"] is True
+        names = {check["name"]: check["status"] for check in told["certificate"]["checks"]}
+        assert names["a run made again has the same bits"] == "holds"
+        assert names["steps taken again from states of the run end where it came"] == "holds"
+        assert names["what is of the whole run holds against its samples"] == "holds"
+    found = eomgen.sweep(spring, random={"k": "uniform(10, 20)", "m": "uniform(1, 2)"}, runs=16, ask="max(x')", time=1)
+    found.plot(tmp_path / "scatter.png")
+    found.plot(tmp_path / "lines.png", "scatter")
+    with pytest.raises(eomgen.RunFailed, match="two ranges"):
+        found.plot(tmp_path / "h.png", "heat")
+    with pytest.raises(UsageError, match="no view"):
+        found.plot(tmp_path / "h.png", "pie")
+
+
+def test_a_million_runs_are_planned_by_their_numbers():
+    """The last of 10^6 runs is drawn without the others."""
+    design = Design({"k": tuple(range(1000))}, (DrawnValues("m", "normal", (0.0, 1.0)),), 1000, "sobol", 1)
+    assert design.count == 10**6
+    (seed,), values = design.runs(10**6 - 1, 10**6)
+    assert seed > 0 and values[0, 0] == 999
+    assert kernel.finite(math.nan) is None
