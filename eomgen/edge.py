@@ -15,6 +15,7 @@ import sys
 import tempfile
 import traceback
 import unicodedata
+import warnings
 from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager, suppress
 from typing import Any
@@ -50,7 +51,9 @@ class ReaderGone(Exception):
 def guarded(verb: Callable[[], int], words: Sequence[str]) -> int:
     """The exit code of a verb; what went wrong in it is told, for machines too where they are asked for."""
     wants_json = "--json" in words or "--format json" in " ".join(words).replace("=", " ")
-    with _streams(), _signals():
+    with _streams(), _signals(), warnings.catch_warnings():
+        if not sys.warnoptions:
+            warnings.simplefilter("ignore")  # of libraries, to their callers: what a user is to know, verbs say
         try:
             return _told(*_outcome(verb, words), wants_json)
         except ReaderGone:

@@ -86,7 +86,7 @@ def _normed(e: list[float], body: str) -> list[float]:
     Raises:
         ModelError: it is 0.
     """
-    norm = math.sqrt(sum(x * x for x in e))
+    norm = math.hypot(*e)  # squares of large ones are beyond doubles
     if norm == 0:
         raise no_orientation(body)
     return [x / norm for x in e]

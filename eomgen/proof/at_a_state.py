@@ -33,7 +33,7 @@ from eomgen.symbolic.expression.node import State
 from eomgen.symbolic.expression.rational import Fraction
 from eomgen.symbolic.numeric.dense import of_one_length
 from eomgen.symbolic.numeric.evaluation import NoValue, evaluate, fifty_digits
-from eomgen.symbolic.numeric.tolerances import COMPUTED, SAME_PLACE, SOLVED
+from eomgen.symbolic.numeric.tolerances import COMPUTED, ROUNDING, SAME_PLACE, SOLVED
 
 AWAY = 10  # times what nearby states make of it, by which a number may be off
 
@@ -103,6 +103,13 @@ class NumericState:
         except DerivationError:
             return {}
         return {name: float(x) for name, x in zip(columns.names, found, strict=True) if np.isfinite(x)}
+
+    def rounding(self, formula: Expression) -> float:
+        """What doubles may leave of reactions that are small beside the forces [N, N m]; 0 of what asks none."""
+        if not any(FUNCTIONS[call.name].source == BALANCE for call in formula.calls):
+            return 0.0
+        forces = evaluate(tuple(self.equations.forcing), self.values, fifty_digits())
+        return ROUNDING * max((abs(float(x)) for x in forces), default=0.0)
 
     @property
     def t(self) -> float:

@@ -99,8 +99,9 @@ def _demand(system: System, state: State) -> Demand:
     rotors = armature_bias(system.motion, len(u))
     forces = bodies.at(tuple(y - x for x, y in zip(direct, rotors, strict=True)))
     sizes = [abs(x) for x in forces]
-    for k, x in (*bodies.along_joints(), *bodies.of_rotors(), *bodies.of_equations()):
-        forces[k], sizes[k] = forces[k] + x, sizes[k] + abs(x)
+    others = ((k, x, abs(x)) for k, x in (*bodies.of_rotors(), *bodies.of_equations()))
+    for k, x, size in (*bodies.along_joints(), *others):
+        forces[k], sizes[k] = forces[k] + x, sizes[k] + size
     _, rates = bodies.along_motion(tuple(row.velocity for row in closing))
     return Demand(forces, sizes, {(r.tie, r.number): x for r, x in zip(closing, rates, strict=True)})
 
@@ -175,18 +176,25 @@ class _Bodies:
         flat = [x for mass in masses for x in (mass.m, *mass.com, *(y for row in mass.I for y in row))]
         return [_taken(mass, *motion) for mass, motion in zip(_in_parts(self.at(flat), 13), self._motions, strict=True)]
 
-    @property
-    def _applied(self) -> list[Wrench]:
-        """Loads, weights and the pushes of closing rows on every body, about its origin in its axes."""
+    @cached_property
+    def _pushes(self) -> list[tuple[str, Wrench]]:
+        """(body, load, weight or push of a closing row on it, about its origin in its axes)."""
         ties, loads = self.system.ties, self.system.loads
         found = [body_wrench(self.system.motion, load) for load in (*loads.placed, *weights(loads))]
         pushes = [(*pair, 1) for pair in found if pair is not None]
         rows = zip(ties.closing, self.system.symbols.lam, strict=True)
         pushes += [(body, wrench, self.state[lam]) for row, lam in rows for body, wrench in row.wrenches]
         values = _in_parts(self.at([x for _, wrench, _ in pushes for x in (*wrench.tau, *wrench.f)]), 6)
+        return [
+            (body, Wrench(times(lam, vector_of(x[:3])), times(lam, vector_of(x[3:]))))
+            for (body, _, lam), x in zip(pushes, values, strict=True)
+        ]
+
+    @property
+    def _applied(self) -> list[Wrench]:
+        """All of them together on every body."""
         total = {link.name: Wrench(ZERO, ZERO) for link in self.links}
-        for (body, _, lam), x in zip(pushes, values, strict=True):
-            push = Wrench(times(lam, vector_of(x[:3])), times(lam, vector_of(x[3:])))
+        for body, push in self._pushes:
             total[body] = total[body].plus(push)
         return list(total.values())
 
@@ -204,16 +212,33 @@ class _Bodies:
                 found[parent] = found[parent].plus(carried)
         return found
 
-    def along_joints(self) -> Iterator[tuple[int, Any]]:
-        """(speed, what a joint gives along it): the columns of s and r' by each speed, on the joint's wrench."""
+    @property
+    def _sizes(self) -> list[tuple[Any, Any]]:
+        """(force, moment) of all that adds up to it, without signs: of one that cancels only rounding is left."""
+        found = {link.name: (_size(x.f), _size(x.tau)) for link, x in zip(self.links, self._inertia, strict=True)}
+        for body, push in self._pushes:
+            f, tau = found[body]
+            found[body] = f + _size(push.f), tau + _size(push.f) + _size(push.tau)
+        sizes = list(found.values())
+        for i in reversed(range(len(sizes))):
+            parent, arm = self.links[i].parent, _size(self._moving[0][i][9:12])
+            if parent >= 0:
+                sizes[parent] = sizes[parent][0] + sizes[i][0], sizes[parent][1] + sizes[i][1] + arm * sizes[i][0]
+        return sizes
+
+    def along_joints(self) -> Iterator[tuple[int, Any, Any]]:
+        """(speed, what a joint gives along it, of which size): the columns of s and r' by each speed, on its wrench."""
         place = {symbol: k for k, symbol in enumerate(self.system.scope.symbols.u)}
         speeds = [[x for x in symbols_of(joint[12:]) if x in place] for joint in self._joints]
         columns = [gradient(y, own) for joint, own in zip(self._joints, speeds, strict=True) for y in joint[12:]]
         values = iter(self.at([x for column in columns for x in column]))
-        for own, joint, wrench in zip(speeds, self._moving[0], self._through_joints, strict=True):
-            for y in (*apply(_turn(joint), wrench.f), *wrench.tau):
+        for own, joint, wrench, (f, tau) in zip(
+            speeds, self._moving[0], self._through_joints, self._sizes, strict=True
+        ):
+            for k, y in enumerate((*apply(_turn(joint), wrench.f), *wrench.tau)):
                 for symbol in own:
-                    yield place[symbol], next(values) * y
+                    value = next(values)
+                    yield place[symbol], value * y, abs(value) * (f if k < 3 else tau)
 
     def of_rotors(self) -> Iterator[tuple[int, Any]]:
         """Rotors behind gears: armature D_k D_l a_l."""
@@ -234,6 +259,10 @@ def _taken(mass: Sequence[Any], w: Vector, wd: Vector, acc: Vector) -> Wrench:
     m, c, I = mass[0], vector_of(mass[1:4]), matrix_of((mass[4:7], mass[7:10], mass[10:13]))
     f = times(m, plus(acc, plus(cross(wd, c), cross(w, cross(w, c)))))
     return Wrench(plus(plus(apply(I, wd), cross(w, apply(I, w))), cross(c, f)), f)
+
+
+def _size(vector: Sequence[Any]) -> Any:
+    return sum(map(abs, vector))
 
 
 def _turn(joint: Sequence[Any]) -> Matrix:

@@ -10,6 +10,7 @@ holds m, m r_C and the second moments P of a body about any origin; I = tr(P) 1 
 
 from __future__ import annotations
 
+import math
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from functools import cached_property
@@ -31,8 +32,8 @@ from eomgen.proof.check import Check, checked, unchecked
 from eomgen.symbolic.expression.expressions import Expression
 from eomgen.symbolic.expression.graph import Node, Scalar
 from eomgen.symbolic.expression.spatial import Pose, Vector
-from eomgen.symbolic.numeric.evaluation import FLOAT, evaluate
-from eomgen.symbolic.numeric.tolerances import COMPUTED, IMAGINARY_STEP, ROUNDING
+from eomgen.symbolic.numeric.evaluation import FLOAT, NoValue, evaluate
+from eomgen.symbolic.numeric.tolerances import COMPUTED, IMAGINARY_STEP, LARGEST_SQUARED, ROUNDING
 
 NODES = (32, 32, 16)  # of Gauss and Legendre in each direction, for lines, surfaces and volumes
 QUADRATURE = "quadrature"
@@ -75,8 +76,13 @@ def mass_checks(motion: Motion, stated: Sequence[Stated], numbers: Mapping[Node,
     if composite:
         wrong = next(filter(None, map(proof.wrong_parts, composite)), "")
         yield checked("the parts of every body add up", wrong, QUADRATURE)
-    wrong = next((f"{name} of {each.of or 'all'}{why}" for each in stated for name, why in proof.wrong(each)), "")
-    yield checked("masses, centres, moments and products of inertia are those of the bodies' points", wrong, QUADRATURE)
+    name = "masses, centres, moments and products of inertia are those of the bodies' points"
+    try:
+        wrong = next((f"{name} of {each.of or 'all'}{why}" for each in stated for name, why in proof.wrong(each)), "")
+    except NoValue as error:
+        yield unchecked(name, str(error), QUADRATURE)
+        return
+    yield checked(name, wrong, QUADRATURE)
     principal = [each for each in stated if each.axes is not None]
     if principal:
         wrong = next(filter(None, map(proof.wrong_axes, principal)), "")
@@ -264,10 +270,16 @@ class _Proof:
         return S
 
     def wrong(self, stated: Stated) -> Iterator[tuple[str, str]]:
-        """(name, difference) of what is not as the points of the bodies say."""
+        """(name, difference) of what is not as the points of the bodies say.
+
+        Raises:
+            NoValue: doubles do not hold it.
+        """
         expected, sizes = self._expected(stated)
         names = [name for name in stated.values if name in expected]
         found = dict(zip(names, self.numbers([stated.values[name] for name in names]), strict=True))
+        if not all(map(math.isfinite, found.values())):
+            raise NoValue("what is stated is beyond doubles")
         for name, x in _in_order(found).items():
             kind = name.partition("_")[0]
             power = 2 if kind == "k" else 1  # a root of what is 0 but for rounding is no rounding
@@ -278,6 +290,8 @@ class _Proof:
         """(each value, what is large for its kind)"""
         origin, S = self.about(stated, (0, 0, 0)), self.about(stated, self.numbers(stated.point))
         m, P = S[3, 3], S[:3, :3]
+        if not np.all(np.abs(np.stack([origin, S])) < LARGEST_SQUARED):
+            raise NoValue("moments of inertia are beyond doubles")
         I, moments = _tensor(P), np.linalg.eigvalsh(_tensor(P))
         found = {"m": m, "J_P": float(np.trace(P))}
         for i, x in enumerate(AXES):

@@ -16,7 +16,7 @@ from eomgen.proof.check import Check, checked, unchecked
 from eomgen.proof.emitted_code import PhaseMotion, TriedState
 from eomgen.proof.power import Energies, followed
 from eomgen.symbolic.expression.graph import Scalar, is_zero
-from eomgen.symbolic.numeric.tolerances import SUMMED
+from eomgen.symbolic.numeric.tolerances import LARGEST_SQUARED, SUMMED
 
 PER_STEP = 10  # tolerances of the run that one step may cost
 SURE = 0.1  # of a limit: how unsure an integral may be to be judged by it
@@ -133,6 +133,8 @@ def _steps(legs: Sequence[Leg], promise: Promise) -> Check:
     for leg in legs:
         places = np.flatnonzero(leg.integrated)
         i = places[np.unique(np.linspace(0, len(places) - 1, PLACES).astype(int))] if len(places) else places
+        with np.errstate(all="ignore"):
+            i = i[np.max(np.abs(leg.rates(leg.t[i], leg.x[i])), axis=1, initial=0.0) < LARGEST_SQUARED]
         if not len(i):
             continue
         with np.errstate(all="ignore"):
@@ -144,7 +146,7 @@ def _steps(legs: Sequence[Leg], promise: Promise) -> Check:
         if not apart[k] <= limit:
             return checked(name, f"{apart[k]:.1e} apart at t = {leg.t[i[k] + 1]:.6g} s, limit {limit:.1e}", how)
     if not judged:
-        return unchecked(name, "its steps are too long or too stiff for the explicit method", how)
+        return unchecked(name, "its steps are too long, too stiff or too fast for the explicit method", how)
     return Check(name, "holds", how, f"{judged} steps")
 
 
@@ -173,6 +175,8 @@ def energy_kept(legs: Sequence[Leg], promise: Promise) -> Check:
         k = int(np.argmax(drift))
         if not drift[k] <= worst:
             worst, when = float(drift[k]), float(leg.t[k])
+    if not np.isfinite(worst):
+        return unchecked(name, "the energy has no value at some of the states", how)
     if not unsure <= SURE * limit:
         return unchecked(name, f"the integral of the power is not sure: by {unsure:.1e} J, limit {limit:.1e} J", how)
     told = f"|E - E0 - W| <= {worst:.1e} J at t = {when:.6g} s, limit {limit:.1e} J, energy that moves {moving:.3g} J"

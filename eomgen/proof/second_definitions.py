@@ -42,6 +42,7 @@ from eomgen.symbolic.expression.spatial import (
     vector_of,
 )
 from eomgen.symbolic.numeric.evaluation import NoValue, evaluate, fifty_digits
+from eomgen.symbolic.numeric.tolerances import LARGEST_AT_50
 
 UNIT: Matrix = ((1, 0, 0), (0, 1, 0), (0, 0, 1))
 
@@ -210,6 +211,8 @@ def second_definition(state: NumericState, call: Call) -> str:
     """
     second = FUNCTIONS[call.name].second
     assert second is not None, "asked of those that have one"
+    if any(abs(x) > LARGEST_AT_50 for x in state.numbers.values()):
+        raise NoValue("coordinates or speeds too large for differences")
     found = state.number(Quantities(state.equations.system).value(call))
     right = float(second(NearbyStates(state), call))
     if math.isnan(right):

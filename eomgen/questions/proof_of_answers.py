@@ -149,7 +149,9 @@ class _Proof:
             raise DerivationError("it has no number")
         state = self._state_of(output)
         right = _in_unit(state.worth(output.value), output)
-        if not differing(found.value, right):
+        if not differing(found.value, right) or abs(found.value - right) <= _in_unit(
+            state.rounding(output.value), output
+        ):
             return ""
         return off_by(found.value, right, [_in_unit(near.worth(output.value), output) for near in state.beside()])
 

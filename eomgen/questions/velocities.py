@@ -15,6 +15,7 @@ from eomgen.documents.kinematics.result import Kinematics
 from eomgen.errors import DerivationError, ModelError, UsageError
 from eomgen.mechanics.constraints.freedom import counted, freedoms
 from eomgen.mechanics.fields.motion_kind import Kinds
+from eomgen.mechanics.initial_state.initial_state import refuse_lost
 from eomgen.mechanics.instant.kinematic_state import KinematicState
 from eomgen.mechanics.instant.velocity_analysis import Snapshot, snapshot_of
 from eomgen.model.fields import WrittenEquation
@@ -120,6 +121,7 @@ def _on_the_way(model: Model, at: WrittenEquation | None) -> KinematicState:
     when = "at the start" if at is None else f"when {at.text}"
     phase, exact, numbers = moment.phase, moment.exact, moment.numbers
     symbols = phase.system.symbols
+    refuse_lost({q: numbers[q] for q in symbols.q if q in numbers})
     needed = (*symbols.q, *symbols.u, *([symbols.t] if _sees_time(phase) else []))
     whole = all(node in exact for node in needed) and (not numbers or sum(map(text_size, exact.values())) <= LONG)
     moving = dict(exact) if whole else exact_numbers(numbers)

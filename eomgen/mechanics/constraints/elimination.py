@@ -23,7 +23,7 @@ from eomgen.symbolic.expression.derivative import depends_on
 from eomgen.symbolic.expression.graph import Node, Scalar, is_zero
 from eomgen.symbolic.expression.traversal import operations, order
 from eomgen.symbolic.numeric.dense import independent
-from eomgen.symbolic.numeric.evaluation import evaluate, fifty_digits
+from eomgen.symbolic.numeric.evaluation import NoValue, evaluate, fifty_digits, floats_of
 from eomgen.symbolic.numeric.tolerances import RANK
 from eomgen.symbolic.solve import cramer
 
@@ -109,14 +109,22 @@ def elimination_of(ties: Ties) -> Elimination:
 
 
 def _numbers(ties: Ties) -> np.ndarray:
-    """J of the closing rows at a generic state in which they hold, or where none is near at any state."""
+    """J of the closing rows at a generic state in which they hold, or where none is near at any state.
+
+    Raises:
+        DerivationError: it has no finite value there.
+    """
     try:
         state = generic_state(ties)
     except (DerivationError, MissingValues):
         state = scattered_state(ties)
     width = len(ties.motion.scope.symbols.u)
-    values = evaluate([x for row in ties.J for x in row], state, fifty_digits())
-    return np.array([float(x) for x in values]).reshape(len(ties.closing), width)
+    try:
+        values = floats_of(evaluate([x for row in ties.J for x in row], state, fifty_digits()))
+    except (NoValue, ZeroDivisionError):
+        what = "the velocities of the ties have no finite value near the start"
+        raise DerivationError(what, "constraints", "look at what grows in the joints that they hold") from None
+    return np.array(values).reshape(len(ties.closing), width)
 
 
 def _determining_rows(ties: Ties, J_d: np.ndarray) -> list[int]:

@@ -33,7 +33,7 @@ from eomgen.symbolic.expression.derivative import substituted, symbols_of
 from eomgen.symbolic.expression.graph import Node, Scalar
 from eomgen.symbolic.expression.node import State
 from eomgen.symbolic.numeric.evaluation import FLOAT, evaluate, fifty_digits
-from eomgen.symbolic.numeric.tolerances import COMPUTED, COORDINATE_AT_50
+from eomgen.symbolic.numeric.tolerances import COMPUTED, COORDINATE_AT_50, LARGEST_AT_50
 
 
 @dataclass(frozen=True)
@@ -79,6 +79,18 @@ class Start:
         names, how = quoted_names(self.ties), "changed" if any(change.given for change in self.changes) else "completed"
         hold = "holds" if len(self.ties) == 1 else "hold"
         return f"{how} so that {names} {hold} at the start: {', '.join(map(str, self.changes))}"
+
+
+def refuse_lost(places: Mapping[Node, Any]) -> None:
+    """Refuses coordinates of which so few digits are left that a step or a difference is lost.
+
+    Raises:
+        DerivationError: the first of them is named.
+    """
+    for node, x in places.items():
+        if abs(x) > LARGEST_AT_50:
+            what = f"'{node.name}' is at {float(x):.6g}, where no digit is left of a small motion"
+            raise DerivationError(what, f"coordinates.{node.name}", "start nearer to 0, an angle less whole turns")
 
 
 def start_state(
@@ -290,7 +302,7 @@ def _normed(system: System, values: Mapping[str, float]) -> dict[str, float]:
     """The coordinates of quaternions over their norm."""
     found: dict[str, float] = {}
     for four in system.scope.quaternions:
-        norm = math.sqrt(sum(values[e.name] ** 2 for e in four))
+        norm = math.hypot(*(values[e.name] for e in four))
         if norm == 0:
             raise UsageError(f"the quaternion {', '.join(e.name for e in four)} cannot start at 0")
         found |= {e.name: values[e.name] / norm for e in four}

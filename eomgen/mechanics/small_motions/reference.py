@@ -17,7 +17,7 @@ from eomgen.mechanics.equations.system import System
 from eomgen.mechanics.equilibria.search import Equilibrium, nearest_equilibrium
 from eomgen.mechanics.equilibria.static_equations import StaticEquations, static_equations
 from eomgen.mechanics.first_integrals.closed_instant import position_equations
-from eomgen.mechanics.initial_state.initial_state import fixed_by_position, start_state
+from eomgen.mechanics.initial_state.initial_state import fixed_by_position, refuse_lost, start_state
 from eomgen.mechanics.initial_state.values_at_rest import values_of_parameters
 from eomgen.mechanics.small_motions.family import Family
 from eomgen.model.contacts import contacts_of
@@ -175,8 +175,13 @@ def _gap(row: Row) -> Scalar | None:
 
 
 def _with_inputs(reference: ReferenceMotion) -> ReferenceMotion:
-    """Inputs as they are at t = 0."""
+    """Inputs as they are at t = 0.
+
+    Raises:
+        DerivationError: a coordinate is so far away that nothing small is left of it.
+    """
     system = reference.system
+    refuse_lost({q: reference.numbers[q] for q in system.symbols.q})
     given = {node: system.inputs[name] for name, node in system.symbols.inputs.items()}
     exact = dict(zip(given, substituted(tuple(given.values()), reference.exact), strict=True))
     exact = {x: value for x, value in exact.items() if not depends_on(value, (*system.symbols.q, *system.symbols.u))}

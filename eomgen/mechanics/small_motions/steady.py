@@ -57,6 +57,9 @@ def steady_start(first: FirstOrder, reference: ReferenceMotion, wanted: Sequence
         DerivationError: none was found near the start.
     """
     choice = choice_of(first, reference, wanted)
+    if not choice.u:
+        what = "the ties leave no motion free, so none is steady"
+        raise DerivationError(what, "linearize.about", 'leave a freedom, or ask about = "equilibrium"')
     free = _free(first, choice)
     for mask in (free > STATED, np.ones(len(free), dtype=bool)):
         found = _sought(first, choice, reference.numbers, mask) if np.any(mask) else None

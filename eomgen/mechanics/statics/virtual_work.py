@@ -44,6 +44,19 @@ class Acting:
         """Its virtual work in a motion, not written out."""
         return plan.work_of_effects(self.effects) if self.load is None else plan.work(self.load)
 
+    @property
+    def parts(self) -> tuple[Scalar, ...]:
+        """The components of its forces and couples."""
+        match self.load:
+            case None:
+                return tuple(x for effect in self.effects for x in effect.six)
+            case Couple(couple=couple):
+                return couple
+            case PointForce(force=force):
+                return force
+            case SpreadLoad():
+                return (*self.load.at_start, *self.load.at_end)
+
 
 @dataclass(frozen=True)
 class WorkTerm:
@@ -124,8 +137,8 @@ def _equation(structure: Structure, name: str, combination: Mapping[int, Scalar]
     still = dict.fromkeys(structure.unknowns, 0)  # they do no work in this motion, or are what is asked
     loads = loads_at_rest(structure)
     works = substituted(tuple(load.work(plan) for load in loads), still)
-    terms = tuple(
-        WorkTerm(load, plan.simple(work)) for load, work in zip(loads, works, strict=True) if not plan.vanishes((work,))
-    )
+    parts = [substituted(substituted(load.parts, structure.at), still) for load in loads]
+    working = [not plan.vanishes((work,), beside=own) for work, own in zip(works, parts, strict=True)]
+    terms = tuple(WorkTerm(load, plan.simple(w)) for load, w, does in zip(loads, works, working, strict=True) if does)
     total = sum((term.work for term in terms), start=0)
     return WorkEquation(name, plan, along, terms, given, plan.simple(over(-total, along) + given))

@@ -157,11 +157,12 @@ class VelocityPlan:
         """A vector of a load in this configuration, ground axes."""
         return vector_of(substituted(in_ground_axes(self.system.motion, vector, axes), self.at))
 
-    def vanishes(self, scalars: Sequence[Scalar]) -> bool:
-        """Whether all of them are 0."""
+    def vanishes(self, scalars: Sequence[Scalar], beside: Sequence[Scalar] = (1,)) -> bool:
+        """Whether all of them are 0, beside what they are multiples of."""
         if not all(is_zero(x) for x in scalars if type(x) is not Node):
             return False
-        return all(abs(x) < ZERO_AT_50 for x in self.numbers([x for x in scalars if type(x) is Node]))
+        size = max(map(abs, self.numbers(beside)), default=0)
+        return all(abs(x) <= ZERO_AT_50 * size for x in self.numbers([x for x in scalars if type(x) is Node]))
 
     def numbers(self, scalars: Sequence[Scalar]) -> list[Any]:
         """What scalars are worth at these parameters, with 50 digits."""
