@@ -44,7 +44,7 @@ def test_a_function_of_coordinates_and_rates_is_exact_and_valued_at_the_start():
     """T = m l^2 theta'^2 / 2 = 2 * 0.25 * 4 / 2"""
     found = answer('"kinetic_energy()"')
     assert found.exact == "1/2*m*l^2*theta'^2"
-    assert (found.value, found.unit, found.message) == (pytest.approx(1.0), "", None)
+    assert (found.value, found.unit, found.message) == (pytest.approx(1.0), "J", None)
 
 
 def test_accelerations_are_replaced_by_the_equations():

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import csv
+import json
 from math import pi
 from pathlib import Path
 
@@ -78,3 +79,48 @@ def test_reactions_and_functions_have_units_by_what_they_are():
     names = ("reaction_x(wheel)", "reaction_couple(cart)", "omega(wheel)", "x", "x'", "multiplier(cart)")
     found = {name: str(unit) for name, unit in units_of(model, names).items()}
     assert found == dict(zip(names, ("N", "N*m", "rad/s", "m", "m/s"), strict=False))
+
+
+ASKED = """
+[outputs]
+F = "reaction_x(cart)"
+M = "reaction_couple(cart)"
+p = "m*x'"
+P = "m*x'*x'' + kinetic_energy()/t"
+w = "omega(wheel)"
+angle = { value = "phi", unit = "deg" }
+n = "x/l"
+open = "k*x"
+root = "sqrt(m)"
+"""
+UNITS = {"F": "N", "M": "N*m", "p": "kg*m/s", "P": "W", "w": "rad/s", "angle": "deg", "n": "", "open": "", "root": ""}
+"""of what is asked alone its function's; else by dimension; none of a number, of what nobody knows, of a root"""
+
+
+def test_an_output_has_the_unit_of_its_formula_wherever_it_is_told(tmp_path):
+    """solve, JSON, the table of a run, --units of its CSV and derive --units name one unit for each output."""
+    text = WHEEL.replace("[coordinates]", "k = 3\n[coordinates]") + ASKED
+    path, file = tmp_path / "wheel.toml", tmp_path / "run.csv"
+    path.write_text(text)
+
+    def told(*words: str):
+        result = CliRunner().invoke(main, [words[0], str(path), *words[1:], "--no-certify"])
+        assert result.exit_code in (0, 3), result.stderr
+        return result
+
+    answers = json.loads(told("solve", "--json").stdout)["outputs"]
+    assert {name: answer["unit"] for name, answer in answers.items()} == UNITS
+    assert " N   [" in told("solve").stdout and "kg·m/s   [" in told("solve").stdout
+    derived = json.loads(told("derive", "--units", "--json").stdout)["units"]["outputs"]
+    assert {name: unit for name, unit in derived.items() if UNITS[name]} == {n: u for n, u in UNITS.items() if u}
+    run = told("simulate", "--time", "1", "--samples", "3", "--target", "numpy", "--units", "-o", str(file))
+    (head, *rows) = csv.reader(file.open())
+    for name, unit in UNITS.items():
+        shown = f"{name} [{unit}]" if unit else name
+        assert shown in head, name
+        assert shown in run.stderr, name
+    start = dict(zip(head, rows[0], strict=True))
+    for name, answer in answers.items():
+        if answer["value"] is not None:
+            column = f"{name} [{answer['unit']}]" if answer["unit"] else name
+            assert float(start[column]) == pytest.approx(answer["value"], rel=1e-9, abs=1e-12), name

@@ -8,9 +8,10 @@ from collections.abc import Iterable
 from eomgen.model.catalog import Catalog
 from eomgen.model.dimensions import Names, inferred
 from eomgen.model.outputs import FUNCTIONS
-from eomgen.model.parts import Model
+from eomgen.model.parts import Model, Output
 from eomgen.symbolic.expression.dimensions import Dimension, dimension_of_unit
 from eomgen.symbolic.expression.expressions import single_call
+from eomgen.symbolic.expression.rational import Fraction
 from eomgen.symbolic.expression.units import Unit, parse_unit
 
 ALWAYS = {"t": "s", "energy": "J"}
@@ -43,11 +44,25 @@ def _of_output(model: Model, known: Names, name: str) -> Unit | None:
     output = name.removesuffix(OUTPUT)
     if output not in model.outputs or (name == output and name in known.moves):
         return None
-    part = model.outputs[output]
+    return _of_answer(known, model.outputs[output])
+
+
+def units_of_outputs(model: Model) -> dict[Output, Unit]:
+    """The unit of each output: the one that is declared, else that of SI, where the model says which that is."""
+    known = inferred(Catalog(model, ())).names
+    found = {part: _of_answer(known, part) for part in model.outputs.values()}
+    return {part: unit for part, unit in found.items() if unit is not None}
+
+
+def _of_answer(known: Names, part: Output) -> Unit | None:
+    """Declared, or of the function that it asks for alone (N*m, not J), or by its dimension; None of a number."""
     if part.unit is not None:
         return part.unit
-    dimension = known.inference.reduced(known.walk().of(part.value))
-    return None if dimension.unknowns or str(dimension) == "1" else parse_unit(str(dimension))
+    calls = part.value.calls
+    function = FUNCTIONS.get(calls[0].name) if len(part.value.code) == len(calls) == 1 else None
+    if function is not None and not function.per and function.like is None:
+        return parse_unit(function.unit)
+    return _in_si(known.inference.reduced(known.walk().of(part.value)))
 
 
 def units_of_model(model: Model, speeds: Iterable[str]) -> dict[str, dict[str, str]]:
@@ -62,8 +77,11 @@ def units_of_model(model: Model, speeds: Iterable[str]) -> dict[str, dict[str, s
         dimension = reduced(dimension)
         return "?" if dimension.unknowns else str(dimension)
 
-    walk = known.walk()
-    outputs = {name: part.unit.text if part.unit else told(walk.of(part.value)) for name, part in model.outputs.items()}
+    walk, of_outputs = known.walk(), units_of_outputs(model)
+    outputs = {
+        name: of_outputs[part].text if part in of_outputs else told(walk.of(part.value))
+        for name, part in model.outputs.items()
+    }
     names = {name: known.declared[name].text if name in known.declared else told(x) for name, x in found.found.items()}
     power = dimension_of_unit(parse_unit("W"))
     return {"names": names, "equations": {u: told(power.times(known.of(u), -1)) for u in speeds}, "outputs": outputs}
@@ -85,4 +103,10 @@ def _unit(known: Names, name: str) -> Unit | None:
             declared = declared.rate
         return declared
     dimension = known.inference.reduced((known.of_call(call) or Dimension()) if call else known.of(name))
-    return parse_unit(str(dimension)) if dimension and not dimension.unknowns else None
+    return _in_si(dimension)
+
+
+def _in_si(dimension: Dimension) -> Unit | None:
+    """The unit of SI; None of a number, of what is not known, and of a root that is no unit."""
+    whole = dimension and not dimension.unknowns and all(n.denominator == 1 for n in map(Fraction, dimension.values()))
+    return parse_unit(str(dimension)) if whole else None

@@ -24,6 +24,7 @@ from eomgen.mechanics.bodies.composition import made_of
 from eomgen.mechanics.bodies.inertia import mass_properties
 from eomgen.mechanics.bodies.kinematics import Motion
 from eomgen.mechanics.bodies.scope import Scope
+from eomgen.mechanics.constraints.closure import of_50_digits
 from eomgen.mechanics.initial_state.values_at_rest import values_of_parameters
 from eomgen.model.composite import PlacedPiece, pose_of
 from eomgen.model.shapes import MassProperties, Shape
@@ -32,7 +33,7 @@ from eomgen.proof.check import Check, checked, unchecked
 from eomgen.symbolic.expression.expressions import Expression
 from eomgen.symbolic.expression.graph import Node, Scalar
 from eomgen.symbolic.expression.spatial import Pose, Vector
-from eomgen.symbolic.numeric.evaluation import FLOAT, NoValue, evaluate
+from eomgen.symbolic.numeric.evaluation import FLOAT, NoValue, evaluate, fifty_digits, floats_of
 from eomgen.symbolic.numeric.tolerances import COMPUTED, IMAGINARY_STEP, LARGEST_SQUARED, ROUNDING
 
 NODES = (32, 32, 16)  # of Gauss and Legendre in each direction, for lines, surfaces and volumes
@@ -182,7 +183,14 @@ class _Proof:
     values: Mapping[Node, float]
 
     def numbers(self, scalars: Sequence[Scalar]) -> list[float]:
-        return [float(x) for x in evaluate(tuple(scalars), self.values, FLOAT)]
+        found = [float(x) for x in evaluate(tuple(scalars), self.values, FLOAT)]
+        if all(map(math.isfinite, found)):
+            return found
+        try:  # 1e300^2 * 0
+            values = {x: of_50_digits(v) for x, v in self.values.items()}
+            return floats_of(evaluate(tuple(scalars), values, fifty_digits()))
+        except (NoValue, ZeroDivisionError):
+            return found
 
     def value(self, expression: Expression) -> float:
         return self.numbers((self.motion.scope.value(expression),))[0]
@@ -278,8 +286,6 @@ class _Proof:
         expected, sizes = self._expected(stated)
         names = [name for name in stated.values if name in expected]
         found = dict(zip(names, self.numbers([stated.values[name] for name in names]), strict=True))
-        if not all(map(math.isfinite, found.values())):
-            raise NoValue("what is stated is beyond doubles")
         for name, x in _in_order(found).items():
             kind = name.partition("_")[0]
             power = 2 if kind == "k" else 1  # a root of what is 0 but for rounding is no rounding

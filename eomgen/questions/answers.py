@@ -37,6 +37,7 @@ from eomgen.mechanics.instant.velocity_analysis import Snapshot, snapshot_of
 from eomgen.model.fields import AtRest
 from eomgen.model.outputs import FUNCTIONS
 from eomgen.model.outputs.base import SMALL_MOTIONS
+from eomgen.model.own_units import units_of_outputs
 from eomgen.model.parts import Model, Output
 from eomgen.model.reader import ModelOrPath, model_at
 from eomgen.model.replaced import Values
@@ -51,6 +52,7 @@ from eomgen.symbolic.expression.derivative import depends_on, substituted, symbo
 from eomgen.symbolic.expression.expressions import Call
 from eomgen.symbolic.expression.graph import Graph, Node, Scalar
 from eomgen.symbolic.expression.traversal import order
+from eomgen.symbolic.expression.units import Unit
 from eomgen.symbolic.numeric.evaluation import FLOAT, evaluate
 from eomgen.symbolic.numeric.sure_numbers import number_of
 from eomgen.symbolic.numeric.transplant import transplanted
@@ -119,20 +121,20 @@ def solve(model: ModelOrPath, *, parameters: Values | None = None, start: Values
     solver, found, wrong, stopped = _Solver(model), dict[str, Answer](), [], ""
     for name, output in model.outputs.items():
         if stopped:
-            found[name] = _unanswered(output, DerivationError(f"not sought: {stopped}"))
+            found[name] = solver.unanswered(output, DerivationError(f"not sought: {stopped}"))
             continue
         try:
             with doing(f"the output '{name}'"):
                 found[name] = solver.answer(output)
         except ModelError as error:
             wrong.append(error)
-            found[name] = _unanswered(output, error)
+            found[name] = solver.unanswered(output, error)
         except (KeyboardInterrupt, PatienceEnded) as stop:
             if not any(answer.answered for answer in found.values()):
                 raise
             keep_what_there_is()
             stopped = "interrupted" if isinstance(stop, KeyboardInterrupt) else "out of patience"
-            found[name] = _unanswered(output, DerivationError(stopped))
+            found[name] = solver.unanswered(output, DerivationError(stopped))
     if wrong and not any(answer.answered for answer in found.values()):
         raise wrong[0]
     return Answers(found, solver, stopped)
@@ -157,9 +159,20 @@ class _Solver:
     def answer(self, output: Output) -> Answer:
         """One output; what goes wrong with it is its message."""
         try:
-            return replace(self._answer(output), unit=_unit(output))
+            return replace(self._answer(output), unit=self._unit(output))
         except (DerivationError, RunFailed, ExpressionError, MissingValues) as error:
-            return _unanswered(output, error)
+            return self.unanswered(output, error)
+
+    def unanswered(self, output: Output, error: EomgenError) -> Answer:
+        """Why there is none."""
+        return Answer(unit=self._unit(output), message=f"{error.what}; {error.mend}" if error.mend else error.what)
+
+    def _unit(self, output: Output) -> str:
+        return self._units[output].text if output in self._units else ""
+
+    @cached_property
+    def _units(self) -> dict[Output, Unit]:
+        return units_of_outputs(self.model)
 
     def _answer(self, output: Output) -> Answer:
         if is_of_a_run(output):
@@ -419,14 +432,6 @@ def _in_unit(quantity: Scalar, output: Output) -> Scalar:
     graph = quantity.graph if isinstance(quantity, Node) else Graph()
     found: Scalar = output.unit.from_si(quantity, graph.pi)
     return found
-
-
-def _unit(output: Output) -> str:
-    return "" if output.unit is None else output.unit.text
-
-
-def _unanswered(output: Output, error: EomgenError) -> Answer:
-    return Answer(unit=_unit(output), message=f"{error.what}; {error.mend}" if error.mend else error.what)
 
 
 def _valued(answer: Answer, value: float, where: str) -> Answer:
