@@ -25,7 +25,14 @@ ROUND = (5, 10)  # more often a value, as of g, than a coefficient
 TIME = frozenset(("t", "pi"))
 KEEPS = ("abs",)
 ALL_SAME = ("min", "max")
-_KNOWN = {(1, 1, -2): "N", (1, 2, -2): "N*m", (1, 0, -2): "N/m", (1, 2, -3): "W", (1, 0, -1): "N*s/m", (1, -1, -2): "Pa"}
+_KNOWN = {
+    (1, 1, -2): "N",
+    (1, 2, -2): "N*m",
+    (1, 0, -2): "N/m",
+    (1, 0, -1): "N*s/m",
+    (1, -1, -2): "Pa",
+    (1, 2, -3): "W",
+}
 
 
 class Dimension(dict[Any, Fraction]):
