@@ -106,7 +106,7 @@ def _balanced(reader: Reader, letters: Lettered, equation: BodyEquation) -> Scal
     """sum of coefficients * reactions + applied - inertia, each readable; or how large it is."""
     parts: list[tuple[Scalar | Omitted, Scalar]] = [(reader.shown(c), s) for s, c in _terms(letters, equation)]
     parts += [(reader.shown(given), 1) for given in (equation.applied, -equation.inertia)]
-    long = sum(shown.operations for shown, _ in parts if isinstance(shown, Omitted))
+    long = tuple(part for shown, _ in parts if isinstance(shown, Omitted) for part in shown.parts)
     if long:
         return Omitted(long)
     total: Scalar = 0

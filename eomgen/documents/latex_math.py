@@ -13,10 +13,11 @@ from itertools import pairwise
 
 from eomgen.documents.latex_names import Notation
 from eomgen.symbolic.expression.graph import Node, Number, Scalar
+from eomgen.symbolic.expression.node import SUMS
 from eomgen.symbolic.expression.rational import Fraction
 from eomgen.symbolic.expression.splines import sampled_of
 from eomgen.symbolic.print.decimals import decimal_of
-from eomgen.symbolic.print.layout import SUMS, Factor, Product, is_base, is_part_of_turn, is_time
+from eomgen.symbolic.print.layout import Factor, Product, is_base, is_part_of_turn, is_time
 from eomgen.symbolic.print.printed import TRIGONOMETRIC, is_bare_argument, summands
 
 ATOM, TALL, SUM = range(3)  # a symbol or number; what needs parentheses under an exponent; a sum or a product

@@ -22,6 +22,7 @@ from eomgen.symbolic.exact.book_form import book_form
 from eomgen.symbolic.exact.signs import never_vanishes
 from eomgen.symbolic.expression.derivative import depends_on, substituted
 from eomgen.symbolic.expression.graph import Node, Scalar
+from eomgen.symbolic.expression.node import holds_op
 from eomgen.symbolic.expression.traversal import order
 from eomgen.symbolic.numeric.work import Work
 from eomgen.symbolic.print.length import length_of
@@ -148,6 +149,8 @@ def _by_sides(sides: Mapping[int, Scalar], combination: Combination) -> Scalar |
 
 def divides_by_zero(x: Scalar) -> bool:
     """Whether x divides by what vanishes for some angles or at some places: by sin(alpha)."""
+    if not holds_op(x, "div"):
+        return False
     divisors = {node.args[1] for node in order((x,)) if node.op == "div"}
     return any(type(d) is Node and not never_vanishes(d) for d in divisors)
 

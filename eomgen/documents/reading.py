@@ -14,10 +14,11 @@ from eomgen.symbolic.exact.roots import Rooted, readable_over, rooted
 from eomgen.symbolic.expression.derivative import substituted
 from eomgen.symbolic.expression.functions import function
 from eomgen.symbolic.expression.graph import Graph, Node, Scalar, is_zero
+from eomgen.symbolic.expression.node import SUMS, holds_op, op_bits
 from eomgen.symbolic.expression.rational import Fraction
-from eomgen.symbolic.expression.traversal import operations, order
+from eomgen.symbolic.expression.traversal import order
 from eomgen.symbolic.numeric.work import Work
-from eomgen.symbolic.print.layout import SUMS, factors
+from eomgen.symbolic.print.layout import factors
 from eomgen.symbolic.print.length import length_of
 from eomgen.symbolic.print.text import named_parts, text_size, to_text
 
@@ -25,7 +26,7 @@ LONGEST = 1500  # characters of one formula in print
 NESTED = 400  # characters of a formula that is not multiplied out, in print
 TRIED = 20_000  # characters: what is longer by far will not become short
 WAVES = 100  # terms of a normal form that are written shortly; more of them take long, and are long
-POLYNOMIAL = frozenset("symbol pi neg add sub mul div sin cos".split())
+POLYNOMIAL = op_bits(*"symbol pi neg add sub mul div sin cos".split())
 LARGEST_DIVISOR = 120  # a number by which an equation is divided or multiplied, at most
 HALF = Fraction(1, 2)
 DIVIDED = 4000  # characters: longer formulas are not tried as one quotient
@@ -175,6 +176,8 @@ class Reader:
 
 def conditions_in(x: Scalar) -> list[Node]:
     """The conditions of the cases in x, each once; before those that are asked only where it fails."""
+    if not holds_op(x, "select"):
+        return []
     deep: dict[Node, int] = {}
     for node in order((x,)):
         if node.op == "select":
@@ -202,6 +205,8 @@ def without_cases(scalars: Sequence[Scalar]) -> tuple[Scalar, ...]:
 
     Where x = y exactly it is the mean of both.
     """
+    if not any(holds_op(x, "select") for x in scalars):
+        return tuple(scalars)
     known: dict[Node, Scalar] = {}
     for node in order(scalars):
         if node.op == "select":
@@ -228,7 +233,7 @@ def readable_value(reader: Reader, value: Scalar, positive: Collection[Node] = (
 
 def holds_roots(*expressions: Scalar) -> bool:
     """True where the expressions hold functions other than sines and cosines."""
-    return any(node.op not in POLYNOMIAL for node in order(expressions))
+    return any(type(x) is Node and x.ops & ~POLYNOMIAL for x in expressions)
 
 
 def length_in_print(*expressions: Scalar) -> int:
@@ -238,7 +243,7 @@ def length_in_print(*expressions: Scalar) -> int:
 
 def omitted(*expressions: Scalar) -> Omitted:
     """That the expressions are too long to print."""
-    return Omitted(operations(expressions).total)
+    return Omitted((expressions,))
 
 
 @dataclass(frozen=True)

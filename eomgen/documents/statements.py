@@ -7,9 +7,11 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
+from functools import cached_property
 
 from eomgen.documents.quantity import Quantity
 from eomgen.symbolic.expression.graph import Node, Scalar
+from eomgen.symbolic.expression.traversal import operations
 
 
 @dataclass(frozen=True)
@@ -64,9 +66,18 @@ class Law:
 
 @dataclass(frozen=True)
 class Omitted:
-    """What is too long to be printed: the number of its operations."""
+    """What is too long to be printed.
 
-    operations: int
+    Args:
+        parts: of each its expressions.
+    """
+
+    parts: tuple[tuple[Scalar, ...], ...]
+
+    @cached_property
+    def operations(self) -> int:
+        """How many it has, part by part."""
+        return sum(operations(part).total for part in self.parts)
 
 
 @dataclass(frozen=True)

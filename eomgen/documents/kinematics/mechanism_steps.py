@@ -14,7 +14,6 @@ from eomgen.mechanics.instant.mechanism import FIXED, Mechanism, RotationCenter
 from eomgen.symbolic.expression.graph import Node, Scalar, is_zero
 from eomgen.symbolic.expression.rational import Fraction
 from eomgen.symbolic.expression.spatial import Vector
-from eomgen.symbolic.expression.traversal import operations
 from eomgen.symbolic.numeric.tolerances import COMPUTED, ZERO_AT_50
 from eomgen.symbolic.print.text import text_size, to_text
 
@@ -120,7 +119,7 @@ def cell(state: KinematicState, x: Scalar) -> Cell:
         return x
     number = state.number(x)
     if number is None:
-        return x if text_size(x) <= 2 * LONGEST else Omitted(operations((x,)).total)
+        return x if text_size(x) <= 2 * LONGEST else Omitted(((x,),))
     return f"{0.0 if abs(number) < (ZERO_AT_50 if state.exact else COMPUTED) else number:.{DIGITS}g}"
 
 

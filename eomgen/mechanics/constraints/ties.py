@@ -9,7 +9,7 @@ A row without bodies (`equation`) gives dphi/dq, or its row in the rates, direct
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
 from random import Random
@@ -24,10 +24,10 @@ from eomgen.model.constraints.row import TieRow
 from eomgen.model.forces.load import PointForce, Push
 from eomgen.model.unbuilt import unbuilt_ties
 from eomgen.model.values import exact_parameters
-from eomgen.symbolic.exact.equality import equal_at_random_states, equal_at_real_states
+from eomgen.symbolic.exact.equality import Verdict, equal_at_random_states, equal_at_real_states, equal_in_field
 from eomgen.symbolic.expression.derivative import depends_on, jacobian, substituted
 from eomgen.symbolic.expression.functions import over, sqrt
-from eomgen.symbolic.expression.graph import Node, Scalar
+from eomgen.symbolic.expression.graph import Node, Scalar, is_zero
 from eomgen.symbolic.expression.rational import Fraction
 from eomgen.symbolic.expression.spatial import Wrench, apply, dot, times
 from eomgen.symbolic.numeric.evaluation import PRIME_FIELD, evaluate, fifty_digits
@@ -317,6 +317,15 @@ def slide_power(motion: Motion, push: PointForce) -> Scalar:
 
 def holds_identically(scalar: Scalar) -> bool:
     """Whether the scalar is zero at all values of its symbols (exactly, at random states)."""
-    if type(scalar) is int:
-        return scalar == 0
-    return equal_at_random_states([(scalar, 0)]).equal
+    return hold_identically((scalar,))[0]
+
+
+def hold_identically(scalars: Sequence[Scalar]) -> list[bool]:
+    """Of each whether it is zero at all values of its symbols; what they share is evaluated once."""
+    groups = [[(x, 0)] for x in scalars if type(x) is Node]
+    verdicts = iter(equal_in_field(groups) if groups else ())
+    return [_settled(x, next(verdicts)) if type(x) is Node else is_zero(x) for x in scalars]
+
+
+def _settled(x: Scalar, verdict: Verdict | None) -> bool:
+    return (equal_at_real_states([(x, 0)]) if verdict is None else verdict).equal

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
 from functools import cached_property
+from typing import Any
 
 from eomgen.mechanics.bodies.contact_modes import ContactModes
 from eomgen.mechanics.bodies.declared_speeds import Solved, with_declared_speeds
@@ -52,6 +53,11 @@ class System:
     def inputs(self) -> dict[str, Scalar]:
         """The model's own expression of each input, in t and parameters."""
         return {name: self.scope.value(part.value.named(name)) for name, part in self.scope.model.inputs.items()}
+
+    @cached_property
+    def found(self) -> dict[Any, Any]:
+        """What was found of it once, and is asked by many: its reactions."""
+        return {}
 
     def standing(self, places: Mapping[Node, Scalar]) -> dict[Node, Scalar]:
         """At t = 0, nothing moving: the coordinates where they are said to be, and the inputs there."""

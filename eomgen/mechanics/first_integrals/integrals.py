@@ -11,7 +11,7 @@ from dataclasses import dataclass, replace
 
 from eomgen.errors import DerivationError
 from eomgen.mechanics.bodies.scope import integral_from_zero
-from eomgen.mechanics.constraints.ties import holds_identically
+from eomgen.mechanics.constraints.ties import hold_identically
 from eomgen.mechanics.equations.equations_of_motion import EquationsOfMotion
 from eomgen.mechanics.equations.system import System
 from eomgen.mechanics.equations.wellposed import is_conservative
@@ -90,11 +90,11 @@ def momentum_integrals(equations: EquationsOfMotion) -> tuple[Integral, ...]:
     symbols, scope = equations.symbols, equations.system.scope
     momenta = gradient(equations.T, symbols.u)
     drifts = scope.time_derivative(momenta)  # dp/dt = M a + drift, and M a = forcing + J^T lam
-    found = []
-    for k, (u, p) in enumerate(zip(symbols.u, momenta, strict=True)):
-        if not all(holds_identically(row[k]) for row in equations.J):
-            continue
-        rate = _of_time_alone(drifts[k] + equations.forcing[k], (*symbols.q, *symbols.u, *symbols.inputs.values()))
+    others, found = (*symbols.q, *symbols.u, *symbols.inputs.values()), []
+    free = [k for k in range(len(symbols.u)) if all(hold_identically([row[k] for row in equations.J]))]
+    rates = [drifts[k] + equations.forcing[k] for k in free]
+    for k, rate in zip(free, _of_time_alone(rates, others), strict=True):
+        u, p = symbols.u[k], momenta[k]
         if rate is None:
             continue
         try:
@@ -106,11 +106,15 @@ def momentum_integrals(equations: EquationsOfMotion) -> tuple[Integral, ...]:
     return tuple(found)
 
 
-def _of_time_alone(rate: Scalar, others: Sequence[Node]) -> Scalar | None:
-    """The rate where it depends on none of the others, else None."""
-    if not depends_on(rate, others):
-        return rate
-    if holds_identically(rate):
-        return 0
+def _of_time_alone(rates: Sequence[Scalar], others: Sequence[Node]) -> list[Scalar | None]:
+    """Each rate where it depends on none of the others, else None."""
+    return [
+        rate if not depends_on(rate, others) else 0 if vanishes else _read_of_time(rate, others)
+        for rate, vanishes in zip(rates, hold_identically(rates), strict=True)
+    ]
+
+
+def _read_of_time(rate: Scalar, others: Sequence[Node]) -> Scalar | None:
+    """The rate multiplied out, where it depends on none of the others then."""
     rate = readable(rate, Work.FORMULA)
     return None if depends_on(rate, others) else rate

@@ -293,10 +293,19 @@ def reactions_of(
     Raises:
         DerivationError: a body is held by nothing; a force acts at no place.
     """
+    if at or work != Work.ANSWER:
+        return _found(system, at or {}, short, work)
+    if (key := (reactions_of, short)) not in system.found:
+        system.found[key] = _found(system, {}, short, work)
+    found: Reactions = system.found[key]
+    return found
+
+
+def _found(system: System, at: Mapping[Node, Scalar], short: bool, work: int) -> Reactions:
     sizes = push_sizes(system)
     balance = balance_of(system, sizes)
     if balance.unknowns:
-        return _at_rest(balance, at or {}, work)
+        return _at_rest(balance, at, work)
     if at and sizes:
         return Reactions(balance, _with_sizes(system, at, sizes, work), at)
     if at:

@@ -25,6 +25,7 @@ from eomgen.symbolic.exact.writing import Writer
 from eomgen.symbolic.expression.derivative import substituted
 from eomgen.symbolic.expression.exact_numbers import tidy
 from eomgen.symbolic.expression.graph import Node, Number, Scalar
+from eomgen.symbolic.expression.node import holds_op
 from eomgen.symbolic.expression.rational import Fraction
 from eomgen.symbolic.expression.traversal import order
 from eomgen.symbolic.numeric.work import Work
@@ -96,6 +97,8 @@ def _written(x: Scalar, limit: int, positive: Collection[Node]) -> Scalar:
 
 def _roots_read(x: Scalar, limit: int, positive: Collection[Node]) -> Scalar:
     """x with what stands under its roots in book form, too."""
+    if not holds_op(x, "sqrt"):
+        return x
     inside = [node.args[0] for node in order((x,)) if node.op == "sqrt" and type(node.args[0]) is Node]
     if not inside:
         return x

@@ -27,9 +27,10 @@ from eomgen.symbolic.exact.writing import Writer, is_rate
 from eomgen.symbolic.expression.derivative import substituted
 from eomgen.symbolic.expression.exact_numbers import tidy
 from eomgen.symbolic.expression.graph import Node, Number, Scalar
+from eomgen.symbolic.expression.node import ROOT_OF_SUM, SUMS, holds_op
 from eomgen.symbolic.expression.rational import Fraction
 from eomgen.symbolic.expression.traversal import order
-from eomgen.symbolic.print.layout import SUMS, factors, terms
+from eomgen.symbolic.print.layout import factors, terms
 from eomgen.symbolic.print.text import text_size
 
 ADDED = ("add", "sub")
@@ -64,9 +65,9 @@ def rooted(expressions: Sequence[Scalar], limit: int) -> Rooted:
     """
     known: dict[Node, Scalar] = {}
     roots: dict[Node, Scalar] = {}
-    nodes = order(expressions)
-    if not any(is_root_of_sum(node) for node in nodes):
+    if not any(holds_op(x, ROOT_OF_SUM) for x in expressions):
         return Rooted(tuple(expressions), ())
+    nodes = order(expressions)
     added = {a for node in nodes if node.op in SUMS for a in node.args}
     candidates = {node for node in _above(nodes, is_root_of_sum) & _above(nodes, is_rate) - added if node.op in ADDED}
     rates: set[Node] = set()

@@ -34,19 +34,47 @@ class Owner(Protocol):
     def reduced(self, x: Node) -> tuple[Any, ...]: ...
 
 
+SUMS = frozenset(("add", "sub", "neg"))
+ROOT_OF_SUM = "sqrt of a sum"  # an operation of its own: most roots are of numbers
+_BITS: dict[str, int] = {}
+
+
+def op_bits(*ops: str) -> int:
+    """A bit for each operation, the same in all of this process."""
+    found = 0
+    for op in ops:
+        bit = _BITS.get(op)
+        if bit is None:
+            bit = _BITS[op] = 1 << len(_BITS)
+        found |= bit
+    return found
+
+
+def holds_op(x: Any, *ops: str) -> bool:
+    """Whether one of the operations stands in x."""
+    return type(x) is Node and bool(x.ops & op_bits(*ops))
+
+
 @final
 class Node:
     """One expression of a graph: an operation on nodes and exact numbers.
 
     `op` is one of UNARY, BINARY, "select" (condition, if true, if false), "symbol" (its one
     argument is the name) or "pi". `index` grows from arguments to results: sorting by it is an
-    evaluation order.
+    evaluation order. `ops` says which operations it is made of: a bit of `op_bits` for each.
     """
 
-    __slots__ = ("args", "graph", "index", "op")
+    __slots__ = ("args", "graph", "index", "op", "ops")
 
     def __init__(self, graph: Owner, op: str, args: tuple[Any, ...], index: int) -> None:
         self.graph, self.op, self.args, self.index = graph, op, args, index
+        ops = op_bits(op)
+        for a in args:
+            if type(a) is Node:
+                ops |= a.ops
+        if op == "sqrt" and type(args[0]) is Node and args[0].op in SUMS:
+            ops |= op_bits(ROOT_OF_SUM)
+        self.ops: int = ops
 
     def __reduce__(self) -> tuple[Any, ...]:
         """For another process."""

@@ -13,11 +13,11 @@ from typing import Any
 
 from eomgen.symbolic.expression.exact_numbers import tidy
 from eomgen.symbolic.expression.graph import Node, Number, Scalar
+from eomgen.symbolic.expression.node import SUMS
 from eomgen.symbolic.expression.rational import Fraction
 from eomgen.symbolic.expression.traversal import order
 from eomgen.symbolic.numeric.evaluation import FLOAT, evaluate
 
-SUMS = frozenset(("add", "sub", "neg"))
 SHORT_SUM = 40  # nodes of a sum that is looked through for what moves
 
 Term = tuple[Number, "Node | None"]

@@ -16,7 +16,7 @@ from sympy.logic.boolalg import BooleanAtom, BooleanFunction
 from eomgen.errors import DerivationError
 from eomgen.symbolic.expression.functions import selected
 from eomgen.symbolic.expression.graph import Graph, Node, Number, Scalar
-from eomgen.symbolic.expression.node import Owner
+from eomgen.symbolic.expression.node import SUMS, Owner
 from eomgen.symbolic.expression.rational import Fraction, known_to_sympy
 from eomgen.symbolic.expression.splines import sampled_of
 from eomgen.symbolic.expression.traversal import order
@@ -24,7 +24,6 @@ from eomgen.symbolic.expression.traversal import order
 known_to_sympy()
 
 TRUTHS = (Relational, BooleanFunction, BooleanAtom)
-SUMS = frozenset(("add", "sub", "neg"))
 
 
 class NamedSymbol(sympy.Symbol):  # type: ignore[misc]
