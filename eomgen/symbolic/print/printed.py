@@ -7,9 +7,10 @@ from math import gcd
 
 from eomgen.symbolic.expression.exact_numbers import tidy
 from eomgen.symbolic.expression.graph import Node, Scalar
+from eomgen.symbolic.expression.node import SUMS
 from eomgen.symbolic.expression.rational import Fraction
 from eomgen.symbolic.print.decimals import decimal_of
-from eomgen.symbolic.print.layout import SUMS, Factor, Product, is_base, plus_first, products_of
+from eomgen.symbolic.print.layout import Factor, Product, is_base, plus_first, products_of
 
 TRIGONOMETRIC = frozenset("sin cos tan sinh cosh tanh".split())
 _OTHER = {"sin": "cos", "cos": "sin"}
