@@ -20,7 +20,7 @@ from eomgen.mechanics.formulations.lagrange import free_rates
 from eomgen.mechanics.reactions.inverse import inverse_residual
 from eomgen.proof.check import Check, checked, unchecked
 from eomgen.proof.states import States
-from eomgen.symbolic.exact.equality import Verdict, equal_at_real_states, equal_in_field
+from eomgen.symbolic.exact.equality import Equality, equal_at_real_states, equal_in_field
 from eomgen.symbolic.expression.derivative import gradient, substituted, tangent
 from eomgen.symbolic.expression.functions import inner
 from eomgen.symbolic.expression.graph import Node, Scalar
@@ -48,7 +48,7 @@ def compared(claims: Sequence[Claim], states: States | None = None) -> list[Chec
     return [_checked(claim, verdict, states) for claim, verdict in zip(claims, verdicts, strict=True)]
 
 
-def _checked(claim: Claim, verdict: Verdict | None, states: States | None) -> Check:
+def _checked(claim: Claim, verdict: Equality | None, states: States | None) -> Check:
     given = () if states is None else [(place.state for place in supply) for _, supply in states.supplies]
     try:
         found = verdict or equal_at_real_states(claim.pairs, given=given)

@@ -51,7 +51,7 @@ class ExactState:
 
 
 @dataclass(frozen=True)
-class Verdict:
+class Equality:
     """Whether all pairs are equal.
 
     Args:
@@ -67,7 +67,7 @@ class Verdict:
     states: int = 0
 
 
-def equal_at_random_states(pairs: Iterable[Pair], *, seed: int = 1, states: int = 2) -> Verdict:
+def equal_at_random_states(pairs: Iterable[Pair], *, seed: int = 1, states: int = 2) -> Equality:
     """Whether the two of each pair are the same function of the symbols.
 
     In a prime field; where functions have no meaning there and the field cannot tell, at real states with 50 digits.
@@ -84,7 +84,7 @@ def equal_at_random_states(pairs: Iterable[Pair], *, seed: int = 1, states: int 
     return equal_at_real_states(pairs, seed=seed, states=states) if verdict is None else verdict
 
 
-def equal_in_field(groups: Sequence[Sequence[Pair]], *, seed: int = 1, states: int = 2) -> list[Verdict | None]:
+def equal_in_field(groups: Sequence[Sequence[Pair]], *, seed: int = 1, states: int = 2) -> list[Equality | None]:
     """Of every group whether its pairs are equal in a prime field; None: the field cannot tell.
 
     All groups are evaluated at once: what they share is found once.
@@ -102,12 +102,12 @@ def equal_in_field(groups: Sequence[Sequence[Pair]], *, seed: int = 1, states: i
             culprits = [k if k is not None else _first_different(part) for k, part in zip(culprits, parts, strict=True)]
     except NoMeaning:
         return [None] if len(groups) == 1 else [equal_in_field((x,), seed=seed, states=states)[0] for x in groups]
-    return [None if k is not None and not sure else Verdict(k is None, PRIME_FIELD.name, k) for k in culprits]
+    return [None if k is not None and not sure else Equality(k is None, PRIME_FIELD.name, k) for k in culprits]
 
 
 def equal_at_real_states(
     pairs: Iterable[Pair], *, seed: int = 1, states: int = 2, given: Iterable[Iterable[Mapping[Node, Any]]] = ()
-) -> Verdict:
+) -> Equality:
     """The same at real states with 50 digits.
 
     Args:
@@ -123,7 +123,7 @@ def equal_at_real_states(
         if values is not None:
             found += 1
             if (culprit := _first_apart(values)) is not None:
-                return Verdict(False, arithmetic.name, culprit)
+                return Equality(False, arithmetic.name, culprit)
     for _ in range(states):
         try:
             values = real_values(flat, rng, arithmetic)
@@ -133,8 +133,8 @@ def equal_at_real_states(
             break
         found += 1
         if (culprit := _first_apart(values)) is not None:
-            return Verdict(False, arithmetic.name, culprit)
-    return Verdict(True, arithmetic.name, states=found)
+            return Equality(False, arithmetic.name, culprit)
+    return Equality(True, arithmetic.name, states=found)
 
 
 def exact_state(outputs: Iterable[Scalar], rng: Random, arithmetic: Arithmetic = PRIME_FIELD) -> ExactState:

@@ -1,0 +1,79 @@
+"""An explanation -> its causes, in sentences."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from dataclasses import replace
+from typing import TYPE_CHECKING
+
+from eomgen.judge.diagnosis import Explanation, Share
+from eomgen.judge.verdict import Cause
+from eomgen.symbolic.exact.normal_form import legible
+from eomgen.symbolic.expression.expressions import Call, Reference
+from eomgen.symbolic.expression.graph import Scalar, is_zero
+from eomgen.symbolic.expression.rational import Fraction
+from eomgen.symbolic.numeric.work import Work
+from eomgen.symbolic.print.text import readable_text
+
+if TYPE_CHECKING:
+    from eomgen.judge.case import Case
+
+LONG = 300  # characters of a term that is shown
+
+
+def causes_of(case: Case, rows: Sequence[Scalar], found: Sequence[Explanation]) -> tuple[Cause, ...]:
+    """The causes of the first explanation; the kinds of others with as many mistakes beside them."""
+    best = found[0]
+    causes = [cause_of(case, share, best.row) for share in best.shares]
+    others = [e for e in found[1:] if len(e.shares) == len(best.shares)]
+    if len(causes) == 1:
+        kinds = dict.fromkeys(cause_of(case, e.shares[0], e.row, told=False).kind for e in others)
+        causes[0] = replace(causes[0], others=tuple(kind for kind in kinds if kind != causes[0].kind))
+    return tuple(causes)
+
+
+def cause_of(case: Case, share: Share, row: int, *, told: bool = True) -> Cause:
+    """The cause that one corruption is."""
+    corruption, x = share.corruption, share.factor
+    rows = (corruption.rows[row],) if row >= 0 else corruption.rows
+    term = next(filter(None, (_term(case, x) for x in rows if not is_zero(x))), "") if told else ""
+    kind, text = corruption.kind, corruption.text
+    if corruption.open:
+        kind, text = _of_factor(corruption.kind, corruption.name, x, share.unit, term)
+    return Cause(kind, text, term, corruption.body, corruption.force, corruption.name)
+
+
+def _of_factor(kind: str, name: str, x: Fraction, unit: str, term: str) -> tuple[str, str]:
+    """(kind, sentence) of a contribution with a wrong factor."""
+    what = f"{name}, {term}," if term and term not in name else name
+    if unit:
+        return "unit", f"{what} stands with the factor {unit}: a unit is not converted"
+    if x == 0:
+        return ("missing_term" if kind == "factor" else kind), f"{what} is missing"
+    if x == -1:
+        return ("sign" if kind == "factor" else kind), f"{what} has the wrong sign"
+    if kind == "coriolis" and x == Fraction(1, 2):
+        return kind, f"{what} is counted once, and stands there twice"
+    wrong = "a minus sign and " if x < 0 else ""
+    return kind, f"{what} stands with {wrong}the factor {abs(x)}, which does not belong there"
+
+
+def _term(case: Case, scalar: Scalar) -> str:
+    form = legible(scalar, Work.FORMULA, case.system.scope.positive, LONG)
+    text = readable_text(form) or ""
+    return text if len(text) <= LONG else ""
+
+
+def other_calls(case: Case, call: Call) -> Iterator[Call]:
+    """The same function of other points, bodies or ties, one argument changed."""
+    model = case.model
+    for k, argument in enumerate(call.args):
+        if not isinstance(argument, Reference):
+            continue
+        tables: list[Sequence[str]] = [tuple(model.named_points), tuple(model.bodies), tuple(model.constraints), tuple(model.coordinates)]
+        for names in tables:
+            if argument.name not in names:
+                continue
+            for name in names:
+                if name != argument.name:
+                    yield replace(call, args=(*call.args[:k], Reference(name), *call.args[k + 1 :]))

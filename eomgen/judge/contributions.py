@@ -1,0 +1,203 @@
+"""System -> what its energies and equations are the sum of, each part known by name.
+
+T = sum over the bodies of translation and rotation, V and Q over the forces, weights body by body. Each of them enters
+every equation of motion by one and the same operator:
+
+    E_k = d/dt dT/du_k - dT/dq_k + dV/dq_k - Q_k - J^T lam
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass, field, replace
+from functools import cached_property
+
+from eomgen.mechanics.bodies.inertia import armature_energy, body_energies, mass_properties
+from eomgen.mechanics.bodies.loads import Applied
+from eomgen.mechanics.equations.equations_of_motion import EquationsOfMotion
+from eomgen.mechanics.equations.system import System
+from eomgen.mechanics.equations.work import drive_row, from_potential, load_row, per_speed
+from eomgen.mechanics.formulations.lagrange import free_rates
+from eomgen.model.forces.load import Couple, Load, PointForce, UniformField
+from eomgen.symbolic.expression.derivative import gradient, jacobian, substituted, tangent
+from eomgen.symbolic.expression.functions import inner
+from eomgen.symbolic.expression.graph import Scalar, is_zero
+from eomgen.symbolic.expression.node import ScalarRow
+from eomgen.symbolic.expression.spatial import dot, times
+
+
+@dataclass(frozen=True)
+class Contribution:
+    """One part of energies and equations.
+
+    Args:
+        name: in words: "the rotation of rod".
+        body, force: whose it is; "" of others.
+        T, V: its share of the energies.
+        Q: its generalized forces of what has no potential, one for each speed of the free system.
+        kind: "translation", "rotation", "weight", "force", "friction" or "tie".
+        load: what acts, and where.
+        row: its share of the equations, where it is no energy and no load: friction, ties.
+    """
+
+    name: str
+    body: str = ""
+    force: str = ""
+    T: Scalar = 0
+    V: Scalar = 0
+    Q: ScalarRow = ()
+    kind: str = ""
+    load: Load | None = None
+    row: ScalarRow | None = None
+
+    def with_energies(self, T: Scalar, V: Scalar) -> Contribution:
+        return replace(self, T=T, V=V)
+
+
+@dataclass(frozen=True)
+class Operator:
+    """Energies and forces -> their share of the equations of motion, over the independent speeds."""
+
+    system: System
+
+    @cached_property
+    def base(self) -> System:
+        """The system whose speeds are rates."""
+        return self.system.free or self.system
+
+    def rows(self, part: Contribution) -> ScalarRow:
+        """What it adds to every E_k."""
+        if part.row is not None:
+            return part.row
+        left = [0] * len(self.base.symbols.u) if is_zero(part.T) else [sum(x, start=0) for x in self._inertia(part.T)]
+        motion = self.base.motion
+        elastic = [0] * len(left) if is_zero(part.V) else from_potential(motion, part.V)
+        forces = part.Q or [0] * len(left)
+        return self.reduced([a - b - c for a, b, c in zip(left, elastic, forces, strict=True)])
+
+    def inertia(self, T: Scalar) -> tuple[ScalarRow, ScalarRow, ScalarRow]:
+        """(what holds accelerations, the rest of d/dt dT/du, -dT/dq) of a kinetic energy."""
+        parts = zip(*self._inertia(T), strict=True)
+        a, b, c = (self.reduced(part) for part in parts)
+        return a, b, c
+
+    def _inertia(self, T: Scalar) -> list[tuple[Scalar, Scalar, Scalar]]:
+        scope = self.base.scope
+        momenta = gradient(T, scope.symbols.u)
+        accelerated = tangent(momenta, dict(zip(scope.symbols.u, scope.symbols.a, strict=True)))
+        carried = scope.time_derivative(momenta)
+        held = per_speed(self.base.motion, gradient(T, scope.symbols.q))
+        return [(a, b, -c) for a, b, c in zip(accelerated, carried, held, strict=True)]
+
+    def reduced(self, row: Sequence[Scalar]) -> ScalarRow:
+        """N^T row, the speeds of the free system in terms of those that are left."""
+        if self.system.free is None:
+            return tuple(row)
+        base, scope = self.base, self.system.scope
+        rates = free_rates(self.system, base)
+        known = dict(zip(base.symbols.u, rates, strict=True))
+        known |= dict(zip(base.symbols.a, scope.with_accelerations(rates), strict=True))
+        row = substituted(tuple(row), known)
+        columns = zip(*jacobian(rates, scope.symbols.u), strict=True)
+        return tuple(inner(column, row) for column in columns)
+
+    def energy(self, T: Scalar) -> Scalar:
+        """A kinetic energy over the independent speeds."""
+        if self.system.free is None:
+            return T
+        rates = free_rates(self.system, self.base)
+        return substituted((T,), dict(zip(self.base.symbols.u, rates, strict=True)))[0]
+
+
+@dataclass(frozen=True)
+class Parts:
+    """All contributions of a system.
+
+    Args:
+        system: the system.
+        equations: its equations of motion; None where it has none.
+    """
+
+    system: System
+    equations: EquationsOfMotion | None = field(repr=False, default=None)
+
+    @cached_property
+    def operator(self) -> Operator:
+        return Operator(self.system)
+
+    @cached_property
+    def elementary(self) -> tuple[Contribution, ...]:
+        """Bodies' energies and forces, one by one."""
+        return (*self._kinetic(), *self._forces(), *self._others())
+
+    def _kinetic(self) -> list[Contribution]:
+        motion, found = self.operator.base.motion, []
+        for link, energy in zip(motion.links, body_energies(motion), strict=True):
+            rotor = armature_energy(motion, link)
+            for kind, T in (("translation", energy.translation), ("rotation", energy.rotation), ("rotor", rotor)):
+                if not is_zero(T):
+                    name = f"the {kind} of {link.name}"
+                    found.append(Contribution(name, link.name, "", T, kind=kind))
+        return found
+
+    def _forces(self) -> list[Contribution]:
+        loads, found = self.operator.base.loads, list[Contribution]()
+        for force in loads.applied:
+            found += self._force(force)
+        for effort in loads.efforts:
+            where = f"in the joint of {effort.body}"
+            name = f"joint of {effort.body}"
+            if not is_zero(effort.potential):
+                found.append(Contribution(f"the spring {where}", effort.body, name, V=effort.potential, kind="force"))
+            if not is_zero(effort.drive):
+                Q = drive_row(loads.motion, effort)
+                found.append(Contribution(f"the drive or damper {where}", effort.body, name, Q=Q, kind="force"))
+        return found
+
+    def _force(self, force: Applied) -> list[Contribution]:
+        motion, loads = self.operator.base.motion, self.operator.base.loads
+        found = []
+        for load in force.loads:
+            if isinstance(load, UniformField):
+                for link in motion.links:
+                    mass = mass_properties(motion.scope, link.name)
+                    if not is_zero(mass.m):
+                        weight = times(mass.m, load.acceleration)
+                        place = (link.name, mass.com)
+                        V = -dot(weight, motion.position(place))
+                        name = f"the weight of {link.name}"
+                        acts = PointForce(place, weight)
+                        found.append(Contribution(name, link.name, force.name, V=V, kind="weight", load=acts))
+        if found:
+            return found
+        if force.potential is not None:
+            return [Contribution(f"the force {force.name}", _body(force.loads), force.name, V=force.potential, kind="force")]
+        many = len(force.loads) > 1
+        for number, load in enumerate(force.loads, start=1):
+            name = f"the force {force.name}" + (f" ({number})" if many else "")
+            Q = load_row(loads, load)
+            found.append(Contribution(name, _body((load,)), force.name, Q=Q, kind="force", load=load))
+        return found
+
+    def _others(self) -> list[Contribution]:
+        """Friction, and what the ties do."""
+        if self.equations is None:
+            return []
+        found, e = [], self.equations
+        if e.friction:
+            row = tuple(-x for x in e.friction)
+            found.append(Contribution("the friction of the contacts", kind="friction", row=row))
+        for tie, J, lam in zip(self.system.ties.closing, e.J, e.symbols.lam, strict=True):
+            row = tuple(-x * lam for x in J)
+            found.append(Contribution(f"the force of the tie {tie.tie}", "", tie.tie, kind="tie", row=row))
+        return found
+
+
+def _body(loads: Sequence[Load]) -> str:
+    """The one body on which they act, "" where there are several."""
+    bodies = {load.place[0] for load in loads if isinstance(load, PointForce) and load.place[0]}
+    bodies |= {load.body for load in loads if isinstance(load, Couple)}
+    return bodies.pop() if len(bodies) == 1 else ""
+
+
+RowsOf = Callable[[Contribution], ScalarRow]

@@ -1,0 +1,326 @@
+"""Scalars of a system -> whether they vanish, and of which equations an equation is a combination, decided.
+
+At random exact states of a prime field; where roots or functions have no meaning there, at real states of 50 digits in
+the model's own domain: parameters that are sizes positive, coordinates and speeds of either sign; on the ties where
+these restrict the coordinates. What no state decides stays undecided: nothing is taken for true that was not.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+from dataclasses import dataclass
+from random import Random
+from typing import Any
+
+import numpy as np
+
+from eomgen.mechanics.equations.system import System
+from eomgen.model.values import exact_parameters
+from eomgen.symbolic.exact.equality import exact_state
+from eomgen.symbolic.expression.derivative import gradient, symbols_of
+from eomgen.symbolic.expression.graph import Node, Scalar
+from eomgen.symbolic.expression.node import ScalarRow
+from eomgen.symbolic.expression.traversal import united
+from eomgen.symbolic.numeric.evaluation import (
+    FLOAT,
+    PRIME,
+    PRIME_FIELD,
+    NoMeaning,
+    NoValue,
+    evaluate,
+    fifty_digits,
+)
+from eomgen.symbolic.numeric.tolerances import CERTAIN_AT_50, CLOSED_AT_50, COMPUTED, ELIMINATED_AT_50
+
+STATES = 3
+TRIES = 40
+STEPS = 30  # of Newton's method to the ties
+Values = list[Any]
+
+
+@dataclass(frozen=True)
+class Combination:
+    """What was found of an equation.
+
+    Args:
+        holds: yes, no, or None: no state decided it.
+        rows: which of the rows stand in the combination, by their places.
+        way: "prime field" or "50 digits".
+        on_ties: it holds only where the ties do.
+    """
+
+    holds: bool | None
+    rows: tuple[int, ...] = ()
+    way: str = ""
+    on_ties: bool = False
+
+
+@dataclass(frozen=True)
+class Numbers:
+    """Calculating with exact numbers of one kind, as far as linear equations need it."""
+
+    name: str
+    inverse: Callable[[Any], Any]
+    tidy: Callable[[Any], Any]
+    is_zero: Callable[[Any, Any], bool]  # of a number, beside the size of what it was made of
+
+
+IN_FIELD = Numbers("prime field", lambda x: pow(x, -1, PRIME), lambda x: x % PRIME, lambda x, size: x % PRIME == 0)
+IN_DIGITS = Numbers("50 digits", lambda x: 1 / x, lambda x: x, lambda x, size: abs(x) <= ELIMINATED_AT_50 * size)
+
+
+def combination(system: System, row: Sequence[Scalar], rows: Sequence[Sequence[Scalar]]) -> Combination:
+    """Whether a row is a combination of others, its factors functions of the state.
+
+    Args:
+        row: its entries, scalars of the system's graph; with no others it is asked whether they vanish.
+    """
+    if not row:
+        return Combination(True)
+    flat = [x for each in (row, *rows) for x in each]
+    found = _combined(row, rows, _exact_states(flat), IN_FIELD)
+    if found.holds is True:
+        return found
+    tied = any(each.gap is not None and not each.identical for each in system.ties.rows)
+    sure = found.holds is False
+    if sure and not tied:
+        return found
+    if not sure:
+        real = _combined(row, rows, _real_states(system, flat, on_ties=False), IN_DIGITS)
+        if real.holds is True or not tied:
+            return real
+        sure = real.holds is False
+    held = _combined(row, rows, _real_states(system, flat, on_ties=True), IN_DIGITS)
+    if held.holds is not True:
+        return held if not sure or held.holds is False else Combination(None)
+    return Combination(True, held.rows, held.way, on_ties=True)
+
+
+def vanishes(system: System, *scalars: Scalar) -> Combination:
+    """Whether the scalars are 0 at every state."""
+    return combination(system, scalars, ())
+
+
+def linear_row(x: Scalar, symbols: Sequence[Node]) -> tuple[ScalarRow, bool]:
+    """(slopes by the symbols and what is left where they are 0, whether it is linear in them)."""
+    from eomgen.symbolic.expression.derivative import depends_on, substituted
+
+    slopes = gradient(x, symbols)
+    linear = not any(depends_on(slope, symbols) for slope in slopes)
+    (rest,) = substituted((x,), dict.fromkeys(symbols, 0))
+    return (*slopes, rest), linear
+
+
+def _combined(
+    row: Sequence[Scalar], rows: Sequence[Sequence[Scalar]], states: Iterable[Values], numbers: Numbers
+) -> Combination:
+    """The same at given states; undecided where there are none."""
+    width, seen, used = len(row), 0, set[int]()
+    for values in states:
+        table = [values[k : k + width] for k in range(0, len(values), width)]
+        factors = factors_in(table[1:], table[0], numbers)
+        if factors is None:
+            return Combination(False, (), numbers.name)
+        used |= {k for k, x in enumerate(factors) if not numbers.is_zero(x, 1)}
+        seen += 1
+        if seen == STATES:
+            return Combination(True, tuple(sorted(used)), numbers.name)
+    return Combination(None)
+
+
+def factors_in(rows: Sequence[Values], row: Values, numbers: Numbers) -> Values | None:
+    """The factors by which the rows make a row; None where none do."""
+    pivots: list[tuple[int, Values, Values]] = []
+    for k, each in enumerate((*rows, row)):
+        size = max(map(abs, each), default=0)
+        left, made = list(each), [int(j == k) for j in range(len(rows) + 1)]
+        for column, pivot, share in pivots:
+            factor = left[column]
+            if factor:
+                left = [numbers.tidy(x - factor * y) for x, y in zip(left, pivot, strict=True)]
+                made = [numbers.tidy(x - factor * y) for x, y in zip(made, share, strict=True)]
+        free = [j for j, x in enumerate(left) if not numbers.is_zero(x, size)]
+        if k == len(rows):
+            return None if free else [numbers.tidy(-x) for x in made[:-1]]
+        if free:
+            column = max(free, key=lambda j: abs(left[j]))
+            inverse = numbers.inverse(left[column])
+            scaled = [numbers.tidy(x * inverse) for x in left]
+            pivots.append((column, scaled, [numbers.tidy(x * inverse) for x in made]))
+    return None
+
+
+# -- states --------------------------------------------------------------------------------------
+
+
+def _exact_states(flat: Sequence[Scalar]) -> Iterator[Values]:
+    """Values at states of the prime field; none where it cannot tell a difference from none."""
+    _, flat = united(list(flat))
+    rng, found = Random(7), 0
+    for _ in range(TRIES):
+        try:
+            state = exact_state(flat, rng)
+            if not state.independent:
+                return
+            yield evaluate(flat, state.values, PRIME_FIELD)
+            found += 1
+        except NoMeaning:
+            return
+        except (NoValue, ValueError):
+            continue
+        if found == STATES:
+            return
+
+
+def _real_states(system: System, flat: Sequence[Scalar], *, on_ties: bool) -> Iterator[Values]:
+    """Values at real states with 50 digits."""
+    _, flat = united(list(flat))
+    arithmetic, found = fifty_digits(), 0
+    for state in states_of(system, flat, on_ties=on_ties):
+        try:
+            yield evaluate(flat, state, arithmetic)
+            found += 1
+        except (NoValue, ZeroDivisionError):
+            continue
+        if found == STATES:
+            return
+
+
+def states_of(system: System, flat: Sequence[Scalar] = (), *, on_ties: bool, seed: int = 11) -> Iterator[dict[Node, Any]]:
+    """Random real states of a system with 50 digits, near the values of its file at first, then further away.
+
+    Args:
+        flat: whose other symbols get values too.
+        on_ties: coordinates and speeds are such that the ties hold.
+    """
+    rng, symbols, arithmetic = Random(seed), system.symbols, fifty_digits()
+    own = {symbols.parameters[name]: float(x) for name, x in exact_parameters(system.scope.model).items()}
+    known = _start(system, own)
+    others = [x for x in symbols_of(flat) if x not in known]
+    for attempt in range(TRIES):
+        spread = 0.1 if on_ties and attempt < TRIES // 2 else 0.6
+        state: dict[Node, Any] = {}
+        for x in symbols.parameters.values():
+            size = own.get(x, 1.0) or 1.0
+            sign = 1 if x in system.scope.positive or own.get(x, 1.0) > 0 else -1
+            state[x] = sign * abs(size) * rng.uniform(1 - spread, 1 + spread)
+        for q in symbols.q:
+            near = known.get(q, 0.0)
+            state[q] = near + rng.uniform(-0.2, 0.2) * (1 + abs(near)) if on_ties else _either(rng, near, attempt)
+        for x in (*symbols.u, *symbols.a, *symbols.lam, *symbols.inputs.values(), *symbols.unknowns.values()):
+            state[x] = rng.uniform(0.3, 2) * rng.choice((-1, 1))
+        state[symbols.t] = rng.uniform(0.1, 3)
+        state |= {x: rng.uniform(0.3, 2) for x in others if x not in state}
+        for four in system.scope.quaternions:
+            norm = sum(state[e] ** 2 for e in four) ** 0.5
+            state |= {e: state[e] / norm for e in four}
+        exact = {x: arithmetic.number(_rational(value)) for x, value in state.items()}
+        for four in system.scope.quaternions:
+            length = arithmetic.functions["sqrt"](sum(exact[e] ** 2 for e in four))
+            exact |= {e: exact[e] / length for e in four}
+        if on_ties:
+            held = _tied(system, exact)
+            if held is None:
+                continue
+            exact = held
+        yield exact
+
+
+def _either(rng: Random, near: float, attempt: int) -> float:
+    """A coordinate: of the size at the start and of either sign, later near the start itself."""
+    if attempt % 4 == 3:
+        return near + rng.uniform(-0.3, 0.3)
+    return rng.uniform(0.2, 1.6) * max(1.0, abs(near) / 2) * rng.choice((-1, 1))
+
+
+def _rational(x: float) -> Any:
+    from eomgen.symbolic.expression.rational import Fraction
+
+    return Fraction(round(x * 10**6), 10**6)
+
+
+def _start(system: System, own: Mapping[Node, float]) -> dict[Node, float]:
+    """Where coordinates start, as far as numbers say it."""
+    from eomgen.mechanics.bodies.loads import start_values
+
+    values = {**dict.fromkeys(system.symbols.parameters.values(), 1.0), **own, system.symbols.t: 0.0}
+    found = {}
+    for q, x in start_values(system.scope).items():
+        value = evaluate((x,), values, FLOAT)[0] if not set(symbols_of((x,))) - values.keys() else 0.0
+        found[q] = float(value) if value == value else 0.0
+    return found
+
+
+def _tied(system: System, state: dict[Node, Any]) -> dict[Node, Any] | None:
+    """The state moved onto the ties: first its coordinates, by Newton's method, then its speeds; None: it fails."""
+    rows = [row for row in system.ties.rows if row.gap is not None and not row.identical]
+    gaps = [row.gap for row in rows if row.gap is not None]
+    q, arithmetic = system.symbols.q, fifty_digits()
+    slopes = [gradient(gap, q) for gap in gaps]
+    flat = [*gaps, *(x for row in slopes for x in row)]
+    state = dict(state)
+    for _ in range(STEPS):
+        try:
+            values = evaluate(flat, state, arithmetic)
+        except (NoValue, ZeroDivisionError):
+            return None
+        left = values[: len(gaps)]
+        if max(map(abs, left), default=0) < CLOSED_AT_50:
+            return _at_tied_speeds(system, state)
+        matrix = [values[len(gaps) + k * len(q) : len(gaps) + (k + 1) * len(q)] for k in range(len(gaps))]
+        step = _least_step(matrix, left)
+        if step is None:
+            return None
+        state |= {x: state[x] - dx for x, dx in zip(q, step, strict=True)}
+    return None
+
+
+def _at_tied_speeds(system: System, state: dict[Node, Any]) -> dict[Node, Any] | None:
+    """The state with speeds that the closing rows allow: J u + sigma = 0."""
+    ties, u = system.ties, system.symbols.u
+    if not ties.J:
+        return state
+    try:
+        values = evaluate([*(x for row in ties.J for x in row), *ties.sigma], state, fifty_digits())
+    except (NoValue, ZeroDivisionError):
+        return None
+    n, k = len(u), len(ties.J)
+    rows, bias = [values[i * n : (i + 1) * n] for i in range(k)], values[k * n :]
+    left = [b + sum(x * state[y] for x, y in zip(row, u, strict=True)) for row, b in zip(rows, bias, strict=True)]
+    step = _least_step(rows, left)
+    if step is None:
+        return None
+    return state | {x: state[x] - dx for x, dx in zip(u, step, strict=True)}
+
+
+def _least_step(rows: list[Values], left: Values) -> Values | None:
+    """The least step that takes away what is left: J^T (J J^T)^-1 left, of the rows that are independent."""
+    kept: list[int] = []
+    plain = np.array([[float(x) for x in row] for row in rows])
+    for k in range(len(rows)):
+        if np.linalg.matrix_rank(plain[[*kept, k]], tol=COMPUTED * max(1.0, float(np.abs(plain).max()))) == len(kept) + 1:
+            kept.append(k)
+    if not kept:
+        return None
+    square = [[sum(a * b for a, b in zip(rows[i], rows[j], strict=True)) for j in kept] for i in kept]
+    solved = _solved([*square], [left[i] for i in kept])
+    if solved is None:
+        return None
+    return [sum(rows[i][c] * y for i, y in zip(kept, solved, strict=True)) for c in range(len(rows[0]))]
+
+
+def _solved(matrix: list[Values], right: Values) -> Values | None:
+    """Linear equations in numbers of 50 digits."""
+    rows = [[*row, b] for row, b in zip(matrix, right, strict=True)]
+    n = len(rows)
+    for k in range(n):
+        best = max(range(k, n), key=lambda i: abs(rows[i][k]))
+        if abs(rows[best][k]) < CERTAIN_AT_50:
+            return None
+        rows[k], rows[best] = rows[best], rows[k]
+        for i in range(n):
+            if i != k and rows[i][k]:
+                factor = rows[i][k] / rows[k][k]
+                rows[i] = [x - factor * y for x, y in zip(rows[i], rows[k], strict=True)]
+    return [rows[k][n] / rows[k][k] for k in range(n)]
+

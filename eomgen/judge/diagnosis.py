@@ -1,0 +1,302 @@
+"""An equation that is wrong -> why: the smallest set of named corruptions that makes the model's equations the author's.
+
+    sigma D = E + sum y_j C_j
+
+D is the author's difference of sides, E the model's equation, C_j what the corruption j adds, y_j how often it is there
+(a simple number), sigma a function of the configuration alone: the author may have divided by anything. At a few
+configurations with several speeds and accelerations each this is linear in sigma and y; sets are searched in doubles, the
+cheapest that leaves nothing is proven exactly, and only then told.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator, Sequence
+from dataclasses import dataclass
+from functools import cached_property
+from itertools import islice
+from random import Random
+
+import numpy as np
+
+from eomgen.judge.corruptions import Corruption
+from eomgen.judge.decision import states_of
+from eomgen.mechanics.equations.system import System
+from eomgen.symbolic.expression.graph import Node, Scalar
+from eomgen.symbolic.expression.rational import Fraction
+from eomgen.symbolic.numeric.batch_evaluation import ARRAYS
+from eomgen.symbolic.numeric.evaluation import evaluate
+from eomgen.symbolic.numeric.tolerances import CARRIED, COMPUTED, SAME_EIGENVALUE
+
+PLACES, VARIANTS = 5, 8  # configurations, and speeds and accelerations at each
+SIMPLE = 12  # the largest numerator and denominator of a factor that somebody wrote by mistake
+PAIRED, TRIPLED = 900, 120  # corruptions of which pairs and triples are sought
+PROVEN = 12  # explanations that are proven before it is given up
+UNITS = {  # factors of wrong units: as a number, as a scalar of pi, in words
+    "pi/180": (np.pi / 180, (Fraction(1, 180), 1)),
+    "180/pi": (180 / np.pi, (Fraction(180), -1)),
+    "2*pi": (2 * np.pi, (Fraction(2), 1)),
+    "1/(2*pi)": (0.5 / np.pi, (Fraction(1, 2), -1)),
+    "1000": (1000.0, (Fraction(1000), 0)),
+    "1/1000": (0.001, (Fraction(1, 1000), 0)),
+    "100": (100.0, (Fraction(100), 0)),
+    "1/100": (0.01, (Fraction(1, 100), 0)),
+    "60": (60.0, (Fraction(60), 0)),
+    "1/60": (1 / 60.0, (Fraction(1, 60), 0)),
+}
+
+
+@dataclass(frozen=True)
+class Share:
+    """One corruption in an explanation.
+
+    Args:
+        corruption: what.
+        factor: x, by which the contribution stands in the author's equation (1 is right); of what is there once 1.
+        unit: the name of the factor of a wrong unit, "".
+    """
+
+    corruption: Corruption
+    factor: Fraction
+    unit: str = ""
+
+    def added(self, graph_pi: Scalar) -> tuple[Scalar, ...]:
+        """y C_j, of each row."""
+        y: Scalar = 1 if not self.corruption.open else self.factor - 1
+        if self.unit:
+            number, power = UNITS[self.unit][1]
+            y = number * (graph_pi if power == 1 else 1 / graph_pi if power == -1 else 1) - 1  # type: ignore[operator]
+        return tuple(y * x for x in self.corruption.rows)
+
+
+@dataclass(frozen=True)
+class Explanation:
+    """Why an equation differs: corruptions that together make the model's equation the author's.
+
+    Args:
+        shares: the corruptions.
+        row: whose equation it is, its place; -1: a combination.
+        cost: how much has to be believed.
+        scale: "", "constant" or "function": what the author multiplied the equation by.
+    """
+
+    shares: tuple[Share, ...]
+    row: int
+    cost: float
+    scale: str = ""
+
+
+@dataclass(frozen=True)
+class Samples:
+    """States of a system in doubles: PLACES configurations with VARIANTS speeds and accelerations each."""
+
+    values: dict[Node, np.ndarray]
+    places: int
+
+    def of(self, scalars: Sequence[Scalar]) -> np.ndarray:
+        """The scalars there, (len(scalars), places, variants)."""
+        size = self.places * VARIANTS
+        with np.errstate(all="ignore"):
+            found = evaluate(tuple(scalars), self.values, ARRAYS)
+        flat = np.array([np.broadcast_to(np.asarray(x, dtype=float), (size,)) for x in found]).reshape(len(found), size)
+        return flat.reshape(len(found), self.places, VARIANTS)
+
+
+def samples_of(system: System, flat: Sequence[Scalar], *, on_ties: bool = False) -> Samples | None:
+    """States at which the scalars can be compared; on the ties where these restrict coordinates or speeds."""
+    rng, symbols = Random(3), system.symbols
+    rows: list[dict[Node, float]] = []
+    places = 0
+    for state in islice(states_of(system, flat, on_ties=on_ties, seed=5), PLACES):
+        plain = {x: float(value) for x, value in state.items()}
+        variants = [_variant(system, plain, rng, on_ties) for _ in range(VARIANTS)]
+        rows += variants
+        places += 1
+    if not places:
+        return None
+    names = rows[0].keys()
+    _ = symbols
+    return Samples({x: np.array([row[x] for row in rows]) for x in names}, places)
+
+
+def _variant(system: System, state: dict[Node, float], rng: Random, on_ties: bool) -> dict[Node, float]:
+    symbols, ties = system.symbols, system.ties
+    moving = (*symbols.u, *symbols.a, *symbols.lam)
+    state = state | {x: rng.uniform(0.4, 2) * rng.choice((-1, 1)) for x in moving}
+    if not (on_ties and ties.J):
+        return state
+    for unknowns, bias in ((symbols.u, ties.sigma), (symbols.a, ties.gamma)):
+        flat = [*(x for row in ties.J for x in row), *bias]
+        values = np.array([float(x) for x in evaluate(flat, {k: np.float64(v) for k, v in state.items()}, ARRAYS)])
+        J, rest = values[: len(ties.J) * len(unknowns)].reshape(len(ties.J), -1), values[len(ties.J) * len(unknowns) :]
+        x = np.array([state[each] for each in unknowns])
+        x = x - np.linalg.lstsq(J, J @ x + rest, rcond=None)[0]
+        state |= dict(zip(unknowns, x.tolist(), strict=True))
+    return state
+
+
+@dataclass(frozen=True)
+class Search:
+    """One comparison in numbers: sigma D = E + sum y C.
+
+    Args:
+        D, E: (places, variants); D None: sigma E is 1 and E is what is left, with the opposite sign.
+        C: (corruptions, places, variants).
+        corruptions: what they are.
+        row: whose equation E is.
+    """
+
+    D: np.ndarray | None
+    E: np.ndarray
+    C: np.ndarray
+    corruptions: Sequence[Corruption]
+    row: int
+
+    def explanations(self, number: int) -> list[Explanation]:
+        """Those of so many corruptions, one to three."""
+        left, A, kept = self._projection
+        size = float(np.linalg.norm(left))
+        if not np.isfinite(size) or size == 0:
+            return []
+        chosen = (self._single, self._pairs, self._triples)[number - 1](left, A)
+        return [x for each in chosen if (x := self._explained([kept[i] for i in each])) is not None]
+
+    @cached_property
+    def _projection(self) -> tuple[np.ndarray, np.ndarray, list[int]]:
+        """(E, the C that matter) without their shares along D, each of length 1."""
+        scale = np.linalg.norm(self.E, axis=1)
+        if self.D is not None:
+            scale = np.maximum(scale, COMPUTED)
+            D = self.D / np.maximum(np.linalg.norm(self.D, axis=1, keepdims=True), COMPUTED * COMPUTED)
+        else:
+            scale, D = np.ones_like(scale), np.zeros_like(self.E)
+
+        def flat(X: np.ndarray) -> np.ndarray:
+            X = X / scale[:, None]
+            return (X - np.sum(X * D, axis=-1, keepdims=True) * D).reshape(*X.shape[:-2], -1)
+
+        A, raw = flat(self.C), (self.C / scale[:, None]).reshape(len(self.C), -1)
+        lengths, sizes = np.linalg.norm(A, axis=1), np.linalg.norm(raw, axis=1)
+        kept = [i for i in range(len(A)) if np.isfinite(lengths[i]) and lengths[i] > CARRIED * max(sizes[i], COMPUTED)]
+        return flat(self.E), A[kept] / lengths[kept, None], kept
+
+    def _single(self, left: np.ndarray, A: np.ndarray) -> Iterator[list[int]]:
+        along = A @ left
+        for i in np.flatnonzero(np.linalg.norm(left - along[:, None] * A, axis=1) < SAME_EIGENVALUE * np.linalg.norm(left)):
+            yield [int(i)]
+
+    def _pairs(self, left: np.ndarray, A: np.ndarray, among: int = PAIRED, room: int = 2000) -> Iterator[list[int]]:
+        A = A[:among]
+        G, b, size = A @ A.T, A @ left, float(left @ left)
+        free = 1 - G * G
+        with np.errstate(all="ignore"):
+            explained = (b[:, None] ** 2 + b[None, :] ** 2 - 2 * G * b[:, None] * b[None, :]) / free
+        good = np.triu((free > SAME_EIGENVALUE) & (size - explained < SAME_EIGENVALUE * size), 1)
+        found = np.argwhere(good)
+        for i, j in found[np.argsort(found.sum(axis=1))][:room]:
+            yield [int(i), int(j)]
+
+    def _triples(self, left: np.ndarray, A: np.ndarray) -> Iterator[list[int]]:
+        A = A[:TRIPLED]
+        for i in range(len(A)):
+            rest = A[i + 1 :] - np.outer(A[i + 1 :] @ A[i], A[i])
+            lengths = np.linalg.norm(rest, axis=1)
+            kept = np.flatnonzero(lengths > CARRIED)
+            if len(kept) < 2:
+                continue
+            without = left - (A[i] @ left) * A[i]
+            for pair in self._pairs(without, rest[kept] / lengths[kept, None], TRIPLED, 20):
+                yield [i, *(int(kept[k]) + i + 1 for k in pair)]
+
+    def _explained(self, chosen: Sequence[int]) -> Explanation | None:
+        """The explanation of these corruptions, where their factors are simple."""
+        C = self.C[list(chosen)]
+        scale = np.maximum(np.linalg.norm(self.E, axis=1), COMPUTED) if self.D is not None else np.ones(len(self.E))
+        columns = [(c / scale[:, None]).ravel() for c in C]
+        if self.D is not None:
+            for k in range(len(self.D)):
+                column = np.zeros_like(self.D)
+                column[k] = -self.D[k] / scale[k]
+                columns.append(column.ravel() / max(1.0, float(np.linalg.norm(column))))
+        target = -(self.E / scale[:, None]).ravel()
+        matrix = np.array(columns).T
+        lengths = np.maximum(np.linalg.norm(matrix, axis=0), COMPUTED * COMPUTED)
+        y, *_ = np.linalg.lstsq(matrix / lengths, target, rcond=None)
+        if np.linalg.norm(matrix / lengths @ y - target) > CARRIED * max(np.linalg.norm(target), COMPUTED):
+            return None
+        y = (y / lengths)[: len(chosen)]
+        shares = []
+        for i, factor in zip(chosen, y, strict=True):
+            share = _share(self.corruptions[i], float(factor))
+            if share is None:
+                return None
+            shares.append(share)
+        if not self._is_there(C, y):
+            return None
+        scaled, dear = self._scale(C, y)
+        cost = sum(map(_cost, shares)) + dear
+        return Explanation(tuple(shares), self.row, cost, scaled)
+
+    def _is_there(self, C: np.ndarray, y: np.ndarray) -> bool:
+        """Whether something is left of the equation with all these mistakes."""
+        if self.D is None:
+            return True
+        whole = np.linalg.norm(self.E + np.tensordot(y, C, axes=1), axis=1)
+        return bool(np.all(whole > CARRIED * np.linalg.norm(self.E, axis=1)))
+
+    def _scale(self, C: np.ndarray, y: np.ndarray) -> tuple[str, float]:
+        """What the author multiplied by, and how far-fetched that is."""
+        if self.D is None:
+            return "", 0.0
+        whole = self.E + np.tensordot(y, C, axes=1)
+        with np.errstate(all="ignore"):
+            sigma = np.sum(whole * self.D, axis=1) / np.sum(self.D * self.D, axis=1)
+        if np.allclose(np.abs(sigma), 1, rtol=CARRIED):
+            return "", 0.0 if sigma[0] > 0 else 0.3
+        if np.allclose(sigma, sigma[0], rtol=CARRIED):
+            simple = _simple(float(sigma[0])) is not None
+            return "constant", 0.4 if simple else 1.5
+        return "function", 1.0
+
+
+def _share(corruption: Corruption, y: float) -> Share | None:
+    """The corruption with its factor, where that is one that people write."""
+    if not corruption.open:
+        return Share(corruption, Fraction(1)) if abs(y - 1) < SAME_EIGENVALUE else None
+    for name, (number, _) in UNITS.items():
+        if abs(1 + y - number) < SAME_EIGENVALUE * number:
+            return Share(corruption, Fraction(1), name)
+    factor = _simple(1 + y)
+    return None if factor is None or factor == 1 else Share(corruption, factor)
+
+
+def _simple(x: float) -> Fraction | None:
+    if not np.isfinite(x) or abs(x) > SIMPLE:
+        return None
+    near = Fraction(x).limit_denominator(SIMPLE)
+    return near if abs(float(near) - x) < SAME_EIGENVALUE and abs(near.numerator) <= SIMPLE * 2 else None
+
+
+def _cost(share: Share) -> float:
+    """How much has to be believed of one mistake."""
+    cost = 10.0 + share.corruption.rank
+    if share.unit:
+        return cost + 1.5
+    if not share.corruption.open:
+        return cost
+    x = share.factor
+    if x in (0, -1):
+        return cost
+    return cost + (1.5 if x in (2, Fraction(1, 2)) else 2.5 if x in (3, 4, Fraction(1, 3), Fraction(1, 4)) else 4.5)
+
+
+def explained(searches: Sequence[Search], proves: Callable[[Explanation], bool]) -> list[Explanation]:
+    """The cheapest explanation that is proven, then others of the same number of mistakes; [] where none was found."""
+    for number in (1, 2, 3):
+        found = [x for search in searches for x in search.explanations(number)]
+        if not found:
+            continue
+        found.sort(key=lambda x: x.cost)
+        for k, each in enumerate(found[:PROVEN]):
+            if proves(each):
+                return [each, *found[:k], *found[k + 1 :]]
+    return []

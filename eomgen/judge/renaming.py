@@ -1,0 +1,117 @@
+"""Names and directions that somebody chose otherwise than the model -> what they would stand for."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass
+from itertools import islice, permutations, product
+from typing import TYPE_CHECKING
+
+from eomgen.judge.reading import Written
+from eomgen.model.catalog import Catalog
+from eomgen.model.dimensions import inferred
+from eomgen.symbolic.expression.graph import Node, Scalar
+from eomgen.symbolic.print.text import to_text
+
+if TYPE_CHECKING:
+    from eomgen.judge.case import Case
+
+MOST = 600  # ways to read names that are not the model's
+
+
+@dataclass(frozen=True)
+class Renaming:
+    """What names stand for.
+
+    Args:
+        values: of each name, with its primes, the scalar.
+        told: of each name without primes the text: {phi: "theta - pi/2"}.
+    """
+
+    values: Mapping[str, Scalar]
+    told: Mapping[str, str]
+
+
+def renamings(case: Case, written: Written, unknown: Sequence[str]) -> Iterator[Renaming]:
+    """Ways to read the unknown names, the nearest first."""
+    scope = case.system.scope
+    coordinates = [name for name in case.model.coordinates if name not in written.names]
+    parameters = [name for name in (*case.model.parameters, *case.model.inputs) if name not in written.names]
+    moving = [name for name in unknown if {f"{name}'", f"{name}''"} & written.names]
+    still = [name for name in unknown if name not in moving]
+    _ = scope
+    for places in _choices(moving, coordinates):
+        for constants in _choices(still, [*parameters, *(q for q in coordinates if q not in places)]):
+            named = dict(zip((*moving, *still), (*places, *constants), strict=True))
+            shifts = [list(_turns(case, of)) if of in case.model.coordinates else [(1, 0)] for of in named.values()]
+            for chosen in islice(product(*shifts), MOST):
+                yield _renaming(case, {name: (of, *how) for (name, of), how in zip(named.items(), chosen, strict=True)})
+
+
+def turnings(case: Case, written: Written) -> Iterator[Renaming]:
+    """Other directions and origins of the model's own coordinates: of one, or of all of a kind alike."""
+    used = [q for q in case.model.coordinates if {q, f"{q}'", f"{q}''"} & written.names]
+    for q in used:
+        for how in list(_turns(case, q))[1:]:
+            yield _renaming(case, {q: (q, *how)})
+    if len(used) > 1:
+        ways = [list(_turns(case, q)) for q in used]
+        for chosen in islice(product(*ways), MOST):
+            if sum(how != (1, 0) for how in chosen) > 1:
+                yield _renaming(case, {q: (q, *how) for q, how in zip(used, chosen, strict=True)})
+
+
+def _choices(names: Sequence[str], among: Sequence[str]) -> Iterator[tuple[str, ...]]:
+    """Which of the names each stands for; those that are spelt alike first."""
+    if len(names) > len(among):
+        return
+    alike = [sorted(among, key=lambda other, name=name: _distance(name, other)) for name in names]  # type: ignore[misc]
+    if len(names) <= 1:
+        yield from ((x,) for x in (alike[0] if names else ())) if names else iter([()])
+        return
+    seen = sorted(permutations(among, len(names)), key=lambda chosen: sum(map(_distance, names, chosen)))
+    yield from islice(seen, MOST)
+
+
+def _distance(a: str, b: str) -> float:
+    """How different two names look; 0: but for case and marks they are one."""
+    x, y = (name.lower().replace("_", "") for name in (a, b))
+    if x == y:
+        return 0
+    digits = [[c for c in name if c.isdigit()] for name in (x, y)]
+    return 1 + (x[:1] != y[:1]) + (digits[0] != digits[1])
+
+
+def _turns(case: Case, name: str) -> Iterator[tuple[int, Scalar]]:
+    """(sign, shift) of q = sign * own + shift: none first."""
+    graph = case.system.scope.graph
+    yield 1, 0
+    if _dimension(case, name) in ("1", "rad", ""):
+        for sign in (1, -1):
+            for shift in (0, graph.pi / 2, -graph.pi / 2, graph.pi):
+                if (sign, shift) != (1, 0):
+                    yield sign, shift
+        return
+    yield -1, 0
+    for parameter, node in case.system.symbols.parameters.items():
+        if _dimension(case, parameter) == _dimension(case, name):
+            for sign in (1, -1):
+                yield from ((sign, node), (sign, -node))
+
+
+def _dimension(case: Case, name: str) -> str:
+    return str(inferred(Catalog(case.model, ())).found.get(name, ""))
+
+
+def _renaming(case: Case, named: Mapping[str, tuple[str, int, Scalar]]) -> Renaming:
+    names = case.system.scope.names
+    values: dict[str, Scalar] = {}
+    told: dict[str, str] = {}
+    for name, (of, sign, shift) in named.items():
+        values[name] = sign * names[of] + shift
+        for primes in ("'", "''"):
+            if of + primes in names:
+                values[name + primes] = sign * names[of + primes]
+        if (sign, shift) != (1, 0) or of != name:
+            told[name] = to_text(values[name]) if isinstance(values[name], Node) else str(values[name])
+    return Renaming(values, told)
