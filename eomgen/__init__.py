@@ -19,6 +19,7 @@
     eomgen.scene_of(model)                    # Scene: what can be drawn at a state, as data over the parameters
     eomgen.report(model, "report.html")       # Report: a page, a paper (.pdf, .tex), text (.md), a notebook (.ipynb)
     eomgen.import_robot("robot.urdf")         # Model of a robot's file of another program
+    eomgen.verify(model, "T = m*v^2/2")       # Verdict: is an equation of somebody right, up to what, and if not, why
     eomgen.freedom_of(model)                  # Freedom: degrees of freedom by rank, redundant ties
     with eomgen.patience(30): ...             # any of these, for 30 s at the most
 
@@ -73,6 +74,8 @@ _HOMES = {
     "verbs.reactions": ("FoundReactions", "reactions"),
     "verbs.report": ("report",),
     "generated": ("Generated", "generate"),
+    "judge.judge": ("verify",),
+    "judge.verdict": ("Verdict",),
     "page.contents": ("Report",),
     "page.play": ("Played", "play"),
     "pipeline": ("derive", "inverse_dynamics", "simulate", "simulate_many", "simulator"),

@@ -23,6 +23,8 @@ from eomgen.errors import ToolMissing as ToolMissing
 from eomgen.errors import UsageError as UsageError
 from eomgen.generated import Generated as Generated
 from eomgen.generated import generate as generate
+from eomgen.judge.judge import verify as verify
+from eomgen.judge.verdict import Verdict as Verdict
 from eomgen.mechanics.constraints.freedom import Freedom as Freedom
 from eomgen.mechanics.constraints.freedom import freedom_of as freedom_of
 from eomgen.model import constraints as constraints

@@ -28,6 +28,8 @@ from eomgen.cli_options import (
 from eomgen.symbolic.numeric.tolerances import RUN
 from eomgen.version import __version__
 
+REST = "at rest"  # of --from-rest without a value
+
 if TYPE_CHECKING:
     from eomgen.documents.document import Document
     from eomgen.documents.result import Result
@@ -297,6 +299,55 @@ def linearize_command(view: str, over: str | None, **options: Any) -> int:
         return replace(linearize(model, **asked), drawn=view, over=wanted)
 
     return _write_result(found, at_start=options["about"] == "start", **options)
+
+
+@main.command("verify")
+@MODEL
+@click.argument("equations", nargs=-1)
+@JSON
+@OUTPUT
+@FORMAT
+@with_values
+@click.option(
+    "--file",
+    "answers",
+    multiple=True,
+    type=click.Path(exists=True, allow_dash=True),
+    help="Equations in a file, one a line; all files of a folder.",
+)
+@click.option("--at", metavar="EQUATION", help='The instant of which they speak: "theta=pi/2"; or "equilibrium".')
+@click.option(
+    "--from-rest",
+    is_flag=False,
+    flag_value=REST,
+    multiple=True,
+    metavar="[NAME=VALUE]",
+    help="The motion starts there, all speeds 0; without a value where the file says.",
+)
+@click.option(
+    "--kind",
+    type=click.Choice(
+        "motion energy force reaction velocity acceleration inertia frequency equilibrium statics law".split()
+    ),
+    help="What they are about.  [default: by what stands in them]",
+)
+@click.option("--hint", type=click.IntRange(1, 3), help="Tell 1 where to look, 2 at which quantity, 3 the cause.")
+@CERTIFY
+def verify_command(from_rest: tuple[str, ...], **options: Any) -> int:
+    """Judge equations that somebody derived: right, or why not.
+
+    EQUATIONS are text or LaTeX (- reads them from stdin): equations of motion, T, V, Q(theta), reactions, any function
+    that an output may ask, first integrals, the motion as a function of time. Exit 0 right, 5 wrong, 3 undecided.
+    """
+    from eomgen.verbs.verify import verify_document
+
+    placed = tuple(each for each in from_rest if each != REST)
+
+    def judged(declared: Model, **asked: Any) -> Document:
+        rest = asked.pop("from_rest", None) or ({} if from_rest else None)
+        return verify_document(declared, from_rest=rest, **asked)
+
+    return _write(judged, from_rest=placed, **options)
 
 
 @main.command("simulate")

@@ -28,7 +28,6 @@ if TYPE_CHECKING:
     from eomgen.documents.document import Document
     from eomgen.model.parts import Model
 
-LATER = ("verify",)
 ONE_THREAD = ("OPENBLAS_NUM_THREADS", "1")  # numpy's matrices are small here: its threads would wait for one another
 
 
@@ -111,8 +110,6 @@ class Verbs(click.Group):
 def _unknown_verb(name: str, verbs: list[str]) -> str:
     import difflib
 
-    if name in LATER:
-        return f"'{name}' comes with a later version."
     near = other_words(name, verbs) or difflib.get_close_matches(name, verbs, n=1)
     return f"There is no command '{name}'." + (f" Did you mean '{near[0]}'?" if near else "")
 
@@ -156,7 +153,7 @@ def deliver(
 
 
 def _code(document: Document, strict: bool) -> int:
-    failed = INTERRUPTED if document.interrupted else 3 if document.wrong else 0
+    failed = INTERRUPTED if document.interrupted else 3 if document.wrong else document.answer_code
     return failed or int(strict and bool(document.warnings))
 
 

@@ -18,7 +18,6 @@ from click.testing import CliRunner
 import eomgen
 from eomgen import equations, pipeline
 from eomgen.cli import main
-from eomgen.cli_common import LATER
 from eomgen.codegen.build import compiler
 from eomgen.codegen.targets import ALL
 from eomgen.documents import rendered
@@ -50,6 +49,7 @@ VERBS = [
     "kinematics",
     "inertia",
     "linearize",
+    "verify",
     "simulate",
     "sweep",
     "animate",
@@ -215,7 +215,6 @@ def test_only_the_result_is_on_stdout():
         (("reactions", PARALLELOGRAM, "--from-rest", "theta=1+"), 2, "--from-rest theta=1+"),
         (("reactions", PARALLELOGRAM, "--at", "theta=-1", "--from-rest", "theta=0"), 3, "not answered"),
         (("simulate", BOLT_CUTTER), 3, "a motion does not follow"),
-        *((((verb, PENDULUM)), 2, "comes with a later version") for verb in LATER),
     ],
 )
 def test_the_exit_code_says_what_kind_of_thing_went_wrong(words, code, word):

@@ -27,6 +27,7 @@ CHAIN = (
     ("sweeps",),
     ("generated",),
     ("page",),
+    ("judge",),
     ("verbs", "notebook"),
     ("edge",),
     ("cli_options",),

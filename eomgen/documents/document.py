@@ -45,6 +45,7 @@ class Document:
         cautions: what is allowed in the model and hardly meant.
         taken: what was made of values that a person typed.
         notation: how its symbols are set in LaTeX.
+        answer_code: the exit code that is an answer: 5 where that is no.
     """
 
     title: str
@@ -63,6 +64,7 @@ class Document:
     cautions: tuple[Problem, ...] = ()
     taken: tuple[Taken, ...] = ()
     notation: Notation = Notation()
+    answer_code: int = 0
 
     def __repr__(self) -> str:
         return f"<document {self.title!r} of {len(self.steps)} sections>"
@@ -123,10 +125,14 @@ def plain_document(
     *statements: Statement,
     failed: str = "",
     notes: tuple[str, ...] = (),
+    answer_code: int = 0,
 ) -> Document:
     """A document of one section without a head: what is no derivation."""
     steps = (Step("", "", statements),)
-    return Document(model.name, steps=steps, entries=entries, failed=failed, notes=notes, notation=notation_of(model))
+    notation = notation_of(model)
+    return Document(
+        model.name, steps=steps, entries=entries, failed=failed, notes=notes, notation=notation, answer_code=answer_code
+    )
 
 
 def lines_document(entries: Callable[[], Mapping[str, Any]], *lines: str) -> Document:

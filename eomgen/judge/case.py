@@ -10,20 +10,22 @@ from eomgen.documents.equation_steps import multiplier_forces
 from eomgen.errors import DerivationError, ExpressionError, MissingValues, ModelError
 from eomgen.judge.contributions import Parts
 from eomgen.judge.decision import Combination, combination, linear_row, vanishes
-from eomgen.judge.reading import Reading, Written
+from eomgen.judge.reading import MULTIPLIER, Reading, Written
 from eomgen.mechanics.equations.equations_of_motion import EquationsOfMotion
-from eomgen.mechanics.equations.system import System
+from eomgen.mechanics.equations.system import System, system_of
 from eomgen.mechanics.first_integrals.speeds import rates_of
 from eomgen.mechanics.instant.outputs import Quantities
+from eomgen.mechanics.statics.contacts_at_start import contacts_at_start
 from eomgen.model.fields import AtRest, WrittenEquation
 from eomgen.model.parts import Model, Output
 from eomgen.model.table import Table
 from eomgen.questions import answers
 from eomgen.questions.answers import Answer
-from eomgen.questions.in_phase import PhaseEquations
+from eomgen.questions.in_phase import PhaseEquations, start_of
 from eomgen.questions.motion_from_start import MotionFromStart
+from eomgen.simulation.configuration import has_phases
 from eomgen.symbolic.expression.derivative import depends_on, substituted
-from eomgen.symbolic.expression.expressions import Call, Expression
+from eomgen.symbolic.expression.expressions import Call, Expression, Reference, parse
 from eomgen.symbolic.expression.graph import Node, Scalar
 from eomgen.symbolic.expression.node import ScalarRow
 
@@ -35,18 +37,39 @@ class Case:
     Args:
         model: the model.
         at_rest: its motion starts with all speeds 0.
+        begun: contacts slide as they do just after the start: the sign of what slides is a number.
     """
 
     model: Model
     at_rest: bool = False
+    begun: bool = False
 
     @cached_property
     def motion(self) -> MotionFromStart:
         return MotionFromStart(self.model, self.at_rest)
 
-    @property
+    @cached_property
     def phase(self) -> PhaseEquations:
-        return self.motion.phase
+        """The equations as `derive` gives them; of a motion that has begun those of its first phase."""
+        if self.begun or not self.model.coordinates or not has_phases(self.model):
+            return self.motion.phase
+        return PhaseEquations(system_of(self.model, contacts_at_start(self.model).modes))
+
+    @cached_property
+    def start(self) -> Mapping[Node, Scalar]:
+        """t, q and u at the start as scalars of the parameters; {} where that has no closed form."""
+        if self.phase is self.motion.phase:
+            return self.motion.start
+        found = start_of(self.phase, at_rest=self.at_rest)
+        symbols = self.system.symbols
+        return found if all(x in found for x in (*symbols.q, *symbols.u)) else {}
+
+    @cached_property
+    def as_begun(self) -> Case | None:
+        """The same just after the start; None where nothing begins there."""
+        if self.begun or not self.model.coordinates or not has_phases(self.model):
+            return None
+        return replace(self, begun=True)
 
     @property
     def system(self) -> System:
@@ -105,18 +128,29 @@ class Case:
         Raises:
             ExpressionError: an unknown name or function.
         """
-        return expression.evaluate({**self.system.scope.names, **(also or {})}, self._called)
+        return expression.evaluate({**self.system.scope.names, **(also or {})}, self.called)
 
-    def _called(self, call: Call) -> Scalar:
+    def called(self, call: Call) -> Scalar:
+        """A function of the outputs, or a multiplier by its name: lam(tie, 1)."""
+        if call.name == MULTIPLIER and (multiplier := self._multiplier(call)) is not None:
+            return multiplier
         try:
             found = self.quantities.value(call)
         except (DerivationError, ModelError, KeyError, StopIteration, ValueError, IndexError, AssertionError) as error:
-            what = error.what if isinstance(error, (DerivationError, ModelError)) else f"'{call}' names nothing of the model"
+            what = (
+                error.what
+                if isinstance(error, (DerivationError, ModelError))
+                else f"'{call}' names nothing of the model"
+            )
             raise ExpressionError(what, max(call.column, 0), getattr(error, "mend", ""), len(call.name)) from error
         symbols = self.system.symbols.unknowns
         held = [p for p in symbols.values() if depends_on(found, (p,))]
         known = {p: self.quantities.reactions.unknown(p.name) for p in held}
         return substituted((found,), known)[0] if held else found
+
+    def _multiplier(self, call: Call) -> Scalar | None:
+        label = f"{MULTIPLIER}({', '.join(a.name if isinstance(a, Reference) else a.text for a in call.args)})"
+        return next((x for x in self.system.symbols.lam if x.name == label), None)
 
     def unknown_names(self, written: Written) -> list[str]:
         """The names that the model does not have, without primes, in alphabetical order."""
@@ -140,30 +174,43 @@ class Case:
         if not linear:
             return vanishes(self.system, self.phase.eliminated(scalar)) if rows is None else Combination(None)
         own = self.rows if rows is None else rows
-        return combination(self.system, row, [linear_row(x, self.forced)[0] for x in (*own, *self.closing)])
+        mine, closing = ([linear_row(x, self.forced)[0] for x in some] for some in (own, self.closing))
+        return combination(self.system, row, mine, closing)
 
     @cached_property
     def speeds(self) -> dict[Node, Scalar] | None:
         """Every speed as a function of the coordinates, by the first integrals from the start; None: they do not."""
-        if self.equations is None or not self.motion.start:
+        if self.equations is None or not self.start:
             return None
         try:
-            return rates_of(self.equations, self.motion.start, accelerations=self.phase.accelerations)
+            return rates_of(self.equations, self.start, accelerations=self.phase.accelerations)
         except (DerivationError, MissingValues, ModelError):
             return None
 
     # -- what the solver of outputs answers --------------------------------------------------------
 
-    def answer(self, value: Expression, at: WrittenEquation | AtRest | None, model: Model | None = None) -> Answer:
-        """An expression as an output: at an instant, at rest, of small motions, of one configuration.
+    def sides(self, written: Written, at: WrittenEquation | AtRest | None) -> tuple[Answer, Answer]:
+        """Both sides as outputs: at an instant, at rest, of small motions, of one configuration.
 
         Raises:
-            ExpressionError: the expression is wrong.
+            ExpressionError: a side has no meaning, or no dimension.
         """
         from_ = "rest" if self.at_rest and isinstance(at, WrittenEquation) else None
-        output = Output(value=value, at=at, from_=from_)
-        model = model or self.model
-        return answers.solve(_asking(model, output))["judged"]
+        asked = {
+            "left": Output(value=written.left, at=at, from_=from_),
+            "right": Output(value=written.right, at=at, from_=from_),
+        }
+        found = answers.solve(_asking(self.model, asked))
+        return found["left"], found["right"]
+
+    def exact(self, answer: Answer) -> Scalar | None:
+        """The exact value of an answer over the symbols; None where it has none."""
+        if answer.exact is None:
+            return None
+        try:
+            return parse(answer.exact, longest=len(answer.exact) + 1).evaluate(self.system.scope.names)
+        except ExpressionError:
+            return None
 
     def check(self, written: Written) -> None:
         """Refuses functions that ask for what the model does not have.
@@ -171,13 +218,22 @@ class Case:
         Raises:
             ExpressionError: one does.
         """
-        if written.calls:
-            _asking(self.model, Output(value=written.difference))
+        for call in (call for call in written.calls if call.name != MULTIPLIER):
+            value = Expression(str(call), (("call", call),), (max(call.column, 0),))
+            _asking(self.model, {"asked": Output(value=value)})
+
+    def clash(self, written: Written) -> str:
+        """What is wrong with the dimensions, in words; ""."""
+        try:
+            _asking(self.model, {"asked": Output(value=written.difference)})
+        except ExpressionError as error:
+            return error.what
+        return ""
 
 
-def _asking(model: Model, output: Output) -> Model:
-    """The model with one output alone, checked as a whole."""
+def _asking(model: Model, outputs: Mapping[str, Output]) -> Model:
+    """The model with these outputs alone, checked as a whole."""
     try:
-        return replace(model, outputs=Table({"judged": output}))
+        return replace(model, outputs=Table(outputs))
     except ModelError as error:
         raise ExpressionError(error.what.partition(" in the ")[0], 0, error.mend) from error

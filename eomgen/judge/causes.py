@@ -6,11 +6,13 @@ from collections.abc import Iterator, Sequence
 from dataclasses import replace
 from typing import TYPE_CHECKING
 
+from eomgen.judge.decision import vanishes
 from eomgen.judge.diagnosis import Explanation, Share
 from eomgen.judge.verdict import Cause
 from eomgen.symbolic.exact.normal_form import legible
+from eomgen.symbolic.expression.derivative import depends_on, substituted
 from eomgen.symbolic.expression.expressions import Call, Reference
-from eomgen.symbolic.expression.graph import Scalar, is_zero
+from eomgen.symbolic.expression.graph import Node, Scalar, is_zero
 from eomgen.symbolic.expression.rational import Fraction
 from eomgen.symbolic.numeric.work import Work
 from eomgen.symbolic.print.text import readable_text
@@ -39,7 +41,8 @@ def cause_of(case: Case, share: Share, row: int, *, told: bool = True) -> Cause:
     term = next(filter(None, (_term(case, x) for x in rows if not is_zero(x))), "") if told else ""
     kind, text = corruption.kind, corruption.text
     if corruption.open:
-        kind, text = _of_factor(corruption.kind, corruption.name, x, share.unit, term)
+        whole = "coriolis" if corruption.kind == "factor" and told and _is_coriolis(case, rows) else corruption.kind
+        kind, text = _of_factor(whole, corruption.name, x, share.unit, term)
     return Cause(kind, text, term, corruption.body, corruption.force, corruption.name)
 
 
@@ -58,6 +61,19 @@ def _of_factor(kind: str, name: str, x: Fraction, unit: str, term: str) -> tuple
     return kind, f"{what} stands with {wrong}the factor {abs(x)}, which does not belong there"
 
 
+def _is_coriolis(case: Case, rows: Sequence[Scalar]) -> bool:
+    """Whether the rows are products of different speeds alone: nothing is left of them where only one moves."""
+    symbols = case.system.symbols
+    if depends_on_any(rows, case.forced) or not depends_on_any(rows, symbols.u):
+        return False
+    alone = [x for u in symbols.u for x in substituted(tuple(rows), {w: 0 for w in symbols.u if w is not u})]
+    return bool(vanishes(case.system, *alone).holds)
+
+
+def depends_on_any(rows: Sequence[Scalar], symbols: Sequence[Node]) -> bool:
+    return any(depends_on(x, symbols) for x in rows)
+
+
 def _term(case: Case, scalar: Scalar) -> str:
     form = legible(scalar, Work.FORMULA, case.system.scope.positive, LONG)
     text = readable_text(form) or ""
@@ -70,7 +86,12 @@ def other_calls(case: Case, call: Call) -> Iterator[Call]:
     for k, argument in enumerate(call.args):
         if not isinstance(argument, Reference):
             continue
-        tables: list[Sequence[str]] = [tuple(model.named_points), tuple(model.bodies), tuple(model.constraints), tuple(model.coordinates)]
+        tables: list[Sequence[str]] = [
+            tuple(model.named_points),
+            tuple(model.bodies),
+            tuple(model.constraints),
+            tuple(model.coordinates),
+        ]
         for names in tables:
             if argument.name not in names:
                 continue

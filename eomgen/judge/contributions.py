@@ -171,7 +171,9 @@ class Parts:
         if found:
             return found
         if force.potential is not None:
-            return [Contribution(f"the force {force.name}", _body(force.loads), force.name, V=force.potential, kind="force")]
+            return [
+                Contribution(f"the force {force.name}", _body(force.loads), force.name, V=force.potential, kind="force")
+            ]
         many = len(force.loads) > 1
         for number, load in enumerate(force.loads, start=1):
             name = f"the force {force.name}" + (f" ({number})" if many else "")

@@ -1,7 +1,7 @@
 """Contributions -> what people make of them by mistake: each a change of the equations that can be named.
 
-Three levels, none of which knows of the others: a whole contribution (a body's rotation, a weight, a spring) with a wrong
-factor; a contribution derived from a wrong place, angle, velocity or parameter; a single term of the result. What
+Three levels, none of which knows of the others: a whole contribution (a body's rotation, a weight, a spring) with a
+wrong factor; a contribution derived from a wrong place, angle, velocity or parameter; a single term of the result. What
 an equation differs by is then sought among them (`diagnosis`): the lists hold no equation, only what may go wrong.
 """
 
@@ -18,15 +18,15 @@ from eomgen.mechanics.bodies.kinematics import velocity_of
 from eomgen.mechanics.equations.work import load_row
 from eomgen.model.catalog import Catalog
 from eomgen.model.dimensions import inferred
-from eomgen.model.forces.load import PointForce
-from eomgen.symbolic.exact.normal_form import TooLarge
+from eomgen.model.forces.load import BodyPoint, PointForce
 from eomgen.symbolic.exact.expansion import Expansion
+from eomgen.symbolic.exact.normal_form import TooLarge
 from eomgen.symbolic.exact.writing import Writer
 from eomgen.symbolic.expression.derivative import depends_on, gradient, substituted, symbols_of
+from eomgen.symbolic.expression.functions import over
 from eomgen.symbolic.expression.graph import Graph, Node, Scalar, is_zero
 from eomgen.symbolic.expression.node import ScalarRow, linear_terms
-from eomgen.symbolic.expression.rational import Fraction
-from eomgen.symbolic.expression.spatial import apply, cross, dot, minus
+from eomgen.symbolic.expression.spatial import Vector, cross, dot, minus, vector_of
 from eomgen.symbolic.expression.traversal import order
 from eomgen.symbolic.numeric.work import Work
 
@@ -35,6 +35,7 @@ MOST = 1400  # corruptions of one equation
 
 # how readily a mistake is believed, the smaller the sooner
 PLAIN, PLACED, SHARED, PIECES, TERMS, EXCHANGED, ODD = range(7)
+EVERYTHING = "everything"
 SHORTER = 0.3  # of what a shorter name tells as well
 
 
@@ -155,24 +156,24 @@ class Corruptions:
             sums.append((whole, whole.T))
         for part, T in sums:
             accelerated, carried, held = operator.inertia(T)
-            whole = part.name.removeprefix("the ")
+            of = part.name.removeprefix("the ")
             moving = [x + y for x, y in zip(carried, held, strict=True)]
-            for j, x in enumerate(a):
+            for x in a:
                 row = tuple(gradient(value, (x,))[0] * x for value in accelerated)
-                yield Corruption(f"the term with {x.name} of the {whole}", "factor", row, PIECES, part.body)
+                yield Corruption(f"the term with {x.name} of the {of}", "factor", row, PIECES, part.body)
             first = [gradient(value, u) for value in moving]
             for i, j in [*combinations(range(len(u)), 2), *((k, k) for k in range(len(u)))]:
                 row = tuple(gradient(row[i], (u[j],))[0] * u[i] * u[j] * (1 if i != j else HALF) for row in first)
                 name = f"{u[i].name}*{u[j].name}" if i != j else f"{u[i].name}^2"
                 kind = "coriolis" if i != j else "factor"
                 title = f"the Coriolis term with {name}" if i != j else f"the term with {name}"
-                yield Corruption(f"{title} of the {whole}", kind, row, PIECES, part.body)
+                yield Corruption(f"{title} of the {of}", kind, row, PIECES, part.body)
             mixed = len(u) > 1 and any(depends_on(x, (v,)) for row in first for x, v in zip(row, u, strict=True))
             kind = "coriolis" if mixed else "factor"
-            yield Corruption(f"-dT/dq of the {whole}", "factor", held, PIECES + SHORTER, part.body)
-            name = f"what d/dt dT/dq' of the {whole} holds beside accelerations"
+            yield Corruption(f"-dT/dq of the {of}", "factor", held, PIECES + SHORTER, part.body)
+            name = f"what d/dt dT/dq' of the {of} holds beside accelerations"
             yield Corruption(name, kind, carried, PIECES + SHORTER, part.body)
-            yield Corruption(f"all products of speeds in the {whole}", kind, tuple(moving), PIECES + SHORTER, part.body)
+            yield Corruption(f"all products of speeds in the {of}", kind, tuple(moving), PIECES + SHORTER, part.body)
 
     # -- wrong points ----------------------------------------------------------------------------------
 
@@ -186,6 +187,14 @@ class Corruptions:
             places = self._places(link.name, mass.com)
             translation = next((p for p in self._whole if p.body == link.name and p.kind == "translation"), None)
             weights = [p for p in self._whole if p.body == link.name and isinstance(p.load, PointForce)]
+            if translation is not None and any(not is_zero(x) for x in mass.com):
+                for factor, how in ((2, "twice"), (HALF, "half")):
+                    place = (link.name, vector_of(factor * x for x in mass.com))
+                    v = velocity_of(motion, place)
+                    T = HALF * mass.m * dot(v, v) - translation.T + (factor * factor - 1) * energy.rotation
+                    text = f"{link.name} is treated as if it were {how} as long"
+                    longer = Contribution("", T=T, V=self._raised(weights, place))
+                    yield self._once(f"the length of {link.name}", "wrong_point", longer, PLACED, link.name, text=text)
             for point, r in places.items():
                 if any(not is_zero(x) for x in energy.spin) and self.what in ("motion", "T"):
                     arm = minus(r, mass.com)
@@ -195,31 +204,69 @@ class Corruptions:
                         f"the moment of inertia of {link.name} about {point} stands where that about its mass centre"
                         " is needed: what the mass centre does is counted in the translation already"
                     )
-                    yield self._once(f"the moment of inertia of {link.name}", "wrong_point", Contribution("", T=T), PLACED, link.name, text=text)
+                    yield self._once(
+                        f"the moment of inertia of {link.name}",
+                        "wrong_point",
+                        Contribution("", T=T),
+                        PLACED,
+                        link.name,
+                        text=text,
+                    )
                     text = (
                         f"the moment of inertia of {link.name} about its mass centre stands where that about {point} is"
                         " needed (Steiner)"
                     )
-                    yield self._once(f"the moment of inertia of {link.name}", "wrong_point", Contribution("", T=-T), PLACED, link.name, text=text)
+                    yield self._once(
+                        f"the moment of inertia of {link.name}",
+                        "wrong_point",
+                        Contribution("", T=-T),
+                        PLACED,
+                        link.name,
+                        text=text,
+                    )
                 if translation is not None and link.name in motion.index:
                     v = velocity_of(motion, (link.name, r))
                     T = HALF * mass.m * dot(v, v) - translation.T
                     text = f"the velocity of {link.name}.{point} stands where that of its mass centre is needed"
-                    yield self._once(f"the translation of {link.name}", "wrong_point", Contribution("", T=T), PLACED, link.name, text=text)
+                    yield self._once(
+                        f"the translation of {link.name}",
+                        "wrong_point",
+                        Contribution("", T=T),
+                        PLACED,
+                        link.name,
+                        text=text,
+                    )
                     if weights:
-                        V = sum((-dot(p.load.force, minus(motion.position((link.name, r)), motion.position(p.load.place))) for p in weights if isinstance(p.load, PointForce) and not is_zero(p.V)), start=0)  # fmt: skip
+                        V = self._raised(weights, (link.name, r))
                         text = f"{link.name} is treated as if its mass centre were at its {point}"
-                        yield self._once(f"the mass centre of {link.name}", "wrong_point", Contribution("", T=T, V=V), PLACED, link.name, text=text)
+                        yield self._once(
+                            f"the mass centre of {link.name}",
+                            "wrong_point",
+                            Contribution("", T=T, V=V),
+                            PLACED,
+                            link.name,
+                            text=text,
+                        )
             for part in weights:
                 yield from self._other_place(part, places)
 
-    def _places(self, body: str, com: tuple[Scalar, ...]) -> dict[str, tuple[Scalar, ...]]:
+    def _raised(self, weights: Sequence[Contribution], place: BodyPoint) -> Scalar:
+        """What the potential energy of weights changes by where they act at another place."""
+        motion, V = self.parts.operator.base.motion, list[Scalar]()
+        for part in weights:
+            if isinstance(part.load, PointForce) and not is_zero(part.V):
+                V.append(-dot(part.load.force, minus(motion.position(place), motion.position(part.load.place))))
+        return sum(V, start=0)
+
+    def _places(self, body: str, com: Vector) -> dict[str, Vector]:
         """The points of a body that are not its mass centre."""
         points = self.parts.operator.base.motion.points[body]
-        different = {name: r for name, r in points.items() if any(not is_zero(x - y) for x, y in zip(r, com, strict=True))}
+        different = {
+            name: r for name, r in points.items() if any(not is_zero(x - y) for x, y in zip(r, com, strict=True))
+        }
         return {name: r for k, (name, r) in enumerate(different.items()) if r not in list(different.values())[:k]}
 
-    def _other_place(self, part: Contribution, places: Mapping[str, tuple[Scalar, ...]]) -> Iterator[Corruption]:
+    def _other_place(self, part: Contribution, places: Mapping[str, Vector]) -> Iterator[Corruption]:
         """A force of a body at another point of it."""
         load, base = part.load, self.parts.operator.base
         if not isinstance(load, PointForce) or load.place[0] is None:
@@ -232,10 +279,21 @@ class Corruptions:
             if not is_zero(part.V):
                 gap = minus(base.motion.position(moved.place), base.motion.position(load.place))
                 V, row = -dot(load.force, gap), ()
-            text = f"{part.name} acts at {load.place[0]}.{point} in the equation, and not where it does: its lever arm is wrong"
-            yield self._once(part.name, "wrong_point", Contribution("", V=V, Q=row), PLACED, part.body, part.force, text)
+            text = f"{part.name} acts at {load.place[0]}.{point} in the equation: its lever arm is wrong"
+            yield self._once(
+                part.name, "wrong_point", Contribution("", V=V, Q=row), PLACED, part.body, part.force, text
+            )
 
-    def _once(self, name: str, kind: str, part: Contribution, rank: float, body: str = "", force: str = "", text: str = "") -> Corruption:  # fmt: skip
+    def _once(
+        self,
+        name: str,
+        kind: str,
+        part: Contribution,
+        rank: float,
+        body: str = "",
+        force: str = "",
+        text: str = "",
+    ) -> Corruption:
         return Corruption(name, kind, self.rows(part), rank, body, force, False, text)
 
     # -- wrong angles ----------------------------------------------------------------------------------
@@ -251,7 +309,7 @@ class Corruptions:
             if len(members) > 1:
                 found.append(_joined(f"all that belongs to {body}", members, body))
         if len(found) > 1:
-            found.append(_joined("everything", [part for part in self._whole if part.row is None]))
+            found.append(_joined(EVERYTHING, [part for part in self._whole if part.row is None]))
         return found
 
     def _wrong_angles(self) -> Iterator[Corruption]:
@@ -259,7 +317,8 @@ class Corruptions:
             for angle in _angles((part.T, part.V, *part.Q)):
                 told = _text(angle)
                 for kind, mapping, what in _turned(angle):
-                    rank = PLACED if part.name != "everything" else ODD
+                    rank = PLACED if is_zero(part.T) else EXCHANGED
+                    rank = ODD if part.name == EVERYTHING else max(rank, TERMS) if kind == "other" else rank
                     text = f"in {part.name} {what.format(told)}"
                     yield self._once(part.name, kind, _changed(part, mapping), rank, part.body, part.force, text)
 
@@ -275,21 +334,30 @@ class Corruptions:
                     text = f"the velocity in {part.name} leaves out what {u.name} does"
                     still = replace(part, T=substituted((part.T,), {u: 0})[0] - part.T, V=0, Q=())
                     yield self._once(part.name, "missing_term", still, SHARED, part.body, text=text)
-            moved = [(q, u) for q, u in zip(symbols.q, _rates(base.symbols.q, symbols.u), strict=True) if q in held or u in held]
-            for q, u in moved:
-                mapping: dict[Node, Scalar] = {q: -q, **({u: -u} if u is not None else {})}
-                text = f"in {part.name} {q.name} is taken in the opposite direction"
-                yield self._once(part.name, "sign", _changed(part, mapping), EXCHANGED, part.body, part.force, text)
-                if part.name == "everything":
-                    continue
-                for p, w in zip(symbols.q, _rates(base.symbols.q, symbols.u), strict=True):
-                    if p is q or u is None or w is None or not self._alike(p.name, q.name):
-                        continue
-                    for sign, how in ((1, "plus"), (-1, "minus")):
-                        text = f"in {part.name} {q.name} {how} {p.name} stands where {q.name} alone is meant: it is taken as {'a relative' if sign > 0 else 'an absolute'} one"  # fmt: skip
-                        yield self._once(part.name, "other", _changed(part, {q: q + sign * p, u: u + sign * w}), EXCHANGED, part.body, part.force, text)  # fmt: skip
-                    text = f"in {part.name} {p.name} stands where {q.name} is meant"
-                    yield self._once(part.name, "other", _changed(part, {q: p, u: w}), EXCHANGED, part.body, part.force, text)  # fmt: skip
+            for q, rate in zip(symbols.q, _rates(symbols.q, symbols.u), strict=True):
+                if q in held or rate in held:
+                    yield from self._wrong_coordinate(part, q, rate)
+
+    def _wrong_coordinate(self, part: Contribution, q: Node, u: Node | None) -> Iterator[Corruption]:
+        """A coordinate in the opposite direction, relative for absolute, or another one in its place."""
+        symbols = self.parts.operator.base.symbols
+
+        def changed(kind: str, mapping: dict[Node, Scalar], what: str) -> Corruption:
+            text = f"in {part.name} {what}"
+            change = _changed(part, mapping)
+            return self._once(part.name, kind, change, EXCHANGED, part.body, part.force, text)
+
+        opposite: dict[Node, Scalar] = {q: -q} if u is None else {q: -q, u: -u}
+        yield changed("sign", opposite, f"{q.name} is taken in the opposite direction")
+        if part.name == EVERYTHING or u is None:
+            return
+        for p, w in zip(symbols.q, _rates(symbols.q, symbols.u), strict=True):
+            if p is q or w is None or not self._alike(p.name, q.name):
+                continue
+            told = f"stands where {q.name} alone is meant"
+            yield changed("other", {q: q + p, u: u + w}, f"{q.name} + {p.name} {told}: it is no relative one")
+            yield changed("other", {q: q - p, u: u - w}, f"{q.name} - {p.name} {told}: it is a relative one")
+            yield changed("other", {q: p, u: w}, f"{p.name} stands where {q.name} is meant")
 
     # -- wrong parameters --------------------------------------------------------------------------------
 
@@ -310,11 +378,15 @@ class Corruptions:
                 for factor, how in ((2, f"2*{x.name}"), (HALF, f"{x.name}/2")):
                     kind = "wrong_point" if self._dimensions.get(x.name) == "m" else "factor"
                     text = f"in {part.name} {how} stands where {x.name} is meant"
-                    yield self._once(part.name, kind, _changed(part, {x: factor * x}), EXCHANGED, part.body, part.force, text)
+                    yield self._once(
+                        part.name, kind, _changed(part, {x: factor * x}), EXCHANGED + 1, part.body, part.force, text
+                    )
                 for name, y in parameters.items():
                     if y is not x and self._alike(name, x.name):
                         text = f"in {part.name} {name} stands where {x.name} is meant"
-                        yield self._once(part.name, "other", _changed(part, {x: y}), EXCHANGED, part.body, part.force, text)
+                        yield self._once(
+                            part.name, "other", _changed(part, {x: y}), EXCHANGED, part.body, part.force, text
+                        )
 
 
 # -- single terms ------------------------------------------------------------------------------------
@@ -358,6 +430,12 @@ def corrupted_terms(
                     changed = substituted((term,), mapping)[0] - term
                     text = f"in the term {told} {what.format(_text(angle))}"
                     yield Corruption(f"the term {told}", kind, at(changed), TERMS, open=False, text=text)
+            angles = _angles((term,))
+            if len(angles) > 1:
+                for cause, mapping, what in _all_turned(angles):
+                    changed = substituted((term,), mapping)[0]
+                    text = f"in the term {told} {what}"
+                    yield Corruption(f"the term {told}", cause, at(changed - term), TERMS, open=False, text=text)
             for x in parameters:
                 for changed, how in ((term * x, "too many"), (graph.div(term, x), "missing")):
                     text = f"in the term {told} a factor {x.name} is {how}"
@@ -366,7 +444,9 @@ def corrupted_terms(
                     if y is not x and depends_on(term, (x,)):
                         text = f"in the term {told} {y.name} stands where {x.name} is meant"
                         changed = substituted((term,), {x: y})[0]
-                        yield Corruption(f"the term {told}", "other", at(changed - term), EXCHANGED, open=False, text=text)
+                        yield Corruption(
+                            f"the term {told}", "other", at(changed - term), EXCHANGED, open=False, text=text
+                        )
             for u in rates:
                 if depends_on(term, (u,)):
                     for changed, how in ((term * u, "once too often"), (graph.div(term, u), "once too few")):
@@ -376,7 +456,9 @@ def corrupted_terms(
                         if w is not u:
                             text = f"in the term {told} {w.name} stands where {u.name} is meant"
                             changed = substituted((term,), {u: w})[0]
-                            yield Corruption(f"the term {told}", "other", at(changed - term), ODD, open=False, text=text)
+                            yield Corruption(
+                                f"the term {told}", "other", at(changed - term), ODD, open=False, text=text
+                            )
             for angle in _angles((term,)):
                 for name in ("sin", "cos"):
                     wave = graph.call(name, angle)
@@ -410,7 +492,9 @@ def _joined(name: str, members: Sequence[Contribution], body: str = "") -> Contr
 def _changed(part: Contribution, mapping: Mapping[Node, Scalar]) -> Contribution:
     """What a contribution changes by where nodes are replaced in it."""
     T, V, *Q = substituted((part.T, part.V, *part.Q), mapping)
-    return Contribution("", part.body, part.force, T - part.T, V - part.V, tuple(x - y for x, y in zip(Q, part.Q, strict=True)))
+    return Contribution(
+        "", part.body, part.force, T - part.T, V - part.V, tuple(x - y for x, y in zip(Q, part.Q, strict=True))
+    )
 
 
 def _angles(scalars: Sequence[Scalar]) -> list[Node]:
@@ -430,7 +514,7 @@ def _turned(angle: Node) -> Iterator[tuple[str, dict[Node, Scalar], str]]:
     yield "wrong_axis", {cos: sin}, "sin stands for cos({0}): the angle is taken from the other axis"
     yield "sign", {sin: -sin}, "the sign of sin({0}) is wrong"
     yield "sign", {cos: -cos}, "the sign of cos({0}) is wrong"
-    for factor, how in ((graph.pi / 180, "degrees"), (180 / graph.pi, "radians")):
+    for factor, how in ((over(graph.pi, 180), "degrees"), (over(180, graph.pi), "radians")):
         scaled = factor * angle
         mapping = {sin: graph.call("sin", scaled), cos: graph.call("cos", scaled)}
         yield "unit", mapping, f"{{0}} is taken in {how}"
@@ -447,11 +531,22 @@ def _turned(angle: Node) -> Iterator[tuple[str, dict[Node, Scalar], str]]:
                 yield "sign", mapping, f"the sign of {atom.name} in the angle {{0}} is wrong"
 
 
+def _all_turned(angles: Sequence[Node]) -> Iterator[tuple[str, dict[Node, Scalar], str]]:
+    """The same for several angles at once."""
+    graph = angles[0].graph
+    sines, cosines = ([graph.held(op, (x,)) for x in angles] for op in ("sin", "cos"))
+    exchanged: dict[Node, Scalar] = {**dict(zip(sines, cosines, strict=True)), **dict(zip(cosines, sines, strict=True))}
+    yield "wrong_axis", exchanged, "sin and cos are exchanged: the angles are taken from the other axes"
+    small: dict[Node, Scalar] = {**dict(zip(sines, angles, strict=True)), **dict.fromkeys(cosines, 1)}
+    yield "other", small, "sines and cosines are those of small angles"
+    for factor, how in ((over(graph.pi, 180), "degrees"), (over(180, graph.pi), "radians")):
+        mapping: dict[Node, Scalar] = {
+            graph.held(op, (x,)): graph.call(op, factor * x) for x in angles for op in ("sin", "cos")
+        }
+        yield "unit", mapping, f"the angles are taken in {how}"
+
+
 def _rates(q: Sequence[Node], u: Sequence[Node]) -> list[Node | None]:
     """The speed of each coordinate where it has one of its own."""
     named = {x.name: x for x in u}
     return [named.get(f"{x.name}'") for x in q]
-
-
-__all__ = ["Corruption", "Corruptions", "corrupted_terms", "terms_of"]
-_ = (Fraction, apply)

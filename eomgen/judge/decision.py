@@ -8,7 +8,7 @@ these restrict the coordinates. What no state decides stays undecided: nothing i
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from random import Random
 from typing import Any
 
@@ -69,31 +69,27 @@ IN_FIELD = Numbers("prime field", lambda x: pow(x, -1, PRIME), lambda x: x % PRI
 IN_DIGITS = Numbers("50 digits", lambda x: 1 / x, lambda x: x, lambda x, size: abs(x) <= ELIMINATED_AT_50 * size)
 
 
-def combination(system: System, row: Sequence[Scalar], rows: Sequence[Sequence[Scalar]]) -> Combination:
+def combination(
+    system: System, row: Sequence[Scalar], rows: Sequence[Sequence[Scalar]], tied: Sequence[Sequence[Scalar]] = ()
+) -> Combination:
     """Whether a row is a combination of others, its factors functions of the state.
 
     Args:
         row: its entries, scalars of the system's graph; with no others it is asked whether they vanish.
+        tied: further rows, which hold on the ties alone: apart from these redundant ones contradict one another.
     """
     if not row:
         return Combination(True)
     flat = [x for each in (row, *rows) for x in each]
     found = _combined(row, rows, _exact_states(flat), IN_FIELD)
-    if found.holds is True:
+    if found.holds is None:
+        found = _combined(row, rows, _real_states(system, flat, on_ties=False), IN_DIGITS)
+    closes = bool(system.ties.J) or any(x.gap is not None and not x.identical for x in system.ties.rows)
+    if found.holds is True or not closes:
         return found
-    tied = any(each.gap is not None and not each.identical for each in system.ties.rows)
-    sure = found.holds is False
-    if sure and not tied:
-        return found
-    if not sure:
-        real = _combined(row, rows, _real_states(system, flat, on_ties=False), IN_DIGITS)
-        if real.holds is True or not tied:
-            return real
-        sure = real.holds is False
-    held = _combined(row, rows, _real_states(system, flat, on_ties=True), IN_DIGITS)
-    if held.holds is not True:
-        return held if not sure or held.holds is False else Combination(None)
-    return Combination(True, held.rows, held.way, on_ties=True)
+    flat += [x for each in tied for x in each]
+    held = _combined(row, (*rows, *tied), _real_states(system, flat, on_ties=True), IN_DIGITS)
+    return replace(held, on_ties=held.holds is True)
 
 
 def vanishes(system: System, *scalars: Scalar) -> Combination:
@@ -115,14 +111,13 @@ def _combined(
     row: Sequence[Scalar], rows: Sequence[Sequence[Scalar]], states: Iterable[Values], numbers: Numbers
 ) -> Combination:
     """The same at given states; undecided where there are none."""
-    width, seen, used = len(row), 0, set[int]()
-    for values in states:
+    width, used = len(row), set[int]()
+    for seen, values in enumerate(states, start=1):
         table = [values[k : k + width] for k in range(0, len(values), width)]
         factors = factors_in(table[1:], table[0], numbers)
         if factors is None:
             return Combination(False, (), numbers.name)
         used |= {k for k, x in enumerate(factors) if not numbers.is_zero(x, 1)}
-        seen += 1
         if seen == STATES:
             return Combination(True, tuple(sorted(used)), numbers.name)
     return Combination(None)
@@ -186,7 +181,9 @@ def _real_states(system: System, flat: Sequence[Scalar], *, on_ties: bool) -> It
             return
 
 
-def states_of(system: System, flat: Sequence[Scalar] = (), *, on_ties: bool, seed: int = 11) -> Iterator[dict[Node, Any]]:
+def states_of(
+    system: System, flat: Sequence[Scalar] = (), *, on_ties: bool, seed: int = 11
+) -> Iterator[dict[Node, Any]]:
     """Random real states of a system with 50 digits, near the values of its file at first, then further away.
 
     Args:
@@ -298,7 +295,10 @@ def _least_step(rows: list[Values], left: Values) -> Values | None:
     kept: list[int] = []
     plain = np.array([[float(x) for x in row] for row in rows])
     for k in range(len(rows)):
-        if np.linalg.matrix_rank(plain[[*kept, k]], tol=COMPUTED * max(1.0, float(np.abs(plain).max()))) == len(kept) + 1:
+        if (
+            np.linalg.matrix_rank(plain[[*kept, k]], tol=COMPUTED * max(1.0, float(np.abs(plain).max())))
+            == len(kept) + 1
+        ):
             kept.append(k)
     if not kept:
         return None
@@ -323,4 +323,3 @@ def _solved(matrix: list[Values], right: Values) -> Values | None:
                 factor = rows[i][k] / rows[k][k]
                 rows[i] = [x - factor * y for x, y in zip(rows[i], rows[k], strict=True)]
     return [rows[k][n] / rows[k][k] for k in range(n)]
-

@@ -1,11 +1,11 @@
-"""An equation that is wrong -> why: the smallest set of named corruptions that makes the model's equations the author's.
+"""An equation that is wrong -> why: the least set of named corruptions that makes the model's equations the author's.
 
     sigma D = E + sum y_j C_j
 
 D is the author's difference of sides, E the model's equation, C_j what the corruption j adds, y_j how often it is there
 (a simple number), sigma a function of the configuration alone: the author may have divided by anything. At a few
-configurations with several speeds and accelerations each this is linear in sigma and y; sets are searched in doubles, the
-cheapest that leaves nothing is proven exactly, and only then told.
+configurations with several speeds and accelerations each this is linear in sigma and y; sets are searched in doubles,
+the cheapest that leaves nothing is proven exactly, and only then told.
 """
 
 from __future__ import annotations
@@ -21,6 +21,7 @@ import numpy as np
 from eomgen.judge.corruptions import Corruption
 from eomgen.judge.decision import states_of
 from eomgen.mechanics.equations.system import System
+from eomgen.symbolic.expression.functions import over
 from eomgen.symbolic.expression.graph import Node, Scalar
 from eomgen.symbolic.expression.rational import Fraction
 from eomgen.symbolic.numeric.batch_evaluation import ARRAYS
@@ -31,6 +32,7 @@ PLACES, VARIANTS = 5, 8  # configurations, and speeds and accelerations at each
 SIMPLE = 12  # the largest numerator and denominator of a factor that somebody wrote by mistake
 PAIRED, TRIPLED = 900, 120  # corruptions of which pairs and triples are sought
 PROVEN = 12  # explanations that are proven before it is given up
+MIXED = 6.0  # how much less a combination of equations is believed than one of them
 UNITS = {  # factors of wrong units: as a number, as a scalar of pi, in words
     "pi/180": (np.pi / 180, (Fraction(1, 180), 1)),
     "180/pi": (180 / np.pi, (Fraction(180), -1)),
@@ -64,7 +66,7 @@ class Share:
         y: Scalar = 1 if not self.corruption.open else self.factor - 1
         if self.unit:
             number, power = UNITS[self.unit][1]
-            y = number * (graph_pi if power == 1 else 1 / graph_pi if power == -1 else 1) - 1  # type: ignore[operator]
+            y = number * (graph_pi if power == 1 else over(1, graph_pi) if power == -1 else 1) - 1
         return tuple(y * x for x in self.corruption.rows)
 
 
@@ -103,7 +105,7 @@ class Samples:
 
 def samples_of(system: System, flat: Sequence[Scalar], *, on_ties: bool = False) -> Samples | None:
     """States at which the scalars can be compared; on the ties where these restrict coordinates or speeds."""
-    rng, symbols = Random(3), system.symbols
+    rng = Random(3)
     rows: list[dict[Node, float]] = []
     places = 0
     for state in islice(states_of(system, flat, on_ties=on_ties, seed=5), PLACES):
@@ -114,7 +116,6 @@ def samples_of(system: System, flat: Sequence[Scalar], *, on_ties: bool = False)
     if not places:
         return None
     names = rows[0].keys()
-    _ = symbols
     return Samples({x: np.array([row[x] for row in rows]) for x in names}, places)
 
 
@@ -153,7 +154,7 @@ class Search:
 
     def explanations(self, number: int) -> list[Explanation]:
         """Those of so many corruptions, one to three."""
-        left, A, kept = self._projection
+        left, A, kept = self.projection
         size = float(np.linalg.norm(left))
         if not np.isfinite(size) or size == 0:
             return []
@@ -161,7 +162,7 @@ class Search:
         return [x for each in chosen if (x := self._explained([kept[i] for i in each])) is not None]
 
     @cached_property
-    def _projection(self) -> tuple[np.ndarray, np.ndarray, list[int]]:
+    def projection(self) -> tuple[np.ndarray, np.ndarray, list[int]]:
         """(E, the C that matter) without their shares along D, each of length 1."""
         scale = np.linalg.norm(self.E, axis=1)
         if self.D is not None:
@@ -172,7 +173,8 @@ class Search:
 
         def flat(X: np.ndarray) -> np.ndarray:
             X = X / scale[:, None]
-            return (X - np.sum(X * D, axis=-1, keepdims=True) * D).reshape(*X.shape[:-2], -1)
+            X = X - np.sum(X * D, axis=-1, keepdims=True) * D
+            return X.reshape(*X.shape[:-2], -1)
 
         A, raw = flat(self.C), (self.C / scale[:, None]).reshape(len(self.C), -1)
         lengths, sizes = np.linalg.norm(A, axis=1), np.linalg.norm(raw, axis=1)
@@ -181,7 +183,9 @@ class Search:
 
     def _single(self, left: np.ndarray, A: np.ndarray) -> Iterator[list[int]]:
         along = A @ left
-        for i in np.flatnonzero(np.linalg.norm(left - along[:, None] * A, axis=1) < SAME_EIGENVALUE * np.linalg.norm(left)):
+        for i in np.flatnonzero(
+            np.linalg.norm(left - along[:, None] * A, axis=1) < SAME_EIGENVALUE * np.linalg.norm(left)
+        ):
             yield [int(i)]
 
     def _pairs(self, left: np.ndarray, A: np.ndarray, among: int = PAIRED, room: int = 2000) -> Iterator[list[int]]:
@@ -211,7 +215,7 @@ class Search:
         """The explanation of these corruptions, where their factors are simple."""
         C = self.C[list(chosen)]
         scale = np.maximum(np.linalg.norm(self.E, axis=1), COMPUTED) if self.D is not None else np.ones(len(self.E))
-        columns = [(c / scale[:, None]).ravel() for c in C]
+        columns: list[np.ndarray] = [(c / scale[:, None]).ravel() for c in C]
         if self.D is not None:
             for k in range(len(self.D)):
                 column = np.zeros_like(self.D)
@@ -219,9 +223,9 @@ class Search:
                 columns.append(column.ravel() / max(1.0, float(np.linalg.norm(column))))
         target = -(self.E / scale[:, None]).ravel()
         matrix = np.array(columns).T
-        lengths = np.maximum(np.linalg.norm(matrix, axis=0), COMPUTED * COMPUTED)
-        y, *_ = np.linalg.lstsq(matrix / lengths, target, rcond=None)
-        if np.linalg.norm(matrix / lengths @ y - target) > CARRIED * max(np.linalg.norm(target), COMPUTED):
+        lengths: np.ndarray = np.maximum(np.linalg.norm(matrix, axis=0), COMPUTED * COMPUTED)
+        y: np.ndarray = np.linalg.lstsq(matrix / lengths, target, rcond=None)[0]
+        if np.linalg.norm(matrix / lengths @ y - target) > CARRIED * max(float(np.linalg.norm(target)), COMPUTED):
             return None
         y = (y / lengths)[: len(chosen)]
         shares = []
@@ -233,7 +237,7 @@ class Search:
         if not self._is_there(C, y):
             return None
         scaled, dear = self._scale(C, y)
-        cost = sum(map(_cost, shares)) + dear
+        cost = sum(map(_cost, shares)) + dear + (MIXED if self.row < 0 else 0)
         return Explanation(tuple(shares), self.row, cost, scaled)
 
     def _is_there(self, C: np.ndarray, y: np.ndarray) -> bool:
@@ -254,8 +258,8 @@ class Search:
             return "", 0.0 if sigma[0] > 0 else 0.3
         if np.allclose(sigma, sigma[0], rtol=CARRIED):
             simple = _simple(float(sigma[0])) is not None
-            return "constant", 0.4 if simple else 1.5
-        return "function", 1.0
+            return "constant", 1.2 if simple else 2.0
+        return "function", 1.0 if np.mean(sigma) > 0 else 1.3
 
 
 def _share(corruption: Corruption, y: float) -> Share | None:

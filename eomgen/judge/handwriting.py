@@ -30,7 +30,19 @@ _FRACTIONS = ("frac", "dfrac", "tfrac", "cfrac")
 _SIGNS = {"cdot": "*", "times": "*", "ast": "*", "div": "/", "approx": "=", "equiv": "=", "lbrace": "(", "rbrace": ")"}
 _SIGNS |= {"{": "(", "}": ")", "lvert": "|", "rvert": "|", "vert": "|", "lbrack": "(", "rbrack": ")"}
 _ALIKE = {"−": "-", "–": "-", "·": "*", "⋅": "*", "×": "*", "∙": "*", "÷": "/", "[": "(", "]": ")", "′": "'", "’": "'"}
-_ALIKE |= {"″": "''", '"': "''", "“": "''", "”": "''", "½": "(1/2)", "¼": "(1/4)", "¾": "(3/4)", "≈": "=", "≡": "=", "ʹ": "'", "\u00a0": " "}
+_ALIKE |= {
+    "″": "''",
+    '"': "''",
+    "“": "''",
+    "”": "''",
+    "½": "(1/2)",
+    "¼": "(1/4)",
+    "¾": "(3/4)",
+    "≈": "=",
+    "≡": "=",
+    "ʹ": "'",
+    "\u00a0": " ",
+}
 _RAISED = dict(zip("⁰¹²³⁴⁵⁶⁷⁸⁹", "0123456789", strict=True))
 _LOWERED = dict(zip("₀₁₂₃₄₅₆₇₈₉", "0123456789", strict=True))
 _DOTS = {"\u0307": 1, "\u0308": 2}
@@ -39,11 +51,15 @@ _DECORATIONS = frozenset("hat bar tilde vec overline widehat".split())
 _NUMBER = re.compile(r"(?:\d+(?:\.\d*)?|\.\d+)(?:[eE][+-]?\d+)?")
 _WORD = re.compile(r"[^\W\d_⁰¹²³⁴-⁹₀-₉][^\W⁰¹²³⁴-⁹₀-₉]*(?:\.\w+)*")
 _PIECE = re.compile(r"[^\W\d_⁰¹²³⁴-⁹₀-₉]")
-_DIFFERENTIAL = re.compile(r"\s*(?:\\(?:mathrm|text|operatorname)\s*\{\s*d\s*\}|d)\s*(?:\^\s*\{?\s*(\d)\s*\}?)?\s*(.*)", re.S)
+_DIFFERENTIAL = re.compile(
+    r"\s*(?:\\(?:mathrm|text|operatorname)\s*\{\s*d\s*\}|d)\s*(?:\^\s*\{?\s*(\d)\s*\}?)?\s*(.*)", re.S
+)
 _BY_TIME = re.compile(r"\s*(?:\\(?:mathrm|text)\s*\{\s*d\s*\}|d)\s*t\s*(?:\^\s*\{?\s*(\d)\s*\}?)?\s*")
 _OF_TIME = re.compile(r"\s*\{?\s*(?:\\left)?\s*\(\s*t\s*(?:\\right)?\s*\)\s*\}?")
 _REFERENCES = re.compile(r"\(\s*[\w.]+(?:\s*[,-]\s*[\w.]+)*\s*\)")
-_ORNAMENT = re.compile(r"\$\$?|\\\[|\\\]|\\\(|\\\)|\\(?:begin|end)\s*\{(?:equation|align|aligned|gather|split)\*?\}|(?<!\\)&|\\\\\s*$")
+_ORNAMENT = re.compile(
+    r"\$\$?|\\\[|\\\]|\\\(|\\\)|\\(?:begin|end)\s*\{(?:equation|align|aligned|gather|split)\*?\}|(?<!\\)&|\\\\\s*$"
+)
 
 
 @dataclass(frozen=True)
@@ -123,7 +139,9 @@ def transcript(written: str, known: Vocabulary) -> Transcript:
     before: Piece | None = None
     for piece in pieces:
         glue = "*" if before is not None and _side_by_side(before, piece) else ""
-        shown = f" {piece.text} " if piece.text in ("=", "+") or (piece.text == "-" and before is not None) else piece.text
+        shown = (
+            f" {piece.text} " if piece.text in ("=", "+") or (piece.text == "-" and before is not None) else piece.text
+        )
         text += glue + shown
         columns += [places[min(piece.at, len(places) - 1)]] * (len(glue) + len(shown))
         if before is not None and before.kind == piece.kind == "number" and glue:
@@ -408,7 +426,7 @@ class _Reader:
         while self.at < len(self.text):
             self.skip_space()
             c = self.text[self.at : self.at + 1]
-            if c == "-" and not self.out[-1].kind == "name":
+            if c == "-" and self.out[-1].kind != "name":
                 self.next()
                 continue
             if _NUMBER.match(self.text, self.at):
@@ -588,9 +606,7 @@ class _Reader:
         """Whether parentheses behind a name are a factor: l(1 - cos(theta)), where l is a length."""
         if word in _FUNCTIONS:
             return False
-        if word in self.known.functions and _REFERENCES.match(self.text, end):
-            return False
-        return True
+        return not (word in self.known.functions and _REFERENCES.match(self.text, end))
 
     def named(self, bare: str, start: int) -> None:
         """A name that stands as one word."""

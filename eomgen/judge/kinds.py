@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from eomgen.judge.reading import Written
+from eomgen.judge.reading import MULTIPLIER, Written
 from eomgen.model.outputs import ALL
 from eomgen.model.outputs.acceleration import ACCELERATION, MAGNITUDE_OF_ACCELERATION
 from eomgen.model.outputs.along_coordinates import GENERALIZED_FORCE
@@ -35,7 +35,9 @@ _OF = {
 }
 _BY_SOURCE = {BALANCE: "reaction", MASSES: "inertia", SMALL_MOTIONS: "frequency"}
 FUNCTION_KINDS = {
-    name: _OF.get(function) or _BY_SOURCE.get(function.source) or "velocity" for function in ALL for name in function.names
+    name: _OF.get(function) or _BY_SOURCE.get(function.source) or "velocity"
+    for function in ALL
+    for name in function.names
 }
 
 
@@ -50,6 +52,8 @@ def kind_of(written: Written, model: Model) -> str:
     if accelerated:
         return "motion"
     for call in written.calls:
+        if call.name == MULTIPLIER:
+            return "motion"
         return _of_call(call.name, model)
     if not model.coordinates or names & model.unknowns.keys():
         return "statics"

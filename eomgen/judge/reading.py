@@ -23,6 +23,7 @@ from eomgen.symbolic.expression.formula import Instruction
 
 LETTERS = {"T": "kinetic_energy", "V": "potential_energy", "Q": "generalized_force", "p": "momentum"}
 """letter -> the function that it stands for"""
+MULTIPLIER = "lam"  # of a closing row: lam(tie, 1)
 
 
 @dataclass(frozen=True)
@@ -65,7 +66,7 @@ class Reading:
         own = [name for name in self.system.scope.names if "'" not in name]
         letters = [letter for letter in LETTERS if letter not in self.system.scope.names]
         set_as = {name: notation.latex(name) for name in own}
-        return vocabulary(names, (*FUNCTIONS, *letters), set_as)
+        return vocabulary(names, (*FUNCTIONS, *letters, MULTIPLIER), set_as)
 
     @cached_property
     def letters(self) -> dict[str, Call]:
@@ -77,8 +78,9 @@ class Reading:
             named = ()
         for each in named:
             function, _, arguments = each.name.removesuffix(")").partition("(")
-            if "," not in arguments:
-                letter = reaction_name(function.removeprefix("reaction_"), each.owner)
+            label = function.removeprefix("reaction_")
+            if "," not in arguments and not label.startswith("couple_"):
+                letter = reaction_name(label, each.owner)
                 found.setdefault(letter, Call(function, (Reference(arguments),)))
         return {letter: call for letter, call in found.items() if letter not in self.system.scope.names}
 
@@ -98,7 +100,9 @@ class Reading:
         plain: ExpressionError | None = None
         try:
             found = parse_equation(given)
-            if all(self._is_known(name) for side in found for name in side.names):
+            if all(self._is_known(name) for side in found for name in side.names) and all(
+                call.name in self.vocabulary.functions for side in found for call in side.calls
+            ):
                 return found
         except ExpressionError as error:
             plain, found = error, None

@@ -3,19 +3,21 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from itertools import islice, permutations, product
 from typing import TYPE_CHECKING
 
 from eomgen.judge.reading import Written
 from eomgen.model.catalog import Catalog
 from eomgen.model.dimensions import inferred
+from eomgen.symbolic.expression.functions import over
 from eomgen.symbolic.expression.graph import Node, Scalar
 from eomgen.symbolic.print.text import to_text
 
 if TYPE_CHECKING:
     from eomgen.judge.case import Case
 
+ANGLES = ("1", "rad", "")  # dimensions of angles
 MOST = 600  # ways to read names that are not the model's
 
 
@@ -26,39 +28,43 @@ class Renaming:
     Args:
         values: of each name, with its primes, the scalar.
         told: of each name without primes the text: {phi: "theta - pi/2"}.
+        near: whether every name looks like what it stands for, or moves as it does.
     """
 
     values: Mapping[str, Scalar]
     told: Mapping[str, str]
+    near: bool = True
 
 
 def renamings(case: Case, written: Written, unknown: Sequence[str]) -> Iterator[Renaming]:
     """Ways to read the unknown names, the nearest first."""
-    scope = case.system.scope
     coordinates = [name for name in case.model.coordinates if name not in written.names]
     parameters = [name for name in (*case.model.parameters, *case.model.inputs) if name not in written.names]
     moving = [name for name in unknown if {f"{name}'", f"{name}''"} & written.names]
     still = [name for name in unknown if name not in moving]
-    _ = scope
     for places in _choices(moving, coordinates):
         for constants in _choices(still, [*parameters, *(q for q in coordinates if q not in places)]):
             named = dict(zip((*moving, *still), (*places, *constants), strict=True))
             shifts = [list(_turns(case, of)) if of in case.model.coordinates else [(1, 0)] for of in named.values()]
             for chosen in islice(product(*shifts), MOST):
-                yield _renaming(case, {name: (of, *how) for (name, of), how in zip(named.items(), chosen, strict=True)})
+                near = all(name in moving or _distance(name, of) <= 1 for name, of in named.items())
+                ways = {name: (of, *how) for (name, of), how in zip(named.items(), chosen, strict=True)}
+                yield replace(_renaming(case, ways), near=near)
 
 
 def turnings(case: Case, written: Written) -> Iterator[Renaming]:
-    """Other directions and origins of the model's own coordinates: of one, or of all of a kind alike."""
+    """The model's own angles counted from the other axis, one of them or all alike.
+
+    Nothing else is tried under the model's own names: a sign that is wrong would be right in the other direction.
+    """
     used = [q for q in case.model.coordinates if {q, f"{q}'", f"{q}''"} & written.names]
-    for q in used:
-        for how in list(_turns(case, q))[1:]:
-            yield _renaming(case, {q: (q, *how)})
-    if len(used) > 1:
-        ways = [list(_turns(case, q)) for q in used]
-        for chosen in islice(product(*ways), MOST):
-            if sum(how != (1, 0) for how in chosen) > 1:
-                yield _renaming(case, {q: (q, *how) for q, how in zip(used, chosen, strict=True)})
+    angles = [q for q in used if _dimension(case, q) in ANGLES]
+    quarter = over(case.system.scope.graph.pi, 2)
+    for shift in (quarter, -quarter):
+        if len(angles) > 1:
+            yield _renaming(case, {q: (q, 1, shift) for q in angles})
+        for q in angles:
+            yield _renaming(case, {q: (q, 1, shift)})
 
 
 def _choices(names: Sequence[str], among: Sequence[str]) -> Iterator[tuple[str, ...]]:
@@ -84,11 +90,12 @@ def _distance(a: str, b: str) -> float:
 
 def _turns(case: Case, name: str) -> Iterator[tuple[int, Scalar]]:
     """(sign, shift) of q = sign * own + shift: none first."""
-    graph = case.system.scope.graph
+    pi = case.system.scope.graph.pi
+    quarter = over(pi, 2)
     yield 1, 0
-    if _dimension(case, name) in ("1", "rad", ""):
+    if _dimension(case, name) in ANGLES:
         for sign in (1, -1):
-            for shift in (0, graph.pi / 2, -graph.pi / 2, graph.pi):
+            for shift in (0, quarter, -quarter, pi):
                 if (sign, shift) != (1, 0):
                     yield sign, shift
         return

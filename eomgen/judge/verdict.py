@@ -51,7 +51,9 @@ class Cause:
             return self.text
         place = self.body or self.force
         if level == 2:
-            return f"Look at {self.quantity or 'the terms'}{f', {place}' if place and place not in self.quantity else ''}."
+            return (
+                f"Look at {self.quantity or 'the terms'}{f', {place}' if place and place not in self.quantity else ''}."
+            )
         return f"Look at {place}." if place else f"Look at {AREAS.get(self.kind, 'the terms one by one')}."
 
 

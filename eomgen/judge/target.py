@@ -1,0 +1,214 @@
+"""What an equation of somebody is compared with, the model's equations or a value; and what explains the difference."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+
+from eomgen.errors import ExpressionError
+from eomgen.judge.case import Case
+from eomgen.judge.causes import other_calls
+from eomgen.judge.corruptions import Corruption, Corruptions, corrupted_terms, terms_of
+from eomgen.judge.decision import vanishes
+from eomgen.judge.diagnosis import Explanation, Samples, Search, explained, samples_of
+from eomgen.symbolic.exact.normal_form import legible
+from eomgen.symbolic.expression.derivative import depends_on, derivative, gradient
+from eomgen.symbolic.expression.expressions import Call
+from eomgen.symbolic.expression.functions import over
+from eomgen.symbolic.expression.graph import Scalar, is_zero
+from eomgen.symbolic.numeric.tolerances import CARRIED, COMPUTED
+from eomgen.symbolic.numeric.work import Work
+from eomgen.symbolic.print.text import readable_text
+
+LONG = 400  # characters of a difference that is shown
+EXTRA = 4.5  # rank of a term of the author that does not belong there
+
+
+@dataclass(frozen=True)
+class Target:
+    """What an equation is compared with.
+
+    Args:
+        case: the model.
+        scalar: of an equation of motion its left minus its right side; else what the author's value is too much.
+        rows: the model's equations of motion; else its value alone.
+        what: "motion", "T", "V", or "" of other values.
+        call: what the value is of.
+    """
+
+    case: Case
+    scalar: Scalar
+    rows: tuple[Scalar, ...]
+    what: str
+    call: Call | None = None
+
+    @cached_property
+    def corruptions(self) -> tuple[Corruption, ...]:
+        """What may be wrong, the most believable first."""
+        system = self.case.system
+        structural: list[Corruption] = []
+        if self.what:
+            structural += Corruptions(self.case.parts, self.what).all
+        else:
+            structural += self._other_arguments()
+        if self.what != "motion":
+            structural.append(Corruption("the whole", "factor", self.rows, 1))
+        rates = frozenset((*system.symbols.u, *system.symbols.a))
+        terms = corrupted_terms(self.rows, system.symbols.parameters.values(), system.scope.positive, rates)
+        return (*structural, *sorted(terms, key=lambda each: each.rank))
+
+    def _other_arguments(self) -> Iterator[Corruption]:
+        """The same function of another point, body or tie."""
+        for call in other_calls(self.case, self.call) if self.call is not None else ():
+            try:
+                other = self.case.called(call)
+            except ExpressionError:
+                continue
+            text = f"it is {call} that stands there, and {self.call} that is asked"
+            yield Corruption(str(self.call), "wrong_point", (other - self.rows[0],), 1, open=False, text=text)
+
+    @cached_property
+    def extra(self) -> tuple[Corruption, ...]:
+        """The author's own terms, each of which may be one too many."""
+        own = self.scalar if self.what == "motion" else self.scalar + self.rows[0]
+        known = set(terms_of(self.rows[0], self.case.system.scope.positive)) if self.what != "motion" else set()
+        found = []
+        for term in terms_of(own, self.case.system.scope.positive):
+            if term not in known:
+                text = f"the term {readable_text(term) or ''} does not belong there"
+                found.append(Corruption(text, "extra_term", (term,) * len(self.rows), EXTRA, open=False, text=text))
+        return tuple(found)
+
+    @cached_property
+    def _samples(self) -> tuple[Samples, bool] | None:
+        """States of the comparison, and whether they lie on ties."""
+        case = self.case
+        tied = bool(case.closing) and not depends_on(self.scalar, case.system.symbols.lam)
+        flat = [self.scalar, *self.rows]
+        found = samples_of(case.system, flat, on_ties=tied and self.what == "motion")
+        return None if found is None else (found, tied)
+
+    @cached_property
+    def searches(self) -> tuple[Search, ...]:
+        """The comparison with every equation, and with the combination that the author's accelerations make."""
+        if self._samples is None:
+            return ()
+        samples, tied = self._samples
+        known, n = self.corruptions, len(self.rows)
+        flat = samples.of(self._moving([self.scalar, *self.rows, *(x for each in known for x in each.rows)]))
+        D, E, C = flat[0], flat[1 : n + 1], flat[n + 1 :].reshape(len(known), n, *flat.shape[1:])
+        if self.what != "motion":
+            more = samples.of(self._moving([each.rows[0] for each in self.extra]))
+            return (Search(None, -D, np.concatenate([C[:, 0], more]), (*known, *self.extra), 0),)
+        found = [] if tied else [Search(D, E[k], C[:, k], known, k) for k in range(n)]
+        if n > 1:
+            mixed = self._mixed(samples)
+            if mixed is not None:
+                whole = np.einsum("kpv,kpv->pv", mixed, E)
+                found.append(Search(D, whole, np.einsum("kpv,ckpv->cpv", mixed, C), known, -1))
+        elif tied:
+            found = [Search(D, E[0], C[:, 0], known, 0)]
+        more = samples.of([each.rows[0] for each in self.extra])
+        if len(more):
+            for search in tuple(found):
+                found.append(Search(search.E, D, -more, self.extra, search.row))
+                for sign in (1, -1):
+                    both = np.concatenate([search.C, sign * more])
+                    found.append(
+                        Search(None, search.E - sign * D, both, (*search.corruptions, *self.extra), search.row)
+                    )
+        return tuple(found)
+
+    def _moving(self, scalars: Sequence[Scalar]) -> Sequence[Scalar]:
+        """The scalars; of potentials, which hold a free constant, their rates."""
+        return self.case.system.scope.time_derivative(tuple(scalars)) if self.what == "V" else scalars
+
+    def _mixed(self, samples: Samples) -> np.ndarray | None:
+        """f with f M + h J = dD/da and f J^T = -dD/dlam: the combination whose accelerations are the author's."""
+        e, case = self.case.equations, self.case
+        assert e is not None
+        slopes = gradient(self.scalar, case.forced)
+        if any(depends_on(x, case.forced) for x in slopes):
+            return None
+        n, k = len(e.M), len(e.J)
+        flat = samples.of([*slopes, *(x for row in e.M for x in row), *(x for row in e.J for x in row)])
+        flat = flat.reshape(len(flat), -1)
+        found = []
+        for values in flat.T:
+            M = values[n + k : n + k + n * n].reshape(n, n)
+            J = values[n + k + n * n :].reshape(k, n)
+            matrix = np.block([[M, -J.T], [J, np.zeros((k, k))]]) if k else M
+            if not np.all(np.isfinite(values)):
+                return None
+            f, *_ = np.linalg.lstsq(matrix.T, values[: n + k], rcond=None)
+            found.append(f[:n])
+        sizes = np.abs(np.array(found))
+        if not k and np.all(np.sort(sizes, axis=1)[:, :-1] < CARRIED * sizes.max(axis=1, keepdims=True)):
+            return None  # it is one of the equations
+        return np.array(found).T.reshape(n, samples.places, -1)
+
+    def explained(self) -> list[Explanation]:
+        return explained(self.searches, self.proves)
+
+    def proves(self, explanation: Explanation) -> bool:
+        """Whether the explanation makes the author's equation, exactly."""
+        case = self.case
+        extra = [share for share in explanation.shares if share.corruption.kind == "extra_term"]
+        added = [share.added(case.system.scope.graph.pi) for share in explanation.shares if share not in extra]
+        scalar = self.scalar - sum((share.corruption.rows[0] for share in extra), start=0)
+        if self.what != "motion":
+            total = sum((x[0] for x in added), start=0)
+            return bool(vanishes(case.system, *self._moving([scalar - total])).holds)
+        rows = tuple(row + sum((x[k] for x in added), start=0) for k, row in enumerate(self.rows))
+        return bool(case.follows(scalar, rows).holds)
+
+    def difference(self, explanation: Explanation) -> str:
+        """What is too much in the equation, as it stands in the model's own."""
+        added = [share.added(self.case.system.scope.graph.pi) for share in explanation.shares]
+        rows = [sum(column, start=0) for column in zip(*added, strict=True)]
+        row = rows[explanation.row] if explanation.row >= 0 else next((x for x in rows if not is_zero(x)), 0)
+        return shown(self.case, row)
+
+    def unexplained(self) -> tuple[str, str]:
+        """(the difference, what it touches), where nothing explains it."""
+        case = self.case
+        if self.what != "motion" or not self.searches:
+            return shown(case, self.scalar), ""
+        best = min(self.searches, key=lambda search: _misfit(search))
+        if best.row < 0:
+            return shown(case, case.phase.eliminated(self.scalar)), ""
+        row = self.rows[best.row]
+        a = next((x for x in case.system.symbols.a if depends_on(row, (x,))), None)
+        name = case.system.symbols.u[best.row].name.removesuffix("'")
+        if a is None or is_zero(derivative(self.scalar, a)):
+            return shown(case, self.scalar), f" (beside the equation of {name})"
+        factor = legible(
+            over(derivative(self.scalar, a), derivative(row, a)), Work.FORMULA, case.system.scope.positive, LONG
+        )
+        return shown(case, self.scalar - factor * row), f", beside the equation of {name}{_touched(self, best)}"
+
+
+def _misfit(search: Search) -> float:
+    left, *_ = search.projection
+    return float(np.linalg.norm(left)) if np.all(np.isfinite(left)) else float("inf")
+
+
+def _touched(target: Target, search: Search) -> str:
+    """The contributions that lie nearest to what is left."""
+    left, A, kept = search.projection
+    with np.errstate(all="ignore"):
+        along = np.abs(A @ left) / max(float(np.linalg.norm(left)), COMPUTED)
+    named = [
+        (float(along[i]), search.corruptions[kept[i]]) for i in range(len(kept)) if search.corruptions[kept[i]].open
+    ]
+    best = sorted((x for x in named if x[0] > 0.5), key=lambda x: -x[0])[:2]
+    return f"; it lies nearest to {' and '.join(each.name for _, each in best)}" if best else ""
+
+
+def shown(case: Case, scalar: Scalar) -> str:
+    """A difference as a text; "" where nobody would read it."""
+    form = legible(scalar, Work.ANSWER, case.system.scope.positive, LONG)
+    return readable_text(form) or ""

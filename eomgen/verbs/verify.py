@@ -1,0 +1,144 @@
+"""eomgen verify: are the equations of somebody right for a model?"""
+
+from __future__ import annotations
+
+import sys
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+from eomgen import files
+from eomgen.certificate import certify as certificate_of_equations
+from eomgen.documents.document import Document, plain_document
+from eomgen.documents.statements import Lines
+from eomgen.errors import ExpressionError, UsageError
+from eomgen.judge.case import Case
+from eomgen.judge.judge import Judge
+from eomgen.judge.verdict import EXIT_CODES, RIGHT, UNDECIDED, WRONG, Verdict
+from eomgen.model.fields import AtRest, WrittenEquation
+from eomgen.model.parts import Model
+from eomgen.model.replaced import with_values
+from eomgen.proof.check import Certificate
+
+LARGEST = 1_000_000  # bytes of a file of answers
+UNREADABLE = 2
+
+
+@dataclass(frozen=True)
+class Answered:
+    """One equation of somebody.
+
+    Args:
+        text: as it was written.
+        file, line: where, "" and 0 of what was typed.
+    """
+
+    text: str
+    file: str = ""
+    line: int = 0
+
+
+def verify_document(
+    model: Model,
+    *,
+    equations: Sequence[str] = (),
+    answers: Sequence[str] = (),
+    at: WrittenEquation | AtRest | None = None,
+    from_rest: Mapping[str, Any] | None = None,
+    kind: str | None = None,
+    hint: int | None = None,
+    certify: bool = True,
+) -> Document:
+    """The verdicts, each with what it is up to or why it is wrong.
+
+    Args:
+        equations: as they were typed; "-" reads them from stdin, one a line.
+        answers: files of equations, one a line, or folders of such files.
+        at, from_rest, kind: as of `verify`.
+        hint: how much is told of what is wrong: 1 where to look, 2 at which quantity, 3 the cause.
+    Raises:
+        UsageError: there is no equation; the only one cannot be read.
+    """
+    asked = [
+        *(each for text in equations for each in _typed(text)),
+        *(each for path in answers for each in _of_path(path)),
+    ]
+    if not asked:
+        raise UsageError("there is no equation to judge", mend="write one behind the model, or --file FILE")
+    placed = with_values(model, None, from_rest, options=("--set", "--from-rest")).model if from_rest else model
+    judge = Judge(Case(placed, from_rest is not None))
+    entries: list[dict[str, Any]] = []
+    lines: list[str] = []
+    codes: list[int] = []
+    for each in asked:
+        entry, told, code = _judged(judge, each, at, kind, hint, alone=len(asked) == 1)
+        entries.append(entry | ({"file": each.file, "line": each.line} if each.file else {}))
+        lines += [f"{each.file}:{each.line}: {told[0]}" if each.file else told[0], *told[1:]]
+        codes.append(code)
+    if len(asked) > 1:
+        count = {name: sum(entry["verdict"] == name for entry in entries) for name in EXIT_CODES}
+        lines.append(f"{count[RIGHT]} right, {count[WRONG]} wrong, {count[UNDECIDED]} undecided")
+    code = next((c for c in (EXIT_CODES[WRONG], UNREADABLE, EXIT_CODES[UNDECIDED]) if c in codes), 0)
+    document = plain_document(
+        model, lambda: {"name": model.name, "equations": entries}, Lines(tuple(lines)), answer_code=code
+    )
+    return document.proven(_certificate(judge) if certify else None)
+
+
+def _certificate(judge: Judge) -> Certificate:
+    """The proof of the equations against which the judge holds others."""
+    equations = judge.case.equations
+    return Certificate(()) if equations is None else certificate_of_equations(equations)
+
+
+def _judged(
+    judge: Judge, each: Answered, at: Any, kind: str | None, hint: int | None, *, alone: bool
+) -> tuple[dict[str, Any], tuple[str, ...], int]:
+    """(for machines, for people, exit code) of one equation."""
+    try:
+        verdict = judge.verdict(each.text, at=at, kind=kind)
+    except ExpressionError as error:
+        where = f"{each.file}:{each.line}:{error.column + 1}" if each.file else ""
+        if alone:
+            caret = " " * error.column + "^" * max(1, min(error.length, len(each.text) - error.column))
+            raise UsageError(f"{error.what}\n    {each.text}\n    {caret}", where, error.mend) from error
+        told = Verdict(each.text, kind or "", UNDECIDED, reason=f"it cannot be read: {error.what}")
+        problem = {"what": error.what, "column": error.column + 1, "mend": error.mend}
+        return told.as_dict() | {"error": problem}, told.lines(), UNREADABLE
+    return verdict.as_dict(hint), verdict.lines(hint), verdict.exit_code
+
+
+def _typed(text: str) -> Iterator[Answered]:
+    if text != "-":
+        yield Answered(text)
+        return
+    if sys.stdin is None:
+        raise UsageError("there are no equations on stdin: it is closed", mend="write one behind the model")
+    yield from _lines(sys.stdin.read(LARGEST), "<stdin>")
+
+
+def _of_path(path: str) -> Iterator[Answered]:
+    """The equations of a file, or of every file of a folder."""
+    if path == "-":
+        yield from _typed(path)
+        return
+    place = Path(path)
+    found = (
+        sorted(x for x in place.iterdir() if x.is_file() and not x.name.startswith(".")) if place.is_dir() else [place]
+    )
+    for each in found:
+        data = files.read(each, LARGEST)
+        try:
+            yield from _lines(data.decode("utf-8-sig"), str(each))
+        except UnicodeDecodeError as error:
+            raise UsageError(f"{each} is no text in UTF-8", mend="save it as UTF-8") from error
+
+
+def _lines(text: str, name: str) -> Iterator[Answered]:
+    """One equation a line; # and % begin remarks; LaTeX's own lines have no equality sign."""
+    for number, line in enumerate(text.splitlines(), start=1):
+        bare = line.strip()
+        if not bare or bare[0] in "#%" or (bare.startswith(("\\", "$$")) and "=" not in bare):
+            continue
+        yield Answered(bare, name, number)
