@@ -8,9 +8,9 @@ from functools import cached_property
 
 from eomgen.documents.equation_steps import multiplier_forces
 from eomgen.errors import DerivationError, ExpressionError, MissingValues, ModelError
-from eomgen.judge.contributions import Parts
-from eomgen.judge.decision import Combination, combination, linear_row, vanishes
-from eomgen.judge.reading import MULTIPLIER, Reading, Written
+from eomgen.judge.contributions import Contributions
+from eomgen.judge.decision import Follows, combination, is_zero_everywhere, linear_row
+from eomgen.judge.reading import MULTIPLIER, HandEquation, Reading
 from eomgen.mechanics.equations.equations_of_motion import EquationsOfMotion
 from eomgen.mechanics.equations.system import System, system_of
 from eomgen.mechanics.first_integrals.speeds import rates_of
@@ -92,8 +92,8 @@ class Case:
             return None
 
     @cached_property
-    def parts(self) -> Parts:
-        return Parts(self.system, self.equations)
+    def parts(self) -> Contributions:
+        return Contributions(self.system, self.equations)
 
     @cached_property
     def rows(self) -> ScalarRow:
@@ -152,7 +152,7 @@ class Case:
         label = f"{MULTIPLIER}({', '.join(a.name if isinstance(a, Reference) else a.text for a in call.args)})"
         return next((x for x in self.system.symbols.lam if x.name == label), None)
 
-    def unknown_names(self, written: Written) -> list[str]:
+    def unknown_names(self, written: HandEquation) -> list[str]:
         """The names that the model does not have, without primes, in alphabetical order."""
         known = self.system.scope.names
         return sorted({name.rstrip("'") for name in written.names if name not in known and name not in ("t", "pi")})
@@ -164,15 +164,15 @@ class Case:
         """Accelerations and multipliers, in which equations of motion are linear."""
         return (*self.system.symbols.a, *self.system.symbols.lam)
 
-    def follows(self, scalar: Scalar, rows: ScalarRow | None = None) -> Combination:
-        """Whether a scalar vanishes by the equations of motion and the ties.
+    def follows(self, scalar: Scalar, rows: ScalarRow | None = None) -> Follows:
+        """Whether a scalar is_zero_everywhere by the equations of motion and the ties.
 
         Args:
             rows: equations in place of the model's own.
         """
         row, linear = linear_row(scalar, self.forced)
         if not linear:
-            return vanishes(self.system, self.phase.eliminated(scalar)) if rows is None else Combination(None)
+            return is_zero_everywhere(self.system, self.phase.eliminated(scalar)) if rows is None else Follows(None)
         own = self.rows if rows is None else rows
         mine, closing = ([linear_row(x, self.forced)[0] for x in some] for some in (own, self.closing))
         return combination(self.system, row, mine, closing)
@@ -189,7 +189,7 @@ class Case:
 
     # -- what the solver of outputs answers --------------------------------------------------------
 
-    def sides(self, written: Written, at: WrittenEquation | AtRest | None) -> tuple[Answer, Answer]:
+    def sides(self, written: HandEquation, at: WrittenEquation | AtRest | None) -> tuple[Answer, Answer]:
         """Both sides as outputs: at an instant, at rest, of small motions, of one configuration.
 
         Raises:
@@ -212,7 +212,7 @@ class Case:
         except ExpressionError:
             return None
 
-    def check(self, written: Written) -> None:
+    def check(self, written: HandEquation) -> None:
         """Refuses functions that ask for what the model does not have.
 
         Raises:
@@ -222,7 +222,7 @@ class Case:
             value = Expression(str(call), (("call", call),), (max(call.column, 0),))
             _asking(self.model, {"asked": Output(value=value)})
 
-    def clash(self, written: Written) -> str:
+    def clash(self, written: HandEquation) -> str:
         """What is wrong with the dimensions, in words; ""."""
         try:
             _asking(self.model, {"asked": Output(value=written.difference)})

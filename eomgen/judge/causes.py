@@ -6,7 +6,7 @@ from collections.abc import Iterator, Sequence
 from dataclasses import replace
 from typing import TYPE_CHECKING
 
-from eomgen.judge.decision import vanishes
+from eomgen.judge.decision import is_zero_everywhere
 from eomgen.judge.diagnosis import Explanation, Share
 from eomgen.judge.verdict import Cause
 from eomgen.symbolic.exact.normal_form import legible
@@ -67,7 +67,7 @@ def _is_coriolis(case: Case, rows: Sequence[Scalar]) -> bool:
     if depends_on_any(rows, case.forced) or not depends_on_any(rows, symbols.u):
         return False
     alone = [x for u in symbols.u for x in substituted(tuple(rows), {w: 0 for w in symbols.u if w is not u})]
-    return bool(vanishes(case.system, *alone).holds)
+    return bool(is_zero_everywhere(case.system, *alone).holds)
 
 
 def depends_on_any(rows: Sequence[Scalar], symbols: Sequence[Node]) -> bool:

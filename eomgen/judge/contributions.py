@@ -110,7 +110,7 @@ class Operator:
 
 
 @dataclass(frozen=True)
-class Parts:
+class Contributions:
     """All contributions of a system.
 
     Args:

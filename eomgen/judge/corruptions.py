@@ -12,7 +12,7 @@ from dataclasses import dataclass, replace
 from functools import cached_property
 from itertools import combinations
 
-from eomgen.judge.contributions import Contribution, Parts
+from eomgen.judge.contributions import Contribution, Contributions
 from eomgen.mechanics.bodies.inertia import HALF, body_energies, mass_properties
 from eomgen.mechanics.bodies.kinematics import velocity_of
 from eomgen.mechanics.equations.work import load_row
@@ -73,7 +73,7 @@ class Corruptions:
         what: "motion": the equations of motion; "T", "V"; "Q": the generalized forces.
     """
 
-    parts: Parts
+    parts: Contributions
     what: str
 
     def rows(self, part: Contribution) -> ScalarRow:

@@ -35,11 +35,11 @@ from eomgen.symbolic.numeric.tolerances import CERTAIN_AT_50, CLOSED_AT_50, COMP
 STATES = 3
 TRIES = 40
 STEPS = 30  # of Newton's method to the ties
-Values = list[Any]
+NumberRow = list[Any]
 
 
 @dataclass(frozen=True)
-class Combination:
+class Follows:
     """What was found of an equation.
 
     Args:
@@ -56,7 +56,7 @@ class Combination:
 
 
 @dataclass(frozen=True)
-class Numbers:
+class NumberKind:
     """Calculating with exact numbers of one kind, as far as linear equations need it."""
 
     name: str
@@ -65,13 +65,13 @@ class Numbers:
     is_zero: Callable[[Any, Any], bool]  # of a number, beside the size of what it was made of
 
 
-IN_FIELD = Numbers("prime field", lambda x: pow(x, -1, PRIME), lambda x: x % PRIME, lambda x, size: x % PRIME == 0)
-IN_DIGITS = Numbers("50 digits", lambda x: 1 / x, lambda x: x, lambda x, size: abs(x) <= ELIMINATED_AT_50 * size)
+IN_FIELD = NumberKind("prime field", lambda x: pow(x, -1, PRIME), lambda x: x % PRIME, lambda x, size: x % PRIME == 0)
+IN_DIGITS = NumberKind("50 digits", lambda x: 1 / x, lambda x: x, lambda x, size: abs(x) <= ELIMINATED_AT_50 * size)
 
 
 def combination(
     system: System, row: Sequence[Scalar], rows: Sequence[Sequence[Scalar]], tied: Sequence[Sequence[Scalar]] = ()
-) -> Combination:
+) -> Follows:
     """Whether a row is a combination of others, its factors functions of the state.
 
     Args:
@@ -79,7 +79,7 @@ def combination(
         tied: further rows, which hold on the ties alone: apart from these redundant ones contradict one another.
     """
     if not row:
-        return Combination(True)
+        return Follows(True)
     flat = [x for each in (row, *rows) for x in each]
     found = _combined(row, rows, _exact_states(flat), IN_FIELD)
     if found.holds is None:
@@ -92,7 +92,7 @@ def combination(
     return replace(held, on_ties=held.holds is True)
 
 
-def vanishes(system: System, *scalars: Scalar) -> Combination:
+def is_zero_everywhere(system: System, *scalars: Scalar) -> Follows:
     """Whether the scalars are 0 at every state."""
     return combination(system, scalars, ())
 
@@ -108,24 +108,24 @@ def linear_row(x: Scalar, symbols: Sequence[Node]) -> tuple[ScalarRow, bool]:
 
 
 def _combined(
-    row: Sequence[Scalar], rows: Sequence[Sequence[Scalar]], states: Iterable[Values], numbers: Numbers
-) -> Combination:
+    row: Sequence[Scalar], rows: Sequence[Sequence[Scalar]], states: Iterable[NumberRow], numbers: NumberKind
+) -> Follows:
     """The same at given states; undecided where there are none."""
     width, used = len(row), set[int]()
     for seen, values in enumerate(states, start=1):
         table = [values[k : k + width] for k in range(0, len(values), width)]
         factors = factors_in(table[1:], table[0], numbers)
         if factors is None:
-            return Combination(False, (), numbers.name)
+            return Follows(False, (), numbers.name)
         used |= {k for k, x in enumerate(factors) if not numbers.is_zero(x, 1)}
         if seen == STATES:
-            return Combination(True, tuple(sorted(used)), numbers.name)
-    return Combination(None)
+            return Follows(True, tuple(sorted(used)), numbers.name)
+    return Follows(None)
 
 
-def factors_in(rows: Sequence[Values], row: Values, numbers: Numbers) -> Values | None:
+def factors_in(rows: Sequence[NumberRow], row: NumberRow, numbers: NumberKind) -> NumberRow | None:
     """The factors by which the rows make a row; None where none do."""
-    pivots: list[tuple[int, Values, Values]] = []
+    pivots: list[tuple[int, NumberRow, NumberRow]] = []
     for k, each in enumerate((*rows, row)):
         size = max(map(abs, each), default=0)
         left, made = list(each), [int(j == k) for j in range(len(rows) + 1)]
@@ -148,8 +148,8 @@ def factors_in(rows: Sequence[Values], row: Values, numbers: Numbers) -> Values 
 # -- states --------------------------------------------------------------------------------------
 
 
-def _exact_states(flat: Sequence[Scalar]) -> Iterator[Values]:
-    """Values at states of the prime field; none where it cannot tell a difference from none."""
+def _exact_states(flat: Sequence[Scalar]) -> Iterator[NumberRow]:
+    """NumberRow at states of the prime field; none where it cannot tell a difference from none."""
     _, flat = united(list(flat))
     rng, found = Random(7), 0
     for _ in range(TRIES):
@@ -167,8 +167,8 @@ def _exact_states(flat: Sequence[Scalar]) -> Iterator[Values]:
             return
 
 
-def _real_states(system: System, flat: Sequence[Scalar], *, on_ties: bool) -> Iterator[Values]:
-    """Values at real states with 50 digits."""
+def _real_states(system: System, flat: Sequence[Scalar], *, on_ties: bool) -> Iterator[NumberRow]:
+    """NumberRow at real states with 50 digits."""
     _, flat = united(list(flat))
     arithmetic, found = fifty_digits(), 0
     for state in states_of(system, flat, on_ties=on_ties):
@@ -290,7 +290,7 @@ def _at_tied_speeds(system: System, state: dict[Node, Any]) -> dict[Node, Any] |
     return state | {x: state[x] - dx for x, dx in zip(u, step, strict=True)}
 
 
-def _least_step(rows: list[Values], left: Values) -> Values | None:
+def _least_step(rows: list[NumberRow], left: NumberRow) -> NumberRow | None:
     """The least step that takes away what is left: J^T (J J^T)^-1 left, of the rows that are independent."""
     kept: list[int] = []
     plain = np.array([[float(x) for x in row] for row in rows])
@@ -309,7 +309,7 @@ def _least_step(rows: list[Values], left: Values) -> Values | None:
     return [sum(rows[i][c] * y for i, y in zip(kept, solved, strict=True)) for c in range(len(rows[0]))]
 
 
-def _solved(matrix: list[Values], right: Values) -> Values | None:
+def _solved(matrix: list[NumberRow], right: NumberRow) -> NumberRow | None:
     """Linear equations in numbers of 50 digits."""
     rows = [[*row, b] for row, b in zip(matrix, right, strict=True)]
     n = len(rows)

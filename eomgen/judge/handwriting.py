@@ -105,7 +105,7 @@ class Vocabulary:
 
 
 @dataclass(frozen=True)
-class Piece:
+class Scrap:
     """A piece of the equation: its text, what it is, and where it stands in what was written."""
 
     text: str
@@ -136,7 +136,7 @@ def transcript(written: str, known: Vocabulary) -> Transcript:
     plain, places = _plain(written)
     pieces = _Reader(plain, known).whole()
     text, columns = "", list[int]()
-    before: Piece | None = None
+    before: Scrap | None = None
     for piece in pieces:
         glue = "*" if before is not None and _side_by_side(before, piece) else ""
         shown = (
@@ -161,7 +161,7 @@ def _plain(written: str) -> tuple[str, list[int]]:
     return found, places or [0]
 
 
-def _side_by_side(a: Piece, b: Piece) -> bool:
+def _side_by_side(a: Scrap, b: Scrap) -> bool:
     """Whether a product is meant between the two."""
     return a.kind in ("number", "name", "call", "close") and b.kind in ("number", "name", "call", "function", "open")
 
@@ -177,11 +177,11 @@ class _Reader:
 
     def __init__(self, text: str, known: Vocabulary, start: int = 0, depth: int = 0) -> None:
         self.text, self.known, self.offset, self.at, self.depth = text, known, start, 0, depth
-        self.out: list[Piece] = []
+        self.out: list[Scrap] = []
         if depth > DEEPEST:
             raise ExpressionError(f"more than {DEEPEST} levels inside one another", start)
 
-    def whole(self) -> list[Piece]:
+    def whole(self) -> list[Scrap]:
         while self.at < len(self.text):
             self.next()
         return self.out
@@ -189,7 +189,7 @@ class _Reader:
     # -- pieces --------------------------------------------------------------------------------------
 
     def put(self, text: str, kind: str, at: int | None = None) -> None:
-        self.out.append(Piece(text, kind, self.offset + (self.at if at is None else at)))
+        self.out.append(Scrap(text, kind, self.offset + (self.at if at is None else at)))
 
     def next(self) -> None:
         ornament = _ORNAMENT.match(self.text, self.at)
@@ -272,7 +272,7 @@ class _Reader:
                     return self.text[start + 1 : k], start + 1
         raise self.strange("'{' is never closed", "write } at the end", at=start)
 
-    def inner(self, text: str, start: int) -> list[Piece]:
+    def inner(self, text: str, start: int) -> list[Scrap]:
         """The pieces of a group."""
         found = _Reader(text, self.known, self.offset + start, self.depth + 1).whole()
         if not found:
@@ -343,7 +343,7 @@ class _Reader:
         while self.at < len(self.text) and self.text[self.at].isspace():
             self.at += 1
 
-    def one_name(self, dots: int, whole: bool = True) -> list[Piece]:
+    def one_name(self, dots: int, whole: bool = True) -> list[Scrap]:
         """A name with so many dots.
 
         Raises:
@@ -403,7 +403,7 @@ class _Reader:
             inside, at = self.group()
             pieces = self.inner(inside, at)
             bare = not (pieces[0].kind == "open" and _closes_last(pieces))
-            self.out += [Piece("(", "open", self.offset + at), *pieces] if bare else pieces
+            self.out += [Scrap("(", "open", self.offset + at), *pieces] if bare else pieces
             if bare:
                 self.put(")", "close", self.at - 1)
             return
@@ -422,7 +422,7 @@ class _Reader:
         self.put(")", "close", self.at - 1)
 
     def plain_argument(self) -> None:
-        """Numbers and the names behind them: 2\\theta, \\omega t; a fraction."""
+        """NumberKind and the names behind them: 2\\theta, \\omega t; a fraction."""
         while self.at < len(self.text):
             self.skip_space()
             c = self.text[self.at : self.at + 1]
@@ -479,7 +479,7 @@ class _Reader:
         primes = re.sub(r"\s", "", text).replace("\\prime", "'")
         if set(primes) == {"'"} and self.out and self.out[-1].kind == "name":
             last = self.out.pop()
-            self.out.append(Piece(last.text + primes, "name", last.at))
+            self.out.append(Scrap(last.text + primes, "name", last.at))
             return
         if text.strip() in ("\\circ", "°"):
             self.put("*", "sign", start)
@@ -632,7 +632,7 @@ class _Reader:
         self.put(name + "'" * dots, "name", start)
 
 
-def _closes_last(pieces: list[Piece]) -> bool:
+def _closes_last(pieces: list[Scrap]) -> bool:
     """Whether the parenthesis that opens first closes last."""
     level = 0
     for k, piece in enumerate(pieces):

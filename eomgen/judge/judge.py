@@ -20,11 +20,11 @@ from eomgen.errors import (
 )
 from eomgen.judge.case import Case
 from eomgen.judge.causes import causes_of
-from eomgen.judge.decision import vanishes
-from eomgen.judge.kinds import KINDS, kind_of
-from eomgen.judge.reading import Written
+from eomgen.judge.comparison import LONG, Comparison, excess
+from eomgen.judge.decision import is_zero_everywhere
+from eomgen.judge.kinds import KINDS, kind_of_equation
+from eomgen.judge.reading import HandEquation
 from eomgen.judge.renaming import renamings, turnings
-from eomgen.judge.target import LONG, Target, shown
 from eomgen.judge.verdict import RIGHT, UNDECIDED, WRONG, Cause, Verdict
 from eomgen.mechanics.equilibria.search import all_equilibria
 from eomgen.model.fields import AtRest, WrittenEquation
@@ -39,7 +39,7 @@ from eomgen.symbolic.numeric.tolerances import COMPUTED
 from eomgen.symbolic.numeric.work import Work, doing
 from eomgen.symbolic.print.text import readable_text
 
-Names = Mapping[str, Scalar]
+Meanings = Mapping[str, Scalar]
 
 
 def verify(
@@ -76,13 +76,13 @@ class Judge:
         if kind is not None and kind not in KINDS:
             raise UsageError(f"there is no kind '{kind}' of equations", mend=f"one of {', '.join(KINDS)}")
         written = self.case.reading.read(equation)
-        known = kind or kind_of(written, self.case.model)
+        known = kind or kind_of_equation(written, self.case.model)
         try:
             return self._judged(written, known, _instant(self.case, at))
         except (DerivationError, RunFailed, MissingValues) as error:
             return Verdict(written.given, known, UNDECIDED, reason=error.what)
 
-    def _judged(self, written: Written, kind: str, at: WrittenEquation | AtRest | None) -> Verdict:
+    def _judged(self, written: HandEquation, kind: str, at: WrittenEquation | AtRest | None) -> Verdict:
         case = self.case
         unknown = case.unknown_names(written)
         if not unknown:
@@ -101,7 +101,7 @@ class Judge:
         scalar = case.value(written.difference)
         return self._of_scalar(written, kind, scalar)
 
-    def _at_rest(self, written: Written) -> Verdict | None:
+    def _at_rest(self, written: HandEquation) -> Verdict | None:
         """Of an equation in which nothing moves: of the ties, or of rest; None: the model is at rest nowhere."""
         case = self.case
         holds, up_to = self._decided(case.value(written.difference), "law")
@@ -113,13 +113,13 @@ class Judge:
             found = ()
         for place in found:
             exact = case.value(written.difference)
-            if place.is_exact and vanishes(case.system, *substituted((exact,), place.exact)).holds:
+            if place.is_exact and is_zero_everywhere(case.system, *substituted((exact,), place.exact)).holds:
                 return Verdict(written.given, "equilibrium", RIGHT)
         if not found and case.system.symbols.u and not _static(case):
             return None
         return self._asked(written, "equilibrium", AtRest())
 
-    def _of_scalar(self, written: Written, kind: str, scalar: Scalar) -> Verdict:
+    def _of_scalar(self, written: HandEquation, kind: str, scalar: Scalar) -> Verdict:
         """The verdict on an equation whose names are all known."""
         holds, up_to = self._decided(scalar, kind)
         if holds:
@@ -139,7 +139,7 @@ class Judge:
     def _decided(self, scalar: Scalar, kind: str) -> tuple[bool | None, str]:
         """(whether it is right, up to what)"""
         case = self.case
-        found = vanishes(case.system, scalar)
+        found = is_zero_everywhere(case.system, scalar)
         if found.holds:
             if kind == "motion":
                 return False, "identity"
@@ -159,14 +159,14 @@ class Judge:
         moving = (*case.system.symbols.u, *case.system.symbols.a)
         if case.speeds and depends_on(scalar, moving) and not depends_on(scalar, case.system.symbols.lam):
             (started,) = substituted((case.phase.eliminated(scalar),), case.speeds)
-            if vanishes(case.system, started).holds:
+            if is_zero_everywhere(case.system, started).holds:
                 return True, "the energy theorem and the momenta from the start"
         return (None if undecided else False), ""
 
     def _is_constant_of_potential(self, scalar: Scalar) -> bool:
         symbols = self.case.system.symbols
         slopes = gradient(scalar, (symbols.t, *symbols.q, *symbols.u))
-        return bool(vanishes(self.case.system, *slopes).holds)
+        return bool(is_zero_everywhere(self.case.system, *slopes).holds)
 
     def _told(self, scalar: Scalar, kind: str, rows: Sequence[int], on_ties: bool) -> str:
         """What was used, in words."""
@@ -211,11 +211,11 @@ class Judge:
         if constants or not case.start:
             return True, "a first integral of the motion"
         (start,) = substituted((scalar,), case.start)
-        if vanishes(case.system, start).holds:
+        if is_zero_everywhere(case.system, start).holds:
             return True, "the first integral from the start"
         return False, "constant"
 
-    def _course(self, written: Written) -> Verdict | None:
+    def _course(self, written: HandEquation) -> Verdict | None:
         """Of a coordinate as a function of time; None: it is something else."""
         case = self.case
         name = written.left.code[0][1] if len(written.left.code) == 1 and written.left.code[0][0] == "name" else ""
@@ -235,18 +235,18 @@ class Judge:
         if coordinates[name].driven:
             return None
         start = substituted((q - course, scope.names[f"{name}'"] - rate), {**case.start, symbols.t: 0})
-        begins = not case.start or vanishes(case.system, *start).holds
+        begins = not case.start or is_zero_everywhere(case.system, *start).holds
         others = [x for x in (*symbols.q, *symbols.u) if x not in known]
         left = substituted(case.rows, known)
         mine = [row for row in left if not depends_on(row, (*others, *case.forced))]
         inputs = {node: case.system.inputs[n] for n, node in symbols.inputs.items()}
-        found = vanishes(case.system, *substituted(tuple(mine), inputs)) if mine else None
+        found = is_zero_everywhere(case.system, *substituted(tuple(mine), inputs)) if mine else None
         if found is None or found.holds is None:
             return Verdict(written.given, "law", UNDECIDED, reason="the equations of motion do not decide it alone")
         if found.holds and begins:
             return Verdict(written.given, "law", RIGHT, "the motion from the start")
         what = "the equations of motion do not hold with it" if not found.holds else "the start is another one"
-        rest = "" if found.holds else shown(case, mine[0] if len(mine) == 1 else 0)
+        rest = "" if found.holds else excess(case, mine[0] if len(mine) == 1 else 0)
         cause = Cause(
             "other",
             f"{what}: put in, there is left {rest}" if rest else what,
@@ -256,7 +256,7 @@ class Judge:
 
     # -- other names ---------------------------------------------------------------------------------
 
-    def _of_other_names(self, written: Written, kind: str, unknown: list[str]) -> Verdict:
+    def _of_other_names(self, written: HandEquation, kind: str, unknown: list[str]) -> Verdict:
         """Of an equation with names that the model does not have: renamed, constants, or forces of constraints."""
         case = self.case
         for renaming in renamings(case, written, unknown):
@@ -303,7 +303,7 @@ class Judge:
 
     # -- what the solver of outputs answers ------------------------------------------------------------
 
-    def _asked(self, written: Written, kind: str, at: WrittenEquation | AtRest | None) -> Verdict:
+    def _asked(self, written: HandEquation, kind: str, at: WrittenEquation | AtRest | None) -> Verdict:
         """At an instant, at rest, of small motions, of structures: by the solver of outputs."""
         case = self.case
         unknown = case.unknown_names(written)
@@ -324,7 +324,7 @@ class Judge:
             return Verdict(written.given, kind, UNDECIDED, reason=open_.message or "it has no value")
         exact = [case.exact(each) for each in (left, right)]
         if exact[0] is not None and exact[1] is not None:
-            found = vanishes(case.system, exact[0] - exact[1])
+            found = is_zero_everywhere(case.system, exact[0] - exact[1])
             if found.holds:
                 return Verdict(written.given, kind, RIGHT)
         if left.value is not None and right.value is not None:
@@ -335,7 +335,7 @@ class Judge:
                 return self._by_numbers(written, kind, at)
         return self._wrong_value(written, kind, left, right)
 
-    def _by_numbers(self, written: Written, kind: str, at: WrittenEquation | AtRest | None) -> Verdict:
+    def _by_numbers(self, written: HandEquation, kind: str, at: WrittenEquation | AtRest | None) -> Verdict:
         """Whether sides that are equal in numbers are so with other values of the parameters, too."""
         case, tried = self.case, 0
         parameters = case.model.parameters
@@ -360,13 +360,13 @@ class Judge:
             )
         return Verdict(written.given, kind, RIGHT, f"numbers, at {tried + 1} sets of values of the parameters")
 
-    def _wrong_value(self, written: Written, kind: str, left: Answer, right: Answer) -> Verdict:
+    def _wrong_value(self, written: HandEquation, kind: str, left: Answer, right: Answer) -> Verdict:
         """Both sides have values, and these differ."""
         case = self.case
         exact = [case.exact(each) for each in (left, right)]
         difference = f"{left.value - right.value:.6g}" if left.value is not None and right.value is not None else ""
         if exact[0] is not None and exact[1] is not None:
-            difference = shown(case, exact[0] - exact[1]) or difference
+            difference = excess(case, exact[0] - exact[1]) or difference
         cause = Cause("other", f"the left side minus the right side is {difference} there", quantity="the value")
         if left.value and right.value is not None:
             ratio = right.value / left.value
@@ -383,7 +383,7 @@ class Judge:
 
     # -- wrong ---------------------------------------------------------------------------------------
 
-    def _wrong(self, written: Written, kind: str, scalar: Scalar, also: Names | None = None) -> Verdict:
+    def _wrong(self, written: HandEquation, kind: str, scalar: Scalar, also: Meanings | None = None) -> Verdict:
         """Why an equation is wrong; or that another way to count a coordinate makes it right."""
         case = self.case
         _, what = self._decided(scalar, kind)
@@ -392,7 +392,7 @@ class Judge:
             return Verdict(written.given, kind, WRONG, causes=(Cause("other", text, quantity="what is equated"),))
         if what == "constant":
             (start,) = substituted((scalar,), case.start)
-            value = shown(case, start)
+            value = excess(case, start)
             text = f"it stays constant along the motion, but it is {value} at the start, and not 0"
             cause = Cause("other", text, quantity="the constant")
             return Verdict(written.given, kind, WRONG, difference=value, causes=(cause,))
@@ -409,7 +409,7 @@ class Judge:
         if found and target is not None:
             causes = causes_of(case, target.rows, found)
             return Verdict(written.given, kind, WRONG, difference=target.difference(found[0]), causes=causes)
-        difference, touched = target.unexplained() if target is not None else (shown(case, scalar), "")
+        difference, touched = target.unexplained() if target is not None else (excess(case, scalar), "")
         text = f"the sides differ by {difference}" if difference else "the sides differ"
         return Verdict(
             written.given,
@@ -419,7 +419,7 @@ class Judge:
             causes=(Cause("other", f"{text}{touched}", term=difference),),
         )
 
-    def _turned(self, written: Written, kind: str) -> Verdict | None:
+    def _turned(self, written: HandEquation, kind: str) -> Verdict | None:
         """Right where coordinates are counted from elsewhere, all of them in the same way."""
         case = self.case
         for renaming in turnings(case, written):
@@ -428,7 +428,7 @@ class Judge:
                 return Verdict(written.given, kind, RIGHT, up_to, renaming.told)
         return None
 
-    def _without_reactions(self, written: Written, kind: str, also: Names | None) -> Verdict | None:
+    def _without_reactions(self, written: HandEquation, kind: str, also: Meanings | None) -> Verdict | None:
         """Right without the reactions that stand in it: these are left in."""
         from eomgen.judge.kinds import FUNCTION_KINDS
 
@@ -448,14 +448,14 @@ class Judge:
         cause = Cause("constraint_force", _left_in(told), told, force=told, quantity=told)
         return Verdict(written.given, kind, WRONG, difference=told, causes=(cause,))
 
-    def _target(self, written: Written, kind: str, scalar: Scalar, also: Names | None) -> Target | None:
+    def _target(self, written: HandEquation, kind: str, scalar: Scalar, also: Meanings | None) -> Comparison | None:
         """What an equation is compared with."""
         case = self.case
         if kind == "motion" or (kind == "law" and not written.calls):
-            return Target(case, scalar, case.rows, "motion") if case.rows else None
+            return Comparison(case, scalar, case.rows, "motion") if case.rows else None
         calls = set(written.calls)
         if len(calls) != 1:
-            return Target(case, scalar, (0,), "") if calls else None
+            return Comparison(case, scalar, (0,), "") if calls else None
         (call,) = calls
         symbol = case.system.scope.graph.symbol(f"({call})")
         left = written.difference.evaluate({**case.system.scope.names, **(also or {})}, lambda _: symbol)
@@ -464,7 +464,7 @@ class Judge:
             return None
         (rest,) = substituted((left,), {symbol: 0})
         author, true = over(-rest, slope), case.called(call)
-        return Target(case, author - true, (true,), _WHAT.get(call.name, "") if not call.args else "", call)
+        return Comparison(case, author - true, (true,), _WHAT.get(call.name, "") if not call.args else "", call)
 
 
 FAR_FETCHED = 16.0
@@ -506,7 +506,7 @@ def _instant(case: Case, at: Any) -> WrittenEquation | AtRest | None:
         raise UsageError(f"at {at}: {error.what}", mend=error.mend or 'write "theta = pi/2"') from error
 
 
-def _rounding(written: Written) -> float | None:
+def _rounding(written: HandEquation) -> float | None:
     """Half of the last digit of a side that is a decimal number; None where none is."""
     found = re.fullmatch(r"\s*[-+]?\d+\.(\d+)\s*", written.right.text)
     return None if found is None else 0.5000001 * 10.0 ** -len(found[1])

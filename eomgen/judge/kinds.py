@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from eomgen.judge.reading import MULTIPLIER, Written
+from eomgen.judge.reading import MULTIPLIER, HandEquation
 from eomgen.model.outputs import ALL
 from eomgen.model.outputs.acceleration import ACCELERATION, MAGNITUDE_OF_ACCELERATION
 from eomgen.model.outputs.along_coordinates import GENERALIZED_FORCE
@@ -41,7 +41,7 @@ FUNCTION_KINDS = {
 }
 
 
-def kind_of(written: Written, model: Model) -> str:
+def kind_of_equation(written: HandEquation, model: Model) -> str:
     """What an equation is about."""
     names = written.names
     speeds = {f"{name}'" for name in model.speeds}

@@ -27,7 +27,7 @@ MULTIPLIER = "lam"  # of a closing row: lam(tie, 1)
 
 
 @dataclass(frozen=True)
-class Written:
+class HandEquation:
     """An equation of somebody.
 
     Args:
@@ -84,7 +84,7 @@ class Reading:
                 found.setdefault(letter, Call(function, (Reference(arguments),)))
         return {letter: call for letter, call in found.items() if letter not in self.system.scope.names}
 
-    def read(self, given: Any) -> Written:
+    def read(self, given: Any) -> HandEquation:
         """Both sides of an equation.
 
         Raises:
@@ -93,7 +93,7 @@ class Reading:
         if not isinstance(given, str):
             given = text_of_sympy(given)
         left, right = self._sides(given)
-        return Written(given, self._meant(left), self._meant(right))
+        return HandEquation(given, self._meant(left), self._meant(right))
 
     def _sides(self, given: str) -> tuple[Expression, Expression]:
         """The sides, by the grammar where that knows all names, else as handwriting."""

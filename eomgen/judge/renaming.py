@@ -7,7 +7,7 @@ from dataclasses import dataclass, replace
 from itertools import islice, permutations, product
 from typing import TYPE_CHECKING
 
-from eomgen.judge.reading import Written
+from eomgen.judge.reading import HandEquation
 from eomgen.model.catalog import Catalog
 from eomgen.model.dimensions import inferred
 from eomgen.symbolic.expression.functions import over
@@ -36,7 +36,7 @@ class Renaming:
     near: bool = True
 
 
-def renamings(case: Case, written: Written, unknown: Sequence[str]) -> Iterator[Renaming]:
+def renamings(case: Case, written: HandEquation, unknown: Sequence[str]) -> Iterator[Renaming]:
     """Ways to read the unknown names, the nearest first."""
     coordinates = [name for name in case.model.coordinates if name not in written.names]
     parameters = [name for name in (*case.model.parameters, *case.model.inputs) if name not in written.names]
@@ -52,7 +52,7 @@ def renamings(case: Case, written: Written, unknown: Sequence[str]) -> Iterator[
                 yield replace(_renaming(case, ways), near=near)
 
 
-def turnings(case: Case, written: Written) -> Iterator[Renaming]:
+def turnings(case: Case, written: HandEquation) -> Iterator[Renaming]:
     """The model's own angles counted from the other axis, one of them or all alike.
 
     Nothing else is tried under the model's own names: a sign that is wrong would be right in the other direction.

@@ -12,7 +12,7 @@ from eomgen.errors import ExpressionError
 from eomgen.judge.case import Case
 from eomgen.judge.causes import other_calls
 from eomgen.judge.corruptions import Corruption, Corruptions, corrupted_terms, terms_of
-from eomgen.judge.decision import vanishes
+from eomgen.judge.decision import is_zero_everywhere
 from eomgen.judge.diagnosis import Explanation, Samples, Search, explained, samples_of
 from eomgen.symbolic.exact.normal_form import legible
 from eomgen.symbolic.expression.derivative import depends_on, derivative, gradient
@@ -28,7 +28,7 @@ EXTRA = 4.5  # rank of a term of the author that does not belong there
 
 
 @dataclass(frozen=True)
-class Target:
+class Comparison:
     """What an equation is compared with.
 
     Args:
@@ -161,7 +161,7 @@ class Target:
         scalar = self.scalar - sum((share.corruption.rows[0] for share in extra), start=0)
         if self.what != "motion":
             total = sum((x[0] for x in added), start=0)
-            return bool(vanishes(case.system, *self._moving([scalar - total])).holds)
+            return bool(is_zero_everywhere(case.system, *self._moving([scalar - total])).holds)
         rows = tuple(row + sum((x[k] for x in added), start=0) for k, row in enumerate(self.rows))
         return bool(case.follows(scalar, rows).holds)
 
@@ -170,25 +170,25 @@ class Target:
         added = [share.added(self.case.system.scope.graph.pi) for share in explanation.shares]
         rows = [sum(column, start=0) for column in zip(*added, strict=True)]
         row = rows[explanation.row] if explanation.row >= 0 else next((x for x in rows if not is_zero(x)), 0)
-        return shown(self.case, row)
+        return excess(self.case, row)
 
     def unexplained(self) -> tuple[str, str]:
         """(the difference, what it touches), where nothing explains it."""
         case = self.case
         if self.what != "motion" or not self.searches:
-            return shown(case, self.scalar), ""
+            return excess(case, self.scalar), ""
         best = min(self.searches, key=lambda search: _misfit(search))
         if best.row < 0:
-            return shown(case, case.phase.eliminated(self.scalar)), ""
+            return excess(case, case.phase.eliminated(self.scalar)), ""
         row = self.rows[best.row]
         a = next((x for x in case.system.symbols.a if depends_on(row, (x,))), None)
         name = case.system.symbols.u[best.row].name.removesuffix("'")
         if a is None or is_zero(derivative(self.scalar, a)):
-            return shown(case, self.scalar), f" (beside the equation of {name})"
+            return excess(case, self.scalar), f" (beside the equation of {name})"
         factor = legible(
             over(derivative(self.scalar, a), derivative(row, a)), Work.FORMULA, case.system.scope.positive, LONG
         )
-        return shown(case, self.scalar - factor * row), f", beside the equation of {name}{_touched(self, best)}"
+        return excess(case, self.scalar - factor * row), f", beside the equation of {name}{_touched(self, best)}"
 
 
 def _misfit(search: Search) -> float:
@@ -196,7 +196,7 @@ def _misfit(search: Search) -> float:
     return float(np.linalg.norm(left)) if np.all(np.isfinite(left)) else float("inf")
 
 
-def _touched(target: Target, search: Search) -> str:
+def _touched(target: Comparison, search: Search) -> str:
     """The contributions that lie nearest to what is left."""
     left, A, kept = search.projection
     with np.errstate(all="ignore"):
@@ -208,7 +208,7 @@ def _touched(target: Target, search: Search) -> str:
     return f"; it lies nearest to {' and '.join(each.name for _, each in best)}" if best else ""
 
 
-def shown(case: Case, scalar: Scalar) -> str:
+def excess(case: Case, scalar: Scalar) -> str:
     """A difference as a text; "" where nobody would read it."""
     form = legible(scalar, Work.ANSWER, case.system.scope.positive, LONG)
     return readable_text(form) or ""
