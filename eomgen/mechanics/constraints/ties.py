@@ -24,7 +24,7 @@ from eomgen.model.constraints.row import TieRow
 from eomgen.model.forces.load import PointForce, Push
 from eomgen.model.unbuilt import unbuilt_ties
 from eomgen.model.values import exact_parameters
-from eomgen.symbolic.exact.equality import Verdict, equal_at_random_states, equal_at_real_states, equal_in_field
+from eomgen.symbolic.exact.equality import Equality, equal_at_random_states, equal_at_real_states, equal_in_field
 from eomgen.symbolic.expression.derivative import depends_on, jacobian, substituted
 from eomgen.symbolic.expression.functions import over, sqrt
 from eomgen.symbolic.expression.graph import Node, Scalar, is_zero
@@ -327,5 +327,5 @@ def hold_identically(scalars: Sequence[Scalar]) -> list[bool]:
     return [_settled(x, next(verdicts)) if type(x) is Node else is_zero(x) for x in scalars]
 
 
-def _settled(x: Scalar, verdict: Verdict | None) -> bool:
+def _settled(x: Scalar, verdict: Equality | None) -> bool:
     return (equal_at_real_states([(x, 0)]) if verdict is None else verdict).equal
