@@ -108,11 +108,11 @@ class RunNumbers:
         rows = np.abs(self.J @ a + self.gamma)
         terms = 1 + np.abs(self.J) @ np.abs(a) + np.abs(self.gamma)
         parts["J a + gamma = 0"] = float(np.max(rows / terms, initial=0.0))
-        self._refuse_contradiction()
+        self.refuse_contradiction()
         worst = max(parts, key=lambda name: np.inf if np.isnan(parts[name]) else parts[name])
         return float(parts[worst]), worst
 
-    def _refuse_contradiction(self) -> None:
+    def refuse_contradiction(self) -> None:
         """Redundant rows contradict one another where the ties are open.
 
         Raises:

@@ -106,7 +106,12 @@ class Judged:
         )
 
     def _accelerations(self, at: TriedState) -> Mapping[Node, float]:
-        """a by dense linear algebra."""
+        """a by dense linear algebra.
+
+        Raises:
+            NoValue: redundant ties contradict one another at the state.
+        """
+        self.motion.numbers(at).refuse_contradiction()
         found = accelerations_at(self.motion.equations, self.motion.values(at))
         return dict(zip(self.motion.equations.symbols.a, found.tolist(), strict=True))
 

@@ -21,7 +21,7 @@ needs_cc = pytest.mark.skipif(build.compiler() is None, reason="no C compiler")
 
 
 def generated(target: str, name: str = "cart_pole"):
-    actuated = () if name == "cart_pole" else ("alpha",)
+    actuated = {"four_bar": ("alpha",), "robot_with_trailer": ("left", "right")}.get(name, ())
     return eomgen.generate(eomgen.load(MODELS / f"{name}.toml"), (target,), name=name, actuated=actuated)
 
 
@@ -38,6 +38,14 @@ def test_every_function_that_is_written_is_run(target, name):
     held = [check.name for check in certificate.checks if check.status == "holds"]
     for role in ("rhs", "reactions", "inverse"):
         assert f"{name}_{role} in {target} gives the symbols' numbers" in held
+
+
+@needs_cc
+def test_redundant_ties_that_contradict_one_another_say_nothing_of_the_code():
+    """Two wheels on one axle: at a random state their rows contradict, and no acceleration is the right one."""
+    certificate = generated("c", "robot_with_trailer").certify()
+    (reactions,) = (check for check in certificate.checks if "robot_with_trailer_reactions in c" in check.name)
+    assert certificate.ok and reactions.status == "holds", str(certificate)
 
 
 @each_target
