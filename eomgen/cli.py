@@ -538,6 +538,8 @@ def animate_command(model: str, wants_json: bool, format_: str | None, output: s
 @with_values
 @click.option("--inverse", is_flag=True, help="Inverse dynamics too: the forces that given accelerations take.")
 @click.option("--actuated", metavar="NAMES", help='Which coordinates, inputs or joints act: "q1,q2".  [default: all]')
+@click.option("--integrator", is_flag=True, help="In C too: an integrator, and a program that writes a motion as CSV.")
+@click.option("--float32", is_flag=True, help="The C in single precision; the tolerances of its tests are measured.")
 @CERTIFY
 @click.option(
     "--baumgarte",
@@ -553,6 +555,8 @@ def codegen_command(
     wants_list: bool,
     output: str | None,
     inverse: bool,
+    integrator: bool,
+    float32: bool,
     actuated: str | None,
     follow: tuple[str, ...],
     baumgarte: tuple[float, float] | None,
@@ -581,6 +585,8 @@ def codegen_command(
             targets=tuple(dict.fromkeys(targets)),
             directory=output,
             inverse=inverse,
+            integrator=integrator,
+            float32=float32,
             actuated=names,
             baumgarte=baumgarte,
             certify=certify,

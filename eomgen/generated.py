@@ -13,17 +13,22 @@ from eomgen.codegen.files import texts_of
 from eomgen.codegen.names import identifier
 from eomgen.codegen.rhs import RightHandSide, target_named
 from eomgen.codegen.targets.base import INVERSE, REACTIONS, RHS, Description, Emitted, FileContent
+from eomgen.codegen.targets.c_integrator import integrator_files
+from eomgen.codegen.targets.c_single import single_error, single_text, single_vectors
 from eomgen.codegen.vectors import vectors
 from eomgen.equations import Equations
-from eomgen.errors import DerivationError
+from eomgen.errors import DerivationError, RunFailed, ToolMissing, UsageError
 from eomgen.mechanics.balance.named_reactions import named_reactions
+from eomgen.model.contacts import contacts_of
 from eomgen.model.parts import Model
 from eomgen.model.reader import ModelOrPath, model_at
 from eomgen.model.replaced import Values
-from eomgen.proof.check import Certificate, Check
+from eomgen.proof.check import Certificate, Check, checked, unchecked
 from eomgen.proof.emitted_code import PhaseMotion
 from eomgen.proof.written_code import Judged, Written, start_state_tried
 from eomgen.questions.run import pulling
+from eomgen.simulation.configuration import paths_of
+from eomgen.symbolic.numeric.tolerances import RUN, SINGLE
 from eomgen.symbolic.numeric.work import doing
 from eomgen.version import __version__
 
@@ -39,6 +44,8 @@ class Generated:
         origin: what the files say that they were made from.
         targets: the languages.
         actuated: the actuators of inverse dynamics, () for all speeds; None where these are not asked for.
+        integrator: whether the C has one of its own.
+        float32: whether the C is in single precision.
     """
 
     model: Model
@@ -47,6 +54,8 @@ class Generated:
     origin: str
     targets: tuple[str, ...]
     actuated: tuple[str, ...] | None = None
+    integrator: bool = False
+    float32: bool = False
 
     @cached_property
     def motion(self) -> Emitted:
@@ -84,7 +93,33 @@ class Generated:
     @cached_property
     def texts(self) -> dict[str, FileContent]:
         """{path: content} of every file."""
-        return texts_of(self.stem, self.emitted, targets=self.targets, notes=[self.note] if self.note else [])
+        if not self.float32:
+            return self._in_doubles
+        found = self._texts([(p, replace(told, vectors=single_vectors(p, told.vectors))) for p, told in self.emitted])
+        return {path: single_text(str(text)) if path.endswith((".c", ".h")) else text for path, text in found.items()}
+
+    @cached_property
+    def _in_doubles(self) -> dict[str, FileContent]:
+        return self._texts(self.emitted)
+
+    def _texts(self, emitted: Sequence[Emitted]) -> dict[str, FileContent]:
+        texts = texts_of(self.stem, emitted, targets=self.targets, notes=self.notes)
+        folder = "" if len(self.targets) == 1 else "c/"
+        return texts | {f"{folder}{name}": text for name, text in self._integrator.items()}
+
+    @property
+    def notes(self) -> list[str]:
+        """What is not in the code, and why."""
+        open_ties = "what puts the ties back as they open by the errors of many steps (--baumgarte lets them pull)"
+        drifts = self.integrator and any(not row.identical for row in self.equations.graph.system.ties.rows)
+        return [note for note in (self.note, open_ties * drifts) if note]
+
+    @property
+    def _integrator(self) -> dict[str, str]:
+        if not self.integrator:
+            return {}
+        x0, p0 = (None if each is None else each.tolist() for each in (self._start.x0, self._start.p0))
+        return integrator_files(identifier(self.stem), self.motion[0], x0, p0, SINGLE if self.float32 else RUN)
 
     def write(self, directory: str | Path) -> list[Path]:
         """The files, all of them or none.
@@ -116,11 +151,26 @@ class Generated:
         for target in self.targets:
             for emitted in self.emitted:
                 yield judged[emitted[1].role].check(self._written(target, emitted), start)
+        for emitted in self.emitted if self.float32 else ():
+            yield self._single(emitted)
+
+    def _single(self, emitted: Emitted) -> Check:
+        """The text in single precision, run, against the vectors and the tolerances that stand beside it."""
+        program, told = emitted
+        name, how = told.role.main(identifier(self.stem)), "the code in single precision, run"
+        text = str(self.texts[f"{name}.c"]).replace(f'#include "{name}.h"\n', str(self.texts[f"{name}.h"]), 1)
+        what = f"{name} in single precision is as near as its tolerances say"
+        try:
+            error = single_error(text, name, program, single_vectors(program, told.vectors))
+        except (RunFailed, ToolMissing) as failure:
+            return unchecked(what, failure.what, how)
+        return checked(what, f"{error:.2g} tolerances away" if error > 1 else "", how)
 
     def _written(self, target: str, emitted: Emitted) -> Written:
         program, told = emitted
         folder = "" if len(self.targets) == 1 else f"{target}/"
-        texts = {path.removeprefix(folder): text for path, text in self.texts.items() if path.startswith(folder)}
+        whole = self._in_doubles.items()
+        texts = {path.removeprefix(folder): text for path, text in whole if path.startswith(folder)}
         return Written(target, texts, program, identifier(self.stem), told.role, told.vectors)
 
     @cached_property
@@ -154,6 +204,8 @@ def generate(
     origin: str | None = None,
     actuated: Sequence[str] | None = None,
     baumgarte: tuple[float, float] | None = None,
+    integrator: bool = False,
+    float32: bool = False,
     parameters: Values | None = None,
     start: Values | None = None,
 ) -> Generated:
@@ -164,19 +216,47 @@ def generate(
         name: of the functions and files.
         actuated: inverse dynamics too, of these coordinates, speeds, inputs or joints; () for all speeds.
         baumgarte: alpha and beta of closing rows that pull back what has opened [1/s]; None: they do not pull.
+        integrator: an integrator of its own in C too, with a program that writes a motion as CSV.
+        float32: the C in single precision; the tolerances of its tests are measured.
         parameters, start: values that replace the model's, each as `model_at` takes it.
     Raises:
-        UsageError: a language that there is none.
+        UsageError: a language that there is none; an integrator of what is not in C, or whose contacts change.
     """
     model = model_at(model, parameters, start)
+    if integrator:
+        _refuse_integrator(model, targets)
+    if float32 and tuple(targets) != ("c",):
+        raise UsageError("single precision is written in C alone", mend="take --target c, and no other")
     for target in targets:
         target_named(target)  # refuses what is none before anything is derived
     equations = pipeline.derive(model)
     equations = equations if baumgarte is None else pulling(equations, baumgarte)
+    if float32 and equations.graph.J:
+        closing = ", ".join(
+            f"'{name}'" for name in dict.fromkeys(row.tie for row in equations.graph.system.ties.closing)
+        )
+        what = (
+            f"no single precision for ties that multipliers close: {closing}: it does not tell which depend on others"
+        )
+        raise UsageError(what, mend="make coordinates `dependent`, or leave --float32 out")
     origin = origin or model.name
     source = f"{origin} ({model.source})" if model.source else origin
     acting = None if actuated is None else tuple(actuated)
-    return Generated(model, equations, name, source, tuple(dict.fromkeys(targets)), acting)
+    return Generated(model, equations, name, source, tuple(dict.fromkeys(targets)), acting, integrator, float32)
+
+
+def _refuse_integrator(model: Model, targets: Sequence[str]) -> None:
+    """Refuses an integrator of what cannot have one.
+
+    Raises:
+        UsageError: C is not asked for; contacts or paths change the equations on the way.
+    """
+    if "c" not in targets:
+        raise UsageError("an integrator is written in C", mend="ask for --target c too")
+    changing = [*(contact.name for contact in contacts_of(model)), *paths_of(model)]
+    if changing:
+        names = ", ".join(f"'{name}'" for name in changing)
+        raise UsageError(f"no integrator for what changes its equations: {names}", mend="take eomgen simulate")
 
 
 def _remarks(model: Model) -> dict[str, str]:

@@ -21,6 +21,8 @@ def codegen_document(
     inverse: bool = False,
     actuated: tuple[str, ...] = (),
     baumgarte: tuple[float, float] | None = None,
+    integrator: bool = False,
+    float32: bool = False,
     certify: bool = True,
 ) -> Document:
     """The right-hand side and the reactions as files that compile as they are; none where their proof fails.
@@ -29,15 +31,26 @@ def codegen_document(
         targets: the languages; the files of one lie in the directory, of several each in a folder of its name.
         inverse: write inverse dynamics too, of the actuated coordinates, speeds, inputs or joints.
         baumgarte: alpha and beta of closing rows that pull back what has opened [1/s]; None: they do not pull.
+        integrator: an integrator in C too.
+        float32: the C in single precision.
     """
     acting = actuated if inverse or actuated else None
-    found = generate(model, targets, name=stem, origin=origin, actuated=acting, baumgarte=baumgarte)
+    found = generate(
+        model,
+        targets,
+        name=stem,
+        origin=origin,
+        actuated=acting,
+        baumgarte=baumgarte,
+        integrator=integrator,
+        float32=float32,
+    )
     certificate = found.certify() if certify else None
     refused = certificate is not None and certificate.ok is False
     paths = [] if refused else [str(path) for path in found.write(directory)]
     lines = ("no files were written",) if refused else tuple(paths)
     document = plain_document(model, lambda: _payload(found, paths), Lines(lines))
-    return replace(document, notes=(found.note,) if found.note else ()).proven(certificate)
+    return replace(document, notes=tuple(found.notes)).proven(certificate)
 
 
 def _payload(found: Generated, paths: list[str]) -> dict[str, object]:

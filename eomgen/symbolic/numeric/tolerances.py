@@ -18,6 +18,10 @@ ROUNDING_SQUARED = 1e-28  # of a largest pivot that is the square of a length
 TINIEST = 1e-300  # instead of 0 in a divisor
 SLOW = 1e-4  # [of a unit, a second] a rate of this part of 1 is compared as 1 is: smaller ones are mostly rounding
 
+# In single precision (7 digits).
+SINGLE_ROUNDING = 6e-8  # of a number, half a unit in the last place: states so near are one
+SINGLE = 1e-6  # one evaluation, beside what the rounding of its arguments does; of a run, what is asked of a step
+
 # What is left of 0 in numbers of 50 digits.
 ZERO_AT_50 = 1e-25  # [1] of what would be of the order of 1: half of the digits are left for what cancels
 CERTAIN_AT_50 = 1e-30  # [1] above it the sign of a constant is known; a step of Newton's method that ends it
