@@ -12,9 +12,9 @@ from eomgen.certificate import certify
 from eomgen.codegen.files import texts_of
 from eomgen.codegen.names import identifier
 from eomgen.codegen.rhs import RightHandSide, target_named
+from eomgen.codegen.single_precision import single_error, single_text, single_vectors
 from eomgen.codegen.targets.base import INVERSE, REACTIONS, RHS, Description, Emitted, FileContent
 from eomgen.codegen.targets.c_integrator import integrator_files
-from eomgen.codegen.targets.c_single import single_error, single_text, single_vectors
 from eomgen.codegen.vectors import vectors
 from eomgen.equations import Equations
 from eomgen.errors import DerivationError, RunFailed, ToolMissing, UsageError

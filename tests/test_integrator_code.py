@@ -14,7 +14,7 @@ from click.testing import CliRunner
 
 import eomgen
 from eomgen.cli import main
-from eomgen.codegen.targets.c_single import single_text
+from eomgen.codegen.single_precision import single_text
 from eomgen.errors import UsageError
 
 MODELS = Path(__file__).parent.parent / "models"
