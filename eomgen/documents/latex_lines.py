@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from itertools import groupby
 
-from eomgen.documents.latex_math import FUNCTIONS, Set, Setter, is_sum
+from eomgen.documents.latex_math import FUNCTIONS, Set, Setter, bracketed, is_sum
 from eomgen.symbolic.expression.graph import Node, Scalar
 from eomgen.symbolic.print.layout import Product
 
@@ -120,7 +120,7 @@ def _opened(setter: Setter, product: Product, term: Set, room: float) -> list[Se
     if not sums:
         return [term]
     longest = max(sums, key=lambda base: setter.set(base).width)
-    bracket = rf"\left({setter.set(longest).tex}\right)"
+    bracket = bracketed(setter.set(longest)).tex
     if term.tex.count(bracket) != 1:
         return [term]
     before, after = term.tex.split(bracket)

@@ -38,6 +38,7 @@ WRAPPED: dict[str, Callable[[str], str]] = {
 }
 RELATIONS = {"less": "<", "less_equal": r"\leq"}
 _COMMAND = re.compile(r"\\[a-zA-Z]+")
+_HIGH = re.compile(r"\\(?:frac|sqrt|begin|left)")
 _SILENT = re.compile(r"[{}_^\\ ]")
 
 
@@ -171,7 +172,7 @@ class Setter:
         if len(arguments) == 1 and is_bare_argument(op, node.args[0]):
             inside = self._in_one_fraction(node.args[0]).tex
             return Set(FUNCTIONS[op] + (inside if inside.startswith("\\") else f" {inside}"), width + len(op), TALL)
-        return Set(rf"{FUNCTIONS[op]}\left({inside}\right)", width + len(op) + 1, TALL)
+        return Set(f"{FUNCTIONS[op]}{_in_brackets(inside)}", width + len(op) + 1, TALL)
 
     def _in_one_fraction(self, x: Scalar) -> Set:
         """x, a product with a broken number as one fraction: 14 l/3."""
@@ -200,8 +201,13 @@ def width_of(tex: str) -> float:
 
 
 def bracketed(inside: Set) -> Set:
-    """In parentheses that grow with what they hold."""
-    return Set(rf"\left({inside.tex}\right)", inside.width + 2)
+    """In parentheses."""
+    return Set(_in_brackets(inside.tex), inside.width + 2)
+
+
+def _in_brackets(tex: str) -> str:
+    """Parentheses that grow with what they hold, plain ones round what is no higher than a line: they stand closer."""
+    return rf"\left({tex}\right)" if _HIGH.search(tex) else f"({tex})"
 
 
 def _number(c: Number) -> Set:
