@@ -18,7 +18,7 @@ from eomgen.symbolic.expression.node import SUMS, holds_op, op_bits
 from eomgen.symbolic.expression.rational import Fraction
 from eomgen.symbolic.expression.traversal import order
 from eomgen.symbolic.numeric.work import Work
-from eomgen.symbolic.print.layout import factors
+from eomgen.symbolic.print.layout import factors, products_of
 from eomgen.symbolic.print.length import length_of
 from eomgen.symbolic.print.text import named_parts, text_size, to_text
 
@@ -134,6 +134,7 @@ class Reader:
             return left, right, 1
         graph = next(x.graph for x in (left, right) if type(x) is Node)
         number, product = common_factor((left, right), Work.ENTRY, tuple(self.roots))
+        product = product * common_sums(left, right)
         small = max(number.numerator, number.denominator) <= LARGEST_DIVISOR
         found: list[tuple[Scalar, Scalar, Scalar]] = []
         for divisor in (number * product, product) if small else (product,):
@@ -168,10 +169,20 @@ class Reader:
             return total
         found = sum((x for x in written if not isinstance(x, Omitted)), start=0)
         short = self._read(total)
-        if type(found) is not Node or (short is not None and length_of(short) <= length_of(found)):
+        if type(found) is not Node or (short is not None and length_of(short) <= length_of(found) + BRACKETS):
             return total
         self._known[found] = found
         return found
+
+
+def common_sums(*sides: Scalar) -> Scalar:
+    """The product of the sums of parameters that all terms of the sides hold: (a + b) of (a + b)^2*x'' = (a + b)*g."""
+    held = [dict(term.numerator) for x in sides if not is_zero(x) for term in products_of(x)]
+    total: Scalar = 1
+    for base in held[0] if held else ():
+        if base.op in SUMS and base.graph.is_constant(base) and (e := min(each.get(base, 0) for each in held)):
+            total = total * base.graph.pow(base, e)
+    return total
 
 
 def conditions_in(x: Scalar) -> list[Node]:
