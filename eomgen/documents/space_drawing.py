@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping
+from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
@@ -15,18 +16,41 @@ from eomgen.scene.strokes import Drawing
 
 AZIMUTH, ELEVATION = math.radians(-58), math.radians(22)
 SHADES = 24  # of a colour
+PADDED = 12  # corners; where a facet has more they are drawn one by one
 LIGHT = np.array([0.35, -0.5, 0.79])
 CLEAR = {"inertia": 0.35, "track": 0.12, "hole": 0.2}  # how much of what is behind these hide
 TOWARDS = 0.02  # lines lie so much nearer than the faces around them, of the extent
-
-
-Ink = tuple[float, float, float, float]
 
 
 def sight(azimuth: float = AZIMUTH, elevation: float = ELEVATION) -> np.ndarray:
     """The rotation from the ground to the page: right, up, towards the eye."""
     c, s, ce, se = math.cos(azimuth), math.sin(azimuth), math.cos(elevation), math.sin(elevation)
     return np.array([[-s, c, 0.0], [-se * c, -se * s, ce], [ce * c, ce * s, se]])
+
+
+@dataclass(frozen=True)
+class _Facets:
+    """Faces, or pieces of a line, of one stroke on the page.
+
+    Args:
+        depth: n, larger is nearer.
+        corners: n x k x 2.
+        inks: n x (fill 4, edge 4, width).
+    """
+
+    depth: np.ndarray
+    corners: np.ndarray
+    inks: np.ndarray
+
+
+def _sorted_corners(groups: list[np.ndarray], order: np.ndarray) -> Any:
+    """The corners of all facets in an order: as one array, those with fewer corners end in the same one often."""
+    most = max((group.shape[1] for group in groups), default=2)
+    if most > PADDED:
+        every = [facet for group in groups for facet in group]
+        return [every[k] for k in order]
+    padded = [np.concatenate([g, np.repeat(g[:, -1:], most - g.shape[1], axis=1)], axis=1) for g in groups]
+    return np.concatenate(padded)[order] if padded else np.zeros((0, 2, 2))
 
 
 class SpacePicture:
@@ -38,7 +62,7 @@ class SpacePicture:
         self.drawing, self.colors, self.view = drawing, colors or {}, sight()
         panel.set_aspect("equal")
         panel.axis("off")
-        self.pieces = PolyCollection([], closed=False, capstyle="round", joinstyle="round", clip_on=False)
+        self.pieces: Any = PolyCollection([], closed=False, capstyle="round", joinstyle="round", clip_on=False)
         panel.add_collection(self.pieces, autolim=False)
         low, high = self.limits()
         panel.set_xlim(low[0], high[0])
@@ -57,22 +81,24 @@ class SpacePicture:
 
     def show(self, frame: int) -> None:
         """Everything at one frame, sorted by its distance."""
-        parts: list[tuple[float, np.ndarray, Ink, Ink, float]] = []
+        parts: list[_Facets] = []
         for stroke in self.drawing.strokes:
             color, width = LINES[stroke.role]
             if stroke.role in ("body", "inertia") and stroke.of in self.colors:
                 color = self.colors[stroke.of]
-            parts += self._faces(stroke, frame, color) if stroke.faces else self._line(stroke, frame, color, width)
-        parts.sort(key=lambda part: part[0])
-        self.pieces.set_verts([part[1] for part in parts], closed=False)
-        self.pieces.set_facecolor([part[2] for part in parts])
-        self.pieces.set_edgecolor([part[3] for part in parts])
-        self.pieces.set_linewidth([part[4] for part in parts])
+            found = self._faces(stroke, frame, color) if stroke.faces else self._line(stroke, frame, color, width)
+            parts += [found] if found is not None else []
+        order = np.argsort(np.concatenate([[], *(part.depth for part in parts)]), kind="stable")
+        inks = np.concatenate([np.zeros((0, 9)), *(part.inks for part in parts)])[order]
+        self.pieces.set_verts(_sorted_corners([part.corners for part in parts], order), closed=True)
+        self.pieces.set_facecolor(inks[:, :4])
+        self.pieces.set_edgecolor(inks[:, 4:8])
+        self.pieces.set_linewidth(inks[:, 8])
 
-    def _faces(self, stroke: Any, frame: int, color: str) -> list[Any]:
+    def _faces(self, stroke: Any, frame: int, color: str) -> _Facets | None:
         corners = stroke.path[frame]
         if not np.isfinite(corners).all():
-            return []
+            return None
         normal = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 1])
         flat = np.linalg.norm(normal, axis=1) == 0
         if corners.shape[1] > 3:
@@ -87,32 +113,28 @@ class SpacePicture:
         base = _rgb(FILLS.get(stroke.role, color) if stroke.of not in self.colors else color)
         edge = (*_rgb(color), 0.25 if len(corners) > 12 else 0.8 * max(alpha, 0.4))
         back = -math.inf if stroke.role == "track" else 0.0
-        return [
-            (
-                float(face[:, 2].mean()) + back,
-                np.vstack([face[:, :2], face[:1, :2]]),
-                (*(base * shade), alpha),
-                edge,
-                0.4,
-            )
-            for face, shade in zip(page, light, strict=True)
-        ]
+        rest = np.broadcast_to([alpha, *edge, 0.4], (len(page), 6))
+        return _Facets(
+            page[:, :, 2].mean(axis=1) + back, page[:, :, :2], np.column_stack([light[:, None] * base, rest])
+        )
 
-    def _line(self, stroke: Any, frame: int, color: str, width: float) -> list[Any]:
+    def _line(self, stroke: Any, frame: int, color: str, width: float) -> _Facets | None:
         page = stroke.path[frame] @ self.view.T
         near = math.inf if stroke.role == "axes" else TOWARDS * self.drawing.sizes.extent
         ink = (*_rgb(color), 1.0)
         if stroke.dot:
-            turn = np.linspace(0, math.tau, 17)
+            turn = np.linspace(0, math.tau, 13)[:-1]
             dot = page[0, :2] + 0.55 * self.drawing.sizes.unit * np.column_stack([np.cos(turn), np.sin(turn)])
-            return [(float(page[0, 2]) + near, dot, ink, ink, 0.5)] if np.isfinite(page).all() else []
+            return (
+                _Facets(page[:1, 2] + near, dot[None], np.array([[*ink, *ink, 0.5]]))
+                if np.isfinite(page).all()
+                else None
+            )
         thin = FINE if stroke.fine else 3.0 if stroke.role == "body" else width
-        joined = [(page[k], page[k + 1]) for k in range(len(page) - 1)]
-        return [
-            (float(a[2] + b[2]) / 2 + near, np.array([a[:2], b[:2]]), (0.0, 0.0, 0.0, 0.0), ink, thin)
-            for a, b in joined
-            if np.isfinite([a, b]).all()
-        ]
+        joined = np.stack([page[:-1], page[1:]], axis=1)
+        joined = joined[np.isfinite(joined).all(axis=(1, 2))]
+        inks = np.tile([0.0, 0.0, 0.0, 0.0, *ink, thin], (len(joined), 1))
+        return _Facets(joined[:, :, 2].mean(axis=1) + near, joined[:, :, :2], inks)
 
     def names(self, frame: int, notation: Notation) -> list[PlacedName]:
         """The names beside their places on the page, as a notation has them."""
