@@ -70,7 +70,7 @@ _HOMES = {
     "model.samples": ("samples",),
     "codegen.inverse": ("InverseDynamics",),
     "equations": ("Equations",),
-    "verbs.animate": ("animate",),
+    "verbs.animate": ("animate", "virtual_displacement"),
     "verbs.reactions": ("FoundReactions", "reactions"),
     "verbs.report": ("report",),
     "generated": ("Generated", "generate"),

@@ -70,6 +70,7 @@ from eomgen.sweeps.sweep import sweep as sweep
 from eomgen.symbolic.numeric.work import OutOfPatience as OutOfPatience
 from eomgen.symbolic.numeric.work import patience as patience
 from eomgen.verbs.animate import animate as animate
+from eomgen.verbs.animate import virtual_displacement as virtual_displacement
 from eomgen.verbs.reactions import FoundReactions as FoundReactions
 from eomgen.verbs.reactions import reactions as reactions
 from eomgen.verbs.report import report as report

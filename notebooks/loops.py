@@ -23,6 +23,9 @@ import eomgen
 
 here = Path(__file__).parent if "__file__" in globals() else Path.cwd()
 linkage = eomgen.load(here.parent / "models" / "spatial_four_bar.toml")
+linkage
+
+# %%
 freedom = eomgen.freedom_of(linkage)
 print(freedom.by_rank, "by rank,", freedom.by_formula, "by the formula", freedom.formula)
 assert (freedom.by_rank, freedom.by_formula) == (1, -4)
@@ -43,6 +46,12 @@ assert run.gap < 1e-9 and run.drift < 1e-7
 print(run.assembled)
 
 # %% [markdown]
+# It moves: a player in the page, which one can turn.
+
+# %%
+run.animate(trail="coupler.end")
+
+# %% [markdown]
 # From another guess the loop closes in another way.
 
 # %%
@@ -55,23 +64,7 @@ assert other.gap < 1e-9
 print(other.assembled)
 
 # %%
-import matplotlib.pyplot as plt
-import numpy as np
-
-r, l, c = 0.1, 0.5, 0.3
-figure = plt.figure(figsize=(8, 4), layout="constrained")
-for place, (motion, title) in enumerate(((run, "as the model says"), (other, "the other way")), start=1):
-    axes = figure.add_subplot(1, 2, place, projection="3d")
-    for k in range(0, 270, 9):
-        theta, phi = motion["theta"][k], motion["phi"][k]
-        pin = [0, r * np.cos(theta), r * np.sin(theta)]
-        end = [l - c * np.sin(phi), r - c + c * np.cos(phi), 0]
-        line = np.array([[0, 0, 0], pin, end, [l, r - c, 0]])
-        axes.plot(*line.T, color="tab:blue", alpha=0.15 if k else 1, marker="o", markersize=2)
-    axes.set_title(title)
-    axes.set_box_aspect((5, 6, 2))
-    axes.tick_params(labelsize=6)
-figure
+other.animate(trail="coupler.end")
 
 # %% [markdown]
 # ## What the joints carry
@@ -80,14 +73,11 @@ figure
 # do.
 
 # %%
+import numpy as np
+
 unknown = [name for name, column in run.reactions.items() if np.isnan(column).any()]
 assert all(name.endswith(("(crank)", "(bearing)")) for name in unknown)
-figure, axes = plt.subplots(figsize=(7, 3), layout="constrained")
-for axis in "xyz":
-    axes.plot(run.t, run[f"reaction_{axis}(ball)"], label=f"along {axis}")
-axes.set(xlabel="t [s]", ylabel="force in the ball joint [N]")
-axes.legend()
-figure
+run.plot(view="resultants")
 
 # %% [markdown]
 # ## What it takes to turn the crank steadily
@@ -97,6 +87,8 @@ figure
 # %%
 turning = replace(linkage, coordinates={**linkage.coordinates, "theta": {"motion": "10*t"}})
 driven = eomgen.simulate(turning, time=2 * np.pi / 10, samples=361)
+import matplotlib.pyplot as plt
+
 figure, axes = plt.subplots(figsize=(7, 3), layout="constrained")
 axes.plot(np.degrees(driven["theta"]), driven["drive(theta)"])
 axes.axhline(0, color="grey", linewidth=0.8)
@@ -139,9 +131,7 @@ freedom = eomgen.freedom_of(bricard)
 print(freedom.by_rank, "by rank,", freedom.by_formula, "by the formula;", freedom.redundant)
 run = eomgen.simulate(bricard, time=10, samples=1001)
 assert freedom.by_rank == 1 and run.gap < 1e-8 and run.drift < 1e-6
-figure, axes = plt.subplots(figsize=(7, 3), layout="constrained")
-for name in run.coordinates:
-    axes.plot(run.t, run[name], label=name)
-axes.set(xlabel="t [s]", ylabel="angle [rad]")
-axes.legend(loc="upper right", ncols=5)
-figure
+run.animate()
+
+# %%
+run.plot()

@@ -45,6 +45,12 @@ omega = "omega(rod)"
 v_B = "vx(rod.B)"
 a_B = "ax(rod.B)"
 """)
+linkage
+
+# %% [markdown]
+# Its velocities, the centres of rotation, and the diagrams of the projections:
+
+# %%
 motion = eomgen.kinematics(linkage)
 motion.picture
 
@@ -94,7 +100,17 @@ joint = { kind = "prismatic", on = "bar", axis = [1, 0], displacement = "s" }
 [outputs]
 a_C = "coriolis_ay(collar.origin, bar, bar)"
 """)
-assert eomgen.solve(collar)["a_C"].exact == "2*w*c"
+answers = eomgen.solve(collar)
+assert answers["a_C"].exact == "2*w*c"
+answers["a_C"]
+
+# %% [markdown]
+# Both coordinates are driven, and the collar draws a spiral.
+
+# %%
+eomgen.simulate(collar, time=2).animate(trail="collar.origin")
+
+# %%
 eomgen.kinematics(collar, at="t = 1", relative=[("collar.origin", "bar")])
 
 # %% [markdown]

@@ -24,6 +24,9 @@ import eomgen
 
 here = Path(__file__).parent if "__file__" in globals() else Path.cwd()
 bicycle = eomgen.load(here.parent / "models" / "whipple_bicycle.toml")
+bicycle
+
+# %%
 small = eomgen.linearize(bicycle)
 print(bicycle.about)
 print(small.spectrum.stability, "at 5 m/s")
@@ -36,7 +39,7 @@ import sympy
 
 s = {symbol.name: symbol for matrix in small.exact.values() for symbol in matrix.free_symbols}
 v, g = s["v"], s["g"]
-known = {s[name]: sympy.sympify(each.value.text) for name, each in bicycle.parameters.items() if name not in ("v", "g")}
+known = {name: each.value.text for name, each in bicycle.parameters.items() if name not in ("v", "g")}
 M, C, K = (small.exact[letter].subs(known) for letter in "MCK")
 C1, K0, K2 = C.diff(v), K.diff(g), K.diff(v).diff(v) / 2
 K2.evalf(12)
@@ -105,6 +108,9 @@ axes.set(xlabel="t [s]", ylabel="lean [deg]")
 axes.legend()
 figure
 
+# %%
+run.animate(trail="front_wheel.center")
+
 # %% [markdown]
 # ## A tumbling body
 #
@@ -120,6 +126,9 @@ equations
 # %%
 run = eomgen.simulate(body, time=20, samples=2001)
 assert run.drift < 1e-8
+run.animate()
+
+# %%
 figure = plt.figure(figsize=(8, 3.2))
 axes = figure.add_axes([0.08, 0.15, 0.5, 0.74])
 for name in ("w1", "w2", "w3"):

@@ -56,7 +56,13 @@ found.exact
 # %% [markdown]
 # ## One reaction by virtual work
 #
-# Without the thrust at A the frame is a mechanism. The report shows how it moves, and the equation.
+# Without the thrust at A the frame is a mechanism: this is how it moves.
+
+# %%
+eomgen.virtual_displacement(frame, "reaction_x(A)")
+
+# %% [markdown]
+# The angles, the centres, the works of the loads, and the equation:
 
 # %%
 thrust = eomgen.statics(frame, reaction="reaction_x(A)")
@@ -100,6 +106,12 @@ line.as_dict()["influence"]
 # %%
 truss = eomgen.statics(eomgen.load(here.parent / "models" / "fink_truss.toml"), reaction="tension(roof, L-R)")
 truss.picture
+
+# %% [markdown]
+# The bar that is cut lets the two halves of the roof turn against each other:
+
+# %%
+eomgen.virtual_displacement(here.parent / "models" / "fink_truss.toml", "tension(roof, L-R)")
 
 # %% [markdown]
 # ## Something that can move

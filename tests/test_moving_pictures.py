@@ -199,6 +199,17 @@ def test_the_verb_shows_what_moves_when_a_reaction_is_released(ending, tmp_path)
     assert wrong.exit_code == 2 and "there is no reaction" in wrong.output
     both = CliRunner().invoke(main, ["animate", beam, "--virtual", "reaction_y(E)", "--modes", "1", "-o", str(target)])
     assert both.exit_code == 2
+    before = target.read_bytes()
+    eomgen.virtual_displacement(beam, "reaction_y(E)", target)
+    assert target.read_bytes() == before
+
+
+def test_a_virtual_displacement_shows_itself_in_a_notebook():
+    """A page of its own in a frame; of what is held without it nothing moves, and that is said."""
+    shown = eomgen.virtual_displacement(MODELS / "gerber_beam.toml", "reaction_y(E)")._repr_html_()
+    assert shown.startswith("<iframe") and "reaction_y(E) released" in html.unescape(shown)
+    with pytest.raises(eomgen.DerivationError, match="statically indeterminate"):
+        eomgen.virtual_displacement(MODELS / "spatial_four_bar.toml", "reaction_x(crank)")
 
 
 def test_of_a_mechanism_other_freedoms_stand_still_where_a_reaction_is_released():

@@ -24,6 +24,8 @@ from eomgen.mechanics.statics.two_ways import released_in
 from eomgen.mechanics.structures.loose_motion import refuse_loose
 from eomgen.mechanics.structures.structure import structure_of
 from eomgen.model.parts import Model
+from eomgen.model.reader import ModelOrPath, model_at
+from eomgen.model.replaced import Values
 from eomgen.questions.run import run as simulated
 from eomgen.scene.virtual import VirtualDisplacement
 from eomgen.simulation.integrator import Stepping
@@ -98,16 +100,7 @@ def animate_document(
 def _virtual_document(model: Model, reaction: str, output: str, showing: Showing) -> Document:
     """The displacement that gives a reaction is written; of a structure its equation of work is said."""
     found, stands = released(model, reaction)
-    if Path(output).suffix.lower() == ".html":
-        from eomgen.page.player_page import player_page_of
-        from eomgen.page.released import PlayedDisplacements
-
-        files.write(output, player_page_of(PlayedDisplacements((found,))))
-        count = 1
-    else:
-        movie = virtual_movie(found, showing.fps)
-        write_movies([movie], output, showing, on_stderr)
-        count = len(movie.times)
+    count = _write_displacement(found, output, showing, on_stderr)
     name = found.reaction.name
     payload = {"name": model.name, "files": [output], "frames": count, "fps": showing.fps, "virtual": name}
     summary = f"{model.name}: the virtual displacement that gives {name}"
@@ -115,6 +108,51 @@ def _virtual_document(model: Model, reaction: str, output: str, showing: Showing
     symbol = found.structure.system.symbols.graph.symbol(name)
     steps = virtual_work_step(found.reaction, symbol).statements if stands else ()
     return plain_document(model, lambda: payload, said, *steps, prose(f"{count} frames: {output}"))
+
+
+def virtual_displacement(
+    model: ModelOrPath,
+    reaction: str,
+    path: str | Path | None = None,
+    *,
+    fps: float = 25.0,
+    frames: int = 6,
+    parameters: Values | None = None,
+    start: Values | None = None,
+) -> PlayerFrame | None:
+    """The virtual displacement of a structure that gives one of its reactions, as `animate` shows a run.
+
+    Args:
+        reaction: as an output asks for it: "reaction_y(A)", "tension(T, n1-n2)".
+        path: .gif, .mp4, a strip .png or a page; None: the page shows itself.
+        parameters, start: values that replace the model's, each as `model_at` takes it.
+    Raises:
+        UsageError: another ending; there is no such reaction.
+        DerivationError: released, nothing can move; bodies can move that no coordinate describes.
+    """
+    found, _ = released(model_at(model, parameters, start), reaction)
+    if path is None:
+        return PlayerFrame(_displacement_page(found))
+    refuse_ending(str(path))
+    _write_displacement(found, str(path), Showing(fps=fps, frames=frames), None)
+    return None
+
+
+def _displacement_page(found: VirtualDisplacement) -> str:
+    from eomgen.page.player_page import player_page_of
+    from eomgen.page.released import PlayedDisplacements
+
+    return player_page_of(PlayedDisplacements((found,)))
+
+
+def _write_displacement(found: VirtualDisplacement, output: str, showing: Showing, progress: Progress | None) -> int:
+    """The file, and how many frames there are in a swing."""
+    movie = virtual_movie(found, showing.fps)
+    if Path(output).suffix.lower() == ".html":
+        files.write(output, _displacement_page(found))
+    else:
+        write_movies([movie], output, showing, progress)
+    return len(movie.times)
 
 
 def released(model: Model, reaction: str) -> tuple[VirtualDisplacement, bool]:

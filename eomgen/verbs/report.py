@@ -334,7 +334,9 @@ def _outputs(subject: Subject) -> ReportSection | None:
 def _plots(subject: Subject) -> ReportSection | None:
     run = subject.run
     drawings = motion_drawings(run, units_of(subject.model, run.coordinates))
-    return ReportSection("plots", drawings=drawings, remark="" if run.ok else f"The run ended early: {run.message.rstrip('.')}.")
+    return ReportSection(
+        "plots", drawings=drawings, remark="" if run.ok else f"The run ended early: {run.message.rstrip('.')}."
+    )
 
 
 def _figure(subject: Subject) -> ReportSection | None:
