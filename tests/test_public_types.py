@@ -14,7 +14,12 @@ import pytest
 import eomgen
 
 ROOT = Path(eomgen.__file__).parent
-REQUIRED = {"time": 1.0, "target": "numpy", "equation": "T = 0"}  # of arguments without a default
+REQUIRED = {
+    "reaction": "reaction_y(A)",
+    "time": 1.0,
+    "target": "numpy",
+    "equation": "T = 0",
+}  # of arguments without a default
 
 SCRIPT = """
 import eomgen
