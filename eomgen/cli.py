@@ -537,6 +537,7 @@ def animate_command(model: str, wants_json: bool, format_: str | None, output: s
 @FOLLOW
 @with_values
 @click.option("--inverse", is_flag=True, help="Inverse dynamics too: the forces that given accelerations take.")
+@click.option("--jacobian", is_flag=True, help="The slopes of the right-hand side in x and inputs too.")
 @click.option("--actuated", metavar="NAMES", help='Which coordinates, inputs or joints act: "q1,q2".  [default: all]')
 @click.option("--integrator", is_flag=True, help="In C too: an integrator, and a program that writes a motion as CSV.")
 @click.option("--float32", is_flag=True, help="The C in single precision; the tolerances of its tests are measured.")
@@ -557,6 +558,7 @@ def codegen_command(
     inverse: bool,
     integrator: bool,
     float32: bool,
+    jacobian: bool,
     actuated: str | None,
     follow: tuple[str, ...],
     baumgarte: tuple[float, float] | None,
@@ -587,6 +589,7 @@ def codegen_command(
             inverse=inverse,
             integrator=integrator,
             float32=float32,
+            jacobian=jacobian,
             actuated=names,
             baumgarte=baumgarte,
             certify=certify,

@@ -10,7 +10,9 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from eomgen.certificate import certify
+from eomgen.codegen.asked_outputs import AskedOutputs, outputs_of_state
 from eomgen.codegen.inverse import InverseDynamics
+from eomgen.codegen.matrices import slopes_of
 from eomgen.codegen.program import Program, right_hand_side
 from eomgen.codegen.reactions import ReactionFunction, determinate, reactions_program
 from eomgen.codegen.rhs import RightHandSide, compiled, parameter_vector
@@ -39,6 +41,7 @@ from eomgen.proof.printed import Printed
 from eomgen.symbolic.exact.normal_form import readable_all
 from eomgen.symbolic.expression.expressions import as_expression
 from eomgen.symbolic.expression.graph import Scalar
+from eomgen.symbolic.expression.node import ScalarRows
 from eomgen.symbolic.expression.traversal import operations
 from eomgen.symbolic.numeric.evaluation import FLOAT, evaluate
 from eomgen.symbolic.numeric.gc_pause import growing
@@ -165,9 +168,9 @@ class Equations(Result):
         from eomgen.mechanics.small_motions.slopes import slopes_at
 
         s = self.graph.symbols
-        values = parameter_vector(self.model) if p is None else p
-        known: dict[Any, Any] = dict(zip((s.t, *s.parameters.values()), (t, *values), strict=True))
-        known |= dict(zip((*s.q, *s.u), self.start() if x is None else x, strict=True))
+        values = (t, *(parameter_vector(self.model) if p is None else p), *(self.start() if x is None else x))
+        nodes = (s.t, *s.parameters.values(), *s.q, *s.u)
+        known: dict[Any, Any] = dict(zip(nodes, map(float, values), strict=True))
         own = evaluate(tuple(self.graph.inputs.values()), known, FLOAT) if inputs is None else inputs
         return slopes_at(self._first_order, known | dict(zip(s.inputs.values(), own, strict=True)))
 
@@ -239,6 +242,29 @@ class Equations(Result):
         """{name: value in q, u and a} of the reactions that have a single value, finite where nothing slides."""
         values = determinate(self.reactions)
         return dict(zip(values, with_rest(self.system, tuple(values.values())), strict=True))
+
+    @cached_property
+    def asked_outputs(self) -> AskedOutputs:
+        """The outputs of the model that are functions of the state, in q, u and a; and why the others are none."""
+        found = outputs_of_state(self.system)
+        values = dict(zip(found.values, with_rest(self.system, tuple(found.values.values())), strict=True))
+        return replace(found, values=values)
+
+    @cached_property
+    def outputs_program(self) -> Program:
+        """The outputs that are functions of the state; accelerations as in the right-hand side."""
+        refuse_massless(self.graph)
+        return reactions_program(self.asked_outputs.values, self._explicit)[1]
+
+    @cached_property
+    def slopes(self) -> dict[str, ScalarRows]:
+        """A = d x'/d x, B = d x'/d inputs as graph scalars.
+
+        Raises:
+            DerivationError: the mass matrix is singular whatever the state.
+        """
+        refuse_massless(self.graph)
+        return slopes_of(self._explicit)
 
     @property
     def _explicit(self) -> EquationsOfMotion:

@@ -10,10 +10,24 @@ from pathlib import Path
 from eomgen import files, pipeline
 from eomgen.certificate import certify
 from eomgen.codegen.files import texts_of
+from eomgen.codegen.matrices import Blocks, matrices_of, program_of_blocks
 from eomgen.codegen.names import identifier
+from eomgen.codegen.program import Program
 from eomgen.codegen.rhs import RightHandSide, target_named
 from eomgen.codegen.single_precision import single_error, single_text, single_vectors
-from eomgen.codegen.targets.base import INVERSE, REACTIONS, RHS, Description, Emitted, FileContent
+from eomgen.codegen.targets.base import (
+    INVERSE,
+    JACOBIAN,
+    MATRICES,
+    OUTPUTS,
+    REACTIONS,
+    RHS,
+    Description,
+    Emitted,
+    FileContent,
+    Role,
+    TestVector,
+)
 from eomgen.codegen.targets.c_integrator import integrator_files
 from eomgen.codegen.vectors import vectors
 from eomgen.equations import Equations
@@ -29,6 +43,7 @@ from eomgen.proof.written_code import Judged, Written, start_state_tried
 from eomgen.questions.run import pulling
 from eomgen.simulation.configuration import paths_of
 from eomgen.symbolic.numeric.tolerances import RUN, SINGLE
+from eomgen.symbolic.expression.graph import Scalar
 from eomgen.symbolic.numeric.work import doing
 from eomgen.version import __version__
 
@@ -46,6 +61,7 @@ class Generated:
         actuated: the actuators of inverse dynamics, () for all speeds; None where these are not asked for.
         integrator: whether the C has one of its own.
         float32: whether the C is in single precision.
+        slopes: whether the slopes of the right-hand side are asked for.
     """
 
     model: Model
@@ -56,6 +72,7 @@ class Generated:
     actuated: tuple[str, ...] | None = None
     integrator: bool = False
     float32: bool = False
+    slopes: bool = False
 
     @cached_property
     def motion(self) -> Emitted:
@@ -88,7 +105,45 @@ class Generated:
     @cached_property
     def emitted(self) -> tuple[Emitted, ...]:
         """Every function that is written, the right-hand side first."""
-        return tuple(each for each in (self.motion, self.reactions, self.inverse) if each is not None)
+        found = (self.motion, self.reactions, self.outputs, self.matrices, self.jacobian, self.inverse)
+        return tuple(each for each in found if each is not None)
+
+    @property
+    def notes(self) -> tuple[str, ...]:
+        """What is not in the code, and why."""
+        left = (f"the output {name}: {why}" for name, why in self.equations.asked_outputs.left.items())
+        rubs = ["matrices: friction hangs on the reactions"] if self.equations.graph.friction else []
+        open_ties = "what puts the ties back as they open by the errors of many steps (--baumgarte lets them pull)"
+        drifts = self.integrator and any(not row.identical for row in self.equations.graph.system.ties.rows)
+        return (*(note for note in (self.note, open_ties * drifts) if note), *left, *rubs)
+
+    @cached_property
+    def outputs(self) -> Emitted | None:
+        """The outputs that are functions of the state, described; None where there are none."""
+        names = tuple(self.equations.asked_outputs.values)
+        if not names:
+            return None
+        program = self.equations.outputs_program
+        return program, replace(self.motion[1], vectors=self._answers(program), role=OUTPUTS, outputs=names)
+
+    @cached_property
+    def matrices(self) -> Emitted | None:
+        """M, forcing, J and gamma, described; None where friction is none of them, or nothing moves."""
+        graph = self.equations.graph
+        return None if graph.friction or not graph.M else self._blocks(matrices_of(graph), MATRICES)
+
+    @cached_property
+    def jacobian(self) -> Emitted | None:
+        """The slopes of the right-hand side, described; None where they are not asked for."""
+        return self._blocks(self.equations.slopes, JACOBIAN) if self.slopes else None
+
+    def _blocks(self, blocks: Blocks, role: Role) -> Emitted:
+        program = program_of_blocks(blocks, self.equations.graph)
+        sizes = tuple((name, len(rows), len(rows[0])) for name, rows in blocks.items())
+        return program, replace(self.motion[1], vectors=self._answers(program), role=role, blocks=sizes)
+
+    def _answers(self, program: Program) -> tuple[TestVector, ...]:
+        return vectors(program, x0=self._start.x0, p0=self._start.p0)
 
     @cached_property
     def texts(self) -> dict[str, FileContent]:
@@ -106,13 +161,6 @@ class Generated:
         texts = texts_of(self.stem, emitted, targets=self.targets, notes=self.notes)
         folder = "" if len(self.targets) == 1 else "c/"
         return texts | {f"{folder}{name}": text for name, text in self._integrator.items()}
-
-    @property
-    def notes(self) -> list[str]:
-        """What is not in the code, and why."""
-        open_ties = "what puts the ties back as they open by the errors of many steps (--baumgarte lets them pull)"
-        drifts = self.integrator and any(not row.identical for row in self.equations.graph.system.ties.rows)
-        return [note for note in (self.note, open_ties * drifts) if note]
 
     @property
     def _integrator(self) -> dict[str, str]:
@@ -146,6 +194,9 @@ class Generated:
             values = self.equations.reaction_values
         judged = {RHS: Judged(PhaseMotion(self.equations.graph), values)}
         judged[REACTIONS] = judged[RHS]
+        for role, scalars in ((OUTPUTS, self.equations.asked_outputs.values), (MATRICES, self._matrix_entries)):
+            judged[role] = Judged(PhaseMotion(self.equations.graph), scalars)
+        judged[JACOBIAN] = Judged(PhaseMotion(self.equations.graph), {}, slopes=self.equations.rhs_jacobian)
         if self.inverse is not None:
             judged[INVERSE] = Judged(PhaseMotion(plain.graph), {}, self.inverse[1].outputs)
         for target in self.targets:
@@ -165,6 +216,17 @@ class Generated:
         except (RunFailed, ToolMissing) as failure:
             return unchecked(what, failure.what, how)
         return checked(what, f"{error:.2g} tolerances away" if error > 1 else "", how)
+
+    @property
+    def _matrix_entries(self) -> dict[str, Scalar]:
+        """Every entry by its name and place."""
+        blocks = matrices_of(self.equations.graph)
+        return {
+            f"{name}[{i}, {j}]": x
+            for name, rows in blocks.items()
+            for i, row in enumerate(rows)
+            for j, x in enumerate(row)
+        }
 
     def _written(self, target: str, emitted: Emitted) -> Written:
         program, told = emitted
@@ -203,6 +265,7 @@ def generate(
     name: str = "model",
     origin: str | None = None,
     actuated: Sequence[str] | None = None,
+    jacobian: bool = False,
     baumgarte: tuple[float, float] | None = None,
     integrator: bool = False,
     float32: bool = False,
@@ -215,6 +278,7 @@ def generate(
         targets: the languages; the files of one lie in the directory, of several each in a folder of its name.
         name: of the functions and files.
         actuated: inverse dynamics too, of these coordinates, speeds, inputs or joints; () for all speeds.
+        jacobian: the slopes of the right-hand side in x and inputs too.
         baumgarte: alpha and beta of closing rows that pull back what has opened [1/s]; None: they do not pull.
         integrator: an integrator of its own in C too, with a program that writes a motion as CSV.
         float32: the C in single precision; the tolerances of its tests are measured.
@@ -242,7 +306,7 @@ def generate(
     origin = origin or model.name
     source = f"{origin} ({model.source})" if model.source else origin
     acting = None if actuated is None else tuple(actuated)
-    return Generated(model, equations, name, source, tuple(dict.fromkeys(targets)), acting, integrator, float32)
+    return Generated(model, equations, name, source, tuple(dict.fromkeys(targets)), acting, integrator, float32, jacobian)
 
 
 def _refuse_integrator(model: Model, targets: Sequence[str]) -> None:

@@ -72,6 +72,8 @@ def vectors_text(emitted: Sequence[Emitted]) -> str:
 def _other(program: Program, told: Description) -> list[str]:
     """The vectors of a function beside the right-hand side."""
     own: dict[str, object] = {"names": told.outputs}
+    if told.blocks:
+        own = {"blocks": [{"name": name, "rows": n, "columns": k} for name, n, k in told.blocks]}
     if program.accelerations:
         own |= {
             "accelerations": [x.name for x in program.accelerations],

@@ -19,7 +19,7 @@ OWN_WORDS = frozenset(
 RESERVED = MATH_WORDS | OWN_WORDS
 # our own variables, functions and macros, and what C keeps for itself
 LOCAL = re.compile(
-    r"[vi][0-9]+|samples[0-9]+|.*part[0-9]+|solve.*|.*_(rhs|reactions|inverse).*|.*_(STATES|PARAMETERS|INPUTS|CONSTANTS|OUTPUTS)|_.*"
+    r"[vi][0-9]+|samples[0-9]+|.*part[0-9]+|solve.*|.*_(rhs|reactions|inverse|outputs|matrices|jacobian).*|.*_(STATES|PARAMETERS|INPUTS|CONSTANTS|OUTPUTS)|_.*"
 )
 
 

@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass, replace
+from typing import Any
 
 import numpy as np
 
@@ -20,7 +21,7 @@ from eomgen.proof.emitted_code import Code, PhaseMotion, TriedState
 from eomgen.symbolic.expression.graph import Node, Scalar
 from eomgen.symbolic.expression.traversal import order
 from eomgen.symbolic.numeric.evaluation import evaluate, fifty_digits
-from eomgen.symbolic.numeric.tolerances import COMPUTED
+from eomgen.symbolic.numeric.tolerances import CARRIED, COMPUTED
 
 
 @dataclass(frozen=True)
@@ -82,11 +83,13 @@ class Judged:
         motion: the equations of motion.
         values: of the role "reactions": its outputs by name, in q, u and a.
         actuators: of the role "inverse": what its outputs act along.
+        slopes: of the role "jacobian": (t, x, p, inputs) -> (A, B), solved for in numbers.
     """
 
     motion: PhaseMotion
     values: Mapping[str, Scalar]
     actuators: Sequence[str] = ()
+    slopes: Callable[..., tuple[np.ndarray, np.ndarray]] | None = None
 
     def check(self, written: Written, start: Sequence[TriedState]) -> Check:
         """The written function at the start and at the states of its test vectors."""
@@ -99,11 +102,27 @@ class Judged:
             return unchecked(name, f"nothing here runs {written.target}", "run")
         if written.role is RHS:
             return emitted_code.equations_hold(self.motion, code, (*start, *written.instants), name)
+        if self.slopes is not None:
+            return self._slopes(code, written.instants, name, self.slopes)
         if self.actuators:
             return self._inverse(code, written.instants, name)
         return emitted_code.values_agree(
             name, self.motion, self.values, code, (*start, *written.instants), self._accelerations
         )
+
+    def _slopes(self, code: Code, at: Iterable[TriedState], name: str, slopes: Callable[..., Any]) -> Check:
+        """A and B against the linearized equations, solved in doubles at the same states."""
+
+        def wrong(instant: TriedState) -> str | None:
+            inputs = [instant.inputs[name] for name in self.motion.equations.symbols.inputs] if instant.inputs else None
+            right = np.concatenate([x.ravel() for x in slopes(instant.t, instant.x, instant.p, inputs)])
+            if not np.all(np.isfinite(right)):
+                return None
+            apart = np.max(np.abs(code(instant) - right), initial=0.0) / (1 + np.max(np.abs(right), initial=0.0))
+            return "" if apart <= CARRIED else f"a slope is off by {apart:.1e} at t = {instant.t:.6g} s"
+
+        how = "the linearized equations solved in numbers"
+        return emitted_code.at_states(name, how, at, wrong, cost=len(order(self.motion.scalars)))
 
     def _accelerations(self, at: TriedState) -> Mapping[Node, float]:
         """a by dense linear algebra.

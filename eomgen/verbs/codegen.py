@@ -20,6 +20,7 @@ def codegen_document(
     directory: str,
     inverse: bool = False,
     actuated: tuple[str, ...] = (),
+    jacobian: bool = False,
     baumgarte: tuple[float, float] | None = None,
     integrator: bool = False,
     float32: bool = False,
@@ -30,6 +31,7 @@ def codegen_document(
     Args:
         targets: the languages; the files of one lie in the directory, of several each in a folder of its name.
         inverse: write inverse dynamics too, of the actuated coordinates, speeds, inputs or joints.
+        jacobian: write the slopes of the right-hand side too.
         baumgarte: alpha and beta of closing rows that pull back what has opened [1/s]; None: they do not pull.
         integrator: an integrator in C too.
         float32: the C in single precision.
@@ -41,6 +43,7 @@ def codegen_document(
         name=stem,
         origin=origin,
         actuated=acting,
+        jacobian=jacobian,
         baumgarte=baumgarte,
         integrator=integrator,
         float32=float32,
@@ -69,6 +72,11 @@ def _payload(found: Generated, paths: list[str]) -> dict[str, object]:
         "reactions": list(reactions[1].outputs) if reactions else None,
         "reaction_operations": reactions[0].count.total if reactions else None,
     }
+    for key, emitted in (("outputs", found.outputs), ("matrices", found.matrices), ("jacobian", found.jacobian)):
+        if emitted is not None:
+            program, told = emitted
+            payload[key] = list(told.outputs or [name for name, *_ in told.blocks])
+            payload[f"{key}_operations"] = program.count.total
     if moved:
         payload |= {"actuated": list(moved[1].outputs), "inverse_operations": moved[0].count.total}
     return payload

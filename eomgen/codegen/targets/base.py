@@ -89,6 +89,16 @@ INVERSE = Role("inverse", "_inverse", "tau", "tau = f(t, x, a, p), the forces an
 REACTIONS = Role("reactions", "_reactions", "out", "out = f(t, x, p), the reactions of joints and ties in the motion")
 
 
+OUTPUTS = Role("outputs", "_outputs", "out", "out = f(t, x, p), what the model asks in [outputs], in SI")
+MATRICES = Role(
+    "matrices",
+    "_matrices",
+    "out",
+    "out = f(t, x, p), of M a = forcing + J^T lam and, where ties close, J a + gamma = 0",
+)
+JACOBIAN = Role("jacobian", "_jacobian", "out", "out = f(t, x, p), A = d x'/d x and B = d x'/d inputs")
+
+
 @dataclass(frozen=True)
 class Description:
     """What emitted files say about themselves.
@@ -100,6 +110,7 @@ class Description:
         vectors: right answers, for the self-test.
         role: what the program is for.
         outputs: names of the outputs, () where they are in the order of x.
+        blocks: (name, rows, columns) of matrices that are the outputs, one after the other, each row after row.
     """
 
     title: str
@@ -108,6 +119,7 @@ class Description:
     vectors: tuple[TestVector, ...] = ()
     role: Role = RHS
     outputs: tuple[str, ...] = ()
+    blocks: tuple[tuple[str, int, int], ...] = ()
 
 
 FileContent = str | bytes
@@ -217,6 +229,11 @@ def header(program: Program, description: Description) -> list[str]:
             lines.append(f"    {array}[{place}]  {x.name}{'  ' + remark if remark else ''}")
     for place, name in enumerate(description.outputs):
         lines.append(f"    {result}[{place}]  {name}  {description.remarks.get(name, '')}".rstrip())
-    if not description.outputs:
+    first = 0
+    for name, rows, columns in description.blocks:
+        last = first + rows * columns - 1
+        lines.append(f"    {result}[{first}..{last}]  {name}, {rows} x {columns}, row after row")
+        first = last + 1
+    if not description.outputs and not description.blocks:
         lines.append(f"    {result}  {len(program.outputs)} values, in the order of x")
     return [" ".join(line.split("\n")) for line in lines]
