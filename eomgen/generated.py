@@ -201,7 +201,8 @@ class Generated:
             judged[INVERSE] = Judged(PhaseMotion(plain.graph), {}, self.inverse[1].outputs)
         for target in self.targets:
             for emitted in self.emitted:
-                yield judged[emitted[1].role].check(self._written(target, emitted), start)
+                if target_named(target).writes(emitted[1].role):
+                    yield judged[emitted[1].role].check(self._written(target, emitted), start)
         for emitted in self.emitted if self.float32 else ():
             yield self._single(emitted)
 

@@ -39,6 +39,8 @@ def readme(target: Target, stem: str, emitted: Sequence[Emitted], notes: Sequenc
     for line in target.use:
         lines.append(f"    {line.format(stem=stem)}")
     for program, told in emitted:
+        if not target.writes(told.role):
+            continue
         lines += ["", *(f"    {line}".rstrip() for line in header(program, told))]
     lines += ["", "All in SI and radians; without inputs the model's own act. Right answers are in test_vectors.json."]
     lines += [line for note in notes for line in ("", f"Not here: {note}")]

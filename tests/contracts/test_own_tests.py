@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 import math
 import os
 import re
@@ -85,7 +86,7 @@ def by_pytest(folder: Path) -> str:
 
 OWN_TESTS = {
     **{"c": by_c, "cpp": by_cpp, "rust": by_rust, "fortran": by_fortran, "javascript": by_javascript},
-    **{"matlab": by_octave, **dict.fromkeys(("numpy", "jax", "casadi", "numba"), by_pytest)},
+    **{"matlab": by_octave, **dict.fromkeys(("numpy", "jax", "casadi", "numba", "fmu"), by_pytest)},
 }
 LONG_TO_COMPILE = {"jax": ("bricard",), "numba": ("bricard", "four_bar", "cart_pole")}  # models that these do without
 each_own_test = marked(OWN_TESTS)
@@ -126,7 +127,7 @@ def test_the_language_s_own_test_agrees_with_the_symbols(target, tmp_path):
     assert OWN_TESTS[target](tmp_path) == ""
 
 
-@each_own_test
+@marked(name for name in OWN_TESTS if name != "fmu")
 def test_the_language_s_own_test_notices_a_wrong_sign(target, tmp_path):
     """The sign of one sum in the right-hand side turned: the test fails, and not because it cannot be read."""
     folder = written(tmp_path, target, "four_bar", most=1)
@@ -138,6 +139,16 @@ def test_the_language_s_own_test_notices_a_wrong_sign(target, tmp_path):
     source.write_text(text[:at] + turned)
     said = OWN_TESTS[target](folder)
     assert said and " not " in said, said
+
+
+@marked(["fmu"])
+def test_an_fmu_with_other_rates_than_its_vectors_is_noticed(target, tmp_path):
+    """One digit of one rate in the vectors turned: its test fails."""
+    path = written(tmp_path, target, "cart_pole") / "test_vectors.json"
+    told = json.loads(path.read_text())
+    told["vectors"][0]["dx"][2] += 1e-9
+    path.write_text(json.dumps(told))
+    assert "test_the_rates_and_outputs_are_those" in OWN_TESTS[target](path.parent)
 
 
 def is_source(path: Path) -> bool:

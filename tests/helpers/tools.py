@@ -29,8 +29,9 @@ NEEDS = {  # of a language the programs and packages (with a dot before them) th
     "jax": (".jax",),
     "casadi": (".casadi",),
     "numba": (".numba",),
+    "fmu": (".fmpy",),
 }
-SLOW = ("matlab", "jax", "casadi", "numba")  # to start, or to compile: they take part in few tests
+SLOW = ("matlab", "jax", "casadi", "numba", "fmu")  # to start, or to compile: they take part in few tests
 
 
 def found(name: str) -> str | None:
@@ -73,4 +74,4 @@ def marked(names: Iterable[str]) -> pytest.MarkDecorator:
 
 RUN_HERE = [target.name for target in ALL if target.run is not None]
 each_target = marked(name for name in RUN_HERE if name not in SLOW)
-every_target = marked(RUN_HERE)
+every_target = marked(name for name in RUN_HERE if name != "fmu")  # which runs as C does

@@ -143,6 +143,7 @@ class Target:
         load: the program, callable.
         run: (those files, program, stem, role) -> (t, x, a, p, inputs or None) -> outputs: the very text that others
             get, run here; None where nothing here runs the language.
+        roles: names of the functions that it writes; None: all.
     """
 
     name: str
@@ -152,6 +153,11 @@ class Target:
     use: tuple[str, ...]
     load: Callable[[Program], Functions]
     run: Callable[[Mapping[str, FileContent], Program, str, Role], Called] | None = None
+    roles: tuple[str, ...] | None = None
+
+    def writes(self, role: Role) -> bool:
+        """Whether a function is among its files."""
+        return self.roles is None or role.name in self.roles
 
 
 Many = Callable[[np.ndarray, np.ndarray, np.ndarray, "np.ndarray | None"], np.ndarray]

@@ -179,7 +179,7 @@ def c_functions(program: Program) -> Functions:
 def c_together(programs: Sequence[Program]) -> tuple[Functions, ...]:
     """Several programs, compiled as one text."""
     made = [_lowered(program, f"eomgen{i}", RHS) for i, program in enumerate(programs)]
-    text = "\n".join(_apart(each, f"eomgen{i}") for i, each in enumerate(made))
+    text = "\n".join(_apart(each, f"eomgen{i}", RHS) for i, each in enumerate(made))
     compiled = library(text)
     return tuple(
         functions_of(compiled, program, f"eomgen{i}", each.constants)
@@ -187,12 +187,20 @@ def c_together(programs: Sequence[Program]) -> tuple[Functions, ...]:
     )
 
 
-def _apart(made: Lowered, stem: str) -> str:
+def apart(program: Program, stem: str, role: Role) -> str:
+    """The functions of a program, to stand in one text with those of others."""
+    return _apart(_lowered(program, stem, role), stem, role)
+
+
+def _apart(made: Lowered, stem: str, role: Role) -> str:
     """The functions of a program, what is hidden in them under names of its own."""
     hidden = [C.called(op, ["0"] * 3).partition("(")[0] for op in sorted(made.ops & C.defined.keys())]
     hidden += [*(table.name for table in made.tables), *(function.name for function in made.kernels)]
-    before, after = (f"#define {name} {stem}_hidden_{name}" for name in hidden), (f"#undef {name}" for name in hidden)
-    return "\n".join((*before, _text(made, stem, RHS), *after))
+    before, after = (
+        (f"#define {name} {role.others(stem)}_hidden_{name}" for name in hidden),
+        (f"#undef {name}" for name in hidden),
+    )
+    return "\n".join((*before, _text(made, stem, role), *after))
 
 
 def c_files(stem: str, emitted: Sequence[Emitted]) -> dict[str, FileContent]:

@@ -1,4 +1,4 @@
-"""Program -> a module for CasADi: `NAME_rhs(t, x, p, inputs=None)`; `rhs` and `jacobian` are SX functions."""
+"""Program -> a module for CasADi: `NAME_rhs(t, x, p, inputs=None)`; `rhs` and its `slopes` are SX functions."""
 
 from __future__ import annotations
 
@@ -90,8 +90,8 @@ def _made(given):
     )
 
 
-own, own_jacobian = _made(False)  # of (t, x, {a}p), by the model's own inputs
-{role}, jacobian = _made(True)  # of (t, x, {a}p, inputs)
+own, own_slopes = _made(False)  # of (t, x, {a}p), by the model's own inputs
+{role}, slopes = _made(True)  # of (t, x, {a}p, inputs)
 
 
 def {main}(t, x, {a}p, inputs=None):
@@ -139,5 +139,5 @@ def run(texts: Mapping[str, FileContent], program: Program, stem: str, role: Rol
     return called_each(texts, module(stem, role), program, stem, role, "casadi")
 
 
-USE = ("from {stem}_casadi import rhs, jacobian", "python -m pytest")
+USE = ("from {stem}_casadi import rhs, slopes", "python -m pytest")
 TARGET = Target("casadi", "SX functions of CasADi with their jacobians", casadi_text, casadi_files, USE, functions, run)
