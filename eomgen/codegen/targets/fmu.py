@@ -87,11 +87,11 @@ def test_the_rates_and_outputs_are_those_of_the_test_vectors():
 
 def test_both_kinds_of_simulation_agree():
     ends = [
-        fmpy.simulate_fmu(PATH, fmi_type=kind, stop_time=0.2, relative_tolerance=1e-9, )[-1]
+        fmpy.simulate_fmu(PATH, fmi_type=kind, stop_time=0.2, relative_tolerance={run!r}, )[-1]
         for kind in ("ModelExchange", "CoSimulation")
     ]
     a, b = (np.array(list(end.tolist())) for end in ends)
-    assert np.allclose(a, b, rtol=1e-5, atol=1e-5, equal_nan=True)
+    assert np.allclose(a, b, rtol=10000*{run!r}, atol=10000*{run!r}, equal_nan=True)
 '''
 
 
@@ -246,7 +246,7 @@ def fmu_files(stem: str, emitted: Sequence[Emitted]) -> dict[str, FileContent]:
     n, m = len(program.states), len(program.symbols.parameters) + len(program.symbols.inputs)
     firsts = [1 + n, *(1 + 2 * n + m + at for at in _places(kept)[1:])]
     test = _TEST.format(
-        stem=stem, states=n, parameters=len(program.symbols.parameters), inputs=len(program.symbols.inputs),
+        run=RUN, stem=stem, states=n, parameters=len(program.symbols.parameters), inputs=len(program.symbols.inputs),
         kinds=[(told.role.name, first) for (_, told), first in zip(kept, firsts, strict=True)],
     )  # fmt: skip
     return {f"{stem}.fmu": packed.getvalue(), f"test_{stem}_fmu.py": test}
