@@ -42,8 +42,8 @@ from eomgen.proof.emitted_code import PhaseMotion
 from eomgen.proof.written_code import Judged, Written, start_state_tried
 from eomgen.questions.run import pulling
 from eomgen.simulation.configuration import paths_of
-from eomgen.symbolic.numeric.tolerances import RUN, SINGLE
 from eomgen.symbolic.expression.graph import Scalar
+from eomgen.symbolic.numeric.tolerances import RUN, SINGLE
 from eomgen.symbolic.numeric.work import doing
 from eomgen.version import __version__
 
@@ -307,7 +307,9 @@ def generate(
     origin = origin or model.name
     source = f"{origin} ({model.source})" if model.source else origin
     acting = None if actuated is None else tuple(actuated)
-    return Generated(model, equations, name, source, tuple(dict.fromkeys(targets)), acting, integrator, float32, jacobian)
+    return Generated(
+        model, equations, name, source, tuple(dict.fromkeys(targets)), acting, integrator, float32, jacobian
+    )
 
 
 def _refuse_integrator(model: Model, targets: Sequence[str]) -> None:
