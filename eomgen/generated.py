@@ -232,7 +232,7 @@ class Generated:
     def _written(self, target: str, emitted: Emitted) -> Written:
         program, told = emitted
         folder = "" if len(self.targets) == 1 else f"{target}/"
-        whole = self._in_doubles.items()
+        whole = (self._in_doubles if self.float32 else self.texts).items()
         texts = {path.removeprefix(folder): text for path, text in whole if path.startswith(folder)}
         return Written(target, texts, program, identifier(self.stem), told.role, told.vectors)
 
