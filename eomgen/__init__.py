@@ -20,6 +20,8 @@
     eomgen.report(model, "report.html")       # Report: a page, a paper (.pdf, .tex), text (.md), a notebook (.ipynb)
     eomgen.import_robot("robot.urdf")         # Model of a robot's file of another program
     eomgen.verify(model, "T = m*v^2/2")       # Verdict: is an equation of somebody right, up to what, and if not, why
+    eomgen.regressor(model)                   # Regressor: tau = Y pi + y0, .parameters, .base: what motions tell apart
+    eomgen.identify(model, data)              # Identified: parameters from measured motions, of bodies that can be
     eomgen.freedom_of(model)                  # Freedom: degrees of freedom by rank, redundant ties
     with eomgen.patience(30): ...             # any of these, for 30 s at the most
 
@@ -73,6 +75,8 @@ _HOMES = {
     "verbs.animate": ("animate", "virtual_displacement"),
     "verbs.reactions": ("FoundReactions", "reactions"),
     "verbs.report": ("report",),
+    "identification.fit": ("Identified", "identify"),
+    "identification.regressor": ("Regressor", "regressor"),
     "generated": ("Generated", "generate"),
     "judge.judge": ("verify",),
     "judge.verdict": ("Verdict",),

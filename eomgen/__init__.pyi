@@ -23,6 +23,10 @@ from eomgen.errors import ToolMissing as ToolMissing
 from eomgen.errors import UsageError as UsageError
 from eomgen.generated import Generated as Generated
 from eomgen.generated import generate as generate
+from eomgen.identification.fit import Identified as Identified
+from eomgen.identification.fit import identify as identify
+from eomgen.identification.regressor import Regressor as Regressor
+from eomgen.identification.regressor import regressor as regressor
 from eomgen.judge.judge import verify as verify
 from eomgen.judge.verdict import Verdict as Verdict
 from eomgen.mechanics.constraints.freedom import Freedom as Freedom

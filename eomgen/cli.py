@@ -495,6 +495,25 @@ def sweep_command(where: str, wants_json: bool, output: str | None, strict: bool
     return deliver(document, form, strict=strict)
 
 
+@main.command("identify")
+@with_form
+@click.option(
+    "--data",
+    required=True,
+    type=click.Path(exists=True, dir_okay=False),
+    help="A CSV in SI: t, coordinates, rates (q'), accelerations (q''), inputs.",
+)
+def identify_command(**options: Any) -> int:
+    """Fit masses, inertias, dampers and friction to a measured motion.
+
+    The base parameters by least squares, with their formulas and deviations; how well the motion tells them apart; and
+    parameters of bodies of positive density that fit.
+    """
+    from eomgen.verbs.identify import identify_document
+
+    return _write(identify_document, **options)
+
+
 @main.command("animate")
 @MODEL
 @JSON

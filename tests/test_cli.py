@@ -52,6 +52,7 @@ VERBS = [
     "verify",
     "simulate",
     "sweep",
+    "identify",
     "animate",
     "codegen",
     "play",

@@ -25,6 +25,7 @@ CHAIN = (
     ("questions",),
     ("pipeline",),
     ("sweeps",),
+    ("identification",),
     ("generated",),
     ("page",),
     ("judge",),

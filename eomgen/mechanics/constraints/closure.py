@@ -28,19 +28,22 @@ CLOSING = Newton(enough=CLOSED_AT_50, stalls=SUMMED, damped=True)
 SPREADS = (0.1, 0.01, 0.001)  # how far from the start a generic configuration is looked for
 
 
-def generic_state(ties: Ties, rng: Random | None = None, *, shaken: bool = False) -> State:
+def generic_state(
+    ties: Ties, rng: Random | None = None, *, shaken: bool = False, spreads: Sequence[float] = ()
+) -> State:
     """Values of every symbol: near the start, off any special position, with phi = 0 and J u + sigma = 0.
 
     Parameters without a value get one. Driven coordinates and t are near the start too, as if given by another law.
 
     Args:
         shaken: parameters have values of their own, near the model's, so that nothing vanishes for these alone.
+        spreads: how far from the start it is looked for, the first first; before those near to it.
     Raises:
         MissingValues, DerivationError: the ties do not close there.
     """
     rng = rng or Random(1)
     state, q = _still(ties, rng, shaken=shaken)
-    for spread in SPREADS:
+    for spread in (*spreads, *SPREADS):
         found = closed(ties, state | _scattered(ties, q, spread, rng), movable(ties))
         if found is not None:
             return _moving(ties, found)

@@ -63,6 +63,9 @@ COORDINATE_AT_50 = 1e-18  # [SI] a coordinate or speed after the last step in 50
 NOT_NEGATIVE = 1e-12  # [kg m^2] a moment of inertia in a robot's file below zero by no more is 0, by rounding
 ROUNDED_AWAY = 1e-30  # [SI] a place, a sine or an inertia by 40 digits: what is smaller is its rounding
 SAME_TURN = 1e-14  # [1 or rad] of ratios and angles that were doubles: so near, they are what a person writes
+FOLLOWS_AT_50 = 1e-22  # of a column over its largest entry, with 50 digits: what is left of one that follows
+LEAST_DENSITY = 1e-6  # of a body's own size: a thin one is taken as thick as this, so that all of it has mass
+TOWARD_THE_MODEL = 1e-7  # of the forces: what pulls parameters to the model's where data do not tell
 
 # Accuracy that is asked of a run in time: rtol and atol of a step.
 RUN = 1e-9  # of the user's runs, where nothing else is asked

@@ -1,0 +1,1 @@
+"""What measured motions tell of masses, inertias, rotors, dampers and friction."""

@@ -1,0 +1,217 @@
+"""Measured motions -> parameters: least squares of the base parameters, then bodies that there can be.
+
+    applied = Y pi + y0        (along the motions that the ties allow)
+
+The base parameters are fitted first: they are all that the data tell. Of the parameters of the bodies those are given
+that fit as well and that bodies of positive density can have, near the model's where the data do not tell.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+from scipy.interpolate import CubicSpline
+from scipy.optimize import least_squares
+
+from eomgen.codegen.program import program_of
+from eomgen.codegen.rhs import compiled, parameter_vector
+from eomgen.errors import UsageError
+from eomgen.identification.consistent import numbers_of, parameters_of
+from eomgen.identification.regressor import Regressor, regressor_of
+from eomgen.mechanics.equations.work import generalized_forces
+from eomgen.model.reader import ModelOrPath, model_at
+from eomgen.pipeline import derive
+from eomgen.symbolic.expression.derivative import substituted
+from eomgen.symbolic.numeric.evaluation import FLOAT, evaluate
+from eomgen.symbolic.numeric.tolerances import LEAST_DENSITY, RANK_NEARBY, TOWARD_THE_MODEL
+
+Data = Mapping[str, Any]
+
+
+@dataclass(frozen=True)
+class Identified:
+    """What measured motions tell.
+
+    Args:
+        regressor: the model's.
+        base: of each base parameter, by its formula, the value and its standard deviation.
+        values: the inertial and other parameters: bodies of positive density.
+        condition: of the base parameters' columns, each over its length: how well the motion tells them apart; large
+            is bad, beyond 100 a motion is poor.
+        samples: how many instants there are.
+        residual: root mean square of what is left of the forces [N or N m].
+        consistent_residual: the same with `values`.
+    """
+
+    regressor: Regressor
+    base: dict[str, tuple[float, float]]
+    values: dict[str, float]
+    condition: float
+    samples: int
+    residual: float
+    consistent_residual: float
+
+    def __repr__(self) -> str:
+        return f"<{len(self.base)} base parameters from {self.samples} samples: residual {self.residual:.3g}>"
+
+
+@dataclass(frozen=True)
+class Stacked:
+    """W pi = b, of all samples one above the other."""
+
+    W: np.ndarray
+    b: np.ndarray
+
+
+def identify(model: ModelOrPath, data: Data) -> Identified:
+    """The parameters by least squares.
+
+    Args:
+        data: arrays by name, in SI: t, the coordinates, their rates (`q'`), accelerations (`q''`) and the inputs. Rates
+            and accelerations that are not there are those of a cubic spline; inputs that are not there the model's.
+    Raises:
+        UsageError: a coordinate without samples, or fewer samples than parameters.
+    """
+    found = regressor_of(derive(model_at(model)).system)
+    stacked = stack(found, data)
+    base = found.base
+    K = base.matrix(found.parameters)
+    kept = [found.parameters.index(group.name) for group in base.groups]
+    W = stacked.W[:, kept]
+    if len(W) < len(kept):
+        raise UsageError(f"{len(W)} equations do not tell {len(kept)} parameters", mend="give more samples")
+    lengths = np.linalg.norm(W, axis=0)
+    if not lengths.all():
+        names = ", ".join(base.groups[k].name for k in np.flatnonzero(lengths == 0))
+        raise UsageError(f"this motion does not excite {names}", mend="move every coordinate, with accelerations")
+    scaled = W / lengths
+    beta = np.linalg.lstsq(scaled, stacked.b, rcond=None)[0]
+    left = stacked.b - scaled @ beta
+    spread = np.linalg.pinv(scaled.T @ scaled)
+    variance = float(left @ left) / max(1, len(W) - len(kept))
+    deviations = np.sqrt(np.maximum(np.diag(spread) * variance, 0)) / lengths
+    values = _consistent(found, K, scaled, lengths, stacked.b)
+    again = stacked.b - W @ (K @ np.array([values[name] for name in found.parameters]))
+    formulas = [group.formula for group in base.groups]
+    return Identified(
+        found,
+        {name: (float(x), float(s)) for name, x, s in zip(formulas, beta / lengths, deviations, strict=True)},
+        values,
+        float(np.linalg.cond(scaled)),
+        len(np.atleast_1d(data["t"])),
+        float(np.sqrt(np.mean(left**2))),
+        float(np.sqrt(np.mean(again**2))),
+    )
+
+
+def stack(found: Regressor, data: Data) -> Stacked:
+    """W and b of measured samples, along the motions that the ties allow.
+
+    Raises:
+        UsageError: a coordinate without samples.
+    """
+    system, symbols = found.system, found.system.symbols
+    t, columns = np.asarray(_column(data, "t"), dtype=float), {}
+    for q in symbols.q:
+        columns[q.name] = np.asarray(_column(data, q.name), dtype=float)
+    for speed, rate in zip(symbols.u, symbols.a, strict=True):
+        columns[speed.name] = _rate(data, t, speed.name, columns)
+        columns[rate.name] = _rate(data, t, rate.name, columns)
+    still = dict.fromkeys(symbols.inputs.values(), 0)
+    Q = generalized_forces(system.loads)
+    applied = tuple(x - y for x, y in zip(Q, substituted(Q, still), strict=True))
+    J = tuple(x for row in system.ties.J for x in row)
+    outputs = (*(x for row in found.rows for x in row), *found.known, *applied, *J)
+    function = compiled(program_of(outputs, symbols, inputs=system.inputs, accelerations=symbols.a), "numpy")
+    states = np.column_stack([columns[x.name] for x in (*symbols.q, *symbols.u, *symbols.a)])
+    names = list(symbols.inputs)
+    given = {name: np.asarray(data[name], dtype=float) for name in names if name in data}
+    if given and len(given) < len(names):
+        missing = next(name for name in names if name not in given)
+        raise UsageError(f"the data have no column '{missing}'", mend="give all inputs, or none")
+    inputs: Any = np.column_stack([given[name] for name in names]) if given else ()
+    values = np.asarray(function.many(t, states, parameter_vector(found.model), inputs))
+    size, width = len(symbols.u), len(found.parameters)
+    Y = values[:, : size * width].reshape(-1, size, width)
+    known = values[:, size * width : size * width + size]
+    pushed = values[:, size * width + size : size * width + 2 * size]
+    ties = values[:, size * width + 2 * size :].reshape(len(values), -1, size)
+    parts = [(_along(J_k, size), Y_k, p_k - k_k) for J_k, Y_k, p_k, k_k in zip(ties, Y, pushed, known, strict=True)]
+    return Stacked(np.vstack([Z @ Y_k for Z, Y_k, _ in parts]), np.concatenate([Z @ b for Z, _, b in parts]))
+
+
+def _along(J: np.ndarray, size: int) -> np.ndarray:
+    """A basis of the motions that the ties allow, a row each."""
+    if not len(J):
+        return np.eye(size)
+    _, s, Vt = np.linalg.svd(J)
+    rank = int(np.sum(s > RANK_NEARBY * s[0])) if len(s) and s[0] else 0
+    basis: np.ndarray = Vt[rank:]
+    return basis
+
+
+def _column(data: Data, name: str) -> Any:
+    if name not in data:
+        raise UsageError(f"the data have no column '{name}'", mend=f"columns are {', '.join(map(str, data))}")
+    return data[name]
+
+
+def _rate(data: Data, t: np.ndarray, name: str, columns: Mapping[str, np.ndarray]) -> np.ndarray:
+    """A measured rate, else that of a cubic spline through what it is the rate of."""
+    if name in data:
+        return np.asarray(data[name], dtype=float)
+    of = name[:-1]
+    if of not in columns:
+        raise UsageError(f"the data have no column '{name}'", mend="give it: it is no rate of another column")
+    rate: np.ndarray = CubicSpline(t, columns[of])(t, 1)
+    return rate
+
+
+def _consistent(
+    found: Regressor, K: np.ndarray, scaled: np.ndarray, lengths: np.ndarray, b: np.ndarray
+) -> dict[str, float]:
+    """The parameters of bodies of positive density, positive rotors, dampers and springs, that fit best."""
+    size = 2 if found.model.space == "plane" else 3
+    own = _own_values(found)
+    bodies = [name[2:-1] for name in found.parameters if name.startswith("m(")]
+    alone = [name for name in found.parameters if not _of_body(name, bodies)]
+    parts = [{n.split("(")[0]: own[n] for n in found.parameters if _of_body(n, [body])} for body in bodies]
+    begin = [numbers_of(part, size) for part in parts]
+    width = len(begin[0]) if begin else 0
+    rest = np.log([max(abs(own[name]), LEAST_DENSITY) for name in alone])
+    z0 = np.concatenate([*begin, rest])
+    triangle: Any = np.linalg.qr(np.column_stack([scaled, b]), mode="r")
+    R, d = triangle[:, :-1], triangle[:, -1]
+    signs = {name: -1.0 if own[name] < 0 else 1.0 for name in alone}
+
+    def values(z: np.ndarray) -> dict[str, float]:
+        made: dict[str, float] = {}
+        for k, body in enumerate(bodies):
+            part = parameters_of(z[k * width : (k + 1) * width], size)
+            made |= {f"{name}({body})": x for name, x in part.items()}
+        return made | {n: signs[n] * float(x) for n, x in zip(alone, np.exp(z[len(bodies) * width :]), strict=True)}
+
+    weight = TOWARD_THE_MODEL * max(1.0, float(np.linalg.norm(d)))
+
+    def left(z: np.ndarray) -> np.ndarray:
+        made = values(z)
+        pi = np.array([made[name] for name in found.parameters])
+        return np.concatenate([R @ (lengths * (K @ pi)) - d, weight * (z - z0)])
+
+    best = least_squares(left, z0, method="trf", x_scale="jac", max_nfev=200)
+    return values(best.x)
+
+
+def _of_body(name: str, bodies: Sequence[str]) -> bool:
+    kind, _, body = name.rstrip(")").partition("(")
+    return kind in ("m", "mx", "my", "mz", "Ixx", "Iyy", "Izz", "Ixy", "Iyz", "Izx") and body in bodies
+
+
+def _own_values(found: Regressor) -> dict[str, float]:
+    """The parameters of the model."""
+    p = parameter_vector(found.model)
+    known = dict(zip(found.system.symbols.parameters.values(), map(float, p), strict=True))
+    return dict(zip(found.parameters, map(float, evaluate(found.values, known, FLOAT)), strict=True))

@@ -1,0 +1,228 @@
+"""Model -> Regressor: the forces that a motion takes, linear in the inertial parameters of the bodies.
+
+    tau + J^T lam = Y(q, u, a) pi + y0(q, u, t)
+
+Of each body pi holds m, the first moments m c and the inertia about its origin, in its axes; of each joint what its
+rotor, damper and spring have; and what else of the model's parameters the forces are linear in, as friction. A column
+is the generalized force of a unit of its parameter, B^T (I A + xi x* (I xi)) with A = B a + alpha, weight as an upward
+acceleration of the ground. y0 is what is known: the forces that hold no parameter of pi.
+Source: Khalil & Dombre, Modeling, Identification and Control of Robots (2002), §9.3 and §12.3.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+from functools import cached_property
+from typing import Any
+
+from eomgen.errors import DerivationError
+from eomgen.identification.base_parameters import BaseParameters, base_of
+from eomgen.mechanics.balance.friction import rubs
+from eomgen.mechanics.bodies.armature import joint_row
+from eomgen.mechanics.bodies.inertia import mass_properties
+from eomgen.mechanics.equations.system import System
+from eomgen.mechanics.equations.work import force_row
+from eomgen.model.forces.load import UniformField
+from eomgen.model.parts import Model
+from eomgen.model.reader import ModelOrPath
+from eomgen.pipeline import derive
+from eomgen.symbolic.expression.derivative import depends_on, gradient, substituted
+from eomgen.symbolic.expression.graph import Node, Scalar, is_zero
+from eomgen.symbolic.expression.node import ScalarRow
+from eomgen.symbolic.expression.spatial import (
+    SpatialInertia,
+    Twist,
+    Wrench,
+    apply,
+    cross,
+    minus,
+    plus,
+    transposed,
+    vector_of,
+)
+
+SPACE = ("Izz", "Ixx", "Ixy", "Izx", "Iyz", "mx", "my", "Iyy", "mz", "m")
+PLANE = ("Izz", "mx", "my", "m")
+PLACES = {"Ixx": (0, 0), "Iyy": (1, 1), "Izz": (2, 2), "Ixy": (0, 1), "Iyz": (1, 2), "Izx": (0, 2)}
+MOMENTS = {"mx": 0, "my": 1, "mz": 2}
+OF_JOINTS = ("armature", "damping", "stiffness")
+
+
+@dataclass(frozen=True, repr=False)
+class Regressor:
+    """tau + J^T lam = Y pi + y0.
+
+    Args:
+        system: the system.
+        parameters: pi by name: m(arm), mx(arm), Ixx(arm), armature(arm), damping(arm), stiffness(arm), mu.
+        rows: Y as graph scalars, a row for each speed.
+        values: of each parameter what it is in the model.
+        known: y0, the forces of what is no parameter.
+    """
+
+    system: System
+    parameters: tuple[str, ...]
+    rows: tuple[ScalarRow, ...]
+    values: ScalarRow
+    known: ScalarRow
+
+    def __repr__(self) -> str:
+        return f"<regressor of {self.system.scope.model.name!r}: {len(self.rows)} x {len(self.parameters)}>"
+
+    @property
+    def model(self) -> Model:
+        return self.system.scope.model
+
+    @cached_property
+    def Y(self) -> Any:
+        """Y in sympy."""
+        import sympy
+
+        from eomgen.symbolic.print.sympy_form import to_sympy
+
+        entries = to_sympy([x for row in self.rows for x in row])
+        return sympy.ImmutableDenseMatrix(len(self.rows), len(self.parameters), entries)
+
+    @cached_property
+    def base(self) -> BaseParameters:
+        """The groups of parameters that the forces tell apart."""
+        return base_of(self.system, self.parameters, self.rows)
+
+    @property
+    def tau(self) -> ScalarRow:
+        """Y pi + y0."""
+        products = ([y * x for y, x in zip(row, self.values, strict=True)] for row in self.rows)
+        return tuple(sum(row, start=known) for row, known in zip(products, self.known, strict=True))
+
+
+def regressor(model: ModelOrPath) -> Regressor:
+    """The regressor of a mechanism.
+
+    Raises:
+        DerivationError: Coulomb friction of a tie, whose normal force is no linear function of the parameters.
+    """
+    return regressor_of(derive(model).system)
+
+
+def regressor_of(system: System) -> Regressor:
+    """The same of a system."""
+    if rubs(system):
+        raise DerivationError(
+            "Coulomb friction of a contact is not linear in the parameters: its normal force depends on them",
+            mend="say it by a force with a parameter of its own",
+        )
+    size = len(system.symbols.u)
+    columns = [*_bodies(system), *_joints(system)]
+    rest = _rest(system)
+    columns += [(name, system.symbols.parameters[name], row) for name, row in _linear(system, rest).items()]
+    known = substituted(rest, {x: 0 for name, x, _ in columns if name in system.symbols.parameters and type(x) is Node})
+    names, values, by_column = zip(*columns, strict=True) if columns else ((), (), ())
+    rows = tuple(tuple(column[k] for column in by_column) for k in range(size))
+    return Regressor(system, tuple(names), rows, tuple(values), tuple(-x for x in known))
+
+
+Column = tuple[str, Scalar, ScalarRow]
+
+
+def _bodies(system: System) -> Iterator[Column]:
+    """The inertial parameters of each body that has any."""
+    motion, a = system.motion, system.symbols.a
+    names = PLANE if motion.scope.model.space == "plane" else SPACE
+    for i, link in enumerate(motion.links):
+        mass = mass_properties(motion.scope, link.name)
+        if is_zero(mass.m) and all(is_zero(x) for row in mass.I for x in row):
+            continue
+        own = SpatialInertia.about_center(mass.m, mass.com, mass.I)
+        B, alpha = motion.B[i], motion.alpha[i]
+        rates = [sum((b * x for b, x in zip(row, a, strict=True)), start=alpha[r]) for r, row in enumerate(B)]
+        up = apply(transposed(link.pose.R), system.loads.fields)
+        A = Twist(vector_of(rates[:3]), minus(vector_of(rates[3:]), up))
+        for name in names:
+            wrench = _force(_unit(name), A, link.twist)
+            entries = (*wrench.tau, *wrench.f)
+            column = tuple(sum((B[r][k] * entries[r] for r in range(6)), start=0) for k in range(len(a)))
+            yield f"{name}({link.name})", _value(own, name), column
+
+
+def _unit(name: str) -> SpatialInertia:
+    """The spatial inertia of which one parameter is 1."""
+    I = [[0] * 3 for _ in range(3)]
+    h = [0, 0, 0]
+    if name in PLACES:
+        i, j = PLACES[name]
+        I[i][j] = I[j][i] = 1
+    elif name in MOMENTS:
+        h[MOMENTS[name]] = 1
+    return SpatialInertia(int(name == "m"), vector_of(h), tuple(map(tuple, I)))  # type: ignore[arg-type]
+
+
+def _value(own: SpatialInertia, name: str) -> Scalar:
+    """A parameter of a body."""
+    if name in PLACES:
+        i, j = PLACES[name]
+        found: Scalar = own.I[i][j]
+        return found
+    return own.m if name == "m" else own.h[MOMENTS[name]]
+
+
+def _force(inertia: SpatialInertia, A: Twist, xi: Twist) -> Wrench:
+    """I A + xi x* (I xi)."""
+    momentum = inertia.momentum(xi)
+    turning = Wrench(plus(cross(xi.w, momentum.tau), cross(xi.v, momentum.f)), cross(xi.w, momentum.f))
+    return inertia.momentum(A).plus(turning)
+
+
+def _joints(system: System) -> Iterator[Column]:
+    """Rotors, dampers and springs of joints."""
+    motion, size = system.motion, len(system.symbols.u)
+    for link in motion.links:
+        efforts = () if link.joint is None else link.joint.efforts()
+        for k, effort in enumerate(efforts):
+            if effort is None:
+                continue
+            row = joint_row(motion, link.name, k)
+            rate = link.s_rate[k]
+            (push,) = motion.scope.time_derivative((rate,))
+            for i, factor in row.items():
+                push = push + factor * system.symbols.a[i]
+            along = {"armature": push, "damping": rate, "stiffness": link.s[k] - motion.scope.value(effort.rest)}
+            for name in OF_JOINTS:
+                declared = getattr(effort, name)
+                if declared is None:
+                    continue
+                value = motion.scope.value(declared)
+                label = f"{name}({link.name})" if len(efforts) == 1 else f"{name}({link.name}, {k + 1})"
+                yield label, value, tuple(row.get(i, 0) * along[name] for i in range(size))
+
+
+def _rest(system: System) -> ScalarRow:
+    """Q of all forces but weight, inputs 0; of a joint its drive alone."""
+    motion, loads = system.motion, system.loads
+    size = len(system.symbols.u)
+    total: list[Scalar] = [0] * size
+    for force in loads.applied:
+        if not any(isinstance(load, UniformField) for load in force.loads):
+            total = [x + y for x, y in zip(total, force_row(loads, force), strict=True)]
+    for link in motion.links:
+        for k, effort in enumerate(() if link.joint is None else link.joint.efforts()):
+            if effort is not None and effort.drive is not None:
+                drive = motion.scope.value(effort.drive)
+                for i, factor in joint_row(motion, link.name, k).items():
+                    total[i] = total[i] + factor * drive
+    return substituted(tuple(total), dict.fromkeys(system.symbols.inputs.values(), 0))
+
+
+def _linear(system: System, rest: ScalarRow) -> dict[str, ScalarRow]:
+    """The parameters in which the other forces are linear, all at once, and that stand nowhere else: -dQ/dp."""
+    geometry = [x for link in system.motion.links for x in (*link.twist.w, *link.twist.v)]
+    found: dict[str, ScalarRow] = {}
+    for name, node in system.symbols.parameters.items():
+        if not any(depends_on(x, (node,)) for x in rest) or any(depends_on(x, (node,)) for x in geometry):
+            continue
+        slope = [gradient(x, (node,))[0] for x in rest]
+        others = [system.symbols.parameters[other] for other in found]
+        if any(depends_on(x, (node, *others)) for x in slope):
+            continue
+        found[name] = tuple(-x for x in slope)
+    return found

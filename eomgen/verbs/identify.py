@@ -1,0 +1,75 @@
+"""eomgen identify: parameters from a measured motion."""
+
+from __future__ import annotations
+
+import csv
+from typing import Any
+
+import numpy as np
+
+from eomgen.documents.document import Document, plain_document
+from eomgen.documents.statements import Lines
+from eomgen.errors import UsageError
+from eomgen.files import read
+from eomgen.identification.fit import Identified, identify
+from eomgen.model.parts import Model
+
+LARGEST = 200_000_000  # bytes of a file
+POOR = 100.0  # a condition number beyond which parameters are hardly told apart
+
+
+def identify_document(model: Model, *, data: str) -> Document:
+    """The parameters that fit a measured motion.
+
+    Raises:
+        UsageError: the file holds no samples of the coordinates.
+    """
+    found = identify(model, columns_of(data))
+    width = max(map(len, (*found.base, *found.values)), default=0)
+    poor = f" (poor: beyond {POOR:g})" if found.condition > POOR else ""
+    lines = [
+        f"{len(found.base)} base parameters from {found.samples} samples, residual {found.residual:.6g}",
+        f"condition of the motion: {found.condition:.6g}{poor}",
+        "",
+        "base parameters (least squares, standard deviation)",
+        *(f"    {name:{width}}  {x:.9g} +- {deviation:.2g}" for name, (x, deviation) in found.base.items()),
+        "",
+        f"parameters of bodies of positive density, residual {found.consistent_residual:.6g}",
+        *(f"    {name:{width}}  {x:.9g}" for name, x in found.values.items()),
+    ]
+    return plain_document(model, lambda: _entries(found), Lines(tuple(lines)))
+
+
+def _entries(found: Identified) -> dict[str, Any]:
+    return {
+        "name": found.regressor.model.name,
+        "samples": found.samples,
+        "condition": found.condition,
+        "residual": found.residual,
+        "base": {name: {"value": x, "deviation": deviation} for name, (x, deviation) in found.base.items()},
+        "values": found.values,
+        "consistent_residual": found.consistent_residual,
+    }
+
+
+def columns_of(path: str) -> dict[str, np.ndarray]:
+    """The columns of a CSV by the names in its first line.
+
+    Raises:
+        UsageError: it cannot be read, or something in it is no number.
+    """
+    try:
+        lines = read(path, LARGEST).decode("utf-8-sig").splitlines()
+    except (OSError, UnicodeDecodeError) as error:
+        raise UsageError(f"cannot be read: {error}", path, "name a CSV file") from error
+    rows = [row for row in csv.reader(lines) if row and not row[0].lstrip().startswith("#")]
+    names = [name.strip() for name in rows[0]] if rows else []
+    try:
+        numbers = np.array([[float(x) for x in row] for row in rows[1:]])
+    except ValueError as error:
+        raise UsageError(
+            f"a value is no number: {error}", path, "write names in the first line, then numbers"
+        ) from error
+    if numbers.ndim != 2 or numbers.shape[1] != len(names):
+        raise UsageError("its rows are not as long as its first line", path, "write a number under every name")
+    return {name: numbers[:, k] for k, name in enumerate(names)}

@@ -1,0 +1,235 @@
+"""Regressors, base parameters, and parameters from measured motions."""
+
+from __future__ import annotations
+
+import json
+from pathlib import Path
+from typing import Any
+
+import mpmath
+import numpy as np
+import pytest
+from click.testing import CliRunner
+
+import eomgen
+from eomgen.cli import main
+from eomgen.errors import DerivationError, EomgenError, UsageError
+from eomgen.identification.base_parameters import sampled_rows
+from eomgen.identification.regressor import Regressor, regressor_of
+from eomgen.symbolic.exact.equality import equal_at_random_states
+from eomgen.symbolic.expression.derivative import substituted
+from tests.helpers.rx90 import PUBLISHED, rx90
+
+MODELS = Path(__file__).parent.parent / "models"
+FOUR_BAR = """
+eomgen = 1
+space = "plane"
+parameters = { a = 0.3, b = 0.8, c = 0.5, m = 1, g = 9.81, mu = 0.2 }
+coordinates = { q1 = 1, q2 = { near = 0.3 }, q3 = { near = 1.2 } }
+inputs = { tau = "2*sin(3*t) + cos(5*t)" }
+points = { A = [0, 0], D = [0.7, 0] }
+constraints.pin = { kind = "pin", points = ["coupler.end", "rocker.end"] }
+forces.weight = { kind = "gravity", acceleration = [0, "-g"] }
+[bodies.crank]
+mass = "m"
+center = [0.1, 0.02]
+inertia = 0.02
+points = { end = ["a", 0] }
+joint = { kind = "revolute", angle = "q1", torque = "tau - mu*sign(q1')" }
+[bodies.coupler]
+mass = 0.6
+center = [0.3, 0.1]
+inertia = 0.05
+points = { end = ["b", 0] }
+joint = { kind = "revolute", on = "crank.end", angle = "q2 - q1" }
+[bodies.rocker]
+mass = 0.9
+center = [0.2, 0]
+inertia = 0.03
+points = { end = ["c", 0] }
+joint = { kind = "revolute", at = "D", angle = "q3", damping = 0.1 }
+"""
+PARALLELOGRAM = """
+eomgen = 1
+space = "plane"
+parameters = { l = 0.4, d = 0.9, g = 9.81 }
+coordinates = { q1 = 1, q2 = 1, q3 = 0 }
+points = { A = [0, 0], B = ["d", 0] }
+constraints.pin = { kind = "pin", points = ["coupler.end", "right.end"] }
+forces.weight = { kind = "gravity", acceleration = [0, "-g"] }
+[bodies.left]
+mass = 1
+center = [0.1, 0.02]
+inertia = 0.02
+points = { end = ["l", 0] }
+joint = { kind = "revolute", angle = "q1" }
+[bodies.coupler]
+mass = 0.6
+center = [0.3, 0.1]
+inertia = 0.05
+points = { end = ["d", 0] }
+joint = { kind = "revolute", on = "left.end", angle = "q3 - q1" }
+[bodies.right]
+mass = 0.9
+center = [0.2, 0]
+inertia = 0.03
+points = { end = ["l", 0] }
+joint = { kind = "revolute", at = "B", angle = "q2" }
+"""
+
+
+def rank_by_orthogonalization(found: Regressor) -> int:
+    """The rank of Y at other states, 45 digits, the longest column first: another way than elimination."""
+    W = sampled_rows(found.system, found.rows, range(len(found.parameters)), 7)
+    with mpmath.workdps(45):
+        columns = [[mpmath.mpf(str(x)) for x in column] for column in W.T]
+        columns = [[x / max(map(abs, column)) for x in column] for column in columns if max(map(abs, column)) > 1e-30]
+        rank = 0
+        while columns:
+            lengths = [mpmath.norm(column) for column in columns]
+            longest = max(lengths)
+            if longest < 1e-20:
+                break
+            rank += 1
+            along = [x / longest for x in columns.pop(lengths.index(longest))]
+            columns = [_without(column, along) for column in columns]
+    return rank
+
+
+def _without(column: list[Any], along: list[Any]) -> list[Any]:
+    share = mpmath.fdot(column, along)
+    return [x - share * y for x, y in zip(column, along, strict=True)]
+
+
+QUICK = (
+    "arm3 four_bar whipple_bicycle slider_crank gyrostat andrews_squeezer bennett n_four_bar car_axis cart_pole".split()
+)
+EVERY = [path.stem for path in sorted(MODELS.glob("*.toml"))]
+
+
+def look_at(name: str) -> None:
+    try:
+        equations = eomgen.derive(MODELS / f"{name}.toml")
+        graph = equations.graph
+        if not graph.symbols.u:
+            return
+        found = regressor_of(equations.system)
+    except EomgenError:
+        return
+    needed = [sum((m * a for m, a in zip(row, graph.symbols.a, strict=True)), start=c - Q)
+              for row, c, Q in zip(graph.M, graph.c, graph.Q, strict=True)]  # fmt: skip
+    needed = list(substituted(tuple(needed), dict.fromkeys(graph.symbols.inputs.values(), 0)))
+    assert equal_at_random_states(list(zip(found.tau, needed, strict=True))).equal
+    assert len(found.base) == rank_by_orthogonalization(found)
+
+
+@pytest.mark.parametrize("name", QUICK)
+def test_regressor_times_parameters_is_the_force_and_its_base_has_the_rank_of_samples(name):
+    """Y pi + y0 = M a + c - Q without inputs, exactly; as many groups as Y has independent columns."""
+    look_at(name)
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("name", sorted({*EVERY} - {*QUICK, "stewart_platform", "delta_robot"}))
+def test_every_model_has_its_regressor_and_its_rank(name):
+    """The same of all models."""
+    look_at(name)
+
+
+def test_base_parameters_of_the_rx90_are_the_published_ones():
+    """40 groups with their formulas in D3 and RL4, after Khalil and Dombre."""
+    base = eomgen.regressor(eomgen.loads(rx90())).base
+    assert base.arithmetic == "prime field"
+    found = {}
+    for group in base.groups:
+        terms = [(name, factor) for name, factor in group.terms.items() if name != group.name]
+        words = [name if f == "1" else f"-{name}" if f == "-1" else f"{f}*{name}" for name, f in terms]
+        found[group.name] = set(words)
+    assert found == {name: set(words.split()) for name, words in PUBLISHED.items()}
+    assert set(base.without_effect) >= {"m(C1)", "m(C2)", "mz(C2)", "Ixx(C1)"}
+
+
+def test_the_puma_560_has_36_base_parameters_and_four_rotors_of_its_own():
+    """36 after Mayeda and Khalil; the rotors of the first two axes are in Izz(link1) and Izz(link2)."""
+    base = eomgen.regressor(MODELS / "puma560.toml").base
+    own = [group.name for group in base.groups]
+    assert len(base) == 40 and [n for n in own if n.startswith("armature")] == [
+        f"armature(link{k})" for k in (3, 4, 5, 6)
+    ]
+    formula = {group.name: group.formula for group in base.groups}
+    assert "armature(link1)" in formula["Izz(link1)"] and "a2^2*m(link3)" in formula["Izz(link2)"]
+
+
+def test_a_parallelogram_tells_three_groups():
+    """T = (I_1 + I_2 + (m_3) l^2) q'^2/2 about the pins, V = g (A sin q + B cos q): three numbers, by hand."""
+    found = eomgen.regressor(eomgen.loads(PARALLELOGRAM))
+    assert len(found.base) == 3 == rank_by_orthogonalization(found)
+    groups = {group.name: group.numbers for group in found.base.groups}
+    l, d = 0.4, 0.9
+    assert groups["Izz(left)"] == pytest.approx({"Izz(left)": 1, "Izz(right)": 1, "m(coupler)": l**2})
+    expected = {"mx(left)": 1, "m(coupler)": l, "mx(right)": 1}
+    assert groups["mx(left)"] == pytest.approx(expected) and d
+    assert groups["my(left)"] == pytest.approx({"my(left)": 1, "my(right)": 1})
+
+
+def data_of(model: Any, time: float, samples: int) -> dict[str, np.ndarray]:
+    """What a run measures: coordinates, rates, accelerations, inputs."""
+    run = eomgen.simulate(model, time=time, samples=samples, rtol=1e-11, atol=1e-11)
+    equations = eomgen.derive(model)
+    rhs, n = equations.rhs("numpy"), len(equations.coordinates)
+    x = np.column_stack([run[name] for name in (*equations.coordinates, *equations.speeds)])
+    rates = rhs.many(run.t, x, rhs.p0)
+    data = {"t": run.t} | {name: run[name] for name in (*equations.coordinates, *equations.speeds)}
+    data |= {f"{u}'": rates[:, n + k] for k, u in enumerate(equations.speeds)}
+    laws = {name: part.value.text for name, part in equations.model.inputs.items()}
+    return data | {
+        name: eval(law, {"sin": np.sin, "cos": np.cos, "t": run.t}) + 0 * run.t for name, law in laws.items()
+    }
+
+
+def test_a_closed_loop_with_friction_is_identified_from_its_motion():
+    """Base parameters are K pi of the model that moved; the bodies found have positive density; friction is found."""
+    true = eomgen.loads(FOUR_BAR)
+    guessed = FOUR_BAR.replace("mass = 0.6", "mass = 0.9").replace("mu = 0.2", "mu = 0.5")
+    found = eomgen.identify(eomgen.loads(guessed), data_of(true, 4, 300))
+    own = eomgen.identify(true, data_of(true, 4, 300))
+    pi = np.array([float(x) for x in _values(own.regressor)])
+    expected = own.regressor.base.matrix(own.regressor.parameters) @ pi
+    assert np.allclose([x for x, _ in found.base.values()], expected, atol=1e-5 * np.abs(expected).max())
+    assert found.values["mu"] == pytest.approx(0.2, rel=1e-3) and found.residual < 1e-5
+    assert found.consistent_residual < 1e-3 and found.values["m(coupler)"] > 0
+    for body in ("crank", "coupler", "rocker"):
+        m, mx, my, Izz = (found.values[f"{name}({body})"] for name in ("m", "mx", "my", "Izz"))
+        assert m > 0 and Izz * m > mx**2 + my**2
+
+
+def _values(found: Regressor) -> Any:
+    from eomgen.identification.fit import _own_values
+
+    return _own_values(found).values()
+
+
+def test_identify_reads_a_csv_and_refuses_what_tells_nothing(tmp_path):
+    """Text and JSON of the verb; a motion that excites nothing, a missing column."""
+    data = data_of(eomgen.loads(FOUR_BAR), 4, 200)
+    model, path = tmp_path / "four.toml", tmp_path / "run.csv"
+    model.write_text(FOUR_BAR)
+    rows = np.column_stack(list(data.values()))
+    path.write_text("\n".join([",".join(data), *(",".join(map(repr, map(float, row))) for row in rows)]))
+    result = CliRunner().invoke(main, ["identify", str(model), "--data", str(path), "--json"])
+    assert result.exit_code == 0, result.output
+    told = json.loads(result.stdout)
+    assert told["samples"] == 200 and told["residual"] < 1e-5 and told["condition"] > 1
+    assert all(deviation["deviation"] >= 0 for deviation in told["base"].values())
+    assert "base parameters" in CliRunner().invoke(main, ["identify", str(model), "--data", str(path)]).stdout
+    still = {name: 0 * x for name, x in data.items()} | {"t": data["t"]}
+    with pytest.raises(UsageError, match="does not excite"):
+        eomgen.identify(model, still)
+    with pytest.raises(UsageError, match="no column 'q2'"):
+        eomgen.identify(model, {name: x for name, x in data.items() if name != "q2"})
+
+
+def test_friction_of_a_contact_has_no_regressor():
+    """Its normal force depends on the parameters."""
+    with pytest.raises(DerivationError, match="not linear in the parameters"):
+        eomgen.regressor(MODELS / "rough_incline.toml")
