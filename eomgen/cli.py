@@ -504,7 +504,7 @@ def sweep_command(where: str, wants_json: bool, output: str | None, strict: bool
     help="A CSV in SI: t, coordinates, rates (q'), accelerations (q''), inputs.",
 )
 def identify_command(**options: Any) -> int:
-    """Fit masses, inertias, dampers and friction to a measured motion.
+    """Fit masses, inertias, friction to a measured motion.
 
     The base parameters by least squares, with their formulas and deviations; how well the motion tells them apart; and
     parameters of bodies of positive density that fit.
@@ -531,7 +531,7 @@ def identify_command(**options: Any) -> int:
 @click.option("--virtual", metavar="REACTION", help="Show the virtual displacement that gives it: reaction_y(A).")
 @click.option("--frames", type=click.IntRange(min=1), default=6, show_default=True, help="Of a strip.")
 def animate_command(model: str, wants_json: bool, format_: str | None, output: str, **options: Any) -> int:
-    """Show the motion, small motions or a virtual displacement as a moving picture."""
+    """Show the motion, small motions, or a virtual displacement."""
     from eomgen.verbs.animate import Showing, animate_document, refuse_ending
 
     refuse_ending(output)

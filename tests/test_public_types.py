@@ -19,6 +19,7 @@ REQUIRED = {
     "time": 1.0,
     "target": "numpy",
     "equation": "T = 0",
+    "data": {},
 }  # of arguments without a default
 
 SCRIPT = """
