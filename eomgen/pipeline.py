@@ -24,6 +24,7 @@ from eomgen.symbolic.numeric.tolerances import RUN
 from eomgen.symbolic.numeric.work import doing
 
 if TYPE_CHECKING:  # what moves is loaded where something moves
+    from eomgen.model.parts import Model
     from eomgen.questions.many_runs import Runs
     from eomgen.questions.simulator import Simulator
     from eomgen.simulation.result import Trajectory
@@ -148,7 +149,9 @@ def simulate(
     Args:
         time: how long [s].
         parameters, start: values that replace the model's, each as `model_at` takes it.
-        inputs: values that replace the model's: numbers, expressions of t, or `eomgen.samples(times, values)`.
+        inputs: values that replace the model's: numbers, expressions of t, `eomgen.samples(times, values)`; feedback by
+            an expression of the state ("-k*x - c*x'"), by {"value": law, "every": 0.01}, sampled and held, or by a
+            Python function of (t, x), x = (q, u), which scipy steps.
         rtol, atol: tolerances of the integration; ties are kept closed to a tenth of atol.
         target: of the emitted code: "numpy", "c", or None for the fastest there is.
         samples: how many instants are given, or the instants themselves.
@@ -158,13 +161,31 @@ def simulate(
     Raises:
         MissingValues: parameters without a value, all named.
     """
+    from eomgen.questions.controlled import controlled_run, controllers_of, with_controlled
     from eomgen.questions.simulator import OUTPUTS, REACTIONS
     from eomgen.simulation.integrate import SAMPLES
 
-    model = with_inputs(model_at(model, parameters, start), inputs or {})
+    model = model_at(model, parameters, start)
+    controllers = controllers_of(model, inputs or {})
+    model = with_inputs(model, {name: value for name, value in (inputs or {}).items() if name not in controllers})
+    if controllers:
+        from eomgen.simulation.integrator import Stepping
+
+        if until is not None:
+            raise UsageError("a run with controllers ends with its time", mend="leave `until` out")
+        equations = derive(with_controlled(model, tuple(controllers)))
+        how = Stepping(method=method, rtol=rtol, atol=atol, stabilization=stabilization)
+        instants = SAMPLES if samples is None else samples
+        found = controlled_run(equations, controllers, time=time, samples=instants, how=how, target=target)
+        return _warned(model, found)
     run = simulator(model, rtol=rtol, atol=atol, target=target, method=method, stabilization=stabilization)
     samples = SAMPLES if samples is None else samples
     found = run(time, samples=samples, columns=(REACTIONS, OUTPUTS), until=until)
+    return _warned(model, found)
+
+
+def _warned(model: Model, found: Trajectory) -> Trajectory:
+    """The run; what is missing of it is a warning of whoever asked for it."""
     if (found.reactions or found.outputs) and found.remark:
-        warnings.warn(f"{model.name}: {found.remark}", RuntimeWarning, stacklevel=2)
+        warnings.warn(f"{model.name}: {found.remark}", RuntimeWarning, stacklevel=3)
     return found

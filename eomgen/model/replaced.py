@@ -9,6 +9,7 @@ from typing import Any
 
 from eomgen.errors import ExpressionError, ModelError, UsageError
 from eomgen.model.arithmetic import value_of
+from eomgen.model.feedback import law_of, with_feedback
 from eomgen.model.fields import WrittenEquation, is_mixed
 from eomgen.model.findings import nearest
 from eomgen.model.part import altered
@@ -177,7 +178,8 @@ def _near(name: str, names: Iterable[str]) -> str:
 
 
 def with_inputs(model: Model, inputs: Mapping[str, Any]) -> Model:
-    """The model with other values of inputs: numbers, expressions of t and the parameters, or `samples(...)`.
+    """The model with other values of inputs: numbers, expressions of t and the parameters, `samples(...)`, or laws of
+    the state ("-k*x - c*x'"), which then stand in place of the input.
 
     Raises:
         UsageError: no input of that name, or a Python function, which nothing can differentiate or emit.
@@ -188,6 +190,8 @@ def with_inputs(model: Model, inputs: Mapping[str, Any]) -> Model:
             raise UsageError(f"there is no input '{name}'", mend=nearest(name, model.inputs))
         if callable(value):
             what = f"input '{name}' is given by a Python function"
-            raise UsageError(what, mend="give an expression of t, as '5*sin(2*t)', or eomgen.samples(times, values)")
-    changed = {name: replace(model.inputs[name], value=value) for name, value in inputs.items()}
-    return replace(model, inputs=Table({**model.inputs, **changed})) if changed else model
+            raise UsageError(what, mend="give an expression of t or the state, or eomgen.samples(times, values)")
+    laws = {name: law for name, value in inputs.items() if (law := law_of(model, value)) is not None}
+    changed = {name: replace(model.inputs[name], value=value) for name, value in inputs.items() if name not in laws}
+    made = replace(model, inputs=Table({**model.inputs, **changed})) if changed else model
+    return with_feedback(made, laws)

@@ -17,7 +17,7 @@ from eomgen.simulation.result import Trajectory
 from eomgen.symbolic.expression.expressions import Expression
 
 
-def output_columns_hold(run: Trajectory, p: np.ndarray, formulas: Mapping[str, Expression]) -> Iterator[Check]:
+def output_columns_hold(run: Trajectory, formulas: Mapping[str, Expression]) -> Iterator[Check]:
     """Compiled programs over all rows, against the formulas with 50 digits and the second definitions at single rows.
 
     Accelerations come from dense equations with 50 digits, functions of motion from differences of poses and from
@@ -35,7 +35,7 @@ def output_columns_hold(run: Trajectory, p: np.ndarray, formulas: Mapping[str, E
         ):
             continue
         row = (first + last) // 2
-        state = state_of_row(run, phase, p, row)
+        state = state_of_row(run, phase, row)
         for name in run.outputs:
             found, when = float(run.outputs[name][row]), f"{name} at t = {run.t[row]:.6g} s"
             if not np.isfinite(found):

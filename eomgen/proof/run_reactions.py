@@ -22,7 +22,7 @@ from eomgen.symbolic.numeric.tolerances import COMPUTED
 MOST = 4  # phases that are looked at, each in its middle
 
 
-def reaction_columns_hold(run: Trajectory, p: np.ndarray) -> Iterator[Check]:
+def reaction_columns_hold(run: Trajectory) -> Iterator[Check]:
     """A(q) rho = b solved by rank in doubles, against its solution in symbols with 50 digits; () where none reacts.
 
     Both share A and b, which the balance of every body proves at other states.
@@ -41,13 +41,13 @@ def reaction_columns_hold(run: Trajectory, p: np.ndarray) -> Iterator[Check]:
             tally.left[f"from {phase.start:.6g} s"] = "its formulas are too long to be evaluated with 50 digits"
             continue
         row = (first + last) // 2
-        tally.add(f"t = {run.t[row]:.6g} s", partial(_differs, run, phase, p, row, formulas))
+        tally.add(f"t = {run.t[row]:.6g} s", partial(_differs, run, phase, row, formulas))
     return tally.checks()
 
 
-def _differs(run: Trajectory, phase: Phase, p: np.ndarray, row: int, formulas: Mapping[str, Scalar]) -> str:
+def _differs(run: Trajectory, phase: Phase, row: int, formulas: Mapping[str, Scalar]) -> str:
     """Which column is not that of the symbols in a row, or ""."""
-    state = state_of_row(run, phase, p, row)
+    state = state_of_row(run, phase, row)
     columns = {name: float(run.reactions[name][row]) for name in formulas if name in run.reactions}
     known = {name: x for name, x in columns.items() if np.isfinite(x)}
     if not known:
@@ -62,12 +62,14 @@ def _differs(run: Trajectory, phase: Phase, p: np.ndarray, row: int, formulas: M
     return ""
 
 
-def state_of_row(run: Trajectory, phase: Phase, p: np.ndarray, row: int) -> NumericState:
+def state_of_row(run: Trajectory, phase: Phase, row: int) -> NumericState:
     """The state of a row, in the coordinates and speeds of its phase."""
     assert phase.track is not None
     t, x = phase.track
     equations = phase.model.equations
     symbols, here = equations.symbols, x[int(np.argmin(np.abs(t - run.t[row])))]
-    parameters = {node: Fraction(float(value)) for node, value in zip(symbols.parameters.values(), p, strict=True)}
+    parameters = {
+        node: Fraction(float(value)) for node, value in zip(symbols.parameters.values(), phase.model.p, strict=True)
+    }
     numbers = {node: float(value) for node, value in zip((*symbols.q, *symbols.u), here, strict=False)}
     return NumericState(equations, parameters, {symbols.t: float(run.t[row]), **numbers})

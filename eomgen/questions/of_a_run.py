@@ -66,12 +66,14 @@ class WholeRun:
         runs: its phases.
         plan: by which they were run.
         parameters: values that replace the model's.
+        ends: the instant up to which each phase was planned; None: the plan's for all.
     """
 
     model: Model
     runs: Sequence[PhaseRun]
     plan: Plan
     parameters: Mapping[str, float]
+    ends: Sequence[float] | None = None
 
     def value(self, asked: str | Output) -> RunValue:
         """What an output, or a text, asks: "max(reaction_x(A))", "theta' at theta = 0", "x at y = 0, event 2".
@@ -297,7 +299,9 @@ class WholeRun:
 
     @cached_property
     def _dense(self) -> dict[int, DenseMotion]:
-        return {k: dense_motion(run, self.plan) for k, run in enumerate(self.runs) if run.run.end > run.here.t}
+        ends = [self.plan.end] * len(self.runs) if self.ends is None else self.ends
+        plans = [replace(self.plan, end=end) for end in ends]
+        return {k: dense_motion(run, plans[k]) for k, run in enumerate(self.runs) if run.run.end > run.here.t}
 
     @cached_property
     def _made(self) -> dict[tuple[Expression, int], OutputColumns]:

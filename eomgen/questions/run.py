@@ -17,7 +17,7 @@ from eomgen.mechanics.equations.stabilization import stabilized
 from eomgen.mechanics.formulations import recursive
 from eomgen.model.fields import WrittenEquation
 from eomgen.proof import motion
-from eomgen.proof.check import Certificate, Check
+from eomgen.proof.check import Certificate, Check, unchecked
 from eomgen.proof.contact_phases import bodies_stand_as_told, changes_follow_impulses, contacts_do_as_told
 from eomgen.proof.run_outputs import output_columns_hold
 from eomgen.proof.run_reactions import reaction_columns_hold
@@ -61,13 +61,17 @@ class RunProof:
     def __call__(self, found: Trajectory) -> Certificate:
         """The proof of the equations, then that of the run."""
         certificate = Certificate(()) if self.equations is None else certify(self.equations.graph)
+        if any(phase.model.fed is not None for phase in found.phases):
+            what = "a Python function sets an input: nobody knows what it is between the states"
+            unseen = unchecked("the run follows its equations", what, "the run's right-hand side")
+            return Certificate((*certificate.checks, unseen))
         legs = [leg for phase in found.phases for leg in self._legs(phase, found)]
         projected = self.how.stabilization in ("projection", "energy") and self.how.every is None
         promise = motion.Promise(self.how.rtol, self.how.atol, found.steps, projected)
         certificate += motion.run_checks(legs, promise)
         columns = (
-            *reaction_columns_hold(found, self.p),
-            *output_columns_hold(found, self.p, formulas_of(self.models.model)),
+            *reaction_columns_hold(found),
+            *output_columns_hold(found, formulas_of(self.models.model)),
         )
         certificate += () if self.whole is None else self.whole.checks()
         return certificate + columns + self._contacts(found)
@@ -83,12 +87,12 @@ class RunProof:
     def _legs(self, phase: Phase, found: Trajectory) -> Iterator[motion.Leg]:
         """The states that a phase went through, none of them after the run was cut."""
         track, phased = _until(phase, found.t).track, phase.model
-        if track is None:
+        if track is None or phased.fed is not None:
             return
         t, x = track
         pulled = self.how.stabilization == "baumgarte"
         rhs, inner = phased.functions.rhs, phased.functions.inner(x)
-        yield motion.Leg(phased.equations, self.p, rhs, t, inner, found.carried, pulled)
+        yield motion.Leg(phased.equations, phased.p, rhs, t, inner, found.carried, pulled)
 
 
 def _until(phase: Phase, t: np.ndarray) -> Phase:
@@ -146,8 +150,6 @@ def run(
     )
     runs = _followed(through(models, here, plan))
     words = until.text if isinstance(until, WrittenEquation) else until
-    found = _told(joined(models, runs), words)
-    found = with_reactions(found, runs) if reactions else found
     again = replace(how, rtol=finer(how.rtol), atol=finer(how.atol))
 
     def estimated(found: Trajectory) -> Accuracy | None:
@@ -164,13 +166,32 @@ def run(
         )
         return accuracy_of(found, other, min(1.0, how.rtol / again.rtol))
 
-    found = with_outputs(found, runs, formulas_of(model) if outputs is None else outputs)
     whole = WholeRun(model, runs, plan, parameters or {})
+    found = finished_run(equations, models, whole, how, samples, until=words, reactions=reactions, outputs=outputs)
+    return replace(found, estimate=estimated)
+
+
+def finished_run(
+    equations: Equations,
+    models: PhaseModels,
+    whole: WholeRun,
+    how: Stepping,
+    samples: int | Sequence[float],
+    *,
+    until: str | None = None,
+    reactions: bool = True,
+    outputs: Mapping[str, Expression] | None = None,
+) -> Trajectory:
+    """The phases of a run as one trajectory, with its columns and its proof; the arguments as of `run`."""
+    model, runs = equations.model, whole.runs
+    found = _told(joined(models, runs), until)
+    found = with_reactions(found, runs) if reactions else found
+    found = with_outputs(found, runs, formulas_of(model) if outputs is None else outputs)
     quantities = whole.outputs() if outputs is None else {}
-    assembled = "" if here.begun is None else here.begun.words
+    begun = runs[0].here.begun
     proof = RunProof(equations, models.p, how, models, whole)
-    found = replace(found, assembled=assembled, whole=whole.value, quantities=quantities)
-    return thinned(replace(found, proof=proof, estimate=estimated), samples)
+    found = replace(found, assembled="" if begun is None else begun.words, whole=whole.value, quantities=quantities)
+    return thinned(replace(found, proof=proof), samples)
 
 
 def phase_models(equations: Equations, p: np.ndarray, how: Stepping, target: str | None) -> PhaseModels:

@@ -12,6 +12,7 @@ from eomgen.simulation.configuration import changed
 from eomgen.simulation.integrate import drift_of
 from eomgen.simulation.integrator import measured
 from eomgen.simulation.output_columns import OutputColumns
+from eomgen.simulation.phase_model import PhaseModel
 from eomgen.simulation.phase_models import PhaseModels
 from eomgen.simulation.phase_run import PhaseRun
 from eomgen.simulation.reaction_columns import ReactionColumns, begun
@@ -83,17 +84,25 @@ def with_reactions(full: Trajectory, runs: Sequence[PhaseRun]) -> Trajectory:
     In each phase they are those of the phase's own equations; a contact that is open has the reaction 0.
     """
     try:
-        made = {id(s.phase): ReactionColumns(s.phase.reactions, s.phase.functions.rhs) for s in runs}
+        made = {id(s.phase): _reaction_columns(s.phase) for s in runs}
     except DerivationError as error:
         return replace(full, remark=f"No reactions: {error.what}.")
     found: dict[str, np.ndarray] = {}
     for s, phase in zip(runs, full.phases, strict=True):
         columns, model, t = made[id(s.phase)], s.phase, s.run.t
         x = begun(t, model.functions.inner(s.run.x), model.functions.rhs.at(model.p), model.slowest)
-        for name, column in zip(columns.names, columns.along(t, x, model.p).T, strict=True):
+        for name, column in zip(columns.names, columns.along(t, x, model.parameters_along(t, s.run.x)).T, strict=True):
             found.setdefault(name, np.zeros(len(full.t)))[slice(*phase.rows)] = column
     always = dict.fromkeys(name for columns in made.values() for name in columns.indeterminate)
     return replace(full, reactions=found, units=_units(made.values()), remark=_remark(full.t, found, tuple(always)))
+
+
+def _reaction_columns(phase: PhaseModel) -> ReactionColumns:
+    """Those of a phase, made once for all values of the parameters."""
+    if "reactions" not in phase.known:
+        phase.known["reactions"] = ReactionColumns(phase.reactions, phase.functions.rhs)
+    found: ReactionColumns = phase.known["reactions"]
+    return found
 
 
 def with_outputs(full: Trajectory, runs: Sequence[PhaseRun], formulas: Mapping[str, Expression]) -> Trajectory:

@@ -52,12 +52,12 @@ class OutputColumns:
         model = self.phase
         inner = model.functions.inner(x)
         moving = begun(t, inner, model.functions.rhs.at(model.p), model.slowest)
-        names = (*model.coordinates, *model.speeds)
+        names, p = (*model.coordinates, *model.speeds), model.parameters_along(t, x)
         found: dict[str, np.ndarray] = {}
         for part in self._parts:
             kept = [names.index(node.name) for node in part.states]
             whole = len(kept) == len(names)
-            found |= part.along(t, inner if whole else inner[:, kept], moving if whole else moving[:, kept], model.p)
+            found |= part.along(t, inner if whole else inner[:, kept], moving if whole else moving[:, kept], p)
         return {name: found[name] for name in self.formulas if name in found}
 
     @property

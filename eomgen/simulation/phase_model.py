@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Hashable, Mapping
+from collections.abc import Callable, Hashable, Mapping
 from dataclasses import dataclass, field, replace
 from functools import cached_property
 from typing import Any
@@ -32,6 +32,8 @@ from eomgen.simulation.solvers import StateRate
 from eomgen.symbolic.expression.derivative import depends_on
 from eomgen.symbolic.numeric.tolerances import COMPUTED
 
+Fed = Callable[[np.ndarray, float, np.ndarray], np.ndarray]
+"""(p, t, x) -> p at a state"""
 Values = Mapping[str, float]
 """Coordinates and rates by name, those of every phase alike: {"theta": 0.1, "theta'": 0}."""
 
@@ -47,6 +49,7 @@ class PhaseModel:
         p: the parameters' values.
         target: of the emitted code.
         known: what was made of its equations, whatever the parameters' values.
+        fed: what a Python function makes of the parameters at every state; None: they stay.
     """
 
     watch: ContactEvents
@@ -55,6 +58,7 @@ class PhaseModel:
     p: np.ndarray
     target: str | None
     known: dict[Hashable, Any] = field(default_factory=dict, repr=False, compare=False)
+    fed: Fed | None = None
 
     @property
     def system(self) -> System:
@@ -64,9 +68,9 @@ class PhaseModel:
     def functions(self) -> PhaseFunctions:
         return PhaseFunctions(self.equations, self.p, self.target)
 
-    def at(self, p: np.ndarray) -> PhaseModel:
+    def at(self, p: np.ndarray, fed: Fed | None = None) -> PhaseModel:
         """The same at other values of the parameters."""
-        found = replace(self, p=p)
+        found = replace(self, p=p, fed=fed)
         vars(found)["functions"] = self.functions.at(p)
         return found
 
@@ -105,7 +109,17 @@ class PhaseModel:
     @cached_property
     def rate(self) -> StateRate:
         """(t, x) -> x', the slack of loose strings included."""
-        return self._rate_with_slacks if self.loose else self.functions.rhs.at(self.p)
+        fed, rhs = self.fed, self.functions.rhs
+        if fed is not None:
+            return lambda t, x: rhs(t, x, fed(self.p, t, x))
+        return self._rate_with_slacks if self.loose else rhs.at(self.p)
+
+    def parameters_along(self, t: np.ndarray, x: np.ndarray) -> np.ndarray:
+        """The parameters' values; of n states, n x parameters, where a Python function changes them."""
+        if self.fed is None:
+            return self.p
+        rows = [self.fed(self.p, time, state) for time, state in zip(t.tolist(), x, strict=True)]
+        return np.array(rows).reshape(len(t), len(self.p))
 
     def _rate_with_slacks(self, t: float, x: np.ndarray) -> np.ndarray:
         inner = self.functions.inner(x)
@@ -125,9 +139,11 @@ class PhaseModel:
                 return found
         return None
 
-    @cached_property
+    @property
     def conservative(self) -> bool:
-        return is_conservative(self.equations)
+        if "conservative" not in self.known:
+            self.known["conservative"] = is_conservative(self.equations)
+        return bool(self.known["conservative"])
 
     @cached_property
     def declared_equations(self) -> EquationsOfMotion:
@@ -220,7 +236,7 @@ class PhaseModel:
     @cached_property
     def slope(self) -> ExactSlope | None:
         """d(x')/dx; None where it is found by differences."""
-        return None if self.loose else slope_of(self.equations, self.p, self.target)
+        return None if self.loose or self.fed is not None else slope_of(self.equations, self.p, self.target)
 
     @cached_property
     def edges(self) -> tuple[Edge, ...]:

@@ -25,7 +25,7 @@ from eomgen.model.parts import Model
 from eomgen.simulation.configuration import Configuration, bounds_of, has_phases, on_pieces
 from eomgen.simulation.contact_events import ContactEvents, sliding_velocity
 from eomgen.simulation.impact import WithoutContacts
-from eomgen.simulation.phase_model import PhaseModel, Values
+from eomgen.simulation.phase_model import Fed, PhaseModel, Values
 from eomgen.symbolic.expression.graph import Scalar
 
 OPEN = ContactMode(closed=False)
@@ -98,10 +98,14 @@ class PhaseModels:
         self._made: dict[Configuration, PhaseModel] = {}
         self._slides: dict[Configuration, Slides] = {}
 
-    def at(self, p: np.ndarray) -> PhaseModels:
-        """The same at other values of the parameters, where no tie asks for these: what is compiled is not again."""
+    def at(self, p: np.ndarray, fed: Fed | None = None) -> PhaseModels:
+        """The same at other values of the parameters, where no tie asks for these: what is compiled is not again.
+
+        Args:
+            fed: as of PhaseModel, of the phases that are made already.
+        """
         found = PhaseModels(self.model, p, self.target, self.rates, self._derived)
-        found._made = {configuration: phase.at(p) for configuration, phase in self._made.items()}
+        found._made = {configuration: phase.at(p, fed) for configuration, phase in self._made.items()}
         return found
 
     def of(self, configuration: Configuration) -> PhaseModel:
