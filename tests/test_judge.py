@@ -106,6 +106,11 @@ def test_what_is_wrong_is_wrong_and_mostly_named(name):
         ("simple_pendulum", "l*theta'' + g*sin(pi*theta/180) = 0", "unit", "degrees"),
         ("simple_pendulum", "T = m*l^2*theta'^2", "factor", "translation of bob"),
         ("simple_pendulum", "V = m*g*l*(1 + cos(theta))", "sign", "weight of bob"),
+        ("simple_pendulum", "frequency(1) = sqrt(g/l)/(2*pi)", "unit", "1/(2*pi) times"),
+        ("simple_pendulum", "theta = cos(sqrt(g/l)*t)", "other", "do not hold with it"),
+        ("double_pendulum", "Q(theta1) = -(m1 + m2)*g*l1*sin(theta1)", "wrong_point", "arm1.end"),
+        ("double_pendulum", "R_arm1_y = (m1 + m2)*g", "missing_term", "in motion alone"),
+        ("double_pendulum", "omega(arm1) = theta1' + theta2'", "extra_term", "theta2'"),
     ],
 )
 def test_a_mistake_has_its_name(model, equation, cause, word):
@@ -126,6 +131,11 @@ def test_independent_mistakes_are_found_together():
         ("simple_pendulum", "theta'^2/2 - g/l*cos(theta) = C", "C constant"),
         ("simple_pendulum", "V = m*g*l*(1 - cos(theta))", "a constant of the potential energy"),
         ("simple_pendulum", "3*theta'' = -3*g/l*sin(theta)", "the factor 3/(m*l^2)"),
+        ("simple_pendulum", "theta'' + 9.81*sin(theta) = 0", "l = 1, g = 9.81"),
+        ("simple_pendulum", r"\omega_0 = \sqrt{g/l}", ""),
+        ("simple_pendulum", "theta = pi", ""),
+        ("double_pendulum", "T + V = E", "E constant"),
+        ("double_pendulum", "vx(arm2.end) = l1 cos(theta1) theta1' + l2 cos(theta2) theta2'", ""),
         ("rough_incline", "x'' = -g*sin(alpha) - mu*g*cos(alpha)", ""),
     ],
 )
@@ -160,6 +170,11 @@ def test_a_decimal_is_right_if_it_is_rounded_rightly():
     """333.333...: 333.33 is, 333.34 is not."""
     assert verdict("beam_with_overhang", "reaction_y(A) = 333.33").up_to == "the rounding of 333.33"
     assert verdict("beam_with_overhang", "reaction_y(A) = 333.34").verdict == "wrong"
+
+
+def test_a_value_of_one_hides_no_missing_factor():
+    """l = 1: theta'^2/2 without m and l is no kinetic energy."""
+    assert verdict("simple_pendulum", "T = 0.5*theta'^2").verdict == "wrong"
 
 
 def test_sympy_equations_are_read():

@@ -23,25 +23,31 @@ if TYPE_CHECKING:
 LONG = 300  # characters of a term that is shown
 
 
-def causes_of(case: Case, rows: Sequence[Scalar], found: Sequence[Explanation]) -> tuple[Cause, ...]:
-    """The causes of the first explanation; the kinds of others with as many mistakes beside them."""
+def causes_of(case: Case, found: Sequence[Explanation], *, moving: bool) -> tuple[Cause, ...]:
+    """The causes of the first explanation; the kinds of others with as many mistakes beside them.
+
+    Args:
+        moving: it is about accelerations: products of two speeds are Coriolis terms.
+    """
     best = found[0]
-    causes = [cause_of(case, share, best.row) for share in best.shares]
+    causes = [cause_of(case, share, best.row, moving=moving) for share in best.shares]
     others = [e for e in found[1:] if len(e.shares) == len(best.shares)]
     if len(causes) == 1:
-        kinds = dict.fromkeys(cause_of(case, e.shares[0], e.row, told=False).kind for e in others)
+        kinds = dict.fromkeys(cause_of(case, e.shares[0], e.row, told=False, moving=moving).kind for e in others)
         causes[0] = replace(causes[0], others=tuple(kind for kind in kinds if kind != causes[0].kind))
     return tuple(causes)
 
 
-def cause_of(case: Case, share: Share, row: int, *, told: bool = True) -> Cause:
+def cause_of(case: Case, share: Share, row: int, *, told: bool = True, moving: bool = True) -> Cause:
     """The cause that one corruption is."""
     corruption, x = share.corruption, share.factor
     rows = (corruption.rows[row],) if row >= 0 else corruption.rows
     term = next(filter(None, (_term(case, x) for x in rows if not is_zero(x))), "") if told else ""
     kind, text = corruption.kind, corruption.text
     if corruption.open:
-        whole = "coriolis" if corruption.kind == "factor" and told and _is_coriolis(case, rows) else corruption.kind
+        whole = corruption.kind if moving else "factor"
+        if moving and told and whole == "factor" and _is_coriolis(case, rows):
+            whole = "coriolis"
         kind, text = _of_factor(whole, corruption.name, x, share.unit, term)
     return Cause(kind, text, term, corruption.body, corruption.force, corruption.name)
 

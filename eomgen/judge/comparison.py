@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
 
 import numpy as np
@@ -13,17 +13,19 @@ from eomgen.judge.case import Case
 from eomgen.judge.causes import other_calls
 from eomgen.judge.corruptions import Corruption, Corruptions, corrupted_terms, terms_of
 from eomgen.judge.decision import is_zero_everywhere
-from eomgen.judge.diagnosis import Explanation, Samples, Search, explained, samples_of
+from eomgen.judge.diagnosis import WHOLE, Explanation, Samples, Search, explained, samples_of
 from eomgen.symbolic.exact.normal_form import legible
-from eomgen.symbolic.expression.derivative import depends_on, derivative, gradient
+from eomgen.symbolic.expression.derivative import depends_on, derivative, gradient, substituted
 from eomgen.symbolic.expression.expressions import Call
 from eomgen.symbolic.expression.functions import over
 from eomgen.symbolic.expression.graph import Scalar, is_zero
+from eomgen.symbolic.expression.traversal import operations
 from eomgen.symbolic.numeric.tolerances import CARRIED, COMPUTED
 from eomgen.symbolic.numeric.work import Work
 from eomgen.symbolic.print.text import readable_text
 
 LONG = 400  # characters of a difference that is shown
+LONGEST = 3000  # operations of equations that are looked at term by term
 EXTRA = 4.5  # rank of a term of the author that does not belong there
 
 
@@ -35,8 +37,9 @@ class Comparison:
         case: the model.
         scalar: of an equation of motion its left minus its right side; else what the author's value is too much.
         rows: the model's equations of motion; else its value alone.
-        what: "motion", "T", "V", or "" of other values.
+        what: "motion", "T", "V", "Q", or "" of other values.
         call: what the value is of.
+        of: of which body, force or coordinate an energy or a force is asked; () of the whole.
     """
 
     case: Case
@@ -44,6 +47,7 @@ class Comparison:
     rows: tuple[Scalar, ...]
     what: str
     call: Call | None = None
+    of: tuple[str, ...] = ()
 
     @cached_property
     def corruptions(self) -> tuple[Corruption, ...]:
@@ -51,14 +55,43 @@ class Comparison:
         system = self.case.system
         structural: list[Corruption] = []
         if self.what:
-            structural += Corruptions(self.case.parts, self.what).all
+            structural += self._structural()
         else:
             structural += self._other_arguments()
+            structural += self._classes()
         if self.what != "motion":
-            structural.append(Corruption("the whole", "factor", self.rows, 1))
+            structural.append(Corruption(WHOLE, "factor", self.rows, 1))
+        if self._is_long:
+            return tuple(structural)
         rates = frozenset((*system.symbols.u, *system.symbols.a))
         terms = corrupted_terms(self.rows, system.symbols.parameters.values(), system.scope.positive, rates)
         return (*structural, *sorted(terms, key=lambda each: each.rank))
+
+    @cached_property
+    def _is_long(self) -> bool:
+        """Whether nobody would look at it term by term."""
+        return operations((self.scalar, *self.rows)).total > LONGEST
+
+    def _structural(self) -> Iterator[Corruption]:
+        """What may be wrong with contributions."""
+        speeds = [u.name.removesuffix("'") for u in self.case.system.symbols.u]
+        for each in Corruptions(self.case.parts, self.what, () if self.what == "Q" else self.of).all:
+            if self.what != "Q":
+                yield each
+            elif self.of[0] in speeds:
+                yield replace(each, rows=(each.rows[speeds.index(self.of[0])],))
+
+    def _classes(self) -> Iterator[Corruption]:
+        """What of a value holds accelerations, what products of speeds, what is there at rest."""
+        symbols, (value,) = self.case.system.symbols, self.rows
+        if not depends_on(value, symbols.a):
+            return
+        (unforced,) = substituted((value,), dict.fromkeys(symbols.a, 0))
+        (rest,) = substituted((unforced,), dict.fromkeys(symbols.u, 0))
+        yield Corruption("all that holds accelerations", "factor", (value - unforced,), 2)
+        yield Corruption("all that holds speeds", "factor", (unforced - rest,), 2)
+        yield Corruption("all that is there in motion alone", "factor", (value - rest,), 2)
+        yield Corruption("all that is there at rest", "factor", (rest,), 2)
 
     def _other_arguments(self) -> Iterator[Corruption]:
         """The same function of another point, body or tie."""
@@ -73,6 +106,8 @@ class Comparison:
     @cached_property
     def extra(self) -> tuple[Corruption, ...]:
         """The author's own terms, each of which may be one too many."""
+        if self._is_long:
+            return ()
         own = self.scalar if self.what == "motion" else self.scalar + self.rows[0]
         known = set(terms_of(self.rows[0], self.case.system.scope.positive)) if self.what != "motion" else set()
         found = []
@@ -102,7 +137,7 @@ class Comparison:
         D, E, C = flat[0], flat[1 : n + 1], flat[n + 1 :].reshape(len(known), n, *flat.shape[1:])
         if self.what != "motion":
             more = samples.of(self._moving([each.rows[0] for each in self.extra]))
-            return (Search(None, -D, np.concatenate([C[:, 0], more]), (*known, *self.extra), 0),)
+            return (Search(None, -D, np.concatenate([C[:, 0], more]), (*known, *self.extra), 0, E[0]),)
         found = [] if tied else [Search(D, E[k], C[:, k], known, k) for k in range(n)]
         if n > 1:
             mixed = self._mixed(samples)
@@ -176,8 +211,10 @@ class Comparison:
         """(the difference, what it touches), where nothing explains it."""
         case = self.case
         if self.what != "motion" or not self.searches:
-            return excess(case, self.scalar), ""
+            return "" if self._is_long else excess(case, self.scalar), ""
         best = min(self.searches, key=lambda search: _misfit(search))
+        if self._is_long:
+            return "", ""
         if best.row < 0:
             return excess(case, case.phase.eliminated(self.scalar)), ""
         row = self.rows[best.row]
@@ -210,5 +247,5 @@ def _touched(target: Comparison, search: Search) -> str:
 
 def excess(case: Case, scalar: Scalar) -> str:
     """A difference as a text; "" where nobody would read it."""
-    form = legible(scalar, Work.ANSWER, case.system.scope.positive, LONG)
+    form = legible(scalar, Work.FORMULA, case.system.scope.positive, LONG)
     return readable_text(form) or ""

@@ -32,6 +32,7 @@ from eomgen.symbolic.numeric.work import Work
 
 MOST_TERMS = 60  # of an equation that is looked at term by term
 MOST = 1400  # corruptions of one equation
+MOST_NODES = 100_000  # of expressions that are made for them
 
 # how readily a mistake is believed, the smaller the sooner
 PLAIN, PLACED, SHARED, PIECES, TERMS, EXCHANGED, ODD = range(7)
@@ -71,10 +72,12 @@ class Corruptions:
     Args:
         parts: the contributions.
         what: "motion": the equations of motion; "T", "V"; "Q": the generalized forces.
+        of: only of these bodies or forces; () of all.
     """
 
     parts: Contributions
     what: str
+    of: tuple[str, ...] = ()
 
     def rows(self, part: Contribution) -> ScalarRow:
         """What a contribution adds to what is asked."""
@@ -91,17 +94,20 @@ class Corruptions:
     def all(self) -> tuple[Corruption, ...]:
         """All of them that change something, the most believable first."""
         found: list[Corruption] = []
+        graph = self.parts.system.scope.graph
+        most = len(graph) + MOST_NODES
         for each in self._sought():
             if not all(map(is_zero, each.rows)):
                 found.append(each)
-            if len(found) >= MOST:
+            if len(found) >= MOST or len(graph) > most:
                 break
         return tuple(sorted(found, key=lambda each: each.rank))
 
     @cached_property
     def _whole(self) -> tuple[Contribution, ...]:
         """The contributions that matter here."""
-        return tuple(part for part in self.parts.elementary if not all(map(is_zero, self.rows(part))))
+        mine = (part for part in self.parts.elementary if not self.of or {part.body, part.force} & {*self.of})
+        return tuple(part for part in mine if not all(map(is_zero, self.rows(part))))
 
     def _sought(self) -> Iterator[Corruption]:
         for part in self._whole:

@@ -28,6 +28,7 @@ from eomgen.symbolic.numeric.batch_evaluation import ARRAYS
 from eomgen.symbolic.numeric.evaluation import evaluate
 from eomgen.symbolic.numeric.tolerances import CARRIED, COMPUTED, SAME_EIGENVALUE
 
+WHOLE = "the whole"  # what is asked, as one contribution
 PLACES, VARIANTS = 5, 8  # configurations, and speeds and accelerations at each
 SIMPLE = 12  # the largest numerator and denominator of a factor that somebody wrote by mistake
 PAIRED, TRIPLED = 900, 120  # corruptions of which pairs and triples are sought
@@ -144,6 +145,7 @@ class Search:
         C: (corruptions, places, variants).
         corruptions: what they are.
         row: whose equation E is.
+        true: where D is None what the model says, of which something must be left.
     """
 
     D: np.ndarray | None
@@ -151,6 +153,7 @@ class Search:
     C: np.ndarray
     corruptions: Sequence[Corruption]
     row: int
+    true: np.ndarray | None = None
 
     def explanations(self, number: int) -> list[Explanation]:
         """Those of so many corruptions, one to three."""
@@ -176,7 +179,8 @@ class Search:
             X = X - np.sum(X * D, axis=-1, keepdims=True) * D
             return X.reshape(*X.shape[:-2], -1)
 
-        A, raw = flat(self.C), (self.C / scale[:, None]).reshape(len(self.C), -1)
+        with np.errstate(all="ignore"):
+            A, raw = flat(self.C), (self.C / scale[:, None]).reshape(len(self.C), -1)
         lengths, sizes = np.linalg.norm(A, axis=1), np.linalg.norm(raw, axis=1)
         kept = [i for i in range(len(A)) if np.isfinite(lengths[i]) and lengths[i] > CARRIED * max(sizes[i], COMPUTED)]
         return flat(self.E), A[kept] / lengths[kept, None], kept
@@ -234,18 +238,22 @@ class Search:
             if share is None:
                 return None
             shares.append(share)
-        if not self._is_there(C, y):
+        if not self._is_there([share.corruption.kind != "extra_term" for share in shares], C, y):
             return None
         scaled, dear = self._scale(C, y)
         cost = sum(map(_cost, shares)) + dear + (MIXED if self.row < 0 else 0)
         return Explanation(tuple(shares), self.row, cost, scaled)
 
-    def _is_there(self, C: np.ndarray, y: np.ndarray) -> bool:
-        """Whether something is left of the equation with all these mistakes."""
-        if self.D is None:
+    def _is_there(self, own: Sequence[bool], C: np.ndarray, y: np.ndarray) -> bool:
+        """Whether something is left of the model's equation with all these mistakes, terms of the author apart."""
+        true = self.E if self.D is not None else self.true
+        if true is None:
             return True
-        whole = np.linalg.norm(self.E + np.tensordot(y, C, axes=1), axis=1)
-        return bool(np.all(whole > CARRIED * np.linalg.norm(self.E, axis=1)))
+        changed = (
+            np.tensordot(y * np.array(own, dtype=float), C, axes=1) if self.D is None else np.tensordot(y, C, axes=1)
+        )
+        whole = np.linalg.norm(true + changed, axis=1)
+        return bool(np.all(whole > CARRIED * np.linalg.norm(true, axis=1)))
 
     def _scale(self, C: np.ndarray, y: np.ndarray) -> tuple[str, float]:
         """What the author multiplied by, and how far-fetched that is."""
@@ -264,6 +272,8 @@ class Search:
 
 def _share(corruption: Corruption, y: float) -> Share | None:
     """The corruption with its factor, where that is one that people write."""
+    if corruption.name == WHOLE and abs(1 + y) < SAME_EIGENVALUE:
+        return None  # something else would have to be there in its place
     if not corruption.open:
         return Share(corruption, Fraction(1)) if abs(y - 1) < SAME_EIGENVALUE else None
     for name, (number, _) in UNITS.items():

@@ -19,9 +19,9 @@ from eomgen.errors import (
     UsageError,
 )
 from eomgen.judge.case import Case
-from eomgen.judge.causes import causes_of
+from eomgen.judge.causes import causes_of, depends_on_any
 from eomgen.judge.comparison import LONG, Comparison, excess
-from eomgen.judge.decision import is_zero_everywhere
+from eomgen.judge.decision import combination, is_zero_everywhere, linear_row
 from eomgen.judge.kinds import KINDS, kind_of_equation
 from eomgen.judge.reading import HandEquation
 from eomgen.judge.renaming import renamings, turnings
@@ -30,9 +30,12 @@ from eomgen.mechanics.equilibria.search import all_equilibria
 from eomgen.model.fields import AtRest, WrittenEquation
 from eomgen.model.reader import ModelOrPath, model_at
 from eomgen.model.replaced import equation_typed, with_values
+from eomgen.model.values import exact_parameters
 from eomgen.questions.answers import Answer
 from eomgen.symbolic.exact.normal_form import legible
 from eomgen.symbolic.expression.derivative import depends_on, derivative, gradient, substituted
+from eomgen.symbolic.expression.exact_numbers import exact
+from eomgen.symbolic.expression.expressions import Reference
 from eomgen.symbolic.expression.functions import over
 from eomgen.symbolic.expression.graph import Node, Scalar, is_zero
 from eomgen.symbolic.numeric.tolerances import COMPUTED
@@ -96,7 +99,8 @@ class Judge:
             return self._asked(written, kind, at)
         if unknown:
             return self._of_other_names(written, kind, unknown)
-        if course := self._course(written):
+        course = self._course(written)
+        if course is not None:
             return course
         scalar = case.value(written.difference)
         return self._of_scalar(written, kind, scalar)
@@ -124,6 +128,8 @@ class Judge:
         holds, up_to = self._decided(scalar, kind)
         if holds:
             return Verdict(written.given, kind, RIGHT, up_to)
+        if (values := self._with_values(written, kind, scalar)) is not None:
+            return values
         if (begun := self.case.as_begun) is not None:
             with suppress(EomgenError):
                 holds_so, up_to_so = Judge(begun)._decided(begun.value(written.difference), kind)
@@ -133,6 +139,30 @@ class Judge:
         if holds is None:
             return Verdict(written.given, kind, UNDECIDED, reason=up_to or "no state of the model decides it")
         return self._wrong(written, kind, scalar)
+
+    def _with_values(self, written: HandEquation, kind: str, scalar: Scalar) -> Verdict | None:
+        """Right where the numbers in it are values of the file: of parameters that it does not name."""
+        case, parameters = self.case, self.case.system.symbols.parameters
+        known = {name: exact(x) for name, x in exact_parameters(case.model).items() if not isinstance(x, float)}
+        missing: dict[Node, Scalar] = {
+            x: known[n] for n, x in parameters.items() if n in known and n not in written.names
+        }
+        numbers = {what for side in (written.left, written.right) for kind_, what in side.code if kind_ == "number"}
+        if not numbers & {x for x in missing.values() if x not in (0, 1)}:
+            return None
+        (plain, *rows) = substituted((scalar, *case.rows, *case.closing), missing)
+        n = len(case.rows)
+        own, closing = ([linear_row(x, case.forced)[0] for x in some] for some in (rows[:n], rows[n:]))
+        row, linear = linear_row(plain, case.forced)
+        if is_zero_everywhere(case.system, plain).holds:
+            holds = kind != "motion"
+        else:
+            holds = linear and bool(combination(case.system, row, own, closing).holds)
+        if not holds:
+            return None
+        needed = [x for x in missing if depends_on_any((scalar, *case.rows), (x,))]
+        told = ", ".join(f"{x.name} = {readable_text(missing[x])}" for x in needed)
+        return Verdict(written.given, kind, RIGHT, f"the values of the file: {told}")
 
     # -- right ------------------------------------------------------------------------------------
 
@@ -407,7 +437,7 @@ class Judge:
         if turned is not None:
             return turned
         if found and target is not None:
-            causes = causes_of(case, target.rows, found)
+            causes = causes_of(case, found, moving=kind in ("motion", "acceleration", "reaction", "law"))
             return Verdict(written.given, kind, WRONG, difference=target.difference(found[0]), causes=causes)
         difference, touched = target.unexplained() if target is not None else (excess(case, scalar), "")
         text = f"the sides differ by {difference}" if difference else "the sides differ"
@@ -464,11 +494,12 @@ class Judge:
             return None
         (rest,) = substituted((left,), {symbol: 0})
         author, true = over(-rest, slope), case.called(call)
-        return Comparison(case, author - true, (true,), _WHAT.get(call.name, "") if not call.args else "", call)
+        of = tuple(x.name for x in call.args if isinstance(x, Reference))
+        return Comparison(case, author - true, (true,), _WHAT.get(call.name, ""), call, of)
 
 
 FAR_FETCHED = 16.0
-_WHAT = {"kinetic_energy": "T", "potential_energy": "V"}
+_WHAT = {"kinetic_energy": "T", "potential_energy": "V", "generalized_force": "Q"}
 _RATIOS = {
     "-1": (-1.0, "sign"),
     "2": (2.0, "factor"),

@@ -6,6 +6,7 @@ T(rod) and the letters of reactions (B_x, N_floor) stand for functions of the ou
 
 from __future__ import annotations
 
+import re
 from dataclasses import dataclass, replace
 from functools import cached_property
 from typing import Any
@@ -23,6 +24,7 @@ from eomgen.symbolic.expression.formula import Instruction
 
 LETTERS = {"T": "kinetic_energy", "V": "potential_energy", "Q": "generalized_force", "p": "momentum"}
 """letter -> the function that it stands for"""
+_FREQUENCY = re.compile("omega_?([0-9n])")
 MULTIPLIER = "lam"  # of a closing row: lam(tie, 1)
 
 
@@ -93,7 +95,17 @@ class Reading:
         if not isinstance(given, str):
             given = text_of_sympy(given)
         left, right = self._sides(given)
+        left = self._frequency(left, right)
         return HandEquation(given, self._meant(left), self._meant(right))
+
+    def _frequency(self, left: Expression, right: Expression) -> Expression:
+        """omega_0, omega_1, ... alone on the left, which the model does not have: a frequency of small motions."""
+        found = _FREQUENCY.fullmatch(left.text.strip())
+        moving = any("'" in name or name in self.system.scope.model.coordinates for name in right.names)
+        if found is None or moving or left.names & self.system.scope.names.keys():
+            return left
+        number = Expression.number(int(found[1]) if found[1].isdigit() and found[1] != "0" else 1)
+        return Expression(left.text, (("call", Call("frequency", (number,))),), (0,))
 
     def _sides(self, given: str) -> tuple[Expression, Expression]:
         """The sides, by the grammar where that knows all names, else as handwriting."""

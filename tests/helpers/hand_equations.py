@@ -379,7 +379,9 @@ def wrong_of(hand: ByHand, rng: random.Random) -> list[Hand]:
             try:
                 right = what != "a reaction left in" and hand.is_right(sympy.sympify(plain))
                 if what == "an angle from the other axis":  # all of it: then it is another way to count, and right
-                    right = right or any(hand.is_right(row.subs(q, q + s * pi / 2)) for q in hand.q for s in (1, -1))
+                    groups = [(q,) for q in hand.q] + [tuple(hand.q)]
+                    turned = [{q: q + s * pi / 2 for q in some} for some in groups for s in (1, -1)]
+                    right = right or any(hand.is_right(row.subs(each, simultaneous=True)) for each in turned)
             except (TypeError, ValueError, ZeroDivisionError):
                 continue
             if not right:
