@@ -6,6 +6,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from tools import needs
 
 import eomgen
 from eomgen.documents.statements import Law, Matrix
@@ -73,3 +74,26 @@ def test_a_matrix_that_no_line_holds_stands_entry_by_entry():
 def test_columns_of_a_matrix_stand_below_one_another():
     formula = eomgen.documents.statements.Formula((Law("A", "A"), Matrix(((1, 20), (300, 4)))))
     assert statement_lines(formula) == ["    A = [1    20]", "        [300  4 ]"]
+
+
+def test_a_state_space_goes_to_scipy(cart):
+    """scipy's lti has the transfer function of theta: W(i w) by its own bode."""
+    lti = cart.state_space(["theta"]).to_scipy()
+    _, size, _ = lti.bode([2.0])
+    theta = 6 / ((4 * 1.0 + 0.1) * (2j) ** 2 - 6 * 9.81 * (1.0 + 0.1))
+    assert size[0] == pytest.approx(20 * np.log10(abs(theta)), rel=1e-9)
+
+
+@needs(".control", what="control")
+def test_a_state_space_goes_to_python_control(cart):
+    """The same number out of control's own evaluation, and the names are kept."""
+    system = cart.state_space(["x", "theta"]).to_control()
+    theta = 6 / ((4 * 1.0 + 0.1) * (1 + 2j) ** 2 - 6 * 9.81 * (1.0 + 0.1))
+    assert system(1 + 2j)[1, 0] == pytest.approx(theta, rel=1e-9)
+    assert list(system.state_labels) == ["x", "theta", "x'", "theta'"] and list(system.input_labels) == ["F"]
+
+
+def test_a_state_space_without_inputs_is_refused_by_name():
+    """No input, no transfer function: what is wrong, and what mends it."""
+    with pytest.raises(eomgen.EomgenError, match="without inputs"):
+        eomgen.linearize(MODELS / "double_pendulum.toml").state_space().to_scipy()

@@ -27,9 +27,11 @@ async function serve() {
     const [states, accelerations, parameters, inputs, outputs] = take(5);
     for (;;) {
         const [n, given] = take(2), p = take(parameters), c = constants(p), all = new Float64Array(n*outputs);
+        const moving = 1 + states + accelerations, width = moving + (given ? inputs : 0), rows = take(n*width);
         for (let i = 0; i < n; i++) {
-            const [t] = take(1), x = take(states), a = accelerations ? [take(accelerations)] : [];
-            all.set(evaluate(t, x, ...a, p, c, given ? take(inputs) : null), i*outputs);
+            const row = rows.subarray(i*width, (i + 1)*width), x = row.subarray(1, 1 + states);
+            const a = accelerations ? [row.subarray(1 + states, moving)] : [];
+            all.set(evaluate(row[0], x, ...a, p, c, given ? row.subarray(moving) : null), i*outputs);
         }
         const bytes = new Uint8Array(all.buffer);
         for (let at = 0; at < bytes.length;) at += writeSync(1, bytes, at);

@@ -8,7 +8,7 @@ from typing import Any
 
 import numpy as np
 
-from eomgen.errors import DerivationError
+from eomgen.errors import DerivationError, ToolMissing
 from eomgen.mechanics.small_motions.state_space import StateMatrices
 
 LETTERS = ("A", "B", "C_y", "D_y")
@@ -49,6 +49,37 @@ class StateSpace:
     def __iter__(self) -> Any:
         """A, B, C_y, D_y: scipy.signal.StateSpace(*small.state_space())."""
         return iter([self.A, self.B, self.C_y, self.D_y])
+
+    def to_scipy(self) -> Any:
+        """scipy.signal.lti: bode, step, impulse, poles.
+
+        Raises:
+            DerivationError: parameters have no values; there is no input.
+        """
+        from scipy.signal import lti
+
+        self._refuse_without_inputs()
+        return lti(*self)
+
+    def to_control(self) -> Any:
+        """control.StateSpace of the package python-control, its states, inputs and outputs by their names.
+
+        Raises:
+            DerivationError: parameters have no values; there is no input.
+            ToolMissing: the package is not there.
+        """
+        self._refuse_without_inputs()
+        try:
+            import control
+        except ImportError:
+            raise ToolMissing("python-control is not installed", mend="pip install control") from None
+        # its names have no dots; a rate's prime stays
+        names = {"states": self.states, "inputs": self.inputs, "outputs": self.outputs}
+        return control.ss(*self, **{key: [name.replace(".", "_") for name in each] for key, each in names.items()})
+
+    def _refuse_without_inputs(self) -> None:
+        if not self.inputs:
+            raise DerivationError("a system without inputs has no transfer functions", "inputs", "declare an input")
 
     def _array(self, letter: str, columns: int) -> np.ndarray:
         """
