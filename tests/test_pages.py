@@ -112,7 +112,7 @@ def test_a_contradiction_marks_the_page_and_ends_in_exit_3(monkeypatch, tmp_path
     wrong = Certificate((Check("M is symmetric", "fails", "prime field", "M[1, 2] differs"),))
     monkeypatch.setattr(Equations, "certify", lambda *given, **options: wrong)
     model = eomgen.load(MODELS / "double_pendulum.toml")
-    document = report_document(model, output=str(tmp_path / "r.html"), time=0.1, start={})
+    document = report_document(model, output=str(tmp_path / "r.html"), time=0.1)
     assert document.wrong == DISTRUST
     text = (tmp_path / "r.html").read_text()
     assert f'<p class="wrong" role="alert">{DISTRUST}</p>' in text and "proven by" not in text

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from base64 import b64encode
 from functools import cache
 from importlib import resources
@@ -11,6 +12,7 @@ from eomgen.errors import ToolMissing
 from eomgen.page.markup import Html, element
 
 ROWS = 'style="text-align: right;justify-items: end;padding-right: 0;"', 'class="r"'
+_WORDS = re.compile(r"\\text\{((?:[^{}$]*\$(?:[^${}]|\{[^{}]*\})*\$)+[^{}$]*)\}")
 LEFT = 'style="text-align: left;justify-items: start;padding-left: 0;"', 'class="l"'
 
 
@@ -42,12 +44,22 @@ def mathml(tex: str, *, display: bool = False) -> Html:
     from math_core import LatexError
 
     try:
-        found = converter.convert_with_local_state(tex, displaystyle=display)
+        found = converter.convert_with_local_state(_words_apart(tex), displaystyle=display)
     except LatexError:
         return element("code", tex, class_="unset")
     for long, short in (ROWS, LEFT):
         found = found.replace(long, short)
     return Html(found)
+
+
+def _words_apart(tex: str) -> str:
+    r"""Words with formulas among them as words, formula, words: \text{N$\cdot$m} -> \text{N}\cdot\text{m}."""
+    return _WORDS.sub(lambda found: _parted(found[1]), tex)
+
+
+def _parted(words: str) -> str:
+    pieces = words.split("$")
+    return "".join(piece if k % 2 else rf"\text{{{piece}}}" for k, piece in enumerate(pieces) if piece)
 
 
 def font_face() -> str:
