@@ -138,6 +138,25 @@ def import_command(file: str, wants_json: bool, output: str | None, floating: bo
     return deliver(document, form_asked(wants_json, None))
 
 
+@main.command("export")
+@MODEL
+@JSON
+@click.option("-o", "--output", required=True, type=click.Path(dir_okay=False), help="The robot's file, .urdf.")
+@with_values
+def export_command(model: str, wants_json: bool, output: str, strict: bool, **options: Any) -> int:
+    """Write a model as URDF, for what URDF can say.
+
+    Links on hinges, slides and free joints, inertias, dampers, motors, coordinates that follow others. What URDF cannot
+    say is listed.
+    """
+    from eomgen.verbs.exporting import export_document, refuse_strange_endings
+
+    refuse_strange_endings(output)
+    with reading(model) as source:
+        document = _asked(export_document, source, options, output=output)
+    return deliver(document, form_asked(wants_json, None), strict=strict)
+
+
 @main.command("check")
 @click.argument("models", nargs=-1, required=True, type=click.Path(exists=True, dir_okay=False, allow_dash=True))
 @JSON

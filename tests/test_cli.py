@@ -41,6 +41,7 @@ VERBS = [
     "new",
     "examples",
     "import",
+    "export",
     "check",
     "derive",
     "solve",
@@ -403,6 +404,7 @@ def test_an_ending_that_no_form_has_is_refused_before_any_work(verb, tmp_path):
     for ending in sorted({".html", ".pdf", ".docx", ".xlsx", ".PDF"} - own):
         path = tmp_path / f"w{ending}"
         words = (verb, *(() if verb in ("schema", "doctor") else (SEED,)), "-o", str(path))
+        words += ("--data", SEED) if verb == "identify" else ()
         has_form = verb not in ("schema", "doctor", "codegen", "simulate", "play", "report", "import", "sweep")
         for result in (run(*words), run(*words, *(("--format", "text") if has_form else ("--json",)))):
             assert result.exit_code == 2 and not list(tmp_path.iterdir())

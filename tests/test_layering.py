@@ -25,7 +25,7 @@ CHAIN = (
     ("questions",),
     ("pipeline",),
     ("sweeps",),
-    ("identification",),
+    ("identification", "exported"),
     ("generated",),
     ("page",),
     ("judge",),

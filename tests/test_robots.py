@@ -13,7 +13,8 @@ from click.testing import CliRunner
 
 import eomgen
 from eomgen.cli import main
-from eomgen.errors import ModelError, ToolMissing
+from eomgen.errors import DerivationError, ModelError, ToolMissing
+from eomgen.exported import urdf_of
 from eomgen.robots.importing import imported
 from eomgen.symbolic.numeric.evaluation import FLOAT, evaluate
 from tests.helpers.sdf_of_urdf import sdf_of_urdf
@@ -320,3 +321,66 @@ def test_sdf_has_frames_springs_screws_and_links_that_nothing_holds(tmp_path):
     ]:
         with pytest.raises(ModelError, match=what):
             robot(tmp_path, SDF.replace(*change), "sdf")
+
+
+@pytest.mark.parametrize("seed", [0, 3])
+def test_what_is_exported_is_imported_with_the_same_equations(seed, tmp_path):
+    """M and c - Q of import(export(import(F))) are those of import(F); nothing is left out."""
+    first = robot(tmp_path, random_robot(seed)).model
+    path = tmp_path / "again.urdf"
+    text = toml_of_random(seed, tmp_path)
+    result = CliRunner().invoke(main, ["export", text, "-o", str(path), "--json"])
+    assert result.exit_code == 0 and json.loads(result.stdout)["left_out"] == []
+    second = eomgen.import_robot(path)
+    rng = np.random.default_rng(seed)
+    q = {name: float(rng.uniform(-2, 2)) for name in first.coordinates}
+    u = {f"{name}'": float(rng.uniform(-1, 1)) for name in q}
+    (M, h), (M0, h0) = dynamics(second, q, u), dynamics(first, q, u)
+    order = [list(first.coordinates).index(name) for name in second.coordinates]
+    assert np.allclose(M, M0[np.ix_(order, order)], atol=1e-10) and np.allclose(h, h0[order], atol=1e-9)
+    assert set(second.inputs) == set(first.inputs)
+
+
+def toml_of_random(seed: int, tmp_path: Any) -> str:
+    path = tmp_path / "first.toml"
+    path.write_text(robot(tmp_path, random_robot(seed)).text)
+    return str(path)
+
+
+def test_export_says_what_urdf_can_and_lists_the_rest(tmp_path):
+    """Points off the origin, angles with an offset, plane models; springs are listed, ball joints refused."""
+    arm = tmp_path / "arm.toml"
+    arm.write_text("""
+eomgen = 1
+space = "plane"
+parameters = { g = 9.81, l = 0.4 }
+coordinates = { x = 0, q = 0.3 }
+forces.weight = { kind = "gravity", acceleration = [0, "-g"] }
+[bodies.cart]
+mass = 2
+joint = { kind = "prismatic", axis = [1, 0], displacement = "x", stiffness = 3 }
+[bodies.rod]
+mass = 0.5
+inertia = 0.02
+points = { hinge = ["-l/2", 0] }
+joint = { kind = "revolute", on = "cart", at = [0, 0.1], point = "hinge", angle = "pi/6 - q", damping = 0.2 }
+""")
+    found = urdf_of(arm)
+    assert {each.what: each.where for each in found.left_out} == {"stiffness": ("cart",), "forces": ("weight",)}
+    path = tmp_path / "arm.urdf"
+    path.write_text(found.text)
+    again, first = eomgen.import_robot(path), eomgen.load(arm)
+    q, u = {"x": 0.2, "q": 0.7}, {"x'": -0.4, "q'": 1.1}
+    assert np.allclose(dynamics(again, q, u)[0], dynamics(first, q, u)[0], atol=1e-12)
+    with pytest.raises(DerivationError, match="hinges, slides and free joints"):
+        urdf_of("models/spatial_slider_crank.toml")
+
+
+def test_coordinates_that_follow_one_another_come_back(tmp_path):
+    """mimic -> equation -> mimic: the same gap."""
+    first = robot(tmp_path, ARM)
+    model = tmp_path / "arm.toml"
+    model.write_text(first.text)
+    (tmp_path / "robot.urdf").write_text(urdf_of(model).text)
+    second = eomgen.import_robot(tmp_path / "robot.urdf")
+    assert second.constraints["mimic_elbow"].gap == first.model.constraints["mimic_elbow"].gap

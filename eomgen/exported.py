@@ -1,0 +1,228 @@
+"""Model -> URDF, for what URDF can say: a tree of links on hinges, slides and free joints; the rest is listed.
+
+A link's frame sits where its joint does, in the axes of its body, and its joint's origin is where that frame is when
+every coordinate is 0; so import gives the same equations again.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import Any
+from xml.sax.saxutils import quoteattr
+
+from eomgen.codegen.rhs import parameter_vector
+from eomgen.errors import DerivationError
+from eomgen.mechanics.bodies.inertia import mass_properties
+from eomgen.mechanics.bodies.kinematics import GROUND, BodyLink
+from eomgen.mechanics.equations.system import System
+from eomgen.model.reader import ModelOrPath
+from eomgen.pipeline import derive
+from eomgen.robots.drawn_up import LeftOut
+from eomgen.symbolic.expression.derivative import depends_on, gradient, substituted, symbols_of
+from eomgen.symbolic.expression.graph import Scalar
+from eomgen.symbolic.expression.spatial import Pose, minus
+from eomgen.symbolic.numeric.evaluation import FLOAT, evaluate
+from eomgen.symbolic.numeric.tolerances import ROUNDING
+
+G = 9.81  # of what reads URDF, downward along z [m/s^2]
+
+
+@dataclass(frozen=True)
+class Exported:
+    """A robot's file.
+
+    Args:
+        text: the URDF.
+        left_out: what of the model URDF cannot say.
+    """
+
+    text: str
+    left_out: tuple[LeftOut, ...]
+
+
+def urdf_of(model: ModelOrPath) -> Exported:
+    """The URDF of a model.
+
+    Raises:
+        DerivationError: a joint that URDF does not have, a seat that moves, a joint variable that is no coordinate.
+        MissingValues: parameters without values.
+    """
+    return _Writing(derive(model).system).exported()
+
+
+class _Writing:
+    """The links and joints of a system, in numbers."""
+
+    def __init__(self, system: System) -> None:
+        self.system = system
+        p = parameter_vector(system.scope.model)
+        self.known: dict[Any, Any] = dict(zip(system.symbols.parameters.values(), map(float, p), strict=True))
+        self.known |= {system.symbols.t: 0.0}
+        self.left: dict[str, list[str]] = {}
+
+    def exported(self) -> Exported:
+        motion, model = self.system.motion, self.system.scope.model
+        lines = [f"<robot name={quoteattr(model.name)}>", '  <link name="world"/>']
+        for link in motion.links:
+            lines += [*self._link(link), *self._joint(link)]
+        lines += self._transmissions()
+        self._forces()
+        text = "\n".join([*lines, "</robot>", ""])
+        return Exported(
+            text, tuple(LeftOut(what, tuple(where), "URDF cannot say it") for what, where in self.left.items())
+        )
+
+    def numbers(self, scalars: Sequence[Scalar], where: str) -> list[float]:
+        """Constants.
+
+        Raises:
+            DerivationError: they move.
+        """
+        if any(symbol not in self.known for symbol in symbols_of(scalars)):
+            raise DerivationError(
+                "URDF has no seat, mass centre or axis that moves", where, "let a joint carry the motion"
+            )
+        return [float(x) for x in evaluate(tuple(scalars), self.known, FLOAT)]
+
+    def _link(self, link: BodyLink) -> list[str]:
+        mass = mass_properties(self.system.scope, link.name)
+        where = f"bodies.{link.name}"
+        m, *com = self.numbers((mass.m, *minus(mass.com, link.point)), where)
+        tensor = self.numbers([x for row in mass.I for x in row], where)
+        name = f"  <link name={quoteattr(link.name)}"
+        if not m and not any(tensor):
+            return [f"{name}/>"]
+        keys = zip(("ixx", "ixy", "ixz", "iyy", "iyz", "izz"), (0, 1, 2, 4, 5, 8), strict=True)
+        inertia = " ".join(f'{key}="{tensor[k]!r}"' for key, k in keys)
+        return [
+            f"{name}>",
+            f'    <inertial><origin xyz="{_words(com)}"/><mass value="{m!r}"/><inertia {inertia}/></inertial>',
+            "  </link>",
+        ]
+
+    def _joint(self, link: BodyLink) -> list[str]:
+        where = f"bodies.{link.name}.joint"
+        motion, symbols = self.system.motion, self.system.symbols
+        parent = None if link.parent == GROUND else motion.links[link.parent]
+        still = dict.fromkeys(symbols.q, 0)
+        own = sorted({x for x in symbols_of(link.s) if x in still}, key=lambda x: symbols.q.index(x))
+        shape, inner = self._shape(link, own, where), ""
+        place = link.before
+        if shape[0] not in ("floating", "fixed"):
+            relative = substituted((*(x for row in link.relative.R for x in row), *link.relative.p), still)
+            R: Any = tuple(tuple(relative[3 * i : 3 * i + 3]) for i in range(3))
+            place = place.then(Pose(R, (relative[9], relative[10], relative[11])))
+            inner = f'<axis xyz="{_words(shape[1])}"/>'
+            limit = '<limit effort="0" velocity="0"/>' if shape[0] == "prismatic" else ""
+            inner += limit.replace("/>", ' lower="-1e9" upper="1e9"/>') + self._effort(link) + self._mimic(own[0])
+        elif shape[0] == "fixed":
+            relative = (*(x for row in link.relative.R for x in row), *link.relative.p)
+            R = tuple(tuple(relative[3 * i : 3 * i + 3]) for i in range(3))
+            place = place.then(Pose(R, (relative[9], relative[10], relative[11])))
+        shift = (0, 0, 0) if parent is None else parent.point
+        at = self.numbers(minus(place.p, shift), where)
+        R_numbers = self.numbers([x for row in place.R for x in row], where)
+        name = own[0].name if len(own) == 1 else f"{link.name}_joint"
+        above = "world" if parent is None else parent.name
+        return [
+            f'  <joint name={quoteattr(name)} type="{shape[0]}"><parent link={quoteattr(above)}/>'
+            f'<child link={quoteattr(link.name)}/><origin xyz="{_words(at)}" rpy="{_words(_angles(R_numbers))}"/>'
+            f"{inner}</joint>"
+        ]
+
+    def _shape(self, link: BodyLink, own: list[Any], where: str) -> tuple[str, list[float]]:
+        """(type, axis in the child's axes along which the coordinate grows).
+
+        Raises:
+            DerivationError: URDF has no such joint.
+        """
+        if not own and not any(depends_on(x, [self.system.symbols.t]) for x in link.s):
+            return "fixed", []
+        if len(link.S) == 6 and not any(depends_on(x, self.system.symbols.q) for x in link.before.p):
+            return "floating", []
+        if len(link.S) != 1 or len(own) != 1:
+            raise DerivationError(
+                "URDF has hinges, slides and free joints of a coordinate each", where, "take other joints"
+            )
+        (factor,) = self.numbers(gradient(link.s[0], (own[0],)), where)
+        uses = [each.name for each in self.system.motion.links if depends_on_any(each.s, own[0])]
+        if abs(abs(factor) - 1) > ROUNDING or len(uses) > 1:
+            raise DerivationError(f"URDF has one joint for a coordinate: '{own[0].name}'", where, "give each its own")
+        (w, v) = link.S[0]
+        turning, sliding = self.numbers(w, where), self.numbers(v, where)
+        if any(turning) and any(sliding):
+            raise DerivationError("URDF has no screw", where, "take other joints")
+        axis = turning if any(turning) else sliding
+        return ("continuous" if any(turning) else "prismatic"), [factor * x for x in axis]
+
+    def _effort(self, link: BodyLink) -> str:
+        """Its damper; springs and rotors are left out."""
+        (effort,) = (link.joint.efforts() or (None,))[:1]
+        if effort is None:
+            return ""
+        for key in ("stiffness", "armature"):
+            if getattr(effort, key) is not None:
+                self.left.setdefault(key, []).append(link.name)
+        if effort.damping is None:
+            return ""
+        (damping,) = self.numbers((self.system.scope.value(effort.damping),), f"bodies.{link.name}.joint")
+        return f'<dynamics damping="{damping!r}"/>'
+
+    def _mimic(self, q: Any) -> str:
+        """The tie by which the coordinate follows another one."""
+        for row in self.system.ties.closing:
+            if row.gap is None:
+                continue
+            own = [x for x in self.system.symbols.q if depends_on(row.gap, (x,))]
+            if len(own) != 2 or own[1] is not q:
+                continue
+            slopes = gradient(row.gap, own)
+            if any(symbol not in self.known for symbol in symbols_of(slopes)):
+                continue
+            b, a, c = self.numbers((*slopes, *substituted((row.gap,), dict.fromkeys(own, 0))), "constraints")
+            self.left.setdefault("", []).append(row.tie)
+            return f'<mimic joint={quoteattr(own[0].name)} multiplier="{-b / a!r}" offset="{-c / a!r}"/>'
+        return ""
+
+    def _transmissions(self) -> list[str]:
+        """A motor for each joint that an input drives."""
+        lines = []
+        for link in self.system.motion.links:
+            efforts = () if link.joint is None else link.joint.efforts()
+            if not any(effort is not None and effort.drive is not None for effort in efforts):
+                continue
+            own = [x for x in self.system.symbols.q if depends_on_any(link.s, x)]
+            if len(own) == 1:
+                name = quoteattr(own[0].name)
+                lines.append(f"  <transmission name={name}><joint name={name}/></transmission>")
+        return lines
+
+    def _forces(self) -> None:
+        """What of the forces and ties is not said."""
+        said = set(self.left.pop("", []))
+        ties = [name for name in self.system.scope.model.constraints if name not in said]
+        fields = self.numbers(self.system.loads.fields, "forces")
+        weight = [force.name for force in self.system.loads.applied if force.loads]
+        usual = fields[:2] == [0.0, 0.0] and abs(fields[2] + G) < ROUNDING
+        forces = [name for name in self.system.scope.model.forces if name not in weight or not usual]
+        for what, names in (("forces", forces), ("constraints", ties)):
+            if names:
+                self.left.setdefault(what, []).extend(names)
+
+
+def depends_on_any(scalars: Sequence[Scalar], symbol: Any) -> bool:
+    """Whether one of them depends on it."""
+    return any(depends_on(x, (symbol,)) for x in scalars)
+
+
+def _words(numbers: Sequence[float]) -> str:
+    return " ".join(repr(x + 0.0) for x in numbers)
+
+
+def _angles(R: Sequence[float]) -> list[float]:
+    """Roll, pitch and yaw of R = Rz Ry Rx, given by rows."""
+    if abs(R[6]) > 1 - ROUNDING:
+        return [0.0, math.copysign(math.pi / 2, -R[6]), math.atan2(-R[1], R[4])]
+    return [math.atan2(R[7], R[8]), -math.asin(R[6]), math.atan2(R[3], R[0])]

@@ -1,0 +1,37 @@
+"""eomgen export: a model as a robot's file of other programs."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from pathlib import Path
+
+from eomgen import files
+from eomgen.documents.document import Document, plain_document
+from eomgen.documents.statements import Lines
+from eomgen.errors import UsageError
+from eomgen.exported import urdf_of
+from eomgen.model.parts import Model
+
+
+def refuse_strange_endings(output: str) -> None:
+    """Before any work.
+
+    Raises:
+        UsageError: the file is called like no robot.
+    """
+    if Path(output).suffix.lower() != ".urdf":
+        raise UsageError(f"'{output}' is no name for a robot: the ending is .urdf", mend="name it so")
+
+
+def export_document(model: Model, *, output: str) -> Document:
+    """The URDF, written; what URDF cannot say.
+
+    Raises:
+        DerivationError: a joint that URDF does not have.
+        WriteFailed: it cannot be written.
+    """
+    found = urdf_of(model)
+    files.write(output, found.text)
+    left_out = [each.as_dict() for each in found.left_out]
+    document = plain_document(model, lambda: {"file": output, "left_out": left_out}, Lines((output,)))
+    return replace(document, notes=tuple(f"left out: {each}" for each in found.left_out))
