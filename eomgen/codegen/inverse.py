@@ -2,15 +2,16 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import cached_property
 from typing import Any
 
 import numpy as np
 
+from eomgen.codegen.given_motion import GivenMotion
 from eomgen.codegen.program import Program, Solve, program_of
-from eomgen.codegen.rhs import RightHandSide, compiled
+from eomgen.codegen.rhs import RightHandSide, compiled, parameter_vector
 from eomgen.mechanics.reactions.inverse import Inverse
 
 
@@ -85,6 +86,25 @@ class InverseDynamics:
     def function(self, target: str | None = None) -> InverseFunction:
         """`inverse(t, x, a, p, inputs=())`; the target as of `Equations.rhs`."""
         return InverseFunction(self.names, compiled(self.program, target))
+
+    def along(
+        self, t: Any, motion: Mapping[str, Any], parameters: Mapping[str, float] | None = None
+    ) -> dict[str, np.ndarray]:
+        """{actuator: what it has to give at each instant} of a given motion, n each [N, N m].
+
+        Args:
+            t: the instants, n, ascending.
+            motion: of every coordinate that moves freely: an expression of t and the parameters, `eomgen.samples(...)`,
+                or its values at the instants, through which a cubic spline goes.
+            parameters: values that replace the model's [SI].
+        Raises:
+            UsageError: a coordinate without a motion, an unknown name; the motion opens the ties.
+        """
+        times = np.atleast_1d(np.asarray(t, dtype=float))
+        p = parameter_vector(self.graph.system.scope.model, parameters)
+        given = GivenMotion(self.graph.system, times, motion, p)
+        tau = self.function("numpy").many(times, given.x, given.a, p)
+        return dict(zip(self.names, tau.T, strict=True))
 
 
 def _least(found: Inverse) -> Solve | None:

@@ -5,6 +5,7 @@ from __future__ import annotations
 import importlib.util
 import json
 import subprocess
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -343,3 +344,36 @@ def test_names_of_parameters_do_not_meet_those_of_the_arrays(tmp_path):
     for target in ("numpy", *(["c"] if compiler() else [])):
         found = inverse.function(target)(0, [0.1, 5], [3], [0.3, 2, 1])
         assert found == pytest.approx([0.09 / 3 * 3 + 0.2], rel=1e-14)
+
+
+@pytest.mark.parametrize("name", ["double_pendulum", "arm3", "cart_pole", "puma560"])
+def test_along_a_given_motion_it_gives_what_drives_that_motion(name):
+    """tau(t) of prescribed coordinates is drive(q) of the model whose coordinates move so; by a spline nearly so."""
+    model = eomgen.load(Path(__file__).parents[2] / "models" / f"{name}.toml")
+    laws = {q: f"0.{k}*sin({k}*t) + 0.1*t" for k, q in enumerate(model.coordinates, start=1)}
+    moved = {q: eomgen.Coordinate(motion=law) for q, law in laws.items()}
+    still = {each: replace(part, value=0) for each, part in model.inputs.items()}
+    asked = {f"d{k}": eomgen.Output(value=f"drive({q})") for k, q in enumerate(laws)}
+    changed = {"inputs": Table(still)} if still else {}
+    driven = replace(model, coordinates=Table(moved), outputs=Table(asked), linearize=None, **changed)
+    t = np.linspace(0, 2, 201)
+    run = eomgen.simulate(driven, time=2, samples=t)
+    inverse = eomgen.inverse_dynamics(replace(model, **changed))
+    tau, spline = inverse.along(t, laws), inverse.along(t, {q: run[q] for q in laws})
+    for k, q in enumerate(laws):
+        assert tau[q] == pytest.approx(run[f"d{k}"], rel=1e-8, abs=1e-8)
+        assert spline[q][20:-20] == pytest.approx(tau[q][20:-20], rel=1e-2, abs=1e-2 * np.abs(tau[q]).max())
+
+
+def test_a_motion_that_is_none_is_refused():
+    model = eomgen.load(Path(__file__).parents[2] / "models" / "double_pendulum.toml")
+    first, second = model.coordinates
+    inverse, t = eomgen.inverse_dynamics(model), np.linspace(0, 1, 5)
+    for motion, message in (
+        ({first: "sin(t)"}, f"'{second}' has no motion"),
+        ({first: "sin(t)", second: f"2*{first}"}, f"depends on '{first}'"),
+        ({first: "sin(t)", second: [1, 2]}, "2 values at 5 instants"),
+        ({first: "sin(t)", "other": "t"}, "no coordinate 'other'"),
+    ):
+        with pytest.raises((eomgen.UsageError, eomgen.ModelError), match=message):
+            inverse.along(t, motion)
