@@ -6,16 +6,19 @@ import json
 import math
 import subprocess
 from dataclasses import replace
+from importlib import import_module
 from pathlib import Path
 
 import numpy as np
 import pytest
 from hand_made import PUSHED, cart_pole, pendulum, spring_row, symbols, tied_pendulum
-from tools import needs, tool
+from tools import marked, needs, tool
 
 import eomgen
 from eomgen.codegen.lowering import lowered
 from eomgen.codegen.program import Program, program_of, right_hand_side
+from eomgen.codegen.rhs import compiled, target_named
+from eomgen.codegen.targets.base import RHS
 from eomgen.codegen.targets.c import C
 from eomgen.codegen.targets.javascript import JAVASCRIPT
 from eomgen.codegen.targets.numpy import PYTHON
@@ -86,6 +89,24 @@ def test_a_program_calls_what_comes_before_it_and_names_what_it_reads(language, 
     for k, text in enumerate(texts):
         assert not [later for later in names[k + 1 :] if f"{later}(" in text]
     assert all(any(table.name in text for text in texts) for table in made.tables)
+
+
+TABLES = {"cpp": "CPP", "rust": "RUST", "fortran": "FORTRAN", "matlab": "MATLAB", "numba": "NUMBA", "c": "C"}
+
+
+@marked(TABLES)
+@pytest.mark.parametrize("name", ["inputs", "a tie", "closed loops"])
+def test_every_language_runs_a_program_that_is_cut_into_parts(target, name, monkeypatch):
+    """Functions of at most 12 operations, that leave what others read in an array: the same vectors."""
+    monkeypatch.setattr("eomgen.codegen.layout.LENGTH", 12)
+    module = import_module(f"eomgen.codegen.targets.{target}")
+    monkeypatch.setattr(module, TABLES[target], replace(getattr(module, TABLES[target]), longest=1))
+    program = PROGRAMS[name]()
+    assert name != "closed loops" or "part1(" in target_named(target).text(program, "eomgen", RHS)
+    function = compiled(program, target)
+    for v in vectors(program):
+        largest, found = max([1.0, *(abs(y) for y in v.result if y == y)]), function(v.t, v.x, v.p, v.inputs or ())
+        assert found == pytest.approx(v.result, rel=0, abs=v.tolerance * largest, nan_ok=True)
 
 
 OWN_SOLVE = """
