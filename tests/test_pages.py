@@ -8,6 +8,7 @@ import re
 import shutil
 import subprocess
 import sys
+from functools import cache
 from html.parser import HTMLParser
 from importlib.util import find_spec
 from pathlib import Path
@@ -42,7 +43,9 @@ def has(package: str) -> pytest.MarkDecorator:
     return pytest.mark.skipif(find_spec(package) is None and not REQUIRED, reason=f"not installed: {package}")
 
 
+@cache
 def of(name: str, **asked: object) -> eomgen.report:
+    """A report, made once."""
     return report(MODELS / f"{name}.toml", **asked)
 
 
@@ -128,7 +131,7 @@ def test_what_a_missing_value_keeps_away_is_said():
 
 def test_the_same_bytes_every_time(page):
     """Nothing of the clock or of memory stands in a page or a paper."""
-    again = of("double_pendulum", time=2)
+    again = report(MODELS / "double_pendulum.toml", time=2)
     assert html_page(again) == page
 
 
@@ -223,7 +226,7 @@ def test_a_strangers_text_is_text_in_every_format(tmp_path):
 @pytest.mark.parametrize("name", ["a_frame", "seeds/ch11_p3", "seeds/ch21_p1", "cart_pole", "seeds/s1_inertia_tensor"])
 def test_no_formula_and_no_row_of_it_is_lost(name):
     """Of structures, mechanisms, small motions and bodies; those of all derivations are looked at in test_latex."""
-    found = of(name, certify=False, without=("plots", "motion", "downloads"))
+    found = of(name, time=0.5)
     page = html_page(found)
     displays = re.findall(r"\\\[(.*?)\\\]", html.unescape(page), re.S)
     assert "unset" not in re.sub(r"<style>.*?</style>", "", page, flags=re.S)
