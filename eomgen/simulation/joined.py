@@ -10,7 +10,6 @@ import numpy as np
 from eomgen.errors import DerivationError
 from eomgen.simulation.configuration import changed
 from eomgen.simulation.integrate import drift_of
-from eomgen.simulation.integrator import measured
 from eomgen.simulation.output_columns import OutputColumns
 from eomgen.simulation.phase_model import PhaseModel
 from eomgen.simulation.phase_models import PhaseModels
@@ -41,7 +40,7 @@ def joined(models: PhaseModels, runs: Sequence[PhaseRun]) -> Trajectory:
         gap=gap,
         gap_rate=gap_rate,
         phases=tuple(
-            Phase(s.here.t, s.run.end, phase_text(models, s), (int(first), int(last)), s.phase, _measured(s))
+            Phase(s.here.t, s.run.end, phase_text(models, s), (int(first), int(last)), s.phase, s.measured)
             for s, first, last in zip(runs, ends[:-1], ends[1:], strict=True)
         ),
         status=runs[-1].run.status,
@@ -61,16 +60,12 @@ def _union(runs: Sequence[PhaseRun]) -> tuple[tuple[str, ...], tuple[str, ...]]:
 
 def _drift(runs: Sequence[PhaseRun]) -> float | None:
     """The largest of the phases in which energy should stay."""
-    return max((drift_of(*s.phase.energies(*_measured(s))) for s in runs if s.phase.conservative), default=None)
-
-
-def _measured(phase_run: PhaseRun) -> tuple[np.ndarray, np.ndarray]:
-    return measured(phase_run.run.t, phase_run.run.x, phase_run.run.tracks)
+    return max((drift_of(*s.phase.energies(*s.measured)) for s in runs if s.phase.conservative), default=None)
 
 
 def _open(runs: Sequence[PhaseRun]) -> tuple[float | None, float | None]:
     """The largest |phi| and |J u + sigma| of the ties that hold; None where none closes."""
-    found = [s.phase.projection.open(*_measured(s)) for s in runs if s.phase.projection is not None]
+    found = [s.phase.projection.open(*s.measured) for s in runs if s.phase.projection is not None]
     if not found:
         return None, None
     gap, gap_rate = np.max(np.concatenate(found), axis=0, initial=0.0)

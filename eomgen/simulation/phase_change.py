@@ -80,14 +80,29 @@ def _at_rest_on_surface(
     return {**values, **held.values(t, held.projection.closed(t, held.state(values), 0.0)[0])}
 
 
+MOST_STARTS = 16  # that are kept
+
+
 def at_start(
     models: PhaseModels, t: float, parameters: Mapping[str, float] | None, start: Mapping[str, float] | None
 ) -> PhaseStart:
-    """The state at the start; a contact that can end may be open there.
+    """The state at the start; a contact that can end may be open there. It is found once for the same values.
 
     Raises:
         DerivationError: the ties do not hold at the start.
     """
+    key = t, tuple((parameters or {}).items()), tuple((start or {}).items())
+    if key not in models.starts:
+        if len(models.starts) >= MOST_STARTS:
+            models.starts.clear()
+        models.starts[key] = _at_start(models, t, parameters, start)
+    found: PhaseStart = models.starts[key]
+    return found
+
+
+def _at_start(
+    models: PhaseModels, t: float, parameters: Mapping[str, float] | None, start: Mapping[str, float] | None
+) -> PhaseStart:
     pieces = {body: 0 for body in paths_of(models.model)}
     (begun, values), away = _closed_or_open(models, t, pieces, parameters, start)
     if not has_phases(models.model):

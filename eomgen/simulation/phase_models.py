@@ -2,9 +2,10 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Hashable, Mapping
 from dataclasses import dataclass
 from functools import cached_property
+from typing import Any
 
 import numpy as np
 
@@ -96,6 +97,7 @@ class PhaseModels:
         self.model, self.p, self.target, self.rates = model, p, target, rates
         self._derived = None if has_phases(model) else derived
         self._made: dict[Configuration, PhaseModel] = {}
+        self.starts: dict[Hashable, Any] = {}  # of motions, by what they were found from
         self._slides: dict[Configuration, Slides] = {}
 
     def at(self, p: np.ndarray, fed: Fed | None = None) -> PhaseModels:

@@ -21,7 +21,7 @@ from eomgen.model.parts import Model, Output
 from eomgen.model.replaced import equation_typed
 from eomgen.model.table import Table
 from eomgen.simulation.contact_events import EventFunction
-from eomgen.simulation.integrator import Run
+from eomgen.simulation.integrator import Run, measured
 from eomgen.simulation.phase_change import PhaseStart
 from eomgen.simulation.phase_model import PhaseModel, Values
 from eomgen.symbolic.expression.expressions import parse
@@ -76,6 +76,11 @@ class PhaseRun:
     def end(self) -> Values:
         """Coordinates, rates and speeds at its end."""
         return self.phase.values(self.run.end, self.run.last)
+
+    @cached_property
+    def measured(self) -> tuple[np.ndarray, np.ndarray]:
+        """(instants, states) asked for and at the integrator's steps, in the order of time."""
+        return measured(self.run.t, self.run.x, self.run.tracks)
 
     @property
     def is_met(self) -> bool:
