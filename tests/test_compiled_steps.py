@@ -152,3 +152,15 @@ def test_radau_in_c_is_that_of_scipy(name):
     own, other = (eomgen.simulate(model, target=target, **how) for target in ("c", "numpy"))
     assert own.status == other.status and abs(own.steps - other.steps) <= 2 + other.steps // 50
     assert own.x == pytest.approx(other.x, abs=2e-5 * (1 + np.max(np.abs(other.x))))
+
+
+@pytest.mark.parametrize("until", ["theta1 = 0", "theta2' = 3", "theta1' = 0", "x(arm2.end) = 1"])
+def test_an_event_is_seen_in_c_and_found_as_by_scipy(until, monkeypatch):
+    """The same instant to 1e-9 and state, after steps that are not looked at one by one."""
+    calls = []
+    advance = CompiledSteps.advance
+    monkeypatch.setattr(CompiledSteps, "advance", lambda self, most: calls.append(1) or advance(self, most))
+    how = {"time": 10, "samples": 11, "until": until, "rtol": 1e-10, "atol": 1e-10}
+    own, other = (eomgen.simulate(MODELS / "double_pendulum.toml", target=target, **how) for target in ("c", "numpy"))
+    assert own.status == other.status == "event" and own.t[-1] == pytest.approx(other.t[-1], abs=1e-9)
+    assert own.x[-1] == pytest.approx(other.x[-1], abs=1e-8) and len(calls) < own.steps / 2

@@ -1,0 +1,403 @@
+"""Motions against peers, in one run and at equal error: python benchmarks/integration.py [-o FILE.md]
+
+Every rival integrates the same double pendulum (models/double_pendulum.toml) for 10 s and gives 101 states; for the
+others its equations are written out by hand. Of several tolerances the loosest is taken whose error against the
+reference is below 1e-6; the time is the least CPU time of some calls after a first one. The reference has 25 digits
+(extrapolation in mpmath with two step widths, `--reference` makes it anew). What does not import is named as missing.
+"""
+
+from __future__ import annotations
+
+import argparse
+import os
+import platform
+import subprocess
+import sys
+import time
+from collections.abc import Callable, Iterator
+from importlib import import_module
+from importlib.metadata import PackageNotFoundError, version
+from pathlib import Path
+
+import numpy as np
+
+import eomgen
+from eomgen.simulation import integrator
+
+MODELS = Path(__file__).parent.parent / "models"
+START, TIME, SAMPLES = [2.0, 0.5, 0.0, 0.0], 10.0, 101
+M1, M2, L1, L2, G = 1.0, 1.0, 1.0, 0.5, 9.81
+TOLERANCES = [10.0 ** (-k / 2) for k in range(12, 28)]
+ERROR = 1e-6
+REFERENCE = (  # --reference: 1000 and 2000 steps differ by 3e-20, their order is 24
+    "-1.4401629538417988145466885",
+    "-5.9839823765164500314328789",
+    "-2.4713251372556811958240850",
+    "8.8253136271604716287348623",
+)
+RUNS = 1000
+
+
+def rate(x, sin, cos):
+    """x' of two rods, over any numbers."""
+    a, b, u, v = x
+    s, c = sin(a - b), cos(a - b)
+    m11, m12, m22 = L1**2 * (M1 / 3 + M2), L1 * L2 * M2 * c / 2, L2**2 * M2 / 3
+    f1 = -v * v * L1 * L2 * M2 * s / 2 - G * L1 * (M1 / 2 + M2) * sin(a)
+    f2 = u * u * L1 * L2 * M2 * s / 2 - G * L2 * M2 * sin(b) / 2
+    d = m11 * m22 - m12 * m12
+    return [u, v, (m22 * f1 - m12 * f2) / d, (m11 * f2 - m12 * f1) / d]
+
+
+def reference(steps: int):
+    """x(10) by Gragg's extrapolation of order 24 with 40 digits."""
+    import mpmath as mp
+
+    mp.mp.dps = 40
+    global M1, M2, L1, L2, G
+    kept = M1, M2, L1, L2, G
+    M1, M2, L1, L2, G = mp.mpf(1), mp.mpf(1), mp.mpf(1), mp.mpf(1) / 2, mp.mpf("9.81")
+    x, H, rows = [mp.mpf(2), mp.mpf(1) / 2, mp.mpf(0), mp.mpf(0)], mp.mpf(10) / steps, 12
+    for _ in range(steps):
+        table: list[list] = []
+        first = rate(x, mp.sin, mp.cos)
+        for j in range(rows):
+            n = 2 * (j + 1)
+            h = H / n
+            before, here = x, [a + h * b for a, b in zip(x, first, strict=True)]
+            for _ in range(n - 1):
+                after = rate(here, mp.sin, mp.cos)
+                before, here = here, [a + 2 * h * b for a, b in zip(before, after, strict=True)]
+            last = rate(here, mp.sin, mp.cos)
+            row = [[(a + b + h * c) / 2 for a, b, c in zip(before, here, last, strict=True)]]
+            for k in range(1, j + 1):
+                factor = (mp.mpf(n) / (2 * (j + 1 - k))) ** 2 - 1
+                row.append([p + (p - q) / factor for p, q in zip(row[k - 1], table[j - 1][k - 1], strict=True)])
+            table.append(row)
+        x = table[-1][-1]
+    M1, M2, L1, L2, G = kept
+    return x
+
+
+def by_eomgen(target: str | None = None):
+    def make(tolerance):
+        simulate = eomgen.simulator(
+            MODELS / "double_pendulum.toml", rtol=10 * tolerance, atol=10 * tolerance, target=target
+        )
+        return lambda: simulate(TIME, samples=SAMPLES).x[-1]
+
+    return make
+
+
+def by_eomgen_in_python(tolerance):
+    """The loop in Python over C stages' right-hand side, as it was."""
+    simulate = eomgen.simulator(MODELS / "double_pendulum.toml", rtol=10 * tolerance, atol=10 * tolerance, target="c")
+
+    def run():
+        kept, integrator.COMPILED = integrator.COMPILED, ()
+        try:
+            return simulate(TIME, samples=SAMPLES).x[-1]
+        finally:
+            integrator.COMPILED = kept
+
+    return run
+
+
+def by_scipy(tolerance):
+    import sympy as sp
+    from scipy.integrate import solve_ivp
+
+    x = sp.symbols("a b u v")
+    f = sp.lambdify([x], rate(x, sp.sin, sp.cos), modules="math", cse=True)
+    t = np.linspace(0, TIME, SAMPLES)
+    return lambda: solve_ivp(lambda _, y: f(y), (0, TIME), START, "DOP853", t, rtol=tolerance, atol=tolerance).y[:, -1]
+
+
+def by_casadi(tolerance):
+    import casadi as ca
+
+    x = ca.SX.sym("x", 4)
+    ode = ca.vertcat(*rate([x[i] for i in range(4)], ca.sin, ca.cos))
+    how = {"abstol": tolerance, "reltol": tolerance, "max_num_steps": 1_000_000}
+    run = ca.integrator("run", "cvodes", {"x": x, "ode": ode}, 0, np.linspace(0, TIME, SAMPLES)[1:].tolist(), how)
+    return lambda: np.array(run(x0=START)["xf"])[:, -1]
+
+
+def by_diffrax(tolerance, runs: int = 0):
+    import diffrax
+    import jax
+    import jax.numpy as jnp
+
+    jax.config.update("jax_enable_x64", True)
+    term = diffrax.ODETerm(lambda t, y, p: jnp.stack(rate(y, jnp.sin, jnp.cos)))
+    saved = diffrax.SaveAt(ts=jnp.linspace(0, TIME, SAMPLES))
+    control = diffrax.PIDController(rtol=tolerance, atol=tolerance)
+
+    def solve(y):
+        return diffrax.diffeqsolve(
+            term, diffrax.Dopri8(), 0.0, TIME, None, y, saveat=saved, stepsize_controller=control, max_steps=100_000
+        ).ys
+
+    if runs:
+        solved, y = jax.jit(jax.vmap(solve)), jnp.array(starts(runs))
+        return lambda: np.asarray(solved(y))[:, -1]
+    one, y0 = jax.jit(solve), jnp.array(START)
+    return lambda: np.asarray(one(y0))[-1]
+
+
+def by_heyoka(tolerance, runs: int = 0):
+    import heyoka as hy
+
+    names = hy.make_vars("a", "b", "u", "v")
+    system = list(zip(names, rate(names, hy.sin, hy.cos), strict=True))
+    t = np.linspace(0, TIME, SAMPLES)
+    if not runs:
+        one = hy.taylor_adaptive(system, START, tol=tolerance)
+
+        def run():
+            one.time, one.state[:] = 0.0, START
+            return one.propagate_grid(t)[-1][-1]
+
+        return run
+    width = 8
+    many = hy.taylor_adaptive_batch(system, np.zeros((4, width)), tol=tolerance)
+    begun = np.array(starts(runs)).reshape(-1, width, 4)
+
+    def all_of():
+        ends = []
+        for group in begun:
+            many.set_time(0.0)
+            many.state[:] = group.T
+            ends.append(many.propagate_grid(np.repeat(t[:, None], width, 1))[-1][-1].T)
+        return np.vstack(ends)
+
+    return all_of
+
+
+def many_by_eomgen(tolerance, runs, **how):
+    values = np.array(starts(runs))
+
+    def run():
+        asked = {"rtol": 10 * tolerance, "atol": 10 * tolerance, "samples": SAMPLES, **how}
+        start = {"theta1": values[:, 0], "theta2": values[:, 1]}
+        return eomgen.simulate_many(MODELS / "double_pendulum.toml", time=TIME, start=start, **asked).x[:, -1]
+
+    return run
+
+
+def starts(runs: int) -> list[list[float]]:
+    return [[2 + 1e-3 * k / runs, 0.5, 0.0, 0.0] for k in range(runs)]
+
+
+def cpu(run: Callable[[], object], calls: int = 5, seconds: float = 3.0) -> float:
+    """The least CPU time of some calls after a first one [s]."""
+    run()
+    best, since = float("inf"), time.perf_counter()
+    for _ in range(calls):
+        begun = time.process_time()
+        run()
+        best = min(best, time.process_time() - begun)
+        if time.perf_counter() - since > seconds:
+            break
+    return best
+
+
+SINGLE = {
+    "eomgen.simulator": (by_eomgen(), "eomgen"),
+    "eomgen, by scipy (no compiler)": (by_eomgen("numpy"), "eomgen"),
+    "eomgen, Python loop over compiled rates": (by_eomgen_in_python, "eomgen"),
+    "scipy DOP853 + lambdify": (by_scipy, "scipy"),
+    "CasADi + CVODES": (by_casadi, "casadi"),
+    "diffrax Dopri8": (by_diffrax, "diffrax"),
+    "heyoka Taylor": (by_heyoka, "heyoka"),
+}
+
+
+def single_rows() -> Iterator[str]:
+    """Of each rival the least time for an error below ERROR, and that error."""
+    exact, found = np.array(list(map(float, REFERENCE))), {}
+    yield "| rival | tolerance of a step | error at 10 s | CPU [ms] | times eomgen's |"
+    yield "|---|---|---|---|---|"
+    for name, (make, needs) in SINGLE.items():
+        try:
+            import_module(needs)
+        except ImportError:
+            found[name] = None
+            continue
+        for tolerance in TOLERANCES:
+            run = make(tolerance)
+            error = float(np.max(np.abs(run() - exact)))
+            if error < found.get(name, (0, np.inf))[1]:
+                found[name] = tolerance, error, run
+            if error < ERROR:
+                break
+        found[name] = (*found[name][:2], cpu(found[name][2], calls=30))
+    own = found["eomgen.simulator"][2]
+    for name, row in found.items():
+        if row is None:
+            yield f"| {name} | missing here | | | |"
+        else:
+            yield f"| {name} | {row[0]:.1e} | {row[1]:.1e} | {1e3 * row[2]:.2f} | {row[2] / own:.2f} |"
+
+
+def many_rows() -> Iterator[str]:
+    """Many at once, one thread: of each rival the loosest tolerance with an error below 1e-5, against rtol 1e-13."""
+    yield f"| {RUNS} double pendulums, 10 s | tolerance of a step | largest error | CPU [s] | times eomgen's |"
+    yield "|---|---|---|---|---|"
+    finest = eomgen.simulator(MODELS / "double_pendulum.toml", rtol=1e-12, atol=1e-12)
+    looked = starts(RUNS)[:: RUNS // 8]
+    exact = np.array([finest(TIME, start={"theta1": x[0], "theta2": x[1]}, samples=2).x[-1] for x in looked])
+    rivals = {
+        "eomgen.simulate_many": (many_by_eomgen, "eomgen"),
+        "eomgen.simulator, one by one": (lambda tol, n: many_one_by_one(tol, n), "eomgen"),
+        "diffrax vmap": (by_diffrax, "diffrax"),
+        "heyoka batch of 8": (by_heyoka, "heyoka"),
+    }
+    own = 0.0
+    for name, (make, needs) in rivals.items():
+        try:
+            import_module(needs)
+        except ImportError:
+            yield f"| {name} | missing here | | | |"
+            continue
+        for tolerance in (1e-9, 1e-10, 1e-11):
+            run = make(tolerance, RUNS)
+            apart = float(np.max(np.abs(run()[:: RUNS // 8] - exact)))
+            if apart < 1e-5:
+                break
+        took = cpu(run, calls=2)
+        own = own or took
+        yield f"| {name} | {tolerance:.0e} | {apart:.1e} | {took:.3f} | {took / own:.2f} |"
+    ten = many_by_eomgen(1e-10, 10_000)
+    yield f"| eomgen.simulate_many, 10 000 of them | 1e-10 | | {cpu(ten, calls=2):.3f} | |"
+
+
+def many_one_by_one(tolerance, runs):
+    simulate = eomgen.simulator(MODELS / "double_pendulum.toml", rtol=10 * tolerance, atol=10 * tolerance)
+    return lambda: np.array(
+        [simulate(TIME, start={"theta1": x[0], "theta2": x[1]}, samples=SAMPLES).x[-1] for x in starts(runs)]
+    )
+
+
+FOUR_BAR = """
+eomgen = 1
+space = "plane"
+coordinates = { a = { start = 1, speed = 4 }, b = 0.48, c = 1.57 }
+bodies.crank = { shape = { kind = "rod", mass = 1, length = 0.4 }, joint = { kind = "revolute", angle = "a" } }
+[bodies.coupler]
+shape = { kind = "rod", mass = 2, length = 1 }
+joint = { kind = "revolute", on = "crank.end", angle = "b - a" }
+[bodies.rocker]
+shape = { kind = "rod", mass = 1, length = 0.8 }
+joint = { kind = "revolute", at = [1.1, 0], angle = "c" }
+[constraints]
+B = { kind = "pin", points = ["coupler.end", "rocker.end"] }
+[forces]
+weight = { kind = "gravity", acceleration = [0, -9.81] }
+"""
+
+
+def own_rows() -> Iterator[str]:
+    """Motions in C against the loop in Python that they replace."""
+    yield "| motion, rtol 1e-9 | steps | in C [s] | Python loop [s] | times | drift | ties open by |"
+    yield "|---|---|---|---|---|---|---|"
+    motions = {
+        "arm of 7 axes, 10 s": (MODELS / "arm7.toml", 10.0, 1.0),
+        "four-bar by multipliers, 1000 s": (eomgen.loads(FOUR_BAR), 1000.0, 0.02),
+        "four-bar, dependent coordinates, 100 s": (MODELS / "four_bar.toml", 100.0, 0.1),
+        "sliding ladder, 2 s": (MODELS / "sliding_ladder.toml", 2.0, 1.0),
+        "flyball governor (stiff), 10 s": (MODELS / "flyball_governor.toml", 10.0, 0.1),
+    }
+    for name, (model, seconds, share) in motions.items():
+        simulate = eomgen.simulator(model, target="c")
+        run = simulate(seconds)
+        took = cpu(lambda s=simulate, t=seconds: s(t), calls=3)
+        kept, integrator.COMPILED = integrator.COMPILED, ()
+        slow = cpu(lambda s=simulate, t=seconds * share: s(t), calls=1) / share
+        integrator.COMPILED = kept
+        drift = "" if run.drift is None else f"{run.drift:.1e}"
+        gap = "" if run.gap is None else f"{run.gap:.1e}"
+        part = "" if share == 1 else f" (from {seconds * share:g} s)"
+        yield f"| {name} | {run.steps} | {took:.4f} | {slow:.2f}{part} | {slow / took:.0f} | {drift} | {gap} |"
+
+
+PENDULUM = """
+eomgen = 1
+space = "plane"
+coordinates.theta = 2
+bodies.rod = { shape = { kind = "rod", mass = 1, length = 1 }, joint = { kind = "revolute", angle = "theta - pi/2" } }
+forces.weight = { kind = "gravity", acceleration = [0, -9.81] }
+"""
+
+
+def long_rows() -> Iterator[str]:
+    """A rod that swings from 2 rad, DOP853 with and without its energy kept, by the closed solution."""
+    from mpmath import mp
+
+    mp.dps = 30
+    k, w = mp.sin(1), mp.sqrt(mp.mpf("14.715"))
+    period = float(4 * mp.ellipk(k**2) / w)
+    yield f"| 10^5 periods of {period:.4f} s | rtol | energy drift | angle off at the end | CPU [s] |"
+    yield "|---|---|---|---|---|"
+    end = round(1e5 * period)
+    sn = mp.ellipfun("sn", w * end + mp.ellipk(k**2), k**2)
+    exact = float(2 * mp.asin(k * sn))
+    for way in ("projection", "energy"):
+        for tolerance in (1e-6, 1e-9):
+            simulate = eomgen.simulator(eomgen.loads(PENDULUM), rtol=tolerance, atol=tolerance, stabilization=way)
+            begun = time.process_time()
+            run = simulate(end, samples=3)
+            took, off = time.process_time() - begun, abs(run["theta"][-1] - exact)
+            yield f"| `{way}` | {tolerance:.0e} | {run.drift:.1e} | {off:.1e} | {took:.1f} |"
+
+
+def command_rows() -> Iterator[str]:
+    """The whole command, in units of `import sympy` in the same run."""
+
+    def took(*words: str) -> float:
+        before = sum(os.times()[2:4])
+        subprocess.run([sys.executable, *words], check=True, capture_output=True)
+        return sum(os.times()[2:4]) - before
+
+    unit = min(took("-c", "import sympy") for _ in range(3))
+    simulate = ("-m", "eomgen", "simulate", str(MODELS / "double_pendulum.toml"), "--time", "10")
+    ratio = min(took(*simulate) for _ in range(2)) / unit
+    yield f"`eomgen simulate models/double_pendulum.toml --time 10`, proof included: {ratio:.1f} times that CPU."
+
+
+def peers() -> str:
+    """The versions that ran."""
+    found = []
+    for name in ("numpy", "scipy", "sympy", "casadi", "diffrax", "jax", "heyoka"):
+        try:
+            found.append(f"{name} {version(name)}")
+        except PackageNotFoundError:
+            found.append(f"{name} missing")
+    return ", ".join(found)
+
+
+def main() -> None:
+    words = argparse.ArgumentParser(description=__doc__.splitlines()[0])
+    words.add_argument("-o", "--output", type=Path)
+    words.add_argument("--reference", action="store_true")
+    asked = words.parse_args()
+    if asked.reference:
+        import mpmath as mp
+
+        for steps in (1000, 2000):
+            print(steps, [mp.nstr(x, 32) for x in reference(steps)])
+        return
+    told = f"`python benchmarks/integration.py`; Python {platform.python_version()}, {platform.machine()}; {peers()}."
+    lines = ["# Integration against peers", "", f"{told} CPU time, all in one run; trust the ratios.", ""]
+    for rows in (single_rows, own_rows, many_rows, long_rows, command_rows):
+        lines += [" ".join((rows.__doc__ or "").split()), ""]
+        for row in rows():
+            lines.append(row)
+            print(row, flush=True)
+        lines.append("")
+    if asked.output:
+        asked.output.write_text("\n".join(lines))
+
+
+if __name__ == "__main__":
+    main()
