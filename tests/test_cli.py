@@ -405,7 +405,8 @@ def test_an_ending_that_no_form_has_is_refused_before_any_work(verb, tmp_path):
         path = tmp_path / f"w{ending}"
         words = (verb, *(() if verb in ("schema", "doctor") else (SEED,)), "-o", str(path))
         words += ("--data", SEED) if verb == "identify" else ()
-        has_form = verb not in ("schema", "doctor", "codegen", "simulate", "play", "report", "import", "sweep")
+        has_form = verb not in ("schema", "doctor", "codegen", "simulate", "play", "report", "import", "export")
+        has_form = has_form and verb != "sweep"
         for result in (run(*words), run(*words, *(("--format", "text") if has_form else ("--json",)))):
             assert result.exit_code == 2 and not list(tmp_path.iterdir())
             endings = {"simulate": ".csv, .npz", "codegen": "-o names the folder", "play": "the ending is .html"}
@@ -413,6 +414,7 @@ def test_an_ending_that_no_form_has_is_refused_before_any_work(verb, tmp_path):
                 "report": ".html, .pdf, .tex, .md, .ipynb",
                 "animate": ".gif, .mp4, .png, .html",
                 "import": ".toml",
+                "export": ".urdf",
                 "sweep": "-o names the folder",
             }
             assert endings.get(verb, ".txt, .tex, .md, .json") in result.stderr
