@@ -12,10 +12,12 @@ from hand_equations import MODELS, ByHand, named, right_of, wrong_of
 
 import eomgen
 from eomgen.cli import main
+from eomgen.documents.latex import setter_of
 from eomgen.errors import ExpressionError, UsageError
 from eomgen.judge.case import Case
 from eomgen.judge.handwriting import transcript, vocabulary
 from eomgen.judge.judge import Judge
+from eomgen.symbolic.print.text import to_text
 
 SAMPLE = ("simple_pendulum", "cart_pole", "elastic_pendulum", "seeds/ch22_p3", "furuta_pendulum")
 NAMES = "m g l theta theta1 theta2 m1 m2 x k l0 r pi t omega k_max M".split()
@@ -146,6 +148,21 @@ def test_a_right_equation_says_up_to_what(model, equation, up_to):
     assert found.verdict == "right" and up_to in found.up_to
 
 
+@pytest.mark.parametrize(
+    "name", ["cart_pole", "half_car", "chaplygin_sleigh", "seeds/ch22_p1", "four_cranks", "atwood"]
+)
+def test_what_derive_prints_is_right(name):
+    """Its equations of motion, as text and in LaTeX, judged as those of anybody."""
+    equations = eomgen.derive(MODELS / f"{name}.toml")
+    document = equations.document
+    judge, setter = Judge(Case(equations.model)), setter_of(document)
+    assert document.equations and not document.definitions
+    for each in document.equations:
+        for written in (to_text, lambda x: setter.set(x).tex):
+            text = f"{written(each.left)} = {written(each.right)}"
+            assert judge.verdict(text).verdict == "right", text
+
+
 def test_no_equation_of_motion_is_what_always_holds():
     """0 = 0 and sin^2 + cos^2 = 1 say nothing of the motion."""
     for text in ("theta'' = theta''", "theta''*(sin(theta)^2 + cos(theta)^2) = theta''"):
@@ -157,6 +174,7 @@ def test_redundant_ties_make_nothing_right():
     right = "e''*l^2*m/3 + g*l*m*cos(e)/2 - l*lam(R, 2)*cos(e) = -l*lam(R, 1)*sin(e)"
     assert verdict("four_cranks", right)
     assert not verdict("four_cranks", right.replace(" + g", " + a + g"))
+    assert kinds(verdict("four_cranks", right.replace(" + g", " + N + g"))) == ["constraint_force"]
 
 
 def test_own_names_mean_what_the_file_says():

@@ -502,6 +502,7 @@ class _Reader:
         index = index or self.index()
         found = self.known.known(letters + index)
         if found is None:
+            index = re.sub(r"\W", "_", index)
             found = letters + (index if index[:1].isdigit() or not index else f"_{index}")
         of_time = _OF_TIME.match(self.text, self.at)
         if of_time and found not in self.known.functions:

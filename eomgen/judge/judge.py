@@ -291,7 +291,7 @@ class Judge:
         case = self.case
         for renaming in renamings(case, written, unknown):
             holds, up_to = self._decided(case.value(written.difference, renaming.values), kind)
-            if holds:
+            if holds and not (renaming.guessed and up_to.endswith("the ties")):
                 return Verdict(written.given, kind, RIGHT, up_to, renaming.told)
         free = {name: case.system.scope.graph.symbol(f"({name})") for name in unknown}
         try:

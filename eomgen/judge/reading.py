@@ -84,6 +84,9 @@ class Reading:
             if "," not in arguments and not label.startswith("couple_"):
                 letter = reaction_name(label, each.owner)
                 found.setdefault(letter, Call(function, (Reference(arguments),)))
+        for row in self.system.ties.closing:
+            multiplier = Call(MULTIPLIER, (Reference(row.tie), Expression.number(row.number)))
+            found[f"lambda_{row.tie}_{row.number}"] = multiplier
         return {letter: call for letter, call in found.items() if letter not in self.system.scope.names}
 
     def read(self, given: Any) -> HandEquation:

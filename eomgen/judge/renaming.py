@@ -29,11 +29,13 @@ class Renaming:
         values: of each name, with its primes, the scalar.
         told: of each name without primes the text: {phi: "theta - pi/2"}.
         near: whether every name looks like what it stands for, or moves as it does.
+        guessed: a name that does not move stands for a coordinate: where ties hold that at 0, it says nothing.
     """
 
     values: Mapping[str, Scalar]
     told: Mapping[str, str]
     near: bool = True
+    guessed: bool = False
 
 
 def renamings(case: Case, written: HandEquation, unknown: Sequence[str]) -> Iterator[Renaming]:
@@ -49,7 +51,8 @@ def renamings(case: Case, written: HandEquation, unknown: Sequence[str]) -> Iter
             for chosen in islice(product(*shifts), MOST):
                 near = all(name in moving or _distance(name, of) <= 1 for name, of in named.items())
                 ways = {name: (of, *how) for (name, of), how in zip(named.items(), chosen, strict=True)}
-                yield replace(_renaming(case, ways), near=near)
+                guessed = any(of in case.model.coordinates and name not in moving for name, of in named.items())
+                yield replace(_renaming(case, ways), near=near, guessed=guessed)
 
 
 def turnings(case: Case, written: HandEquation) -> Iterator[Renaming]:
