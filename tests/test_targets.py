@@ -186,6 +186,8 @@ def test_what_has_no_value_gives_none_to_what_is_made_of_it(target):
     for op in BINARY:
         if op != "pow":
             made |= {f"{op} left": g.call(op, lost, y), f"{op} right": g.call(op, y, lost)}
+    later = y + 1  # made after `lost`, and so the second argument of what has no order of its own
+    made |= {f"{op} of what came first": g.call(op, lost, later) for op in ("min", "max", "less", "less_equal")}
     made |= {"chosen": g.select(g.call("less", x, y), lost, y), "by nothing": g.select(g.call("less", lost, y), x, y)}
     program = program_of([*made.values(), g.select(g.call("less", y, x), lost, y)], s)
     function, state = compiled(program, target), [-1.0, 2.0, 0.0, 0.0]

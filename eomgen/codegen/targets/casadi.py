@@ -44,8 +44,8 @@ CASADI = replace(
     },
     defined={
         "sign": "def sign(a):\n    return ca.if_else(a > 0, 1, ca.if_else(a < 0, -1, a))\n\n",
-        "min": "def min(a, b):\n    return ca.if_else(ca.logic_or(a < b, a != a), a, b)\n\n",
-        "max": "def max(a, b):\n    return ca.if_else(ca.logic_or(a > b, a != a), a, b)\n\n",
+        "min": "def min(a, b):\n    return ca.if_else(a < b, a, ca.if_else(a >= b, b, a + b))\n\n",
+        "max": "def max(a, b):\n    return ca.if_else(a > b, a, ca.if_else(a <= b, b, a + b))\n\n",
         "less": 'def less(a, b):\n    return ca.if_else(a < b, 1, ca.if_else(a >= b, 0, float("nan")))\n\n',
         "less_equal": 'def less_equal(a, b):\n    return ca.if_else(a <= b, 1, ca.if_else(a > b, 0, float("nan")))\n\n',
         "select": "def select(given, a, b):\n"
