@@ -203,11 +203,11 @@ def put(text: str, output: str | None = None) -> None:
 @contextmanager
 def reading(path: str) -> Iterator[Source]:
     """The model of a file (- is stdin); what a verb finds wrong with one of its parts is told at its place there."""
-    from eomgen.model.reader import LARGEST, bytes_at, loads, located
+    from eomgen.model.reader import bytes_at, loads, located
 
     if path == "-" and sys.stdin is None:
         raise UsageError("there is no model on stdin: it is closed", mend="name a file")
-    data = sys.stdin.buffer.read(LARGEST + 1) if path == "-" else bytes_at(path)
+    data = bytes_at(path)
     name, title = ("<stdin>", "model") if path == "-" else (path, Path(path).stem)
     try:
         yield Source(loads(data, name, title), data, name)

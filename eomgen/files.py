@@ -13,6 +13,7 @@ import secrets
 import select
 import shutil
 import signal
+import sys
 import time
 from collections.abc import Callable, Iterator, Mapping
 from contextlib import contextmanager, suppress
@@ -78,19 +79,37 @@ def read(path: str | Path, most: int) -> bytes:
     if not (hasattr(os, "O_NONBLOCK") and is_stream(path)):
         with open(path, "rb") as file:
             return file.read(most + 1)
-    handle, parts, size = os.open(path, os.O_RDONLY | os.O_NONBLOCK), [], 0
+    handle = os.open(path, os.O_RDONLY | os.O_NONBLOCK)
     try:
-        while size <= most:
-            if not select.select([handle], [], [], SILENCE)[0]:
-                raise TimeoutError(errno.ETIMEDOUT, f"nothing came through it for {SILENCE:g} s")
-            part = os.read(handle, most + 1 - size)
-            if not part:
-                break
-            parts.append(part)
-            size += len(part)
-        return b"".join(parts)
+        return _through(handle, most)
     finally:
         os.close(handle)
+
+
+def read_stdin(most: int) -> bytes:
+    """What comes through stdin, as of `read`; of somebody who types it is awaited as long as it takes.
+
+    Raises:
+        OSError: it cannot be read, or a pipe stays silent.
+    """
+    stream = sys.stdin.buffer
+    try:
+        handle = stream.fileno()
+    except (OSError, ValueError):  # no file: a text that stands for one
+        return stream.read(most + 1)
+    return stream.read(most + 1) if os.name != "posix" or stream.isatty() else _through(handle, most)
+
+
+def _through(handle: int, most: int) -> bytes:
+    """Part by part; where as many bytes came as are wanted the next part is empty, as it is at the end."""
+    data = b""
+    while True:
+        if not select.select([handle], [], [], SILENCE)[0]:
+            raise TimeoutError(errno.ETIMEDOUT, f"nothing came through it for {SILENCE:g} s")
+        part = os.read(handle, most + 1 - len(data))
+        if not part:
+            return data
+        data += part
 
 
 def is_stream(path: str | Path) -> bool:

@@ -8,7 +8,7 @@ from pathlib import Path as FilePath
 from typing import Any
 
 from eomgen.errors import ModelError, Problem
-from eomgen.files import read
+from eomgen.files import read, read_stdin
 from eomgen.model.findings import TABLES, Decimal, Finding, shown
 from eomgen.model.making import MOST_FINDINGS, draft_of, findings_of, resolved
 from eomgen.model.parts import Model
@@ -32,17 +32,18 @@ def load(path: str | FilePath) -> Model:
 
 
 def bytes_at(path: str | FilePath) -> bytes:
-    """What stands in a file, as far as a model may be long.
+    """What stands in a file (- is stdin), as far as a model may be long.
 
     Raises:
         ModelError: it cannot be read.
     """
     try:
-        return read(path, LARGEST)
+        return read_stdin(LARGEST) if path == "-" else read(path, LARGEST)
     except OSError as error:
         if "\n" in str(path):
             raise ModelError("this is no path but the text of a model", "", "read it by eomgen.loads") from error
-        raise ModelError(f"cannot be read: {error.strerror or error}", str(path), "check the path") from error
+        name, mend = ("<stdin>", "check what writes it") if path == "-" else (str(path), "check the path")
+        raise ModelError(f"cannot be read: {error.strerror or error}", name, mend) from error
 
 
 def model_at(model: ModelOrPath, parameters: Values | None = None, start: Values | None = None) -> Model:

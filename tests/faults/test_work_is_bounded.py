@@ -113,6 +113,18 @@ def test_patience_that_suffices_leaves_nothing_behind():
         check_patience()
 
 
+def test_nobody_is_stopped_in_the_middle_of_an_import(tmp_path, monkeypatch):
+    """Half a module would stay behind: it comes to its end, and then what imports it is stopped."""
+    (tmp_path / "slow_to_import.py").write_text("import time\nfor _ in range(50): time.sleep(0.01)\nwhole = True\n")
+    monkeypatch.syspath_prepend(tmp_path)
+    monkeypatch.setattr(work, "LATE", 0.05)
+    with pytest.raises(OutOfPatience), patience(0.05):
+        import slow_to_import
+
+        asks_never()
+    assert slow_to_import.whole
+
+
 def integration() -> None:
     march(lambda t, x: -x, (0.0, 1.0), np.ones(1), how=Stepping())
 

@@ -224,16 +224,26 @@ def test_reading_ends_where_a_model_would_be_too_long(tmp_path):
         path.touch()
         os.truncate(path, 20_000_000_000)
     begun = time.process_time()
+    room = 8 * 2**30
+
+    def bounded():  # so that reading without end ends, and is seen
+        resource.setrlimit(resource.RLIMIT_AS, (room, room))
+
     for path in ("/dev/zero", str(sparse)):
-        ended = forked(("check", path))
+        ended = forked(("check", path), bounded)
         assert ended.code == 1 and "over 1 MB" in ended.said
+    ended = forked(("check", "-"), lambda: (bounded(), os.dup2(os.open("/dev/zero", os.O_RDONLY), 0)))
+    assert ended.code == 1 and "<stdin>:1:1: the file is over 1 MB" in ended.said
     assert forked((*RUN, "--follow", f"theta={csv}")).code == 2
 
     def quick():
         files.SILENCE = 0.2
 
-    ended = forked(("check", str(fifo)), quick)
-    assert ended.code == 1 and "nothing came through it" in ended.said
+    silent = os.open(fifo, os.O_RDWR)  # as stdin it has a writer, who says nothing
+    for words in (("check", str(fifo)), ("check", "-")):
+        ended = forked(words, lambda: (quick(), os.dup2(silent, 0)))
+        assert ended.code == 1 and "nothing came through it" in ended.said
+    os.close(silent)
     if (pid := os.fork()) == 0:
         fifo.write_text("eomgen = 1\nbad\n")
         os._exit(0)

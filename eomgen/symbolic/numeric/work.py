@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import ctypes
 import math
+import sys
 import threading
 import time
 from collections.abc import Iterator
@@ -47,6 +48,7 @@ class PatienceEnded(Exception):
 
 
 LATE = 1.0  # s, after which what does not ask is stopped
+SOON = 0.05  # s, after which what was importing is looked at again
 
 
 @dataclass
@@ -151,10 +153,21 @@ def _stop_late(clock: _Clock, thread: int) -> None:
     wait = clock.seconds + LATE
     while not clock.closed.wait(wait):
         with clock.lock:
-            if not clock.closed.is_set():
+            importing = _imports(thread)
+            if not importing and not clock.closed.is_set():
                 clock.thrown = True
                 _throw(thread, PatienceEnded)
-        wait = LATE
+        wait = SOON if importing else LATE
+
+
+def _imports(thread: int) -> bool:
+    """Whether a thread is importing: stopped there it would leave half a module behind for all that comes after."""
+    frame = sys._current_frames().get(thread)
+    while frame is not None:
+        if frame.f_code.co_filename == "<frozen importlib._bootstrap>":
+            return True
+        frame = frame.f_back
+    return False
 
 
 def _throw(thread: int, error: type[Exception] | None) -> None:
