@@ -67,7 +67,10 @@ def write_all(directory: str | Path, contents: Mapping[str, Content]) -> list[Pa
     try:
         return _write_all(Path(directory), contents)
     except OSError as error:
-        raise WriteFailed(f"the files cannot be written: {error.strerror or error}", str(directory)) from None
+        what, where = "the files cannot be written", str(directory)
+        if len(contents) == 1:
+            what, where = "the file cannot be written", str(Path(directory, *contents))
+        raise WriteFailed(f"{what}: {error.strerror or error}", where) from None
 
 
 def read(path: str | Path, most: int) -> bytes:

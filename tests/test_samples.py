@@ -252,6 +252,8 @@ def test_a_run_drives_the_next_one(tmp_path):
         ("t,a,b\n0,1,2\n1,2,3\n", "there is no column 'theta'"),
         ("0,1\n0,2\n", "the times of samples ascend, but 0 comes after 0"),
         ("0\n1\n", "a row has no column 2"),
+        ("t;theta\n0;1,5\n1;2\n", "columns stand between commas"),
+        ("t\ttheta\n0\t1\n1\t2\n", "columns stand between commas"),
         ("t,theta\n0,1\n1,x\n", "samples"),
         ("", "a list of 2 to 10000 samples is needed here, not 0"),
     ],

@@ -71,8 +71,13 @@ def _read(path: str, name: str) -> Expression:
             raise OSError(errno.EFBIG, f"it is longer than {LARGEST // 10**6} MB")
         lines = io.StringIO(data.decode("utf-8-sig"), newline="")
         rows = [row for row in csv.reader(lines) if row and not row[0].lstrip().startswith("#")]
-    except (OSError, UnicodeDecodeError, csv.Error) as error:
+    except UnicodeDecodeError as error:
+        what = f"--follow: not UTF-8: byte 0x{error.object[error.start]:02x}"
+        raise UsageError(what, path, "write plain text: a time and a value a row") from error
+    except (OSError, csv.Error) as error:
         raise UsageError(f"--follow: cannot be read: {getattr(error, 'strerror', None) or error}", path) from error
+    if any(mark in row[0] for row in rows for mark in ";\t"):
+        raise UsageError("--follow: columns stand between commas", path, "write 0.5,1.25: decimals have points")
     heads = [word.strip() for word in rows.pop(0)] if rows and not _is_number(rows[0][0]) else []
     if name not in heads and len(heads) > 2:
         raise UsageError(f"--follow: there is no column '{name}'", path, nearest_name(name, heads[1:]))

@@ -27,6 +27,8 @@ WRITES = {
     "csv": ((*RUN, "-o"), "r.csv"),
     "npz": ((*RUN, "-o"), "r.npz"),
     "picture": ((*RUN, "--plot"), "r.png"),
+    "report": (("report", PENDULUM, "--no-certify", "--without", "figure,plots,motion,downloads", "-o"), "r.md"),
+    "page": (("play", PENDULUM, "--time", "0.1", "--no-certify", "-o"), "r.html"),
     "code": (("codegen", PENDULUM, "--target", "numpy", "--no-certify", "-o"), "."),
 }
 EVERYWHERE = ("text", "csv", "code")  # a file, a long one, several together: one writer for all kinds
