@@ -60,7 +60,7 @@ def measured(t: np.ndarray, x: np.ndarray, tracks: Sequence[StepStates]) -> tupl
     return times[order], states[order]
 
 
-MOST_STEPS = 10_000_000
+MOST_STEPS = 100_000_000  # an hour of a small system in C
 MOST_FINE_STEPS = 200  # from one instant to the next around an event
 SHARE = 0.1  # of the tolerances of a run: those of one step
 RATES = (10.0, 10.0)  # of Baumgarte's rows [1/s]

@@ -17,7 +17,7 @@ from scipy.optimize import brentq
 
 import eomgen
 
-AT_ONCE = 200  # periods of one run, which begins where the one before it ended
+AT_ONCE = 200  # periods of one run by default, which begins where the one before it ended
 G = 9.81
 
 PUSHED = """
@@ -83,11 +83,11 @@ spring = { kind = "force", point = "mass.center", force = ["-k*(x - sin(2*pi*t))
 """
 
 
-def _runs(text: str, periods: int) -> Iterator[Any]:
+def _runs(text: str, periods: int, at_once: int) -> Iterator[Any]:
     """Runs of whole periods, each from where the one before it ended."""
     model, start = eomgen.loads(text), dict[str, float]()
     while periods > 0:
-        whole = min(periods, AT_ONCE)
+        whole = min(periods, at_once)
         run = eomgen.simulate(model, time=whole, start=start, samples=[0.0, float(whole)])
         assert run.status == "finished", run.message
         yield run
@@ -110,22 +110,24 @@ def _ends(runs: Iterator[Any], expected: np.ndarray) -> tuple[int, float, Any]:
     return count, float(worst), run
 
 
-def stick_slip(events: int) -> str:
+def stick_slip(events: int, at_once: int = AT_ONCE) -> str:
     """It slips where 1.2 sin wt = 1, and sticks again where 1.2 (cos wt_1 - cos wt) = w (t - t_1); then to the left."""
     w = 2 * math.pi
     begun = math.asin(1 / 1.2) / w
     ended = brentq(lambda t: 1.2 * (math.cos(w * begun) - math.cos(w * t)) - w * (t - begun), 0.25, 0.5, xtol=1e-15)
-    count, worst, run = _ends(_runs(PUSHED, -(-events // 4)), np.array([begun, ended, begun + 0.5, ended + 0.5]))
+    count, worst, run = _ends(
+        _runs(PUSHED, -(-events // 4), at_once), np.array([begun, ended, begun + 0.5, ended + 0.5])
+    )
     return f"{count} events, instants off by {worst:.1e} s, block off by {abs(run['s'][-1]):.1e} m"
 
 
-def impacts(events: int) -> str:
+def impacts(events: int, at_once: int = AT_ONCE) -> str:
     """It leaves where 3/2 sin wt = 1 and lands, without rebound, where the parabola meets the table."""
     w, A = 2 * math.pi, 1.5 * G / (2 * math.pi) ** 2
     off = math.asin(2 / 3) / w
     y, v = A * math.sin(w * off), A * w * math.cos(w * off)
     fall = brentq(lambda s: y + v * s - G * s * s / 2 - A * math.sin(w * (off + s)), 0.1, 1.0, xtol=1e-15)
-    count, worst, run = _ends(_runs(SHAKEN, -(-events // 2)), np.array([off, (off + fall) % 1.0]))
+    count, worst, run = _ends(_runs(SHAKEN, -(-events // 2), at_once), np.array([off, (off + fall) % 1.0]))
     off_by = ", ".join(f"{what} off by {abs(run[name][-1]):.1e} m" for what, name in (("ball", "y"), ("table", "z")))
     return f"{count} events, instants off by {worst:.1e} s, {off_by}"
 
@@ -163,7 +165,7 @@ def stiffness(seconds: float) -> str:
     return f"{run.status}: off by {np.max(np.abs(run['x'] - exact)):.1e} m in {run.steps} steps"
 
 
-ALL: tuple[Callable[[Any], str], ...] = (stick_slip, impacts, chaos, stiffness)
+ALL: tuple[Callable[..., str], ...] = (stick_slip, impacts, chaos, stiffness)
 
 
 def peak() -> str:
@@ -179,11 +181,12 @@ def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("motion", choices=[one.__name__ for one in ALL])
     parser.add_argument("--length", type=float, default=100.0, help="events, or seconds of chaos and stiffness")
+    parser.add_argument("--at-once", type=int, default=AT_ONCE, help="periods of one run, of events")
     asked = parser.parse_args()
     one = next(one for one in ALL if one.__name__ == asked.motion)
     begun, soon = time.process_time(), min(asked.length, 1000.0) if one in (stick_slip, impacts) else asked.length
     before = (one(int(soon)), peak()) if soon < asked.length else ("", "")
-    told = one(int(asked.length)) if one in (stick_slip, impacts) else one(asked.length)
+    told = one(int(asked.length), asked.at_once) if one in (stick_slip, impacts) else one(asked.length)
     memory = f"memory {before[1]} after {soon:g}, {peak()} after all" if before[1] else f"memory {peak()}"
     print(f"{asked.motion} {asked.length:g}: {told}; {memory}; {time.process_time() - begun:.0f} s of CPU")
 

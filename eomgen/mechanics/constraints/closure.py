@@ -103,7 +103,8 @@ def _open(ties: Ties, known: Mapping[str, Any]) -> EomgenError:
     if missing:
         return MissingValues(missing)
     names = ", ".join(dict.fromkeys(row.tie for row in ties.rows if not row.identical))
-    return DerivationError(f"the ties do not close near the start values: {names}", mend="change the start values")
+    what = f"the ties do not close near the start values: {names}"
+    return DerivationError(what, mend="`eomgen check` says whether they can")
 
 
 def movable(ties: Ties) -> list[Node]:
