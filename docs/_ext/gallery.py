@@ -21,6 +21,7 @@ from eomgen.documents import markdown
 from eomgen.documents.document import Document
 from eomgen.page.figure import rest_figure
 from eomgen.page.player_page import player_page
+from eomgen.verbs.report import Subject
 
 ROOT = Path(__file__).parents[2]
 MODELS = ROOT / "models"
@@ -75,6 +76,9 @@ def moments(model: eomgen.Model) -> str:
     return cut(derivation, tuple(step.key for step in derivation.steps if step.key.startswith("inertia")))
 
 
+AT_REST = {"statics": reactions, "kinematics": velocities, "inertia": moments}  # as a report chooses
+
+
 def answers(model: eomgen.Model) -> str:
     """What the file asks, and what comes out."""
     rows = [answer_row(name, answer) for name, answer in eomgen.solve(model).items()]
@@ -94,12 +98,10 @@ def parts_of(model: eomgen.Model) -> Iterator[Callable[[eomgen.Model], str]]:
     free = any(coordinate.motion is None for coordinate in model.coordinates.values())
     if free and has_mass:
         yield equations
-    elif not model.coordinates and (model.constraints or model.trusses or model.forces):
-        yield reactions
-    elif model.coordinates or model.given:
+    elif model.coordinates:
         yield velocities
-    elif model.bodies:
-        yield moments
+    elif model.bodies or model.trusses:
+        yield AT_REST[Subject(model, 0.0, certify=False, origin="", source="").main[0]]
     if model.outputs:
         yield answers
 
