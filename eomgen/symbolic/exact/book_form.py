@@ -62,37 +62,39 @@ def book_form(x: Scalar, limit: int = Work.ENTRY, positive: Collection[Node] = (
     """
     if type(x) is not Node:
         return x
-    found = [_written(x, limit, positive)]
-    if text_size(found[0]) > LONGEST or not any(node.op == "div" for node in order((x,))):
-        return found[0]
-    texts = [to_text(found[0])]
-    for _ in range(AGAIN):  # a quotient may be parted in several ways: the shortest of those that it comes back to
-        again = _written(rebuilt_as_written(found[-1]), limit, positive)
-        text = to_text(again)
+    form, settled = _written(x, limit, positive)
+    if settled or text_size(form) > LONGEST:
+        return form
+    found, texts = [form], [to_text(form)]
+    for _ in range(AGAIN):  # a sum of quotients may be parted in several ways: the shortest that it comes back to
+        form, _ = _written(rebuilt_as_written(found[-1]), limit, positive)
+        text = to_text(form)
         if text in texts:
             cycle = list(zip(found, texts, strict=True))[texts.index(text) :]
             return min(cycle, key=lambda each: (_length(each[0]), each[1]))[0]
-        found.append(again)
+        found.append(form)
         texts.append(text)
     return found[-1]
 
 
-def _written(x: Scalar, limit: int, positive: Collection[Node]) -> Scalar:
-    """The shortest of its forms."""
+def _written(x: Scalar, limit: int, positive: Collection[Node]) -> tuple[Scalar, bool]:
+    """(the shortest of its forms, whether it is that of the function and not of how the sum was parted)."""
     try:
         expansion, (terms,) = expanded((x,), limit, positive)
         writer = Writer(expansion)
         book = _Book(expansion, writer)
         divided = any(e < 0 for monomial, _ in terms for _, e in monomial)
         forms = _quotients(expansion, writer, book, terms) if divided else []
+        whole = len(forms)
         forms.append(book.sum(book.coordinates_first(_parts(writer, terms))))
         if any(expansion.atoms.is_a(atom, "sqrt") for monomial, _ in terms for atom, _ in monomial):
             forms += map(rebuilt_as_written, quotients(expansion, writer, terms))
     except TooLarge:
-        return x
+        return x, True
     if divided:
         forms += _of_its_parameters(expansion, writer, book, terms)
-    return _roots_read(min(forms, key=_length), limit, positive)
+    best = min(range(len(forms)), key=lambda k: _length(forms[k]))
+    return _roots_read(forms[best], limit, positive), not divided or best < whole
 
 
 def _roots_read(x: Scalar, limit: int, positive: Collection[Node]) -> Scalar:
