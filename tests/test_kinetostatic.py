@@ -8,7 +8,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from derivations import by_every_method, equations, model_called, read_back
+from derivations import by_every_method, equations, in_time, model_called, read_back
 
 from eomgen.documents import rendered
 from eomgen.documents.document import Document
@@ -149,11 +149,11 @@ def test_the_printed_equations_of_every_body_hold_along_every_motion(name):
     motion, known = along_motion(derived), reactions_along_motion(derived)
     balances = [
         f.sides[0]
-        for f in formulas(derived.derivation, "body_")
+        for f in formulas(in_time(derived), "body_")
         if f.sides[-1] == 0 and len(f.sides) == 2 and not hasattr(f.sides[0], "letter")
     ]
     assert len(balances) == len(derived.reactions.balance.equations)
-    left = substituted(substituted([whole(derived.derivation, x) for x in balances], known), motion)
+    left = substituted(substituted([whole(in_time(derived), x) for x in balances], known), motion)
     assert equal_at_random_states([(x, 0) for x in left]).equal
 
 
@@ -161,9 +161,9 @@ def test_the_printed_equations_of_every_body_hold_along_every_motion(name):
 def test_printed_inertia_forces_are_what_is_missing_in_the_balance_of_the_bodies(name):
     """F_in = -m a_C, M_in = -d/dt (I omega)"""
     derived = derived_from(name)
-    shown = [f.sides[1] for f in formulas(derived.derivation, "body_") if hasattr(f.sides[0], "letter")]
+    shown = [f.sides[1] for f in formulas(in_time(derived), "body_") if hasattr(f.sides[0], "letter")]
     inertia = [e.inertia for e in derived.reactions.balance.equations if not is_zero(e.inertia)]
-    pairs = [(whole(derived.derivation, x), -y) for x, y in zip(shown, inertia, strict=True)]
+    pairs = [(whole(in_time(derived), x), -y) for x, y in zip(shown, inertia, strict=True)]
     assert equal_at_random_states(pairs).equal
 
 
@@ -174,11 +174,11 @@ def test_printed_reactions_are_those_of_the_balance_by_every_method(name, method
     derived = equations(name, method)
     motion, known = along_motion(derived), reactions_along_motion(derived)
     own = set(letters(derived).symbols)
-    shown = [f for f in formulas(derived.derivation, "reactions") if f.sides[0] in own]  # the others are definitions
+    shown = [f for f in formulas(in_time(derived), "reactions") if f.sides[0] in own]  # the others are definitions
     rubbing = {letters(derived).symbols[rub.component] for rub in letters(derived).rubs}
     assert {f.sides[0] for f in shown} == own - rubbing
     pairs = [
-        (substituted((whole(derived.derivation, x),), motion)[0], known[f.sides[0]]) for f in shown for x in f.sides[1:]
+        (substituted((whole(in_time(derived), x),), motion)[0], known[f.sides[0]]) for f in shown for x in f.sides[1:]
     ]
     assert not pairs or equal_at_random_states(pairs).equal
 
@@ -223,7 +223,7 @@ def test_indeterminate_reactions_are_said_with_what_they_leave_open():
             for e in derived.reactions.balance.equations
         ]
         assert equal_at_random_states([(x, 0) for x in substituted(sums, closed)]).equal
-    text = " ".join(rendered(derived.derivation, "text").split())
+    text = " ".join(rendered(in_time(derived), "text").split())
     assert "are statically indeterminate: rigid bodies in balance leave them open" in text
     assert "Delta(P_y) = -2*k1" in text
 
@@ -285,7 +285,7 @@ UNHELD = LADDER.replace('floor = { kind = "support", point = "ladder.end", norma
 def test_what_nothing_holds_is_told_and_has_no_kinetostatics(model, word):
     """one sentence in other derivations, an error by this method"""
     derived = derive(model)
-    text = " ".join(rendered(derived.derivation, "text").split())
+    text = " ".join(rendered(in_time(derived), "text").split())
     assert "The reactions do not follow: " in text and word in text
     assert word in derived.entries()["reactions_message"]
     with pytest.raises(DerivationError, match=word):

@@ -17,6 +17,7 @@ from derivations import (
     derivable,
     equations,
     free_system,
+    in_time,
     on_spheres,
     read_back,
     residuals,
@@ -105,7 +106,7 @@ def without_names(derivation: Document, scalars: Sequence[Scalar]) -> tuple[Scal
 def test_printed_equations_read_back_as_the_equations_of_motion(name, method):
     """divisor (left - right) = M a + c - Q - J^T lam"""
     derived = equations(name, method)
-    assert_printed_equations_are_those_of_motion(derived, derived.derivation)
+    assert_printed_equations_are_those_of_motion(derived, in_time(derived))
 
 
 @pytest.mark.parametrize("name", ["arm7", "chain20"])
@@ -152,8 +153,8 @@ def by_energies(name: str) -> bool:
 def test_printed_derivatives_are_derivatives_of_the_printed_kinetic_energy(name):
     """dT/du, d/dt dT/du and dT/dq of T = sum of the bodies' T, all as printed"""
     derived = equations(name)
-    also = printed_definitions(rendered(derived.derivation, "text"), derived, derived.derivation)
-    energy = step(derived.derivation, "kinetic_energy")
+    also = printed_definitions(rendered(in_time(derived), "text"), derived, in_time(derived))
+    energy = step(in_time(derived), "kinetic_energy")
     system = _printed_system(derived)
     for free in (*system.symbols.u, *system.symbols.a):  # rates of dependent coordinates, as they stand there
         also.pop(free.name, None)
@@ -162,7 +163,7 @@ def test_printed_derivatives_are_derivatives_of_the_printed_kinetic_energy(name)
     if is_complete(energy):
         total = next(f for f in energy.statements[::-1] if isinstance(f, Formula))
         pairs.append((read_back(to_text(total.sides[1]), derived, also), T))
-    for formula in _derivatives(derived.derivation):
+    for formula in _derivatives(in_time(derived)):
         of, x = formula.sides
         momentum = of.of if isinstance(of, Rate) else of
         expected = gradient(T, (momentum.by,))[0]
@@ -171,14 +172,14 @@ def test_printed_derivatives_are_derivatives_of_the_printed_kinetic_energy(name)
         elif isinstance(of, Partial) and of.by in system.symbols.q:
             expected = per_speed(system.motion, gradient(T, system.symbols.q))[moved_coordinates(system).index(of.by)]
         pairs.append((read_back(to_text(x), derived, also), expected))
-    if all(map(is_complete, derived.derivation.steps)):
+    if all(map(is_complete, in_time(derived).steps)):
         assert len(pairs) == 1 + 3 * len(system.symbols.u)
     assert equal_at_random_states(on_spheres(derived, pairs)).equal
 
 
 def _printed_system(derived: Equations) -> System:
     """The system that the derivatives are printed of: the free one where dependent rates stand in them."""
-    by = {of.by for f in _derivatives(derived.derivation) for of in f.sides if isinstance(of, Partial)}
+    by = {of.by for f in _derivatives(in_time(derived)) for of in f.sides if isinstance(of, Partial)}
     return derived.system if by <= {*derived.system.symbols.q, *derived.system.symbols.u} else free_system(derived)
 
 
@@ -191,13 +192,13 @@ def _derivatives(derivation: Document) -> list[Formula]:
 def test_printed_generalized_forces_are_those_of_the_equations(name):
     """Q(theta) as printed = Q of the equations"""
     derived = equations(name)
-    formulas = [f for f in step(derived.derivation, "work").statements if isinstance(f, Formula)]
+    formulas = [f for f in step(in_time(derived), "work").statements if isinstance(f, Formula)]
     total = [
         f.sides[1]
         for f in formulas
         if isinstance(f.sides[0], Name) and f.sides[0].letter == "Q" and f.sides[0].of == ""
     ]
-    also = printed_definitions(rendered(derived.derivation, "text"), derived, derived.derivation)
+    also = printed_definitions(rendered(in_time(derived), "text"), derived, in_time(derived))
     forces = generalized_forces(_printed_system(derived).loads)
     pairs = [(read_back(to_text(x), derived, also), Q) for x, Q in zip(total, forces, strict=True)]
     assert equal_at_random_states(on_spheres(derived, pairs)).equal
@@ -207,8 +208,8 @@ def test_printed_generalized_forces_are_those_of_the_equations(name):
 def test_printed_balance_of_momentum_is_that_of_the_equations(name):
     """M, c and Q of the declared speeds, as printed"""
     derived = equations(name)
-    also = printed_definitions(rendered(derived.derivation, "text"), derived, derived.derivation)
-    formulas = [f for f in step(derived.derivation, "balance").statements if isinstance(f, Formula)]
+    also = printed_definitions(rendered(in_time(derived), "text"), derived, in_time(derived))
+    formulas = [f for f in step(in_time(derived), "balance").statements if isinstance(f, Formula)]
     printed = dict(f.sides for f in formulas if len(f.sides) == 2)
     graph = derived.graph
     u, q = graph.symbols.u, moved_coordinates(derived.system)
@@ -223,7 +224,7 @@ def test_printed_balance_of_momentum_is_that_of_the_equations(name):
 def test_printed_accelerations_solve_the_printed_equations(name):
     """M a = Q - c with a as printed (over the printed determinant)"""
     derived = equations(name)
-    solved = [s for s in derived.derivation.steps if s.key == "solved"]
+    solved = [s for s in in_time(derived).steps if s.key == "solved"]
     if not solved:
         one = len(derived.graph.symbols.u) == 1 and _printed_system(derived) is derived.system
         assert not one, "one equation is always solved"
@@ -234,7 +235,7 @@ def test_printed_accelerations_solve_the_printed_equations(name):
         values, scale = [f.sides[1] for f in formulas], 1
     else:
         scale, values = formulas[0].sides[1], [f.sides[1] for f in formulas[1:]]
-    scale, *values = without_names(derived.derivation, (scale, *values))
+    scale, *values = without_names(in_time(derived), (scale, *values))
     rows = [
         (sum((m * x for m, x in zip(row, values, strict=True)), start=0), scale * force)
         for row, force in zip(derived.graph.M, derived.graph.forcing, strict=True)
@@ -246,7 +247,7 @@ def test_printed_accelerations_solve_the_printed_equations(name):
 def test_kinetic_energies_come_out_as_a_textbook_prints_them(name):
     """T = 3/2*M*R^2*(4 + 9*cos(theta)^2)*theta'^2, in the text and in JSON"""
     derived = equations(name)
-    text = re.sub(r"\n {8}", " ", rendered(derived.derivation, "text"))
+    text = re.sub(r"\n {8}", " ", rendered(in_time(derived), "text"))
     printed = re.search(r"^    T = (.*)$", text, re.M)
     assert printed is not None
     assert printed[1] == derived.entries()["kinetic_energy"] == KINETIC_ENERGIES[name]
@@ -401,9 +402,9 @@ def test_a_letter_that_is_also_a_name_of_the_model_is_told_apart():
 def test_long_equations_are_printed_with_named_parts():
     """z1, z2, ... stand before the equations that use them, and are no names of the model"""
     derived = equations("chain5")
-    assert len(derived.derivation.definitions) > 20
-    assert not {symbol.name for symbol, _ in derived.derivation.definitions} & symbols_named(derived).keys()
-    text = rendered(derived.derivation, "text")
+    assert len(in_time(derived).definitions) > 20
+    assert not {symbol.name for symbol, _ in in_time(derived).definitions} & symbols_named(derived).keys()
+    text = rendered(in_time(derived), "text")
     assert text.index("\n    z1 = ") < text.index("\n    z2 = ") < text.index("q5'' = ")
 
 

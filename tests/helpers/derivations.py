@@ -9,6 +9,8 @@ from functools import cache
 from pathlib import Path
 from typing import Any
 
+from eomgen.documents.derivation import derivation_of
+from eomgen.documents.document import Document
 from eomgen.errors import DerivationError, NotYet
 from eomgen.mechanics.equations.system import System
 from eomgen.model.parts import Model
@@ -208,7 +210,8 @@ def read_back(text: str, equations: Equations, also: dict[str, Scalar] | None = 
     names: dict[str, Any] = {symbol.name: symbol for symbol in own}
     multipliers = {symbol.name: symbol for symbol in symbols.lam}
     expression = parse(text, references=True, longest=2_000_000)
-    lookup = {**names, "pi": symbols.graph.pi, **(also or {})}
+    given = {name: x for name, x in equations.system.scope.names.items() if name.endswith("'")}
+    lookup = {**given, **names, "pi": symbols.graph.pi, **(also or {})}
 
     def called(call: Call) -> Scalar:
         if str(call) in multipliers:
@@ -227,6 +230,13 @@ def on_spheres(equations: Equations, pairs: Sequence[tuple[Scalar, Scalar]]) -> 
         square = sum((e * e for e in others), start=0)
         found |= {e0: over(1 - square, 1 + square)} | {e: over(2 * e, 1 + square) for e in others}
     return [substituted(pair, found) for pair in pairs] if found else list(pairs)
+
+
+def in_time(equations: Equations) -> Document:
+    """The derivation with what is driven as functions of time, in the symbols of the equations."""
+    if equations.in_print is equations.graph:
+        return equations.derivation
+    return derivation_of(equations.graph, equations.method)
 
 
 def free_system(equations: Equations) -> System:
