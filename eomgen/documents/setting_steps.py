@@ -172,6 +172,10 @@ def _coordinates(system: System) -> Step:
             rows.append(Meaning(u, "its rate", _per(unit, "s"), speed))
             if part.dependent or u in symbols.u:
                 rows.append(Meaning(a, "its acceleration", _per(unit, "s^2")))
+        for x in (x for x in scope.laws if x.name.rstrip("'") == q.name):
+            second = x.name.endswith("''")
+            what = "its acceleration, as given" if second else "its rate, as given"
+            rows.append(Meaning(x, what, _per(unit, "s^2" if second else "s")))
     rows += _speeds(system)
     rows.append(Meaning(symbols.t, "time", "s"))
     statements: list[Statement] = [Table(COORDINATES, tuple(rows))]
