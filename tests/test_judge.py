@@ -124,6 +124,9 @@ def test_independent_mistakes_are_found_together():
     """The weight without its sign and the drive doubled, in one equation."""
     found = verdict("elastic_pendulum", "m*r'' - m*r*theta'^2 + m*g*cos(theta) + 2*k*(r - l0) = 0")
     assert sorted(kinds(found)) == ["factor", "sign"]
+    found = verdict("double_pendulum", "T = 1/2*m1*l1^2*theta1'^2")
+    assert [cause.body for cause in found.causes] == ["arm1", "arm2"]
+    assert "as if all of it were at its end" in found.causes[0].text and "is missing" in found.causes[1].text
 
 
 @pytest.mark.parametrize(
@@ -167,6 +170,13 @@ def test_no_equation_of_motion_is_what_always_holds():
     """0 = 0 and sin^2 + cos^2 = 1 say nothing of the motion."""
     for text in ("theta'' = theta''", "theta''*(sin(theta)^2 + cos(theta)^2) = theta''"):
         assert verdict("simple_pendulum", text).verdict == "wrong"
+
+
+def test_roots_are_compared_with_50_digits_up_to_their_rounding():
+    """1/eps^2 and roots: V multiplied out is V, and with another root it is not."""
+    V = sympy.expand(eomgen.derive(MODELS / "car_axis.toml").V)
+    assert verdict("car_axis", f"V = {V}")
+    assert verdict("car_axis", f"V = {V} + x_l/1000000").verdict == "wrong"
 
 
 def test_redundant_ties_make_nothing_right():

@@ -200,7 +200,7 @@ class Corruptions:
                     T = HALF * mass.m * dot(v, v) - translation.T + (factor * factor - 1) * energy.rotation
                     text = f"{link.name} is treated as if it were {how} as long"
                     longer = Contribution("", T=T, V=self._raised(weights, place))
-                    yield self._once(f"the length of {link.name}", "wrong_point", longer, PLACED, link.name, text=text)
+                    yield self._once(f"the length of {link.name}", "wrong_point", longer, SHARED, link.name, text=text)
             for point, r in places.items():
                 if any(not is_zero(x) for x in energy.spin) and self.what in ("motion", "T"):
                     arm = minus(r, mass.com)
@@ -233,6 +233,11 @@ class Corruptions:
                 if translation is not None and link.name in motion.index:
                     v = velocity_of(motion, (link.name, r))
                     T = HALF * mass.m * dot(v, v) - translation.T
+                    if not is_zero(energy.rotation):
+                        text = f"the mass of {link.name} is taken as if all of it were at its {point}"
+                        there = Contribution("", T=T - energy.rotation)
+                        name = f"the kinetic energy of {link.name}"
+                        yield self._once(name, "wrong_point", there, PLACED, link.name, text=text)
                     text = f"the velocity of {link.name}.{point} stands where that of its mass centre is needed"
                     yield self._once(
                         f"the translation of {link.name}",

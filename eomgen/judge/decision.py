@@ -30,7 +30,7 @@ from eomgen.symbolic.numeric.evaluation import (
     evaluate,
     fifty_digits,
 )
-from eomgen.symbolic.numeric.tolerances import CERTAIN_AT_50, CLOSED_AT_50, COMPUTED, ELIMINATED_AT_50
+from eomgen.symbolic.numeric.tolerances import CERTAIN_AT_50, CLOSED_AT_50, COMPUTED, ELIMINATED_AT_50, ZERO_AT_50
 
 STATES = 3
 TRIES = 40
@@ -66,7 +66,9 @@ class NumberKind:
 
 
 IN_FIELD = NumberKind("prime field", lambda x: pow(x, -1, PRIME), lambda x: x % PRIME, lambda x, size: x % PRIME == 0)
-IN_DIGITS = NumberKind("50 digits", lambda x: 1 / x, lambda x: x, lambda x, size: abs(x) <= ELIMINATED_AT_50 * size)
+IN_DIGITS = NumberKind(
+    "50 digits", lambda x: 1 / x, lambda x: x, lambda x, size: abs(x) <= max(ELIMINATED_AT_50 * size, ZERO_AT_50)
+)
 
 
 def combination(
