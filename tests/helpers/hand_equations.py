@@ -9,7 +9,6 @@ mistakes that it was not written for.
 
 from __future__ import annotations
 
-import json
 import random
 import sys
 import time
@@ -564,12 +563,7 @@ def main(number: int = 300, seed: int = 1) -> None:
     from eomgen.judge.case import Case
     from eomgen.judge.judge import Judge
 
-    kept = Path(f"/tmp/judged-{seed}.json")
-    if kept.exists():
-        wrong, right = ([Hand(*x) for x in part] for part in json.loads(kept.read_text()))
-    else:
-        wrong, right = cases(seed)
-        kept.write_text(json.dumps([[list(vars(x).values()) for x in part] for part in (wrong, right)]))
+    wrong, right = cases(seed)
     rng, judges = random.Random(seed), {}
     print(
         f"{len({x.model for x in wrong})} models, {len(wrong)} wrong and {len(right)} right equations", file=sys.stderr
