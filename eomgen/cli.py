@@ -193,6 +193,7 @@ def check_command(
 )
 @click.option("--units", is_flag=True, help="The unit of every name, equation, reaction and output too.")
 @click.option("--full", is_flag=True, help="Print everything, however long, with names for the long parts.")
+@click.option("--diff", metavar="OTHER", type=click.Path(exists=True, dir_okay=False), help="What differs from OTHER.")
 @CERTIFY
 def derive_command(**options: Any) -> int:
     """Derive the equations of motion and certify them."""

@@ -13,17 +13,25 @@ from eomgen.mechanics.balance.balance import balance_of
 from eomgen.mechanics.balance.named_reactions import NamedReaction, named_reactions
 from eomgen.model.own_units import units_of_model
 from eomgen.model.parts import Model
+from eomgen.model.reader import load
 
 HEADS = {"names": "name", "equations": "equation of motion along", "reactions": "reaction", "outputs": "output"}
 
 
-def derive_document(model: Model, *, method: str, certify: bool, full: bool = False, units: bool = False) -> Document:
+def derive_document(
+    model: Model, *, method: str, certify: bool, full: bool = False, units: bool = False, diff: str | None = None
+) -> Document:
     """The derivation, and its certificate.
 
     Args:
         full: everything is printed, however long.
         units: those of names, equations, reactions and outputs too.
+        diff: the file of another model: what differs from it is told instead.
     """
+    if diff is not None:
+        from eomgen.verbs.derive_difference import difference_document
+
+        return difference_document(model, load(diff), method=method, certify=certify)
     equations = pipeline.derive(model, method)
     document = equations.written(full=full)
     document = _with_units(equations, document) if units else document

@@ -1,0 +1,191 @@
+"""eomgen derive --diff: what differs between two models, down to their equations of motion."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, replace
+from functools import cached_property
+from typing import Any
+
+from eomgen import pipeline
+from eomgen.documents.document import Document, document_of
+from eomgen.documents.equation_steps import sides_of
+from eomgen.documents.statements import Formula, Grid, Statement, Step, prose
+from eomgen.equations import Equations
+from eomgen.mechanics.equations.equations_of_motion import EquationsOfMotion
+from eomgen.model.parts import Model
+from eomgen.model.values import exact_parameters
+from eomgen.proof.check import Certificate
+from eomgen.symbolic.exact.book_form import book_form
+from eomgen.symbolic.exact.equality import equal_at_random_states
+from eomgen.symbolic.expression.derivative import symbols_of
+from eomgen.symbolic.expression.graph import Graph, Scalar
+from eomgen.symbolic.numeric.transplant import transplanted
+from eomgen.symbolic.numeric.work import Work
+from eomgen.symbolic.print.text import to_text
+
+DECLARED = ("coordinates", "speeds", "parameters", "inputs", "bodies", "constraints", "forces")
+
+
+@dataclass(frozen=True)
+class Compared:
+    """One equation in both models, R = 0.
+
+    Args:
+        name: of the speed along which it is, or of a tie's row.
+        first, second: R in this model and in the other; None where one does not have it.
+        same: whether they are the same function, by a factor of 1.
+    """
+
+    name: str
+    first: Scalar | None
+    second: Scalar | None
+    same: bool
+
+    @property
+    def status(self) -> str:
+        if self.first is None or self.second is None:
+            return "removed" if self.second is None else "added"
+        return "same" if self.same else "changed"
+
+
+@dataclass(frozen=True)
+class Difference:
+    """The equations of motion of two models, side by side."""
+
+    first: Equations
+    second: Equations
+
+    @cached_property
+    def declared(self) -> dict[str, tuple[list[str], list[str]]]:
+        """Of each table that names the parts: (what only the other has, what only this one has)."""
+        found = {}
+        for table in DECLARED:
+            own, other = (list(getattr(e.model, table) or ()) for e in (self.first, self.second))
+            found[table] = ([x for x in other if x not in own], [x for x in own if x not in other])
+        return {table: names for table, names in found.items() if any(names)}
+
+    @cached_property
+    def values(self) -> dict[str, tuple[float | None, float | None]]:
+        """The values of parameters that both have, where they differ [SI]."""
+        own, other = (exact_parameters(e.model) for e in (self.first, self.second))
+        shared = [name for name in self.first.model.parameters if name in self.second.model.parameters]
+        pairs = {name: (own.get(name), other.get(name)) for name in shared}
+        return {
+            name: (None if a is None else float(a), None if b is None else float(b))
+            for name, (a, b) in pairs.items()
+            if a != b
+        }
+
+    @cached_property
+    def equations(self) -> tuple[Compared, ...]:
+        """Every equation of motion and every row that closes a tie, of either."""
+        graph = Graph()
+        rows = [_rows(e.graph, graph) for e in (self.first, self.second)]
+        names = dict.fromkeys((*rows[0], *rows[1]))
+        return tuple(_compared(name, *(row.get(name) for row in rows)) for name in names)
+
+    def entries(self) -> Mapping[str, Any]:
+        """For machines."""
+        return {
+            "name": self.first.model.name,
+            "other": self.second.model.name,
+            "same": not (self.declared or self.values or any(x.status != "same" for x in self.equations)),
+            "declared": {table: {"added": new, "removed": old} for table, (new, old) in self.declared.items()},
+            "values": {name: list(pair) for name, pair in self.values.items()},
+            "equations": [
+                {
+                    "of": x.name,
+                    "status": x.status,
+                    "this": None if x.first is None else to_text(x.first),
+                    "other": None if x.second is None else to_text(x.second),
+                    "difference": to_text(_difference(x)) if x.status == "changed" else None,
+                }
+                for x in self.equations
+            ],
+        }
+
+    @property
+    def steps(self) -> tuple[Step, ...]:
+        """For people."""
+        return (*self._declarations, Step("equations", "Equations of motion", tuple(self._statements)))
+
+    @property
+    def _declarations(self) -> tuple[Step, ...]:
+        rows = [(table, ", ".join(new), ", ".join(old)) for table, (new, old) in self.declared.items()]
+        values = [(name, _shown(a), _shown(b)) for name, (a, b) in self.values.items()]
+        told: list[Statement] = []
+        if rows:
+            told.append(Grid(("declared", "only in the other", "only in this one"), tuple(rows)))
+        if values:
+            told.append(Grid(("value of", "in this one", "in the other"), tuple(values)))
+        return (Step("declared", "What is declared", tuple(told)),) if told else ()
+
+    @property
+    def _statements(self) -> list[Statement]:
+        by_status = {status: [x for x in self.equations if x.status == status] for status in ("same", "changed")}
+        told: list[Statement] = []
+        if by_status["same"]:
+            names = ", ".join(x.name for x in by_status["same"])
+            told.append(prose(f"The same in both, as functions of all names: {names}."))
+        for x in by_status["changed"]:
+            assert x.first is not None and x.second is not None
+            told += [prose(f"Along {x.name}, here and in the other, and the other less this one:")]
+            told += [Formula((side, 0)) for side in (x.first, x.second)] + [Formula((_difference(x),))]
+        for x in self.equations:
+            if x.status in ("added", "removed"):
+                where = "in the other" if x.status == "added" else "in this one"
+                told += [prose(f"Along {x.name}, only {where}:"), Formula((_present(x), 0))]
+        return told or [prose("Nothing is free to move in either.")]
+
+
+def difference_document(model: Model, other: Model, *, method: str, certify: bool) -> Document:
+    """What differs between this model and another, with the proofs of both."""
+    found = Difference(pipeline.derive(model, method), pipeline.derive(other, method))
+    document = replace(document_of(model, f"difference from {other.name}", found.steps), entries=found.entries)
+    return document.proven(_both(found.first.certify(), found.second.certify()) if certify else None)
+
+
+def _both(first: Certificate, second: Certificate) -> Certificate:
+    told = ((f"this model: {c.name}", c) for c in first.checks), ((f"the other: {c.name}", c) for c in second.checks)
+    return Certificate(tuple(replace(check, name=name) for part in told for name, check in part))
+
+
+def _rows(equations: EquationsOfMotion, graph: Graph) -> dict[str, Scalar]:
+    """R of every equation by its name, over the symbols of a common graph; symbols of one name are one."""
+    named = {u.name.removesuffix("'"): R for u, R in zip(equations.symbols.u, _residuals(equations), strict=True)}
+    rows = zip(equations.system.ties.closing, equations.J, equations.gamma, strict=True)
+    for row, J, gamma in rows:
+        terms = (x * a for x, a in zip(J, equations.symbols.a, strict=True))
+        named[row.label] = sum(terms, start=gamma)
+    scalars = tuple(named.values())
+    meanings: dict[str, Scalar] = {symbol.name: graph.symbol(symbol.name) for symbol in symbols_of(scalars)}
+    readable = (book_form(x, Work.FORMULA) for x in transplanted(scalars, graph, meanings))
+    return dict(zip(named, readable, strict=True))
+
+
+def _residuals(equations: EquationsOfMotion) -> Sequence[Scalar]:
+    """M a - forcing - J^T lam."""
+    sides = sides_of(equations, equations.M, [0] * len(equations.M), equations.forcing)
+    return [row.left - row.right for row in sides]
+
+
+def _compared(name: str, first: Scalar | None, second: Scalar | None) -> Compared:
+    if first is None or second is None:
+        return Compared(name, first, second, same=False)
+    return Compared(name, first, second, same=equal_at_random_states([(first, second)]).equal)
+
+
+def _difference(x: Compared) -> Scalar:
+    assert x.first is not None and x.second is not None
+    return book_form(x.second - x.first, Work.FORMULA)
+
+
+def _present(x: Compared) -> Scalar:
+    found = x.second if x.first is None else x.first
+    assert found is not None
+    return found
+
+
+def _shown(value: float | None) -> str:
+    return "" if value is None else f"{value:.10g}"
