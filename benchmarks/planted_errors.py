@@ -155,7 +155,7 @@ def sample(size: int) -> list[Planted]:
     """Errors that the product sees, of different rooms: one of each, evenly spread over the rooms."""
     rooms: dict[str, list[Planted]] = {}
     for planted in entries():
-        if not (planted.open or planted.harmless):
+        if planted.run and not (planted.open or planted.harmless):
             rooms.setdefault(planted.room, []).append(planted)
     middle = [of_room[len(of_room) // 2] for of_room in rooms.values()]
     return [middle[k * len(middle) // size] for k in range(min(size, len(middle)))]

@@ -3,14 +3,11 @@
 from __future__ import annotations
 
 import os
-import tempfile
 from pathlib import Path
 
 import pytest
 
 os.environ.setdefault("EOMGEN_PATIENCE", "none")  # no test hangs on how busy the machine is
-if os.environ.pop("PYTHONDONTWRITEBYTECODE", None):  # programs that tests start compile the package once, elsewhere
-    os.environ.setdefault("PYTHONPYCACHEPREFIX", tempfile.mkdtemp(prefix="eomgen-tests-"))
 
 SLOW = ("\npytestmark = pytest.mark.slow\n", "\npytestmark = [pytest.mark.slow,")
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 import pytest
 
 import eomgen
-from eomgen import report
+from eomgen import documents
 from eomgen.documents.document import Document
 from eomgen.documents.kinematics.centrode_plot import centrode_panel
 from eomgen.documents.kinematics.field_steps import field_payload, field_steps
@@ -53,7 +53,7 @@ bodies.rod.joint = { kind = "placed", at = [0, "l*sin(theta)"], angle = "-theta"
 
 def rows_of(steps, key: str) -> dict[str, tuple[str, ...]]:
     """The rows of the tables of a step, by their first cells, as text."""
-    (step,) = (step for step in report.json_form.steps(derivation(steps)) if step["key"] == key)
+    (step,) = (step for step in documents.json_form.steps(derivation(steps)) if step["key"] == key)
     grids = [statement for statement in step["statements"] if statement["kind"] == "grid"]
     return {row[0]: tuple(row[1:]) for grid in grids for row in grid["rows"]}
 
@@ -117,7 +117,7 @@ def test_the_ladders_field_and_centrodes_are_told():
     motion = journey_of(LADDER)
     system = motion.phase.system
     kinds = Kinds(system, motion.start)
-    text = report.rendered(derivation(field_steps(system, {}, kinds)), "text")
+    text = documents.rendered(derivation(field_steps(system, {}, kinds)), "text")
     assert "rod: plane motion; rotation at this instant." in text
     assert "a circle about (0, 0), radius" in text
     payload = field_payload(system, {}, kinds)["rod"]
@@ -128,14 +128,14 @@ def test_the_ladders_field_and_centrodes_are_told():
         assert all(same(motion.phase, *pair) for pair in zip(found, true, strict=True))
 
 
-@pytest.mark.parametrize("name", [member.name for member in report.ALL])
+@pytest.mark.parametrize("name", [member.name for member in documents.ALL])
 def test_steps_are_set_in_every_format(name):
     """No format leaves a table or a formula out."""
     motion = journey_of(TURNTABLE)
     system = motion.phase.system
     steps = field_steps(system, {}, Kinds(system, motion.start))
     steps = (*steps, *relative_steps(system, "puck.center", "table", {}))
-    shown = report.rendered(derivation(steps), name)
+    shown = documents.rendered(derivation(steps), name)
     assert all(word in shown for word in ("rotation about a fixed axis", "Coriolis", "centrifugal"))
 
 

@@ -81,8 +81,9 @@ def _of_bodies(system: System, energies: Sequence[BodyEnergy]) -> list[Pair]:
 def energies_by_parts(system: System, reader: Reader, T: Scalar) -> tuple[Scalar, Scalar]:
     """(T, V), each as the sum over bodies or forces where that is shorter."""
     bodies = [x for _, x in _of_bodies(system, body_energies(system.motion))]
-    V = system.loads.potential_energy
-    potentials = [reader.as_square(force.potential) for force in system.loads.applied if force.potential is not None]
+    V, loads = system.loads.potential_energy, system.loads
+    held = (each.potential for each in (*loads.applied, *loads.efforts))
+    potentials = [reader.as_square(x) for x in held if x is not None and not is_zero(x)]
     return reader.as_sum(T, bodies), reader.as_sum(V, potentials)
 
 

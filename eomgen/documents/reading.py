@@ -9,6 +9,7 @@ from itertools import count
 from eomgen.documents.statements import Omitted
 from eomgen.symbolic.exact.book_form import BRACKETS, book_form
 from eomgen.symbolic.exact.collect import with_squares
+from eomgen.symbolic.exact.equality import equal_at_random_states
 from eomgen.symbolic.exact.normal_form import TooLarge, common_factor, normal_form
 from eomgen.symbolic.exact.roots import Rooted, readable_over, rooted
 from eomgen.symbolic.expression.derivative import substituted
@@ -170,6 +171,8 @@ class Reader:
         found = sum((x for x in written if not isinstance(x, Omitted)), start=0)
         short = self._read(total)
         if type(found) is not Node or (short is not None and length_of(short) <= length_of(found) + BRACKETS):
+            return total
+        if not equal_at_random_states([(found, total)]).equal:  # no part is left out
             return total
         self._known[found] = found
         return found
