@@ -82,7 +82,7 @@ def energies_by_parts(system: System, reader: Reader, T: Scalar) -> tuple[Scalar
     """(T, V), each as the sum over bodies or forces where that is shorter."""
     bodies = [x for _, x in _of_bodies(system, body_energies(system.motion))]
     V, loads = system.loads.potential_energy, system.loads
-    held = (each.potential for each in (*loads.applied, *loads.efforts))
+    held = [*(force.potential for force in loads.applied), *(effort.potential for effort in loads.efforts)]
     potentials = [reader.as_square(x) for x in held if x is not None and not is_zero(x)]
     return reader.as_sum(T, bodies), reader.as_sum(V, potentials)
 
