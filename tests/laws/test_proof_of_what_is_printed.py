@@ -28,7 +28,9 @@ def statuses(name: str) -> dict[str, str]:
     return {check.name: check.status for check in certificate.checks}
 
 
-@pytest.mark.parametrize("name", ["bead_on_turning_hoop", "four_bar", "rough_incline", "ch22_p1", "chaplygin_sleigh"])
+@pytest.mark.parametrize(
+    "name", ["bead_on_turning_hoop", "four_bar", "rough_incline", "ch22_p1", "chaplygin_sleigh", "elastic_pendulum"]
+)
 def test_printed_derivations_hold_along_the_motion(name):
     assert statuses(name)[PRINTED] == "holds"
 
@@ -74,3 +76,10 @@ def test_a_printed_integral_that_does_not_stay_is_seen(monkeypatch):
 
     monkeypatch.setattr("eomgen.mechanics.first_integrals.integrals.jacobi", jacobi)
     assert statuses("bead_on_turning_hoop")[CONSTANT] == "fails"
+
+
+def test_a_sum_of_parts_that_is_not_the_whole_is_not_printed():
+    """T + V with a part left out stays the whole, in a form of its own."""
+    graph = eomgen.derive(eomgen.load(MODELS / "elastic_pendulum.toml")).graph
+    reader, whole = Reader(), graph.T + graph.V
+    assert reader.as_sum(whole, [graph.T]) is whole
