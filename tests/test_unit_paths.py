@@ -59,12 +59,17 @@ TAKEN = {
 BESIDE = {
     "animate": ["-o", "OUT.gif", "--time", "0.2"],
     "codegen": ["-o", "OUT"],
+    "export": ["-o", "OUT.urdf"],
+    "identify": ["--data", "OUT.csv"],
     "play": ["-o", "OUT.html", "--time", "0.2"],
     "report": ["-o", "OUT.html", "--time", "0.2", "--without", "figure,plots,motion,downloads"],
     "simulate": ["--time", "0.2", "--target", "numpy"],
+    "sweep": ["--over", "m=1,2", "--ask", "max(theta)", "--time", "0.2"],
+    "verify": ["T = m*l^2*theta'^2/6"],
 }
-STILL = ("new", "schema", "doctor", "examples")
-"""verbs that compute nothing of a model"""
+"""what else a verb needs"""
+STILL = ("new", "schema", "doctor", "examples", "import")
+"""verbs that compute nothing of a model; import makes one"""
 
 
 def paths() -> list[tuple[str, str]]:
@@ -94,6 +99,9 @@ def table() -> str:
 def pendulum(tmp_path: Path) -> Path:
     path = tmp_path / "pendulum.toml"
     path.write_text(PENDULUM)
+    rows = ["t,theta,theta',theta''"]
+    rows += [f"{t},{math.sin(t)},{math.cos(t)},{-math.sin(t)}" for t in (k / 10 for k in range(20))]
+    (tmp_path / "out.csv").write_text("\n".join(rows))
     return path
 
 
@@ -108,6 +116,7 @@ def test_what_is_typed_is_in_the_unit_of_the_file_or_in_its_own_and_what_was_tak
         if expected is None:
             assert result.exit_code == 2, typed
             continue
+        assert result.exit_code == 0, result.output
         name, value, unit = expected
         told = json.loads(result.stdout)["taken"][name]
         assert told["value"] == pytest.approx(value, rel=1e-12)

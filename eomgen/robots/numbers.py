@@ -5,11 +5,11 @@ from __future__ import annotations
 import sys
 from collections.abc import Iterable, Sequence
 from decimal import Context, Decimal, localcontext
-from fractions import Fraction
 from typing import Any
 
 import mpmath
 
+from eomgen.symbolic.expression.rational import Fraction
 from eomgen.symbolic.expression.spatial import IDENTITY, product, rotation, transposed
 from eomgen.symbolic.numeric.tolerances import ROUNDED_AWAY, SAME_TURN
 

@@ -191,8 +191,11 @@ VERBS = [
     ("simulate", "double_pendulum.toml"),
     ("animate", "double_pendulum.toml", "-o", "DIR/motion.gif"),
     ("codegen", "double_pendulum.toml", "-o", "DIR"),
+    ("export", "double_pendulum.toml", "-o", "DIR/robot.urdf"),
+    ("identify", "double_pendulum.toml", "--data", "DIR/motion.csv"),
     ("play", "double_pendulum.toml", "-o", "DIR/page.html"),
     ("report", "double_pendulum.toml", "-o", "DIR/report.html"),
+    ("verify", "double_pendulum.toml", "T = 0"),
 ]
 
 
@@ -200,6 +203,7 @@ VERBS = [
 def test_every_verb_ends_when_patience_does(words, tmp_path):
     """Exit 3, and a sentence in place of a result."""
     verb, model, *more = words
+    (tmp_path / "motion.csv").write_text("t,theta1,theta2,theta1',theta2',theta1'',theta2''\n0,0,0,0,0,0,0\n")
     more = [each.replace("DIR", str(tmp_path)) for each in more]
     found = CliRunner().invoke(main, [verb, str(MODELS / model), *more, "--patience", "1e-6"])
     assert found.exit_code == 3 and "given up after 1e-06 s" in found.output and "--patience none" in found.output
