@@ -20,6 +20,7 @@ from eomgen.cli_options import (
     PLOT,
     folder,
     form_asked,
+    refuse_beside,
     with_form,
     with_picture,
     with_values,
@@ -500,6 +501,7 @@ def sweep_command(where: str, wants_json: bool, output: str | None, strict: bool
     replay, samples = options.pop("replay"), options.pop("samples")
     shown = {name: options.pop(name) for name in ("plot", "view", "units", "certify")}
     if replay is not None:
+        refuse_beside("--replay", ("replay", "where", "output", "samples", "wants_json", "strict", "certify"))
         return deliver(replay_document(where, replay, output=output, samples=samples), form, strict=strict)
     if Path(where).is_dir():
         raise click.UsageError(f"'{where}' is a folder: give a model, or --replay RUN")

@@ -6,6 +6,7 @@ from collections.abc import Callable
 from pathlib import Path
 
 import click
+from click.core import ParameterSource
 
 OTHERS = (".html", ".htm", ".pdf", ".docx", ".doc", ".odt", ".png", ".svg", ".csv", ".npz", ".xlsx", ".ipynb", ".toml")
 """endings of files of other kinds: no text goes under their name, whatever --format says"""
@@ -44,6 +45,19 @@ def folder(context: click.Context, option: click.Parameter, path: str | None) ->
 def words(context: click.Context, option: click.Parameter, text: str | None) -> tuple[str, ...]:
     """The words of a list with commas."""
     return tuple(word.strip() for word in (text or "").split(",") if word.strip())
+
+
+def refuse_beside(option: str, heeded: tuple[str, ...]) -> None:
+    """Refuses what was typed beside an option and would not be heeded.
+
+    Raises:
+        UsageError: something was; all of it is named.
+    """
+    context, by_hand = click.get_current_context(), ParameterSource.COMMANDLINE
+    typed = [each for each in context.command.params if context.get_parameter_source(each.name or "") is by_hand]
+    idle = [each.opts[-1] for each in typed if each.name not in heeded]
+    if idle:
+        raise click.UsageError(f"{option} takes no {', '.join(idle)}: leave that out")
 
 
 MODEL = click.argument("model", type=click.Path(exists=True, dir_okay=False, allow_dash=True))

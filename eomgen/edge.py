@@ -103,7 +103,9 @@ def _outcome(verb: Callable[[], int], words: Sequence[str]) -> tuple[int, tuple[
     except (Placed, EomgenError) as error:
         found = error.problems if isinstance(error, Placed) else problems_of(error)
         code = error.exit_code
-    except (click.Abort, KeyboardInterrupt):
+    except (click.Abort, KeyboardInterrupt) as error:
+        if isinstance(error.__cause__, EOFError):  # click takes a file that ends too early for somebody's Ctrl-D
+            return _internal(error.__cause__, words)
         code, found = INTERRUPTED, (Problem("", "interrupted, nothing is kept"),)
     except ReaderGone:
         raise

@@ -282,6 +282,18 @@ def test_ctrl_c_is_quiet(monkeypatch):
     assert "Traceback" not in result.stderr
 
 
+def test_a_file_that_ends_too_early_is_nobody_who_interrupts(monkeypatch):
+    """EOFError out of a library: exit code 70, and what it was."""
+
+    def ended(*_, **__):
+        raise EOFError("marshal data too short")
+
+    monkeypatch.setattr(pipeline, "derive", ended)
+    result = run("derive", PENDULUM)
+    assert result.exit_code == 70
+    assert "internal error: EOFError: marshal data too short" in result.stderr and "interrupted" not in result.stderr
+
+
 def test_a_reader_that_went_away_is_no_error_message():
     """`eomgen schema | head -1` prints one line and nothing on stderr."""
     command = f"{sys.executable} -m eomgen schema | head -c 1"

@@ -358,6 +358,8 @@ def test_a_folder_resumes_its_own_plan_alone_and_replays_bit_for_bit(spring, tmp
     changed = CliRunner().invoke(main, ["sweep", "--replay", "2", folder])
     assert changed.exit_code == 3 and "differs from the table in last(x)" in changed.output
     assert CliRunner().invoke(main, ["sweep", "--replay", "9", folder]).exit_code == 2
+    valued = CliRunner().invoke(main, ["sweep", "--replay", "2", folder, "--set", "m=5", "--time", "3"])
+    assert valued.exit_code == 2 and "--replay takes no --time, --set" in valued.output
 
 
 def test_names_that_sqlite_takes_for_one_are_two_columns(spring, tmp_path):
