@@ -77,6 +77,7 @@ def forked(
 
 def _be_child(words: Sequence[str], before: Callable[[], object], streams: dict[int, str], closed, encoding) -> None:
     code = 99
+    sys.dont_write_bytecode = True  # a limit of the file size would leave half of a module's code for everybody
     try:
         signal.alarm(LONGEST)
         signal.signal(signal.SIGINT, signal.default_int_handler)
