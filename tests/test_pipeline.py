@@ -72,7 +72,8 @@ def test_inputs_are_replaced_by_expressions_numbers_and_samples():
     "inputs, error, words",
     [
         ({"tua": 1}, UsageError, "no input 'tua'"),
-        ({"tau": lambda t: t}, UsageError, "Python function"),
+        ({"tau": lambda t: t}, UsageError, r"Python function of \(t\), and is called with \(t, x\)"),
+        ({"tau": {"value": lambda t, q, u: t, "every": 0.1}}, UsageError, r"Python function of \(t, q, u\)"),
         ({"tau": "2*x"}, ModelError, "unknown name 'x'"),
     ],
 )

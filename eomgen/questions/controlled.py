@@ -7,6 +7,7 @@ every evaluation: scipy steps, and no step is compiled.
 
 from __future__ import annotations
 
+import inspect
 import math
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
@@ -71,7 +72,8 @@ def controllers_of(model: Model, inputs: Mapping[str, Any]) -> dict[str, Control
     """Those among the inputs: functions, and tables {"value": law, "every": seconds}.
 
     Raises:
-        UsageError: no input of that name; a table with other keys; a time that makes no sense.
+        UsageError: no input of that name; a table with other keys; a time that makes no sense; a function of other
+            arguments.
     """
     found: dict[str, Controller] = {}
     for name, value in inputs.items():
@@ -81,6 +83,7 @@ def controllers_of(model: Model, inputs: Mapping[str, Any]) -> dict[str, Control
         if name not in model.inputs:
             raise UsageError(f"there is no input '{name}'", mend=nearest(name, model.inputs))
         if not held:
+            _refuse_other_arguments(name, value)
             found[name] = Controller(value, None)
             continue
         if set(value) != {"value", "every"}:
@@ -88,8 +91,23 @@ def controllers_of(model: Model, inputs: Mapping[str, Any]) -> dict[str, Control
         every, law = float(value["every"]), value["value"]
         if not 0 < every < math.inf:
             raise UsageError(f"input '{name}': every {every:g} s makes no sense", mend="give a time above 0")
+        if callable(law):
+            _refuse_other_arguments(name, law)
         found[name] = Controller(law if callable(law) else law_of(model, law) or as_expression(law), every)
     return found
+
+
+def _refuse_other_arguments(name: str, law: Callable[..., Any]) -> None:
+    """Before the run, where Python can tell what a function takes."""
+    try:
+        takes = inspect.signature(law)
+    except (TypeError, ValueError):
+        return
+    try:
+        takes.bind(0.0, np.zeros(0))
+    except TypeError:
+        what = f"input '{name}' is given by a Python function of {takes}, and is called with (t, x)"
+        raise UsageError(what, mend="a function of the time and the state x = (q, u)") from None
 
 
 def with_controlled(model: Model, names: Sequence[str]) -> Model:
