@@ -272,7 +272,23 @@ UNITS: dict[str, dict[str, str]] = {
     },
     "s1_rotating_frame": dict.fromkeys(ANSWERS["s1_rotating_frame"], ""),
 }
-"""The units in which the answers come."""
+"""The units that the files declare; "": none."""
+
+INFERRED: dict[str, dict[str, str]] = {
+    "s1_rotating_frame": {
+        "x": "m",
+        "y": "m",
+        "F_coriolis_x": "N",
+        "F_coriolis_y": "N",
+        "F_centrifugal_x": "N",
+        "F_centrifugal_y": "N",
+        "euler_term_x": "N",
+        "euler_term_y": "N",
+        "x_dd": "m/s^2",
+        "y_dd": "m/s^2",
+    }
+}
+"""The units of the outputs without one, by what they are."""
 
 PRINTED: dict[str, dict[str, str]] = {
     "ch9_p1": {"v": "27", "a": "18", "omega_rod": "0", "omega_wheel": "0.54"},

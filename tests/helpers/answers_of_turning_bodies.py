@@ -63,3 +63,23 @@ UNITS = {
     "s1_dominant_spin": {"omega1_d": "rad/s^2", "frequency_squared": "rad^2/s^2"},
     "s1_lagrange_top": {"omega3": "rad/s", "energy": "J"},
 }
+"""That the files declare."""
+
+INFERRED = {
+    "s1_euler": {"omega1_d": "1/s^2", "omega2_d": "1/s^2", "omega3_d": "1/s^2"},
+    "s1_torque_free": {
+        "L_squared": "kg^2*m^4/s^2",
+        "T": "J",
+        "L_squared_case": "kg^2*m^4/s^2",
+        "L_x_at_5s": "kg*m^2/s",
+        "L_z_at_5s": "kg*m^2/s",
+    },
+    "s1_symmetric_top": {"omega1": "1/s", "omega2": "1/s", "omega3": "1/s"},
+    "s1_lagrange_top": {
+        "p_phi": "kg*m^2/s",
+        "p_psi": "kg*m^2/s",
+        "theta_dd": "1/s^2",
+        "p_psi_later": "kg*m^2/s",
+    },
+}
+"""Of every other output: that of its quantity, an angle being a number."""

@@ -13,6 +13,7 @@ import pytest
 from answers_of_chapters_11_13_21 import ANSWERS, AS_PRINTED
 from derivations import MODELS
 from oracle_of_chapters_11_13_21 import ORACLES
+from other_units import grown
 
 import eomgen
 from eomgen.symbolic.expression.expressions import as_expression, parse
@@ -29,7 +30,16 @@ UNITS = (  # (system and output, as a pattern): the unit that is asked for
     (r"ch13_p\d M\d", "kg"),
     (r"ch13_p[13] J_O", "kg*cm^2"),
     (r"ch13_p[24] J_\w+", "kg*m^2"),
+    # by what they are, where the file asks for none
+    (r"ch11_p\d omega2_over_omega1", ""),
+    (r"ch13_b\d J_\w+", "kg*m^2"),
+    (r"ch21_p\d ([VH]_[A-E]|[NR]\d\w*)", "N"),
+    (r"ch21_p\d M_[A-E]", "N*m"),
+    (r"s1_\w+ I[ck]?_\w+", "kg*m^2"),
+    (r"s1_particles L_[xyz]", "kg*m^2/s"),
+    (r"s1_particles T", "J"),
 )
+BOOKS = {"p": "N/m", "P": "N", "a": "m"}  # units of what chapter 21 leaves in letters
 
 
 @cache
@@ -110,8 +120,22 @@ def test_an_exact_answer_is_as_short_as_the_books(system, output):
 
 @pytest.mark.parametrize(("system", "output"), ASKED)
 def test_an_answer_is_in_the_unit_that_is_asked_for(system, output):
-    expected = next((unit for pattern, unit in UNITS if re.fullmatch(pattern, f"{system} {output}")), "")
+    """Each output has one: declared, or that of its quantity."""
+    (expected,) = (unit for pattern, unit in UNITS if re.fullmatch(pattern, f"{system} {output}"))
     assert answers(system)[output].unit == expected
+
+
+@pytest.mark.parametrize("system", [system for system in ANSWERS if not system.startswith("ch11")])
+def test_the_oracles_numbers_grow_as_their_units_say(system):
+    """kg, m and s replaced by others: a moment of inertia grows as kg m^2. Chapter 11 has no parameters."""
+    parameters, numbers = model_of(system).parameters, numbers_of(system)
+    units = {name: BOOKS[name] if part.unit is None else part.unit.text for name, part in parameters.items()}
+    known = found_by_the_oracle(system, False)
+    found = ORACLES[system]({name: float(x * grown(units[name])) for name, x in numbers.items()})
+    for output, answer in answers(system).items():
+        if output in known:
+            expected = known[output] * float(grown(answer.unit))
+            assert found[output] == pytest.approx(expected, rel=1e-9, abs=1e-9), output
 
 
 @pytest.mark.parametrize("system", ANSWERS)

@@ -9,9 +9,10 @@ from typing import Any
 
 import mpmath
 import pytest
-from answers_of_chapters_9_10 import ANSWERS, BOOK_SURDS, PRINTED, UNITS
+from answers_of_chapters_9_10 import ANSWERS, BOOK_SURDS, INFERRED, PRINTED, UNITS
 from derivations import MODELS
 from oracle_of_chapters_9_10 import DIGITS, ORACLES, OTHER, STATEMENT
+from other_units import grown
 
 import eomgen
 from eomgen.model.values import numeric_parameters, start_values
@@ -26,6 +27,7 @@ SETS = ("statement", "other")
 FIFTY = fifty_digits()
 STATE = {"x": "0.23", "y": "-0.41", "x'": "0.37", "y'": "-0.19", "xi": "0.53", "eta": "0.29"}
 """A state, for the outputs that are functions of it."""
+UNITS_OF_STATE = {"x": "m", "y": "m", "x'": "m/s", "y'": "m/s", "xi": "m", "eta": "m"}
 
 
 @cache
@@ -124,7 +126,17 @@ def test_the_number_is_the_one_of_the_positions(system, output, numbers):
     expected = in_unit(system, output, value_of(ANSWERS[system][output], state))
     assert answer.value is not None, answer.message
     assert answer.value == pytest.approx(float(expected), rel=1e-12, abs=1e-12)
-    assert answer.unit == UNITS[system][output]
+    assert answer.unit == (UNITS[system][output] or INFERRED[system][output])
+
+
+@pytest.mark.parametrize(("system", "output"), [(system, output) for system in INFERRED for output in INFERRED[system]])
+def test_the_answer_by_hand_grows_as_the_unit_of_its_quantity(system, output):
+    """kg, m and s replaced by others: a force grows as kg m/s^2."""
+    units = {name: part.unit.text for name, part in model_of(system).parameters.items()} | UNITS_OF_STATE
+    state = state_of(system, "statement")
+    other = {name: x * FIFTY.number(grown(units[name])) for name, x in state.items()}
+    known, found = value_of(ANSWERS[system][output], state), value_of(ANSWERS[system][output], other)
+    assert known and close(found, known * FIFTY.number(grown(answers(system)[output].unit)))
 
 
 @pytest.mark.parametrize(("system", "output"), BOOK_SURDS)

@@ -9,9 +9,10 @@ from random import Random
 from typing import Any
 
 import pytest
-from answers_of_turning_bodies import ANSWERS, UNITS
+from answers_of_turning_bodies import ANSWERS, INFERRED, UNITS
 from derivations import MODELS
 from oracle_of_turning_bodies import ORACLES
+from other_units import grown
 
 import eomgen
 from eomgen.symbolic.expression.expressions import as_expression, parse
@@ -23,6 +24,7 @@ pytestmark = pytest.mark.slow
 ASKED = [(system, output) for system in ANSWERS for output in ANSWERS[system]]
 BY_HAND = [(system, output) for system, output in ASKED if ANSWERS[system][output] is not None]
 MOVING = ("w1", "w2", "w3", "phi", "theta", "psi", "phi'", "theta'", "psi'")
+ALL_UNITS = {system: UNITS.get(system, {}) | INFERRED.get(system, {}) for system in ANSWERS}
 
 
 @cache
@@ -62,7 +64,33 @@ def test_the_number_is_the_oracles(system, output, other):
     answer, expected = answers(system, other)[output], found_by_the_oracle(system, other)[output]
     assert answer.value is not None, answer.message
     assert answer.value == pytest.approx(expected, rel=1e-7, abs=1e-8)
-    assert answer.unit == UNITS.get(system, {}).get(output, "")
+    assert answer.unit == ALL_UNITS[system][output]
+
+
+@pytest.mark.parametrize("system", ANSWERS)
+def test_each_output_has_a_unit_declared_or_of_its_quantity(system):
+    """One of the two, and the files declare what is said here."""
+    declared = {name: part.unit.text for name, part in model_of(system).outputs.items() if part.unit is not None}
+    assert declared == UNITS.get(system, {})
+    assert not declared.keys() & INFERRED.get(system, {}).keys()
+    assert ALL_UNITS[system].keys() == ANSWERS[system].keys()
+
+
+@pytest.mark.parametrize(("system", "output"), BY_HAND)
+def test_the_answer_by_hand_grows_as_its_unit_says(system, output):
+    """kg, m and s replaced by others: p_phi grows as kg m^2/s."""
+    rng, digits, graph = Random(system), fifty_digits(), Graph()
+    units = {name: part.unit.text for name, part in model_of(system).parameters.items()}
+    units |= {name: "1/s" if name.startswith("w") or name.endswith("'") else "" for name in MOVING}
+    symbols = {name: graph.symbol(name) for name in units}
+    state = {name: Fraction(rng.randint(20, 90), 30) for name in units}
+    scalar = parse(ANSWERS[system][output], references=True).evaluate(symbols | {"pi": graph.pi})
+    known, found = (
+        evaluate((scalar,), {symbols[name]: digits.number(x) for name, x in values.items()}, digits)[0]
+        for values in (state, {name: x * grown(units[name]) for name, x in state.items()})
+    )
+    expected = known * digits.number(grown(answers(system)[output].unit))
+    assert known and abs(found - expected) <= 1e-30 * abs(expected)
 
 
 @pytest.mark.parametrize(("system", "output"), BY_HAND)
