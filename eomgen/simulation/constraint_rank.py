@@ -152,7 +152,10 @@ class RankLookout:
 
     def step(self, t_old: float, t_new: float, x_new: np.ndarray, dense: Callable[[], Any]) -> Crossing | None:
         """Where the nearness falls below what is near in a step that ends in x_new."""
+        known = self.nearness.lengths, self.nearness.largest
         before, self.before = self.before, self.nearness.at(t_new, x_new)
+        if np.any(self.nearness.lengths > known[0]) or np.any(self.nearness.largest > known[1]):
+            before = self.nearness.at(t_old, dense()(t_old))  # against what has grown: else it would seem to stay
         if self.armed and self._is_calm(before, t_new - t_old):
             return None
         motion = dense()

@@ -525,22 +525,24 @@ static int stays_up(struct march *m, size_t j, const double *times, int keep)
     return 1;
 }
 
-/* how far the end of a step is from a singular position, as `Nearness` */
-static double nearness(struct march *m)
+/* how far a state is from a singular position, as `Nearness`; `grew` is set where it is farther than any before */
+static double nearness(struct march *m, double t, const double *x, int *grew)
 {
     double least = 1, *values = m->work, found;
     if (m->n_determinants)
-        CALL(&m->determinants, m->t, m->x, values);
+        CALL(&m->determinants, t, x, values);
     for (size_t i = 0; i <= m->n_determinants; i++) {
         if (i < m->n_determinants)
             found = fabs(values[i]) >= 0 ? fabs(values[i]) : 0;
         else if (m->n_rows) {
             double longest = 0;
-            CALL(&m->ties, m->t, m->x, values);
+            CALL(&m->ties, t, x, values);
             for (size_t j = 0; j < m->n_rows*m->n_columns; j++)
                 values[j] = isfinite(values[j]) ? values[j] : 0;
             for (size_t j = 0; j < m->n_rows; j++) {
-                m->lengths[j] = fmax(m->lengths[j], length(m->n_columns, values + j*m->n_columns));
+                double own = length(m->n_columns, values + j*m->n_columns);
+                *grew |= own > m->lengths[j];
+                m->lengths[j] = fmax(m->lengths[j], own);
                 longest = fmax(longest, m->lengths[j]);
             }
             for (size_t j = 0; j < m->n_rows; j++)
@@ -549,16 +551,22 @@ static double nearness(struct march *m)
             found = singular_value(m->n_rows, m->n_columns, values, m->rank);
         } else
             continue;
+        *grew |= found > m->sizes[i];
         m->sizes[i] = fmax(m->sizes[i], found);
         least = fmin(least, m->sizes[i] > 0 ? found/m->sizes[i] : found);
     }
     return least;
 }
 
-/* whether the last step cannot have come near a singular position, as `RankLookout`; only then its memory is changed */
+/* whether the last step cannot have come near a singular position, as `RankLookout`; only then its memory
+   of slopes is changed. What was measured before is measured anew against what has grown: else it would seem to stay */
 static int is_far(struct march *m)
 {
-    double here = nearness(m), slope = fabs(here - m->before)/(m->t - m->t_old), steepest = slope;
+    int grew = 0, again = 0;
+    double here = nearness(m, m->t, m->x, &grew), slope, steepest;
+    if (grew)
+        m->before = nearness(m, m->t_old, m->x_old, &again);
+    slope = steepest = fabs(here - m->before)/(m->t - m->t_old);
     size_t n = m->n_slopes < 4 ? m->n_slopes + 1 : 4;
     for (size_t i = n == m->n_slopes ? 1 : 0; i < m->n_slopes; i++)
         steepest = fmax(steepest, m->slopes[i]);

@@ -46,7 +46,7 @@ def generic_state(
     for spread in (*spreads, *SPREADS):
         found = closed(ties, state | _scattered(ties, q, spread, rng), movable(ties))
         if found is not None:
-            return _moving(ties, found)
+            return _moving(ties, _with_laws(ties, found))
     raise _open(ties, exact_parameters(ties.motion.scope.model))
 
 
@@ -54,7 +54,7 @@ def scattered_state(ties: Ties) -> State:
     """Values of every symbol: near the start, off any special position; the ties need not hold."""
     rng = Random(1)
     state, q = _still(ties, rng)
-    return state | _scattered(ties, q, SPREADS[0], rng)
+    return _with_laws(ties, state | _scattered(ties, q, SPREADS[0], rng))
 
 
 def _still(ties: Ties, rng: Random, *, shaken: bool = False) -> tuple[State, dict[str, float]]:
@@ -82,6 +82,12 @@ def _scattered(ties: Ties, q: Mapping[str, float], spread: float, rng: Random) -
     shifted = {node: of_50_digits(q[node.name] + rng.uniform(-spread, spread)) for node in symbols.q}
     shifted |= on_unit_spheres(ties.motion.scope.quaternions, shifted)
     return shifted | {symbols.t: of_50_digits(rng.uniform(0, spread))}
+
+
+def _with_laws(ties: Ties, state: State) -> State:
+    """The state, with the given rates and accelerations that are names (`Scope.laws`)."""
+    laws = ties.motion.scope.laws
+    return state | dict(zip(laws, evaluate(tuple(laws.values()), state, fifty_digits()), strict=True))
 
 
 def on_unit_spheres(spheres: Sequence[Sequence[Node]], state: State) -> State:
