@@ -143,3 +143,12 @@ def test_a_long_sum_is_only_collected():
     assert printed(long).count("x''") == 1
     x = read("(a + b + c + k)^9*(M + m)^9")
     assert book_form(x, Work.PART) is x
+
+
+def test_a_formula_is_one_however_its_sum_was_written():
+    """8 e - 12 cos - 9 cos^3 = 8 e + 3 (3 sin^2 - 7) cos: of the two, with e = cos(pi/15), the shorter."""
+    wanted = "18*(8*cos(pi/15) - 12*cos(x) - 9*cos(x)^3)*sin(x)/(4 + 9*cos(x)^2)^2"
+    for given in (wanted, "18*(3*(3*sin(x)^2 - 7)*cos(x) + 8*cos(pi/15))*sin(x)/(4 + 9*cos(x)^2)^2"):
+        graph = Graph()
+        scalar = parse(given).evaluate({"x": graph.symbol("x"), "pi": graph.pi})
+        assert to_text(book_form(scalar)) == wanted

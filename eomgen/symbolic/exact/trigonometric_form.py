@@ -39,7 +39,7 @@ def shortest(waves: Waves) -> Sum:
     """
     if len(waves) > MOST_WAVES or (len(waves) == 1 and not _has_multiple(waves)):
         return _as_waves(waves)
-    return _shortest(tuple(waves.items()))
+    return _shortest(tuple(sorted(waves.items())))
 
 
 @lru_cache(maxsize=KEPT)
