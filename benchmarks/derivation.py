@@ -1,6 +1,6 @@
 """Derivation time and size of the result, side by side with sympy in one run.
 
-    python benchmarks/derivation.py [--quick] [-o benchmarks/results.md]
+    python benchmarks/derivation.py [--quick] [-o FILE.md]
 
 The clock of eomgen starts at the frozen Model; the time from text to Model stands beside it. Each of sympy's methods
 runs in a process of its own (benchmarks/peers.py), in the coordinates that suit it best, up to LIMIT seconds.
@@ -67,9 +67,9 @@ def best(work: Callable[[], Any], runs: int) -> tuple[float, Any]:
     """The shortest of several runs [s], and the last result."""
     shortest, result = float("inf"), None
     for _ in range(runs):
-        start = time.perf_counter()
+        start = time.process_time()
         result = work()
-        shortest = min(shortest, time.perf_counter() - start)
+        shortest = min(shortest, time.process_time() - start)
     return shortest, result
 
 

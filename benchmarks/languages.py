@@ -1,10 +1,10 @@
 """The right-hand side in every language beside C: nanoseconds a state and ratios, all in one run on one machine.
 
-    python benchmarks/languages.py [-o benchmarks/languages.md] [MODEL ...]
+    python benchmarks/languages.py [-o benchmarks/languages.md] [--only jax] [--states 1000000] [MODEL ...]
 
 A batch of states is given to each in its own way: a compiled loop, a process beside us (the pipe counts), vmap of JAX,
-map of CasADi. Compiling is apart. What is not installed is named. `apart`: the largest difference
-to C, of the largest value.
+map of CasADi. Compiling is apart. What is not installed is named, and the device that JAX takes. `apart`: the
+largest difference to C, of the largest value.
 """
 
 from __future__ import annotations
@@ -12,7 +12,7 @@ from __future__ import annotations
 import argparse
 import platform
 import time
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from pathlib import Path
 from typing import Any
 
@@ -61,17 +61,26 @@ def _loop(X, p, n):
 """
 
 
-def rows(model: str) -> list[tuple[str, float, float, str]]:
-    """(language, ns a state, its difference to C, what is to be said) of one model."""
+def device_of(name: str) -> str:
+    """What runs it, where that is not this machine's processor by itself."""
+    if name != "jax":
+        return ""
+    import jax as package
+
+    return f" on {package.devices()[0].platform} ({package.devices()[0].device_kind})"
+
+
+def rows(model: str, only: Sequence[str], states: int) -> list[tuple[str, float, float, str]]:
+    """(language, ns a state, its difference to C, what is to be said) of one model; C first, and those asked for."""
     equations = eomgen.derive(MODELS / f"{model}.toml")
     program, rhs = equations.program, equations.rhs("c")
     rng = np.random.default_rng(1)
     start = rhs.x0 if rhs.x0 is not None else np.zeros(len(program.states))
     p = rhs.p0 if rhs.p0 is not None else np.ones(len(rhs.parameters))
-    X, t = start + rng.uniform(-0.3, 0.3, (STATES, len(start))), np.zeros(STATES)
+    X, t = start + rng.uniform(-0.3, 0.3, (states, len(start))), np.zeros(states)
     right, found = rhs.many(t, X, p), []
     for target in sorted(ALL, key=lambda each: each.name != "c"):
-        if target.run is None or target.name == "fmu":
+        if target.run is None or target.name == "fmu" or (only and target.name not in ("c", *only)):
             continue
         try:
             begun = time.perf_counter()
@@ -82,7 +91,9 @@ def rows(model: str) -> list[tuple[str, float, float, str]]:
             found.append((target.name, np.nan, np.nan, error.what))
             continue
         apart = float(np.nanmax(np.abs(values - right)) / max(1.0, float(np.nanmax(np.abs(right)))))
-        found.append((target.name, _best(batch) / STATES * 1e9, apart, f"made in {making:.1f} s"))
+        found.append(
+            (target.name, _best(batch) / states * 1e9, apart, f"made in {making:.1f} s{device_of(target.name)}")
+        )
     return found
 
 
@@ -99,6 +110,8 @@ def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("models", nargs="*", default=SYSTEMS)
     parser.add_argument("-o", "--output")
+    parser.add_argument("--only", action="append", default=[], help="a language beside C; repeatable")
+    parser.add_argument("--states", type=int, default=STATES)
     asked = parser.parse_args()
     lines = [
         "# Every language beside C",
@@ -108,7 +121,7 @@ def main() -> None:
     ]
     for model in asked.models:
         lines += [f"## {model}", "", "| language | ns a state | times C | apart | |", "|---|---|---|---|---|"]
-        table = rows(model)
+        table = rows(model, asked.only, asked.states)
         c = table[0][1]
         for name, nanoseconds, apart, said in table:
             known = nanoseconds == nanoseconds

@@ -8,6 +8,7 @@
     eomgen.simulator(model)(time=10)          # the same as often as one likes: derived and compiled once
     eomgen.simulate_many(model, time=10, parameters={"m": [1, 2]})  # Runs: many of them at once
     eomgen.sweep(model, over={"k": [1, 2]}, ask="max(x)")  # Sweep: a row for each run, to_pandas(), plot()
+    eomgen.sensitivity(model, "frequency(1)", "k")        # Sensitivity: exact derivatives by parameters and starts
     eomgen.generate(model, ("c", "numpy"))    # Generated: texts, write(directory)
     eomgen.inverse_dynamics(model)            # InverseDynamics: the forces that given accelerations take, as code
     eomgen.solve(model)                       # {name: Answer} of the model's outputs: exact, value
@@ -19,6 +20,7 @@
     eomgen.scene_of(model)                    # Scene: what can be drawn at a state, as data over the parameters
     eomgen.report(model, "report.html")       # Report: a page, a paper (.pdf, .tex), text (.md), a notebook (.ipynb)
     eomgen.import_robot("robot.urdf")         # Model of a robot's file of another program
+    eomgen.from_sympy(system)                 # Model of a System, KanesMethod or LagrangesMethod of sympy
     eomgen.verify(model, "T = m*v^2/2")       # Verdict: is an equation of somebody right, up to what, and if not, why
     eomgen.regressor(model)                   # Regressor: tau = Y pi + y0, .parameters, .base: what motions tell apart
     eomgen.identify(model, data)              # Identified: parameters from measured motions, of bodies that can be
@@ -40,6 +42,7 @@ from eomgen.version import __version__ as __version__
 _HOMES = {
     "questions.answers": ("Answer", "solve"),
     "robots.importing": ("import_robot",),
+    "robots.sympy_mechanics": ("from_sympy",),
     "proof.check": ("Certificate", "Check"),
     "errors": (
         "DerivationError",
@@ -84,6 +87,7 @@ _HOMES = {
     "page.play": ("Played", "play"),
     "pipeline": ("derive", "inverse_dynamics", "simulate", "simulate_many", "simulator"),
     "questions.many_runs": ("Runs",),
+    "sensitivities.sensitivity": ("Sensitivity", "sensitivity"),
     "sweeps.sweep": ("Sweep", "sweep"),
     "questions.simulator": ("Simulator",),
     "documents.inertia.result": ("Inertia", "inertia"),

@@ -66,8 +66,11 @@ from eomgen.questions.many_runs import Runs as Runs
 from eomgen.questions.simulator import Simulator as Simulator
 from eomgen.questions.velocities import kinematics as kinematics
 from eomgen.robots.importing import import_robot as import_robot
+from eomgen.robots.sympy_mechanics import from_sympy as from_sympy
 from eomgen.scene.making import scene_of as scene_of
 from eomgen.scene.scene import Scene as Scene
+from eomgen.sensitivities.sensitivity import Sensitivity as Sensitivity
+from eomgen.sensitivities.sensitivity import sensitivity as sensitivity
 from eomgen.simulation.result import Trajectory as Trajectory
 from eomgen.sweeps.sweep import Sweep as Sweep
 from eomgen.sweeps.sweep import sweep as sweep

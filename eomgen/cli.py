@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any
 
 import click
 
-from eomgen.cli_common import Source, Verbs, deliver, deliver_several, reading
+from eomgen.cli_common import Delivery, Source, Verbs, deliver, deliver_several, delivery_of, reading
 from eomgen.cli_options import (
     CERTIFY,
     FOLLOW,
@@ -195,12 +195,51 @@ def check_command(
 @click.option("--units", is_flag=True, help="The unit of every name, equation, reaction and output too.")
 @click.option("--full", is_flag=True, help="Print everything, however long, with names for the long parts.")
 @click.option("--diff", metavar="OTHER", type=click.Path(exists=True, dir_okay=False), help="What differs from OTHER.")
+@click.option(
+    "--fresh",
+    is_flag=True,
+    envvar="EOMGEN_FRESH",
+    help="Derive anew what was proven before, and keep nothing.",
+)
 @CERTIFY
-def derive_command(**options: Any) -> int:
-    """Derive the equations of motion and certify them."""
+def derive_command(*, fresh: bool, **options: Any) -> int:
+    """Derive the equations of motion and certify them.
+
+    What was derived and proven before is told again, if its equations, derived anew, are the same.
+    """
+    if fresh or options["model"] == "-" or options["diff"] is not None or not options["certify"]:
+        return _write(_derived, **options)
+    return _kept_derivation(**options)
+
+
+def _derived(model: Model, **asked: Any) -> Document:
     from eomgen.verbs.derive import derive_document
 
-    return _write(derive_document, **options)
+    return derive_document(model, **asked)
+
+
+def _kept_derivation(
+    *, model: str, wants_json: bool, output: str | None, format_: str | None, strict: bool, **options: Any
+) -> int:
+    """The derivation as it was told before, else made, and kept where its proof holds."""
+    from eomgen.verbs.kept_derivation import kept_derivation
+
+    form = form_asked(wants_json, format_, output)
+    with reading(model) as source:
+        declared = source.model
+        if options["set_"] or options["start"]:
+            from eomgen.verbs.assignments import typed
+
+            declared = typed(source.model, options)[0].model
+        before = kept_derivation(source.data, source.name, declared, {**options, "form": form, "strict": strict})
+        if before is not None and (known := before.found()) is not None:
+            found = Delivery(*known)
+        else:
+            document = _asked(_derived, source, options)
+            found = delivery_of(document, form, strict=strict)
+            if before is not None and found.code == 0 and document.certificate is not None and document.certificate.ok:
+                before.keep(found.text, found.lines, found.code)
+    return found.deliver(output)
 
 
 @main.command("solve")
@@ -386,7 +425,8 @@ def verify_command(from_rest: tuple[str, ...], **options: Any) -> int:
     default="auto",
     show_default=True,
     metavar="NAME",
-    help="auto (DOP853, and Radau where it is stiff), DOP853, RK45, RK23; for stiff systems Radau, BDF, LSODA.",
+    help="auto (DOP853, and Radau where it is stiff), DOP853, taylor (power series), RK45, RK23; "
+    "for stiff systems Radau, BDF, LSODA; heyoka (extra).",
 )
 @click.option("--until", metavar="EQUATION", help='End where it first holds: "theta = pi/2", "reaction_n(A) = 0".')
 @click.option(
@@ -501,7 +541,8 @@ def sweep_command(where: str, wants_json: bool, output: str | None, strict: bool
     replay, samples = options.pop("replay"), options.pop("samples")
     shown = {name: options.pop(name) for name in ("plot", "view", "units", "certify")}
     if replay is not None:
-        refuse_beside("--replay", ("replay", "where", "output", "samples", "wants_json", "strict", "certify"))
+        heeded = ("replay", "where", "output", "samples", "wants_json", "strict", "certify", "patience")
+        refuse_beside("--replay", heeded)
         return deliver(replay_document(where, replay, output=output, samples=samples), form, strict=strict)
     if Path(where).is_dir():
         raise click.UsageError(f"'{where}' is a folder: give a model, or --replay RUN")
@@ -579,6 +620,7 @@ def animate_command(model: str, wants_json: bool, format_: str | None, output: s
 @with_values
 @click.option("--inverse", is_flag=True, help="Inverse dynamics too: the forces that given accelerations take.")
 @click.option("--jacobian", is_flag=True, help="The slopes of the right-hand side in x and inputs too.")
+@click.option("--regressor", is_flag=True, help="Y of tau = Y pi + y0 too, and the columns of the base parameters.")
 @click.option("--actuated", metavar="NAMES", help='Which coordinates, inputs or joints act: "q1,q2".  [default: all]')
 @click.option("--integrator", is_flag=True, help="In C too: an integrator, and a program that writes a motion as CSV.")
 @click.option("--float32", is_flag=True, help="The C in single precision; the tolerances of its tests are measured.")
@@ -600,6 +642,7 @@ def codegen_command(
     integrator: bool,
     float32: bool,
     jacobian: bool,
+    regressor: bool,
     actuated: str | None,
     follow: tuple[str, ...],
     baumgarte: tuple[float, float] | None,
@@ -631,6 +674,7 @@ def codegen_command(
             integrator=integrator,
             float32=float32,
             jacobian=jacobian,
+            regressor=regressor,
             actuated=names,
             baumgarte=baumgarte,
             certify=certify,

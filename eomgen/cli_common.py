@@ -11,7 +11,7 @@ import sys
 import threading
 from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -20,6 +20,7 @@ import click
 from eomgen import files
 from eomgen.edge import INTERRUPTED, Placed, failure, guarded, problems_of, say
 from eomgen.errors import EomgenError, UsageError
+from eomgen.records import dataclass
 from eomgen.symbolic.expression.habits import other_words
 from eomgen.symbolic.numeric.work import doing, patience
 from eomgen.version import SCHEMA_VERSION
@@ -32,11 +33,11 @@ ONE_THREAD = ("OPENBLAS_NUM_THREADS", "1")  # numpy's matrices are small here: i
 
 
 class Verb(click.Command):
-    """One verb; where it works on a model, only as long as a user waits."""
+    """One verb; where it works on a file, only as long as a user waits."""
 
     def __init__(self, *given: Any, **options: Any) -> None:
         super().__init__(*given, **options)
-        if any(each.name in ("model", "models") for each in self.params):
+        if any(isinstance(each, click.Argument) and isinstance(each.type, click.Path) for each in self.params):
             self.params.append(_patience_option())
 
     def invoke(self, ctx: click.Context) -> Any:
@@ -130,26 +131,49 @@ class Source:
         return replace(document, cautions=(*warned(model, self.data, self.name), *own))
 
 
-def deliver(
-    document: Document, form: str, output: str | None = None, *, on_stderr: bool = False, strict: bool = False
-) -> int:
-    """The result in its form to stdout, into a file or beside the messages, these to stderr; the exit code.
+@dataclass(frozen=True)
+class Delivery:
+    """What a verb tells.
+
+    Args:
+        text: its result in the form that was asked.
+        lines: what is said beside it, on stderr.
+        code: the exit code.
+    """
+
+    text: str
+    lines: tuple[str, ...]
+    code: int
+
+    def deliver(self, output: str | None = None, *, on_stderr: bool = False) -> int:
+        """The result to stdout, into a file or beside the messages, these to stderr; the exit code."""
+        if on_stderr:
+            sys.stderr.write(self.text)
+        else:
+            put(self.text, output)
+        for line in self.lines:
+            say(line)
+        return self.code
+
+
+def delivery_of(document: Document, form: str, *, strict: bool = False) -> Delivery:
+    """What is told of a document.
 
     Args:
         strict: warnings end in exit 1.
     """
     from eomgen.documents import rendered
 
-    result = rendered(document, form)
-    if on_stderr:
-        sys.stderr.write(result)
-    else:
-        put(result, output)
     taken = [f"taken: {each}" for each in document.taken]
-    for line in (*taken, *document.notes, *(f"warning: {each}" for each in document.warnings), document.wrong):
-        if line:
-            say(line)
-    return _code(document, strict)
+    lines = (*taken, *document.notes, *(f"warning: {each}" for each in document.warnings), document.wrong)
+    return Delivery(rendered(document, form), tuple(filter(None, lines)), _code(document, strict))
+
+
+def deliver(
+    document: Document, form: str, output: str | None = None, *, on_stderr: bool = False, strict: bool = False
+) -> int:
+    """The result in its form to stdout, into a file or beside the messages, these to stderr; the exit code."""
+    return delivery_of(document, form, strict=strict).deliver(output, on_stderr=on_stderr)
 
 
 def _code(document: Document, strict: bool) -> int:

@@ -106,7 +106,8 @@ def _outcome(verb: Callable[[], int], words: Sequence[str]) -> tuple[int, tuple[
     except (click.Abort, KeyboardInterrupt) as error:
         if isinstance(error.__cause__, EOFError):  # click takes a file that ends too early for somebody's Ctrl-D
             return _internal(error.__cause__, words)
-        code, found = INTERRUPTED, (Problem("", "interrupted, nothing is kept"),)
+        kept = str(error.__cause__ or error) or "nothing is kept"
+        code, found = INTERRUPTED, (Problem("", f"interrupted, {kept}"),)
     except ReaderGone:
         raise
     except MemoryError:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from functools import cached_property
 from typing import TYPE_CHECKING, Any
 
@@ -12,7 +12,7 @@ import numpy as np
 from eomgen.certificate import certify
 from eomgen.codegen.asked_outputs import AskedOutputs, outputs_of_state
 from eomgen.codegen.inverse import InverseDynamics
-from eomgen.codegen.matrices import slopes_of
+from eomgen.codegen.matrices import RateSlopes, slopes_of
 from eomgen.codegen.program import Program, right_hand_side
 from eomgen.codegen.reactions import ReactionFunction, determinate, reactions_program
 from eomgen.codegen.rhs import RightHandSide, compiled, parameter_vector
@@ -38,10 +38,10 @@ from eomgen.model.findings import nearest
 from eomgen.model.parts import Model
 from eomgen.proof.check import Certificate
 from eomgen.proof.printed import Printed
+from eomgen.records import dataclass
 from eomgen.symbolic.exact.normal_form import readable_all
 from eomgen.symbolic.expression.expressions import as_expression
 from eomgen.symbolic.expression.graph import Scalar
-from eomgen.symbolic.expression.node import ScalarRows
 from eomgen.symbolic.expression.traversal import operations
 from eomgen.symbolic.numeric.evaluation import FLOAT, evaluate
 from eomgen.symbolic.numeric.gc_pause import growing
@@ -156,12 +156,15 @@ class Equations(Result):
         x: Sequence[float] | None = None,
         p: Sequence[float] | None = None,
         inputs: Sequence[float] | None = None,
+        *,
+        single: bool = False,
     ) -> tuple[np.ndarray, np.ndarray]:
         """(A, B) of dx' = A dx + B dw beside any motion: the slopes of the right-hand side in x = (q, u) and inputs.
 
         Args:
             x, p: None: the model's start and values.
             inputs: None: the model's own.
+            single: nan where a change opens ties that follow from others: no acceleration then closes them all.
         Raises:
             MissingValues: parameters without values.
         """
@@ -172,13 +175,25 @@ class Equations(Result):
         nodes = (s.t, *s.parameters.values(), *s.q, *s.u)
         known: dict[Any, Any] = dict(zip(nodes, map(float, values), strict=True))
         own = evaluate(tuple(self.graph.inputs.values()), known, FLOAT) if inputs is None else inputs
-        return slopes_at(self._first_order, known | dict(zip(s.inputs.values(), own, strict=True)))
+        return slopes_at(self._first_order, known | dict(zip(s.inputs.values(), own, strict=True)), single=single)
 
     @cached_property
     def _first_order(self) -> FirstOrder:
         from eomgen.mechanics.small_motions.first_order import FirstOrder
 
         return FirstOrder(self.system, ())
+
+    def to_sympy_system(self) -> Any:
+        """A SymbolicSystem of sympy.physics.mechanics: q' by q and u, M and forcing; theta' is theta_dot(t).
+
+        Where ties close, their multipliers are the derivatives of further speeds, the impulses of the ties.
+
+        Raises:
+            DerivationError: friction that hangs on the reactions.
+        """
+        from eomgen.mechanics.equations.sympy_system import sympy_system
+
+        return sympy_system(self.graph)
 
     def subs(self, values: Mapping[Any, Any] | None = None, /, **more: Any) -> Substituted:
         """The matrices with some names replaced, all at once: equations.subs(m=2).M, equations.subs({"theta'": 0}).c.
@@ -257,8 +272,8 @@ class Equations(Result):
         return reactions_program(self.asked_outputs.values, self._explicit)[1]
 
     @cached_property
-    def slopes(self) -> dict[str, ScalarRows]:
-        """A = d x'/d x, B = d x'/d inputs as graph scalars.
+    def slopes(self) -> RateSlopes:
+        """A = d x'/d x, B = d x'/d inputs as graph scalars, and the systems behind the unknowns that they hold.
 
         Raises:
             DerivationError: the mass matrix is singular whatever the state.

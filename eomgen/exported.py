@@ -8,19 +8,19 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
-from dataclasses import dataclass
 from typing import Any
 from xml.sax.saxutils import quoteattr
 
 from eomgen.codegen.rhs import parameter_vector
-from eomgen.errors import DerivationError
+from eomgen.errors import DerivationError, visible
 from eomgen.mechanics.bodies.inertia import mass_properties
 from eomgen.mechanics.bodies.kinematics import GROUND, BodyLink
 from eomgen.mechanics.equations.system import System
 from eomgen.model.reader import ModelOrPath
 from eomgen.pipeline import derive
+from eomgen.records import dataclass
 from eomgen.robots.drawn_up import LeftOut
-from eomgen.symbolic.expression.derivative import depends_on, gradient, substituted, symbols_of
+from eomgen.symbolic.expression.derivative import depends_on, depends_on_any, gradient, substituted, symbols_of
 from eomgen.symbolic.expression.graph import Scalar
 from eomgen.symbolic.expression.spatial import Pose, minus
 from eomgen.symbolic.numeric.evaluation import FLOAT, evaluate
@@ -64,7 +64,7 @@ class _Writing:
 
     def exported(self) -> Exported:
         motion, model = self.system.motion, self.system.scope.model
-        lines = [f"<robot name={quoteattr(model.name)}>", '  <link name="world"/>']
+        lines = [f"<robot name={quoteattr(visible(model.name))}>", '  <link name="world"/>']
         for link in motion.links:
             lines += [*self._link(link), *self._joint(link)]
         lines += self._transmissions()
@@ -147,7 +147,7 @@ class _Writing:
                 "URDF has hinges, slides and free joints of a coordinate each", where, "take other joints"
             )
         (factor,) = self.numbers(gradient(link.s[0], (own[0],)), where)
-        uses = [each.name for each in self.system.motion.links if depends_on_any(each.s, own[0])]
+        uses = [each.name for each in self.system.motion.links if depends_on_any(each.s, own[:1])]
         if abs(abs(factor) - 1) > ROUNDING or len(uses) > 1:
             raise DerivationError(f"URDF has one joint for a coordinate: '{own[0].name}'", where, "give each its own")
         (w, v) = link.S[0]
@@ -193,7 +193,7 @@ class _Writing:
             efforts = () if link.joint is None else link.joint.efforts()
             if not any(effort is not None and effort.drive is not None for effort in efforts):
                 continue
-            own = [x for x in self.system.symbols.q if depends_on_any(link.s, x)]
+            own = [x for x in self.system.symbols.q if depends_on_any(link.s, (x,))]
             if len(own) == 1:
                 name = quoteattr(own[0].name)
                 lines.append(f"  <transmission name={name}><joint name={name}/></transmission>")
@@ -210,11 +210,6 @@ class _Writing:
         for what, names in (("forces", forces), ("constraints", ties)):
             if names:
                 self.left.setdefault(what, []).extend(names)
-
-
-def depends_on_any(scalars: Sequence[Scalar], symbol: Any) -> bool:
-    """Whether one of them depends on it."""
-    return any(depends_on(x, (symbol,)) for x in scalars)
 
 
 def _words(numbers: Sequence[float]) -> str:

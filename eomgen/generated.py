@@ -3,16 +3,18 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass, replace
-from functools import cached_property
+from dataclasses import replace
+from functools import cached_property, partial
 from pathlib import Path
+
+import numpy as np
 
 from eomgen import files, pipeline
 from eomgen.certificate import certify
 from eomgen.codegen.files import texts_of
-from eomgen.codegen.matrices import Blocks, matrices_of, program_of_blocks
+from eomgen.codegen.matrices import Blocks, entries_of, matrices_of, program_of_blocks
 from eomgen.codegen.names import identifier
-from eomgen.codegen.program import Program
+from eomgen.codegen.program import Program, Solve, program_of
 from eomgen.codegen.rhs import RightHandSide, target_named
 from eomgen.codegen.single_precision import single_error, single_text, single_vectors
 from eomgen.codegen.targets.base import (
@@ -21,6 +23,7 @@ from eomgen.codegen.targets.base import (
     MATRICES,
     OUTPUTS,
     REACTIONS,
+    REGRESSOR,
     RHS,
     Description,
     Emitted,
@@ -31,7 +34,8 @@ from eomgen.codegen.targets.base import (
 from eomgen.codegen.targets.c_integrator import integrator_files
 from eomgen.codegen.vectors import vectors
 from eomgen.equations import Equations
-from eomgen.errors import DerivationError, RunFailed, ToolMissing, UsageError
+from eomgen.errors import DerivationError, RunFailed, ToolMissing, UsageError, visible
+from eomgen.identification.regressor import Regressor, regressor_of
 from eomgen.mechanics.balance.named_reactions import named_reactions
 from eomgen.model.contacts import contacts_of
 from eomgen.model.parts import Model
@@ -41,6 +45,7 @@ from eomgen.proof.check import Certificate, Check, checked, unchecked
 from eomgen.proof.emitted_code import PhaseMotion
 from eomgen.proof.written_code import Judged, Written, start_state_tried
 from eomgen.questions.run import pulling
+from eomgen.records import dataclass
 from eomgen.simulation.configuration import paths_of
 from eomgen.symbolic.expression.graph import Scalar
 from eomgen.symbolic.numeric.tolerances import RUN, SINGLE
@@ -62,6 +67,7 @@ class Generated:
         integrator: whether the C has one of its own.
         float32: whether the C is in single precision.
         slopes: whether the slopes of the right-hand side are asked for.
+        linear: whether the regressor is asked for.
     """
 
     model: Model
@@ -73,6 +79,7 @@ class Generated:
     integrator: bool = False
     float32: bool = False
     slopes: bool = False
+    linear: bool = False
 
     @cached_property
     def motion(self) -> Emitted:
@@ -105,7 +112,7 @@ class Generated:
     @cached_property
     def emitted(self) -> tuple[Emitted, ...]:
         """Every function that is written, the right-hand side first."""
-        found = (self.motion, self.reactions, self.outputs, self.matrices, self.jacobian, self.inverse)
+        found = (self.motion, self.reactions, self.outputs, self.matrices, self.jacobian, self.inverse, self.regressor)
         return tuple(each for each in found if each is not None)
 
     @property
@@ -135,10 +142,42 @@ class Generated:
     @cached_property
     def jacobian(self) -> Emitted | None:
         """The slopes of the right-hand side, described; None where they are not asked for."""
-        return self._blocks(self.equations.slopes, JACOBIAN) if self.slopes else None
+        if not self.slopes:
+            return None
+        found = self.equations.slopes
+        program, told = self._blocks(found.blocks, JACOBIAN, found.motion, found.solves)
+        return program, replace(told, vectors=tuple(v for v in told.vectors if self._are_single(v)))
 
-    def _blocks(self, blocks: Blocks, role: Role) -> Emitted:
-        program = program_of_blocks(blocks, self.equations.graph)
+    @cached_property
+    def regressor(self) -> Emitted | None:
+        """The regressor and its base columns, described; None where it is not asked for.
+
+        Raises:
+            DerivationError: Coulomb friction of a contact.
+        """
+        if not self.linear:
+            return None
+        found, graph = self._regressor, self.equations.graph
+        blocks = found.blocks
+        program = program_of(entries_of(blocks), graph.symbols, inputs=graph.inputs, accelerations=graph.symbols.a)
+        sizes = tuple((name, len(rows), len(rows[0])) for name, rows in blocks.items())
+        columns = {"Y": found.parameters, "Y_base": tuple(group.formula for group in found.base.groups)}
+        told = replace(self.motion[1], vectors=self._answers(program), role=REGRESSOR, blocks=sizes)
+        return program, replace(told, columns=tuple(columns.get(name, ()) for name in blocks))
+
+    @cached_property
+    def _regressor(self) -> Regressor:
+        return regressor_of(self.equations.system)
+
+    def _are_single(self, v: TestVector) -> bool:
+        """Whether slopes have one value: where a change opens ties that follow from others, they hang on the pivots."""
+        if not self.equations.graph.J or any(y != y for y in v.result):
+            return True
+        found = self.equations.rhs_jacobian(v.t, v.x, v.p, v.inputs, single=True)
+        return all(np.isfinite(block).all() for block in found)
+
+    def _blocks(self, blocks: Blocks, role: Role, solve: Solve | None = None, further: Sequence[Solve] = ()) -> Emitted:
+        program = program_of_blocks(blocks, self.equations.graph, solve, further)
         sizes = tuple((name, len(rows), len(rows[0])) for name, rows in blocks.items())
         return program, replace(self.motion[1], vectors=self._answers(program), role=role, blocks=sizes)
 
@@ -160,7 +199,8 @@ class Generated:
     def _texts(self, emitted: Sequence[Emitted]) -> dict[str, FileContent]:
         texts = texts_of(self.stem, emitted, targets=self.targets, notes=self.notes)
         folder = "" if len(self.targets) == 1 else "c/"
-        return texts | {f"{folder}{name}": text for name, text in self._integrator.items()}
+        found = texts | {f"{folder}{name}": text for name, text in self._integrator.items()}
+        return {path: visible(text) if isinstance(text, str) else text for path, text in found.items()}
 
     @property
     def _integrator(self) -> dict[str, str]:
@@ -196,9 +236,15 @@ class Generated:
         judged[REACTIONS] = judged[RHS]
         for role, scalars in ((OUTPUTS, self.equations.asked_outputs.values), (MATRICES, self._matrix_entries)):
             judged[role] = Judged(PhaseMotion(self.equations.graph), scalars)
-        judged[JACOBIAN] = Judged(PhaseMotion(self.equations.graph), {}, slopes=self.equations.rhs_jacobian)
+        judged[JACOBIAN] = Judged(
+            PhaseMotion(self.equations.graph), {}, slopes=partial(self.equations.rhs_jacobian, single=True)
+        )
         if self.inverse is not None:
             judged[INVERSE] = Judged(PhaseMotion(plain.graph), {}, self.inverse[1].outputs)
+        if self.linear:
+            entries = {str(k): x for k, x in enumerate(entries_of(self._regressor.blocks))}
+            motion = PhaseMotion(self.equations.graph)
+            judged[REGRESSOR] = Judged(motion, entries, parameters=self._regressor.values)
         for target in self.targets:
             for emitted in self.emitted:
                 if target_named(target).writes(emitted[1].role):
@@ -267,6 +313,7 @@ def generate(
     origin: str | None = None,
     actuated: Sequence[str] | None = None,
     jacobian: bool = False,
+    regressor: bool = False,
     baumgarte: tuple[float, float] | None = None,
     integrator: bool = False,
     float32: bool = False,
@@ -280,6 +327,7 @@ def generate(
         name: of the functions and files.
         actuated: inverse dynamics too, of these coordinates, speeds, inputs or joints; () for all speeds.
         jacobian: the slopes of the right-hand side in x and inputs too.
+        regressor: Y and y0 of tau = Y pi + y0, and the columns of the base parameters, too.
         baumgarte: alpha and beta of closing rows that pull back what has opened [1/s]; None: they do not pull.
         integrator: an integrator of its own in C too, with a program that writes a motion as CSV.
         float32: the C in single precision; the tolerances of its tests are measured.
@@ -308,7 +356,7 @@ def generate(
     source = f"{origin} ({model.source})" if model.source else origin
     acting = None if actuated is None else tuple(actuated)
     return Generated(
-        model, equations, name, source, tuple(dict.fromkeys(targets)), acting, integrator, float32, jacobian
+        model, equations, name, source, tuple(dict.fromkeys(targets)), acting, integrator, float32, jacobian, regressor
     )
 
 

@@ -155,7 +155,8 @@ def simulate(
         rtol, atol: tolerances of the integration; ties are kept closed to a tenth of atol.
         target: of the emitted code: "numpy", "c", or None for the fastest there is.
         samples: how many instants are given, or the instants themselves.
-        method: "auto" is DOP853, and Radau where a motion is stiff; DOP853, RK45, RK23; Radau, BDF, LSODA.
+        method: "auto" is DOP853, and Radau where a motion is stiff; DOP853, RK45, RK23; Radau, BDF, LSODA; "taylor"
+            goes by power series of the equations, which kinks do not have.
         stabilization: what keeps ties closed: "projection", "baumgarte" or "none"; "energy" keeps the energy too.
         until: an equation such as "theta = 90 deg" or "reaction_n(wall) = 0": the end, where it first holds.
     Raises:

@@ -45,6 +45,11 @@ def printed(text: str) -> str:
             "4*R*theta'' + 9*R*cos(theta)^2*theta'' - 9*R*cos(theta)*sin(theta)*theta'^2",
             "R*(4 + 9*cos(theta)^2)*theta'' - 9*R*cos(theta)*sin(theta)*theta'^2",
         ),
+        ("r*l*sqrt(l^2 - r^2)/(l^2 - r^2)", "l*r/sqrt(l^2 - r^2)"),
+        (
+            "r^2*sqrt(2*l^2 - 2*r^2*sin(theta)^2)*cos(theta)*sin(theta)/(sqrt(2)*l^2 - sqrt(2)*r^2*sin(theta)^2)",
+            "r^2*cos(theta)*sin(theta)/sqrt(l^2 - r^2*sin(theta)^2)",
+        ),
         ("4*l^2*theta'' + 2*r^2*theta'' + 4*r*theta'*r'", "2*(2*l^2 + r^2)*theta'' + 4*r*r'*theta'"),
         ("-m1*g*sin(theta1) - 2*m2*g*sin(theta1)", "-(m1 + 2*m2)*g*sin(theta1)"),
         ("M*g + m*g - m*sin(alpha)*s''", "(M + m)*g - m*sin(alpha)*s''"),

@@ -8,6 +8,7 @@ import pytest
 from forked import needs_sh
 from hand_made import cart_pole, pendulum
 
+from eomgen import kept
 from eomgen.codegen import build, rhs
 from eomgen.codegen.program import right_hand_side
 from eomgen.codegen.rhs import compiled
@@ -19,7 +20,7 @@ needs_cc = pytest.mark.skipif(build.compiler() is None, reason="no C compiler")
 @pytest.fixture
 def own_cache(tmp_path, monkeypatch):
     """A cache folder of this test's own."""
-    monkeypatch.setattr(build.platformdirs, "user_cache_dir", lambda name: str(tmp_path / "cache" / name))
+    monkeypatch.setattr(kept.platformdirs, "user_cache_dir", lambda name: str(tmp_path / "cache" / name))
     return tmp_path / "cache" / "eomgen"
 
 
@@ -64,11 +65,11 @@ def test_what_others_have_put_into_the_cache_is_not_loaded(own_cache, monkeypatc
     if what == "may be written":
         path.chmod(0o777)
     elif what == "belongs to another":
-        monkeypatch.setattr(build, "_is_ours", lambda x: x != path or x.stat().st_mtime_ns != old)
+        monkeypatch.setattr(kept, "is_ours", lambda x: x != path or x.stat().st_mtime_ns != old)
     else:
         other = own_cache / f"{'0' * 32}-{path.name[33:]}"
         path.rename(other)
-        assert not build._is_whole(other)
+        assert kept.content_of(other) is None
     old = path.stat().st_mtime_ns if path.exists() else 0
     ran = []
     real = build._ran
@@ -83,9 +84,9 @@ def test_a_cache_that_others_may_write_is_closed_and_one_of_another_is_not_used(
     """0777 becomes 0700; where the folder is another's, one of this process is taken."""
     cached(own_cache, monkeypatch)
     own_cache.chmod(0o777)
-    assert build._cache() == own_cache and own_cache.stat().st_mode & 0o777 == 0o700
+    assert kept.cache_place() == own_cache and own_cache.stat().st_mode & 0o777 == 0o700
     monkeypatch.setattr(build.os, "getuid", lambda: own_cache.stat().st_uid + 1)
-    assert build._cache() != own_cache
+    assert kept.cache_place() != own_cache
 
 
 @needs_cc
@@ -110,7 +111,7 @@ def test_a_compiler_that_does_not_work_is_one_line(own_cache, tmp_path, monkeypa
 def test_a_cache_that_cannot_be_written_is_done_without(tmp_path, monkeypatch):
     """A file in the folder's place: the library goes to a folder of this process."""
     (tmp_path / "taken").write_text("")
-    monkeypatch.setattr(build.platformdirs, "user_cache_dir", lambda name: str(tmp_path / "taken" / name))
+    monkeypatch.setattr(kept.platformdirs, "user_cache_dir", lambda name: str(tmp_path / "taken" / name))
     assert compiled(right_hand_side(pendulum()), "c")(0, [0.0, 1.0], [1, 1, 1])[0] == 1
 
 

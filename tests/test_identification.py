@@ -107,26 +107,32 @@ QUICK = (
 EVERY = [path.stem for path in sorted(MODELS.glob("*.toml"))]
 
 
-def look_at(name: str) -> None:
+def look_at(name: str) -> Any:
     try:
         equations = eomgen.derive(MODELS / f"{name}.toml")
         graph = equations.graph
         if not graph.symbols.u:
-            return
+            return None
         found = regressor_of(equations.system)
     except EomgenError:
-        return
+        return None
     needed = [sum((m * a for m, a in zip(row, graph.symbols.a, strict=True)), start=c - Q)
               for row, c, Q in zip(graph.M, graph.c, graph.Q, strict=True)]  # fmt: skip
     needed = list(substituted(tuple(needed), dict.fromkeys(graph.symbols.inputs.values(), 0)))
     assert equal_at_random_states(list(zip(found.tau, needed, strict=True))).equal
     assert len(found.base) == rank_by_orthogonalization(found)
+    return found
 
 
 @pytest.mark.parametrize("name", QUICK)
 def test_regressor_times_parameters_is_the_force_and_its_base_has_the_rank_of_samples(name):
     """Y pi + y0 = M a + c - Q without inputs, exactly; as many groups as Y has independent columns."""
     look_at(name)
+
+
+def test_what_a_given_kinetic_energy_takes_is_known_or_linear():
+    """Water round a sphere: rho is linear in buoyancy and inertia at once; Y pi + y0 = M a + c - Q."""
+    assert "rho" in look_at("../docs/examples/kinetic").parameters
 
 
 @pytest.mark.slow

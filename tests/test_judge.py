@@ -9,13 +9,15 @@ import pytest
 import sympy
 from click.testing import CliRunner
 from hand_equations import MODELS, ByHand, named, right_of, wrong_of
+from human_errors import right_answers, wrong_answers
 
 import eomgen
 from eomgen.cli import main
 from eomgen.documents.latex import setter_of
 from eomgen.errors import ExpressionError, UsageError
+from eomgen.judge.alphabet import vocabulary
 from eomgen.judge.case import Case
-from eomgen.judge.handwriting import transcript, vocabulary
+from eomgen.judge.handwriting import transcript
 from eomgen.judge.judge import Judge
 from eomgen.symbolic.print.text import to_text
 
@@ -108,7 +110,7 @@ def test_what_is_wrong_is_wrong_and_mostly_named(name):
         ("simple_pendulum", "l*theta'' + g*sin(pi*theta/180) = 0", "unit", "degrees"),
         ("simple_pendulum", "T = m*l^2*theta'^2", "factor", "translation of bob"),
         ("simple_pendulum", "V = m*g*l*(1 + cos(theta))", "sign", "weight of bob"),
-        ("simple_pendulum", "frequency(1) = sqrt(g/l)/(2*pi)", "unit", "1/(2*pi) times"),
+        ("simple_pendulum", "frequency(1) = sqrt(g/l)/(2*pi)", "unit", "factor 1/(2*pi)"),
         ("simple_pendulum", "theta = cos(sqrt(g/l)*t)", "other", "do not hold with it"),
         ("double_pendulum", "Q(theta1) = -(m1 + m2)*g*l1*sin(theta1)", "wrong_point", "arm1.end"),
         ("double_pendulum", "R_arm1_y = (m1 + m2)*g", "missing_term", "in motion alone"),
@@ -272,3 +274,79 @@ def test_stdin_and_the_certificate():
 def test_another_kind_is_refused():
     with pytest.raises(UsageError, match="one of motion"):
         verdict("simple_pendulum", "T = 0", kind="poem")
+
+
+# -- what people write, and get wrong ---------------------------------------------------------------
+
+
+@pytest.mark.parametrize(
+    ("written", "text"),
+    [
+        ("theta_ddot = -g/l sinθ", "theta'' =  - g/l*sin(theta)"),
+        ("diff(theta, t, 2) = l*Derivative(theta(t), (t, 2))", "theta'' = l*theta''"),
+        (r"\tfrac12 m_1gl_{1}\ell", "((1)/(2))*m1*g*l1*l"),
+        (r"l_1l_2 = ⅙", "l1*l2 = (1/6)"),
+        ("2k_ta_1 = 3 kN", "2*kt*a1 = 3*(1000)"),
+        (r"\frac{d}{dt}\left(m r^2\dot\theta\right) = 0", "rate_of(m*r^(2)*theta') = 0"),
+        (r"\[ x(t) = r. \]", "x = r"),
+    ],
+)
+def test_papers_and_programs_are_read(written, text):
+    """Rates by other names, indices without braces, d/dt of a formula, units, the end of a sentence."""
+    names = [*(name for name in NAMES if name != "l0"), "l1", "l2", "kt", "a1"]
+    assert transcript(written, vocabulary(names, ["T", "x"], {})).text == text
+
+
+@pytest.mark.parametrize(
+    ("model", "equation", "more", "word"),
+    [
+        ("simple_pendulum", "0 = 0", {}, "says nothing"),
+        ("simple_pendulum", "theta' = theta'", {}, "says nothing"),
+        ("simple_pendulum", "T + V = T + V", {}, "says nothing"),
+        ("simple_pendulum", "l^2*theta''^2 = g^2*sin(theta)^2", {}, "opposite sign"),
+        ("simple_pendulum", "abs(l*theta'') = abs(g*sin(theta))", {}, "opposite sign"),
+        ("simple_pendulum", "V = -m*g*l*sqrt(1 - sin(theta)^2)", {}, ""),
+        ("simple_pendulum", "l*theta'' = -g*sqrt(1 - cos(theta)^2)", {}, ""),
+        ("simple_pendulum", "theta' = sqrt(2*g/l*(cos(theta) - cos(1)))", {}, ""),
+        ("simple_pendulum", "theta*(theta - 1) = 0", {}, "do not balance"),
+        ("simple_pendulum", "frequency(1) = sqrt(g)", {}, "values of the file alone"),
+        ("seeds/ch16_p2", "t = log(1 + k*v0*cos(alpha)/g)/k", {"at": "y' = 0"}, "values of the file alone"),
+        ("bead_on_turning_hoop", "cos(theta) = g/(R*omega)", {}, ""),
+    ],
+)
+def test_what_holds_only_here_and_there_is_wrong(model, equation, more, word):
+    """Identities, roots of one sign, squares, other solutions, equal angles of the file: none of it is accepted."""
+    found = verdict(model, equation, **more)
+    assert found.verdict == "wrong" and word in found.causes[0].text
+
+
+@pytest.mark.parametrize(
+    ("model", "equation", "up_to"),
+    [
+        ("simple_pendulum", "speed(bob.center) = l*theta'", "where l*theta' > 0"),
+        ("simple_pendulum", "theta' = -sqrt(2*g/l*(cos(theta) - cos(1)))", "from the start"),
+        ("simple_pendulum", "theta'' = -9.81*sin(theta)", "the values of the file"),
+        ("bead_on_turning_hoop", "theta = acos(g/(R*omega^2))", ""),
+        ("four_bar", "gamma' = a*sin(alpha - beta)/(c*sin(gamma - beta))*alpha'", ""),
+        ("atwood", "tension(string, 1) - tension(string, 2) = M/2*s''", "the balance of forces"),
+        ("beam_with_overhang", "reaction_y(B) = 38000/3", "the values of the file"),
+        ("elastic_pendulum", r"\frac{d}{dt}(m r^2 \dot\theta) = - m g r \sin\theta", ""),
+    ],
+)
+def test_what_holds_in_its_own_domain_is_right(model, equation, up_to):
+    """Sizes that the start decides, rest of what is driven, the balance of one body, d/dt of a momentum."""
+    found = verdict(model, equation)
+    assert found.verdict == "right" and up_to in found.up_to
+
+
+def test_mistakes_from_the_literature_are_wrong_and_mostly_named():
+    """In equations of motion and in answers: wrong, but for angles that are told to be another axis's; 3 in 4 named."""
+    some = random.Random(2).sample(wrong_answers(), 40)
+    found = [(x, x.verdict()) for x in some]
+    assert [x.text for x, each in found if each.verdict != "wrong" and not each.substitution] == []
+    assert sum(x.is_named(each) for x, each in found) >= 0.75 * len(some)
+
+
+def test_right_equations_of_papers_are_right():
+    some = random.Random(3).sample(right_answers(), 25)
+    assert [x.text for x in some if not x.verdict()] == []

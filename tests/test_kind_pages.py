@@ -24,7 +24,7 @@ pytestmark = pytest.mark.slow
 EVERY = list(kinds.kinds())
 NOT_DRAWN = {
     *("planar", "free", "placed"),  # nothing is there that could be drawn
-    *("equation", "generalized", "potential"),  # of coordinates
+    *("equation", "generalized", "kinetic", "potential"),  # of coordinates
     *("gear", "torsion_damper"),  # seen by its bodies
 }
 

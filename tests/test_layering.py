@@ -9,8 +9,10 @@ import pytest
 
 PACKAGE = Path(__file__).parent.parent / "eomgen"
 CHAIN = (
-    ("version", "errors"),
+    ("version", "records"),
+    ("errors",),
     ("files",),
+    ("kept",),
     ("symbolic",),
     ("model",),
     ("robots",),
@@ -24,6 +26,7 @@ CHAIN = (
     ("equations",),
     ("questions",),
     ("pipeline",),
+    ("sensitivities",),
     ("sweeps",),
     ("identification", "exported"),
     ("generated",),

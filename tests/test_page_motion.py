@@ -35,7 +35,7 @@ import { integrated } from "PLAYER/integrator.mjs";
 const rate = (t, x, dx) => { dx[0] = x[1]; dx[1] = -x[0]; };
 const found = [1e-4, 1e-6, 1e-8, 1e-10].map(rtol => {
     const run = integrated(rate, Float64Array.of(0, 1), 10, { rtol, atol: rtol });
-    const h = 10/run.steps.length, off = t => Math.abs(run.at(t)[0] - Math.sin(t));
+    const h = 10/run.steps, off = t => Math.abs(run.at(t)[0] - Math.sin(t));
     const between = run.t.slice(0, -1).map((t, k) => Math.max(...[0.3, 0.5, 0.8].map(s => {
         const whole = run.t[k + 1] - t, y = run.at(t), at = t + s*whole;
         return Math.abs(run.at(at)[0] - (y[0]*Math.cos(s*whole) + y[1]*Math.sin(s*whole)));

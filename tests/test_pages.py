@@ -158,7 +158,7 @@ def test_a_browser_shows_the_page_without_a_request_or_an_error(page, pendulum):
     """
     found = visited(page, script)
     assert found.requests == () and found.console == ()
-    assert found.found["formulas"] == page.count("<math") > 20
+    assert found.found["formulas"] >= page.count("<math") > 20  # and the signs that the player sets
     latex, text = found.found["copied"]
     assert latex.startswith(r"\[\begin{aligned}") and "arm2_y = 1/2*m2*" in text
     assert found.found["files"]["double_pendulum.csv"].startswith("t,theta1,theta2,theta1',theta2',energy")
@@ -179,7 +179,7 @@ def test_nothing_is_wider_than_a_telephone(name):
     assert width <= 360 and count > 0 and reachable
 
 
-@pytest.mark.parametrize(("name", "most"), [("double_pendulum", 400_000), ("heavy_top", 700_000)])
+@pytest.mark.parametrize(("name", "most"), [("double_pendulum", 340_000), ("heavy_top", 540_000), ("arm3", 660_000)])
 def test_a_page_is_small(name, most):
     """With its motion of 10 s, its letters and its files."""
     assert len(html_page(of(name))) <= most

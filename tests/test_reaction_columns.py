@@ -15,7 +15,7 @@ import pytest
 from moving import at
 
 import eomgen
-from eomgen.documents.plots import plot_trajectory
+from eomgen.documents.plots import over_time
 from eomgen.equations import Equations
 from eomgen.errors import DerivationError
 from eomgen.mechanics.balance.balance_solution import Indeterminate
@@ -295,6 +295,6 @@ def test_a_picture_shows_the_largest_reactions_only(tmp_path):
     """40 hinge components of a chain: those of 5 hinges, with a word; forces and couples in panels of their own."""
     for name, words, panels in (("chain20", "the largest, at 5 of 20 joints and ties", 1), ("arm3", "reactions [N", 2)):
         run = eomgen.simulate(eomgen.load(MODELS / f"{name}.toml"), time=0.2, samples=11)
-        plot_trajectory(run, tmp_path / f"{name}.svg")
+        over_time(run, "", {}).save(tmp_path / f"{name}.svg")
         text = (tmp_path / f"{name}.svg").read_text()  # beside the outlines of a text its words
         assert words in text and text.count("reactions [N") == panels, name

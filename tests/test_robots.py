@@ -220,6 +220,49 @@ MJCF = """<mujoco model="tester">
 </mujoco>"""
 
 
+TIED = """<mujoco><compiler angle="radian"/><default><default class="leg"><joint stiffness="2" springref="0.1"/>
+  <default class="knee"><joint axis="0 1 0" damping="0.3"/></default></default></default>
+  <worldbody><site name="wall" pos="0.3 0 1"/>
+    <body name="thigh" childclass="leg" pos="0.1 0 1"><joint name="hip" axis="1 0 0" pos="0 0 0.1"/>
+      <geom type="capsule" size="0.03 0.1"/><site name="hook" pos="0 0.1 0.2"/>
+      <body name="shin" pos="0 0 -0.2"><joint name="knee" class="knee"/><geom type="capsule" size="0.02 0.1"/></body>
+    </body>
+    <body name="slider" pos="1 0 0"><joint name="slide" type="slide" axis="1 0 0" pos="0.2 0 0"/>
+      <geom size="0.1"/></body>
+    <body name="other" pos="1 0 2"><joint name="lift" type="slide" axis="0 0 1"/><geom size="0.1"/></body>
+  </worldbody>
+  <tendon><spatial name="cable" stiffness="20" damping="0.5" springlength="0.2">
+      <site site="wall"/><site site="hook"/></spatial>
+    <spatial name="slack" stiffness="30" springlength="0.1 0.15"><site site="hook"/><site site="wall"/></spatial>
+    <spatial name="bent" stiffness="1"><site site="wall"/><site site="hook"/><site site="wall"/></spatial></tendon>
+  <equality><connect body1="slider" body2="other" anchor="0 0 0.5"/><connect body1="shin" anchor="0 0 -0.1"/></equality>
+</mujoco>"""
+
+
+@needs(".mujoco", what="mujoco")
+def test_ties_of_bodies_without_places_and_straight_tendons_mean_what_mujoco_computes(tmp_path):
+    """Points that ties alone ask for are those of their bodies, pivots beside them; T and Q with tendons between two
+    places, slack ones too; a bent tendon is listed."""
+    mujoco: Any = importlib.import_module("mujoco")
+    found = robot(tmp_path, TIED, "xml")
+    compiled = mujoco.MjModel.from_xml_string(TIED)
+    compiled.opt.disableflags = int(mujoco.mjtDisableBit.mjDSBL_CONSTRAINT)
+    compiled.tendon_stiffness[2] = 0
+    data, rng = mujoco.MjData(compiled), np.random.default_rng(5)
+    graph = eomgen.derive(found.model).graph
+    names = ["hip", "knee", "slide", "lift"]
+    for _ in range(3):
+        data.qpos[:], data.qvel[:] = rng.normal(size=4), rng.normal(size=4)
+        mujoco.mj_forward(compiled, data)
+        q, u = dict(zip(names, data.qpos, strict=True)), {f"{n}'": v for n, v in zip(names, data.qvel, strict=True)}
+        known = {x: (q | u)[x.name] for x in (*graph.symbols.q, *graph.symbols.u)} | {graph.symbols.t: 0.0}
+        known |= {x: 9.81 for x in graph.symbols.parameters.values()}
+        Q = np.array(evaluate([y - x for x, y in zip(graph.c, graph.Q, strict=True)], known, FLOAT), dtype=float)
+        assert np.allclose(Q, data.qfrc_passive - data.qfrc_bias, atol=1e-10)
+    assert {"tie0", "tie1"} <= set(found.model.constraints) and found.model.bodies["slider"].points.keys() >= {"tie0"}
+    assert {each.what: each.where for each in found.left_out}["tendons through places"] == ("bent",)
+
+
 @needs(".mujoco", what="mujoco")
 def test_mjcf_means_what_mujoco_computes(tmp_path):
     """M, all forces at random states and controls, and the rows of ties, against MuJoCo; several joints in a body, off

@@ -18,9 +18,11 @@ import eomgen
 from eomgen.documents.letters import PageBox
 from eomgen.documents.letters_artist import NamesArtist
 from eomgen.documents.rest_picture import rest_picture
+from eomgen.documents.space_drawing import sight
 from eomgen.scene import forms, plane_strokes, space_strokes
 from eomgen.scene.instant import drawn_start, frame_at
-from eomgen.scene.scene import ROLES, Mark, Scene
+from eomgen.scene.scene import ROLES, Mark, Scene, plain_number
+from eomgen.scene.space_strokes import space_drawing
 from eomgen.scene.strokes import PictureSizes, SceneNumbers
 from eomgen.symbolic.numeric.evaluation import FLOAT, evaluate
 from eomgen.symbolic.print.declared_symbol import COMMANDS, SIGNS, parse_symbol
@@ -289,3 +291,39 @@ def test_a_scene_leaves_the_interpreter_as_it_was():
     """b"\\0" is zero: a number made of one character of text would have been written over it."""
     scene_named("double_pendulum")
     assert bytes([0])[0] == 0
+
+
+def test_a_ring_lies_in_the_plane_of_its_hinges_and_a_rotor_turns_about_its_axis():
+    """Gimbals have no lengths: of outer about x, inner about y, rotor about z the axes of the symbols are z, x, z."""
+    scene = eomgen.load(MODELS / "gimbal_gyroscope.toml").scene()
+    found = {
+        mark.of: (mark.form.symbol, [abs(float(plain_number(x))) for x in mark.form.along])
+        for mark in scene.marks_of_kind("symbol")
+        if not mark.form.symbol.endswith("pins")
+    }
+    assert found == {"outer": ("outer_ring", [0, 0, 1]), "inner": ("ring", [1, 0, 0]), "rotor": ("rotor", [0, 0, 1])}
+
+
+@pytest.mark.parametrize("gravity", [(0, 0, -1), (0, -2, 0), (0, 0, 3), (-1, 0, 0), (1, 2, 2)])
+def test_what_falls_in_space_falls_down_the_page(gravity):
+    """The view is a rotation that takes -g to the page's up, whatever axis that is."""
+    g = np.array(gravity, float)
+    up = -g / np.linalg.norm(g)
+    view = sight(up)
+    assert np.allclose(view @ view.T, np.eye(3)) and np.linalg.det(view) > 0
+    right, upright, _ = view @ up
+    assert abs(right) < 1e-12 and upright > 0.9
+    text = f"""eomgen = 1
+space = "space"
+[coordinates]
+x = 0
+[bodies.stone]
+shape = {{ kind = "sphere", mass = 1, radius = 0.1 }}
+joint = {{ kind = "prismatic", axis = [1, 2, 3], displacement = "x" }}
+[forces.weight]
+kind = "gravity"
+acceleration = {list(gravity)}
+"""
+    scene = eomgen.loads(text).scene()
+    numbers = SceneNumbers(scene, frame_at(scene, drawn_start(scene.system))[None, :])
+    assert np.allclose(space_drawing(numbers).sizes.up, up)

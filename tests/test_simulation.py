@@ -15,7 +15,7 @@ import eomgen
 from eomgen.codegen.program import program_of, right_hand_side
 from eomgen.codegen.rhs import compiled, parameter_vector
 from eomgen.documents.figures import mathtext
-from eomgen.documents.plots import plot_trajectory
+from eomgen.documents.plots import over_time
 from eomgen.errors import UsageError, WriteFailed
 from eomgen.mechanics.equations.stabilization import stabilized
 from eomgen.mechanics.formulations import recursive
@@ -404,15 +404,15 @@ def test_a_trajectory_shows_itself_in_a_notebook():
 def test_a_plot_has_a_panel_for_each_unit_and_one_for_the_energy(ending, tmp_path):
     """The file is a picture of its kind and is the same when drawn again."""
     path, result = tmp_path / f"run.{ending}", run(samples=50)
-    plot_trajectory(result, path, title="Pendulum", units={"theta": parse_unit("rad")})
+    over_time(result, "Pendulum", {"theta": parse_unit("rad")}).save(path)
     first = path.read_bytes()
     assert first.startswith(b"\x89PNG") if ending == "png" else first.count(b'id="axes_') == 2
-    plot_trajectory(result, path, title="Pendulum", units={"theta": parse_unit("rad")})
+    over_time(result, "Pendulum", {"theta": parse_unit("rad")}).save(path)
     assert path.read_bytes() == first
     with pytest.raises(UsageError, match=r"run\.txt"):
-        plot_trajectory(result, tmp_path / "run.txt")
+        over_time(result, "", {}).save(tmp_path / "run.txt")
     with pytest.raises(WriteFailed, match="cannot be written"):
-        plot_trajectory(result, path / f"run.{ending}")
+        over_time(result, "", {}).save(path / f"run.{ending}")
 
 
 NAMES = {

@@ -14,7 +14,7 @@ from eomgen.symbolic.expression.expressions import parse
 from eomgen.symbolic.expression.graph import Graph, Node, Scalar
 from eomgen.symbolic.numeric.evaluation import FLOAT, evaluate
 from eomgen.symbolic.print.text import to_text
-from eomgen.symbolic.solve.solving import has_period, roots
+from eomgen.symbolic.solve.solving import has_period, outside_of_turns, roots
 
 NAMES = "x a b c g l m v".split()
 
@@ -175,3 +175,35 @@ def test_the_sign_of_a_sum_is_that_of_its_terms():
     """k/m + c^2 is positive, -(k/m) negative, k - m unknown, 0 zero."""
     names, sums = scalars("a/m + x^2", "-(a/m)", "a - m", "a - a")
     assert [sign_of_terms(each, [names["a"], names["m"]]) for each in sums] == [1, -1, None, 0]
+
+
+@pytest.mark.parametrize(
+    ("text", "outside"),
+    {
+        "sin(x) + 2*cos(3*x - a)": "",
+        "sin(x/2) + cos(a)": "x",
+        "x*sin(x)": "x",
+        "sin(a*x)": "a x",
+        "cos(x + sin(b))": "",
+        "m*sin(2*x)/(1 + cos(a)^2)": "m",
+        "cos(x + b^2) + sqrt(1 + sin(a))": "b",
+    }.items(),
+)
+def test_what_stands_in_waves_alone_is_the_same_after_a_turn(text, outside):
+    """f(x + 2 pi) = f(x) of every symbol that is not seen outside of them."""
+    names, (f,) = scalars(text)
+    found = {x.name for x in outside_of_turns([f])}
+    assert found == set(outside.split())
+    for x in names.values():
+        assert x.name in found or has_period(f, x, 2 * f.graph.pi)
+
+
+def test_a_short_form_is_of_what_was_asked():
+    """sqrt(x^2) is |x|, of a positive x it is x, and with no work allowed it stays: whatever was asked before."""
+    names, (f, g) = scalars("sqrt(x^2)", "(x + a)*(x + m) - x^2")
+    for _ in range(2):
+        assert to_text(simplest(f)) == "abs(x)"
+        assert to_text(simplest(f, positive=[names["x"]])) == "x"
+        assert simplest(g, 0) is g
+        assert simplest(g) is not g
+        assert simplest(g, most=1) is g

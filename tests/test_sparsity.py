@@ -2,6 +2,9 @@
 
 from __future__ import annotations
 
+import runpy
+from pathlib import Path
+
 import numpy as np
 import pytest
 from hand_made import equations_of, spring_row, symbols
@@ -18,8 +21,10 @@ from eomgen.codegen.vectors import vectors
 from eomgen.mechanics.equations.equations_of_motion import EquationsOfMotion
 from eomgen.symbolic.expression.functions import cos, sin
 from eomgen.symbolic.expression.graph import is_zero
+from eomgen.symbolic.numeric.evaluation import FLOAT, evaluate
 
 pytestmark = pytest.mark.slow
+MODELS = Path(__file__).parent.parent / "models"
 
 
 def legs_under_a_plate(legs: int, *, massless: bool = False, twice: bool = False) -> EquationsOfMotion:
@@ -98,28 +103,35 @@ def test_nothing_is_lost_along_the_lists(case):
     x = np.random.default_rng(7).uniform(-0.6, 0.6, size=2 * len(made.M))
     M, J, f, g = at(made, 0.0, x, [0.9])
     order = [made.symbols.a.index(a) for a in solve.unknowns[: len(f)]]
-    arguments = M[np.ix_(order, order)].ravel().tolist(), J[:, order].ravel().tolist(), f[order].tolist(), g.tolist()
+    rows = [made.symbols.lam.index(lam) for lam in solve.unknowns[len(f) :]]
+    pairs = (M[np.ix_(order, order)], J[np.ix_(rows, order)], f[order], g[rows])
+    arguments = [array.ravel().tolist() for array in pairs]
     full = Solve(((1,) * len(f),) * len(f), ((1,) * len(f),) * len(g), (), ())
     known, unknown = solve_bordered(*arguments, solve.tables), solve_bordered(*arguments, full.tables)
     assert known[: len(f)] == pytest.approx(unknown[: len(f)], rel=1e-10, abs=1e-10)
 
 
-def test_the_lists_hold_what_elimination_fills_in():
+@pytest.mark.parametrize("seed", range(6))
+def test_the_lists_hold_what_elimination_fills_in(seed):
     """L of M = L D L^T and L^-1 J^T, by numpy at random numbers, are not zero there, and nowhere else."""
-    rng = np.random.default_rng(4)
-    mask = rng.random((9, 9)) < 0.2
+    rng = np.random.default_rng(seed)
+    mask = rng.random((9, 9)) < 0.1
     mask = np.tril(mask | mask.T, -1)
-    touched = rng.random((3, 9)) < 0.25
+    touched = (rng.random((5, 9)) < 0.2) | np.eye(5, 9, dtype=bool)
     M = [[int(i == j or mask[max(i, j), min(i, j)]) for j in range(9)] for i in range(9)]
     rows = touched.astype(int).tolist()
     half = np.where(mask, rng.uniform(0.1, 1, (9, 9)), 0)
     for zeros, W in ((zeros_of(M, rows), 0.0), (zeros_with_ties(M, rows), 1.0)):
-        J = np.where(touched, rng.uniform(0.1, 1, (3, 9)), 0)
+        J = np.where(touched, rng.uniform(0.1, 1, (5, 9)), 0)
         numbers = half + half.T + 20 * np.eye(9) + W * J.T @ J
         C = np.linalg.cholesky(numbers)
         found = [tuple(i for i in range(j + 1, 9) if abs(C[i, j]) > 1e-14) for j in range(9)]
         reach = [tuple(np.flatnonzero(np.abs(row) > 1e-14)) for row in np.linalg.solve(C, J.T).T]
         assert zeros.partners == tuple(found) and zeros.reach == tuple(reach)
+        Y = np.linalg.solve(C, J.T)
+        factor = np.linalg.cholesky(Y.T @ Y)
+        later = [tuple(i for i in range(m + 1, len(J)) if abs(factor[i, m]) > 1e-14) for m in range(len(J))]
+        assert zeros.later == tuple(later)
 
 
 def test_a_leg_more_costs_what_a_leg_costs():
@@ -127,6 +139,91 @@ def test_a_leg_more_costs_what_a_leg_costs():
     degrees = [sum(map(len, bordered(legs_under_a_plate(n)).zeros[0].partners)) for n in (2, 4, 8)]
     assert degrees == [3, 3, 3]
     assert [len(reach) for reach in bordered(legs_under_a_plate(4)).zeros[0].reach] == [5] * 8
+
+
+class Counted(float):
+    """A number whose operations are counted."""
+
+    made = 0
+
+    @staticmethod
+    def _of(name):
+        def operation(self, other):
+            Counted.made += 1
+            return Counted(getattr(float, name)(self, float(other)))
+
+        return operation
+
+    __add__, __sub__, __mul__, __truediv__ = map(_of, ("__add__", "__sub__", "__mul__", "__truediv__"))
+    __radd__, __rsub__, __rmul__, __rtruediv__ = map(_of, ("__radd__", "__rsub__", "__rmul__", "__rtruediv__"))
+
+    def __neg__(self):
+        return Counted(-float(self))
+
+
+def row_of_four_bars(n: int) -> eomgen.Model:
+    """n loops side by side."""
+    return eomgen.loads(runpy.run_path(str(MODELS / "four_bars.py"))["four_bars"](n))
+
+
+def solved_with_counts(n: int) -> tuple[int, int]:
+    """(operations that the kernel makes for n loops at the start, those that are told of it)."""
+    equations = eomgen.derive(row_of_four_bars(n))
+    solve = next(s for s in equations.program.statements if isinstance(s, Solve))
+    s = equations.graph.symbols
+    state = dict(zip((*s.q, *s.u), map(float, equations.start()), strict=True))
+    state |= dict(zip(s.parameters.values(), (1.0, 1.0, 9.81), strict=True)) | {s.t: 0.0}
+    flat = [x for row in (*solve.matrix, *solve.border, solve.right) for x in row]
+    values = list(map(Counted, evaluate(flat, state, FLOAT)))
+    N, K = len(solve.matrix), len(solve.border)
+    cuts = (values[: N * N], values[N * N : N * (N + K)], values[N * (N + K) : N * (N + K) + N], values[-K:])
+    Counted.made = 0
+    a = solve_bordered(*cuts, solve.tables)[:N]
+    done = Counted.made
+    M, J, f, g = (np.array(list(map(float, x))) for x in cuts)
+    M, J = M.reshape(N, N), J.reshape(K, N)
+    whole = np.block([[M, -J.T], [J, np.zeros((K, K))]])
+    assert list(map(float, a)) == pytest.approx(np.linalg.solve(whole, np.append(f, g))[:N], rel=1e-9, abs=1e-9)
+    return done, solve.operations
+
+
+def test_a_loop_more_costs_what_a_loop_costs():
+    """A row of n four-bars: as many operations a loop of 20 as of 10, and no fewer are told than are made."""
+    (ten, told), (twenty, told_of_twenty) = solved_with_counts(10), solved_with_counts(20)
+    assert twenty / 20 == pytest.approx(ten / 10, rel=0.05)
+    assert told_of_twenty / 20 == pytest.approx(told / 10, rel=0.05)
+    assert 0.8 < ten / told < 1.3
+
+
+def test_forty_loops_take_forty_thousand_operations_at_most():
+    """The whole right-hand side, forces and all."""
+    assert eomgen.derive(row_of_four_bars(40)).program.count.total <= 40_000
+
+
+NEAR = {
+    "waits, and counts": [(1, 0, 0), (1, 1e-3, 0), (0.3, 0.5, 0.8)],
+    "waits, and follows": [(1, 0, 0), (1, 1e-3, 0), (0.3, 0.5, 0)],
+    "two wait": [(0.2, 1, 0), (0.2, 1, 1e-3), (0, 0.3, 1), (1, 0.1, 0.1), (0.3, 0.5, 0.8)],
+    "all of it hangs on two that are near": [
+        (1, 0, 0),
+        (1, 1e-5, 0),
+        (1, 2e-5, 1e-5),
+        (0.3, 0.5, 0.8),
+        (-0.2, 0.9, 0.4),
+    ],
+}
+
+
+@pytest.mark.parametrize("rows", NEAR.values(), ids=NEAR.keys())
+def test_rows_that_nearly_depend_wait_for_the_others(rows):
+    """Three masses of 1: a and J^T lam are those of least squares, and no multiplier is a quotient of rounding."""
+    J, f, k = np.array(rows, dtype=float), np.array([1.0, 2.0, 3.0]), len(rows)
+    ones = Solve(((1,) * 3,) * 3, ((1,) * 3,) * k, (), ())
+    found = solve_bordered(np.eye(3).ravel().tolist(), J.ravel().tolist(), f.tolist(), [0.0] * k, ones.tables)
+    a, lam = np.array(found[:3]), np.array(found[3:])
+    assert a == pytest.approx(f - np.linalg.pinv(J, rcond=1e-9) @ (J @ f), abs=1e-9)
+    assert a - J.T @ lam == pytest.approx(f, abs=1e-9)
+    assert np.max(np.abs(lam)) < 1e4
 
 
 def pieces(program: Program) -> int:

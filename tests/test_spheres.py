@@ -7,10 +7,11 @@ from random import Random
 
 import pytest
 
-from eomgen.symbolic.exact.collect import gathered, with_squares
+from eomgen.symbolic.exact.book_form import book_form
 from eomgen.symbolic.exact.equality import equal_at_random_states
 from eomgen.symbolic.exact.normal_form import equal, readable
 from eomgen.symbolic.exact.spheres import of_one_degree, with_square_replaced
+from eomgen.symbolic.exact.squares_of_sums import with_squares
 from eomgen.symbolic.expression.graph import Graph
 from eomgen.symbolic.print.text import to_text
 
@@ -73,13 +74,13 @@ def test_a_readable_form_is_the_same_function(four):
     assert equal_at_random_states([(readable(x), x)]).equal
 
 
-def test_parameters_are_gathered_before_what_moves():
+def test_parameters_stand_in_parentheses_before_what_moves():
     """I3 w2 w3 - I2 w2 w3 = (I3 - I2) w2 w3"""
     graph = Graph()
     I1, I2, I3 = (graph.constant(f"I{k}") for k in (1, 2, 3))
     w2, w3, a = graph.symbol("w2"), graph.symbol("w3"), graph.symbol("w1'")
-    assert to_text(gathered(I1 * a - I2 * w2 * w3 + I3 * w2 * w3)) == "I1*w1' + (I3 - I2)*w2*w3"
-    assert to_text(gathered((I2 * w2 * w3 - I3 * w2 * w3) / I1)) == "(I2 - I3)*w2*w3/I1"
+    assert to_text(book_form(I1 * a - I2 * w2 * w3 + I3 * w2 * w3)) == "I1*w1' + (I3 - I2)*w2*w3"
+    assert to_text(book_form((I2 * w2 * w3 - I3 * w2 * w3) / I1)) == "(I2 - I3)*w2*w3/I1"
 
 
 def test_squares_of_sums_are_left():

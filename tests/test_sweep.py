@@ -6,12 +6,14 @@ import csv
 import json
 import math
 import os
+import re
 import signal
 import sqlite3
 import subprocess
 import sys
 import time
 from concurrent.futures import Future, ProcessPoolExecutor, ThreadPoolExecutor
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -24,7 +26,10 @@ from eomgen.cli import main
 from eomgen.errors import UsageError
 from eomgen.sweeps import kernel, workers
 from eomgen.sweeps.design import DESIGNS, Design, DrawnValues, spread_of
+from eomgen.sweeps.kernel import SweepKernel
 from eomgen.sweeps.sweep import sweep_at
+from eomgen.symbolic.numeric import work
+from eomgen.symbolic.numeric.work import check_patience
 
 ROOT = Path(__file__).parents[1]
 MODELS = ROOT / "models"
@@ -242,6 +247,46 @@ def test_a_sweep_that_is_killed_goes_on_and_has_each_run_once(spring, tmp_path, 
     assert last.returncode == 0, err
     assert kills >= 2 and "300 runs: 300 finished" in out
     same_rows(folder, spring)
+
+
+@pytest.mark.parametrize(("status", "code"), [("interrupted", 130), ("out of patience", 3)])
+def test_a_run_that_is_cut_ends_the_sweep_and_is_no_row(status, code, spring, tmp_path, monkeypatch):
+    """What was done is kept, and says so; the same command makes the run that was cut, with the bits of the others."""
+    words = ["sweep", spring, "--over", "k=10:90:9", "--ask", "last(x)", "--time", "1", "-o", str(tmp_path / "out")]
+    words += ["--patience", "100"]
+    whole, made = SweepKernel.motion, []
+
+    def cut(self, *given):
+        made.append(given)
+        return replace(whole(self, *given), status=status if len(made) == 5 else "finished")
+
+    with monkeypatch.context() as disturbed:
+        disturbed.setattr(SweepKernel, "motion", cut)
+        ended = CliRunner().invoke(main, [*words, "--no-certify"])
+    kept = [row["run"] for row in table_at(tmp_path / "out")]
+    assert ended.exit_code == code, ended.stderr
+    assert len(kept) in (3, 4)  # what was done before the chunk in which it was cut
+    assert f"{len(kept)} runs are kept in {tmp_path / 'out'}, the same command goes on" in ended.stderr
+    assert CliRunner().invoke(main, [*words, "--no-certify"]).exit_code == 0
+    calm = eomgen.sweep(spring, over={"k": "10:90:9"}, ask="last(x)", time=1)
+    assert [float(row["last(x)"]) for row in table_at(tmp_path / "out")] == calm["last(x)"].tolist()
+
+
+def test_patience_is_for_each_step_of_a_sweep(spring, tmp_path, monkeypatch):
+    """Many runs take longer than one may; one that takes longer ends the sweep, with those before it kept."""
+    folder, whole = tmp_path / "out", SweepKernel.rows
+    waits = iter([0, 0, 0, 60])
+
+    def slow(self, first, last):
+        work._CLOCK.get().end -= next(waits) + 20  # as if so long had gone by
+        check_patience()
+        return whole(self, first, last)
+
+    monkeypatch.setattr(SweepKernel, "rows", slow)
+    words = ["sweep", spring, "--over", "k=10:90:100", "--ask", "last(x)", "--time", "1", "-o", str(folder)]
+    ended = CliRunner().invoke(main, [*words, "--no-certify", "--patience", "40"])
+    told = re.search(r"given up after 40 s, (\d+) runs are kept in", ended.stderr)
+    assert ended.exit_code == 3 and told is not None and len(table_at(folder)) == int(told[1]) >= 3
 
 
 @pytest.mark.slow

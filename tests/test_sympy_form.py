@@ -10,7 +10,7 @@ from random_expressions import POINT, on_graph, smooth, trigonometric, with_floa
 from eomgen.errors import DerivationError
 from eomgen.symbolic.exact.equality import equal_at_random_states
 from eomgen.symbolic.expression.graph import Graph
-from eomgen.symbolic.print.sympy_form import RateSymbol, from_sympy, symbol, to_sympy
+from eomgen.symbolic.print.sympy_form import RateSymbol, scalar_from_sympy, symbol, to_sympy
 
 
 @pytest.fixture
@@ -21,11 +21,11 @@ def graph() -> Graph:
 @given(smooth | trigonometric)
 @settings(deadline=None)
 def test_there_and_back_is_the_same_function(tree):
-    """from_sympy(to_sympy(f)) = f"""
+    """scalar_from_sympy(to_sympy(f)) = f"""
     graph = Graph()
     f = on_graph(tree, graph)
     symbols = {name: graph.symbol(name) for name in POINT}
-    back = from_sympy(to_sympy([f])[0], symbols)
+    back = scalar_from_sympy(to_sympy([f])[0], symbols)
     assert equal_at_random_states([(f, back)]).equal
 
 
@@ -48,7 +48,7 @@ def test_every_operation_goes_there_and_back(graph):
     outputs += [graph.call(op, x, y) for op in ("atan2", "min", "max", "less", "less_equal")]
     outputs += [graph.pow(x, y), x**12, 1 / (x * y), graph.pi * x, -x, x - y]
     outputs += [graph.select(graph.call("less", x, y), x, 2 * y)]
-    back = [from_sympy(form, symbols) for form in to_sympy(outputs)]
+    back = [scalar_from_sympy(form, symbols) for form in to_sympy(outputs)]
     assert equal_at_random_states(list(zip(outputs, back, strict=True)), states=4).equal
 
 
@@ -56,7 +56,7 @@ def test_sympy_spellings_are_read(graph):
     """sec, csc, cot, E, Rational, Or and Not in a Piecewise."""
     x, y = graph.symbol("x"), graph.symbol("y")
     sx, sy = symbol("x"), symbol("y")
-    read = lambda e: from_sympy(e, {"x": x, "y": y})  # noqa: E731 - short for the test
+    read = lambda e: scalar_from_sympy(e, {"x": x, "y": y})  # noqa: E731 - short for the test
     assert read(sympy.sec(sx)) is 1 / graph.call("cos", x)
     assert equal_at_random_states([(read(sympy.cot(sx)), graph.call("cos", x) / graph.call("sin", x))]).equal
     assert read(sympy.E) is graph.call("exp", 1)
@@ -96,7 +96,7 @@ def test_symbols_are_real_and_numbers_exact(graph):
 def test_what_the_graph_does_not_have_is_named(graph, expression, message):
     """An error, never a guess."""
     with pytest.raises(DerivationError, match=message):
-        from_sympy(expression, {"x": graph.symbol("x")})
+        scalar_from_sympy(expression, {"x": graph.symbol("x")})
 
 
 def test_a_sum_of_many_terms_is_made_at_once(graph):

@@ -57,7 +57,7 @@ def test_a_planted_tolerance_is_seen(planted):
 
 BUDGETED = set(
     "normal_form equal readable readable_all collected_in common_factor cancelled simplest legible "
-    "gathered with_squares rooted roots readable_over expanded Expansion reactions_of solution_of_balance".split()
+    "with_squares rooted roots readable_over expanded Expansion reactions_of solution_of_balance".split()
 )
 
 

@@ -7,14 +7,13 @@ lam_i has one value where no combination of rows that vanishes holds it: n_i = 0
 
 from __future__ import annotations
 
-from dataclasses import dataclass
-
 import numpy as np
 
 from eomgen.codegen.program import bordered, program_of
 from eomgen.codegen.rhs import compiled
 from eomgen.mechanics.constraints.freedom import rank_of_ties
 from eomgen.mechanics.equations.equations_of_motion import EquationsOfMotion
+from eomgen.records import dataclass
 from eomgen.symbolic.numeric.dense import of_one_length
 from eomgen.symbolic.numeric.tolerances import RANK, SHARE
 

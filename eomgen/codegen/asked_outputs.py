@@ -2,13 +2,14 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field
+from dataclasses import field
 
 from eomgen.errors import DerivationError, ExpressionError, MissingValues
 from eomgen.mechanics.equations.system import System
 from eomgen.mechanics.instant.outputs import Quantities, asks_of
 from eomgen.model.outputs.base import OF_A_RUN, SMALL_MOTIONS
 from eomgen.model.parts import Output
+from eomgen.records import dataclass
 from eomgen.symbolic.expression.derivative import depends_on
 from eomgen.symbolic.expression.graph import Scalar
 

@@ -7,7 +7,6 @@ import functools
 import threading
 from collections.abc import Callable, Mapping, Sequence
 from concurrent.futures import ThreadPoolExecutor
-from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
@@ -15,7 +14,10 @@ import numpy as np
 from eomgen.codegen.build import function_of, library
 from eomgen.codegen.program import Program
 from eomgen.codegen.spheres import SpherePlaces
-from eomgen.codegen.targets.c_lanes import constants_of, lanes_text, text_of, vector_compiler
+from eomgen.codegen.targets.c import C
+from eomgen.codegen.targets.c_lanes import LANES, constants_of, lanes_text, text_of, vector_compiler
+from eomgen.codegen.taylor import series_text
+from eomgen.records import dataclass
 
 STATUS = ("running", "finished", "not finite", "step too small", "too many steps", "stiff")
 ROUNDS = 2000  # of a call: between two calls somebody may have lost patience
@@ -73,6 +75,7 @@ def _struct(lanes: int) -> Any:
             ("spheres", _AT),
             *_fields(_SIZE, "n_spheres begun"),
             ("work", _AT),
+            ("room", _SIZE),
             *_fields(_SIZE * lanes, "run sample stop taken stiff easy"),
             ("h", _REAL * lanes),
             *_fields(ctypes.c_int * lanes, "is_new is_over rejected"),
@@ -121,14 +124,21 @@ class Batch:
     Args:
         program: the right-hand side.
         defined: numbers that batch.c is told.
+        order: of the power series by which steps go; None: they are those of DOP853.
     Raises:
         RunFailed, ToolMissing: as of `library`.
     """
 
-    def __init__(self, program: Program, defined: Mapping[str, float]) -> None:
+    def __init__(self, program: Program, defined: Mapping[str, float], order: int | None = None) -> None:
         self.lanes, text = lanes_text(program)
         told = [f"#define {name} {value!r}" for name, value in {**defined, "LOOKED_AT": LOOKED_AT}.items()]
-        made = library("\n".join([text, *told, text_of("dop853.c"), text_of("batch.c")]), by=vector_compiler())
+        n = len(program.states)
+        if order is None:
+            self._room, steps = 23 * n, [text_of("dop853.c"), text_of("batch.c"), text_of("batch_dop853.c")]
+        else:
+            series, size = series_text(program, LANES if self.lanes > 1 else C, order)
+            self._room, steps = (order + 1) * n + size, [series, text_of("batch.c"), text_of("batch_series.c")]
+        made = library("\n".join([text, *told, *steps]), by=vector_compiler())
         self._batch = function_of(made, "batch")
         self._batch.argtypes, self._batch.restype = [_AT, _SIZE], ctypes.c_int
         self._constants = constants_of(program)
@@ -178,9 +188,10 @@ class Batch:
         """The runs from one number on to another, in one thread."""
         n, instants = x0.shape[1], np.ascontiguousarray(asked.instants, dtype=float)
         stops, spheres = np.array(asked.stops, dtype=float), np.array(asked.spheres, dtype=np.int32).reshape(-1, 4)
-        work = _aligned((29 * n + p.shape[1] + self._constants + 2) * self.lanes)
+        work = _aligned((6 * n + self._room + p.shape[1] + self._constants + 2) * self.lanes)
         b = _struct(self.lanes)(n=n, parameters=p.shape[1], constants=self._constants, samples=len(instants))
         b.next, b.last, b.start, b.end = *piece, *asked.span
+        b.room = self._room
         b.rtol, b.atol, b.most_steps = asked.rtol, asked.atol, asked.most_steps
         b.n_stops, b.n_spheres = len(stops), len(spheres)
         arrays = {"instants": instants, "x0": x0, "p": p, "x": found.x, "reached": found.reached}

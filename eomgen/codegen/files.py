@@ -75,7 +75,13 @@ def _other(program: Program, told: Description) -> list[str]:
     """The vectors of a function beside the right-hand side."""
     own: dict[str, object] = {"names": told.outputs}
     if told.blocks:
-        own = {"blocks": [{"name": name, "rows": n, "columns": k} for name, n, k in told.blocks]}
+        meant = told.columns or ((),) * len(told.blocks)
+        own = {
+            "blocks": [
+                {"name": name, "rows": n, "columns": k, **({"of": of} if of else {})}
+                for (name, n, k), of in zip(told.blocks, meant, strict=True)
+            ]
+        }
     if program.accelerations:
         own |= {
             "accelerations": [x.name for x in program.accelerations],

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass
 from functools import cached_property
 from typing import Any
 
@@ -15,6 +14,7 @@ from eomgen.errors import UsageError
 from eomgen.mechanics.equations.system import System
 from eomgen.model.findings import nearest
 from eomgen.model.parts import Input
+from eomgen.records import dataclass
 from eomgen.symbolic.expression.derivative import depends_on, tangent
 from eomgen.symbolic.expression.expressions import Expression
 from eomgen.symbolic.numeric.tolerances import OPEN_GAP

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from functools import cached_property
 from typing import Any
 
@@ -13,6 +13,7 @@ from eomgen.codegen.given_motion import GivenMotion
 from eomgen.codegen.program import Program, Solve, program_of
 from eomgen.codegen.rhs import RightHandSide, compiled, parameter_vector
 from eomgen.mechanics.reactions.inverse import Inverse
+from eomgen.records import dataclass
 
 
 @dataclass(frozen=True)

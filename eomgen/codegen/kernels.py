@@ -9,7 +9,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
-from eomgen.symbolic.numeric.tolerances import DEGENERATE, PIVOT, ROUNDING, ROUNDING_SQUARED
+from eomgen.symbolic.numeric.tolerances import DEGENERATE, PIVOT, ROUNDING, ROUNDING_SQUARED, SURE_PIVOT
 
 Int = int
 Real = float
@@ -22,7 +22,8 @@ nan = float("nan")
 
 # Of one solve: N accelerations, K multipliers; what may not be zero in the factors of M (w = 0) and of M + J^T W J
 # (w = 1): in column j of L the rows PARTNER[e], e from FIRST[w*(N + 1) + j] to the next one's; in row m of L^-1 J^T the
-# places REACH[e], e from START[w*(K + 1) + m]; at place j its rows ROW[e], e from FROM[w*(N + 1) + j].
+# places REACH[e], e from START[w*(K + 1) + m]; at place j its rows ROW[e], e from FROM[w*(N + 1) + j]; in column m of
+# the factor of Y^T D^-1 Y the rows LATER[e], e from NEXT[w*(K + 1) + m].
 N = K = 0
 PARTNER: Ints = ()
 FIRST: Ints = ()
@@ -30,6 +31,8 @@ REACH: Ints = ()
 START: Ints = ()
 ROW: Ints = ()
 FROM: Ints = ()
+LATER: Ints = ()
+NEXT: Ints = ()
 
 
 def zeros(n: int) -> Work:
@@ -64,9 +67,9 @@ def solve(M: Work, J: Reals, f: Work, g: Work) -> None:
     mobility = room(N)
     Y = room(K * N)
     S = zeros(K * K)
-    order = places(K)
+    order = places(K + 1)
     flexibility(w, L, J, mobility, Y, S)
-    rank = eliminated(S, order)
+    rank = eliminated(w, S, order)
     a = zeros(N)
     lam = zeros(K)
     for again in range(2):
@@ -85,7 +88,7 @@ def solve(M: Work, J: Reals, f: Work, g: Work) -> None:
             for e in range(START[w * (K + 1) + m], START[w * (K + 1) + m + 1]):
                 j = REACH[e]
                 gap[m] -= Y[m * N + j] * (left[j] * mobility[j])
-        multipliers(S, order, rank, gap)
+        multipliers(w, S, order, rank, gap)
         for m in range(K):
             pull = gap[m]
             for e in range(START[w * (K + 1) + m], START[w * (K + 1) + m + 1]):
@@ -234,79 +237,109 @@ def flexibility(w: Int, L: Reals, J: Reals, mobility: Work, Y: Work, S: Work) ->
                 S[row + ROW[h]] += part * column[h - first]
 
 
-def eliminated(S: Work, order: Places) -> Int:
-    """S factored in place, largest pivot first, dependent rows passed over; the rank.
+def eliminated(w: Int, S: Work, order: Places) -> Int:
+    """S factored in place along what is not zero, dependent rows passed over; the rank; order[K] rows of it are sure.
 
     A row depends on those before it where its pivot, the squared sine of its angle to them, is no more than PIVOT.
+    What is no more than SURE_PIVOT waits for all others, and is then taken largest first.
     """
     whole = room(K)
     column = room(K)
-    pivot = places(1)
+    late = places(K)
+    rest = places(K)
+    count = places(3)
     best = zeros(1)
     for m in range(K):
-        order[m] = m
         whole[m] = S[m * K + m]
     invert(whole)
     for c in range(K):
-        pivot[0] = -1
+        share = S[c * K + c] * whole[c]
+        if share > SURE_PIVOT:
+            first = NEXT[w * (K + 1) + c]
+            last = NEXT[w * (K + 1) + c + 1]
+            for e in range(count[1]):
+                rest[e] = late[e]
+            for e in range(first, last):
+                rest[count[1] + e - first] = LATER[e]
+            struck(S, c, rest, count[1] + last - first, column)
+            order[count[0]] = c
+            count[0] += 1
+        else:
+            if share > PIVOT:
+                late[count[1]] = c
+                count[1] += 1
+    order[K] = count[0]
+    for k in range(count[0], K):
+        count[2] = -1
         best[0] = PIVOT
-        for m in range(c, K):
+        for e in range(count[1]):
+            m = late[e]
             if S[m * K + m] * whole[m] > best[0]:
                 best[0] = S[m * K + m] * whole[m]
-                pivot[0] = m
-        if pivot[0] < 0:
-            return c
-        if pivot[0] > c:
-            exchanged(S, whole, order, c, pivot[0])
-        d = S[c * K + c]
-        for i in range(c + 1, K):
-            column[i] = S[i * K + c]
-        for i in range(c + 1, K):
-            row = i * K
-            factor = column[i] / d
-            if factor != 0:
-                for j in range(c + 1, i + 1):
-                    S[row + j] -= factor * column[j]
-                S[row + c] = factor
+                count[2] = e
+        if count[2] < 0:
+            return k
+        c = late[count[2]]
+        count[1] -= 1
+        for e in range(count[2], count[1]):
+            late[e] = late[e + 1]
+        struck(S, c, late, count[1], column)
+        order[k] = c
     return K
 
 
-def exchanged(S: Work, whole: Work, order: Places, c: Int, p: Int) -> None:
-    """Rows and columns c < p of S (lower triangle) exchanged, and what belongs to them."""
-    kept = order[c]
-    order[c] = order[p]
-    order[p] = kept
-    exchange(whole, c, p)
-    exchange(S, c * K + c, p * K + p)
-    for j in range(c):
-        exchange(S, c * K + j, p * K + j)
-    for i in range(c + 1, p):
-        exchange(S, i * K + c, p * K + i)
-    for i in range(p + 1, K):
-        exchange(S, i * K + c, i * K + p)
+def struck(S: Work, c: Int, rest: Places, n: Int, column: Work) -> None:
+    """Row c eliminated from the n rows of `rest`, which ascend: their column c of the factor, and the rest of S."""
+    d = S[c * K + c]
+    for e in range(n):
+        i = rest[e]
+        if i < c:
+            column[e] = S[c * K + i]
+        else:
+            column[e] = S[i * K + c]
+    for e in range(n):
+        row = rest[e] * K
+        factor = column[e] / d
+        for h in range(e + 1):
+            S[row + rest[h]] -= factor * column[h]
+        S[row + c] = factor
 
 
-def exchange(values: Work, i: Int, j: Int) -> None:
-    """Two numbers exchanged."""
-    kept = values[i]
-    values[i] = values[j]
-    values[j] = kept
-
-
-def multipliers(S: Reals, order: Places, rank: Int, r: Work) -> None:
+def multipliers(w: Int, S: Reals, order: Places, rank: Int, r: Work) -> None:
     """r becomes lam of S lam = r by the factors, 0 of the rows that were passed over."""
     y = room(K)
-    for i in range(rank):
-        y[i] = r[order[i]]
-        for j in range(i):
-            y[i] -= S[i * K + j] * y[j]
+    sure = order[K]
     for m in range(K):
+        y[m] = r[m]
         r[m] = 0.0
-    for i in reversed(range(0, rank)):
-        y[i] = y[i] / S[i * K + i]
-        for j in range(i + 1, rank):
-            y[i] -= S[j * K + i] * y[j]
-        r[order[i]] = y[i]
+    for k in range(rank):
+        c = order[k]
+        if k < sure:
+            for e in range(NEXT[w * (K + 1) + c], NEXT[w * (K + 1) + c + 1]):
+                y[LATER[e]] -= S[LATER[e] * K + c] * y[c]
+            for h in range(sure, rank):
+                i = order[h]
+                if i < c:
+                    y[i] -= S[i * K + c] * y[c]
+        else:
+            for h in range(k + 1, rank):
+                i = order[h]
+                y[i] -= S[i * K + c] * y[c]
+    for k in reversed(range(0, rank)):
+        c = order[k]
+        y[c] = y[c] / S[c * K + c]
+        if k < sure:
+            for e in range(NEXT[w * (K + 1) + c], NEXT[w * (K + 1) + c + 1]):
+                y[c] -= S[LATER[e] * K + c] * r[LATER[e]]
+            for h in range(sure, rank):
+                i = order[h]
+                if i < c:
+                    y[c] -= S[i * K + c] * r[i]
+        else:
+            for h in range(k + 1, rank):
+                i = order[h]
+                y[c] -= S[i * K + c] * r[i]
+        r[c] = y[c]
 
 
 def push(w: Int, J: Reals, weight: Reals, gap: Reals, left: Work) -> None:

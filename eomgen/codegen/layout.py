@@ -8,14 +8,16 @@ reads stands in an array between them.
 from __future__ import annotations
 
 from collections.abc import Iterable, Mapping
-from dataclasses import dataclass, field
+from dataclasses import field
 from functools import cached_property
+from itertools import pairwise
 from typing import Any
 
 from eomgen.codegen.expressions import ExpressionWriter, used_once
 from eomgen.codegen.lowered import READ, REAL, Language, Put
 from eomgen.codegen.names import identifiers
 from eomgen.codegen.program import Assign, Program, Solve
+from eomgen.records import dataclass
 from eomgen.symbolic.expression.graph import Node, Scalar
 
 LENGTH = 600  # operations of a part
@@ -27,12 +29,12 @@ class Parts:
 
     Args:
         nodes: of each piece.
-        first: how many of them come before the solve.
+        counts: how many of them each stretch is cut into.
         places: of what a piece reads that it does not compute, inputs and unknowns among it, its place in the array.
     """
 
     nodes: tuple[tuple[Node, ...], ...] = ()
-    first: int = 0
+    counts: tuple[int, ...] = ()
     places: Mapping[Node, int] = field(default_factory=dict)
 
 
@@ -49,19 +51,20 @@ class Layout:
     # -- what is read where -----------------------------------------------------------------------
 
     @cached_property
-    def solve(self) -> Solve | None:
-        return next((s for s in self.program.statements if type(s) is Solve), None)
+    def solves(self) -> tuple[Solve, ...]:
+        return tuple(s for s in self.program.statements if type(s) is Solve)
 
     @property
     def entry(self) -> str:
         """The kernel that solves; "" of none."""
-        return "" if self.solve is None else "solve" if self.solve.border else "solve_plain"
+        return "" if not self.solves else "solve" if self.solves[0].border else "solve_plain"
 
     @cached_property
-    def before(self) -> tuple[Node, ...]:
-        """What is computed at every call before the solve; without one, all."""
+    def stretches(self) -> tuple[tuple[Node, ...], ...]:
+        """What is computed at every call before the first solve, from each to the next, and after the last."""
         statements = self.program.statements
-        return _nodes(statements[: statements.index(self.solve)] if self.solve else statements)
+        at = [-1, *(k for k, s in enumerate(statements) if type(s) is Solve), len(statements)]
+        return tuple(_nodes(statements[a + 1 : b]) for a, b in pairwise(at))
 
     @cached_property
     def moving(self) -> tuple[Node, ...]:
@@ -69,7 +72,12 @@ class Layout:
 
     @cached_property
     def written(self) -> tuple[Scalar, ...]:
-        return (*(self.solve.entries if self.solve else ()), *self.program.outputs)
+        solved = (x for k, s in enumerate(self.solves) for x in (s.right if k else s.entries))
+        return (*solved, *self.program.outputs)
+
+    @property
+    def unknowns(self) -> tuple[Node, ...]:
+        return tuple(x for solve in self.solves for x in solve.unknowns)
 
     @cached_property
     def inputs(self) -> dict[Node, int]:
@@ -121,12 +129,12 @@ class Layout:
 
     @cached_property
     def kernels(self) -> tuple[str, ...]:
-        return (*((self.entry,) if self.solve else ()), *self.sampled.values())
+        return (*((self.entry,) if self.solves else ()), *self.sampled.values())
 
     @cached_property
     def called_kernels(self) -> frozenset[str]:
         """The kernels among the ops, by the names that a language may define in its own way."""
-        return frozenset((*self.kernels[: 1 if self.solve else 0], *(["through_samples"] if self.sampled else [])))
+        return frozenset((*self.kernels[: 1 if self.solves else 0], *(["through_samples"] if self.sampled else [])))
 
     @cached_property
     def sampled(self) -> dict[int, str]:
@@ -142,7 +150,7 @@ class Layout:
         """An identifier for every argument and unknown."""
         program, symbols = self.program, self.program.symbols
         known = [*program.moving, *symbols.parameters.values(), *symbols.inputs.values()]
-        known += [x for x in (self.solve.unknowns if self.solve else ()) if x not in known]
+        known += [x for x in self.unknowns if x not in known]
         taken = {*self.language.reserved, *(name for name, _ in self.arguments), self.result}
         words = identifiers([x.name for x in known], taken, self.language.folded)
         return {x: words[x.name] for x in known} | {symbols.t: "t"}
@@ -172,14 +180,14 @@ class Layout:
         """The pieces of a long program."""
         if self.language.longest is None or len(self.moving) <= self.language.longest:
             return Parts()
-        cut = len(self.before)
-        before, after = _cut(self.moving[:cut]), _cut(self.moving[cut:])
-        home = {x: i for i, part in enumerate(before + after) for x in part}
-        home |= dict.fromkeys([*self.inputs, *(self.solve.unknowns if self.solve else ())], -1)
-        reads = [(i, a) for i, part in enumerate(before + after) for a in self.reads(part)]
+        cuts = [_cut(stretch) for stretch in self.stretches]
+        parts = tuple(part for cut in cuts for part in cut)
+        home = {x: i for i, part in enumerate(parts) for x in part}
+        home |= dict.fromkeys([*self.inputs, *self.unknowns], -1)
+        reads = [(i, a) for i, part in enumerate(parts) for a in self.reads(part)]
         reads += [(-2, x) for x in self.written]
         across = {x for i, a in reads for x in stripped([a]) if home.get(x, i) != i}
-        return Parts(before + after, len(before), {x: k for k, x in enumerate(x for x in home if x in across)})
+        return Parts(parts, tuple(map(len, cuts)), {x: k for k, x in enumerate(x for x in home if x in across)})
 
     def between(self, x: Node) -> str:
         return self.language.place("between", self.parts.places[x])

@@ -8,9 +8,10 @@ from __future__ import annotations
 
 import re
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
-from dataclasses import dataclass, field
+from dataclasses import field, replace
 
 from eomgen.codegen.expressions import RankedText, ranked_number
+from eomgen.records import dataclass
 from eomgen.symbolic.expression.graph import Number
 from eomgen.symbolic.expression.rational import Fraction
 
@@ -154,7 +155,8 @@ class Language:
         leave: the end of a function that gives nothing.
         gives: how {gives} stands in `function`, by the kind of what it gives.
         what: how {what} stands there, of one that gives nothing and of one that does.
-        arrays: of CHANGED, ROOM and PLACES: with {name}, {size}.
+        arrays: of CHANGED, ROOM and PLACES: with {name}, {size}, and {of}, the function.
+        kept: how one of them is made once for all calls, before its function; "" where each call makes its own.
         tables: of INT, INDICES and READ: with {name}, {size}, {values}.
         listed: how the values of a table are held together.
         loop, down: (begin, end) of a loop, with {name}, {first}, {last}.
@@ -203,6 +205,7 @@ class Language:
     gives: Mapping[str, str] = field(default_factory=dict)
     what: tuple[str, str] = ("", "")
     local: Mapping[str, str] = field(default_factory=dict)
+    kept: str = ""
     spelled: Callable[[str], str] = itself
     folded: Callable[[str], str] = itself
 
@@ -235,7 +238,7 @@ class Language:
             case Array():
                 size = s.size if s.size.isdigit() else self.sized.format(size=s.size)
                 text = self.arrays[s.kind].format(name=s.name, size=size)
-                return [text] if text else []
+                return text.split("\n") if text else []
             case For():
                 begin, end = self.down if s.down else self.loop
                 return _block([(begin.format(name=s.name, first=s.first, last=s.last), self.lines(s.body))], end)
@@ -262,7 +265,8 @@ class Language:
 
     def defines(self, function: Function) -> list[str]:
         """A function."""
-        body = self.lines(function.body)
+        named = {kind: text.replace("{of}", function.name) for kind, text in self.arrays.items()}
+        body = replace(self, arrays=named).lines(function.body)
         begin, end = self.out if function.out else self.function
         out, size = function.out or ("", 0)
         arguments = [self._kind(kind).format(name=name) for name, kind in function.arguments]
@@ -285,7 +289,9 @@ class Language:
         spare = [name for name in names if self.unused and not re.search(rf"\b{name}\b", text)]
         inner = [*map(lambda name: self.unused.format(name=name), spare), *body]
         about = [self._remark(function.about)] if function.about else []
+        arrays = {name: size for name, (_, size) in _declared(function.body) if size and self.kept}
         return [
+            *(self.kept.format(name=name, size=size, of=function.name) for name, size in arrays.items()),
             *about,
             *opened.split("\n"),
             *(f"    {line}" for line in (*self._heads(function), *inner)),

@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterable, Mapping, Sequence
-from dataclasses import dataclass
+from itertools import accumulate
 
 from eomgen.codegen.expressions import ExpressionWriter
 from eomgen.codegen.kernel_reader import kernel
@@ -30,6 +30,7 @@ from eomgen.codegen.lowered import (
     Table,
 )
 from eomgen.codegen.program import Program
+from eomgen.records import dataclass
 from eomgen.symbolic.expression.graph import Node
 from eomgen.symbolic.expression.splines import Sampled, sampled_of
 
@@ -110,10 +111,10 @@ def _evaluate(layout: Layout) -> tuple[Statement, ...]:
     lines: list[Statement] = _loads(layout, read)
     lines += [Array("between", str(len(parts.places)))] if parts.nodes else []
     lines += _inputs(layout)
-    cut = len(layout.before)
-    lines += _computed(layout, writer, layout.moving[:cut], range(parts.first))
-    lines += _solved(layout, writer) if layout.solve else []
-    lines += _computed(layout, writer, layout.moving[cut:], range(parts.first, len(parts.nodes)))
+    ends = [0, *accumulate(parts.counts or [0] * len(layout.stretches))]
+    for k, nodes in enumerate(layout.stretches):
+        lines += _solved(layout, writer, k - 1) if k else []
+        lines += _computed(layout, writer, nodes, range(ends[k], ends[k + 1]))
     return (*lines, *(Put(layout.result, str(k), writer.value(x)) for k, x in enumerate(layout.program.outputs)))
 
 
@@ -152,26 +153,30 @@ def _inputs(layout: Layout) -> list[Statement]:
     return lines
 
 
-def _solved(layout: Layout, writer: ExpressionWriter) -> list[Statement]:
-    """Fill the arrays, solve, name the unknowns, and leave them where other functions read them."""
-    solve = layout.solve
-    assert solve is not None
+def _solved(layout: Layout, writer: ExpressionWriter, number: int) -> list[Statement]:
+    """Fill the arrays, solve, name the unknowns, and leave them where other functions read them.
+
+    Matrix and border are filled once; only a bordered solve leaves them as they are.
+    """
+    solve, later = layout.solves[number], str(number) * (number > 0)
     n, k = len(solve.matrix), len(solve.border)
+    f, g = f"solve_f{later}", f"solve_g{later}"
     filled = {
         "solve_M": {j * n + i: solve.matrix[i][j] for i in range(n) for j in range(i + 1)},
         "solve_J": {m * n + i: solve.border[m][i] for m in range(k) for i in range(n)},
-        "solve_f": dict(enumerate(solve.right[:n])),
-        "solve_g": dict(enumerate(solve.right[n:])),
+        f: dict(enumerate(solve.right[:n])),
+        g: dict(enumerate(solve.right[n:])),
     }
-    sizes = {"solve_M": n * n, "solve_J": k * n, "solve_f": n, "solve_g": k}
+    sizes = {"solve_M": n * n, "solve_J": k * n, f: n, g: k}
     arrays = [name for name, size in sizes.items() if size]
-    lines: list[Statement] = [Array(name, str(sizes[name])) for name in arrays]
-    for name in arrays:
+    new = [name for name in arrays if not number or name in (f, g)]
+    lines: list[Statement] = [Array(name, str(sizes[name])) for name in new]
+    for name in new:
         held_there = {place: x for place, x in filled[name].items() if type(x) is Node or x != 0}
         lines += [Put(name, str(place), writer.value(x)) for place, x in held_there.items()]
     lines += [Call(layout.entry, tuple(arrays), tuple(name for name in arrays if name != "solve_J"))]
     for place, x in enumerate(solve.unknowns):
-        text = layout.language.place(*(("solve_f", place) if place < n else ("solve_g", place - n)))
+        text = layout.language.place(*((f, place) if place < n else (g, place - n)))
         lines += [layout.stored(x, text)] if x in layout.parts.places else []
         writer.define(x, text)
     return lines
@@ -200,8 +205,8 @@ def _kernels(layout: Layout) -> tuple[tuple[Table, ...], tuple[Function, ...]]:
     """The kernels that a program calls, and the numbers that these read."""
     tables: dict[str, Table] = {}
     functions: dict[str, Function] = {}
-    if layout.solve and layout.entry not in layout.language.defined:
-        read, called = kernel(layout.entry, layout.solve.tables, layout.language)
+    if layout.solves and layout.entry not in layout.language.defined:
+        read, called = kernel(layout.entry, layout.solves[0].tables, layout.language)
         tables |= {t.name: t for t in read}
         functions |= {f.name: f for f in called}
     for number, name in layout.sampled.items():

@@ -6,7 +6,6 @@ Equations that need a linear solve carry it as one statement, `Solve`; an invers
 from __future__ import annotations
 
 from collections.abc import Iterable, Mapping, Sequence
-from dataclasses import dataclass
 from functools import cached_property
 from typing import Literal
 
@@ -15,6 +14,7 @@ from eomgen.codegen.lowered import INT, Table
 from eomgen.codegen.sparsity import PlaceLists, Zeros, zeros_of, zeros_with_ties
 from eomgen.errors import DerivationError
 from eomgen.mechanics.equations.equations_of_motion import EquationsOfMotion
+from eomgen.records import dataclass
 from eomgen.symbolic.expression.derivative import substituted
 from eomgen.symbolic.expression.graph import Node, Scalar, is_zero
 from eomgen.symbolic.expression.node import ScalarRow
@@ -80,6 +80,7 @@ class Solve:
             *_joined("PARTNER", "FIRST", [way.partners for way in ways]),
             *_joined("REACH", "START", [way.reach for way in ways]),
             *_joined("ROW", "FROM", [way.rows for way in ways]),
+            *_joined("LATER", "NEXT", [way.later for way in ways]),
         ]
 
     @property
@@ -112,7 +113,7 @@ class Program:
         defaults: the inputs' own expressions in t and parameters, used where the caller gives none.
         preamble: statements that only `defaults` need.
         hoisted: statements that depend on the parameters alone.
-        statements: all others.
+        statements: all others; where there are several `Solve`s, they have one matrix and one border.
         outputs: the values that the function returns.
         count: operations at every call, and hoisted (once for given parameters) apart; `defaults` are not counted.
         accelerations: a, where the caller gives them too, as to inverse dynamics.
@@ -210,12 +211,19 @@ def bordered(equations: EquationsOfMotion) -> Solve:
 
 
 def _ordered(M: Sequence[ScalarRow], J: Sequence[ScalarRow], right: ScalarRow, unknowns: tuple[Node, ...]) -> Solve:
-    """The system with the accelerations in the order in which elimination fills in least: in a tree leaves first."""
+    """The system with the accelerations in the order in which elimination fills in least: in a tree leaves first.
+
+    The rows in that of J M^-1 J^T: loops that touch but their neighbours one after the other.
+    """
     order = factorization.elimination_order(M)
-    places = [*order, *range(len(M), len(right))]
+    matrix = tuple(tuple(M[max(i, j)][min(i, j)] for j in order) for i in order)
+    border = [tuple(row[j] for j in order) for row in J]
+    reach = [frozenset(places) for places in zeros_of(matrix, border).reach]
+    rows = factorization.elimination_order([[int(not one.isdisjoint(other)) for other in reach] for one in reach])
+    places = [*order, *(len(M) + m for m in rows)]
     return Solve(
-        tuple(tuple(M[max(i, j)][min(i, j)] for j in order) for i in order),
-        tuple(tuple(row[j] for j in order) for row in J),
+        matrix,
+        tuple(border[m] for m in rows),
         tuple(right[i] for i in places),
         tuple(unknowns[i] for i in places),
     )
@@ -227,6 +235,7 @@ def program_of(
     *,
     inputs: Mapping[str, Scalar] | None = None,
     solve: Solve | None = None,
+    further: Sequence[Solve] = (),
     accelerations: tuple[Node, ...] = (),
 ) -> Program:
     """Any outputs as a program.
@@ -236,15 +245,16 @@ def program_of(
         symbols: the arguments' names.
         inputs: the model's own expression of each input, in t and parameters.
         solve: the linear system behind a and lam, where the outputs hold these.
+        further: others with its matrix and border, whose right sides may hold a and lam.
         accelerations: a, where it is an argument.
     Raises:
         DerivationError: an output holds a symbol that is none of the arguments, or an input has no expression.
     """
-    outputs, entries = tuple(outputs), tuple(solve.entries) if solve else ()
-    needed = order([*outputs, *entries])
+    outputs, solves = tuple(outputs), (*([solve] if solve else []), *further)
+    needed = order([*outputs, *(x for each in solves for x in each.entries)])
     defaults = _defaults(needed, symbols, inputs or {})
     own = order(defaults)
-    _refuse_strangers([*needed, *own], symbols, (*accelerations, *(solve.unknowns if solve else ())))
+    _refuse_strangers([*needed, *own], symbols, (*accelerations, *(x for each in solves for x in each.unknowns)))
     depth = _depths([*needed, *own], frozenset(symbols.parameters.values()))
     hoisted = [x for x in needed if depth[x] == _FIXED and x.op not in FREE]
     moving = [x for x in needed if depth[x] == _MOVING and x.op not in FREE]
@@ -254,9 +264,9 @@ def program_of(
         defaults=defaults,
         preamble=tuple(Assign(x) for x in own if _is_computed(x, depth) and x not in known),
         hoisted=tuple(map(Assign, hoisted)),
-        statements=_scheduled(moving, solve),
+        statements=_scheduled(moving, (solves[:1], solves[1:])),
         outputs=outputs,
-        count=Count(len(moving) + (solve.operations if solve else 0), len(hoisted)),
+        count=Count(len(moving) + sum(each.operations for each in solves), len(hoisted)),
         accelerations=accelerations,
     )
 
@@ -292,14 +302,15 @@ def _is_computed(x: Node, depth: Mapping[Node, int]) -> bool:
     return x.op not in FREE and depth[x] != _CONSTANT
 
 
-def _scheduled(moving: Sequence[Node], solve: Solve | None) -> tuple[ProgramStatement, ...]:
-    """In index order, but what the solve needs, then the solve, then the rest."""
-    if solve is None:
-        return tuple(map(Assign, moving))
-    first = frozenset(order(solve.entries))
-    before = [Assign(x) for x in moving if x in first]
-    after = [Assign(x) for x in moving if x not in first]
-    return (*before, solve, *after)
+def _scheduled(moving: Sequence[Node], rounds: Sequence[Sequence[Solve]]) -> tuple[ProgramStatement, ...]:
+    """In index order, but what the solves of a round need, then these, then the next; the rest last."""
+    statements: list[ProgramStatement] = []
+    done: set[Node] = set()
+    for solves in rounds:
+        first = frozenset(order([x for solve in solves for x in solve.entries])) - done
+        statements += [*(Assign(x) for x in moving if x in first), *solves]
+        done |= first
+    return (*statements, *(Assign(x) for x in moving if x not in done))
 
 
 def _refuse_strangers(needed: Sequence[Node], symbols: Symbols, others: Sequence[Node]) -> None:

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
@@ -14,6 +13,7 @@ from eomgen.mechanics.balance.balance_solution import Indeterminate
 from eomgen.mechanics.balance.named_reactions import named_reactions
 from eomgen.mechanics.equations.equations_of_motion import EquationsOfMotion
 from eomgen.mechanics.reactions.reactions import Reactions
+from eomgen.records import dataclass
 from eomgen.symbolic.expression.graph import Scalar
 
 

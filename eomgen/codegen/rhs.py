@@ -16,6 +16,7 @@ from eomgen.codegen.spheres import spheres_of
 from eomgen.codegen.targets import ALL
 from eomgen.codegen.targets.base import RHS, Address, Functions, Target
 from eomgen.codegen.targets.c import c_together
+from eomgen.codegen.taylor import Series, series_of
 from eomgen.errors import RunFailed, ToolMissing, UsageError
 from eomgen.model.parts import Model
 from eomgen.model.values import numeric_parameters
@@ -48,6 +49,7 @@ class RightHandSide:
         self.spheres = spheres_of(program)
         self._states = len(program.moving)
         self._known: tuple[bytes, Any] = (b"none yet", None)
+        self._series: dict[int, Series | None] = {}
 
     def __call__(self, t: float, x: Any, p: Any, inputs: Sequence[float] = ()) -> np.ndarray:
         """dx at one state.
@@ -69,7 +71,7 @@ class RightHandSide:
 
     def at(self, p: Any) -> RateFunction:
         """(t, x) -> dx for given parameters and the model's own inputs: a call without checks, for integrators."""
-        return RateFunction(self._functions, self._constants(p))
+        return RateFunction(self, self._functions, self._constants(p), p)
 
     def many(self, t: Any, x: Any, p: Any, inputs: Any = ()) -> np.ndarray:
         """dx at n states: t n or one number, x n x states, p of all or n x parameters, inputs () or n x inputs."""
@@ -95,6 +97,12 @@ class RightHandSide:
         """The program in lanes."""
         return ProgramInLanes(self.program)
 
+    def series(self, order: int) -> Series | None:
+        """The power series of the motion, in C; None of what has none."""
+        if order not in self._series:
+            self._series[order] = series_of(self.program, order)
+        return self._series[order]
+
     @property
     def source(self) -> str:
         """The program's text in the target's language."""
@@ -115,10 +123,10 @@ class RightHandSide:
 
 
 class RateFunction:
-    """(t, x) -> dx; `address` is where a compiled one lies, None of others."""
+    """(t, x) -> dx of a right-hand side; `address` is where a compiled one lies, None of others."""
 
-    def __init__(self, functions: Functions, known: Any) -> None:
-        self._one, self._known = functions.one, known
+    def __init__(self, rhs: RightHandSide, functions: Functions, known: Any, p: Any) -> None:
+        self.rhs, self._one, self._known, self.p = rhs, functions.one, known, p
         self.address: Address | None = None if functions.address is None else functions.address(known)
 
     def __call__(self, t: float, x: Any) -> np.ndarray:

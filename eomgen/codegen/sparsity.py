@@ -8,9 +8,9 @@ Source: Davis, Direct Methods for Sparse Linear Systems (2006), chapters 3 and 4
 from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
-from dataclasses import dataclass
 from functools import cached_property
 
+from eomgen.records import dataclass
 from eomgen.symbolic.expression.graph import Scalar, is_zero
 
 MatrixRow = Sequence[Scalar]
@@ -34,15 +34,25 @@ class Zeros:
         """Of each column the rows of J that reach it."""
         return tuple(tuple(m for m, row in enumerate(self.reach) if j in row) for j in range(len(self.partners)))
 
+    @cached_property
+    def later(self) -> PlaceLists:
+        """Of each row of J, in the factor of J M^-1 J^T, the later rows that elimination joins it to."""
+        found = [0] * len(self.reach)
+        for rows in self.rows:
+            mask = mask_of(rows)
+            for m in rows:
+                found[m] |= _above(mask, m)
+        return _filled(found, []).partners
+
     @property
     def operations(self) -> int:
         """Of M = L D L^T, L^-1 J^T and J M^-1 J^T, of that one factored, and of two solutions and what they leave."""
         degrees = [len(partners) for partners in self.partners]
-        k = len(self.reach)
+        k, joined = len(self.reach), [len(later) for later in self.later]
         factor = sum(d * d + 2 * d for d in degrees)
         border = sum(2 * degrees[j] + 5 for row in self.reach for j in row)
-        multipliers = sum(len(rows) * (len(rows) + 2) for rows in self.rows) + sum(d * d + 3 * d for d in range(k))
-        once = sum(4 * d + 2 for d in degrees) + (k and border + 2 * k * k)
+        multipliers = sum(len(rows) * (len(rows) + 2) for rows in self.rows) + sum(d * d + 2 * d + 2 for d in joined)
+        once = sum(4 * d + 2 for d in degrees) + (k and border + sum(4 * d + 1 for d in joined))
         again = (k and 2 * sum(2 * d + 1 for d in degrees) + 4 * sum(map(len, self.reach))) + once if k else 0
         return factor + (k and border + multipliers) + once + again
 

@@ -6,13 +6,14 @@ I_1*theta'' = M,    I_1 = 1/4*m*r_s^2 + I_s + I_p*r_s^2/(4*r_p^2) + I_c*r_s^2/(4
 from __future__ import annotations
 
 from collections.abc import Collection, Iterator, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import replace
 
 from eomgen.documents.reading import free_names
 from eomgen.documents.statements import Equation, Formula, Meaning, Statement, prose
 from eomgen.mechanics.bodies.scope import Scope
 from eomgen.model.catalog import Catalog
 from eomgen.model.dimensions import inferred
+from eomgen.records import dataclass
 from eomgen.symbolic.expression.derivative import substituted
 from eomgen.symbolic.expression.expressions import parse
 from eomgen.symbolic.expression.graph import Node, Scalar

@@ -19,6 +19,7 @@ from eomgen.documents.reading import Reader
 from eomgen.documents.setting_steps import setting_steps
 from eomgen.documents.statements import Formula, Law, Step
 from eomgen.documents.text import side_text
+from eomgen.mechanics.bodies.armature import given_energy
 from eomgen.mechanics.bodies.inertia import BodyEnergy, armature_energy, body_energies, kinetic_energy
 from eomgen.mechanics.equations.equations_of_motion import EquationsOfMotion
 from eomgen.mechanics.equations.system import System
@@ -128,10 +129,10 @@ def _by_energies(equations: EquationsOfMotion, reader: Reader) -> tuple[tuple[St
     T = _whole(system, reader, energies)
     momenta = energy_steps.momenta_of(system, reader, T)
     forces = reader.short_with_symbols(generalized_forces(system.loads))
-    velocities = (motion_steps.velocities_step(system, reader, energies),)
+    velocities = (motion_steps.velocities_step(system, reader, energies),) if energies else ()
     constraints = motion_steps.constraints_step(system, reader)
     steps = (
-        motion_steps.positions_step(system, reader),
+        *((motion_steps.positions_step(system, reader),) if energies else ()),
         *((*velocities, *constraints) if system.free is None else (*constraints, *velocities)),
         energy_steps.kinetic_energy_step(system, reader, energies, T),
         energy_steps.work_step(system, reader, forces),
@@ -168,7 +169,7 @@ def _by_maggi(equations: EquationsOfMotion, free: System, reader: Reader) -> tup
 
 def _whole(system: System, reader: Reader, energies: tuple[BodyEnergy, ...]) -> Scalar:
     """T of the whole, readable where it is short enough."""
-    total: Scalar = 0
+    total = given_energy(system.scope)
     for link, energy in zip(system.motion.links, energies, strict=True):
         total = total + energy.translation + energy.rotation + armature_energy(system.motion, link)
     return reader.short((total,))[0]

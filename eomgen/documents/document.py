@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Mapping
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from typing import Any
 
 from eomgen.documents.latex_names import Notation, notation_of
@@ -13,6 +13,7 @@ from eomgen.errors import Problem
 from eomgen.model.parts import Model
 from eomgen.model.replaced import Taken
 from eomgen.proof.check import Certificate
+from eomgen.records import dataclass
 from eomgen.symbolic.expression.graph import Node, Scalar
 from eomgen.symbolic.print.symbols import Symbol
 

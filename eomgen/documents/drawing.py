@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Mapping, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from functools import cached_property
 from typing import Any
 
@@ -14,6 +14,7 @@ from eomgen.documents.letters import PlacedName
 from eomgen.documents.scene_drawing import LOAD, REACTION, draw, limits
 from eomgen.mechanics.bodies.kinematics import BodyLink
 from eomgen.mechanics.equations.system import System
+from eomgen.records import dataclass
 from eomgen.scene.making import scene_of_system
 from eomgen.scene.plane_strokes import plane_drawing
 from eomgen.scene.strokes import Drawing, SceneNumbers

@@ -3,18 +3,19 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
 
 from eomgen.documents.bounded import page
 from eomgen.documents.motion_steps import Pair, axes, component_pairs
 from eomgen.documents.reading import Reader
 from eomgen.documents.setting_steps import moved_coordinates
 from eomgen.documents.statements import Law, Name, Partial, Rate, Side, Statement, Step, prose
+from eomgen.mechanics.bodies.armature import given_energy
 from eomgen.mechanics.bodies.inertia import BodyEnergy, armature_energy, body_energies
 from eomgen.mechanics.bodies.loads import Applied, JointEffort
 from eomgen.mechanics.equations.system import System
 from eomgen.mechanics.equations.work import effort_row, force_row, per_speed
 from eomgen.model.forces.load import Couple, Load, PointForce
+from eomgen.records import dataclass
 from eomgen.symbolic.expression.derivative import gradient
 from eomgen.symbolic.expression.graph import Scalar, is_zero
 
@@ -59,14 +60,15 @@ def kinetic_energy_step(system: System, reader: Reader, energies: tuple[BodyEner
     """T of each body, then of the whole."""
     formulas = _of_bodies(system, energies)
     if len(formulas) <= 1:
-        return Step("kinetic_energy", "Kinetic energy", (prose(KINETIC, ":"), *page(reader, [(T, total)])))
+        law = prose(KINETIC if energies else "As it is given", ":")
+        return Step("kinetic_energy", "Kinetic energy", (law, *page(reader, [(T, total)])))
     statements = (prose("Of each body ", KINETIC, ":"), *page(reader, formulas), prose("Together:"))
     together = reader.as_sum(total, [x for _, x in formulas])
     return Step("kinetic_energy", "Kinetic energy", (*statements, *page(reader, [(T, together)])))
 
 
 def _of_bodies(system: System, energies: Sequence[BodyEnergy]) -> list[Pair]:
-    """The kinetic energy of each body, and of each rotor."""
+    """The kinetic energy of each body, of each rotor, and what is given as one."""
     formulas: list[Pair] = []
     for link, energy in zip(system.motion.links, energies, strict=True):
         of_body = energy.translation + energy.rotation
@@ -75,7 +77,8 @@ def _of_bodies(system: System, energies: Sequence[BodyEnergy]) -> list[Pair]:
         rotor = armature_energy(system.motion, link)
         if not is_zero(rotor):
             formulas.append((Name("T", f"{link.name}, rotor"), rotor))
-    return formulas
+    given = given_energy(system.scope)
+    return formulas if is_zero(given) else [*formulas, (Name("T", "given"), given)]
 
 
 def energies_by_parts(system: System, reader: Reader, T: Scalar) -> tuple[Scalar, Scalar]:

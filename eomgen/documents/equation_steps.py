@@ -2,8 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from collections.abc import Sequence
 
 from eomgen.documents.bounded import elsewhere
 from eomgen.documents.coefficient_names import with_coefficients_named
@@ -24,6 +23,7 @@ from eomgen.documents.setting_steps import moved_coordinates
 from eomgen.documents.statements import Equation, Formula, Meaning, Omitted, Piece, Prose, Statement, Step, prose
 from eomgen.mechanics.equations.equations_of_motion import EquationsOfMotion
 from eomgen.mechanics.equations.system import System
+from eomgen.records import dataclass
 from eomgen.symbolic.exact.book_form import book_form
 from eomgen.symbolic.exact.normal_form import common_factor, readable, simple_constants
 from eomgen.symbolic.expression.derivative import depends_on, derivative, substituted
@@ -153,14 +153,11 @@ def _shortest_sides(reader: Reader, equations: EquationsOfMotion) -> tuple[Scala
     rows = sides_of(equations, equations.M, [0] * len(equations.M), equations.forcing)
     sides = [x for row in rows for x in (row.left, row.right)]
     simple = simple_constants(sides, equations.symbols.parameters.values())
-    forms = [sides, *(_with_shorter(sides, simple, share) for share in SIMPLER)]
+    sizes = {x: (operations((x,)).total, operations((found,)).total) for x, found in simple.items()}
+    forms: list[Sequence[Scalar]] = [sides]
+    for share in SIMPLER:  # the constants that keep that share of their operations at most
+        forms.append(substituted(sides, {x: simple[x] for x, (was, now) in sizes.items() if now <= share * was}))
     return reader.with_symbols(min(forms, key=lambda form: operations(form).total))
-
-
-def _with_shorter(sides: Sequence[Scalar], simple: Mapping[Node, Scalar], share: float) -> tuple[Scalar, ...]:
-    """The sides with the constants that keep that share of their operations at most."""
-    size = {x: share * operations((x,)).total for x in simple}
-    return substituted(sides, {x: found for x, found in simple.items() if operations((found,)).total <= size[x]})
 
 
 def _named(

@@ -5,13 +5,13 @@ from __future__ import annotations
 import io
 import warnings
 from collections.abc import Callable, Iterable
-from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
 from eomgen import files
 from eomgen.documents.latex_names import Notation
 from eomgen.errors import UsageError, visible
+from eomgen.records import dataclass
 from eomgen.symbolic.numeric.tolerances import SMALLEST_PLAIN
 
 FORMATS = (".png", ".svg", ".pdf")

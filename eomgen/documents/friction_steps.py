@@ -6,7 +6,6 @@ F = -mu |N| sign(v),   M a + c = Q + sum F_r dv_r/du,   N from the balance of th
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
 
 from eomgen.documents.reaction_names import Lettered, lettered
 from eomgen.documents.reaction_values import Readings, readings_of
@@ -15,6 +14,7 @@ from eomgen.documents.statements import Formula, Omitted, Step, prose
 from eomgen.mechanics.balance.friction import Rub
 from eomgen.mechanics.equations.equations_of_motion import EquationsOfMotion
 from eomgen.mechanics.equations.system import System
+from eomgen.records import dataclass
 from eomgen.symbolic.exact.book_form import book_form
 from eomgen.symbolic.expression.derivative import substituted
 from eomgen.symbolic.expression.functions import function, sqrt

@@ -8,10 +8,10 @@ from __future__ import annotations
 
 import re
 from collections.abc import Callable
-from dataclasses import dataclass
 from itertools import pairwise
 
 from eomgen.documents.latex_names import Notation
+from eomgen.records import dataclass
 from eomgen.symbolic.expression.graph import Node, Number, Scalar
 from eomgen.symbolic.expression.node import SUMS
 from eomgen.symbolic.expression.rational import Fraction

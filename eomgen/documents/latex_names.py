@@ -4,10 +4,11 @@ from __future__ import annotations
 
 import re
 from collections.abc import Iterable, Mapping
-from dataclasses import dataclass, field, replace
+from dataclasses import field, replace
 
 from eomgen.documents.statements import Law
 from eomgen.model.parts import Model
+from eomgen.records import dataclass
 from eomgen.symbolic.print.symbols import LETTERS, Symbol, index_latex, symbol_of, upright
 
 SPECIAL = {

@@ -7,10 +7,11 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
-from dataclasses import dataclass
 from itertools import pairwise
 
 import numpy as np
+
+from eomgen.records import dataclass
 
 RINGS = (5.0, 9.0, 14.0, 20.0, 28.0, 38.0)  # from the place to the name [points]
 TURNS = tuple(math.pi * k / 8 for k in (2, 1, 14, 6, 3, 13, 10, 5, 0, 4, 12, 8, 15, 7, 11, 9))  # where one looks first
@@ -18,9 +19,6 @@ APART = 1.0  # between two names [points]
 SHARES = (0.5, 0.4, 0.6, 0.3, 0.7, 0.22, 0.78)  # of a line, where the middle of what is written along it may stand
 BESIDE = 1.5  # of that from the line [points]
 STEP = 4.0  # of the dots that stand for a line that should not be covered [points]
-
-
-PageSpot = tuple[float, float]
 
 
 @dataclass(frozen=True)

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from typing import Any
 
 import numpy as np
@@ -13,6 +13,7 @@ from eomgen.mechanics.equations.system import System
 from eomgen.mechanics.small_motions.modes import Modes
 from eomgen.mechanics.small_motions.spectrum import Mode
 from eomgen.model.findings import nearest
+from eomgen.records import dataclass
 from eomgen.scene.instant import DrawnState, frames_along
 from eomgen.scene.making import named_points, scene_of_system
 from eomgen.scene.phase_frames import phase_frames

@@ -19,6 +19,7 @@ from eomgen.documents.space_drawing import SpacePicture, sight
 from eomgen.errors import RunFailed, ToolMissing
 
 WIDTH, HIGHEST, DOTS = 4.8, 4.8, 100  # of a moving picture [inches, dots an inch]
+SPARSE = 5  # frames of which one is looked at for the shape of the page
 COLORS, NEARLY_WHITE = 64, 246  # of a GIF; what is lighter is paper
 TRAILS = ("#c77c11", "#8e44ad", "#2e7d4f", "#b03a2e")
 STRIP = 2.6  # width of a frame in a strip [inches]
@@ -57,7 +58,7 @@ class Stage:
                 self.moving.append((artist, stroke.path, stroke.filled))
 
     def _page(self, path: np.ndarray) -> np.ndarray:
-        return path if self.space is None else path @ sight().T[:, :2]
+        return path if self.space is None else path @ self.space.view.T[:, :2]
 
     @property
     def artists(self) -> list[Any]:
@@ -118,8 +119,8 @@ def _tallness(movie: Movie) -> float:
     if movie.plane:
         low, high = limits(movie.drawing)
     else:
-        cloud = np.vstack([s.path.reshape(-1, 3) for s in movie.drawing.strokes if s.role != "track"])
-        page = cloud[np.isfinite(cloud).all(axis=1)] @ sight().T[:, :2]
+        cloud = np.vstack([s.path[::SPARSE].reshape(-1, 3) for s in movie.drawing.strokes if s.role != "track"])
+        page = cloud[np.isfinite(cloud).all(axis=1)] @ sight(movie.drawing.sizes.up).T[:, :2]
         low, high = page.min(axis=0), page.max(axis=0)
     wide, high_ = (float(x) or 1.0 for x in high - low)
     return min(1.4, max(0.35, high_ / wide))

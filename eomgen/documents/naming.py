@@ -6,11 +6,12 @@ Each is defined once, right before the first formula that holds it: r1 = sqrt(..
 from __future__ import annotations
 
 from collections.abc import Callable, Container, Iterator, Mapping, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from typing import TypeGuard
 
 from eomgen.documents.reading import LONGEST, NAMED_PART, free_names
 from eomgen.documents.statements import Equation, Formula, Side, Statement, Step
+from eomgen.records import dataclass
 from eomgen.symbolic.exact.roots import is_root_of_sum
 from eomgen.symbolic.expression.derivative import substituted
 from eomgen.symbolic.expression.graph import Graph, Node, Scalar

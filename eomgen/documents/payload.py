@@ -6,7 +6,6 @@ q' = N u + nu,   M a = forcing + J^T lam,   J a + gamma = 0
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
 from typing import Any
 
 from eomgen.documents.equation_steps import multiplier_forces
@@ -14,6 +13,7 @@ from eomgen.documents.reaction_payload import reactions_payload
 from eomgen.documents.reading import TRIED, Reader, without_cases
 from eomgen.mechanics.equations.equations_of_motion import EquationsOfMotion
 from eomgen.model.values import exact_parameters
+from eomgen.records import dataclass
 from eomgen.symbolic.expression.graph import Node, Scalar
 from eomgen.symbolic.print.text import text_size, to_text, with_definitions
 

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -22,25 +21,13 @@ UNITS_OF_REACTIONS = {"N": "N", "N*m": r"N$\,$m"}
 DASHES = {"x": "-", "y": "--", "z": ":", "n": "-", "t": "-.", "s": ":", "tension": "-", "couple": "--", "drive": ":"}
 
 
-def plot_trajectory(
-    trajectory: Trajectory, path: str | Path, *, title: str = "", units: Mapping[str, Unit] | None = None
-) -> None:
-    """Draw a trajectory over time into a PNG, SVG or PDF file.
+def over_time(trajectory: Trajectory, title: str, units: Mapping[str, Unit]) -> Picture:
+    """Coordinates over time, one panel a unit, how well the energy was kept, reactions.
 
     Args:
-        trajectory: what is drawn.
-        path: where to; the ending says which.
         title: above the picture, the model's name.
         units: of the coordinates by name, in which they are drawn; absent: SI, and none is printed.
-    Raises:
-        UsageError: another ending.
-        WriteFailed: the file cannot be written; what was there before is then still there.
     """
-    over_time(trajectory, title, units or {}).save(path)
-
-
-def over_time(trajectory: Trajectory, title: str, units: Mapping[str, Unit]) -> Picture:
-    """Coordinates over time, one panel a unit, how well the energy was kept, reactions."""
     groups = by_unit(trajectory, units)
     reactions = reactions_by_unit(trajectory)
     count = len(groups) + (trajectory.energy is not None) + len(reactions)

@@ -4,16 +4,18 @@ from __future__ import annotations
 
 import re
 from collections.abc import Mapping
-from dataclasses import dataclass, field
+from dataclasses import field
 from typing import Any
 
+from eomgen.records import dataclass
+
 _RAISED = str.maketrans("-0123456789", "⁻⁰¹²³⁴⁵⁶⁷⁸⁹")
-_POWER = re.compile(r"\^\(?(-?\d+)\)?")
+_POWER = re.compile(r"\^(?:\((-?\d+)\)|(-?\d+))")
 
 
 def unit_text(unit: str) -> str:
     """A unit as it is printed: kg*m^2 as kg·m², which is read back as well."""
-    return _POWER.sub(lambda power: power[1].translate(_RAISED), unit).replace("*", "·")
+    return _POWER.sub(lambda power: (power[1] or power[2]).translate(_RAISED), unit).replace("*", "·")
 
 
 @dataclass(frozen=True)

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import re
 from collections.abc import Container, Mapping, Sequence
-from dataclasses import dataclass
 
 from eomgen.documents.statements import Meaning, Table
 from eomgen.mechanics.balance.balance import Balance
@@ -16,6 +15,7 @@ from eomgen.mechanics.reactions.reactions import Reactions
 from eomgen.model.constraints.members import trusses_of
 from eomgen.model.forces.load import PointForce
 from eomgen.model.symbols import ReactionSymbols
+from eomgen.records import dataclass
 from eomgen.symbolic.expression.graph import Node, Scalar, is_zero
 from eomgen.symbolic.expression.spatial import Vector
 from eomgen.symbolic.print.symbols import Symbol, index_latex

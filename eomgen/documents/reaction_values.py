@@ -7,7 +7,6 @@ few equations as can be, or by all of them, projected on the reaction. The short
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass
 from functools import cached_property
 
 from eomgen.documents.reading import TRIED, Reader, conditions_in, readable_value
@@ -18,6 +17,7 @@ from eomgen.mechanics.equations.explicit_accelerations import short_acceleration
 from eomgen.mechanics.equations.system import System
 from eomgen.mechanics.reactions.reactions import Reactions, reactions_of
 from eomgen.mechanics.reactions.sides import reactions_by_sides
+from eomgen.records import dataclass
 from eomgen.symbolic.exact.book_form import book_form
 from eomgen.symbolic.exact.signs import never_vanishes
 from eomgen.symbolic.expression.derivative import depends_on, substituted

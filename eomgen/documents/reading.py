@@ -3,15 +3,15 @@
 from __future__ import annotations
 
 from collections.abc import Collection, Container, Iterator, Sequence
-from dataclasses import dataclass
 from itertools import count
 
 from eomgen.documents.statements import Omitted
+from eomgen.records import dataclass
 from eomgen.symbolic.exact.book_form import BRACKETS, book_form
-from eomgen.symbolic.exact.collect import with_squares
 from eomgen.symbolic.exact.equality import equal_at_random_states
 from eomgen.symbolic.exact.normal_form import TooLarge, common_factor, normal_form
 from eomgen.symbolic.exact.roots import Rooted, readable_over, rooted
+from eomgen.symbolic.exact.squares_of_sums import with_squares
 from eomgen.symbolic.expression.derivative import substituted
 from eomgen.symbolic.expression.functions import function
 from eomgen.symbolic.expression.graph import Graph, Node, Scalar, is_zero

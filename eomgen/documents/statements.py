@@ -6,10 +6,10 @@ Plain strings are plain text in every format: each format escapes them in its ow
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
 from functools import cached_property
 
 from eomgen.documents.quantity import Quantity
+from eomgen.records import dataclass
 from eomgen.symbolic.expression.graph import Node, Scalar
 from eomgen.symbolic.expression.traversal import operations
 

@@ -15,7 +15,6 @@ Numerical calculation of the base inertial parameters of robots, 1991.
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
 from itertools import combinations_with_replacement
 from math import isqrt
 from random import Random
@@ -26,6 +25,7 @@ import numpy as np
 from eomgen.mechanics.constraints.closure import gaps_of, generic_state, movable, norms_of
 from eomgen.mechanics.equations.system import System
 from eomgen.model.values import exact_parameters
+from eomgen.records import dataclass
 from eomgen.symbolic.exact.equality import exact_state
 from eomgen.symbolic.expression.derivative import jacobian, substituted, symbols_of
 from eomgen.symbolic.expression.graph import Node, Scalar, is_zero

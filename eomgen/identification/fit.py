@@ -9,7 +9,6 @@ that fit as well and that bodies of positive density can have, near the model's 
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
@@ -24,6 +23,7 @@ from eomgen.identification.regressor import Regressor, regressor_of
 from eomgen.mechanics.equations.work import generalized_forces
 from eomgen.model.reader import ModelOrPath, model_at
 from eomgen.pipeline import derive
+from eomgen.records import dataclass
 from eomgen.symbolic.expression.derivative import substituted
 from eomgen.symbolic.numeric.evaluation import FLOAT, evaluate
 from eomgen.symbolic.numeric.tolerances import LEAST_DENSITY, RANK_NEARBY, TOWARD_THE_MODEL

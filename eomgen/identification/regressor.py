@@ -5,21 +5,21 @@
 Of each body pi holds m, the first moments m c and the inertia about its origin, in its axes; of each joint what its
 rotor, damper and spring have; and what else of the model's parameters the forces are linear in, as friction. A column
 is the generalized force of a unit of its parameter, B^T (I A + xi x* (I xi)) with A = B a + alpha, weight as an upward
-acceleration of the ground. y0 is what is known: the forces that hold no parameter of pi.
+acceleration of the ground. y0 is what is known: the forces that hold no parameter of pi,
+and the inertia of given energies.
 Source: Khalil & Dombre, Modeling, Identification and Control of Robots (2002), §9.3 and §12.3.
 """
 
 from __future__ import annotations
 
 from collections.abc import Iterator
-from dataclasses import dataclass
 from functools import cached_property
 from typing import Any
 
 from eomgen.errors import DerivationError
 from eomgen.identification.base_parameters import BaseParameters, base_of
 from eomgen.mechanics.balance.friction import rubs
-from eomgen.mechanics.bodies.armature import joint_row
+from eomgen.mechanics.bodies.armature import given_inertia, joint_row
 from eomgen.mechanics.bodies.inertia import mass_properties
 from eomgen.mechanics.equations.system import System
 from eomgen.mechanics.equations.work import force_row
@@ -27,6 +27,7 @@ from eomgen.model.forces.load import UniformField
 from eomgen.model.parts import Model
 from eomgen.model.reader import ModelOrPath
 from eomgen.pipeline import derive
+from eomgen.records import dataclass
 from eomgen.symbolic.expression.derivative import depends_on, gradient, substituted
 from eomgen.symbolic.expression.graph import Node, Scalar, is_zero
 from eomgen.symbolic.expression.node import ScalarRow
@@ -90,6 +91,17 @@ class Regressor:
         return base_of(self.system, self.parameters, self.rows)
 
     @property
+    def blocks(self) -> dict[str, tuple[ScalarRow, ...]]:
+        """Y, y0 and Y_base, the columns of Y that lead groups, as far as they hold something.
+
+        Y pi + y0 = Y_base base + y0
+        """
+        leads = [self.parameters.index(group.name) for group in self.base.groups]
+        base = tuple(tuple(row[j] for j in leads) for row in self.rows)
+        found = {"Y": self.rows, "y0": tuple((x,) for x in self.known), "Y_base": base}
+        return {name: rows for name, rows in found.items() if rows and rows[0]}
+
+    @property
     def tau(self) -> ScalarRow:
         """Y pi + y0."""
         products = ([y * x for y, x in zip(row, self.values, strict=True)] for row in self.rows)
@@ -114,7 +126,7 @@ def regressor_of(system: System) -> Regressor:
         )
     size = len(system.symbols.u)
     columns = [*_bodies(system), *_joints(system)]
-    rest = _rest(system)
+    rest = tuple(x - y for x, y in zip(_rest(system), given_inertia(system.scope), strict=True))
     columns += [(name, system.symbols.parameters[name], row) for name, row in _linear(system, rest).items()]
     known = substituted(rest, {x: 0 for name, x, _ in columns if name in system.symbols.parameters and type(x) is Node})
     names, values, by_column = zip(*columns, strict=True) if columns else ((), (), ())

@@ -2,17 +2,18 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
-from dataclasses import dataclass, replace
+from collections.abc import Callable, Mapping
+from dataclasses import replace
 from functools import cached_property
 
 from eomgen.documents.equation_steps import multiplier_forces
 from eomgen.errors import DerivationError, ExpressionError, MissingValues, ModelError
 from eomgen.judge.contributions import Contributions
 from eomgen.judge.decision import Follows, combination, is_zero_everywhere, linear_row
-from eomgen.judge.reading import MULTIPLIER, HandEquation, Reading
+from eomgen.judge.reading import MULTIPLIER, HandEquation, Reading, side_value
 from eomgen.mechanics.equations.equations_of_motion import EquationsOfMotion
 from eomgen.mechanics.equations.system import System, system_of
+from eomgen.mechanics.equilibria.search import Equilibrium, all_equilibria
 from eomgen.mechanics.first_integrals.speeds import rates_of
 from eomgen.mechanics.instant.outputs import Quantities
 from eomgen.mechanics.statics.contacts_at_start import contacts_at_start
@@ -23,6 +24,7 @@ from eomgen.questions import answers
 from eomgen.questions.answers import Answer
 from eomgen.questions.in_phase import PhaseEquations, start_of
 from eomgen.questions.motion_from_start import MotionFromStart
+from eomgen.records import dataclass
 from eomgen.simulation.configuration import has_phases
 from eomgen.symbolic.expression.derivative import depends_on, substituted
 from eomgen.symbolic.expression.expressions import Call, Expression, Reference, parse
@@ -92,6 +94,23 @@ class Case:
             return None
 
     @cached_property
+    def _equilibria(self) -> tuple[Equilibrium, ...]:
+        try:
+            return all_equilibria(self.system).found
+        except (DerivationError, MissingValues):
+            return ()
+
+    @property
+    def rests(self) -> bool:
+        """Whether a place of rest is found."""
+        return bool(self._equilibria)
+
+    @property
+    def places_of_rest(self) -> tuple[Mapping[Node, Scalar], ...]:
+        """Where all coordinates rest, as far as that has a closed form."""
+        return tuple(place.exact for place in self._equilibria if place.is_exact)
+
+    @cached_property
     def parts(self) -> Contributions:
         return Contributions(self.system, self.equations)
 
@@ -128,7 +147,13 @@ class Case:
         Raises:
             ExpressionError: an unknown name or function.
         """
-        return expression.evaluate({**self.system.scope.names, **(also or {})}, self.called)
+        return self.evaluated(expression, {**self.system.scope.names, **(also or {})}, self.called)
+
+    def evaluated(
+        self, expression: Expression, names: Mapping[str, Scalar], called: Callable[[Call], Scalar]
+    ) -> Scalar:
+        """The same, functions of the motion as they are given."""
+        return side_value(expression, names, called, lambda x: self.system.scope.with_accelerations((x,))[0])
 
     def called(self, call: Call) -> Scalar:
         """A function of the outputs, or a multiplier by its name: lam(tie, 1)."""

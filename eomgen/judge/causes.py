@@ -10,9 +10,9 @@ from eomgen.judge.decision import is_zero_everywhere
 from eomgen.judge.diagnosis import Explanation, Share
 from eomgen.judge.verdict import Cause
 from eomgen.symbolic.exact.normal_form import legible
-from eomgen.symbolic.expression.derivative import depends_on, substituted
-from eomgen.symbolic.expression.expressions import Call, Reference
-from eomgen.symbolic.expression.graph import Node, Scalar, is_zero
+from eomgen.symbolic.expression.derivative import depends_on_any, substituted
+from eomgen.symbolic.expression.expressions import Call, Expression, Reference
+from eomgen.symbolic.expression.graph import Scalar, is_zero
 from eomgen.symbolic.expression.rational import Fraction
 from eomgen.symbolic.numeric.work import Work
 from eomgen.symbolic.print.text import readable_text
@@ -76,10 +76,6 @@ def _is_coriolis(case: Case, rows: Sequence[Scalar]) -> bool:
     return bool(is_zero_everywhere(case.system, *alone).holds)
 
 
-def depends_on_any(rows: Sequence[Scalar], symbols: Sequence[Node]) -> bool:
-    return any(depends_on(x, symbols) for x in rows)
-
-
 def _term(case: Case, scalar: Scalar) -> str:
     form = legible(scalar, Work.FORMULA, case.system.scope.positive, LONG)
     text = readable_text(form) or ""
@@ -91,6 +87,9 @@ def other_calls(case: Case, call: Call) -> Iterator[Call]:
     model = case.model
     for k, argument in enumerate(call.args):
         if not isinstance(argument, Reference):
+            number = argument.literal
+            for other in (number - 1, number + 1) if isinstance(number, int) else ():
+                yield replace(call, args=(*call.args[:k], Expression.number(other), *call.args[k + 1 :]))
             continue
         tables: list[Sequence[str]] = [
             tuple(model.named_points),

@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
-from dataclasses import dataclass, replace
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import field, replace
 from functools import cached_property
 
 import numpy as np
@@ -11,14 +11,17 @@ import numpy as np
 from eomgen.errors import ExpressionError
 from eomgen.judge.case import Case
 from eomgen.judge.causes import other_calls
-from eomgen.judge.corruptions import Corruption, Corruptions, corrupted_terms, terms_of
+from eomgen.judge.corruption import Corruption
+from eomgen.judge.corruptions import Corruptions
 from eomgen.judge.decision import is_zero_everywhere
 from eomgen.judge.diagnosis import WHOLE, Explanation, Samples, Search, explained, samples_of
+from eomgen.judge.terms import corrupted_terms, terms_of
+from eomgen.records import dataclass
 from eomgen.symbolic.exact.normal_form import legible
 from eomgen.symbolic.expression.derivative import depends_on, derivative, gradient, substituted
 from eomgen.symbolic.expression.expressions import Call
 from eomgen.symbolic.expression.functions import over
-from eomgen.symbolic.expression.graph import Scalar, is_zero
+from eomgen.symbolic.expression.graph import Node, Scalar, is_zero
 from eomgen.symbolic.expression.traversal import operations
 from eomgen.symbolic.numeric.tolerances import CARRIED, COMPUTED
 from eomgen.symbolic.numeric.work import Work
@@ -40,6 +43,9 @@ class Comparison:
         what: "motion", "T", "V", "Q", or "" of other values.
         call: what the value is of.
         of: of which body, force or coordinate an energy or a force is asked; () of the whole.
+        more: what else may be wrong.
+        squared: the value is the square of what is asked: its mistakes stand under a root.
+        sizes: what roots and sizes |x| are at the start, where the author wrote x.
     """
 
     case: Case
@@ -48,14 +54,19 @@ class Comparison:
     what: str
     call: Call | None = None
     of: tuple[str, ...] = ()
+    more: tuple[Corruption, ...] = ()
+    squared: bool = False
+    sizes: Mapping[Node, Scalar] = field(default_factory=dict)
 
     @cached_property
     def corruptions(self) -> tuple[Corruption, ...]:
         """What may be wrong, the most believable first."""
         system = self.case.system
-        structural: list[Corruption] = []
+        structural: list[Corruption] = [*self.more]
         if self.what:
             structural += self._structural()
+            if self.sizes:
+                structural = [replace(x, rows=substituted(x.rows, self.sizes)) for x in structural]
         else:
             structural += self._other_arguments()
             structural += self._classes()
@@ -185,8 +196,9 @@ class Comparison:
             return None  # it is one of the equations
         return np.array(found).T.reshape(n, samples.places, -1)
 
-    def explained(self) -> list[Explanation]:
-        return explained(self.searches, self.proves)
+    def explained(self, number: int) -> list[Explanation]:
+        """The explanations by so many mistakes."""
+        return explained(self.searches, self.proves, number)
 
     def proves(self, explanation: Explanation) -> bool:
         """Whether the explanation makes the author's equation, exactly."""

@@ -9,9 +9,10 @@ every equation of motion by one and the same operator:
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass, field, replace
+from dataclasses import field, replace
 from functools import cached_property
 
+from eomgen.mechanics.bodies.armature import given_energy
 from eomgen.mechanics.bodies.inertia import armature_energy, body_energies, mass_properties
 from eomgen.mechanics.bodies.loads import Applied
 from eomgen.mechanics.equations.equations_of_motion import EquationsOfMotion
@@ -19,6 +20,7 @@ from eomgen.mechanics.equations.system import System
 from eomgen.mechanics.equations.work import drive_row, from_potential, load_row, per_speed
 from eomgen.mechanics.formulations.lagrange import free_rates
 from eomgen.model.forces.load import Couple, Load, PointForce, UniformField
+from eomgen.records import dataclass
 from eomgen.symbolic.expression.derivative import gradient, jacobian, substituted, tangent
 from eomgen.symbolic.expression.functions import inner
 from eomgen.symbolic.expression.graph import Scalar, is_zero
@@ -138,7 +140,8 @@ class Contributions:
                 if not is_zero(T):
                     name = f"the {kind} of {link.name}"
                     found.append(Contribution(name, link.name, "", T, kind=kind))
-        return found
+        given = given_energy(motion.scope)
+        return found if is_zero(given) else [*found, Contribution("the given kinetic energy", T=given, kind="given")]
 
     def _forces(self) -> list[Contribution]:
         loads, found = self.operator.base.loads, list[Contribution]()

@@ -8,7 +8,7 @@ these restrict the coordinates. What no state decides stays undecided: nothing i
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from random import Random
 from typing import Any
 
@@ -16,6 +16,7 @@ import numpy as np
 
 from eomgen.mechanics.equations.system import System
 from eomgen.model.values import exact_parameters
+from eomgen.records import dataclass
 from eomgen.symbolic.exact.equality import exact_state
 from eomgen.symbolic.expression.derivative import gradient, symbols_of
 from eomgen.symbolic.expression.graph import Node, Scalar
@@ -33,6 +34,7 @@ from eomgen.symbolic.numeric.evaluation import (
 from eomgen.symbolic.numeric.tolerances import CERTAIN_AT_50, CLOSED_AT_50, COMPUTED, ELIMINATED_AT_50, ZERO_AT_50
 
 STATES = 3
+REAL_STATES = 6  # where roots and sizes may hold on one side only: signs are shared out among so many
 TRIES = 40
 STEPS = 30  # of Newton's method to the ties
 NumberRow = list[Any]
@@ -113,14 +115,14 @@ def _combined(
     row: Sequence[Scalar], rows: Sequence[Sequence[Scalar]], states: Iterable[NumberRow], numbers: NumberKind
 ) -> Follows:
     """The same at given states; undecided where there are none."""
-    width, used = len(row), set[int]()
+    width, used, wanted = len(row), set[int](), STATES if numbers is IN_FIELD else REAL_STATES
     for seen, values in enumerate(states, start=1):
         table = [values[k : k + width] for k in range(0, len(values), width)]
         factors = factors_in(table[1:], table[0], numbers)
         if factors is None:
             return Follows(False, (), numbers.name)
         used |= {k for k, x in enumerate(factors) if not numbers.is_zero(x, 1)}
-        if seen == STATES:
+        if seen == wanted:
             return Follows(True, tuple(sorted(used)), numbers.name)
     return Follows(None)
 
@@ -179,7 +181,7 @@ def _real_states(system: System, flat: Sequence[Scalar], *, on_ties: bool) -> It
             found += 1
         except (NoValue, ZeroDivisionError):
             continue
-        if found == STATES:
+        if found == REAL_STATES:
             return
 
 
@@ -206,8 +208,9 @@ def states_of(
         for q in symbols.q:
             near = known.get(q, 0.0)
             state[q] = near + rng.uniform(-0.2, 0.2) * (1 + abs(near)) if on_ties else _either(rng, near, attempt)
-        for x in (*symbols.u, *symbols.a, *symbols.lam, *symbols.inputs.values(), *symbols.unknowns.values()):
-            state[x] = rng.uniform(0.3, 2) * rng.choice((-1, 1))
+        moving = (*symbols.u, *symbols.a, *symbols.lam, *symbols.inputs.values(), *symbols.unknowns.values())
+        for k, x in enumerate(moving):
+            state[x] = rng.uniform(0.3, 2) * _sign(k, attempt)
         state[symbols.t] = rng.uniform(0.1, 3)
         state |= {x: rng.uniform(0.3, 2) for x in others if x not in state}
         for four in system.scope.quaternions:
@@ -225,10 +228,17 @@ def states_of(
         yield exact
 
 
+def _sign(k: int, attempt: int) -> int:
+    """+1 or -1, so that among eight states any two of seven symbols have all four pairs of signs."""
+    return -1 if ((k % 7 + 1) & attempt).bit_count() % 2 else 1
+
+
 def _either(rng: Random, near: float, attempt: int) -> float:
-    """A coordinate: of the size at the start and of either sign, later near the start itself."""
+    """A coordinate: of the size at the start and of either sign, beyond a right angle, near the start itself."""
     if attempt % 4 == 3:
         return near + rng.uniform(-0.3, 0.3)
+    if attempt % 4 == 1:
+        return rng.uniform(1.7, 3.1) * max(1.0, abs(near)) * rng.choice((-1, 1))
     return rng.uniform(0.2, 1.6) * max(1.0, abs(near) / 2) * rng.choice((-1, 1))
 
 

@@ -11,16 +11,16 @@ the cheapest that leaves nothing is proven exactly, and only then told.
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Sequence
-from dataclasses import dataclass
 from functools import cached_property
 from itertools import islice
 from random import Random
 
 import numpy as np
 
-from eomgen.judge.corruptions import Corruption
+from eomgen.judge.corruption import Corruption
 from eomgen.judge.decision import states_of
 from eomgen.mechanics.equations.system import System
+from eomgen.records import dataclass
 from eomgen.symbolic.expression.functions import over
 from eomgen.symbolic.expression.graph import Node, Scalar
 from eomgen.symbolic.expression.rational import Fraction
@@ -32,7 +32,9 @@ WHOLE = "the whole"  # what is asked, as one contribution
 PLACES, VARIANTS = 5, 8  # configurations, and speeds and accelerations at each
 SIMPLE = 12  # the largest numerator and denominator of a factor that somebody wrote by mistake
 PAIRED, TRIPLED = 900, 120  # corruptions of which pairs and triples are sought
+MOST_MISTAKES = 3  # in one explanation
 PROVEN = 12  # explanations that are proven before it is given up
+SQUARED = 3.0  # how much less it is believed that a square has the wrong sign
 MIXED = 6.0  # how much less a combination of equations is believed than one of them
 UNITS = {  # factors of wrong units: as a number, as a scalar of pi, in words
     "pi/180": (np.pi / 180, (Fraction(1, 180), 1)),
@@ -104,20 +106,22 @@ class Samples:
         return flat.reshape(len(found), self.places, VARIANTS)
 
 
-def samples_of(system: System, flat: Sequence[Scalar], *, on_ties: bool = False) -> Samples | None:
+def samples_of(
+    system: System, flat: Sequence[Scalar], *, on_ties: bool = False, places: int = PLACES
+) -> Samples | None:
     """States at which the scalars can be compared; on the ties where these restrict coordinates or speeds."""
     rng = Random(3)
     rows: list[dict[Node, float]] = []
-    places = 0
-    for state in islice(states_of(system, flat, on_ties=on_ties, seed=5), PLACES):
+    found = 0
+    for state in islice(states_of(system, flat, on_ties=on_ties, seed=5), places):
         plain = {x: float(value) for x, value in state.items()}
         variants = [_variant(system, plain, rng, on_ties) for _ in range(VARIANTS)]
         rows += variants
-        places += 1
-    if not places:
+        found += 1
+    if not found:
         return None
     names = rows[0].keys()
-    return Samples({x: np.array([row[x] for row in rows]) for x in names}, places)
+    return Samples({x: np.array([row[x] for row in rows]) for x in names}, found)
 
 
 def _variant(system: System, state: dict[Node, float], rng: Random, on_ties: bool) -> dict[Node, float]:
@@ -146,6 +150,7 @@ class Search:
         corruptions: what they are.
         row: whose equation E is.
         true: where D is None what the model says, of which something must be left.
+        resisting: of E and of each C what must not vanish together.
     """
 
     D: np.ndarray | None
@@ -154,6 +159,7 @@ class Search:
     corruptions: Sequence[Corruption]
     row: int
     true: np.ndarray | None = None
+    resisting: tuple[np.ndarray, np.ndarray] | None = None
 
     def explanations(self, number: int) -> list[Explanation]:
         """Those of so many corruptions, one to three."""
@@ -240,6 +246,11 @@ class Search:
             shares.append(share)
         if not self._is_there([share.corruption.kind != "extra_term" for share in shares], C, y):
             return None
+        if self.resisting is not None:
+            whole, each = self.resisting
+            left = whole + np.tensordot(y, each[list(chosen)], axes=1)
+            if not np.all(np.abs(left) > CARRIED * np.abs(whole)):
+                return None
         scaled, dear = self._scale(C, y)
         cost = sum(map(_cost, shares)) + dear + (MIXED if self.row < 0 else 0)
         return Explanation(tuple(shares), self.row, cost, scaled)
@@ -298,19 +309,17 @@ def _cost(share: Share) -> float:
     if not share.corruption.open:
         return cost
     x = share.factor
-    if x in (0, -1):
+    if x == 0:
         return cost
+    if x < 0:
+        return cost + (SQUARED if share.corruption.squares else 0.0 if x == -1 else 4.5)
     return cost + (1.5 if x in (2, Fraction(1, 2)) else 2.5 if x in (3, 4, Fraction(1, 3), Fraction(1, 4)) else 4.5)
 
 
-def explained(searches: Sequence[Search], proves: Callable[[Explanation], bool]) -> list[Explanation]:
-    """The cheapest explanation that is proven, then others of the same number of mistakes; [] where none was found."""
-    for number in (1, 2, 3):
-        found = [x for search in searches for x in search.explanations(number)]
-        if not found:
-            continue
-        found.sort(key=lambda x: x.cost)
-        for k, each in enumerate(found[:PROVEN]):
-            if proves(each):
-                return [each, *found[:k], *found[k + 1 :]]
+def explained(searches: Sequence[Search], proves: Callable[[Explanation], bool], number: int) -> list[Explanation]:
+    """The cheapest explanation by so many mistakes that is proven, then the others; [] where none was found."""
+    found = sorted((x for search in searches for x in search.explanations(number)), key=lambda x: x.cost)
+    for k, each in enumerate(found[:PROVEN]):
+        if proves(each):
+            return [each, *found[:k], *found[k + 1 :]]
     return []

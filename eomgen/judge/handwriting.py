@@ -9,14 +9,16 @@ from __future__ import annotations
 
 import re
 import unicodedata
-from collections.abc import Iterable, Mapping
-from dataclasses import dataclass
-from functools import cached_property
+from contextlib import suppress
 
 from eomgen.errors import ExpressionError
+from eomgen.judge.alphabet import Vocabulary, plain_forms, spelled_command
+from eomgen.records import dataclass
 from eomgen.symbolic.expression.functions import NAMES
-from eomgen.symbolic.expression.habits import spelled
+from eomgen.symbolic.expression.habits import RATES, called_rate, meant_name, spelled
+from eomgen.symbolic.expression.units import parse_unit
 
+RATE = "rate_of"  # d/dt of what stands in parentheses
 DEEPEST = 64  # groups inside one another, as of the grammar
 LONGEST = 20_000  # characters: LaTeX is longer than what it says
 _FUNCTIONS = {**{name: name for name in NAMES}, "arcsin": "asin", "arccos": "acos", "arctan": "atan", "ln": "log"}
@@ -29,20 +31,6 @@ _WRAPS = frozenset("mathrm text mathit mathbf textrm textit boldsymbol mbox math
 _FRACTIONS = ("frac", "dfrac", "tfrac", "cfrac")
 _SIGNS = {"cdot": "*", "times": "*", "ast": "*", "div": "/", "approx": "=", "equiv": "=", "lbrace": "(", "rbrace": ")"}
 _SIGNS |= {"{": "(", "}": ")", "lvert": "|", "rvert": "|", "vert": "|", "lbrack": "(", "rbrack": ")"}
-_ALIKE = {"−": "-", "–": "-", "·": "*", "⋅": "*", "×": "*", "∙": "*", "÷": "/", "[": "(", "]": ")", "′": "'", "’": "'"}
-_ALIKE |= {
-    "″": "''",
-    '"': "''",
-    "“": "''",
-    "”": "''",
-    "½": "(1/2)",
-    "¼": "(1/4)",
-    "¾": "(3/4)",
-    "≈": "=",
-    "≡": "=",
-    "ʹ": "'",
-    "\u00a0": " ",
-}
 _RAISED = dict(zip("⁰¹²³⁴⁵⁶⁷⁸⁹", "0123456789", strict=True))
 _LOWERED = dict(zip("₀₁₂₃₄₅₆₇₈₉", "0123456789", strict=True))
 _DOTS = {"\u0307": 1, "\u0308": 2}
@@ -55,53 +43,15 @@ _DIFFERENTIAL = re.compile(
     r"\s*(?:\\(?:mathrm|text|operatorname)\s*\{\s*d\s*\}|d)\s*(?:\^\s*\{?\s*(\d)\s*\}?)?\s*(.*)", re.S
 )
 _BY_TIME = re.compile(r"\s*(?:\\(?:mathrm|text)\s*\{\s*d\s*\}|d)\s*t\s*(?:\^\s*\{?\s*(\d)\s*\}?)?\s*")
+_PLAIN_RATE = re.compile(r"d\s*/\s*dt\s*(?=[(\[{])")
+_WHOLE = re.compile(r"\s*(?:\\(?:left|[bB]igg?l?)\s*)?[(\[{]|\s*\\left\s*\\lbrace")
+_UNIT = re.compile(r"\s*([A-Za-zµ]+)(?![\w(])")
+_INDEX_GROUP = re.compile(r"\{([^{}]*)\}")
 _OF_TIME = re.compile(r"\s*\{?\s*(?:\\left)?\s*\(\s*t\s*(?:\\right)?\s*\)\s*\}?")
 _REFERENCES = re.compile(r"\(\s*[\w.]+(?:\s*[,-]\s*[\w.]+)*\s*\)")
 _ORNAMENT = re.compile(
     r"\$\$?|\\\[|\\\]|\\\(|\\\)|\\(?:begin|end)\s*\{(?:equation|align|aligned|gather|split)\*?\}|(?<!\\)&|\\\\\s*$"
 )
-
-
-@dataclass(frozen=True)
-class Vocabulary:
-    """What the names in an equation can stand for.
-
-    Args:
-        names: of the model, without primes.
-        functions: that can be asked of it: speed, T, Q.
-        set_as: how names are set in LaTeX, by name.
-    """
-
-    names: frozenset[str]
-    functions: frozenset[str]
-    set_as: Mapping[str, str]
-
-    @cached_property
-    def _by_key(self) -> dict[str, str]:
-        found: dict[str, str] = {}
-        for name in sorted(self.names):
-            found.setdefault(_key(name), name)
-        for name, latex in self.set_as.items():
-            found.setdefault(_key(latex), name)
-        return found
-
-    def known(self, letters: str) -> str | None:
-        """The model's name for letters with their index, or None."""
-        if letters in self.names:
-            return letters
-        return self._by_key.get(_key(letters))
-
-    def cut(self, word: str) -> list[str] | None:
-        """A word taken apart into names of the model, the fewest: mgl is m, g, l; None where it cannot be."""
-        best: list[list[str] | None] = [[], *([None] * len(word))]
-        for end in range(1, len(word) + 1):
-            for start in range(end):
-                before, name = best[start], self.known(word[start:end])
-                if before is not None and name is not None and not word[start].isdigit():
-                    now = best[end]
-                    if now is None or len(before) + 1 < len(now):
-                        best[end] = [*before, name]
-        return best[-1]
 
 
 @dataclass(frozen=True)
@@ -133,7 +83,7 @@ def transcript(written: str, known: Vocabulary) -> Transcript:
     """
     if len(written) > LONGEST:
         raise ExpressionError(f"the equation is longer than {LONGEST} characters", LONGEST)
-    plain, places = _plain(written)
+    plain, places = plain_forms(written)
     pieces = _Reader(plain, known).whole()
     text, columns = "", list[int]()
     before: Scrap | None = None
@@ -151,25 +101,9 @@ def transcript(written: str, known: Vocabulary) -> Transcript:
     return Transcript(text, tuple(columns))
 
 
-def _plain(written: str) -> tuple[str, list[int]]:
-    """The characters in their plain forms, dots behind their letters; and where each was written."""
-    found, places = "", list[int]()
-    for at, c in enumerate(written):
-        plain = _ALIKE.get(c) or unicodedata.normalize("NFD", c)
-        found += plain
-        places += [at] * len(plain)
-    return found, places or [0]
-
-
 def _side_by_side(a: Scrap, b: Scrap) -> bool:
     """Whether a product is meant between the two."""
     return a.kind in ("number", "name", "call", "close") and b.kind in ("number", "name", "call", "function", "open")
-
-
-def _key(letters: str) -> str:
-    """What of a name is compared: its letters and digits, Greek ones by their names."""
-    plain = re.sub(r"\\(?:mathrm|mathit|text|mathbf|mathsf|mathcal|left|right)\b", "", letters)
-    return "".join(spelled(c) or c for c in plain if c.isalnum()).replace("varphi", "phi").replace("vartheta", "theta")
 
 
 class _Reader:
@@ -203,6 +137,9 @@ class _Reader:
             self.command()
         elif found := _NUMBER.match(self.text, self.at):
             self.number(found.group())
+        elif (rate := _PLAIN_RATE.match(self.text, self.at)) and self.known.known("d") is None:
+            self.at = rate.end()
+            self.function(RATE, rate.start())
         elif _PIECE.match(c):
             self.word()
         elif c == "{":
@@ -230,14 +167,18 @@ class _Reader:
         elif c in ")":
             self.put(")", "close")
             self.at += 1
-        elif c in "+-*/=,":
+        elif c in "+-*/=," and not self.at_end():
             twice = self.text.startswith("**", self.at)
             self.put("^" if twice else c, "sign")
             self.at += 2 if twice else 1
-        elif c in ".;" and not self.text[self.at + 1 :].strip():
+        elif c in ".;," and self.at_end():
             self.at += 1  # the end of a sentence
         else:
             raise self.strange(f"unexpected character {c!r}")
+
+    def at_end(self) -> bool:
+        """Whether a sign of punctuation ends all that was written."""
+        return self.text[self.at] in ".;," and not _ORNAMENT.sub("", self.text[self.at + 1 :]).strip()
 
     def strange(self, what: str, mend: str = "", length: int = 1, at: int | None = None) -> ExpressionError:
         return ExpressionError(what, self.offset + (self.at if at is None else at), mend, length)
@@ -245,10 +186,13 @@ class _Reader:
     def number(self, text: str) -> None:
         self.put(text, "number")
         self.at += len(text)
-        unit = re.compile(r"\s*(?:deg|degrees)\b").match(self.text, self.at)
-        if unit and self.known.known("deg") is None:
+        unit = _UNIT.match(self.text, self.at)
+        if unit is None or self.known.known(unit[1]) is not None or unit[1] in _FUNCTIONS or self.known.cut(unit[1]):
+            return
+        with suppress(ExpressionError):
+            meant = parse_unit({"degrees": "deg"}.get(unit[1], unit[1]))
             self.put("*", "sign")
-            self.put("(pi/180)", "name")
+            self.put(f"({meant.factor}{'*pi' if meant.pi_power else ''})", "name")
             self.at = unit.end()
 
     def group(self) -> tuple[str, int]:
@@ -324,6 +268,8 @@ class _Reader:
             dots = int(by_time[1] or 1)
             if rate[2].strip():
                 self.out += _Reader(rate[2], self.known, self.offset + above_at, self.depth + 1).one_name(dots)
+            elif dots == 1 and _WHOLE.match(self.text, self.at):
+                self.function(RATE, start)
             else:
                 self.skip_space()
                 rest = _Reader(self.text[self.at :], self.known, self.offset + self.at, self.depth + 1)
@@ -501,11 +447,13 @@ class _Reader:
         dots += self.dots()
         index = index or self.index()
         found = self.known.known(letters + index)
+        if found is None and letters == "ell":
+            found = self.known.known("l" + index)
         if found is None:
             index = re.sub(r"\W", "_", index)
             found = letters + (index if index[:1].isdigit() or not index else f"_{index}")
         of_time = _OF_TIME.match(self.text, self.at)
-        if of_time and found not in self.known.functions:
+        if of_time and (found in self.known.names or found not in self.known.functions):
             self.at = of_time.end()
         self.put(found + "'" * dots, "name", start)
 
@@ -574,7 +522,12 @@ class _Reader:
         word, start = unicodedata.normalize("NFC", found.group()), self.at
         bare = word.split(".", maxsplit=1)[0]
         behind = self.text[found.end() :].lstrip()
-        if bare == word and behind.startswith("(") and not self._is_product(word, found.end()):
+        if word in RATES and (called := called_rate(self.text[start:])):
+            self.at = start + called[2]
+            self.put(f"{self.known.known(called[0]) or called[0]}{chr(39) * called[1]}", "name", start)
+            return
+        of_time = _OF_TIME.match(self.text, found.end()) and self.known.known(bare)
+        if bare == word and behind.startswith("(") and not of_time and not self._is_product(word, found.end()):
             if word in _FUNCTIONS:
                 self.at = found.end()
                 self.put(_FUNCTIONS[word], "function", start)
@@ -586,6 +539,8 @@ class _Reader:
                 self.at = arguments.end()
                 self.put(word + re.sub(r"\s", "", arguments.group()), "call", start)
                 return
+        if self._several(bare, start):
+            return
         single = _PIECE.match(self.text[self.at + 1 : self.at + 2]) is None
         if self.known.known(bare) is not None or "_" in bare or (single and not bare[1:].isdigit()):
             self.named(bare, start)
@@ -596,6 +551,11 @@ class _Reader:
             return
         parts = self.known.cut(bare)
         if parts is None:
+            function = next((x for x in sorted(_FUNCTIONS, key=len, reverse=True) if bare.startswith(x)), None)
+            if function is not None and self.known.cut(bare[len(function) :]):  # sinθ
+                self.at = start + len(function)
+                self.function(_FUNCTIONS[function], start)
+                return
             self.named(bare, start)
             return
         for part in parts[:-1]:
@@ -609,6 +569,21 @@ class _Reader:
             return False
         return not (word in self.known.functions and _REFERENCES.match(self.text, end))
 
+    def _several(self, bare: str, start: int) -> bool:
+        """Names side by side of which some have an index: l_1l_2, gl_{1}, k_ta; whether they are that."""
+        group = _INDEX_GROUP.match(self.text, start + len(bare)) if bare.endswith("_") else None
+        whole = bare + re.sub(r"\W", "", group[1]) if group else bare
+        if "_" not in whole or self.known.known(whole) is not None:
+            return False
+        parts = self.known.cut(whole)
+        if parts is None or len(parts) < 2:
+            return False
+        for part in parts[:-1]:
+            self.put(part, "name", start)
+        self.at = group.end() if group else start + len(bare)
+        self.after(parts[-1], start)
+        return True
+
     def named(self, bare: str, start: int) -> None:
         """A name that stands as one word."""
         base, _, index = bare.partition("_")
@@ -617,7 +592,8 @@ class _Reader:
             self.at -= 1
             self.after(base, start)
             return
-        found = self.known.known(bare) or self.known.known(base + index) or ("".join(spelled(c) or c for c in bare))
+        found = self.known.known(bare) or self.known.known(base + index)
+        found = found or meant_name(bare, self.known.rates) or "".join(spelled(c) or c for c in bare)
         self.after(found, start)
 
     def after(self, name: str, start: int) -> None:
@@ -628,7 +604,7 @@ class _Reader:
         if index:
             name = self.known.known(name + index) or name + (index if index[0].isdigit() else f"_{index}")
         of_time = _OF_TIME.match(self.text, self.at)
-        if of_time and name not in self.known.functions:
+        if of_time and (name in self.known.names or name not in self.known.functions):
             self.at = of_time.end()
         self.put(name + "'" * dots, "name", start)
 
@@ -641,21 +617,3 @@ def _closes_last(pieces: list[Scrap]) -> bool:
         if level == 0:
             return k == len(pieces) - 1
     return False
-
-
-def spelled_command(command: str) -> str:
-    """A Greek letter's command by its name (\\varphi is phi), "" of others."""
-    bare = command.removeprefix("var") if command.startswith("var") else command
-    try:
-        kind = "CAPITAL" if bare[:1].isupper() else "SMALL"
-        name = {"lambda": "LAMDA", "Lambda": "LAMDA"}.get(bare, bare.upper())
-        unicodedata.lookup(f"GREEK {kind} LETTER {name}")
-    except KeyError:
-        return ""
-    return bare
-
-
-def vocabulary(names: Iterable[str], functions: Iterable[str], set_as: Mapping[str, str]) -> Vocabulary:
-    """Names without their primes, functions, and how names are set."""
-    bare = frozenset(name.rstrip("'") for name in names)
-    return Vocabulary(bare, frozenset(functions), set_as)

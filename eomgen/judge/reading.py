@@ -7,24 +7,29 @@ T(rod) and the letters of reactions (B_x, N_floor) stand for functions of the ou
 from __future__ import annotations
 
 import re
-from dataclasses import dataclass, replace
+from collections.abc import Callable, Iterator, Mapping
+from contextlib import suppress
+from dataclasses import replace
 from functools import cached_property
 from typing import Any
 
 from eomgen.documents.latex_names import notation_of
 from eomgen.documents.reaction_names import reaction_name
 from eomgen.errors import DerivationError, ExpressionError
-from eomgen.judge.handwriting import Transcript, Vocabulary, transcript, vocabulary
+from eomgen.judge.alphabet import Vocabulary, vocabulary
+from eomgen.judge.handwriting import RATE, Transcript, transcript
 from eomgen.mechanics.balance.balance import balance_of
 from eomgen.mechanics.balance.named_reactions import named_reactions
 from eomgen.mechanics.equations.system import System
 from eomgen.model.outputs import FUNCTIONS
+from eomgen.records import dataclass
 from eomgen.symbolic.expression.expressions import Call, Expression, Reference, parse, parse_equation
 from eomgen.symbolic.expression.formula import Instruction
+from eomgen.symbolic.expression.graph import Scalar
 
 LETTERS = {"T": "kinetic_energy", "V": "potential_energy", "Q": "generalized_force", "p": "momentum"}
 """letter -> the function that it stands for"""
-_FREQUENCY = re.compile("omega_?([0-9n])")
+_FREQUENCY = re.compile("omega(?:_?([0-9n]))?")
 MULTIPLIER = "lam"  # of a closing row: lam(tie, 1)
 
 
@@ -51,7 +56,43 @@ class HandEquation:
 
     @property
     def calls(self) -> tuple[Call, ...]:
-        return (*self.left.calls, *self.right.calls)
+        """The functions of the motion in it, those whose rate is taken too."""
+        return (*calls_in(self.left), *calls_in(self.right))
+
+    @property
+    def takes_rates(self) -> bool:
+        """Whether a rate of more than a coordinate stands in it."""
+        return any(call.name == RATE for call in (*self.left.calls, *self.right.calls))
+
+
+def calls_in(side: Expression) -> Iterator[Call]:
+    for call in side.calls:
+        if call.name != RATE:
+            yield call
+        for argument in call.args if call.name == RATE else ():
+            yield from calls_in(argument) if isinstance(argument, Expression) else ()
+
+
+def side_value(
+    side: Expression, names: Mapping[str, Scalar], called: Callable[[Call], Scalar], rate: Callable[[Scalar], Scalar]
+) -> Scalar:
+    """A side over scalars; d/dt of a formula is taken of its value.
+
+    Raises:
+        ExpressionError: an unknown name or function.
+    """
+
+    def value(call: Call) -> Scalar:
+        if call.name != RATE:
+            return called(call)
+        if len(call.args) != 1:
+            raise ExpressionError("d/dt is of one formula", max(call.column, 0))
+        (argument,) = call.args
+        if not isinstance(argument, Expression):
+            argument = parse(argument.name)
+        return rate(argument.evaluate(names, value))
+
+    return side.evaluate(names, value)
 
 
 @dataclass(frozen=True)
@@ -71,23 +112,41 @@ class Reading:
         return vocabulary(names, (*FUNCTIONS, *letters, MULTIPLIER), set_as)
 
     @cached_property
-    def letters(self) -> dict[str, Call]:
-        """Single letters that stand for functions: T, V, and those of the reactions, B_x."""
-        found = {letter: Call(LETTERS[letter], ()) for letter in ("T", "V")}
-        try:
-            named = named_reactions(balance_of(self.system))
-        except DerivationError:
-            named = ()
-        for each in named:
-            function, _, arguments = each.name.removesuffix(")").partition("(")
-            label = function.removeprefix("reaction_")
-            if "," not in arguments and not label.startswith("couple_"):
-                letter = reaction_name(label, each.owner)
-                found.setdefault(letter, Call(function, (Reference(arguments),)))
+    def letters(self) -> dict[str, Expression]:
+        """Names that stand for formulas: outputs of the file, T, V, L, letters of reactions and inertias, B_x, J_O."""
+        model, own = self.system.scope.model, self.system.scope.names
+        found = {name: output.value for name, output in model.outputs.items() if output.at is None and not output.from_}
+        T, V = (_called(LETTERS[letter]) for letter in ("T", "V"))
+        for letter, formula in (("T", T), ("V", V), ("L", T - V)):
+            found.setdefault(letter, formula)
+        for letter, call in self._reactions():
+            found.setdefault(letter, _called(call.name, *call.args))
+        normal = [letter for letter in found if letter in {f"N_{tie}" for tie in model.constraints}]
+        if len(normal) == 1:
+            found.setdefault("N", found[normal[0]])
+        points = model.named_points if model.space == "plane" and model.bodies else ()
+        found |= {f"{letter}_{x}": _called("inertia_point", Reference(x)) for x in points for letter in "JI"} | found
+        return {letter: formula for letter, formula in found.items() if letter not in own}
+
+    def _reactions(self) -> Iterator[tuple[str, Call]]:
+        """Letters of reactions and multipliers, and the function that each stands for."""
+        model = self.system.scope.model
+        with suppress(DerivationError):
+            for each in named_reactions(balance_of(self.system)):
+                function, _, arguments = each.name.removesuffix(")").partition("(")
+                label = function.removeprefix("reaction_")
+                if "," not in arguments and not label.startswith("couple_"):
+                    yield reaction_name(label, each.owner), Call(function, (Reference(arguments),))
+        joints = {name: body.joint.symbol for name, body in model.bodies.items() if body.joint is not None}
+        owners = {**dict.fromkeys(model.constraints), **joints}
+        for name, symbol in owners.items():
+            letter = name if symbol is None or symbol.letter is None else symbol.letter.text
+            for axis in ("x", "y", "z") if model.space == "space" else ("x", "y"):
+                yield f"{letter}_{axis}", Call(f"reaction_{axis}", (Reference(name),))
+            yield f"M_{letter}", Call("reaction_couple", (Reference(name),))
         for row in self.system.ties.closing:
             multiplier = Call(MULTIPLIER, (Reference(row.tie), Expression.number(row.number)))
-            found[f"lambda_{row.tie}_{row.number}"] = multiplier
-        return {letter: call for letter, call in found.items() if letter not in self.system.scope.names}
+            yield f"lambda_{row.tie}_{row.number}", multiplier
 
     def read(self, given: Any) -> HandEquation:
         """Both sides of an equation.
@@ -98,17 +157,29 @@ class Reading:
         if not isinstance(given, str):
             given = text_of_sympy(given)
         left, right = self._sides(given)
-        left = self._frequency(left, right)
+        left = self._alone(left, right)
         return HandEquation(given, self._meant(left), self._meant(right))
 
-    def _frequency(self, left: Expression, right: Expression) -> Expression:
-        """omega_0, omega_1, ... alone on the left, which the model does not have: a frequency of small motions."""
-        found = _FREQUENCY.fullmatch(left.text.strip())
+    def _alone(self, left: Expression, right: Expression) -> Expression:
+        """A letter alone on the left that the model does not have.
+
+        omega_0 or its square is a frequency of small motions, v and a rate and acceleration of the one free coordinate.
+        """
+        names = self.system.scope.names
         moving = any("'" in name or name in self.system.scope.model.coordinates for name in right.names)
-        if found is None or moving or left.names & self.system.scope.names.keys():
+        letter = left.code[0][1] if left.code and left.code[0][0] == "name" else ""
+        rest = left.code[1:]
+        if letter in names or letter in self.letters or rest not in ((), (("number", 2), ("^", None))):
             return left
-        number = Expression.number(int(found[1]) if found[1].isdigit() and found[1] != "0" else 1)
-        return Expression(left.text, (("call", Call("frequency", (number,))),), (0,))
+        found = _FREQUENCY.fullmatch(letter)
+        if found is not None and not moving:
+            number = Expression.number(int(found[1]) if (found[1] or "").isdigit() and found[1] != "0" else 1)
+            return Expression(left.text, (("call", Call("frequency", (number,))), *rest), (0, *(-1 for _ in rest)))
+        free = [q for q, x in self.system.scope.model.coordinates.items() if not x.driven]
+        dots = {"v": "'", "a": "''"}.get(letter)
+        if dots is None or len(free) != 1 or free[0] + dots not in names:
+            return left
+        return Expression(left.text, (("name", free[0] + dots), *rest), (0, *(-1 for _ in rest)))
 
     def _sides(self, given: str) -> tuple[Expression, Expression]:
         """The sides, by the grammar where that knows all names, else as handwriting."""
@@ -116,7 +187,9 @@ class Reading:
         try:
             found = parse_equation(given)
             if all(self._is_known(name) for side in found for name in side.names) and all(
-                call.name in self.vocabulary.functions for side in found for call in side.calls
+                call.name in self.vocabulary.functions and not self._is_of_time(call)
+                for side in found
+                for call in side.calls
             ):
                 return found
         except ExpressionError as error:
@@ -148,6 +221,10 @@ class Reading:
         what = "two equality signs" if len(parts) > 2 else "a side is missing beside '='"
         raise ExpressionError(what, written.column(at), "write one equation, left = right")
 
+    def _is_of_time(self, call: Call) -> bool:
+        """x(t): a coordinate, and no function of a point."""
+        return call.name in self.system.scope.names and call.args == (Reference("t"),)
+
     def _is_known(self, name: str) -> bool:
         return name.rstrip("'") in self.vocabulary.names
 
@@ -157,15 +234,21 @@ class Reading:
         code: list[Instruction] = []
         for kind, what in side.code:
             if kind == "name" and what not in own and what in self.letters:
-                code.append(("call", self.letters[what]))
-            elif kind == "name" and what == "L" and what not in own:
-                code += [("call", self.letters["T"]), ("call", self.letters["V"]), ("-", None)]
+                code += self.letters[what].code
+            elif kind == "call" and what.name == RATE:
+                args = tuple(self._meant(x if isinstance(x, Expression) else parse(x.name)) for x in what.args)
+                code.append(("call", replace(what, args=args)))
             elif kind == "call" and what.name in LETTERS:
                 code.append(("call", replace(what, name=LETTERS[what.name])))
             else:
                 code.append((kind, what))
         columns = side.columns if len(code) == len(side.code) else (-1,) * len(code)
         return Expression(side.text, tuple(code), columns)
+
+
+def _called(name: str, *args: Any) -> Expression:
+    call = Call(name, tuple(args))
+    return Expression(str(call), (("call", call),), (0,))
 
 
 def text_of_sympy(given: Any) -> str:

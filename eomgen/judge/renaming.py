@@ -3,15 +3,16 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from itertools import islice, permutations, product
 from typing import TYPE_CHECKING
 
 from eomgen.judge.reading import HandEquation
 from eomgen.model.catalog import Catalog
 from eomgen.model.dimensions import inferred
+from eomgen.records import dataclass
 from eomgen.symbolic.expression.functions import over
-from eomgen.symbolic.expression.graph import Node, Scalar
+from eomgen.symbolic.expression.graph import Node, Scalar, is_zero
 from eomgen.symbolic.print.text import to_text
 
 if TYPE_CHECKING:
@@ -103,6 +104,11 @@ def _turns(case: Case, name: str) -> Iterator[tuple[int, Scalar]]:
                     yield sign, shift
         return
     yield -1, 0
+    for place in case.places_of_rest:
+        rest = next((x for q, x in place.items() if q.name == name), 0)
+        if not is_zero(rest):
+            yield 1, -rest
+            yield -1, rest
     for parameter, node in case.system.symbols.parameters.items():
         if _dimension(case, parameter) == _dimension(case, name):
             for sign in (1, -1):

@@ -3,11 +3,12 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass, field
+from dataclasses import field
 from typing import Any
 
 from eomgen.documents.document import Document
 from eomgen.documents.statements import Lines, Step
+from eomgen.records import dataclass
 
 RIGHT, WRONG, UNDECIDED = "right", "wrong", "undecided"
 EXIT_CODES = {RIGHT: 0, WRONG: 5, UNDECIDED: 3}

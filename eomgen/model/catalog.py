@@ -1,7 +1,6 @@
 """Model -> Catalog: the names that it declares, and every value with the rule that it was read by."""
 
 from collections.abc import Iterator
-from dataclasses import dataclass
 from functools import cached_property
 from typing import Any
 
@@ -9,6 +8,7 @@ from eomgen.model.fields import CONFIGURATION, MOTION, PARAMETERS, RATES, SPEEDS
 from eomgen.model.findings import Finding
 from eomgen.model.part import leaves_of
 from eomgen.model.positions import DocumentPath
+from eomgen.records import dataclass
 from eomgen.symbolic.expression.expressions import Expression
 
 SYMBOL_TABLES = ("parameters", "coordinates", "speeds", "inputs", "unknowns")

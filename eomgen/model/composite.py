@@ -8,12 +8,12 @@ with s_k = -1 for a hole, which is taken to lie wholly inside the other pieces.
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
 from typing import Any
 
 from eomgen.model.joints.base import Z, oriented, unit, vector
 from eomgen.model.kinds import ValueOf
 from eomgen.model.shapes import MassProperties
+from eomgen.records import dataclass
 from eomgen.symbolic.expression.functions import cos, over, sin
 from eomgen.symbolic.expression.graph import is_zero
 from eomgen.symbolic.expression.spatial import (

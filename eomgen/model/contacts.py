@@ -3,11 +3,11 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
-from dataclasses import dataclass
 from typing import Any
 
 from eomgen.model.friction import Resistance
 from eomgen.model.parts import Body, Model
+from eomgen.records import dataclass
 from eomgen.symbolic.expression.expressions import Expression
 
 

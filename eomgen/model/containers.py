@@ -1,13 +1,13 @@
 """Rules made of rules: a list of things, a table of named things, one thing or another."""
 
 from collections.abc import Iterator, Mapping
-from dataclasses import dataclass
 from typing import Any
 
 from eomgen.model.fields import Leaf
 from eomgen.model.findings import Decimal, Finding, shown
 from eomgen.model.positions import DocumentPath
 from eomgen.model.table import Table
+from eomgen.records import dataclass
 
 
 @dataclass(frozen=True)

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
-from dataclasses import dataclass
 from functools import cache
 from typing import Any
 
@@ -12,6 +11,7 @@ from eomgen.model.fields import Leaf, WrittenEquation, named
 from eomgen.model.findings import Finding, whereabouts
 from eomgen.model.outputs import FUNCTIONS
 from eomgen.model.outputs.base import formula_at
+from eomgen.records import dataclass
 from eomgen.symbolic.expression.dimensions import (
     NUMBER,
     SECOND,
@@ -70,8 +70,9 @@ class Names:
     def of(self, name: str, also: dict[str, Dimension] | None = None) -> Dimension:
         """Of a name, a prime for each derivative by time."""
         base = name.rstrip("'")
-        known = {**self._known, **(also or {})}.get(base, Inference.named(base))
-        return known.times(SECOND, len(base) - len(name))
+        known = also[base] if also and base in also else self._known.get(base)
+        found = Inference.named(base) if known is None else known
+        return found if base == name else found.times(SECOND, len(base) - len(name))
 
     def of_call(self, call: Call) -> Dimension | None:
         """Of a function of the motion; None where a tie's gap decides it, or it is none."""
@@ -95,7 +96,7 @@ class Names:
 
     def is_declared(self, name: str) -> bool:
         """By the file itself: what a joint implies of its speeds may hide a factor 1: `couple = ["-w1", 0, 0]`."""
-        return name.rstrip("'") in {*self.declared, *TIME}
+        return (base := name.rstrip("'")) in self.declared or base in TIME
 
 
 def inferred(catalog: Catalog) -> Inferred:
@@ -150,7 +151,7 @@ def _clashes(catalog: Catalog, leaf: Leaf, names: Names, *, strict: bool) -> Ite
         second = walk()
         second.of(value.right, value.text, left)
         yield from second.clashes
-    elif isinstance(value, Expression):
+    elif isinstance(value, Expression) and value.literal is None:  # a number alone fits anything
         one = walk()
         one.of(value, needed=_needed(leaf, names))
         yield from one.clashes
@@ -192,8 +193,10 @@ def _finding(catalog: Catalog, leaf: Leaf, clash: Clash, names: Names) -> Findin
         kind = catalog.symbols.get(name)
         unit = names.declared[name].text if name in names.declared else str(clash.one_is)
         whole = f"{kind} '{name}'" if kind is not None else f"'{name}'"
-        needed = _own_text(leaf) or str(clash.needed)
-        what = f"{whole} is in {unit}, but {whereabouts(leaf.path)} is in {named(needed)}"
+        equation = isinstance(leaf.value, WrittenEquation)
+        needed = str(clash.needed) if equation else _own_text(leaf) or str(clash.needed)
+        place = "the left side" if equation else whereabouts(leaf.path)
+        what = f"{whole} is in {unit}, but {place} is in {named(needed)}"
         mend = mend or ("" if kind is None else f"give another {kind}, or mend its unit")
     other = None if clash.other is None else (clash.other.column, len(clash.other.text))
     return Finding(leaf.path, what, mend, clash.one.column, len(clash.one.text), beside=other)

@@ -6,12 +6,12 @@ these rules alone come the reading of texts and numbers (`read`), the walk that 
 """
 
 from collections.abc import Callable, Iterator, Mapping
-from dataclasses import dataclass
 from typing import Any, Generic, TypeVar
 
 from eomgen.errors import ExpressionError
 from eomgen.model.findings import Decimal, Finding, article, nearest, shown, unknown_keys
 from eomgen.model.positions import DocumentPath
+from eomgen.records import dataclass
 from eomgen.symbolic.expression.expressions import Expression, as_expression
 from eomgen.symbolic.expression.rational import EXACT
 from eomgen.symbolic.expression.typed import parse_typed_equation

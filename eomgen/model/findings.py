@@ -1,12 +1,13 @@
 """What is wrong with a model, where in it, and in which words."""
 
 from collections.abc import Iterable, Mapping
-from dataclasses import dataclass, field
+from dataclasses import field
 from difflib import get_close_matches
 from itertools import islice
 from typing import Any
 
 from eomgen.model.positions import DocumentPath
+from eomgen.records import dataclass
 from eomgen.symbolic.expression.habits import other_words
 
 

@@ -1,11 +1,11 @@
 """Friction of a contact: Coulomb's `mu`, or a viscous coefficient."""
 
-from dataclasses import dataclass
 from typing import Annotated, ClassVar
 
 from eomgen.model.fields import FormulaRule
 from eomgen.model.kinds import Friction
 from eomgen.model.part import Part, PartRule
+from eomgen.records import dataclass
 from eomgen.symbolic.expression.expressions import Expression
 
 Viscosity = Annotated[Expression, FormulaRule("s/m", "nonnegative")]  # -c N v

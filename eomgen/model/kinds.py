@@ -49,6 +49,7 @@ Displacement = Annotated[Expression, FormulaRule("m", "", CONFIGURATION)]
 PLACES = ("x", "y", "z", "angle")
 VELOCITIES = ("vx", "vy", "vz", "omega", "omega_x", "omega_y", "omega_z")
 Gap = Annotated[Expression, FormulaRule(None, "", CONFIGURATION, functions=PLACES)]
+MotionEnergy = Annotated[Expression, FormulaRule("J", "", SPEEDS)]
 Energy = Annotated[Expression, FormulaRule("J", "", CONFIGURATION)]
 LinearDamping = Annotated[Expression, FormulaRule("N*s/m", "", MOTION, usually=TAKES)]
 AngularDamping = Annotated[Expression, FormulaRule("N*m*s", "", MOTION, usually=TAKES)]

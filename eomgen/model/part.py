@@ -1,7 +1,7 @@
 """A part of a model: a frozen dataclass that reads its own fields by their rules, from Python or from a file."""
 
 from collections.abc import Iterator, Mapping
-from dataclasses import MISSING, dataclass, fields
+from dataclasses import MISSING, fields
 from functools import cache
 from inspect import Parameter, Signature
 from types import NoneType, UnionType
@@ -11,6 +11,7 @@ from eomgen.errors import ModelError, Problem
 from eomgen.model.fields import Leaf, WrittenEquation, in_si
 from eomgen.model.findings import Finding, meant, nearest, shown, unknown_keys, whereabouts
 from eomgen.model.positions import DocumentPath
+from eomgen.records import dataclass
 from eomgen.symbolic.expression.expressions import Expression
 from eomgen.symbolic.expression.habits import other_words
 from eomgen.symbolic.expression.units import Unit
@@ -243,7 +244,8 @@ class SeamRule:
         if isinstance(raw, self.members):
             return raw
         if not isinstance(raw, Mapping):
-            found.append(Finding(path, f"a {self.what} is a table with a 'kind', not {shown(raw)}"))
+            named = f"each has a name of its own: [{path[0]}.NAME]" if len(path) == 2 else ""
+            found.append(Finding(path, f"a {self.what} is a table with a 'kind', not {shown(raw)}", named))
             return None
         kinds = {member.kind: member for member in self.members}
         kind = raw.get("kind")

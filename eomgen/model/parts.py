@@ -1,6 +1,6 @@
 """Text or Python -> Model: what a user declares. Frozen values that compute nothing."""
 
-from dataclasses import dataclass, field
+from dataclasses import field
 from importlib import import_module
 from typing import Annotated, Any, ClassVar
 
@@ -44,6 +44,7 @@ from eomgen.model.part import Part, PartRule, SeamRule
 from eomgen.model.shapes import Shape
 from eomgen.model.symbols import SymbolField
 from eomgen.model.table import Table
+from eomgen.records import dataclass
 from eomgen.symbolic.expression.expressions import Expression
 from eomgen.symbolic.expression.units import Unit
 

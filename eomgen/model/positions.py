@@ -3,7 +3,9 @@
 import re
 from bisect import bisect_right
 from contextlib import suppress
-from dataclasses import dataclass, field
+from dataclasses import field
+
+from eomgen.records import dataclass
 
 DocumentPath = tuple[str | int, ...]
 

@@ -1,8 +1,7 @@
 """Model -> its unit quaternions: the four coordinates and the three speeds of each."""
 
-from dataclasses import dataclass
-
 from eomgen.model.parts import Model
+from eomgen.records import dataclass
 
 
 @dataclass(frozen=True)

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable
-from dataclasses import dataclass
 from functools import cached_property
 
 from eomgen.errors import ExpressionError, UsageError
@@ -13,6 +12,7 @@ from eomgen.model.findings import nearest
 from eomgen.model.parts import Model
 from eomgen.model.typed import Typing
 from eomgen.model.values import exact_parameters
+from eomgen.records import dataclass
 from eomgen.symbolic.expression.units import Unit
 
 LIKE = '"k=100:1000:10", "log:k=1:100:50" or "k=0.5,1,2"'

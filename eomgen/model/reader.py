@@ -171,6 +171,7 @@ def _not_toml(error: Exception, index: Index, name: str) -> Problem:
 
 
 _YAML = re.compile(r"(?:\s|#[^\n]*\n|---)*[A-Za-z_]\w*:(?:\s|$)")
+_WORDS = re.compile(r"\s*(name|about|source|space)\s*=\s*([A-Za-z][\w ]*)$")
 _COMMA = re.compile(r"=\s*([-+]?\d+),(\d+)\b")
 
 
@@ -181,6 +182,12 @@ def _toml_mend(what: str, text: str, offset: int) -> str:
         return f"write a decimal point: {found[1]}.{found[2]}"
     if culprit in ("\n", "#") and before.rfind("{") > max(before.rfind("}"), before.rfind("\n[")):
         return "a table in braces stands in one line; or write it as one with a head, like [bodies.boom.joint]"
+    if culprit == ";" and before.count("[") > before.count("]"):
+        return "a comma stands between two of a list: [1, 0]"
+    if culprit in tuple("“”„‘’"):
+        return 'quotes are straight: "'
+    if words := _WORDS.match(line):
+        return f'a text stands in quotes: {words[1]} = "{words[2].strip()}"'
     if culprit in ("/", ";"):
         return "a remark begins with #" if culprit == "/" else "leave it out: a line ends by itself"
     if line.lstrip().startswith("[["):

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterable, Mapping
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from typing import Any
 
 from eomgen.errors import ExpressionError, ModelError, UsageError
@@ -17,6 +17,7 @@ from eomgen.model.parts import Model
 from eomgen.model.table import Table
 from eomgen.model.typed import Settled, Typed, Typing, shown
 from eomgen.model.values import exact_parameters
+from eomgen.records import dataclass
 from eomgen.symbolic.expression.expressions import Expression
 from eomgen.symbolic.expression.typed import parse_typed_equation
 from eomgen.symbolic.expression.units import parse_unit

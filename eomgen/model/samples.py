@@ -1,13 +1,13 @@
 """A function of time given by samples: `{ samples = [[0, 0.1], [0.5, 0.2]], between = "cubic", ends = "rest" }`."""
 
 from collections.abc import Iterable, Mapping
-from dataclasses import dataclass
 from typing import Any
 
 from eomgen.errors import ExpressionError, ModelError, Problem
 from eomgen.model.fields import FormulaRule, TextRule
 from eomgen.model.findings import Finding, shown, unknown_keys
 from eomgen.model.positions import DocumentPath
+from eomgen.records import dataclass
 from eomgen.symbolic.expression.expressions import Expression, as_expression
 from eomgen.symbolic.expression.rational import Fraction
 from eomgen.symbolic.expression.scalar_operations import is_exact

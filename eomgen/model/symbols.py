@@ -3,13 +3,13 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
-from dataclasses import dataclass
 from typing import Annotated, Any
 
 from eomgen.model.fields import Leaf, ParsedTextRule
 from eomgen.model.findings import Finding, unknown_keys
 from eomgen.model.positions import DocumentPath
 from eomgen.model.table import Table
+from eomgen.records import dataclass
 from eomgen.symbolic.print.declared_symbol import LONGEST, parse_symbol
 from eomgen.symbolic.print.symbols import Symbol
 

@@ -8,7 +8,7 @@ it an expression is in SI.
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from functools import cached_property
 from typing import Any
 
@@ -17,6 +17,7 @@ from eomgen.model.catalog import Catalog
 from eomgen.model.dimensions import Inferred, inferred
 from eomgen.model.fields import WrittenEquation
 from eomgen.model.findings import nearest
+from eomgen.records import dataclass
 from eomgen.symbolic.expression.dimensions import Dimension, Walk, dimension_of_unit, quoted, told
 from eomgen.symbolic.expression.expressions import Expression, as_expression, parse
 from eomgen.symbolic.expression.typed import parse_typed, unit_for_name

@@ -20,11 +20,12 @@ def exact_parameters(model: Model, overrides: Mapping[str, Any] | None = None) -
     """
     given = {name: part.value for name, part in model.parameters.items() if part is not None}
     given |= _overridden(model, overrides or {})
-    values: dict[str, AnyNumber] = {"pi": math.pi}
-    for name in in_order(given)[0]:
-        expression = given[name]
-        if expression is not None and expression.names <= values.keys():
-            values[name] = _value(expression, values, f"parameters.{name}")
+    plain = {name: x.literal for name, x in given.items() if x is not None}
+    values: dict[str, AnyNumber] = {"pi": math.pi, **{name: x for name, x in plain.items() if x is not None}}
+    others = {name: x for name, x in given.items() if x is not None and name not in values}
+    for name in in_order(others)[0]:
+        if others[name].names <= values.keys():
+            values[name] = _value(others[name], values, f"parameters.{name}")
     del values["pi"]
     return values
 
@@ -107,8 +108,8 @@ def first_guesses(model: Model, parameters: Mapping[str, Any] | None = None) -> 
     Raises:
         MissingValues: a guess needs parameters without values.
     """
-    lookup = {**exact_parameters(model, parameters), "pi": math.pi}
     guessed = {name: part.near for name, part in model.coordinates.items() if part.dependent and part.near is not None}
+    lookup = {**exact_parameters(model, parameters), "pi": math.pi} if guessed else {}
     return {name: _float(near, lookup, f"coordinates.{name}.near") for name, near in guessed.items()}
 
 

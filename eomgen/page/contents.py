@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from pathlib import Path
 
 from eomgen.documents.document import Document
@@ -11,6 +11,7 @@ from eomgen.documents.statements import Prose, Step
 from eomgen.model.table import Table
 from eomgen.page.markup import Html
 from eomgen.proof.check import Certificate, Check
+from eomgen.records import dataclass
 
 SECTIONS = {
     "figure": "Figure",

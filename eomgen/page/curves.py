@@ -5,7 +5,6 @@ from __future__ import annotations
 import math
 import re
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
 from functools import partial
 from pathlib import Path
 from typing import Any
@@ -25,6 +24,8 @@ from eomgen.documents.plots import (
 from eomgen.documents.statements import Code, Piece, prose
 from eomgen.page.contents import INKS, LegendEntry, ReportFigure
 from eomgen.page.markup import Html, element, in_a_row
+from eomgen.page.paths import curve_path
+from eomgen.records import dataclass
 from eomgen.simulation.result import Trajectory
 from eomgen.symbolic.expression.graph import Graph, Node
 from eomgen.symbolic.expression.units import Unit
@@ -170,7 +171,9 @@ def panel(run: Trajectory, lines: Sequence[Line], key: str, caption: str) -> Rep
     marks += (
         [element("path", d=f"M{LEFT:g} {y(0.0):.1f}H{WIDTH - RIGHT:g}", class_="zero")] if up.low < 0 < up.high else []
     )
-    marks += [element("path", d=path, class_=line.style) for line in lines if (path := _path(x(t), y(line.values)))]
+    marks += [
+        element("path", d=path, class_=line.style) for line in lines if (path := curve_path(x(t), y(line.values)))
+    ]
     legend = tuple(LegendEntry(line.style, prose(*line.name)) for line in lines if line.name)
     return ReportFigure(
         key, caption, (WIDTH, HEIGHT), in_a_row(*marks), legend, partial(_save, t, tuple(lines), notation_of_run(run))
@@ -205,13 +208,3 @@ def _tick(x: float | None, y: float | None, text: str) -> Html:
         return in_a_row(line, element("text", text, x=f"{x:.1f}", y=f"{HEIGHT - BOTTOM + 17:g}", text_anchor="middle"))
     line = element("path", d=f"M{LEFT:g} {y:.1f}H{WIDTH - RIGHT:g}", class_="axis")
     return in_a_row(line, element("text", text, x=f"{LEFT - 7:g}", y=f"{(y or 0) + 4:.1f}", text_anchor="end"))
-
-
-def _path(x: np.ndarray, y: np.ndarray) -> str:
-    """A line through the points; where there is no value it is broken."""
-    words, open_ = [], False
-    for a, b in zip(x.tolist(), y.tolist(), strict=True):
-        if math.isfinite(b):
-            words.append(f"{'L' if open_ else 'M'}{a:.1f} {b:.1f}")
-        open_ = math.isfinite(b)
-    return "".join(words)

@@ -14,6 +14,7 @@ from eomgen.documents.statics.picture import missing_values
 from eomgen.model.parts import Model
 from eomgen.page.contents import ReportFigure
 from eomgen.page.markup import Html
+from eomgen.page.paths import stepped
 
 SIZE = (8.0, 4.2)  # of the rest picture [inches]
 OFTEN = 4  # times that a look is said before it has a name
@@ -21,9 +22,7 @@ _SVG = re.compile(r'<svg[^>]*viewBox="0 0 ([\d.]+) ([\d.]+)"[^>]*>(.*)</svg>', r
 
 _PATH = re.compile(r' d="([^"]*)"')
 _ID = re.compile(r'( id="|href="#|url\(#)')
-_GAPS = re.compile(r"\s*([A-Za-z])\s*")
 _STYLE = re.compile(r' style="([^"]*)"')
-_DIGITS = re.compile(r"-?\d+\.\d{3,}")
 _HALO = re.compile(
     r'<path d="([^"]*)" style="fill: (#\w+); stroke: #ffffff; stroke-width: ([\d.]+)"/>\s*'
     r'<path d="\1" style="fill: \2"/>'
@@ -58,19 +57,10 @@ def _lean(marks: str, key: str) -> str:
     """
     marks = re.sub(r"<metadata>.*?</metadata>|<!--.*?-->", "", marks, flags=re.DOTALL)
     marks = _ID.sub(rf"\1{key}-", re.sub(r'<g id="[^"]*"', "<g", marks))
-    marks = _PATH.sub(lambda found: f' d="{_GAPS.sub(_letter, _DIGITS.sub(_plain, found[1])).strip()}"', marks)
+    marks = _PATH.sub(lambda found: f' d="{stepped(found[1])}"', marks)
     marks = _HALO.sub(r'<path d="\1" style="fill: \2; stroke: #ffffff; stroke-width: \3; paint-order: stroke"/>', marks)
     looks = [look for look, times in Counter(_STYLE.findall(marks)).items() if times > OFTEN]
     names = {look: f"{key}-{k}" for k, look in enumerate(looks)}
     marks = _STYLE.sub(lambda found: f' class="{names[found[1]]}"' if found[1] in names else found[0], marks)
     rules = "".join(f".{name}{{{look}}}" for look, name in names.items())
     return (f"<style>{rules}</style>" if rules else "") + re.sub(r"\n\s*", "\n", marks)
-
-
-def _letter(found: re.Match[str]) -> str:
-    return found[1]
-
-
-def _plain(number: re.Match[str]) -> str:
-    """A number to the hundredth of a point."""
-    return f"{float(number[0]):.2f}".rstrip("0").rstrip(".")

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping
 
+from eomgen.errors import visible
 from eomgen.page.contents import Report
 from eomgen.page.html import html_page
 from eomgen.page.marked import markdown_files
@@ -30,4 +31,5 @@ def written_as(report: Report, form: str, name: str) -> FilesByName:
         form: the ending, one of FORMATS.
         name: of the file; others stand beside it.
     """
-    return FORMATS[form](report, name)
+    found = FORMATS[form](report, name)
+    return {path: visible(text) if isinstance(text, str) and path == name else text for path, text in found.items()}

@@ -2,13 +2,10 @@
 
 from __future__ import annotations
 
-import gzip
 import re
-from base64 import b64encode
 from collections.abc import Callable, Sequence
 from importlib import resources
 
-from eomgen.documents.document import Document
 from eomgen.documents.latex import (
     Group,
     display_blocks,
@@ -16,14 +13,13 @@ from eomgen.documents.latex import (
     piece_latex,
     setter_of,
     side_latex,
-    with_listings_typeset,
 )
 from eomgen.documents.latex_math import Setter
 from eomgen.documents.statements import Cell, Code, Formula, Grid, Lines, Piece, Prose, Step
 from eomgen.documents.text import formula_text
 from eomgen.errors import ToolMissing
 from eomgen.page.contents import Attachment, Report, ReportFigure, ReportSection
-from eomgen.page.markup import Html, element, html, in_a_row, script, style
+from eomgen.page.markup import Html, element, html, in_a_row, packed, script, style
 from eomgen.page.mathml import font_face, mathml
 from eomgen.proof.check import SIGNS, Certificate
 from eomgen.version import __version__
@@ -105,13 +101,6 @@ def step_html(setter: Setter, step: Step, *, titled: bool = True) -> list[Html]:
     """A step of a derivation, its title above it."""
     heading = [element("h3", step.title)] if step.title and titled else []
     return [*heading, *(_group(setter, group) for group in grouped(step.statements))]
-
-
-def document_html(document: Document) -> Html:
-    """The steps of a document, for notebooks and pages of others."""
-    document = with_listings_typeset(document)
-    setter = setter_of(document)
-    return in_a_row(*(part for step in document.steps for part in step_html(setter, step)))
 
 
 def _group(setter: Setter, group: Group) -> Html:
@@ -223,8 +212,7 @@ def _attachments(files: Sequence[Attachment]) -> Html:
     """Links to files that the page carries, packed; a program of the page unpacks what is asked for."""
     rows = []
     for file in files:
-        packed = b64encode(gzip.compress(file.content, mtime=0)).decode()
-        source = f"data:application/gzip;base64,{packed}"
+        source = f"data:application/gzip;base64,{packed(file.content)}"
         link = element(
             "a", file.name, href=source, download=f"{file.name}.gz", data_name=file.name, data_media=file.media
         )

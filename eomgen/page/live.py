@@ -11,7 +11,6 @@ frame(t, x)     the scene's slots, T, V, the rates of the coordinates, the react
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
 from functools import cached_property
 from typing import Any
 
@@ -31,6 +30,7 @@ from eomgen.mechanics.formulations import recursive
 from eomgen.mechanics.initial_state.initial_state import fixed_by_position, start_speeds
 from eomgen.model.arithmetic import in_order
 from eomgen.model.parts import Coordinate, Model
+from eomgen.records import dataclass
 from eomgen.scene.scene import Scene
 from eomgen.simulation.phase_model import PhaseModel
 from eomgen.simulation.solvers import breakpoints_of

@@ -2,9 +2,9 @@
 
 from __future__ import annotations
 
-import json
+import gzip
+from base64 import b64encode
 from html import escape
-from typing import Any
 
 from eomgen.errors import visible
 
@@ -52,8 +52,6 @@ def script(text: str) -> Html:
     return Html(f"<script>\n{text}</script>")
 
 
-def data_script(identity: str, value: Any) -> Html:
-    """Data for programs of the page, as JSON; no text in it ends the element."""
-    text = json.dumps(value, separators=(",", ":"), allow_nan=False)
-    text = text.replace("<", "\\u003c").replace(">", "\\u003e").replace("&", "\\u0026")
-    return Html(f'<script type="application/json" id="{html(identity)}">{text}</script>')
+def packed(content: bytes) -> str:
+    """Bytes as a page carries them: gzip, then base64."""
+    return b64encode(gzip.compress(content, 9, mtime=0)).decode("ascii")

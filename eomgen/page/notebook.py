@@ -7,7 +7,7 @@ from collections.abc import Iterator
 from typing import Any
 
 from eomgen.documents.latex import setter_of
-from eomgen.errors import RunFailed, ToolMissing, UsageError
+from eomgen.errors import RunFailed, ToolMissing, UsageError, visible
 from eomgen.page.contents import Report
 from eomgen.page.marked import markdown_head, section_markdown
 
@@ -44,7 +44,10 @@ def notebook_text(report: Report) -> str:
         raise ToolMissing("a notebook is run by nbclient, which is not installed", "", mend) from error
     v4: Any = nbformat.v4
     made = {True: v4.new_code_cell, False: v4.new_markdown_cell}
-    cells = [made[is_code](text, id=f"c{k}") for k, (is_code, text) in enumerate(_cells(report))]
+    cells = [
+        made[is_code](text if is_code else visible(text), id=f"c{k}")
+        for k, (is_code, text) in enumerate(_cells(report))
+    ]
     kernel = {"kernelspec": {"name": "python3", "display_name": "Python 3", "language": "python"}}
     notebook = v4.new_notebook(cells=cells, metadata=kernel)
     try:

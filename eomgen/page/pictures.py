@@ -3,10 +3,11 @@
 from __future__ import annotations
 
 import tempfile
-from dataclasses import dataclass, field
+from dataclasses import field
 from pathlib import Path
 
 from eomgen.page.contents import ReportFigure
+from eomgen.records import dataclass
 
 
 @dataclass(frozen=True)

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass
 from functools import cached_property
 from pathlib import Path
 
@@ -21,6 +20,7 @@ from eomgen.page.player_data import PlayedRun, PlayerOptions, SliderRange
 from eomgen.page.player_page import player_page
 from eomgen.proof.check import Certificate, Check, checked, unchecked
 from eomgen.questions.run import run
+from eomgen.records import dataclass
 from eomgen.symbolic.numeric.work import doing
 
 SAMPLES = 401  # of a run in a page

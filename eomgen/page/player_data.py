@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import base64
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, field, replace
+from dataclasses import field, replace
 from functools import cached_property
 from typing import Any
 
@@ -12,10 +12,13 @@ import numpy as np
 
 from eomgen.codegen.targets.base import TestVector
 from eomgen.codegen.vectors import vectors
-from eomgen.errors import UsageError
+from eomgen.documents.latex_names import notation_of
+from eomgen.errors import ToolMissing, UsageError
 from eomgen.model.own_units import units_of
 from eomgen.model.parts import Model
 from eomgen.page.live import Live, single_reactions
+from eomgen.page.mathml import mathml
+from eomgen.records import dataclass
 from eomgen.scene.applied import reaction_marks
 from eomgen.scene.making import scene_of_system
 from eomgen.scene.phase_frames import phase_frames
@@ -136,6 +139,7 @@ class PlayedRun:
             "sliders": self._sliders() if self.options.moves else [],
             "rests": self.rests if self.options.moves else "",
             "plotted": shown,
+            "signs": self._signs(plotted),
             "plots": [*run.coordinates[:PLOTTED], *(("E",) if energy and run.drift is None else ())],
             "vectors": {name: list(map(_vector, rows)) for name, rows in self.vectors.items()} if moves else {},
             "check": self._checked() if moves else [],
@@ -143,6 +147,15 @@ class PlayedRun:
             "forces": self.options.forces,
             "speed": self.options.speed,
         }
+
+    def _signs(self, plotted: Sequence[str]) -> dict[str, str]:
+        """The names as formulas have them, MathML; {} where nothing sets them: then they stand as they are spelt."""
+        names = dict.fromkeys((*self.run.coordinates, *self.run.speeds, *self.model.parameters))
+        notation = notation_of(self.model).told_apart(names)
+        try:
+            return {name: mathml(notation.latex(name)) for name in names if name in plotted or self.options.moves}
+        except ToolMissing:
+            return {}
 
     def _recorded(self) -> dict[str, Any]:
         """The run: states as they are integrated, or of contacts that change as they are named, with frames."""

@@ -2,12 +2,9 @@
 
 from __future__ import annotations
 
-import base64
-import gzip
 import html
 import json
 import re
-from dataclasses import dataclass
 from importlib import resources
 from typing import Any, Protocol
 
@@ -15,7 +12,9 @@ from eomgen.codegen.targets.javascript import javascript_expression
 from eomgen.errors import ToolMissing, visible
 from eomgen.model.parts import Model
 from eomgen.page.live import Live
+from eomgen.page.markup import packed
 from eomgen.page.player_data import PlayedRun, PlayerOptions
+from eomgen.records import dataclass
 from eomgen.simulation.result import Trajectory
 from eomgen.version import __version__
 
@@ -50,6 +49,19 @@ document.getElementById("theme").addEventListener("click", () => {{
 """
 
 
+_UNPACKED = """\
+(async () => {{
+    try {{
+        const bytes = Uint8Array.from(atob("{packed}"), c => c.charCodeAt(0));
+        const text = await new Response(new Blob([bytes]).stream().pipeThrough(new DecompressionStream("gzip"))).text();
+        new Function(text)();
+    }} catch (error) {{
+        document.getElementById("{identity}").textContent = `No motion in this browser: ${{error.message}}.`;
+    }}
+}})();"""
+"""A program as long as the library that it needs: it is unpacked as that is."""
+
+
 @dataclass(frozen=True)
 class PlayerParts:
     """What a page holds of a player.
@@ -82,15 +94,6 @@ class Playable(Protocol):
     def told(self) -> dict[str, Any]: ...
 
 
-def player_parts(run: Trajectory, options: PlayerOptions | None = None, identity: str = "player") -> PlayerParts:
-    """The player of a run, to be put into a page.
-
-    Args:
-        identity: of its element; no two in a page are alike.
-    """
-    return player_parts_of(PlayedRun(run, options or PlayerOptions()), identity)
-
-
 def player_page(run: Trajectory, options: PlayerOptions | None = None) -> str:
     """The player of a run as a page."""
     return player_page_of(PlayedRun(run, options or PlayerOptions()))
@@ -120,9 +123,10 @@ def player_parts_of(played: Playable, identity: str, *, page: bool = False) -> P
     text = "\n".join(map(_in_a_script, map(_asset, SCRIPTS)))
     begin = f'begun(document.getElementById("{identity}"), {told}, {{{programs}}});'
     body = f'<div class="eomgen-player" id="{identity}"></div>'
-    return PlayerParts(
-        _asset("player.css"), body, f"<script>\n(() => {{\n{_harmless(text)}\n{begin}\n}})();\n</script>"
-    )
+    whole = f"(() => {{\n{_harmless(text)}\n{begin}\n}})();"
+    if library and not page:
+        whole = _UNPACKED.format(packed=packed(whole.encode()), identity=identity)
+    return PlayerParts(_asset("player.css"), body, f"<script>\n{whole}\n</script>")
 
 
 def three_js() -> str:
@@ -136,8 +140,7 @@ def three_js() -> str:
     except ModuleNotFoundError:
         mend = "pip install 'eomgen[space]'"
         raise ToolMissing("there is no library for pictures in space in a page", mend=mend) from None
-    text = folder.joinpath("static", "r130", "three.min.js").read_bytes()
-    return base64.b64encode(gzip.compress(text, 9, mtime=0)).decode("ascii")
+    return packed(folder.joinpath("static", "r130", "three.min.js").read_bytes())
 
 
 def _asset(name: str) -> str:

@@ -2,13 +2,13 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
 
 from eomgen.model.parts import Model
 from eomgen.page.player_data import coded_text, doubles_text
+from eomgen.records import dataclass
 from eomgen.scene.phase_frames import joined
 from eomgen.scene.virtual import VirtualDisplacement
 
@@ -57,6 +57,7 @@ class PlayedDisplacements:
             "sliders": [],
             "rests": "",
             "plotted": [],
+            "signs": {},
             "plots": [],
             "vectors": {},
             "check": [],

@@ -7,7 +7,7 @@ doubles; every other function is evaluated as it is defined, with 50 digits. Not
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from functools import cached_property
 from typing import Any
 
@@ -25,6 +25,7 @@ from eomgen.mechanics.instant.outputs import Quantities
 from eomgen.mechanics.reactions.reactions import reactions_of
 from eomgen.model.outputs import FUNCTIONS
 from eomgen.model.outputs.base import BALANCE
+from eomgen.records import dataclass
 from eomgen.simulation.reaction_columns import ReactionColumns
 from eomgen.symbolic.expression.derivative import depends_on
 from eomgen.symbolic.expression.expressions import Call, Expression, parse

@@ -16,7 +16,6 @@ What such a contact does it does there: a unit lam pushes with 1 N along the nor
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass
 from functools import cached_property
 from typing import Any
 
@@ -32,6 +31,7 @@ from eomgen.model.constraints.meeting import (
 )
 from eomgen.model.forces.load import Push
 from eomgen.proof.states import refuse_open
+from eomgen.records import dataclass
 from eomgen.symbolic.expression.graph import Scalar
 from eomgen.symbolic.expression.node import State
 from eomgen.symbolic.expression.spatial import (

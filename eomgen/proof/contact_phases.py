@@ -12,7 +12,6 @@ N and F are the columns of reactions. An impact is plastic and without friction,
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass
 from functools import cached_property, partial
 from itertools import pairwise
 
@@ -20,7 +19,7 @@ import numpy as np
 
 from eomgen.codegen.program import program_of
 from eomgen.codegen.rhs import RightHandSide, compiled
-from eomgen.mechanics.bodies.armature import armatures
+from eomgen.mechanics.bodies.armature import armatures, given_momenta
 from eomgen.mechanics.bodies.inertia import mass_properties
 from eomgen.mechanics.bodies.kinematics import velocity_of
 from eomgen.mechanics.constraints.closure import of_50_digits
@@ -30,6 +29,7 @@ from eomgen.model.contacts import Contact
 from eomgen.proof.check import Check
 from eomgen.proof.joint_places import misplaced
 from eomgen.proof.tally import Tally
+from eomgen.records import dataclass
 from eomgen.simulation.contact_events import sliding_velocity
 from eomgen.simulation.phase_model import PhaseModel, Values, slack_name
 from eomgen.simulation.reaction_columns import ReactionColumns
@@ -300,6 +300,8 @@ class _Bodies:
         for link, k, armature in armatures(self.system.motion):
             motions.append(link.s_rate[k])
             momenta.append(armature * link.s_rate[k])
+        motions += self.system.scope.rates
+        momenta += given_momenta(self.system.scope)
         return (*motions, *momenta)
 
     def _with(self, state: np.ndarray, speeds: Sequence[np.ndarray]) -> np.ndarray:

@@ -10,7 +10,6 @@ own lengths, rates, stretches and loads are what is proven.
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
 from functools import cached_property
 from typing import Any
 
@@ -19,6 +18,7 @@ from eomgen.mechanics.bodies.loads import Applied, JointEffort, SystemScene
 from eomgen.mechanics.equations.system import System
 from eomgen.model.forces.element import Element
 from eomgen.proof.pushes import Pushes, add_push, direction_at, pushed_otherwise, pushes_of
+from eomgen.records import dataclass
 from eomgen.symbolic.expression.graph import Scalar, is_zero
 from eomgen.symbolic.expression.node import State
 from eomgen.symbolic.expression.spatial import (

@@ -9,7 +9,7 @@ code but the equations: neither the elimination, nor the order of its statements
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Mapping, Sequence
-from dataclasses import dataclass, field, replace
+from dataclasses import field, replace
 from typing import Any
 
 import numpy as np
@@ -17,6 +17,7 @@ import numpy as np
 from eomgen.mechanics.constraints.closure import of_50_digits as precise
 from eomgen.mechanics.equations.equations_of_motion import EquationsOfMotion
 from eomgen.proof.check import Check, checked, unchecked
+from eomgen.records import dataclass
 from eomgen.symbolic.expression.graph import Node, Scalar
 from eomgen.symbolic.expression.traversal import order
 from eomgen.symbolic.numeric.dense import of_one_length

@@ -14,7 +14,6 @@ here, and every tie that closes them pushes with a lam of its own, which must do
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass
 from functools import cached_property
 from typing import Any
 
@@ -25,6 +24,7 @@ from eomgen.mechanics.bodies.loads import body_wrench, weights
 from eomgen.mechanics.equations.system import System
 from eomgen.mechanics.equations.work import joint_forces, placeless_forces
 from eomgen.mechanics.formulations.lagrange import free_rates
+from eomgen.records import dataclass
 from eomgen.symbolic.expression.derivative import gradient, pullback, symbols_of
 from eomgen.symbolic.expression.graph import Scalar
 from eomgen.symbolic.expression.node import State

@@ -6,7 +6,6 @@ Energies and their derivatives (Lagrange), twists and wrenches (projection), rec
 from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
-from dataclasses import dataclass
 from typing import Any
 
 from eomgen.errors import DerivationError
@@ -20,6 +19,7 @@ from eomgen.mechanics.formulations.lagrange import free_rates
 from eomgen.mechanics.reactions.inverse import inverse_residual
 from eomgen.proof.check import Check, checked, unchecked
 from eomgen.proof.states import States
+from eomgen.records import dataclass
 from eomgen.symbolic.exact.equality import Equality, equal_at_real_states, equal_in_field
 from eomgen.symbolic.expression.derivative import gradient, substituted, tangent
 from eomgen.symbolic.expression.functions import inner

@@ -8,12 +8,14 @@ relative motion is used. Shared: the poses as functions of q and t, and q' = N u
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import dataclass
 from functools import cached_property
 from itertools import combinations
 from random import Random
 from typing import Any
 
+import numpy as np
+
+from eomgen.mechanics.equations.system import System
 from eomgen.mechanics.fields.relative_motion import composition_of
 from eomgen.mechanics.initial_state.values_at_rest import values_of_parameters
 from eomgen.mechanics.instant.body_motion import BodyMotion
@@ -22,6 +24,8 @@ from eomgen.mechanics.instant.mechanism import FIXED
 from eomgen.mechanics.instant.outputs import Quantities
 from eomgen.proof.check import Check, checked, unchecked
 from eomgen.proof.nearby import Nearby
+from eomgen.proof.states import closed_state
+from eomgen.records import dataclass
 from eomgen.symbolic.expression.derivative import symbols_of
 from eomgen.symbolic.expression.expressions import parse_equation
 from eomgen.symbolic.expression.graph import Node, Scalar
@@ -41,6 +45,7 @@ from eomgen.symbolic.expression.spatial import (
     transposed,
     vector_of,
 )
+from eomgen.symbolic.numeric.dense import rank
 from eomgen.symbolic.numeric.evaluation import NoValue, evaluate, fifty_digits
 from eomgen.symbolic.numeric.tolerances import COMPUTED, DIFFERENCE_AT_50, LARGEST_AT_50
 
@@ -60,6 +65,7 @@ def instant_checks(
     """
     proof = _Proof(state)
     checks = [
+        ("the freedoms are those that the gaps of the ties leave", proof.wrong_freedoms),
         ("the ties stay closed along the motion", proof.wrong_ties),
         ("what is given holds", proof.wrong_given),
         ("velocities and accelerations of points are the differences of their places", proof.wrong_points),
@@ -150,6 +156,8 @@ class _Proof:
             values.setdefault(a, 0)
         first = evaluate(scope.rates, values, fifty_digits())
         second = evaluate(scope.with_accelerations(scope.rates), values, fifty_digits())
+        if any(abs(x) > LARGEST_AT_50 for x in (*first, *second)):
+            raise NoValue("too fast for differences")
 
         def later(t: Any) -> dict[Node, Any]:
             places = zip(symbols.q, first, second, strict=True)
@@ -171,6 +179,16 @@ class _Proof:
         first = [(b - a) / (2 * STEP) for a, b in zip(early, late, strict=True)]
         second = [(a - 2 * x + b) / STEP**2 for a, x, b in zip(early, now, late, strict=True)]
         return now, first, second
+
+    def wrong_freedoms(self) -> str | None:
+        """Against the rank of the slopes of the gaps there; in a special position, of those in another one."""
+        system, told = self.state.system, self.state.freedoms
+        if not system.symbols.u or all(row.identical for row in system.ties.rows):
+            return None
+        left = _freedoms_left(system, self.values)
+        if told != left and _freedoms_left(system, closed_state(system, Random(8))[0]) != told:
+            return f"{told} for {left}"
+        return ""
 
     def here(self, scalars: Sequence[Scalar]) -> Numbers:
         return vector_of(evaluate(tuple(scalars), self.way[1], fifty_digits()))
@@ -392,3 +410,28 @@ def _least(start: Numbers, end: Numbers) -> Any:
     part = min(max(-along / square, 0), 1) if square else 0
     v: Numbers = plus(start, times(part, step))
     return _size(v)
+
+
+def _freedoms_left(system: System, values: Mapping[Node, Any]) -> int:
+    """How many speeds the ties leave: by differences of their gaps along each speed, else by their rates."""
+    symbols, scope, digits = system.symbols, system.scope, fifty_digits()
+    rows = [row for row in system.ties.rows if not row.identical]
+    speeds = {u.name for u in symbols.u}
+    norms = [sum((e * e for e in four), start=0) for four in scope.quaternions if f"{four[0].name}'" in speeds]
+    gaps, rates = (
+        [*norms, *(row.gap for row in rows if row.gap is not None)],
+        [r.velocity for r in rows if r.gap is None],
+    )
+    still = {**values, **dict.fromkeys(symbols.u, digits.number(0))}
+    drift = evaluate((*scope.rates, *rates), still, digits)
+    columns = []
+    for u in symbols.u:
+        going = evaluate((*scope.rates, *rates), {**still, u: digits.number(1)}, digits)
+        along = [x - y for x, y in zip(going, drift, strict=True)]
+        step = dict(zip(symbols.q, along, strict=False))
+        aside = ({**still, **{q: still[q] + h * x for q, x in step.items()}} for h in (STEP, -STEP))
+        late, early = (evaluate(gaps, place, digits) for place in aside)
+        opened = [(x - y) / (2 * STEP) for x, y in zip(late, early, strict=True)]
+        columns.append([*opened, *along[len(symbols.q) :]])
+    slopes = np.array(columns, dtype=float).T
+    return len(symbols.u) - rank(np.where(abs(slopes) > DIFFERENCE_AT_50, slopes, 0.0))

@@ -8,12 +8,12 @@ at half of a from where it begins.
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
 from typing import Any
 
 from eomgen.mechanics.bodies.kinematics import BodyLink, Motion, ground_place
 from eomgen.mechanics.equations.system import System
 from eomgen.model.joints.moves import Move, QuaternionTurn, SlideAlong, TurnAbout, WayAlongPieces
+from eomgen.records import dataclass
 from eomgen.symbolic.expression.graph import Scalar
 from eomgen.symbolic.expression.node import State
 from eomgen.symbolic.expression.spatial import IDENTITY, ZERO, Numbers, cross, dot, minus, plus, times, vector_of

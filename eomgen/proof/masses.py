@@ -12,7 +12,6 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import dataclass
 from functools import cached_property
 from itertools import product
 from random import Random
@@ -30,6 +29,7 @@ from eomgen.model.composite import PlacedPiece, pose_of
 from eomgen.model.shapes import MassProperties, Shape
 from eomgen.model.shapes.base import Cell
 from eomgen.proof.check import Check, checked, unchecked
+from eomgen.records import dataclass
 from eomgen.symbolic.expression.expressions import Expression
 from eomgen.symbolic.expression.graph import Node, Scalar
 from eomgen.symbolic.expression.spatial import Pose, Vector

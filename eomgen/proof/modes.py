@@ -7,7 +7,6 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterator
-from dataclasses import dataclass
 from functools import cached_property
 from typing import Any
 
@@ -16,6 +15,7 @@ import numpy as np
 from eomgen.mechanics.small_motions.modes import Modes
 from eomgen.mechanics.small_motions.polynomial import Polynomial
 from eomgen.proof.check import Check, checked, unchecked
+from eomgen.records import dataclass
 from eomgen.symbolic.expression.graph import Node
 from eomgen.symbolic.numeric.evaluation import NoValue, evaluate, fifty_digits
 from eomgen.symbolic.numeric.tolerances import CARRIED, DIFFERENCE_AT_50, SAME_PLACE, SLOW

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from functools import cached_property
 
 import numpy as np
@@ -15,6 +15,7 @@ from eomgen.proof import emitted_code
 from eomgen.proof.check import Check, checked, unchecked
 from eomgen.proof.emitted_code import PhaseMotion, TriedState
 from eomgen.proof.power import Energies, followed
+from eomgen.records import dataclass
 from eomgen.symbolic.expression.derivative import gradient
 from eomgen.symbolic.expression.graph import Scalar, is_zero
 from eomgen.symbolic.numeric.tolerances import LARGEST_SQUARED, SUMMED

@@ -10,15 +10,15 @@ whose end does not depend on them.
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
 from functools import cached_property
 from typing import Any
 
 from eomgen.mechanics.equations.equations_of_motion import EquationsOfMotion
+from eomgen.records import dataclass
 from eomgen.symbolic.expression.derivative import jacobian, symbols_of
 from eomgen.symbolic.expression.graph import Node, Scalar
 from eomgen.symbolic.numeric.dense import follows_in_digits
-from eomgen.symbolic.numeric.evaluation import NoValue, evaluate, fifty_digits
+from eomgen.symbolic.numeric.evaluation import NoValue, evaluate, fifty_digits, solved_quickly
 from eomgen.symbolic.numeric.tolerances import MET_AT_50, ZERO_AT_50
 
 STEPS = 12  # of Newton's method with the slope of the start; from doubles two or three are taken
@@ -32,6 +32,9 @@ def solved_nearby(rows: Sequence[Sequence[Any]]) -> DigitRow | None:
 
     Rows that follow from others are not looked at.
     """
+    found = solved_quickly(rows)
+    if found is not None:
+        return found
     left = [_of_one_size(row) for row in rows]
     unknowns = len(rows[0]) - 1 if rows else 0
     chosen: list[tuple[int, Sequence[Any]]] = []

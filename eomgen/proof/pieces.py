@@ -7,10 +7,10 @@ passes one of their places. Differences that are the same up to what stands stil
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Sequence
-from dataclasses import dataclass
 from itertools import pairwise
 from typing import Any
 
+from eomgen.records import dataclass
 from eomgen.symbolic.expression.derivative import gradient, symbols_of
 from eomgen.symbolic.expression.graph import Node, Scalar, linear_terms
 from eomgen.symbolic.expression.node import State

@@ -10,7 +10,6 @@ error that its formulas of orders 5 and 3 tell.
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import dataclass
 from functools import cached_property
 
 import numpy as np
@@ -20,6 +19,7 @@ from eomgen.codegen.rhs import RightHandSide, compiled
 from eomgen.mechanics.balance.friction import with_rest
 from eomgen.mechanics.equations.equations_of_motion import EquationsOfMotion
 from eomgen.proof.identities import energy_function, given_power
+from eomgen.records import dataclass
 from eomgen.symbolic.expression.derivative import depends_on
 from eomgen.symbolic.expression.graph import Scalar, is_zero
 

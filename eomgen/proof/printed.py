@@ -8,7 +8,7 @@ the next instant: the state a step later and a step earlier, to first order, wit
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass, field
+from dataclasses import field
 from functools import cached_property
 from typing import Any
 
@@ -20,6 +20,7 @@ from eomgen.model.outputs import FUNCTIONS
 from eomgen.model.outputs.base import BALANCE
 from eomgen.proof.at_a_state import least_multipliers
 from eomgen.proof.states import refuse_open
+from eomgen.records import dataclass
 from eomgen.symbolic.expression.derivative import gradient
 from eomgen.symbolic.expression.expressions import Call, parse
 from eomgen.symbolic.expression.graph import Node, Scalar

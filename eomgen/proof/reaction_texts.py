@@ -6,19 +6,14 @@ from collections.abc import Iterator, Mapping
 from functools import partial
 
 from eomgen.codegen.reactions import determinate
-from eomgen.errors import DerivationError
 from eomgen.mechanics.equations.equations_of_motion import EquationsOfMotion
 from eomgen.mechanics.reactions.reactions import reactions_of
 from eomgen.proof.at_a_state import NumericState, off_by, read_back
 from eomgen.proof.check import Check
-from eomgen.proof.states import TrialState
+from eomgen.proof.moving_states import moving_states, place_of
 from eomgen.proof.tally import Tally
-from eomgen.proof.trials import Trials
-from eomgen.symbolic.expression.rational import Fraction
 from eomgen.symbolic.numeric.evaluation import NoValue
 from eomgen.symbolic.numeric.tolerances import COMPUTED
-
-MOST = 3  # states at which all of them are compared
 
 
 def reaction_texts(equations: EquationsOfMotion, texts: Mapping[str, str]) -> Iterator[Check]:
@@ -28,7 +23,7 @@ def reaction_texts(equations: EquationsOfMotion, texts: Mapping[str, str]) -> It
         texts: of each reaction by its name, a function of q, u, t and accelerations.
     """
     tally = Tally("formulas, read back, are the reactions of the bodies' balance", "50 digits against doubles")
-    states = list(_states(equations))
+    states = list(moving_states(equations))
 
     def compared(name: str, text: str) -> str:
         scalar, judged = read_back(equations.system, text), 0
@@ -40,7 +35,7 @@ def reaction_texts(equations: EquationsOfMotion, texts: Mapping[str, str]) -> It
             if abs(found - right) > COMPUTED * (1 + size):
                 near = [beside.reactions.get(name, right) for beside in state.beside()]
                 if wrong := off_by(found, right, near):
-                    return f"{wrong} at t = {state.t:.6g} s, {_place(state)}"
+                    return f"{wrong} at t = {state.t:.6g} s, {place_of(state)}"
             judged += 1
         if not judged:
             raise NoValue("at none of the states tried it has a single value")
@@ -69,31 +64,3 @@ def reaction_numbers(start: NumericState, texts: Mapping[str, str], values: Mapp
         if name in texts or name in solved:
             (tally if name in texts else untold).add(name, partial(compared, name))
     return iter((*tally.checks(), *untold.checks()))
-
-
-def _states(equations: EquationsOfMotion) -> Iterator[NumericState]:
-    """The first state of each supply where the motion has accelerations."""
-    count = 0
-    for _, supply in Trials(equations).states.supplies:
-        for place in supply:
-            state = _in_numbers(equations, place)
-            try:
-                state.unknowns.keys()
-            except (NoValue, ZeroDivisionError, DerivationError):
-                continue
-            yield state
-            count += 1
-            break
-        if count == MOST:
-            return
-
-
-def _in_numbers(equations: EquationsOfMotion, place: TrialState) -> NumericState:
-    symbols, values = equations.symbols, place.state
-    parameters = {node: Fraction(float(values[node])) for node in symbols.parameters.values()}
-    return NumericState(equations, parameters, {x: float(values[x]) for x in (symbols.t, *symbols.q, *symbols.u)})
-
-
-def _place(state: NumericState) -> str:
-    moving = [f"{node.name} = {x:.6g}" for node, x in state.numbers.items()]
-    return ", ".join(moving[1:4])

@@ -8,7 +8,6 @@ The places come from the equations of statics, Q + J^T lam = 0, phi = 0; the equ
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Mapping, Sequence
-from dataclasses import dataclass
 from functools import cached_property
 from random import Random
 from typing import Any
@@ -22,10 +21,11 @@ from eomgen.mechanics.small_motions.first_order import FirstOrder
 from eomgen.proof.check import Check, checked, unchecked
 from eomgen.proof.free_bodies import demand_of
 from eomgen.proof.nearby import Nearby
+from eomgen.records import dataclass
 from eomgen.symbolic.expression.derivative import jacobian
 from eomgen.symbolic.expression.graph import Node
 from eomgen.symbolic.numeric.evaluation import NoValue, evaluate, fifty_digits
-from eomgen.symbolic.numeric.tolerances import COMPUTED, SAME_PLACE, ZERO_AT_50
+from eomgen.symbolic.numeric.tolerances import COMPUTED, DIFFERENCE_STEP, SAME_PLACE, ZERO_AT_50
 
 MOST = 12  # places that are looked at
 STEP = fifty_digits().number(1) / 10**15  # of a central difference
@@ -190,16 +190,30 @@ class _Proof:
         return ""
 
     def wrong_stability(self) -> str:
-        """Eigenvalues of the slopes of the free coordinates along themselves: positive ones grow."""
+        """One freedom that is pushed aside: what it does. Of several the eigenvalues of the slopes of the free
+        coordinates along themselves: positive ones grow."""
         kind = self.place.stability.kind
         rows = {u.name.removesuffix("'"): i for i, u in enumerate(self.first.system.symbols.u)}
         along = [q.name for q in self.place.stability.along]
         if not along or any(name not in rows for name in along):
             return ""
+        if len(along) == 1:
+            return self._wrong_when_pushed(self.nearby.q[0], rows[along[0]])
         values = np.linalg.eigvals(self.slopes[[rows[name] for name in along]]).real
         largest = abs(values).max(initial=0)
         if kind == "stable" and values.max() > SAME_PLACE * largest:
             return "said to be stable, and a small motion grows"
         if kind == "unstable" and largest and values.max() < -SAME_PLACE * largest:
             return "said to be unstable, and all small motions oscillate"
+        return ""
+
+    def _wrong_when_pushed(self, q: Node, row: int) -> str:
+        """It goes back from both sides where it is stable, and from one of them it does not where it is unstable."""
+        place, kind = self.numbers[q], self.place.stability.kind
+        push = DIFFERENCE_STEP * max(1, abs(place))
+        goes_back = [sign * self._accelerations({q: place + sign * push})[row] < 0 for sign in (1, -1)]
+        if kind == "stable" and not all(goes_back):
+            return "said to be stable, and what is pushed aside does not come back"
+        if kind == "unstable" and all(goes_back):
+            return "said to be unstable, and what is pushed aside comes back"
         return ""

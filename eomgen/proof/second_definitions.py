@@ -9,7 +9,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from functools import cached_property
 from typing import Any
 
@@ -17,11 +17,14 @@ from eomgen.errors import DerivationError
 from eomgen.mechanics.bodies.inertia import armature_energy
 from eomgen.mechanics.bodies.loads import JointEffort, weights
 from eomgen.mechanics.instant.outputs import Quantities
+from eomgen.mechanics.reactions.drive import with_drive_let_go
 from eomgen.model.forces.load import GeneralizedForce, PointForce
 from eomgen.model.outputs import FUNCTIONS
 from eomgen.proof.at_a_state import NumericState, differing
+from eomgen.proof.free_bodies import demand_of
 from eomgen.proof.instant import STEP
 from eomgen.proof.pushes import Pushes, add_push, pushes_of
+from eomgen.records import dataclass
 from eomgen.symbolic.expression.derivative import symbols_of
 from eomgen.symbolic.expression.expressions import Call
 from eomgen.symbolic.expression.graph import Node, Scalar, is_zero
@@ -174,6 +177,23 @@ class NearbyStates:
         for name, sign in ((effort.body, 1), (parent, -1)):
             own: Numbers = times(sign, push)
             add_push(pushes, name, *((own, ZERO) if all(map(is_zero, slide)) else (cross(place, own), own)))
+
+    def demanded(self, coordinate: str) -> Any:
+        """M a + c - Q - J^T lam of the freed coordinate, by the free bodies, at the motion as it is given."""
+        equations = self.state.equations
+        system, digits = equations.system, fifty_digits()
+        if not system.scope.model.coordinates[coordinate].driven:
+            raise NoValue("a tie drives it")
+        if equations.friction:
+            raise NoValue("something rubs")
+        free = with_drive_let_go(system, coordinate)
+        known = self.state.values | self.state.unknowns
+        own = {**system.scope.names, **{lam.name: lam for lam in system.symbols.lam}}
+        symbols = free.symbols
+        moving = (*symbols.q, *symbols.u, *symbols.a, *symbols.lam, *symbols.inputs.values(), symbols.t)
+        nodes = (*symbols.parameters.values(), *moving)
+        there = dict(zip(nodes, evaluate([own[x.name] for x in nodes], known, digits), strict=True))
+        return demand_of(free, there).forces[[u.name for u in symbols.u].index(f"{coordinate}'")]
 
     def root(self, x: Any) -> Any:
         """Of a number."""

@@ -6,7 +6,6 @@ A state at which something has no value is not a failure: another near it is tak
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator
-from dataclasses import dataclass
 from functools import cached_property
 from random import Random
 from typing import Any
@@ -17,6 +16,7 @@ from eomgen.mechanics.equations.system import System
 from eomgen.mechanics.initial_state.initial_state import start_state
 from eomgen.model.values import exact_parameters
 from eomgen.proof.pieces import Switch, switches_of
+from eomgen.records import dataclass
 from eomgen.symbolic.expression.graph import Scalar
 from eomgen.symbolic.expression.node import State
 from eomgen.symbolic.numeric.evaluation import NoValue, evaluate, fifty_digits

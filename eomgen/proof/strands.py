@@ -10,7 +10,6 @@ string stays as long as it is, - sum d . (v_2 - v_1) = 0 of the material that it
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass
 from functools import cached_property
 from itertools import pairwise
 from typing import Any
@@ -20,6 +19,7 @@ from eomgen.mechanics.equations.system import System
 from eomgen.model.constraints.meeting import Thread
 from eomgen.proof.pushes import Pushes, add_push, direction_at, pushed_otherwise, pushes_of
 from eomgen.proof.states import refuse_open
+from eomgen.records import dataclass
 from eomgen.symbolic.expression.graph import Scalar
 from eomgen.symbolic.expression.node import State
 from eomgen.symbolic.expression.spatial import ZERO, Numbers, Vector, apply, cross, dot, minus, plus, times, vector_of

@@ -10,7 +10,6 @@ Reactions are found in two ways before they come here, by virtual work and by th
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import dataclass
 from functools import cached_property
 from itertools import combinations
 from random import Random
@@ -30,6 +29,7 @@ from eomgen.mechanics.statics.two_ways import StaticReactions
 from eomgen.mechanics.structures.blocks import RigidBlock, blocks_of, members_of
 from eomgen.mechanics.structures.velocity_plan import VelocityPlan
 from eomgen.proof.check import Check, checked, unchecked
+from eomgen.records import dataclass
 from eomgen.symbolic.expression.expressions import single_call
 from eomgen.symbolic.expression.graph import Node, Scalar
 from eomgen.symbolic.expression.spatial import ZERO, Vector

@@ -3,10 +3,11 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator
-from dataclasses import dataclass, field
+from dataclasses import field
 
 from eomgen.errors import EomgenError
 from eomgen.proof.check import Check, checked, unchecked
+from eomgen.records import dataclass
 from eomgen.symbolic.numeric.evaluation import NoValue
 
 

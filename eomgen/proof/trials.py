@@ -7,7 +7,6 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Iterable, Sequence
-from dataclasses import dataclass
 from functools import cached_property
 from random import Random
 from typing import Any
@@ -32,6 +31,7 @@ from eomgen.proof.kept_ties import open_at_start, rows_that_stay
 from eomgen.proof.printed import Printed, ReadBack
 from eomgen.proof.states import States, in_doubles
 from eomgen.proof.strands import strung_otherwise, threads_of
+from eomgen.records import dataclass
 from eomgen.symbolic.expression.functions import inner
 from eomgen.symbolic.expression.graph import Scalar
 from eomgen.symbolic.expression.node import State

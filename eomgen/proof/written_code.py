@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Mapping, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from typing import Any
 
 import numpy as np
@@ -18,7 +18,9 @@ from eomgen.mechanics.equations.system import System
 from eomgen.proof import emitted_code
 from eomgen.proof.check import Check, unchecked
 from eomgen.proof.emitted_code import Code, PhaseMotion, TriedState
+from eomgen.records import dataclass
 from eomgen.symbolic.expression.graph import Node, Scalar
+from eomgen.symbolic.expression.node import ScalarRow
 from eomgen.symbolic.expression.traversal import order
 from eomgen.symbolic.numeric.evaluation import evaluate, fifty_digits
 from eomgen.symbolic.numeric.tolerances import CARRIED, COMPUTED
@@ -84,12 +86,14 @@ class Judged:
         values: of the role "reactions": its outputs by name, in q, u and a.
         actuators: of the role "inverse": what its outputs act along.
         slopes: of the role "jacobian": (t, x, p, inputs) -> (A, B), solved for in numbers.
+        parameters: of the role "regressor": pi, the columns of the first block of `values`; the second is y0.
     """
 
     motion: PhaseMotion
     values: Mapping[str, Scalar]
     actuators: Sequence[str] = ()
     slopes: Callable[..., tuple[np.ndarray, np.ndarray]] | None = None
+    parameters: ScalarRow | None = None
 
     def check(self, written: Written, start: Sequence[TriedState]) -> Check:
         """The written function at the start and at the states of its test vectors."""
@@ -104,6 +108,8 @@ class Judged:
             return emitted_code.equations_hold(self.motion, code, (*start, *written.instants), name)
         if self.slopes is not None:
             return self._slopes(code, written.instants, name, self.slopes)
+        if self.parameters is not None:
+            return self._regressor(code, written.instants, name, self.parameters)
         if self.actuators:
             return self._inverse(code, written.instants, name)
         return emitted_code.values_agree(
@@ -116,12 +122,38 @@ class Judged:
         def wrong(instant: TriedState) -> str | None:
             inputs = [instant.inputs[name] for name in self.motion.equations.symbols.inputs] if instant.inputs else None
             right = np.concatenate([x.ravel() for x in slopes(instant.t, instant.x, instant.p, inputs)])
-            if not np.all(np.isfinite(right)):
+            known = np.isfinite(right)
+            if not np.any(known):
                 return None
-            apart = np.max(np.abs(code(instant) - right), initial=0.0) / (1 + np.max(np.abs(right), initial=0.0))
+            apart = np.max(np.abs(code(instant) - right)[known]) / (1 + np.max(np.abs(right[known])))
             return "" if apart <= CARRIED else f"a slope is off by {apart:.1e} at t = {instant.t:.6g} s"
 
         how = "the linearized equations solved in numbers"
+        return emitted_code.at_states(name, how, at, wrong, cost=len(order(self.motion.scalars)))
+
+    def _regressor(self, code: Code, at: Iterable[TriedState], name: str, pi: ScalarRow) -> Check:
+        """Every entry against the symbols; and Y pi + y0 put into the equations without inputs, as what pushes."""
+        e = self.motion.equations
+        still, size, entries = dict.fromkeys(e.symbols.inputs, 0.0), len(e.symbols.u), tuple(self.values.values())
+
+        def wrong(instant: TriedState) -> str | None:
+            free = self.motion.numbers(instant)
+            a = instant.a
+            if len(free.J):
+                a = a - np.linalg.lstsq(free.J, free.J @ a + free.gamma, rcond=COMPUTED)[0]
+            found, unmoved = code(replace(instant, a=a)), replace(instant, inputs=still)
+            values = {**self.motion.values(unmoved), **dict(zip(e.symbols.a, map(float, a), strict=True))}
+            right = np.array([float(x) for x in evaluate((*entries, *pi), values, fifty_digits())])
+            apart = np.max(np.abs(found - right[: len(entries)]), initial=0) / (1 + np.max(np.abs(right), initial=0))
+            if not apart <= COMPUTED:
+                return f"an entry is off by {apart:.1e} at t = {instant.t:.6g} s"
+            Y, y0 = found[: size * len(pi)].reshape(size, -1), found[size * len(pi) :][:size]
+            left = self.motion.numbers(unmoved).left_of_forces(a, Y @ right[len(entries) :] + y0)
+            return (
+                "" if left <= COMPUTED else f"M a + c = Q is left with {left:.1e} of its terms at t = {instant.t:.6g} s"
+            )
+
+        how = "symbols with 50 digits; Y pi + y0 put into the equations"
         return emitted_code.at_states(name, how, at, wrong, cost=len(order(self.motion.scalars)))
 
     def _accelerations(self, at: TriedState) -> Mapping[Node, float]:

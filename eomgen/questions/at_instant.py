@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass
 
 from eomgen.mechanics.bodies.places import Located, places_of
 from eomgen.mechanics.equations.system import System
@@ -12,6 +11,7 @@ from eomgen.mechanics.equilibria.search import all_equilibria
 from eomgen.mechanics.equilibria.static_equations import static_equations
 from eomgen.model.values import numeric_parameters
 from eomgen.questions.in_phase import PhaseEquations
+from eomgen.records import dataclass
 from eomgen.symbolic.expression.derivative import depends_on, substituted
 from eomgen.symbolic.expression.graph import Node, Scalar
 from eomgen.symbolic.numeric.transplant import transplanted

@@ -10,7 +10,7 @@ from __future__ import annotations
 import inspect
 import math
 from collections.abc import Callable, Iterator, Mapping, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from typing import Any
 
 import numpy as np
@@ -25,6 +25,7 @@ from eomgen.model.parts import Model, Parameter
 from eomgen.model.table import Table
 from eomgen.questions.of_a_run import WholeRun
 from eomgen.questions.run import finished_run, phase_models
+from eomgen.records import dataclass
 from eomgen.simulation.configuration import has_phases
 from eomgen.simulation.integrate import instants_of, refuse_bad_run
 from eomgen.simulation.integrator import Stepping

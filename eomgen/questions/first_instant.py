@@ -6,7 +6,7 @@ It is located in numbers first, then sought in closed form; what is found so is 
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from random import Random
 
 from eomgen.errors import DerivationError, EomgenError, RunFailed
@@ -15,6 +15,7 @@ from eomgen.mechanics.first_integrals.closed_instant import ClosedInstant
 from eomgen.model.values import exact_parameters
 from eomgen.questions.at_instant import StateAtInstant
 from eomgen.questions.in_phase import PhaseEquations
+from eomgen.records import dataclass
 from eomgen.simulation.first_time import FirstTime, values_of
 from eomgen.symbolic.expression.derivative import depends_on, substituted
 from eomgen.symbolic.expression.graph import Node, Scalar

@@ -9,7 +9,6 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
 from functools import cached_property
 from typing import Any
 
@@ -31,6 +30,7 @@ from eomgen.mechanics.instant.outputs import Quantities, asks_of
 from eomgen.model.outputs.base import BALANCE, MASSES
 from eomgen.model.parts import Model
 from eomgen.model.unknowns import in_loads, refuse_motion
+from eomgen.records import dataclass
 from eomgen.symbolic.exact.normal_form import legible, readable_all
 from eomgen.symbolic.expression.derivative import depends_on, substituted
 from eomgen.symbolic.expression.expressions import Call, Expression

@@ -9,7 +9,7 @@ from __future__ import annotations
 import contextvars
 from collections.abc import Callable, Mapping, Sequence
 from concurrent.futures import ThreadPoolExecutor
-from dataclasses import dataclass, field, replace
+from dataclasses import field, replace
 from functools import cached_property
 from typing import Any
 
@@ -17,6 +17,7 @@ import numpy as np
 
 from eomgen.codegen.batching import STATUS, Asked, Batch, FoundRuns
 from eomgen.codegen.rhs import parameter_vector
+from eomgen.codegen.taylor import order_for, without_series
 from eomgen.errors import EomgenError, RunFailed, ToolMissing, UsageError
 from eomgen.mechanics.initial_state.initial_state import start_of_motion
 from eomgen.model.findings import nearest
@@ -26,13 +27,14 @@ from eomgen.model.replaced import with_inputs, with_values
 from eomgen.model.table import Table
 from eomgen.proof.check import Certificate
 from eomgen.questions.simulator import SAMPLES, Simulator
+from eomgen.records import dataclass
 from eomgen.simulation.compiled_steps import BATCHED
 from eomgen.simulation.configuration import has_phases
 from eomgen.simulation.integrate import drift_of, instants_of, refuse_bad_run
 from eomgen.simulation.integrator import ended_words
 from eomgen.simulation.phase_model import PhaseModel
 from eomgen.simulation.phase_models import one_phase
-from eomgen.simulation.solvers import AUTO, breakpoints_of
+from eomgen.simulation.solvers import AUTO, TAYLOR, breakpoints_of
 from eomgen.symbolic.expression.expressions import Expression
 from eomgen.symbolic.numeric.work import check_patience, doing
 
@@ -230,18 +232,19 @@ def _known(simulator: Simulator) -> tuple[Any, PhaseModel]:
 def _in_lanes(plan: _Plan, threads: int) -> Told | None:
     """All runs in lanes; None where the model, the method or the machine does not allow it."""
     simulator, how = plan.simulator, plan.simulator.how
-    steps = how.method in (AUTO, "DOP853") and how.stabilization in ("projection", "none")
+    steps = how.method in (AUTO, "DOP853", TAYLOR) and how.stabilization in ("projection", "none")
     if simulator.is_tied or simulator.keeps_start or not steps or simulator.target == "numpy":
         return None
     equations, phase = _known(simulator)
+    step, program = how.of_one_step(), phase.functions.rhs.program
+    series = how.method == TAYLOR and not without_series(program)
     try:
-        batch = Batch(phase.functions.rhs.program, BATCHED)
+        batch = Batch(program, BATCHED, order_for(step.rtol) if series else None)
     except (RunFailed, ToolMissing):
         if simulator.target == "c":
             raise
         return None
     p = _parameters(plan)
-    step = how.of_one_step()
     asked = Asked(
         (0.0, plan.time), plan.instants, step.rtol, step.atol, step.most_steps,
         breakpoints_of(plan.model), tuple(phase.functions.rhs.spheres),

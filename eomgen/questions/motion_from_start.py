@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from functools import cached_property
 
 import numpy as np
@@ -26,6 +26,7 @@ from eomgen.model.values import numeric_parameters
 from eomgen.questions.at_instant import StateAtInstant, carried, parameters_of, placed
 from eomgen.questions.first_instant import closed_form, reached
 from eomgen.questions.in_phase import PhaseEquations, phase_equations_of, start_of
+from eomgen.records import dataclass
 from eomgen.simulation.configuration import by_the_law, has_phases
 from eomgen.simulation.integrator import Stepping
 from eomgen.simulation.motion import Plan, through

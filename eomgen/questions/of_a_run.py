@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Iterator, Mapping, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from functools import cached_property, partial
 from typing import Any
 
@@ -24,6 +24,7 @@ from eomgen.model.table import Table
 from eomgen.model.values import numeric_parameters
 from eomgen.proof.check import Check
 from eomgen.proof.tally import Tally
+from eomgen.records import dataclass
 from eomgen.simulation.dense_motion import DenseMotion, dense_motion
 from eomgen.simulation.motion import Plan
 from eomgen.simulation.output_columns import OutputColumns
@@ -46,15 +47,6 @@ class RunValue:
     value: float | tuple[float, ...] | None
     t: tuple[float, ...] = ()
     message: str = ""
-
-
-@dataclass(frozen=True)
-class _Stretch:
-    """A formula along one phase."""
-
-    run: PhaseRun
-    pieces: ChebyshevPieces | None
-    ends: tuple[float, float]
 
 
 @dataclass(frozen=True)

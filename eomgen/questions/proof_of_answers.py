@@ -9,7 +9,6 @@ from __future__ import annotations
 import math
 from collections.abc import Iterator, Mapping
 from contextlib import suppress
-from dataclasses import dataclass
 from functools import cached_property, partial
 from typing import Any, Protocol
 
@@ -30,12 +29,14 @@ from eomgen.model.parts import Model, Output
 from eomgen.proof.at_a_state import NumericState, differing, off_by, read_back
 from eomgen.proof.check import Certificate, Check
 from eomgen.proof.emitted_code import PhaseMotion, TriedState
+from eomgen.proof.moving_states import moving_states, place_of
 from eomgen.proof.second_definitions import second_definition
 from eomgen.proof.tally import Tally
 from eomgen.questions.at_instant import StateAtInstant
 from eomgen.questions.in_phase import PhaseEquations
 from eomgen.questions.motion_from_start import MotionFromStart
 from eomgen.questions.proof_of_phases import wrong_way
+from eomgen.records import dataclass
 from eomgen.simulation.constraint_drift import projection_of
 from eomgen.simulation.constraint_rank import nearness_of
 from eomgen.simulation.integrate import integrate
@@ -69,7 +70,9 @@ class Solver(Protocol):
 def certificate_of(solver: Solver, answers: Mapping[str, Quantity]) -> Certificate:
     """The proof of the equations where a motion is asked, then of every answer."""
     proof = _Proof(solver, answers)
-    return Certificate((*proof.equations(), *proof.texts(), *proof.numbers(), *proof.instants(), *proof.ways()))
+    return Certificate(
+        (*proof.equations(), *proof.texts(), *proof.numbers(), *proof.formulas(), *proof.instants(), *proof.ways())
+    )
 
 
 @dataclass(frozen=True)
@@ -143,6 +146,42 @@ class _Proof:
                 for call in calls:
                     tally.add(str(call), partial(second_definition, state, call))
         return tally.checks()
+
+    def formulas(self) -> Iterator[Check]:
+        """A formula of the state is what it says in other states too: what vanishes at the start is seen there."""
+        tally = Tally(
+            "formulas, read back, hold at other states", "50 digits, second definitions, reactions in doubles"
+        )
+        for name, (output, found) in self.asked.items():
+            if output.at is None and output.from_ is None and found.exact is not None and self._others:
+                tally.add(name, partial(self._elsewhere, output, found.exact))
+        return tally.checks()
+
+    def _elsewhere(self, output: Output, text: str) -> str:
+        self._refuse_other(output)
+        judged, scalar = False, read_back(self.solver.motions[False].phase.system, text)
+        for state in self._others:
+            try:
+                told, right = (_in_unit(x, output) for x in (state.number(scalar), state.worth(output.value)))
+                if differing(told, right) and abs(told - right) > _in_unit(state.rounding(output.value), output):
+                    near = [_in_unit(beside.worth(output.value), output) for beside in state.beside()]
+                    if wrong := off_by(told, right, near):
+                        return f"{wrong} at t = {state.t:.6g} s, {place_of(state)}"
+                for call in output.value.calls:
+                    if FUNCTIONS[call.name].second is not None and (wrong := second_definition(state, call)):
+                        return f"{call}: {wrong} at t = {state.t:.6g} s, {place_of(state)}"
+                judged = True
+            except (NoValue, ZeroDivisionError, DerivationError):
+                continue
+        if not judged:
+            raise NoValue("at none of the states tried it has a value")
+        return ""
+
+    @cached_property
+    def _others(self) -> list[NumericState]:
+        """The start's phase at states that are not the start."""
+        phase = self.solver.motions[False].phase
+        return list(moving_states(phase.equations))[1:] if phase.system.symbols.u else []
 
     def _against_state(self, output: Output, found: Quantity) -> str:
         if found.value is None:

@@ -66,7 +66,7 @@ def _met_before(runs: Sequence[PhaseRun], output: Output) -> str:
         if type(scalar) is not Node:
             continue
         track = run.run.tracks[0] if run.run.tracks else None
-        t, x = (run.run.t, run.run.x) if track is None else (np.array(track.t), np.array(track.x))
+        t, x = (run.run.t, run.run.x) if track is None else track.all
         with np.errstate(all="ignore"):
             values = phase.functions.function((scalar,)).many(t, phase.functions.inner(x), phase.p)[:, 0]
         sure = values[np.abs(values) > CARRIED * np.max(np.abs(values), initial=0.0)]

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from typing import Any
 
 import numpy as np
@@ -22,6 +22,7 @@ from eomgen.proof.contact_phases import bodies_stand_as_told, changes_follow_imp
 from eomgen.proof.run_outputs import output_columns_hold
 from eomgen.proof.run_reactions import reaction_columns_hold
 from eomgen.questions.of_a_run import WholeRun
+from eomgen.records import dataclass
 from eomgen.simulation.accuracy import Accuracy, accuracy_of, finer
 from eomgen.simulation.integrate import SAMPLES, instants_of, refuse_bad_run
 from eomgen.simulation.integrator import Run, Stepping
@@ -32,7 +33,6 @@ from eomgen.simulation.phase_change import PhaseStart, at_start
 from eomgen.simulation.phase_models import PhaseModels
 from eomgen.simulation.phase_run import PhaseRun, condition_of
 from eomgen.simulation.result import Phase, Trajectory
-from eomgen.simulation.solvers import breakpoints_of
 from eomgen.symbolic.expression.expressions import Expression
 from eomgen.symbolic.numeric.tolerances import COMPUTED
 from eomgen.symbolic.numeric.work import PatienceEnded, doing, keep_what_there_is
@@ -98,10 +98,10 @@ class RunProof:
 def _until(phase: Phase, t: np.ndarray) -> Phase:
     """A phase without the states after the run was cut."""
     if phase.track is None or not len(t):
-        return replace(phase, track=None)
+        return replace(phase, tracked=None)
     times, states = phase.track
     here = times <= max(t[-1], phase.start)
-    return replace(phase, track=(times[here], states[here]))
+    return replace(phase, tracked=lambda: (times[here], states[here]))
 
 
 @doing("the motion in time")
@@ -144,7 +144,7 @@ def run(
     _refuse_fork_at_rest(models, here)
     plan = Plan(
         time,
-        replace(how.of_one_step(), breakpoints=breakpoints_of(model), keeps=True),
+        replace(how.of_one_step(), breakpoints=models.breakpoints, keeps=True),
         instants_of(samples, 0.0, time),
         None if condition is None else lambda phase: condition(phase.system),
     )

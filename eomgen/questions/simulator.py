@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections import OrderedDict
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass, field, replace
+from dataclasses import field, replace
 from functools import cached_property
 
 from eomgen.codegen.rhs import parameter_vector
@@ -19,6 +19,7 @@ from eomgen.model.replaced import Values, with_values
 from eomgen.proof.kept_ties import rows_that_stay
 from eomgen.questions.of_a_run import asked_of
 from eomgen.questions.run import phase_models, run
+from eomgen.records import dataclass
 from eomgen.simulation.configuration import has_phases
 from eomgen.simulation.integrator import Stepping
 from eomgen.simulation.output_columns import formulas_of
@@ -97,6 +98,14 @@ class Simulator:
 
     def _at(self, model: Model) -> tuple[Equations, PhaseModels]:
         """The equations, and their phases, at the values of a model."""
+        return self._own if model is self.model else self._found(model)
+
+    @cached_property
+    def _own(self) -> tuple[Equations, PhaseModels]:
+        """Those at the model's own values."""
+        return self._found(self.model)
+
+    def _found(self, model: Model) -> tuple[Equations, PhaseModels]:
         known, key = self.known, (model.parameters, model.coordinates, model.speeds)
         if key not in known:
             anew = self.is_tied or self.keeps_start

@@ -1,1 +1,1 @@
-"""Robot files of other programs <-> model files: URDF, MJCF, SDF."""
+"""Files and objects of other programs <-> model files: URDF, MJCF, SDF, sympy.physics.mechanics."""

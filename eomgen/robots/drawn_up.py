@@ -4,13 +4,15 @@ from __future__ import annotations
 
 import re
 from collections.abc import Iterable, Mapping, Sequence
-from dataclasses import dataclass, field
+from dataclasses import field
 from decimal import Decimal
 from typing import Any
 
+from eomgen.records import dataclass
 from eomgen.robots.numbers import ORIGIN, ZERO, Nine, Triple, computed
 from eomgen.robots.toml_text import decimal_text
 from eomgen.symbolic.expression.spatial import IDENTITY, apply, plus
+from eomgen.symbolic.numeric.work import check_patience
 
 RESERVED = ("t", "pi", "nan", "inf", "infinity", "ground")
 ILLEGAL = re.compile(r"[^A-Za-z0-9_]+")
@@ -109,6 +111,7 @@ def hung(name: str, body: Entries, seat: Seat, joints: Sequence[Moved], names: L
 
     Each but the first sits at its pivot in the axes of the frame before, which are the body's own where it is at rest.
     """
+    check_patience()
     if not joints:
         return {name: {**body, "joint": {"kind": "fixed", **seat.fields()}}}
     found: dict[str, Entries] = {}

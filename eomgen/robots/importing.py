@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import re
-from dataclasses import dataclass
 from decimal import localcontext
 from pathlib import Path
 
@@ -11,6 +10,7 @@ from eomgen.errors import ModelError
 from eomgen.files import read
 from eomgen.model.parts import Model
 from eomgen.model.reader import loads
+from eomgen.records import dataclass
 from eomgen.robots.drawn_up import Imported, LeftOut
 from eomgen.robots.mjcf import mjcf
 from eomgen.robots.numbers import EXACTLY

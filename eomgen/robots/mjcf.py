@@ -10,13 +10,14 @@ from __future__ import annotations
 
 import importlib
 from collections.abc import Iterable
-from dataclasses import dataclass, field
+from dataclasses import field
 from decimal import Decimal
 from pathlib import Path
 from typing import Any
 
 from eomgen.errors import ModelError, ToolMissing
 from eomgen.model.joints.orientation import rotation_of
+from eomgen.records import dataclass
 from eomgen.robots.drawn_up import (
     Entries,
     Imported,
@@ -50,7 +51,7 @@ FREE, BALL, SLIDE, HINGE = range(4)  # the numbers of MuJoCo: of joints,
 CONNECT, WELD, JOINT, TENDON = range(4)  # of equalities,
 ON_JOINT, IN_PARENT, ON_TENDON, ON_SITE = 0, 1, 3, 4  # of what a motor acts on,
 FIXED, AFFINE = 0, 1  # of its laws,
-JOINT_WRAP, SITE = 1, 6  # of what a tendon is of, of what an equality is of
+JOINT_WRAP, AT_SITE, SITE = 1, 3, 6  # of what a tendon is of, of what an equality is of
 
 
 def mjcf(path: Path) -> Imported:
@@ -130,6 +131,9 @@ class _Reading:
             self._body(k)
         self._tendons()
         self._equalities()
+        for k, own in self.points.items():  # those of ties too, which come after the bodies
+            if name := self.body[k]:
+                self.found["bodies"][name]["points"] = {**self.found["bodies"][name].get("points", {}), **own}
         self._rest()
         gravity = decimals(decimal_of_double(x) for x in m.opt.gravity)
         parameters = {}
@@ -154,7 +158,7 @@ class _Reading:
     def _body(self, k: int) -> None:
         m = self.m
         if k == 0:
-            self.found["points"] = self.points.get(0, {})
+            self.found["points"] = self.points.setdefault(0, {})
             return
         raw, name = m.body(k).name, self.body[k]
         assert name is not None
@@ -167,7 +171,7 @@ class _Reading:
             center = decimals(decimal_of_double(x) for x in m.body_ipos[k])
             body |= with_mass({"mass": mass}, center, six(tensor if R == IDENTITY else inertia_in(R, tensor)))
         if self.points.get(k):
-            body["points"] = self.points[k]
+            body["points"] = dict(self.points[k])
         joints = range(m.body_jntadr[k], m.body_jntadr[k] + m.body_jntnum[k])
         R, turns = _turned(m.body_quat[k])
         place = decimals(decimal_of_double(x) for x in m.body_pos[k])
@@ -304,7 +308,8 @@ class _Reading:
         for t in range(m.ntendon):
             name, length = self._tendon_name(t), self._length(t)
             stiff, damping = decimal_of_double(m.tendon_stiffness[t]), decimal_of_double(m.tendon_damping[t])
-            if length is None:
+            ends = self._ends(t)
+            if length is None and not ends:
                 if stiff or damping or m.tendon_limited[t]:
                     self.leave("tendons through places", [name], "say them by springs, links and strings")
                 continue
@@ -313,6 +318,10 @@ class _Reading:
             if m.tendon_armature[t] or m.tendon_frictionloss[t] or any(m.tendon_stiffnesspoly[t]):
                 self.leave("armature, friction and bent springs of tendons", [name])
             low, high = (decimal_of_double(x) for x in m.tendon_lengthspring[t])
+            if ends:
+                self._stretched(name, ends, stiff, damping, (low, high))
+                continue
+            assert length is not None
             if stiff:
                 stretch, beyond = signed_sum(length, -low), signed_sum(length, -high)
                 square = f"({stretch})^2" if low == high else f"(min({stretch}, 0)^2 + max({beyond}, 0)^2)"
@@ -322,6 +331,28 @@ class _Reading:
                 rate = signed_sum((factor, f"{q}'") for factor, q in length)
                 for factor, q in length:
                     self._push(f"{name}_{q}", q, f"{decimal_text(-factor * damping)}*({rate})")
+
+    def _ends(self, t: int) -> list[str]:
+        """The two places of a tendon that is straight between them; [] of another one."""
+        at = range(self.m.tendon_adr[t], self.m.tendon_adr[t] + self.m.tendon_num[t])
+        straight = len(at) == 2 and all(self.m.wrap_type[k] == AT_SITE for k in at)
+        return [self.sites[int(self.m.wrap_objid[k])] for k in at] if straight else []
+
+    def _stretched(
+        self, name: str, ends: list[str], stiff: Decimal, damping: Decimal, rest: tuple[Decimal, Decimal]
+    ) -> None:
+        """The spring and the damper of a straight tendon; between two rest lengths it is slack."""
+        low, high = rest
+        if stiff and low == high:
+            spring: Entries = {"kind": "spring", "points": ends, "stiffness": stiff, "length": low}
+            self.found["forces"][self.forces.new(name, "tendon")] = spring
+        elif stiff:
+            beyond = f"min(r - {decimal_text(low)}, 0) + max(r - {decimal_text(high)}, 0)"
+            law = {"kind": "between", "points": ends, "pull": f"{decimal_text(stiff)}*({beyond})"}
+            self.found["forces"][self.forces.new(name, "tendon")] = law
+        if damping:
+            damper = {"kind": "damper", "points": ends, "damping": damping}
+            self.found["forces"][self.forces.new(f"{name}_damper")] = damper
 
     def _push(self, name: str, q: str, value: str) -> None:
         """A generalized force along a coordinate."""

@@ -8,12 +8,13 @@ is free, unless the model is static.
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass, field
+from dataclasses import field
 from decimal import Decimal
 from typing import Any
 
 from eomgen.errors import ModelError
 from eomgen.model.findings import nearest
+from eomgen.records import dataclass
 from eomgen.robots.drawn_up import Entries, Imported, LegalNames, Moved, Seat, hung, in_file, signed_sum, without_empty
 from eomgen.robots.numbers import ORIGIN, decimals, inertia_in, quaternion_of, roll_pitch_yaw, six, tensor_of, turn_of
 from eomgen.robots.urdf import LEFT_OUT, by_name, free_joint, left_out, turned_freely, with_mass

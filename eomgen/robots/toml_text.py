@@ -9,6 +9,8 @@ from collections.abc import Mapping, Sequence
 from decimal import Decimal
 from typing import Any
 
+from eomgen.errors import HIDDEN, visible
+
 BARE = re.compile(r"[A-Za-z0-9_-]+")
 WIDTH = 118  # of a remark
 SHORT = ("parameters", "coordinates", "speeds", "inputs", "points", "outputs")  # tables of one line an entry
@@ -32,12 +34,14 @@ def _remarks(remarks: Sequence[str]) -> list[str]:
     return [
         line
         for remark in remarks
-        for line in textwrap.wrap(remark, WIDTH, initial_indent="# ", subsequent_indent="#   ", break_on_hyphens=False)
+        for line in textwrap.wrap(
+            visible(remark), WIDTH, initial_indent="# ", subsequent_indent="#   ", break_on_hyphens=False
+        )
     ]
 
 
 def _key(name: str) -> str:
-    return name if BARE.fullmatch(name) else json.dumps(name, ensure_ascii=False)
+    return name if BARE.fullmatch(name) else _text(name)
 
 
 def _entry(value: Any) -> str:
@@ -56,7 +60,12 @@ def _value(value: Any) -> str:
         return f"[{', '.join(map(_value, value))}]"
     if isinstance(value, Decimal):
         return decimal_text(value)
-    return str(value) if isinstance(value, int) else json.dumps(value, ensure_ascii=False)
+    return str(value) if isinstance(value, int) else _text(value)
+
+
+def _text(text: str) -> str:
+    """In quotes; what steers a terminal, and what TOML has only so, by its number."""
+    return HIDDEN.sub(lambda found: f"\\U{ord(found[0]):08X}", json.dumps(text, ensure_ascii=False))
 
 
 def decimal_text(value: Decimal) -> str:

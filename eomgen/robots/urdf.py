@@ -7,13 +7,13 @@ is x. A joint that mimics another is one of its own, with the equation between t
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass
 from decimal import Decimal
 from typing import Any
 
 from eomgen.errors import ModelError
 from eomgen.model.checks.triangle import possible
 from eomgen.model.findings import nearest
+from eomgen.records import dataclass
 from eomgen.robots.drawn_up import (
     Entries,
     Imported,

@@ -3,11 +3,12 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Mapping
-from dataclasses import dataclass, field
+from dataclasses import field
 from decimal import Decimal, InvalidOperation
 from xml.parsers import expat
 
 from eomgen.errors import ModelError
+from eomgen.records import dataclass
 from eomgen.robots.numbers import Triple
 
 DEEPEST = 200  # elements one within the other

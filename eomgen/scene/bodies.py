@@ -14,12 +14,12 @@ from eomgen.model.shapes import MassProperties
 from eomgen.model.shapes.forms import ArcForm, EllipsoidForm, Form, LineForm, PolygonForm
 from eomgen.model.trusses import is_node
 from eomgen.model.values import exact_parameters
-from eomgen.scene.forms import PointForm, RodForm
+from eomgen.scene.forms import PointForm, RodForm, SymbolForm
 from eomgen.scene.scene import Mark, SceneFrame
 from eomgen.symbolic.expression.functions import function, over, sqrt
 from eomgen.symbolic.expression.graph import Node, is_zero
 from eomgen.symbolic.expression.rational import Fraction
-from eomgen.symbolic.expression.spatial import ZERO, Vector
+from eomgen.symbolic.expression.spatial import ZERO, Vector, apply, cross
 from eomgen.symbolic.numeric.evaluation import FLOAT, evaluate
 from eomgen.symbolic.numeric.tolerances import COMPUTED
 
@@ -80,7 +80,34 @@ def skeleton(system: System, link: BodyLink, frame: int) -> list[Mark]:
     if system.scope.model.space == "plane":
         return [Mark(form, frame, "body", link.name) for form in _plate(system, places)]
     rods = [Mark(RodForm(places[0], place), frame, "body", link.name) for place in places[1:]]
+    if gimbal := gimbal_of(system, link):
+        symbol, axis = gimbal
+        pins = Mark(SymbolForm(f"{symbol}_pins", link.point, link.S[0][0]), frame, "body", link.name)
+        return [Mark(SymbolForm(symbol, link.point, axis), frame, "body", link.name), pins]
     return [*rods, *inertia_mark(mass_properties(system.scope, link.name), frame, link.name)]
+
+
+def gimbal_of(system: System, link: BodyLink) -> tuple[str, Vector] | None:
+    """(symbol, its axis) of a hinged body that has no lengths: a rotor is all inertia, a ring carries one.
+
+    The ring lies in the plane of its own hinge and of that in it.
+    """
+    part, motion = system.scope.model.bodies[link.name], system.motion
+    turns = len(link.S) == 1 and not all(map(is_zero, link.S[0][0])) and all(map(is_zero, link.S[0][1]))
+    held = link.joint is not None and link.joint.carries_reaction and turns
+    if system.scope.model.space == "plane" or not held or part.shape is not None or part.parts is not None:
+        return None
+    mass, axis = mass_properties(system.scope, link.name), link.S[0][0]
+    hung = [other for other in motion.links if other.parent == motion.index[link.name]]
+    if not is_zero(mass.m) or len(hung) > 1 or len(places_of_body(system, link)) > 1:
+        return None
+    if not hung:
+        return None if all(is_zero(x) for row in mass.I for x in row) else ("rotor", axis)
+    inner = gimbal_of(system, hung[0])
+    across = cross(axis, apply(hung[0].before.R, hung[0].S[0][0])) if inner else ZERO
+    if inner is None or hung[0].before.p != link.point or all(map(is_zero, across)):
+        return None
+    return "ring" if inner[0] == "rotor" else "outer_ring", across
 
 
 def _plate(system: System, places: list[Vector]) -> list[Form]:

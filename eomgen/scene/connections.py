@@ -24,7 +24,7 @@ from eomgen.model.forces.load import Couple, PointForce
 from eomgen.model.joints.base import unit
 from eomgen.model.shapes.forms import ArcForm, EllipsoidForm, LineForm
 from eomgen.scene.anchors import walls
-from eomgen.scene.bodies import is_block, seen
+from eomgen.scene.bodies import gimbal_of, is_block, seen
 from eomgen.scene.forms import DamperForm, RodForm, SpringForm, SymbolForm, TrackForm, WheelForm
 from eomgen.scene.scene import Mark
 from eomgen.symbolic.expression.functions import function
@@ -87,10 +87,27 @@ def _space_joint(
 ) -> list[Mark]:
     kinds = {(0, 0): "weld", (1, 0): "hinge", (0, 1): "slider", (1, 1): "tube", (2, 0): "cross", (3, 0): "ball"}
     symbol = kinds.get((len(turning), len(sliding)))
-    if symbol is None:
+    if symbol is None or gimbal_of(system, link):
         return []
     along = turning[0] if turning else sliding[0] if sliding else None
-    return [Mark(SymbolForm(symbol, link.point, along), frame, "joint", link.name)]
+    return [
+        Mark(SymbolForm(symbol, link.point, along), frame, "joint", link.name),
+        *_reach(system, link, bool(sliding)),
+    ]
+
+
+def _reach(system: System, link: BodyLink, slides: bool) -> list[Mark]:
+    """What a body in space has slid along, from where its joint sits; of the only joint on the ground how it stands."""
+    grounded, motion = link.parent == GROUND, system.motion
+    above = Pose() if grounded else motion.links[link.parent].pose
+    seat = above.point(link.before.p)
+    found = []
+    if slides and not any(e is not None and e.stiffness is not None for e in link.joint.efforts()):
+        found.append(Mark(RodForm(seat, link.pose.point(link.point)), 0, "track" if grounded else "body", link.name))
+    alone = sum(other.parent == GROUND for other in motion.links) == 1
+    if grounded and alone and not all(map(is_zero, seat)):
+        found.append(Mark(LineForm((ZERO, seat), fine=True), 0, "ground", link.name))
+    return found
 
 
 def _joint_elements(system: System, link: BodyLink, frame: int, turns: bool) -> list[Mark]:

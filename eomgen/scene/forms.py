@@ -5,7 +5,6 @@ The forms of shapes stand beside the shapes; here are those of joints, forces, l
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from typing import Any, ClassVar
 
 from eomgen.model.shapes.forms import (
@@ -19,6 +18,7 @@ from eomgen.model.shapes.forms import (
     PrismForm,
     RevolutionForm,
 )
+from eomgen.records import dataclass
 from eomgen.symbolic.expression.spatial import Vector
 
 

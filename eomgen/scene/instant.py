@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
-
 import numpy as np
 
 from eomgen.codegen.rhs import compiled
@@ -11,6 +9,7 @@ from eomgen.errors import DerivationError
 from eomgen.mechanics.equations.system import System
 from eomgen.mechanics.initial_state.initial_state import start_state
 from eomgen.model.values import exact_parameters, start_values
+from eomgen.records import dataclass
 from eomgen.scene.scene import Scene
 
 

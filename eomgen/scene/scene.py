@@ -7,7 +7,7 @@ Python runs it by numpy or C, a page by JavaScript; a drawer reads marks whose n
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator
-from dataclasses import dataclass, fields
+from dataclasses import fields
 from functools import cached_property
 from typing import Any
 
@@ -15,6 +15,7 @@ from eomgen.codegen.program import Program, program_in_motion, program_of
 from eomgen.mechanics.equations.equations_of_motion import EquationsOfMotion
 from eomgen.mechanics.equations.system import System
 from eomgen.model.shapes.forms import Form
+from eomgen.records import dataclass
 from eomgen.scene.symbols import symbols_used
 from eomgen.symbolic.expression.derivative import symbols_of
 from eomgen.symbolic.expression.graph import Node, Scalar

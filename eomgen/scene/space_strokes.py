@@ -23,6 +23,8 @@ from eomgen.scene.strokes import DrawerTable, Drawing, Drawn, Letter, PictureSiz
 from eomgen.scene.symbols import SPACE, TEETH
 
 ROUND, FALLS = 20, 10  # pieces of a turn, and from pole to pole
+FAR = 0.5  # part of what is upright along an axis: more, and the top of a picture is at that end of it
+SMALL = 10  # pieces of a turn of a symbol no larger than its unit
 CUBE = np.array([[x, y, z] for x in (-0.5, 0.5) for y in (-0.5, 0.5) for z in (-0.5, 0.5)])
 SIDES = ((0, 1, 3, 2), (4, 6, 7, 5), (0, 4, 5, 1), (2, 3, 7, 6), (0, 2, 6, 4), (1, 5, 7, 3))
 
@@ -87,9 +89,9 @@ def _revolution(form: RevolutionForm, mark: Mark, numbers: SceneNumbers, sizes: 
     return [_faces(numbers.placed(_quads(own), mark.frame), mark)], []
 
 
-def _swept(r: np.ndarray, z: np.ndarray) -> np.ndarray:
+def _swept(r: np.ndarray, z: np.ndarray, pieces: int = ROUND) -> np.ndarray:
     """A profile n x k about z: n x k x turns x 3."""
-    turn = np.linspace(0, math.tau, ROUND + 1)
+    turn = np.linspace(0, math.tau, pieces + 1)
     swept: np.ndarray = np.stack(
         [
             r[:, :, None] * np.cos(turn),
@@ -226,12 +228,13 @@ def _own(part: Any) -> Any:
         return np.array([[[float(plain_number(x)) for x in place] for place in part.points]])
     if isinstance(part, RevolutionForm):
         profile = np.array([[float(plain_number(r)), float(plain_number(z))] for r, z in part.profile])
-        return _quads(_swept(profile[None, :, 0], profile[None, :, 1]))[0]
+        pieces = SMALL if profile[:, 0].max() <= 1 else ROUND
+        return _quads(_swept(profile[None, :, 0], profile[None, :, 1], pieces))[0]
     size = np.array([float(plain_number(x)) for x in part.size])
     if isinstance(part, BoxForm):
         return (size * CUBE)[np.array(SIDES)]
-    fall = np.linspace(0, math.pi, 9)
-    return size[0] * _quads(_swept(np.sin(fall)[None], np.cos(fall)[None]))[0]
+    fall = np.linspace(0, math.pi, SMALL // 2 + 1)
+    return size[0] * _quads(_swept(np.sin(fall)[None], np.cos(fall)[None], SMALL))[0]
 
 
 # -- arrows and names --------------------------------------------------------------------------------
@@ -299,7 +302,8 @@ def _field(form: forms.FieldForm, mark: Mark, numbers: SceneNumbers, sizes: Pict
     if not sizes.dimensions:
         return [], []
     v = 4.5 * sizes.unit * _unit(numbers.way(form.vector, mark))
-    begin = np.broadcast_to(np.array([sizes.low[0], sizes.high[1], sizes.high[2]]), v.shape) + 2 * sizes.unit
+    corner = np.where(sizes.up < -FAR, sizes.low, np.where(sizes.up > FAR, sizes.high, [sizes.low[0], *sizes.high[1:]]))
+    begin = np.broadcast_to(corner + 2 * sizes.unit * sizes.up, v.shape)
     return _arrow_strokes(begin, begin + v, mark, sizes), [Letter(form.text, begin + 0.5 * v, mark.role, mark.of)]
 
 

@@ -6,14 +6,16 @@ are colours and letters. Symbols have one size in a picture: `unit`, a part of i
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable, Iterable, Mapping
-from dataclasses import dataclass, field
+from dataclasses import field
 from functools import cached_property
 from typing import Any
 
 import numpy as np
 
 from eomgen.model.shapes.forms import Form
+from eomgen.records import dataclass
 from eomgen.scene.scene import Mark, Scene, is_moving, plain_number
 from eomgen.symbolic.expression.spatial import Vector
 
@@ -144,6 +146,7 @@ class PictureSizes:
         low, high: corners of the box around all that moves, d [m].
         scales: (role, unit of quantity) -> metres for a unit of an arrow.
         dimensions: dimension lines and angles are drawn.
+        up: against the weight where the motion begins, else z.
     """
 
     unit: float
@@ -151,6 +154,7 @@ class PictureSizes:
     high: np.ndarray
     scales: dict[tuple[str, str], float] = field(default_factory=dict)
     dimensions: bool = False
+    up: np.ndarray = field(default_factory=lambda: np.array([0.0, 0.0, 1.0]))
 
     @property
     def extent(self) -> float:
@@ -189,7 +193,7 @@ def drawn_with(table: DrawerTable, numbers: SceneNumbers, *, dimensions: bool = 
         for stroke in table[type(m.form)](m.form, m, numbers, flat)[0]
     ]
     low, high, extent = _box(numbers, [stroke for strokes in solid for stroke in strokes], guides)
-    sizes = PictureSizes(SYMBOL * extent, low, high, _scales(numbers, extent), dimensions)
+    sizes = PictureSizes(SYMBOL * extent, low, high, _scales(numbers, extent), dimensions, _up(numbers))
     strokes: list[Stroke] = []
     letters: list[Letter] = []
     for mark in marks:
@@ -197,6 +201,15 @@ def drawn_with(table: DrawerTable, numbers: SceneNumbers, *, dimensions: bool = 
         strokes += drawn
         letters += named
     return Drawing(tuple(strokes), tuple(letters), sizes)
+
+
+def _up(numbers: SceneNumbers) -> np.ndarray:
+    """The unit vector against the weight in the first frame; z where there is none, and in the plane."""
+    fields: list[Any] = [mark.form for mark in numbers.scene.marks_of_kind("field")]
+    weight = numbers.vector(fields[0].vector)[0] if fields else np.zeros(numbers.dimension)
+    size = float(np.linalg.norm(weight))
+    up: np.ndarray = -weight / size if numbers.dimension == 3 and 0 < size < math.inf else np.eye(3)[2]
+    return up
 
 
 def _box(

@@ -104,6 +104,17 @@ def _block(x: float, y: float, z: float) -> Form:
     return BoxForm(ZERO, (_exact(x), _exact(y), _exact(z)))
 
 
+def _ring(inner: float, outer: float, half: float) -> Form:
+    r, R, h = map(_exact, (inner, outer, half))
+    return RevolutionForm(ZERO, ((r, -h), (R, -h), (R, h), (r, h), (r, -h)), (r,))
+
+
+def _pins(near: float, far: float) -> SymbolParts:
+    """Both ends of a shaft along z."""
+    ends = [(_exact(sign * near), _exact(sign * far)) for sign in (1, -1)]
+    return tuple(("body", LineForm(((0, 0, a), (0, 0, b)))) for a, b in ends)
+
+
 SPACE: dict[str, SymbolParts] = {
     "hinge": (("joint", _drum(0.4, 1.1)),),
     "ball": (("joint", _ball(0.6)),),
@@ -112,6 +123,12 @@ SPACE: dict[str, SymbolParts] = {
     "tube": (("joint", _drum(0.6, 1.6)),),
     "coil": (("ground", _spiral()),),
     "cross": (("joint", _drum(0.25, 1.2)), ("joint", _block(2.4, 0.5, 0.5))),
+    "rotor": (("body", _drum(2.6, 0.4)),),
+    "ring": (("body", _ring(3.7, 4.1, 0.3)),),
+    "outer_ring": (("body", _ring(5.1, 5.5, 0.3)),),
+    "rotor_pins": _pins(0.4, 3.7),
+    "ring_pins": _pins(4.1, 5.1),
+    "outer_ring_pins": _pins(5.5, 6.5),
 }
 
 

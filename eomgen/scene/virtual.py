@@ -10,7 +10,7 @@ so that joints and ties stay closed exactly; s swings once to each side.
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from functools import cached_property
 from typing import Any
 
@@ -27,6 +27,7 @@ from eomgen.mechanics.statics.virtual_work import WorkEquation
 from eomgen.mechanics.structures.blocks import blocks_of, numeral
 from eomgen.mechanics.structures.structure import Structure
 from eomgen.model.forces.load import UniformField
+from eomgen.records import dataclass
 from eomgen.scene.bodies import parameters_as_drawn
 from eomgen.scene.forms import ArrowForm, CoupleForm, LabelForm, PointForm, SymbolForm
 from eomgen.scene.making import scene_of_system

@@ -7,10 +7,10 @@ neighbouring motions part exponentially (chaos) digits are lost at a steady pace
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
 
 import numpy as np
 
+from eomgen.records import dataclass
 from eomgen.simulation.result import Trajectory
 from eomgen.symbolic.numeric.tolerances import BEST, LEAST_RTOL
 

@@ -11,29 +11,33 @@ import functools
 import time
 from collections.abc import Callable
 from importlib import resources
+from itertools import accumulate
 from typing import Any, Protocol
 
 import numpy as np
+from numpy.polynomial.polynomial import polyval
 
 from eomgen.codegen.build import function_of, library
 from eomgen.codegen.rhs import RightHandSide
 from eomgen.codegen.targets.base import Address
 from eomgen.codegen.targets.c import c_together
+from eomgen.codegen.taylor import order_for
 from eomgen.simulation import constraint_drift, constraint_rank, event_location
 from eomgen.simulation.constraint_drift import DriftCorrection, Rows
 from eomgen.simulation.constraint_rank import RankLookout
 from eomgen.simulation.event_location import EventSearch
 from eomgen.simulation.slopes import ExactSlope
-from eomgen.simulation.solvers import AUTO, FORGOTTEN, HELD_SHORT, SEEN, LateSlope, stiff_words
+from eomgen.simulation.solvers import AUTO, FORGOTTEN, HELD_SHORT, SEEN, TAYLOR, LateSlope, stiff_words
 from eomgen.symbolic.numeric.tolerances import DIFFERENCE_STEP, ITERATED, NEARLY_SINGULAR, PIVOT, ROUNDING, SOLVED
 
 SAFETY, SMALLEST, LARGEST = 0.9, 0.2, 10.0  # factors between two step sizes, as scipy takes them
-COMPILED = (AUTO, "DOP853", "Radau")  # the methods that there are in C
+COMPILED = (AUTO, "DOP853", "Radau", TAYLOR)  # the methods that there are in C
 SWEEPS = 30  # of turning pairs of rows; a handful does
 MOST_AT_ONCE, FEW = 1024, 8  # steps in a call; in the first
 NEWTON_STEPS = 6  # of Radau's method, as scipy's
 EASY = HELD_SHORT / 2  # h |lambda| of implicit steps with which DOP853 would go as far
 A_CALL = 0.05  # [s] of a call: after it Python looks whether somebody has lost patience
+BY_SERIES = 2  # what dense_of tells
 _GOES_ON, _LOOK, _REACHED, _TOO_SMALL, _STIFF = range(5)
 
 _CONSTANTS = {
@@ -119,6 +123,9 @@ class _March(ctypes.Structure):
         ("energies", _Function),
         ("keeps_energy", _SIZE),
         *_fields(_REAL, "energy most_kinetic"),
+        ("order", _SIZE),
+        *_fields(_AT, "series along X X_old W"),
+        ("has_series", _SIZE),
     )
 
 
@@ -201,15 +208,23 @@ class CompiledSteps:
         n = len(x0)
         self._fun, at = f, f.address
         self._kept: list[Any] = [f]
-        self._x, self._x_old, self._f = np.array(x0, dtype=float), np.array(x0, dtype=float), np.zeros(n)
-        self._F, self._track_t, self._track_x = np.zeros((7, n)), np.zeros(MOST_AT_ONCE), np.zeros((MOST_AT_ONCE, n))
+        sizes = {"x": n, "x_old": n, "f": n, "F": 7 * n, "K": 16 * n, "room": 3 * n}
+        sizes |= {"track_t": MOST_AT_ONCE, "track_x": MOST_AT_ONCE * n}
+        self._numbers = np.zeros(sum(sizes.values()))
+        ends = list(accumulate(sizes.values()))
+        parts = {name: self._numbers[end - sizes[name] : end] for name, end in zip(sizes, ends, strict=True)}
+        self._x, self._x_old, self._f, self._F = (parts[name] for name in ("x", "x_old", "f", "F"))
+        self._x[:] = self._x_old[:] = x0
+        self._F, self._track_t = self._F.reshape(7, n), parts["track_t"]
+        self._track_x = parts["track_x"].reshape(MOST_AT_ONCE, n)
         self._instants = np.zeros(0) if instants is None else np.ascontiguousarray(instants)
         self._instants = self._instants[np.searchsorted(self._instants, span[0], side="right") :]
         self._rows, self._given = np.zeros((len(self._instants), n)), 0
         m = self._m = _March(n=n, rate=_at(at), t=span[0], t_old=span[0], end=span[1], rtol=how.rtol, atol=how.atol)
-        m.x, m.x_old, m.f, m.F = (self._put(a) for a in (self._x, self._x_old, self._f, self._F))
-        m.K, m.room = self._put(np.zeros((16, n))), self._put(np.zeros((3, n)))
-        m.track_t, m.track_x, m.rows = self._put(self._track_t), self._put(self._track_x), self._put(self._rows)
+        first = self._put(self._numbers)
+        for name, end in zip(sizes, ends, strict=True):
+            setattr(m, name, first + 8 * (end - sizes[name]))
+        m.rows = self._put(self._rows)
         m.stops, m.n_stops = self._put(np.array(how.breakpoints, dtype=float)), len(how.breakpoints)
         m.instants, m.n_instants = self._put(self._instants), len(self._instants)
         self._search: EventSearch | None = None
@@ -223,6 +238,8 @@ class CompiledSteps:
         m.pivots = self._put(np.zeros(max(3 * n, self._most_rows), dtype=np.int32))
         if how.method == "Radau":
             self._stiffen()
+        if how.method == TAYLOR:
+            self._expand()
         self._begin(ctypes.byref(m))
 
     # -- what is watched --------------------------------------------------------------------------
@@ -318,6 +335,15 @@ class CompiledSteps:
                 m.work = self._put(np.zeros(max(self._work, len(slope.function.program.outputs) + s * s)))
                 m.pivots = self._put(np.zeros(max(3 * n, s, self._most_rows), dtype=np.int32))
         m.is_implicit, m.has_slope_values, m.error_old = 1, 0, 0.0
+
+    def _expand(self) -> None:
+        """From the start on steps along series."""
+        m = self._m
+        m.order = order_for(m.rtol)
+        series = self._fun.rhs.series(m.order)
+        self._X = np.zeros((2, m.order + 1, m.n))
+        m.series, m.along, m.X, m.W = series.address, series.along, self._put(self._X), self._put(np.zeros(series.size))
+        m.X_old = m.X + self._X[0].nbytes
 
     def _room(self, projection: Any) -> int:
         """Numbers in between: what a correction of a state takes, and what tells how near a singular position is."""
@@ -423,10 +449,14 @@ class CompiledSteps:
         """Go on from another state nearby; the instants up to here have been given by Python."""
         self._x[:], self._f[:] = x, self._fun(self.t, x)
         self._m.evaluations += 1
+        self._m.has_series = 0
 
     def dense_output(self) -> Any:
         """t -> x in the last step, before it was put back onto the ties."""
         self._dense(ctypes.byref(self._m))
+        if self._m.dense_of == BY_SERIES:
+            begun, X = self.t_old, self._X[int(self._m.X_old != self._X.ctypes.data)].copy()
+            return lambda t: polyval(np.asarray(t) - begun, X)
         implicit = bool(self._m.dense_of)
         t_old, h, x_old, F = self.t_old, self.t - self.t_old, self._x_old.copy(), self._F.copy()
 
@@ -444,7 +474,7 @@ class CompiledSteps:
     def _put(self, array: np.ndarray) -> int:
         """Where an array lies; it stays there."""
         self._kept.append(array)
-        return int(array.ctypes.data)
+        return int(array.__array_interface__["data"][0])
 
 
 def _at(address: Address) -> _Function:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Mapping
-from dataclasses import dataclass, field, replace
+from dataclasses import field, replace
 from typing import Any
 
 from eomgen.mechanics.bodies.contact_modes import ContactMode
@@ -11,6 +11,7 @@ from eomgen.model.contacts import Contact, contacts_of, pieces_of
 from eomgen.model.part import altered
 from eomgen.model.parts import Model
 from eomgen.model.table import Table
+from eomgen.records import dataclass
 from eomgen.symbolic.expression.expressions import Expression
 
 

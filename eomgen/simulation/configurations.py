@@ -6,11 +6,11 @@ dq/ds = d(q),   u_s^2 = y(q) >= 0 where the motion may be
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass
 
 import numpy as np
 
 from eomgen.errors import RunFailed
+from eomgen.records import dataclass
 from eomgen.simulation.event_location import Events
 from eomgen.simulation.integrator import Run, Stepping, march
 from eomgen.symbolic.numeric.newton import least_left

@@ -15,7 +15,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass, field
+from dataclasses import field
 from functools import cached_property
 
 import numpy as np
@@ -27,6 +27,7 @@ from eomgen.mechanics.bodies.tree import branches_of
 from eomgen.mechanics.constraints.closure import gaps_of
 from eomgen.mechanics.equations.system import System
 from eomgen.mechanics.formulations import recursive
+from eomgen.records import dataclass
 from eomgen.symbolic.expression.graph import Scalar
 from eomgen.symbolic.numeric.dense import weighted, without_rounding
 from eomgen.symbolic.numeric.newton import Newton

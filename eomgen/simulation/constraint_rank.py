@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from collections import deque
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
@@ -16,6 +15,7 @@ from eomgen.mechanics.constraints.elimination import singular_blocks
 from eomgen.mechanics.constraints.freedom import rank_of_ties
 from eomgen.mechanics.equations.equations_of_motion import EquationsOfMotion
 from eomgen.mechanics.equations.system import System
+from eomgen.records import dataclass
 from eomgen.simulation.event_location import LOOKED_OUT, PARTS, Crossing, Measured
 from eomgen.symbolic.expression.graph import Scalar
 from eomgen.symbolic.numeric.dense import divisor

@@ -10,7 +10,6 @@ Each function is positive while the configuration holds:
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
 from functools import cached_property
 from typing import Any, Literal
 
@@ -22,6 +21,7 @@ from eomgen.mechanics.constraints.ties import Row, rows_of_tie
 from eomgen.mechanics.equations.system import System
 from eomgen.mechanics.reactions.reactions import Reactions, reactions_of
 from eomgen.model.contacts import Contact
+from eomgen.records import dataclass
 from eomgen.simulation.configuration import Configuration
 from eomgen.symbolic.expression.functions import function, sqrt
 from eomgen.symbolic.expression.graph import Scalar

@@ -3,12 +3,12 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass
 from functools import cached_property
 
 import numpy as np
 
 from eomgen.codegen.rhs import RightHandSide
+from eomgen.records import dataclass
 from eomgen.simulation.contact_events import ContactEvents, EventFunction, stopped_below
 from eomgen.simulation.event_location import Measured
 from eomgen.simulation.phase_functions import PhaseFunctions

@@ -2,11 +2,12 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
+from dataclasses import replace
 
 import numpy as np
 
 from eomgen.errors import RunFailed
+from eomgen.records import dataclass
 from eomgen.simulation.motion import Plan, advance
 from eomgen.simulation.phase_run import PhaseRun
 from eomgen.symbolic.numeric.chebyshev import nodes_between, transform
@@ -60,7 +61,7 @@ def dense_motion(phase_run: PhaseRun, plan: Plan) -> DenseMotion:
     run, here = phase_run.run, phase_run.here
     if run.status in CUT:
         raise RunFailed(f"the run was cut: {run.message}")
-    kept = np.concatenate([np.array(track.t, dtype=float) for track in run.tracks])
+    kept = np.concatenate([part for track in run.tracks for part in track.t])
     edges = np.unique(np.clip(np.concatenate([[here.t, run.end], kept, *run.carried]), here.t, run.end))
     edges = edges[np.append(True, np.diff(edges) > ROUNDING * max(1.0, run.end - here.t))]
     edges[-1] = run.end

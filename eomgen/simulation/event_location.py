@@ -4,13 +4,14 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass, field
+from dataclasses import field
 from functools import cached_property
 from typing import Any
 
 import numpy as np
 
 from eomgen.codegen.rhs import RateFunction, RightHandSide
+from eomgen.records import dataclass
 from eomgen.symbolic.numeric.tolerances import CARRIED, COMPUTED, ITERATED, SOLVED
 
 PARTS = 8  # of a step: how often the functions are looked at

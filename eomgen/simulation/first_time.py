@@ -6,7 +6,7 @@ By the motion in time; from an unstable rest or a dead centre along the configur
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from functools import cached_property
 from typing import Any
 
@@ -17,6 +17,7 @@ from eomgen.codegen.rhs import compiled
 from eomgen.errors import DerivationError, RunFailed
 from eomgen.mechanics.constraints.elimination import singular_blocks
 from eomgen.mechanics.equations.equations_of_motion import EquationsOfMotion
+from eomgen.records import dataclass
 from eomgen.simulation.configuration import Configuration
 from eomgen.simulation.constraint_rank import PLACE
 from eomgen.simulation.event_location import Events

@@ -9,7 +9,6 @@ Source: Moreau, Unilateral contact and dry friction in finite freedom dynamics (
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
 from functools import cached_property
 from itertools import combinations
 
@@ -21,6 +20,7 @@ from eomgen.errors import DerivationError
 from eomgen.mechanics.constraints.ties import Row, rows_of_tie
 from eomgen.mechanics.equations.system import System
 from eomgen.mechanics.formulations import recursive
+from eomgen.records import dataclass
 from eomgen.simulation.phase_model import Values, slack_name
 from eomgen.symbolic.expression.derivative import jacobian, substituted
 from eomgen.symbolic.expression.graph import Scalar

@@ -13,9 +13,9 @@ from eomgen.simulation.constraint_drift import Projection
 from eomgen.simulation.constraint_rank import Nearness
 from eomgen.simulation.event_location import Events
 from eomgen.simulation.integrator import MOST_STEPS, STABILIZATIONS, Run, Stepping, measured
-from eomgen.simulation.result import Phase, Trajectory
+from eomgen.simulation.result import Kept, Phase, Trajectory
 from eomgen.simulation.singular_crossing import Flow, march_across
-from eomgen.simulation.solvers import METHODS, Slope
+from eomgen.simulation.solvers import HEYOKA, METHODS, Slope
 from eomgen.symbolic.numeric.tolerances import RUN, SOLVED
 
 SAMPLES = 1001
@@ -81,17 +81,15 @@ def integrate(
     run = march_across(flow, (start, end), x0, nearness, instants=instants, events=events)
     E, drift = (None, None) if energy is None else _energy(run, energy, conservative)
     track = measured(run.t, run.x, run.tracks)
-    gap, gap_rate = _open(*track, projection, gaps)
+    kept = Kept(drift, *_open(*track, projection, gaps))
     return Trajectory(
         t=run.t,
         x=run.x,
         coordinates=rhs.coordinates,
         speeds=rhs.speeds,
         energy=E,
-        drift=drift,
-        gap=gap,
-        gap_rate=gap_rate,
-        phases=(Phase(start, run.end, run.message, (0, len(run.t)), track=track),),
+        measure=lambda: kept,
+        phases=(Phase(start, run.end, run.message, (0, len(run.t)), tracked=lambda: track),),
         status=run.status,
         message=run.message,
         steps=run.steps,
@@ -172,8 +170,8 @@ def refuse_bad_run(start: float, end: float, how: Stepping) -> None:
         raise UsageError(f"the time from {start:g} s to {end:g} s makes no sense", mend="give an end after the start")
     if not (how.rtol > 0 and how.atol > 0 and np.isfinite(how.rtol) and np.isfinite(how.atol)):
         raise UsageError(f"tolerances must be positive, not rtol = {how.rtol:g}, atol = {how.atol:g}")
-    if how.method not in METHODS:
-        raise UsageError(f"unknown method '{how.method}'", mend=f"methods are {', '.join(METHODS)}")
+    if how.method not in (*METHODS, HEYOKA):
+        raise UsageError(f"unknown method '{how.method}'", mend=f"methods are {', '.join((*METHODS, HEYOKA))}")
     if how.stabilization not in STABILIZATIONS:
         raise UsageError(
             f"unknown way to keep ties closed: '{how.stabilization}'", mend=f"ways are {', '.join(STABILIZATIONS)}"

@@ -4,19 +4,23 @@ from __future__ import annotations
 
 from bisect import bisect_left, bisect_right
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass, field, replace
+from dataclasses import field, replace
 from functools import cache
 from typing import Any, Protocol
 
 import numpy as np
 
+from eomgen.codegen.rhs import RateFunction
 from eomgen.codegen.spheres import SpherePlaces
+from eomgen.codegen.taylor import without_series
+from eomgen.records import dataclass
 from eomgen.simulation.compiled_steps import COMPILED, CompiledSteps, Watched
 from eomgen.simulation.constraint_drift import DriftCorrection, EnergyLevel, Projection
 from eomgen.simulation.event_location import LOOKED_OUT, Crossing, Events, EventSearch, sharpened
+from eomgen.simulation.heyoka_steps import HeyokaSteps
 from eomgen.simulation.pace import LOOK, Pace
 from eomgen.simulation.result import RunStatus
-from eomgen.simulation.solvers import AUTO, EXPLICIT, LateSlope, NotFinite, ScipySteps, StateRate
+from eomgen.simulation.solvers import AUTO, EXPLICIT, HEYOKA, TAYLOR, LateSlope, NotFinite, ScipySteps, StateRate
 from eomgen.symbolic.numeric.tolerances import COMPUTED, FINEST_RUN, LEAST_RTOL, RUN
 from eomgen.symbolic.numeric.work import PatienceEnded, check_patience, keep_what_there_is
 
@@ -28,34 +32,45 @@ class StepStates:
     """States at the ends of steps: of all of them, or of every second, fourth, ... so that they do not grow too many.
 
     Args:
+        t, x: instants and states, one a row; of a call in C all together.
         every: at each so many steps a state is kept.
         steps: taken so far.
     """
 
-    t: list[float] = field(default_factory=list)
+    t: list[np.ndarray] = field(default_factory=list)
     x: list[np.ndarray] = field(default_factory=list)
     every: int = 1
     steps: int = 0
+    count: int = 0
 
-    def add(self, t: Sequence[float] | np.ndarray, x: Sequence[np.ndarray] | np.ndarray) -> None:
+    def add(self, t: np.ndarray, x: np.ndarray) -> None:
         """The states after steps, one a row; they are not copied."""
         first = -(self.steps + 1) % self.every
         self.steps += len(t)
-        self.t.extend(map(float, t[first :: self.every]))
-        self.x.extend(x[first :: self.every])
-        while len(self.t) > MOST:
-            self.t, self.x, self.every = self.t[1::2], self.x[1::2], 2 * self.every
+        self.t.append(t[first :: self.every])
+        self.x.append(x[first :: self.every])
+        self.count += len(self.t[-1])
+        while self.count > MOST:
+            t, x = self.all
+            self.t, self.x, self.every = [t[1::2]], [x[1::2]], 2 * self.every
+            self.count = len(self.t[0])
+
+    @property
+    def all(self) -> tuple[np.ndarray, np.ndarray]:
+        """(instants, states)."""
+        return np.concatenate(self.t), np.concatenate(self.x)
 
     def until(self, end: float) -> StepStates:
         """Those up to an instant."""
-        n = bisect_right(self.t, end)
-        return StepStates(self.t[:n], self.x[:n], self.every, self.steps)
+        t, x = self.all
+        n = int(np.searchsorted(t, end, side="right"))
+        return StepStates([t[:n]], [x[:n]], self.every, self.steps, n)
 
 
 def measured(t: np.ndarray, x: np.ndarray, tracks: Sequence[StepStates]) -> tuple[np.ndarray, np.ndarray]:
     """(t n, x n x states): the rows of a run and the states of its tracks, in the order of time."""
-    times = np.concatenate([t, *(np.array(track.t, dtype=float) for track in tracks)])
-    states = np.concatenate([x, *(np.array(track.x).reshape(len(track.t), x.shape[1]) for track in tracks)])
+    times = np.concatenate([t, *(part for track in tracks for part in track.t)])
+    states = np.concatenate([x, *(part for track in tracks for part in track.x)])
     order = np.argsort(times, kind="stable")
     return times[order], states[order]
 
@@ -67,7 +82,7 @@ RATES = (10.0, 10.0)  # of Baumgarte's rows [1/s]
 STABILIZATIONS = ("projection", "energy", "baumgarte", "none")
 
 Dense = Callable[[], Callable[[Any], np.ndarray]]
-Steps = CompiledSteps | ScipySteps
+Steps = CompiledSteps | ScipySteps | HeyokaSteps
 
 
 @dataclass(frozen=True)
@@ -75,7 +90,8 @@ class Stepping:
     """How an integrator goes.
 
     Args:
-        method: one of METHODS; "auto" is DOP853, and Radau where a motion is stiff.
+        method: one of METHODS; "auto" is DOP853, and Radau where a motion is stiff; "taylor" goes by power series where
+            the equations have them, else as "auto".
         rtol, atol: tolerances of one step.
         most_steps: after so many it gives up.
         stabilization: what keeps the ties closed, one of STABILIZATIONS: "projection" puts states back onto them,
@@ -168,7 +184,7 @@ class _Rows:
 
     def add(self, span: tuple[float, float], x_new: np.ndarray, dense: Dense) -> None:
         """The instants of a step, its beginning left out, or its end; x_new is the state there."""
-        self.track.add([span[1]], [x_new.copy()])
+        self.track.add(np.array([span[1]]), x_new[None, :].copy())
         if self.instants is None:
             self._put(span[1], x_new)
             return
@@ -197,8 +213,12 @@ class _Rows:
         for times, states in ((self.t, self.x), (self.track.t, self.track.x)):
             whole = min(len(times), len(states))
             del times[whole:], states[whole:]
-        rows = [(float(times[-1]), x[-1]) for times, x in zip(self.t, self.x, strict=True) if len(times)]
-        return max([*rows[-1:], (self.track.t[-1], self.track.x[-1])], key=lambda each: each[0])
+        found = []
+        for times, states in ((self.t, self.x), (self.track.t, self.track.x)):
+            whole = min(len(times), len(states))
+            del times[whole:], states[whole:]
+            found += [(float(t[-1]), x[-1]) for t, x in zip(times, states, strict=True) if len(t)][-1:]
+        return max(found, key=lambda each: each[0])
 
     def _put(self, t: float, x: np.ndarray) -> None:
         self.t.append(np.array([t]))
@@ -237,12 +257,23 @@ def march(
         times = instants if instants is not None and end > start else np.unique([start, end])
         return Run(times, np.tile(x0, (len(times), 1)), end, x0, "finished", _reached(end), 0, 1)
     asked = 1 if instants is None or (instants.size and instants[0] == start) else 0
-    rows = _Rows(instants, hold, [np.array([start])[:asked]], [x0[None, :][:asked]], StepStates([start], [x0]), end)
+    rows = _Rows(
+        instants,
+        hold,
+        [np.array([start])[:asked]],
+        [x0[None, :][:asked]],
+        StepStates([np.array([start])], [x0[None, :]], count=1),
+        end,
+    )
     watch = EventSearch(events, start, x0) if events is not None else None
     late = slope if slope is not None else lambda: None
+    how, instead = _possible(how, f)
     if how.method in COMPILED and getattr(f, "address", None) is not None:
         watched: Watched = (hold, watch, lookout)
         solver: Steps = CompiledSteps(f, span, x0, how=how, instants=instants, watched=watched, slope=late)
+    elif how.method == HEYOKA:
+        program, p = (f.rhs.program, f.p) if isinstance(f, RateFunction) else (None, ())
+        solver = HeyokaSteps(program, p, span, x0, tolerance=how.rtol, breakpoints=how.breakpoints)
     else:
         tolerances = {"rtol": how.rtol, "atol": how.atol}
         solver = ScipySteps(how.method, f, span, x0, breakpoints=how.breakpoints, slope=late, **tolerances)
@@ -262,9 +293,21 @@ def march(
         status, message, steps, crossing = "interrupted", f"Interrupted at t = {t:.6g} s.", rows.track.steps, None
     if status != "finished":
         rows.close(t, x)
-    message = " ".join(part for part in (message or _reached(end), solver.words, hold.remark) if part)
+    message = " ".join(part for part in (message or _reached(end), instead, solver.words, hold.remark) if part)
     times, states = np.concatenate(rows.t), np.concatenate(rows.x)
     return Run(times, states, t, x, status, message, steps, solver.nfev, crossing, (rows.track,))
+
+
+def _possible(how: Stepping, f: StateRate) -> tuple[Stepping, str]:
+    """(how the integrator goes, why it does not go as it was asked): series are of what has them, and in C."""
+    if how.method != TAYLOR:
+        return how, ""
+    if getattr(f, "address", None) is None:
+        why = "not in C" if isinstance(f, RateFunction) else "more than the equations of motion is stepped"
+    else:
+        lacks = without_series(f.rhs.program) if isinstance(f, RateFunction) else ""
+        why = lacks and f"'{lacks}' has none"
+    return (replace(how, method=AUTO), f"Not by power series ({why}).") if why else (how, "")
 
 
 def _stepped(
@@ -309,7 +352,7 @@ def _exactly(
     f: StateRate, watches: _Watches, crossing: Crossing, span: tuple[float, float], x: np.ndarray, how: Stepping
 ) -> Crossing:
     """A crossing in the step over a span that began in x, by finer steps that end there."""
-    if watches.watch is None or crossing.index == LOOKED_OUT or how.method not in (AUTO, *EXPLICIT):
+    if watches.watch is None or crossing.index == LOOKED_OUT or how.method not in (AUTO, *EXPLICIT, HEYOKA):
         return crossing
     before, after = bisect_right(how.breakpoints, span[0]), bisect_left(how.breakpoints, crossing.t)
     near = [abs(crossing.t - t) for t in how.breakpoints[max(before - 1, 0) : after + 1]]

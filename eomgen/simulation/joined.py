@@ -15,7 +15,7 @@ from eomgen.simulation.phase_model import PhaseModel
 from eomgen.simulation.phase_models import PhaseModels
 from eomgen.simulation.phase_run import PhaseRun
 from eomgen.simulation.reaction_columns import ReactionColumns, begun
-from eomgen.simulation.result import Phase, Trajectory
+from eomgen.simulation.result import Kept, Phase, Trajectory
 from eomgen.symbolic.expression.expressions import Expression
 
 
@@ -29,18 +29,15 @@ def joined(models: PhaseModels, runs: Sequence[PhaseRun]) -> Trajectory:
     ]
     energies = [phase_run.phase.energies(phase_run.run.t, phase_run.run.x) for phase_run in runs]
     ends = np.cumsum([0, *(len(phase_run.run.t) for phase_run in runs)])
-    gap, gap_rate = _open(runs)
     return Trajectory(
         t=np.concatenate([phase_run.run.t for phase_run in runs]),
         x=np.concatenate(tables),
         coordinates=coordinates,
         speeds=speeds,
         energy=np.concatenate([T + V for T, V in energies]),
-        drift=_drift(runs),
-        gap=gap,
-        gap_rate=gap_rate,
+        measure=lambda: Kept(_drift(runs), *_open(runs)),
         phases=tuple(
-            Phase(s.here.t, s.run.end, phase_text(models, s), (int(first), int(last)), s.phase, s.measured)
+            Phase(s.here.t, s.run.end, phase_text(models, s), (int(first), int(last)), s.phase, s.tracked)
             for s, first, last in zip(runs, ends[:-1], ends[1:], strict=True)
         ),
         status=runs[-1].run.status,
@@ -138,11 +135,13 @@ def thinned(full: Trajectory, samples: int | Sequence[float] | None) -> Trajecto
         first, last = ({n: float(c[i]) for n, c in columns.items()} if end > begin else {} for i in (begin, end - 1))
         return replace(phase, rows=(int(before[begin]), int(before[end])), first=first, last=last)
 
+    phases = tuple(map(of, full.phases))
+    if kept.all():
+        return replace(full, phases=phases)
     energy = None if full.energy is None else full.energy[kept]
     reactions, outputs = (
         {name: column[kept] for name, column in table.items()} for table in (full.reactions, full.outputs)
     )
-    phases = tuple(map(of, full.phases))
     kept_rows = {"t": full.t[kept], "x": full.x[kept], "energy": energy, "reactions": reactions, "outputs": outputs}
     return replace(full, **kept_rows, phases=phases)
 

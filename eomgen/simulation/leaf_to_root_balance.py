@@ -8,10 +8,10 @@ A body on which few enough reactions are still unknown gives these from its own 
 from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
-from dataclasses import dataclass
 
 import numpy as np
 
+from eomgen.records import dataclass
 from eomgen.symbolic.numeric.tolerances import RANK_NEARBY
 
 

@@ -56,9 +56,16 @@ struct march {
     struct rate energies;          /* T, V */
     size_t keeps_energy;
     double energy, most_kinetic;
+    size_t order; /* of series; 0 where steps are others */
+    void (*series)(double t, const double *x, const double *p, const double *c, double *X, double *W);
+    void (*along)(const double *X, double h, double *x, double *slope);
+    double *X, *X_old, *W; /* order + 1 rows of n, from t and from t_old on; work */
+    size_t has_series;     /* whether X is that of x */
 };
 
 static int stepped_implicitly(struct march *m);
+
+enum { BY_STAGES, BY_COLLOCATION, BY_SERIES }; /* what dense_of tells */
 
 enum { PARTS = 8, LOOKS = PARTS + 3 }; /* of a step */
 enum { GOES_ON, LOOK, REACHED, TOO_SMALL, STIFF };
@@ -426,6 +433,63 @@ static int stepped(struct march *m)
     return 0;
 }
 
+/* how long a step is of whose series the last two terms are not above the tolerance */
+static double length_by_series(const struct march *m)
+{
+    size_t n = m->n;
+    double h = INFINITY;
+    for (size_t j = m->order - 1; j <= m->order; j++) {
+        double largest = 0;
+        EACH {
+            double size = fabs(m->X[j*n + k])/(m->atol + m->rtol*fabs(m->x[k]));
+            largest = size > largest || size != size ? size : largest;
+        }
+        double allowed = -log(largest)/(double)j;
+        h = allowed >= h ? h : allowed;
+    }
+    return exp(h);
+}
+
+static void expand(struct march *m)
+{
+    m->series(m->t, m->x, m->rate.p, m->rate.c, m->X, m->W);
+    m->evaluations += m->order, m->has_series = 1;
+}
+
+/* One step along the series; half of it, and half again, where the rate at its end, with which the next series begins,
+   is not that of the equations. Source: A. Jorba and M. Zou, A software package for the numerical integration of ODEs by
+   means of high-order Taylor methods, Experimental Mathematics 14 (2005), 99-117. */
+static int stepped_by_series(struct march *m)
+{
+    size_t n = m->n;
+    double stop = next_stop(m), least = 10*fabs(nextafter(m->t, INFINITY) - m->t), *slope = m->room, *X;
+    if (!m->has_series)
+        expand(m);
+    double h = length_by_series(m);
+    m->t_old = m->t, m->is_dense = 1, m->dense_of = BY_SERIES;
+    memcpy(m->x_old, m->x, n*sizeof *m->x);
+    X = m->X, m->X = m->X_old, m->X_old = X;
+    for (; h >= least; h /= 2) {
+        double off = 0;
+        m->t = m->t_old + h < stop ? m->t_old + h : stop;
+        h = m->t - m->t_old;
+        m->along(m->X_old, h, m->x, slope);
+        expand(m);
+        EACH {
+            double size = fabs(h*(slope[k] - m->X[n + k]))/(m->atol + m->rtol*fmax(fabs(m->x_old[k]), fabs(m->x[k])));
+            off = size > off || size != size ? size : off;
+        }
+        if (off <= (double)m->order) {
+            m->h = m->h_old = h;
+            memcpy(m->f, m->X + n, n*sizeof *m->f);
+            return 1;
+        }
+    }
+    m->t = m->t_old, m->has_series = 0;
+    memcpy(m->x, m->x_old, n*sizeof *m->x);
+    return 0;
+}
+
 /* F, of the last step */
 void march_dense(struct march *m)
 {
@@ -440,7 +504,9 @@ static void between(struct march *m, double t, double *x)
     size_t n = m->n;
     double part = (t - m->t_old)/(m->t - m->t_old);
     march_dense(m);
-    if (m->dense_of)
+    if (m->dense_of == BY_SERIES)
+        m->along(m->X_old, t - m->t_old, x, NULL);
+    else if (m->dense_of == BY_COLLOCATION)
         EACH x[k] = m->x_old[k] + part*(m->F[k] + part*(m->F[n + k] + part*m->F[2*n + k]));
     else
         dop853_between(n, part, m->x_old, m->F, x);
@@ -604,7 +670,7 @@ int march(struct march *m, size_t *most)
     size_t n = m->n, allowed = *most;
     m->tracked = *most = 0;
     while (*most < allowed) {
-        if (!(m->is_implicit ? stepped_implicitly(m) : stepped(m)))
+        if (!(m->is_implicit ? stepped_implicitly(m) : m->order ? stepped_by_series(m) : stepped(m)))
             return TOO_SMALL;
         ++*most;
         if (!is_calm(m))
@@ -623,7 +689,7 @@ int march(struct march *m, size_t *most)
         if (moved == MOVED) {
             memcpy(m->x, m->room, n*sizeof *m->x);
             CALL(&m->rate, m->t, m->x, m->f);
-            m->evaluations++;
+            m->evaluations++, m->has_series = 0;
         }
         m->track_t[m->tracked] = m->t;
         memcpy(m->track_x + m->tracked++*n, m->x, n*sizeof *m->x);

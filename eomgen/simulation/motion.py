@@ -4,12 +4,13 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterator
-from dataclasses import dataclass, replace
+from dataclasses import replace
 
 import numpy as np
 
 from eomgen.errors import DerivationError, UsageError
 from eomgen.mechanics.constraints.edges import left_of, stopped_at
+from eomgen.records import dataclass
 from eomgen.simulation.configuration import Configuration
 from eomgen.simulation.event_location import TOUCH, Events
 from eomgen.simulation.integrator import Run, Stepping

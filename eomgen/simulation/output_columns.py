@@ -9,7 +9,7 @@ columns of reactions are: where one has no single value its column is nan there,
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Mapping
-from dataclasses import dataclass, field, replace
+from dataclasses import field, replace
 from functools import cached_property
 
 import numpy as np
@@ -24,6 +24,7 @@ from eomgen.mechanics.reactions.reactions import Reactions, reactions_of
 from eomgen.model.outputs import FUNCTIONS
 from eomgen.model.outputs.base import BALANCE, OF_A_RUN, SMALL_MOTIONS
 from eomgen.model.parts import Model
+from eomgen.records import dataclass
 from eomgen.simulation.phase_functions import PhaseFunctions
 from eomgen.simulation.phase_model import PhaseModel
 from eomgen.simulation.reaction_columns import ReactionColumns, begun

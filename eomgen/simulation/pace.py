@@ -8,10 +8,10 @@ Source: Hairer & Wanner, Solving Ordinary Differential Equations II, 2nd ed., IV
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
 
 import numpy as np
 
+from eomgen.records import dataclass
 from eomgen.simulation.solvers import EXPLICIT, StateRate
 from eomgen.symbolic.numeric.tolerances import DIFFERENCE_STEP
 

@@ -7,7 +7,7 @@ forces (`settling`).
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import replace
 
 import numpy as np
 
@@ -17,6 +17,7 @@ from eomgen.mechanics.initial_state.initial_state import Start
 from eomgen.model.contacts import contacts_of
 from eomgen.model.parts import Model
 from eomgen.model.table import Table
+from eomgen.records import dataclass
 from eomgen.simulation.configuration import Configuration, bounds_of, has_phases, on_pieces, paths_of
 from eomgen.simulation.contact_decision import settled
 from eomgen.simulation.event_location import Crossing

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Hashable
-from dataclasses import dataclass, field, replace
+from dataclasses import field, replace
 
 import numpy as np
 
@@ -12,6 +12,7 @@ from eomgen.codegen.rhs import RightHandSide, compiled, compiled_together
 from eomgen.mechanics.equations.articulated import with_accelerations
 from eomgen.mechanics.equations.equations_of_motion import EquationsOfMotion
 from eomgen.mechanics.equations.wellposed import refuse_massless
+from eomgen.records import dataclass
 from eomgen.symbolic.expression.graph import Scalar
 
 

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Hashable, Mapping
-from dataclasses import dataclass, field, replace
+from dataclasses import field, replace
 from functools import cached_property
 from typing import Any
 
@@ -21,6 +21,7 @@ from eomgen.mechanics.initial_state.initial_state import Start, start_of_motion
 from eomgen.mechanics.reactions.reactions import Reactions
 from eomgen.model.constraints.row import Edge
 from eomgen.model.contacts import Contact
+from eomgen.records import dataclass
 from eomgen.simulation.configuration import Configuration
 from eomgen.simulation.constraint_drift import EnergyLevel, Projection, projection_of
 from eomgen.simulation.constraint_rank import Nearness, Undetermined, nearness_of, undetermined_of
@@ -98,11 +99,11 @@ class PhaseModel:
     def reactions(self) -> Reactions:
         return self.watch.reactions
 
-    @property
+    @cached_property
     def coordinates(self) -> tuple[str, ...]:
         return tuple(q.name for q in self.system.symbols.q)
 
-    @property
+    @cached_property
     def speeds(self) -> tuple[str, ...]:
         return tuple(u.name for u in self.system.symbols.u)
 
@@ -152,7 +153,7 @@ class PhaseModel:
             return self.equations
         return equations_of_motion(self.declared)
 
-    @property
+    @cached_property
     def shown(self) -> tuple[str, ...]:
         """The speeds that a user sees."""
         return tuple(u.name for u in self.declared.symbols.u)
@@ -180,9 +181,12 @@ class PhaseModel:
 
     def columns(self, t: np.ndarray, x: np.ndarray) -> dict[str, np.ndarray]:
         """Coordinates, rates, speeds and slacks of n states, by name."""
-        rates = self._rates.many(t, self.functions.inner(x), self.p)
         named = dict(zip((*self.coordinates, *self.speeds), x.T, strict=False))
-        named |= {f"{q}'": column for q, column in zip(self.coordinates, rates.T, strict=True)}
+        if any(f"{q}'" not in named for q in self.coordinates):
+            rates = self._rates.many(t, self.functions.inner(x), self.p)
+            named |= {f"{q}'": column for q, column in zip(self.coordinates, rates.T, strict=True)}
+        if not self.loose:
+            return named
         return named | dict(zip(map(slack_name, self.loose), self.functions.slacks(x).T, strict=True))
 
     def values(self, t: float, x: np.ndarray) -> dict[str, float]:

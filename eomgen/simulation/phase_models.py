@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Hashable, Mapping
-from dataclasses import dataclass
 from functools import cached_property
 from typing import Any
 
@@ -23,10 +22,12 @@ from eomgen.mechanics.equations.system import System, system_of
 from eomgen.mechanics.formulations import recursive
 from eomgen.model.contacts import Contact, contacts_of
 from eomgen.model.parts import Model
+from eomgen.records import dataclass
 from eomgen.simulation.configuration import Configuration, bounds_of, has_phases, on_pieces
 from eomgen.simulation.contact_events import ContactEvents, sliding_velocity
 from eomgen.simulation.impact import WithoutContacts
 from eomgen.simulation.phase_model import Fed, PhaseModel, Values
+from eomgen.simulation.solvers import breakpoints_of
 from eomgen.symbolic.expression.graph import Scalar
 
 OPEN = ContactMode(closed=False)
@@ -97,6 +98,7 @@ class PhaseModels:
         self.model, self.p, self.target, self.rates = model, p, target, rates
         self._derived = None if has_phases(model) else derived
         self._made: dict[Configuration, PhaseModel] = {}
+        self._last: tuple[Configuration, PhaseModel] | None = None
         self.starts: dict[Hashable, Any] = {}  # of motions, by what they were found from
         self._slides: dict[Configuration, Slides] = {}
 
@@ -116,9 +118,11 @@ class PhaseModels:
         Raises:
             DerivationError: a contact ends and nothing can leave it.
         """
-        if configuration not in self._made:
-            self._made[configuration] = self._phase(configuration)
-        return self._made[configuration]
+        if self._last is None or self._last[0] is not configuration:
+            if configuration not in self._made:
+                self._made[configuration] = self._phase(configuration)
+            self._last = configuration, self._made[configuration]
+        return self._last[1]
 
     def slides(self, configuration: Configuration) -> Slides:
         """The sliding velocities of a configuration, for which no force needs to be known."""
@@ -127,6 +131,11 @@ class PhaseModels:
             rubbing = [c for c in contacts_of(model) if c.mu is not None and configuration.modes[c.name].closed]
             self._slides[configuration] = Slides(self._system(model, configuration), tuple(rubbing), self.p)
         return self._slides[configuration]
+
+    @cached_property
+    def breakpoints(self) -> tuple[float, ...]:
+        """The times of the samples of every motion and input [s]."""
+        return breakpoints_of(self.model)
 
     @cached_property
     def without_contacts(self) -> WithoutContacts:

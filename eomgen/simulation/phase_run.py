@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import dataclasses
 from collections.abc import Callable, Iterable, Iterator
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from functools import cached_property
 
 import numpy as np
@@ -20,6 +20,7 @@ from eomgen.model.fields import WrittenEquation
 from eomgen.model.parts import Model, Output
 from eomgen.model.replaced import equation_typed
 from eomgen.model.table import Table
+from eomgen.records import dataclass
 from eomgen.simulation.contact_events import EventFunction
 from eomgen.simulation.integrator import Run, measured
 from eomgen.simulation.phase_change import PhaseStart
@@ -81,6 +82,10 @@ class PhaseRun:
     def measured(self) -> tuple[np.ndarray, np.ndarray]:
         """(instants, states) asked for and at the integrator's steps, in the order of time."""
         return measured(self.run.t, self.run.x, self.run.tracks)
+
+    def tracked(self) -> tuple[np.ndarray, np.ndarray]:
+        """The same."""
+        return self.measured
 
     @property
     def is_met(self) -> bool:

@@ -9,7 +9,7 @@ null space of A says which of the reactions asked have a single value all the sa
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from functools import cached_property
 
 import numpy as np
@@ -21,6 +21,7 @@ from eomgen.mechanics.balance.balance import BodyEquation
 from eomgen.mechanics.balance.named_reactions import NamedReaction, named_reactions
 from eomgen.mechanics.constraints.ties import STILL
 from eomgen.mechanics.reactions.reactions import Reactions
+from eomgen.records import dataclass
 from eomgen.simulation.leaf_to_root_balance import BodyBalance, balanced_from_leaves, steps_of
 from eomgen.symbolic.expression.graph import Scalar
 from eomgen.symbolic.numeric.dense import balanced

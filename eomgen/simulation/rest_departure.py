@@ -7,7 +7,6 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable
-from dataclasses import dataclass
 from functools import cached_property
 
 import numpy as np
@@ -19,6 +18,7 @@ from eomgen.mechanics.equations.equations_of_motion import EquationsOfMotion
 from eomgen.mechanics.first_integrals.closed_instant import position_equations
 from eomgen.mechanics.first_integrals.speeds import rates_of
 from eomgen.mechanics.first_integrals.speeds_from_momenta import Relations, relations_of
+from eomgen.records import dataclass
 from eomgen.simulation.configurations import Configurations
 from eomgen.simulation.phase_model import PhaseModel
 from eomgen.symbolic.expression.derivative import depends_on, substituted

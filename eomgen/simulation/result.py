@@ -6,7 +6,7 @@ import csv
 import html
 import io
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass, field
+from dataclasses import field
 from functools import cached_property
 from importlib import import_module
 from pathlib import Path
@@ -17,6 +17,7 @@ import numpy as np
 from eomgen import files
 from eomgen.errors import UsageError
 from eomgen.model.own_units import OUTPUT
+from eomgen.records import dataclass
 from eomgen.symbolic.expression.units import Unit
 
 SHOWN = 80  # characters of names on a line
@@ -44,7 +45,7 @@ class Phase:
         rows: its first row in the trajectory, and the one after its last; where it ends and another begins the row is
             that of the other, in the state after.
         model: its equations, contacts and reactions, where contacts are that change; else None.
-        track: (instants, states) of the phase: those asked for and the integrator's steps, in order.
+        tracked: -> `track`, put together where somebody asks for it.
         first, last: every column at its beginning and at its end, where contacts are that change; else empty.
     """
 
@@ -53,9 +54,28 @@ class Phase:
     ended_by: str
     rows: tuple[int, int] = (0, 0)
     model: Any = field(default=None, repr=False, compare=False)
-    track: tuple[np.ndarray, np.ndarray] | None = field(default=None, repr=False, compare=False)
+    tracked: Callable[[], tuple[np.ndarray, np.ndarray]] | None = field(default=None, repr=False, compare=False)
     first: Mapping[str, float] = field(default_factory=dict, repr=False, compare=False)
     last: Mapping[str, float] = field(default_factory=dict, repr=False, compare=False)
+
+    @cached_property
+    def track(self) -> tuple[np.ndarray, np.ndarray] | None:
+        """(instants, states) of the phase: those asked for and the integrator's steps, in order; None where unknown."""
+        return None if self.tracked is None else self.tracked()
+
+
+@dataclass(frozen=True)
+class Kept:
+    """How well the laws were kept, at the instants given and at the integrator's steps.
+
+    Args:
+        drift: largest |E - E(0)| over the largest T and |V - V(0)|; None where energy need not be constant.
+        gap, gap_rate: largest |phi| and |J u + sigma| of the ties that close; None where none closes.
+    """
+
+    drift: float | None = None
+    gap: float | None = None
+    gap_rate: float | None = None
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -67,9 +87,7 @@ class Trajectory:
         x: states (q, u), n x (nq + nu), in the order of `coordinates`, `speeds`.
         coordinates, speeds: the names.
         energy: T + V, n [J]; None where nobody gave it.
-        drift: largest |E - E(0)| over the largest T and |V - V(0)|, at the instants given and at the integrator's
-            steps; None where energy need not be constant.
-        gap, gap_rate: largest |phi| and |J u + sigma| of the ties that close, at the same; None where none closes.
+        measure: -> how well the laws were kept, found where somebody asks for it.
         phases: in order.
         status: "finished" or what stopped it.
         message: the same as a sentence.
@@ -91,8 +109,7 @@ class Trajectory:
     coordinates: tuple[str, ...]
     speeds: tuple[str, ...]
     energy: np.ndarray | None
-    drift: float | None
-    gap: float | None
+    measure: Callable[[], Kept] = field(repr=False)
     phases: tuple[Phase, ...]
     status: RunStatus
     message: str
@@ -102,13 +119,32 @@ class Trajectory:
     units: Mapping[str, str] = field(default_factory=dict)
     outputs: Mapping[str, np.ndarray] = field(default_factory=dict)
     remark: str = ""
-    gap_rate: float | None = None
     carried: tuple[tuple[float, float], ...] = ()
     assembled: str = ""
     proof: Callable[[Trajectory], Any] | None = None
     whole: Callable[[Any], Any] | None = field(default=None, repr=False)
     quantities: Mapping[str, Any] = field(default_factory=dict)
     estimate: Callable[[Trajectory], Any] | None = None
+
+    @cached_property
+    def kept(self) -> Kept:
+        """How well the laws were kept."""
+        return self.measure()
+
+    @property
+    def drift(self) -> float | None:
+        """Of the energy, as of `Kept`."""
+        return self.kept.drift
+
+    @property
+    def gap(self) -> float | None:
+        """Of the ties, as of `Kept`."""
+        return self.kept.gap
+
+    @property
+    def gap_rate(self) -> float | None:
+        """Of their velocities, as of `Kept`."""
+        return self.kept.gap_rate
 
     @cached_property
     def accuracy(self) -> Any:
@@ -181,11 +217,14 @@ class Trajectory:
         named |= ({} if self.energy is None else {"energy": self.energy}) | dict(self.reactions)
         return named | {f"{name}{OUTPUT}" if name in named else name: y for name, y in self.outputs.items()}
 
-    def to_csv(self, path: str | Path | IO[str], units: Mapping[str, Unit] | None = None) -> None:
-        """A header line and one line an instant; every digit of a double.
+    def to_csv(
+        self, path: str | Path | IO[str], units: Mapping[str, Unit] | None = None, digits: int | None = None
+    ) -> None:
+        """A header line and one line an instant.
 
         Args:
             units: in which the columns are given, "theta [deg]"; None: plain names, and SI.
+            digits: of each number; None: every digit of a double.
         Raises:
             WriteFailed: the file cannot be written; what was there before is then still there.
         """
@@ -195,7 +234,8 @@ class Trajectory:
         told = dict[str, Unit]() if units is None else units
         writer.writerow(f"{name} [{told[name]}]" if name in told else name for name in columns)
         given = (x / told[name].size if name in told else x for name, x in columns.items())
-        writer.writerows(zip(*(column.tolist() for column in given), strict=True))
+        rows = zip(*(column.tolist() for column in given), strict=True)
+        writer.writerows(rows if digits is None else ([f"{x:.{digits}g}" for x in row] for row in rows))
         if isinstance(path, (str, Path)):
             files.write(path, text.getvalue())
         else:
@@ -224,6 +264,15 @@ class Trajectory:
         columns = self.columns()
         times = columns.pop("t")
         return pandas.DataFrame(columns, index=pandas.Index(times, name="t"))
+
+    def to_xarray(self) -> Any:
+        """The columns as a Dataset over time (needs xarray)."""
+        import xarray
+
+        columns = self.columns()
+        times = columns.pop("t")
+        told = {"status": self.status, "message": self.message}
+        return xarray.Dataset({name: ("time", x) for name, x in columns.items()}, coords={"time": times}, attrs=told)
 
     def animate(self, path: str | Path | None = None, **how: Any) -> Any:
         """The motion as a moving picture: .gif, .mp4, .png (a strip), .html; without a path its player shows itself.

@@ -12,12 +12,13 @@ s is the measure of independence that vanishes. Taken only where polynomials of 
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from typing import Any
 
 import numpy as np
 
 from eomgen.codegen.spheres import SpherePlaces
+from eomgen.records import dataclass
 from eomgen.simulation.constraint_drift import EnergyLevel, Projection
 from eomgen.simulation.constraint_rank import PLACE, Nearness, RankLookout
 from eomgen.simulation.event_location import LOOKED_OUT, Crossing, Events, EventSearch

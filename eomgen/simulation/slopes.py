@@ -8,15 +8,13 @@ from the same matrix, nothing is inverted in symbols:
 
 from __future__ import annotations
 
-from dataclasses import dataclass
-
 import numpy as np
 
 from eomgen.codegen.program import bordered, kinematic_rates, program_of
 from eomgen.codegen.rhs import RightHandSide, compiled
 from eomgen.mechanics.equations.equations_of_motion import EquationsOfMotion
+from eomgen.records import dataclass
 from eomgen.symbolic.expression.derivative import jacobian
-from eomgen.symbolic.expression.graph import Scalar
 from eomgen.symbolic.numeric.tolerances import LEAST_CHANGE
 
 LONG = 60_000  # operations from which on differences are cheaper than the derivative
@@ -34,7 +32,7 @@ def slope_of(equations: EquationsOfMotion, p: np.ndarray, target: str | None = N
     n, k = len(equations.M), len(equations.J)
     parts = (
         jacobian(kinematic_rates(equations), states),
-        jacobian(_residual(equations), states),
+        jacobian([x for rows in equations.residual for x in rows], states),
         equations.M,
         equations.J,
     )
@@ -70,15 +68,3 @@ class ExactSlope:
         matrix = np.block([[M, -J.T], [J, np.zeros((k, k))]])
         solved = np.linalg.lstsq(matrix, -residual.reshape(n + k, m), rcond=LEAST_CHANGE)[0]
         return np.vstack([rates.reshape(-1, m), solved[:n]])
-
-
-def _residual(equations: EquationsOfMotion) -> tuple[Scalar, ...]:
-    """M a - J^T lam - forcing, J a + gamma"""
-    a, lam = equations.symbols.a, equations.symbols.lam
-    found: list[Scalar] = []
-    for i, (row, force) in enumerate(zip(equations.M, equations.forcing, strict=True)):
-        inertia = sum((x * y for x, y in zip(row, a, strict=True)), start=-force)
-        found.append(sum((-row[i] * y for row, y in zip(equations.J, lam, strict=True)), start=inertia))
-    for row, bias in zip(equations.J, equations.gamma, strict=True):
-        found.append(sum((x * y for x, y in zip(row, a, strict=True)), start=bias))
-    return tuple(found)

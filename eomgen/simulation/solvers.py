@@ -7,13 +7,13 @@ from __future__ import annotations
 
 from bisect import bisect_right
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
 
 from eomgen.model.part import leaves_of
 from eomgen.model.parts import Model
+from eomgen.records import dataclass
 from eomgen.symbolic.expression.expressions import Expression
 from eomgen.symbolic.numeric.tolerances import SOLVED
 
@@ -50,9 +50,11 @@ def step(solver: Any, breakpoints: Sequence[float], end: float) -> None:
 
 
 AUTO = "auto"  # DOP853, and Radau where stability alone holds its steps short
-EXPLICIT = ("DOP853", "RK45", "RK23")
+TAYLOR = "taylor"  # in C, of what has power series; else as auto
+EXPLICIT = ("DOP853", TAYLOR, "RK45", "RK23")
 IMPLICIT = ("Radau", "BDF", "LSODA")
 METHODS = (AUTO, *EXPLICIT, *IMPLICIT)
+HEYOKA = "heyoka"  # of an extra package, for smooth equations without a linear solve
 
 HELD_SHORT = 6.1  # h |lambda|: at the edge of the stability of DOP853 (Hairer & Wanner, IV.2)
 SEEN, FORGOTTEN = 15, 6  # steps that are held short until the method changes; others between them until it begins anew
@@ -104,7 +106,7 @@ def solver_of(
     """
     import scipy.integrate
 
-    method = EXPLICIT[0] if method == AUTO else method
+    method = EXPLICIT[0] if method in (AUTO, TAYLOR) else method
 
     def finite(t: float, x: np.ndarray) -> np.ndarray:
         dx = f(t, x)

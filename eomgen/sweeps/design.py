@@ -9,7 +9,6 @@ from __future__ import annotations
 import math
 import warnings
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass
 from functools import cached_property
 from typing import Any, Literal, get_args
 
@@ -19,6 +18,7 @@ from eomgen.errors import ExpressionError, UsageError
 from eomgen.model.findings import nearest
 from eomgen.model.parts import Model
 from eomgen.model.ranges import TypedNumbers, refuse_what_is_not_set
+from eomgen.records import dataclass
 
 DesignKind = Literal["random", "sobol", "lhs"]
 DESIGNS: tuple[str, ...] = get_args(DesignKind)

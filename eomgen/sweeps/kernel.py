@@ -5,7 +5,7 @@ from __future__ import annotations
 import json
 import math
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from functools import cached_property, lru_cache
 from typing import Any
 
@@ -20,11 +20,15 @@ from eomgen.pipeline import simulator
 from eomgen.questions.answers import solve
 from eomgen.questions.of_a_run import asked_of
 from eomgen.questions.simulator import Simulator
+from eomgen.records import dataclass
+from eomgen.sensitivities.sensitivity import slope_in_si
 from eomgen.simulation.result import Trajectory
 from eomgen.sweeps.plan import SweepPlan, plan_of
+from eomgen.symbolic.numeric.work import PatienceEnded
 
 FAILED = "failed"
 WITHOUT_MOTION = "computed"
+CUT: dict[str, type[BaseException]] = {"interrupted": KeyboardInterrupt, "out of patience": PatienceEnded}
 SampleRow = tuple[Any, ...]
 """run, seed, status, message, what was set, what was asked; None where it has no value"""
 
@@ -52,7 +56,7 @@ class SweepKernel:
         """(status, message, what is asked) of a run; what goes wrong is its message."""
         told: dict[str, float | None] = dict.fromkeys(self.plan.asked)
         status, messages = WITHOUT_MOTION, list[str]()
-        for part in (self._in_motion_told, self._without_motion):
+        for part in (self._in_motion_told, self._without_motion, self._slopes_told):
             try:
                 status = part(set_, told, messages) or status
             except (EomgenError, ArithmeticError, ValueError) as error:
@@ -64,6 +68,8 @@ class SweepKernel:
         if not self._in_motion:
             return ""
         run = self.motion(set_)
+        if run.status in CUT:  # no row: the same command makes it then
+            raise CUT[run.status]
         if not run.ok:
             messages.append(run.message)
             return run.status
@@ -100,6 +106,17 @@ class SweepKernel:
             messages += [f"{text}: {answer.message}"] if answer.value is None else []
         return ""
 
+    def _slopes_told(self, set_: Mapping[str, float], told: dict[str, float | None], messages: list[str]) -> str:
+        """The derivatives that are asked, by the equations themselves."""
+        if not self.plan.slopes:
+            return ""
+        model = self.valued(set_)
+        for text, pair in self.plan.slopes.items():
+            found, message = slope_in_si(model, *pair, self.plan.how.time)
+            told[text] = found
+            messages += [f"{text}: {message}"] if message else []
+        return ""
+
     @cached_property
     def _simulator(self) -> Simulator:
         how = self.plan.how
@@ -108,7 +125,7 @@ class SweepKernel:
 
     @cached_property
     def _outputs(self) -> dict[str, Output]:
-        return {text: asked_of(self.plan.model, text) for text in self.plan.asked}
+        return {text: asked_of(self.plan.model, text) for text in self.plan.asked if text not in self.plan.slopes}
 
     @cached_property
     def _in_motion(self) -> dict[str, Output]:

@@ -8,10 +8,10 @@ from __future__ import annotations
 import math
 import sqlite3
 from collections.abc import Iterable, Iterator, Sequence
-from dataclasses import dataclass
 from pathlib import Path
 
 from eomgen.errors import UsageError, WriteFailed
+from eomgen.records import dataclass
 from eomgen.sweeps.kernel import SampleRow
 from eomgen.sweeps.plan import FIXED, SweepPlan
 

@@ -7,7 +7,7 @@ import json
 import pickle
 import platform
 from collections.abc import Mapping, Sequence
-from dataclasses import asdict, dataclass, field
+from dataclasses import asdict, field
 from functools import cached_property
 from typing import Any
 
@@ -17,6 +17,8 @@ from eomgen.errors import UsageError
 from eomgen.model.parts import Model
 from eomgen.model.reader import loads
 from eomgen.model.replaced import with_values
+from eomgen.records import dataclass
+from eomgen.sensitivities.sensitivity import slope_asked
 from eomgen.sweeps.design import Design, DrawnValues
 from eomgen.symbolic.numeric.tolerances import RUN
 from eomgen.version import __version__
@@ -69,6 +71,12 @@ class SweepPlan:
         declared = self.made if self.made is not None else loads(self.text, "plan.json", self.title)
         options = ("--set", "--start")
         return with_values(declared, self.given, self.start, options=options, declared=True).model
+
+    @cached_property
+    def slopes(self) -> dict[str, tuple[str, str]]:
+        """What is asked as a derivative, "d(frequency(1))/d(k)": of what, by what."""
+        pairs = ((text, slope_asked(text)) for text in self.asked)
+        return {text: pair for text, pair in pairs if pair is not None}
 
     @cached_property
     def runs(self) -> Design:

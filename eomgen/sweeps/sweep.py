@@ -7,7 +7,7 @@ import io
 import json
 import math
 from collections.abc import Iterable, Iterator, Mapping, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from pathlib import Path
 from typing import IO, Any
 
@@ -21,6 +21,8 @@ from eomgen.model.ranges import TypedNumbers, range_of
 from eomgen.model.reader import ModelOrPath, bytes_at, loads
 from eomgen.model.table import Table
 from eomgen.questions.of_a_run import asked_of
+from eomgen.records import dataclass
+from eomgen.sensitivities.sensitivity import unit_of_slope
 from eomgen.simulation.result import Trajectory
 from eomgen.sweeps.critical import critical_values
 from eomgen.sweeps.design import refuse_bad_design, spread_of
@@ -30,6 +32,7 @@ from eomgen.sweeps.plan import FIXED, Stepped, SweepPlan, plan_of, texts
 from eomgen.sweeps.progress import progress_of
 from eomgen.sweeps.workers import UNKNOWN_WORKERS, Chunk, Pool, rows_by, rows_here
 from eomgen.symbolic.numeric.tolerances import RUN
+from eomgen.symbolic.numeric.work import another_stretch
 
 PLAN, LEDGER, TABLE, PARQUET, CRITICAL = "plan.json", "ledger.sqlite", "table.csv", "table.parquet", "critical.csv"
 BLOCK = 100_000  # runs whose rows are looked for at once
@@ -95,11 +98,13 @@ class Sweep:
     def in_units(self) -> tuple[dict[str, float], dict[str, str]]:
         """(the size in SI, the head "k [N/m]") of every column that has a unit, as the file declares it."""
         model = self.plan.model
-        asked = {f"asked{k}": asked_of(model, text) for k, text in enumerate(self.plan.asked)}
+        slopes, texts = self.plan.slopes, self.plan.asked
+        asked = {f"asked{k}": asked_of(model, text) for k, text in enumerate(texts) if text not in slopes}
         found = units_of(replace(model, outputs=Table(asked)), asked)
+        found |= {f"asked{k}": unit_of_slope(model, *slopes[text]) for k, text in enumerate(texts) if text in slopes}
         units = units_of(model, self.plan.runs.names)
-        columns = self.columns[-len(asked) :]
-        units |= {column: found[name] for name, column in zip(asked, columns, strict=True) if name in found}
+        columns = enumerate(self.columns[-len(texts) :])
+        units |= {column: found[f"asked{k}"] for k, column in columns if f"asked{k}" in found}
         sizes = {name: unit.size for name, unit in units.items()}
         return sizes, {name: f"{name} [{unit}]" for name, unit in units.items()}
 
@@ -258,7 +263,10 @@ def planned(model: Model, *, runs: int | None, **fields: Any) -> SweepPlan:
     if not (fields["how"].time > 0 and math.isfinite(fields["how"].time)):
         raise UsageError(f"the time {fields['how'].time:g} s makes no sense", mend="give one above 0")
     for text in plan.asked:
-        output = asked_of(model, text)
+        of, to = plan.slopes.get(text, (text, ""))
+        output = asked_of(model, of)
+        if to and to.removesuffix("'") not in (*model.parameters, *model.coordinates, *model.speeds):
+            raise UsageError(f"'{text}': no parameter, coordinate or speed '{to}'")
         if output.event is not None and not isinstance(output.event, int):
             raise UsageError(f"'{text}' is of several instants", mend="ask for one of them: event 1")
     return plan
@@ -287,13 +295,20 @@ def swept(plan: SweepPlan, *, workers: int = 1, executor: Any = None, out: str |
                 rows = rows_by(pool, payload, _missing(ledger), lambda run: plan.runs.runs(run, run + 1)[0][0])
             for some in rows:
                 told(ledger.add([_whole(plan, row) for row in some]))
+                another_stretch(_kept(ledger.count, folder))
         if plan.critical:
             ledger.add_critical(critical_values(plan, ledger, pool if pool.workers > 1 else None))
+    except KeyboardInterrupt:
+        raise KeyboardInterrupt(_kept(ledger.count, folder)) from None
     finally:
         pool.close()
         if folder is not None:
             _write_tables(found, folder)
     return found
+
+
+def _kept(count: int, folder: Path | None) -> str:
+    return "nothing is kept" if folder is None else f"{count} runs are kept in {folder}, the same command goes on"
 
 
 def _whole(plan: SweepPlan, row: SampleRow) -> SampleRow:

@@ -14,10 +14,11 @@ import time
 from collections import deque
 from collections.abc import Callable, Iterable, Iterator
 from concurrent.futures import BrokenExecutor, ProcessPoolExecutor
-from dataclasses import dataclass, field
+from dataclasses import field
 from typing import Any
 
 from eomgen.errors import RunFailed
+from eomgen.records import dataclass
 from eomgen.sweeps.kernel import FAILED, Payload, SampleRow, rows_of_runs
 
 A_CHUNK = 0.5  # s of work in one: long beside what giving it out costs, short beside what a kill loses

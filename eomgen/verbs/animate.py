@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import html
 from collections.abc import Sequence
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -27,6 +27,7 @@ from eomgen.model.parts import Model
 from eomgen.model.reader import ModelOrPath, model_at
 from eomgen.model.replaced import Values
 from eomgen.questions.run import run as simulated
+from eomgen.records import dataclass
 from eomgen.scene.virtual import VirtualDisplacement
 from eomgen.simulation.integrator import Stepping
 from eomgen.simulation.result import Trajectory

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from functools import cached_property
 
 from eomgen.errors import DerivationError, MissingValues, ModelError, Problem
@@ -20,6 +19,7 @@ from eomgen.mechanics.structures.structure import Structure, structure_of
 from eomgen.model.parts import Model
 from eomgen.model.unbuilt import unbuilt
 from eomgen.model.values import exact_parameters
+from eomgen.records import dataclass
 
 
 @dataclass(frozen=True)

@@ -21,6 +21,7 @@ def codegen_document(
     inverse: bool = False,
     actuated: tuple[str, ...] = (),
     jacobian: bool = False,
+    regressor: bool = False,
     baumgarte: tuple[float, float] | None = None,
     integrator: bool = False,
     float32: bool = False,
@@ -32,6 +33,7 @@ def codegen_document(
         targets: the languages; the files of one lie in the directory, of several each in a folder of its name.
         inverse: write inverse dynamics too, of the actuated coordinates, speeds, inputs or joints.
         jacobian: write the slopes of the right-hand side too.
+        regressor: write Y, y0 and the columns of the base parameters too.
         baumgarte: alpha and beta of closing rows that pull back what has opened [1/s]; None: they do not pull.
         integrator: an integrator in C too.
         float32: the C in single precision.
@@ -44,6 +46,7 @@ def codegen_document(
         origin=origin,
         actuated=acting,
         jacobian=jacobian,
+        regressor=regressor,
         baumgarte=baumgarte,
         integrator=integrator,
         float32=float32,
@@ -72,7 +75,8 @@ def _payload(found: Generated, paths: list[str]) -> dict[str, object]:
         "reactions": list(reactions[1].outputs) if reactions else None,
         "reaction_operations": reactions[0].count.total if reactions else None,
     }
-    for key, emitted in (("outputs", found.outputs), ("matrices", found.matrices), ("jacobian", found.jacobian)):
+    further = {"outputs": found.outputs, "matrices": found.matrices, "jacobian": found.jacobian}
+    for key, emitted in (*further.items(), ("regressor", found.regressor)):
         if emitted is not None:
             program, told = emitted
             payload[key] = list(told.outputs or [name for name, *_ in told.blocks])

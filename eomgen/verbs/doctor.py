@@ -7,10 +7,11 @@ import platform
 import shutil
 from importlib import metadata
 
-from eomgen.codegen.build import cache_folder, compiler
+from eomgen.codegen.build import compiler
 from eomgen.documents.document import Document, lines_document
 from eomgen.documents.moving_picture import ffmpeg
 from eomgen.errors import ToolMissing
+from eomgen.kept import cache_folder
 from eomgen.version import __version__
 
 EXTRAS = {"formulas": "math-core", "PDF": "typst", "space": "jupyter-threejs-sage", "notebooks": "nbclient"}

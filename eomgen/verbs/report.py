@@ -5,7 +5,7 @@ from __future__ import annotations
 import io
 import zipfile
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from functools import cached_property
 from pathlib import Path
 from typing import Any
@@ -38,6 +38,7 @@ from eomgen.proof.check import Certificate
 from eomgen.questions import answers
 from eomgen.questions.run import run as simulated
 from eomgen.questions.velocities import kinematics
+from eomgen.records import dataclass
 from eomgen.scene.virtual import VirtualDisplacement
 from eomgen.simulation.result import Trajectory
 from eomgen.symbolic.numeric.work import doing
@@ -56,6 +57,7 @@ CAPTIONS = {
     "linearize": "Shapes of the modes.",
 }
 EPOCH = (1980, 1, 1, 0, 0, 0)  # of files in archives: the same bytes at any time
+DIGITS = 9  # of the numbers of a run in a page: as many as a run is sure of
 
 
 @dataclass(frozen=True)
@@ -387,8 +389,8 @@ def _downloads(subject: Subject) -> ReportSection | None:
         found.append(Attachment(f"{stem}.toml", "text/plain", subject.source.encode(), "the model"))
     if "run" in vars(subject):
         table = io.StringIO()
-        subject.run.to_csv(table)
-        about = "the motion: a header, then a line an instant, in SI"
+        subject.run.to_csv(table, digits=DIGITS)
+        about = f"the motion: a header, then a line an instant, in SI, numbers of {DIGITS} digits"
         found.append(Attachment(f"{stem}.csv", "text/csv", table.getvalue().encode(), about))
     if "equations" in vars(subject) and subject.equations.speeds:
         about = "the equations and reactions as code in C and for numpy, with test vectors"
@@ -397,11 +399,11 @@ def _downloads(subject: Subject) -> ReportSection | None:
 
 
 def _archive(texts: Mapping[str, str | bytes]) -> bytes:
-    """Files by path as one file."""
+    """Files by path as one file; the page packs it whole."""
     archive = io.BytesIO()
-    with zipfile.ZipFile(archive, "w", zipfile.ZIP_DEFLATED) as packed:
+    with zipfile.ZipFile(archive, "w", zipfile.ZIP_STORED) as packed:
         for path, text in texts.items():
-            packed.writestr(zipfile.ZipInfo(path, EPOCH), text, zipfile.ZIP_DEFLATED)
+            packed.writestr(zipfile.ZipInfo(path, EPOCH), text, zipfile.ZIP_STORED)
     return archive.getvalue()
 
 

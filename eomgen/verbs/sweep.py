@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
@@ -17,6 +17,8 @@ from eomgen.pipeline import simulate
 from eomgen.proof.check import Certificate, Check
 from eomgen.questions.answers import solve
 from eomgen.questions.of_a_run import asked_of
+from eomgen.records import dataclass
+from eomgen.sensitivities.sensitivity import checks_of_slope
 from eomgen.sweeps.design import spread_of
 from eomgen.sweeps.kernel import SweepKernel
 from eomgen.sweeps.plan import Stepped
@@ -161,7 +163,8 @@ def _proof(found: Sweep) -> Certificate | None:
     kernel, plan = SweepKernel(found.plan), found.plan
     set_ = dict(zip(plan.runs.names, first[4:], strict=False))
     model = kernel.valued(set_)
-    asked = {f"asked{k}": asked_of(plan.model, text) for k, text in enumerate(plan.asked)}
+    formulas = [text for text in plan.asked if text not in plan.slopes]
+    asked = {f"asked{k}": asked_of(plan.model, text) for k, text in enumerate(formulas)}
     model = replace(model, outputs=Table(asked))
     how = plan.how
     if first[2] == "computed":
@@ -169,11 +172,12 @@ def _proof(found: Sweep) -> Certificate | None:
     else:
         run = simulate(model, time=how.time, rtol=how.rtol, atol=how.atol, method=how.method)
         certificate = run.certify()
+    slopes = [check for pair in plan.slopes.values() for check in checks_of_slope(model, *pair, how.time)]
     same = found.again(first[0]) == first
     again = Check(
         "a run made again has the same bits", "holds" if same else "fails", f"run {first[0]}, by the same kernel"
     )
-    return Certificate((*certificate.checks, again))
+    return Certificate((*certificate.checks, *slopes, again))
 
 
 def replay_document(folder: str, run: int, *, output: str | None, samples: int | None) -> Document:

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import sys
 from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
@@ -20,6 +19,7 @@ from eomgen.model.fields import AtRest, WrittenEquation
 from eomgen.model.parts import Model
 from eomgen.model.replaced import with_values
 from eomgen.proof.check import Certificate
+from eomgen.records import dataclass
 
 LARGEST = 1_000_000  # bytes of a file of answers
 UNREADABLE = 2

@@ -10,6 +10,7 @@ from moving import at, equal, state_of, written
 
 import eomgen
 from eomgen.errors import NotYet
+from eomgen.mechanics.bodies.armature import armature_mass
 from eomgen.mechanics.bodies.loads import Loads, SystemScene, body_wrench, in_ground_axes, joint_wrenches
 from eomgen.mechanics.equations.system import System
 from eomgen.mechanics.equations.work import effort_row, force_row, from_potential, generalized_forces, load_row, summed
@@ -91,6 +92,10 @@ EXAMPLES = {
     "potential": {
         PLANE: ['energy = "k*a^2*cos(b)"', 'energy = "k*l*a*sin(w*t)"'],
         SPACE: ['energy = "k*l*(a - b)^4"'],
+    },
+    "kinetic": {
+        PLANE: ["energy = \"k*l^2*(a'^2 + cos(b)*a'*b')\"", "energy = \"k*l*t*b'^2 + k*l*a'*sin(a - b)\""],
+        SPACE: ['energy = "k*(l + a)^2*b\'^2"'],
     },
     "generalized": {
         PLANE: ['coordinate = "b", value = "tau - c*b\'^3"'],
@@ -214,9 +219,42 @@ def test_virtual_work_and_wrenches_on_twists_agree(kind, space, fields):
 
 @built
 def test_a_force_acts(kind, space, fields):
-    """Q is not 0 at a random state."""
+    """Q is not 0 at a random state; of a kinetic energy M has entries of its own."""
     system = system_with(kind, space, fields)
-    assert np.abs(at(force_row(system.loads, applied(system)), state_of(system))).max() > 1e-6
+    acts = force_row(system.loads, applied(system))
+    if kind == "kinetic":
+        acts = tuple(value for _, _, value in armature_mass(system.motion))
+    assert np.abs(at(acts, state_of(system))).max() > 1e-6
+
+
+def test_a_system_of_energies_alone_is_proven():
+    """M, c and Q of T(q, q', speeds, t), V and a force, with declared speeds, a knife edge and what is driven: by the
+    energies, by the wrenches' way and body by body, with the energy theorem."""
+    model = eomgen.loads("""
+        eomgen = 1
+        space = "plane"
+        parameters = { m = 1.5, J = 0.3, l = 0.7, g = 9.81 }
+        inputs = { F = "sin(t)" }
+        constraints.blade = { kind = "equation", rate = "-x'*sin(th) + y'*cos(th) - l*th'" }
+        forces.V = { kind = "potential", energy = "-2*m*g*l*cos(th + s) - m*g*l*cos(ph)" }
+        forces.f = { kind = "generalized", coordinate = "th", value = "F - 0.1*w1" }
+        [coordinates]
+        x = 0
+        y = { dependent = true }
+        th = 0.4
+        ph = 0.1
+        s = { motion = "0.1*sin(t)" }
+        [speeds]
+        w1 = { rate = "th' + x'*cos(ph)", start = 1 }
+        w2 = { rate = "ph' - 2*x'", start = 2 }
+        w3 = { rate = "x' + th'*sin(s)", start = 0.5 }
+        [forces.T]
+        kind = "kinetic"
+        energy = "m*(x'^2 + y'^2)/2 + J*w1^2/2 + J*(w2 + s'*sin(ph))^2/4 + J*cos(x)*w1*th'/10 + 0.1*ph'^2*(2 + sin(t))"
+    """)
+    equations = eomgen.derive(model)
+    found = equations.certify()
+    assert found.ok and all(check.status == "holds" for check in found.checks)
 
 
 Resultant = tuple[Vector, Vector]

@@ -9,6 +9,7 @@ import re
 import subprocess
 import sys
 from functools import cache
+from importlib import import_module
 from pathlib import Path
 
 import pytest
@@ -19,8 +20,10 @@ import eomgen
 from eomgen import files
 from eomgen.codegen import build
 from eomgen.codegen.files import texts_of
+from eomgen.codegen.lowered import Language
+from eomgen.codegen.names import RESERVED
 from eomgen.codegen.program import program_of
-from eomgen.codegen.targets import ALL, cpp, fortran
+from eomgen.codegen.targets import ALL, cpp, fortran, wasm
 from eomgen.codegen.targets.base import Description
 from eomgen.codegen.vectors import vectors
 
@@ -29,7 +32,15 @@ pytestmark = pytest.mark.slow
 MODELS = Path(__file__).parents[2] / "models"
 # a tree; a loop with inverse dynamics; friction at rest and sliding; ties that depend on one another
 SAMPLE = {"cart_pole": (), "four_bar": ("alpha",), "rough_incline": None, "bricard": None}
-WARNINGS = ["-Wall", "-Wextra", "-pedantic", "-Werror"]
+SLOPES = ("cart_pole", "bricard")
+REGRESSORS = ("cart_pole", "four_bar")
+# names that nobody reserves, letters that no language takes, and what only looks alike
+STANDING = """
+lambda' θ Θ ω_1 theta_dot' global nonlocal quote import using macro sum product len print range max kind present std
+core Vec String u8 bool real Real i j e E I inf nan jnp jax ca np casadi test check vectors main found right largest
+tolerance a b k m n d f g h self Self None fn type end class function lambda block exports bytes read
+"""
+WARNINGS = ["-Wall", "-Wextra", "-pedantic", "-Wconversion", "-Wshadow", "-Werror"]
 
 
 def ran(folder: Path, *commands: list[str]) -> str:
@@ -74,6 +85,14 @@ def by_javascript(folder: Path) -> str:
     return ran(folder, [tool("node"), "--test"])
 
 
+def by_wasm(folder: Path) -> str:
+    """Made anew of its C, as its README says, and tested."""
+    compiler = [*wasm.COMPILER.command(), *wasm.FLAGS, "-O2", *WARNINGS]
+    found = sorted(folder.rglob("*.c"))
+    made = "".join(ran(x.parent, [*compiler, x.name, "-o", f"{x.stem}.wasm"]) for x in found)
+    return made or by_javascript(folder)
+
+
 def by_octave(folder: Path) -> str:
     words = [f"cd('{test.parent}'); {test.stem}" for test in sorted(folder.rglob("*_test.m"))]
     return ran(folder, [tool("octave-cli"), "-q", "--norc", "--eval", "; ".join(words)])
@@ -86,20 +105,25 @@ def by_pytest(folder: Path) -> str:
 
 OWN_TESTS = {
     **{"c": by_c, "cpp": by_cpp, "rust": by_rust, "fortran": by_fortran, "javascript": by_javascript},
+    "wasm": by_wasm,
     **{"matlab": by_octave, **dict.fromkeys(("numpy", "jax", "casadi", "numba", "fmu"), by_pytest)},
 }
-LONG_TO_COMPILE = {"jax": ("bricard",), "numba": ("bricard", "four_bar", "cart_pole")}  # models that these do without
+LEFT_OUT = {
+    "jax": ("bricard",),
+    "numba": ("bricard", "four_bar", "cart_pole", "words"),
+    "fmu": ("words",),  # more results than states: no system, and an FMU is one
+}  # models that these do without
 each_own_test = marked(OWN_TESTS)
 
 
 @cache
 def emitted(name: str):
     """What is written of a model, with its test vectors."""
-    if name == "roots":
-        return roots()
+    if name in ("roots", "words"):
+        return roots() if name == "roots" else words()
     model = eomgen.loads(PUSHED) if name == "pushed" else eomgen.load(MODELS / f"{name}.toml")
-    actuated = SAMPLE.get(name)
-    return eomgen.generate(model, ("c",), name=name, actuated=actuated, jacobian=name == "cart_pole").emitted
+    told = {"actuated": SAMPLE.get(name), "jacobian": name in SLOPES, "regressor": name in REGRESSORS}
+    return eomgen.generate(model, ("c",), name=name, **told).emitted
 
 
 def roots():
@@ -108,6 +132,22 @@ def roots():
     (x, y), g = s.q, s.graph
     program = program_of([g.call("min", g.sqrt(y), x), x + y, g.call("max", x, g.sqrt(y)), 3], s)
     return ((program, Description("Roots", "by hand", {}, vectors(program))),)
+
+
+def words():
+    """Every word of every language, and what stands in their texts, as a name; every function beside them."""
+    modules = [import_module(f"eomgen.codegen.targets.{target.name}") for target in ALL]
+    tables = [x for module in modules for x in vars(module).values() if isinstance(x, Language)]
+    taken = {word for table in tables for word in table.reserved} | RESERVED | {*STANDING.split()}
+    names = sorted(taken - {"t"})  # the time, in every model
+    s = symbols(" ".join(names[:10]), " ".join(names[20:]), " ".join(names[10:20]))
+    g, known = s.graph, [*s.q, *s.parameters.values(), *s.inputs.values()]
+    outputs = [a + k * b for k, (a, b) in enumerate(zip(known, reversed(known), strict=True), start=2)]
+    x, y, *_ = s.q
+    outputs += [g.call(op, x * y) for op in "sin atan sinh tanh exp abs sign sqrt asin".split()]
+    outputs += [g.call(op, x, y) for op in "atan2 min max less less_equal".split()] + [(2 + x * x) ** y]
+    program = program_of(outputs, s, inputs={name: k * s.t for k, name in enumerate(s.inputs)})
+    return ((program, Description("Words", "by hand", {}, vectors(program))),)
 
 
 def written(folder: Path, target: str, name: str, most: int | None = None) -> Path:
@@ -121,7 +161,7 @@ def test_the_language_s_own_test_agrees_with_the_symbols(target, tmp_path):
     vectors_told = [v for name in ("roots", "rough_incline") for _, told in emitted(name) for v in told.vectors]
     assert any(math.isnan(value) for v in vectors_told for value in v.result)
     assert any(not any(v.x[len(v.x) // 2 :]) for v in vectors_told)  # at rest
-    names = [name for name in (*SAMPLE, "pushed", "roots") if name not in LONG_TO_COMPILE.get(target, ())]
+    names = [name for name in (*SAMPLE, "pushed", "roots", "words") if name not in LEFT_OUT.get(target, ())]
     for name in names:
         written(tmp_path, target, name)
     assert OWN_TESTS[target](tmp_path) == ""

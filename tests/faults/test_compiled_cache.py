@@ -5,11 +5,13 @@ from __future__ import annotations
 import os
 import signal
 import time
+from dataclasses import replace
 from pathlib import Path
 
 import pytest
 from hand_made import cart_pole, pendulum
 
+from eomgen import kept
 from eomgen.codegen import build, rhs
 from eomgen.codegen.program import right_hand_side
 from eomgen.codegen.rhs import compiled
@@ -38,7 +40,7 @@ LIES = {
 @pytest.fixture
 def cache(tmp_path, monkeypatch):
     """A cache of this test's own."""
-    monkeypatch.setattr(build.platformdirs, "user_cache_dir", lambda name: str(tmp_path / "cache"))
+    monkeypatch.setattr(kept.platformdirs, "user_cache_dir", lambda name: str(tmp_path / "cache"))
     return tmp_path / "cache"
 
 
@@ -67,10 +69,9 @@ def test_a_compiler_that_lies_is_named_and_numpy_runs(how, cache, tmp_path, monk
 def test_a_compiler_that_hangs_is_ended_with_all_that_it_started(cache, tmp_path, monkeypatch):
     """A shell that waits for another process, which holds its streams: both are gone, soon."""
     compiler(tmp_path, monkeypatch, f"sleep 1000 & echo $! > {tmp_path}/child; wait")
-    monkeypatch.setattr(build, "PATIENCE", 0.5)
     begun = time.monotonic()
     with pytest.raises(RunFailed, match=r"did not come back within 0\.5 s"):
-        build.library(TEXT)
+        build.library(TEXT, by=replace(build.C, patience=0.5))
     assert time.monotonic() - begun < 20 and list(cache.iterdir()) == []
     child = Path(f"/proc/{(tmp_path / 'child').read_text().strip()}/stat")
     assert not child.exists() or child.read_text().split()[2] == "Z"
@@ -85,9 +86,9 @@ def test_an_entry_of_which_one_bit_is_turned_is_never_loaded(cache, monkeypatch)
     whole = path.read_bytes()
     for at in range(0, len(whole), len(whole) // 200):
         path.write_bytes(whole[:at] + bytes([whole[at] ^ 1]) + whole[at + 1 :])
-        assert not build._is_whole(path)
+        assert kept.content_of(path) is None
     path.write_bytes(whole + b"\0")
-    assert not build._is_whole(path)
+    assert kept.content_of(path) is None
     assert build.library(TEXT).twice is not None and path.read_bytes() == whole
 
 
@@ -128,7 +129,7 @@ def test_old_entries_go(cache, monkeypatch):
     for days, path in ((100, paths[0]), (2, paths[1]), (1, paths[2])):
         os.utime(path, (time.time() - 86_400 * days,) * 2)
     build.library(names[1])
-    monkeypatch.setattr(build, "MOST_KEPT", 2)
+    monkeypatch.setattr(kept, "MOST_KEPT", 2)
     build.library(names[3])
-    kept = set(cache.iterdir())
-    assert len(kept) == 2 and paths[1] in kept
+    left = set(cache.iterdir())
+    assert len(left) == 2 and paths[1] in left

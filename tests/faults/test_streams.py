@@ -18,9 +18,9 @@ import pytest
 from forked import forked, needs_fork
 
 from eomgen import pipeline
-from eomgen.codegen.build import _own_folder
 from eomgen.edge import IN_ASCII, in_ascii
 from eomgen.errors import visible
+from eomgen.kept import _own_folder
 from eomgen.simulation import integrator
 
 pytestmark = [pytest.mark.slow, needs_fork]

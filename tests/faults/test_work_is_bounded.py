@@ -192,9 +192,11 @@ VERBS = [
     ("animate", "double_pendulum.toml", "-o", "DIR/motion.gif"),
     ("codegen", "double_pendulum.toml", "-o", "DIR"),
     ("export", "double_pendulum.toml", "-o", "DIR/robot.urdf"),
+    ("import", "DIR/robot.urdf"),
     ("identify", "double_pendulum.toml", "--data", "DIR/motion.csv"),
     ("play", "double_pendulum.toml", "-o", "DIR/page.html"),
     ("report", "double_pendulum.toml", "-o", "DIR/report.html"),
+    ("sweep", "double_pendulum.toml", "--over", "g=9:10:2", "--ask", "max(theta1)"),
     ("verify", "double_pendulum.toml", "T = 0"),
 ]
 
@@ -204,7 +206,8 @@ def test_every_verb_ends_when_patience_does(words, tmp_path):
     """Exit 3, and a sentence in place of a result."""
     verb, model, *more = words
     (tmp_path / "motion.csv").write_text("t,theta1,theta2,theta1',theta2',theta1'',theta2''\n0,0,0,0,0,0,0\n")
-    more = [each.replace("DIR", str(tmp_path)) for each in more]
+    (tmp_path / "robot.urdf").write_text('<robot name="r"><link name="base"/></robot>')
+    model, *more = (each.replace("DIR", str(tmp_path)) for each in (model, *more))
     found = CliRunner().invoke(main, [verb, str(MODELS / model), *more, "--patience", "1e-6"])
     assert found.exit_code == 3 and "given up after 1e-06 s" in found.output and "--patience none" in found.output
 

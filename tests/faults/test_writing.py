@@ -3,19 +3,26 @@
 from __future__ import annotations
 
 import errno
+import json
 import mmap
 import os
+import pickle
 import resource
+import shutil
 import signal
 import sys
 import time
+from collections.abc import Callable
+from dataclasses import dataclass
 from pathlib import Path
 
+import click
 import pytest
 from forked import forked, needs_fork
 
 from eomgen import files
-from eomgen.errors import WriteFailed
+from eomgen.cli import main
+from eomgen.errors import WriteFailed, visible
 
 pytestmark = [pytest.mark.slow, needs_fork]
 
@@ -31,9 +38,41 @@ WRITES = {
     "page": (("play", PENDULUM, "--time", "0.1", "--no-certify", "-o"), "r.html"),
     "code": (("codegen", PENDULUM, "--target", "numpy", "--no-certify", "-o"), "."),
 }
-EVERYWHERE = ("text", "csv", "code")  # a file, a long one, several together: one writer for all kinds
 EVENTS = {"open", "os.rename", "os.mkdir", "os.rmdir", "os.remove", "os.chmod", "os.scandir", "os.listdir"}
 TAKES_ROOM = {"os.rename", "os.mkdir"}  # and what is opened to be written: these fail on a full disk
+ENDINGS = ("", ".txt", ".md", ".csv", ".png", ".html", ".toml", ".urdf")  # of what a verb may write; the first it takes
+ONE_BY_ONE = (
+    "check",
+    "simulate",
+    "codegen",
+)  # a file, a long one, several together: each fault at each of their events
+READS_AGAIN = ("plan.json", "ledger.sqlite")  # by which the next run of a verb goes on
+ROBOT = """<robot name="r\u202e\x7f"><link name="base"/><link name="arm"><inertial><mass value="2"/>
+<inertia ixx="1" ixy="0" ixz="0" iyy="1" iyz="0" izz="1"/></inertial></link>
+<joint name="hinge" type="continuous"><parent link="base"/><child link="arm"/><axis xyz="0 0 1"/></joint></robot>"""
+STEERING = "A\x1b[31mred\x1b]0;t\x07\u202eback\u2066=cmd"  # a name that a terminal or an editor must not get
+MEASURED = "t,theta,theta',theta''\n" + "".join(f"{k},{k % 3},{k % 2},{k % 5}\n" for k in range(9))
+
+
+def ways() -> list[tuple[str, str]]:
+    """(verb, option) of every option under which a verb of the command line writes; "" where it needs none."""
+    found = [
+        (verb, max(parameter.opts, key=len))
+        for verb, command in main.commands.items()
+        for parameter in command.params
+        if isinstance(parameter.type, click.Path) and not parameter.type.exists
+    ]
+    return found + [(verb, "") for verb in main.commands.keys() - dict(found).keys()]
+
+
+def words_of(verb: str, option: str, path: Path, given: dict[str, str]) -> list[str]:
+    """A short command that writes there: of what it takes, what is given below its name."""
+    words = [verb]
+    for parameter in main.commands[verb].params:
+        name = max(parameter.opts, key=len)
+        if name in given:
+            words += [given[name]] if isinstance(parameter, click.Argument) else [name, given[name]]
+    return [*words, *([option, str(path)] if option else [str(path)])]
 
 
 def command(kind: str, folder: Path) -> tuple[str, ...]:
@@ -49,106 +88,171 @@ def left(folder: Path) -> list[str]:
     return [path.name for path in folder.rglob(".eomgen-*")]
 
 
-COUNTED = mmap.mmap(-1, 1)  # shared with the processes that are forked
+def raised() -> None:
+    raise OSError(errno.ENOSPC, os.strerror(errno.ENOSPC))
 
 
-def at_event(folder: Path, number: int, act, full: bool = False):
-    """Before the n-th event of the file system below a folder, done once: the system calls of Python, and fsync."""
-
-    def one(*_):
-        COUNTED[0] += 1
-        if COUNTED[0] == number:
-            act()
-
-    def heard(event, arguments):
-        written = event == "open" and bool(arguments[2] & (os.O_WRONLY | os.O_RDWR))
-        if (event in TAKES_ROOM or written if full else event in EVENTS) and any(
-            str(folder) in str(each) for each in arguments
-        ):
-            one()
-
-    def prepare():
-        COUNTED[0] = 0
-        real = os.fsync
-        os.fsync = lambda handle: (one(), real(handle))[1]
-        sys.addaudithook(heard)
-
-    return prepare
-
-
-def events(kind: str, folder: Path, full: bool = False) -> int:
-    """How many there are in a run that nothing disturbs."""
-    before = contents(folder)
-    assert forked(command(kind, folder), at_event(folder, 0, lambda: None, full)).code == 0
-    for name, data in before.items():
-        (folder / name).write_bytes(data)
-    assert COUNTED[0] >= 4
-    return COUNTED[0]
-
-
-def raised(number: int):
-    def act():
-        raise OSError(number, os.strerror(number))
-
-    return act
-
-
-def killed(number: int):
+def killed(number: int) -> Callable[[], None]:
     return lambda: os.kill(os.getpid(), number)
 
 
-def old_and_new(kind: str, tmp_path: Path):
-    """A folder with old files, what they are, and what the verb makes of them."""
-    folder, reference = tmp_path / "out", tmp_path / "reference"
-    for place in (folder, reference):
-        place.mkdir()
-    assert forked(command(kind, reference)).code == 0
-    new = contents(reference)
-    for name in new:
-        (folder / name).write_bytes(b"old")
-    return folder, dict.fromkeys(new, b"old"), new
+FAULTS: dict[str, Callable[[], None]] = {"full": raised}
+FAULTS |= {name: killed(getattr(signal, name)) for name in ("SIGINT", "SIGTERM", "SIGKILL")}
 
 
-def is_whole(name: str, found: bytes, old: dict[str, bytes], new: dict[str, bytes]) -> bool:
-    return found in (old[name], new[name])
+@dataclass(frozen=True)
+class Disturbed:
+    """How a verb ended that was disturbed at one of its writes.
+
+    Args:
+        found: the files then; what it left beside is not among them.
+        left: folders `.eomgen-*` then, and after the next write there.
+    """
+
+    fault: str
+    code: int
+    said: str
+    found: dict[str, bytes]
+    left: tuple[int, int]
 
 
-@pytest.mark.parametrize("kind", EVERYWHERE)
-@pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGTERM, signal.SIGKILL], ids=["INT", "TERM", "KILL"])
-def test_a_signal_at_any_write_leaves_whole_files(kind, number, tmp_path):
-    """INT, TERM: exit code 130, all old or all new, nothing else there. KILL: each file whole, one folder beside."""
-    folder, old, new = old_and_new(kind, tmp_path)
-    for n in range(1, events(kind, folder) + 1):
-        ended = forked(command(kind, folder), at_event(folder, n, killed(number)))
-        found = {name: data for name, data in contents(folder).items() if not name.startswith(".eomgen-")}
-        assert found.keys() == new.keys() and all(is_whole(name, data, old, new) for name, data in found.items())
-        if number == signal.SIGKILL:
-            assert ended.code == -signal.SIGKILL and len(left(folder)) <= 1
-            files.write(folder / next(iter(new)), b"old")
-        else:
-            assert ended.code == 130 and "interrupted" in ended.said
-            assert len({data == b"old" for data in found.values()}) == 1
-        assert left(folder) == []
-        for name in new:
-            (folder / name).write_bytes(b"old")
+class AtEachEvent:
+    """At its first write below a folder the process becomes many, of which each meets a fault at an event of its own.
+
+    The verb has computed by then, once for all of them. Events: system calls that Python tells of, and fsync.
+
+    Args:
+        faults: at each event the first of them, then the first is the last.
+        near: a file beside the first that is written.
+    """
+
+    def __init__(
+        self, folder: Path, old: dict[str, bytes], report: Path, faults: tuple[tuple[str, ...], ...], near: Path
+    ) -> None:
+        self.folder, self.old, self.report, self.faults, self.near = folder, old, report, faults, near
+        self.fault, self.number, self.parts, self.busy = "", 0, False, False
+        self.shared = mmap.mmap(-1, 4)  # how many events a process came to
+
+    def __call__(self) -> None:
+        real = os.fsync
+        os.fsync = lambda handle: (self.one(), real(handle))[1]
+        sys.addaudithook(self.heard)
+
+    def heard(self, event: str, arguments: tuple) -> None:
+        if self.busy or event not in EVENTS or not any(str(self.folder) in str(each) for each in arguments):
+            return
+        takes_room = event in TAKES_ROOM or (event == "open" and bool(arguments[2] & (os.O_WRONLY | os.O_RDWR)))
+        if not self.parts and takes_room:
+            self.parts = self.busy = True
+            self.become_many()
+        if self.fault != "full" or takes_room:
+            self.one()
+
+    def one(self) -> None:
+        if self.busy:
+            return
+        count = int.from_bytes(self.shared[:], "little") + 1
+        self.shared[:] = count.to_bytes(4, "little")
+        if count == self.number:
+            FAULTS[self.fault]()
+
+    def become_many(self) -> None:
+        signal.alarm(0)
+        rows, said = [], self.report.with_suffix(".err")
+        for faults in self.faults:
+            self.number = 0
+            while int.from_bytes(self.shared[:], "little") >= self.number:
+                self.shared[:] = bytes(4)
+                self.fault, self.number = faults[self.number % len(faults)], self.number + 1
+                self.lay()
+                if (pid := os.fork()) == 0:
+                    os.dup2(os.open(said, os.O_WRONLY | os.O_CREAT | os.O_TRUNC), 2)
+                    self.busy = False
+                    signal.alarm(60)
+                    return
+                code = os.waitstatus_to_exitcode(os.waitpid(pid, 0)[1])
+                found = {name: data for name, data in contents(self.folder).items() if ".eomgen-" not in name}
+                beside = len(left(self.folder))
+                files.write(self.near, b"")
+                rows.append(Disturbed(self.fault, code, said.read_text(), found, (beside, len(left(self.folder)))))
+        self.report.write_bytes(pickle.dumps(rows))
+        os._exit(0)
+
+    def lay(self) -> None:
+        """The old files, and nothing else."""
+        for path in contents(self.folder):
+            (self.folder / path).unlink()
+        for name, data in self.old.items():
+            (self.folder / name).write_bytes(data)
 
 
-@pytest.mark.parametrize("kind", EVERYWHERE)
-def test_a_disk_that_is_full_at_any_write_is_a_sentence(kind, tmp_path):
-    """ENOSPC at the n-th system call: exit code 74, the old files, nothing beside; each call is tried."""
-    folder, old, new = old_and_new(kind, tmp_path)
-    refused = 0
-    for n in range(1, events(kind, folder, full=True) + 1):
-        ended = forked(command(kind, folder), at_event(folder, n, raised(errno.ENOSPC), full=True))
-        found = contents(folder)
-        assert left(folder) == [] and all(is_whole(name, data, old, new) for name, data in found.items())
-        assert found.keys() == new.keys()
-        if ended.code == 74:
-            assert "cannot be written: No space left on device" in ended.said
-            refused += 1
-        for name in new:
-            (folder / name).write_bytes(b"old")
-    assert refused >= 3
+@pytest.mark.parametrize(("verb", "option"), ways())
+def test_a_fault_at_any_write_of_any_verb_leaves_whole_files(verb, option, tmp_path):
+    """INT, TERM: exit code 130, all old or all new. A full disk: 74, likewise. KILL: each file whole.
+
+    Nothing stays beside, but after KILL one folder until the next write. And no file steers a terminal by a name.
+    """
+    folder, robot, data = tmp_path / "out", tmp_path / "robot.urdf", tmp_path / "measured.csv"
+    robot.write_text(ROBOT)
+    data.write_text(MEASURED)
+    model = tmp_path / "pendulum.toml"
+    model.write_text(Path(PENDULUM).read_text().replace('"Simple pendulum"', json.dumps(STEERING)))
+    given = dict.fromkeys(("model", "models", "where"), str(model)) | {"--time": "0.05", "--fps": "20"}
+    given |= {"file": str(robot), "--data": str(data), "equations": "theta'' = -g/l*sin(theta)", "--target": "numpy"}
+    given |= {"--ask": "theta", "--random": "l=uniform(1, 2)", "--frames": "1"}
+    if option == "--output":
+        given["--without"] = "figure,plots,motion,downloads"
+    for ending in ENDINGS:
+        folder.mkdir()
+        words = words_of(verb, option, folder / f"r{ending}", given)
+        code = forked(words).code
+        new = contents(folder)
+        if code == 0 and new:
+            break
+        assert code == 2, f"nothing is known of how to try '{' '.join(words)}': exit code {code}"
+        shutil.rmtree(folder)
+    assert new, f"{verb} {option} writes under none of {ENDINGS}"
+    assert all(visible(text) == text for text in map(text_of, new.values()))
+    kept = {name for name in new if Path(name).name in READS_AGAIN}
+    report, verbs = tmp_path / "report", list(main.commands)
+    old = (
+        {name: data if name in kept else b"old" for name, data in new.items()} if option else {}
+    )  # `new` makes new ones
+    near = (folder / next(iter(new))).with_name("another")
+    names = (*FAULTS, *FAULTS)[(turn := verbs.index(verb) % len(FAULTS)) : turn + len(FAULTS)]
+    faults = tuple((name,) for name in names) if verb in ONE_BY_ONE and option == "--output" else (names,)
+    disturbed = AtEachEvent(folder, old, report, faults, near)
+    disturbed.lay()
+    assert forked(words, disturbed).code == 0
+    rows = pickle.loads(report.read_bytes())
+    assert {row.fault for row in rows} == FAULTS.keys() and len(rows) >= 8
+    for row in rows:
+        judge(row, old, {name: data for name, data in new.items() if not name.endswith(".sqlite")})
+    for fault, code in {"full": 74, "SIGINT": 130, "SIGTERM": 130, "SIGKILL": -signal.SIGKILL}.items():
+        assert any(row.code == code for row in rows if row.fault == fault)
+
+
+def text_of(data: bytes) -> str:
+    """Of a file; "" where it holds none."""
+    try:
+        return "" if b"\0" in data else data.decode()
+    except UnicodeDecodeError:
+        return ""
+
+
+def judge(row: Disturbed, old: dict[str, bytes], new: dict[str, bytes]) -> None:
+    """Whole files after a fault, and a sentence."""
+    assert old.keys() <= row.found.keys() <= old.keys() | new.keys() and row.left[1] == 0
+    assert all(row.found.get(name) in (old.get(name), data) for name, data in new.items())
+    assert "Traceback" not in row.said and "Exception ignored" not in row.said, row.said
+    if row.fault == "SIGKILL":
+        assert row.left[0] <= 1
+        return
+    told = {74: "cannot be written: No space left on device", 130: "interrupted"}
+    assert row.left[0] == 0 and row.code in (0, *told) and told.get(row.code, "") in row.said
+    goes_on = any(name in READS_AGAIN for name in map(os.path.basename, old))  # its tables are made again each time
+    if row.fault != "full" and not goes_on:
+        assert len({row.found.get(name) == new[name] for name in new if old.get(name) in (None, b"old")}) == 1
 
 
 @pytest.mark.parametrize("kind", [*WRITES, "new"])

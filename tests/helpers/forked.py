@@ -7,6 +7,7 @@ from __future__ import annotations
 
 import importlib
 import os
+import pkgutil
 import signal
 import sys
 import tempfile
@@ -16,13 +17,14 @@ from pathlib import Path
 
 import pytest
 
+import eomgen.verbs
 from eomgen.cli import main
 
 needs_fork = pytest.mark.skipif(not hasattr(os, "fork"), reason="faults are made by fork, signals and limits of POSIX")
 needs_sh = pytest.mark.skipif(os.name != "posix", reason="compilers that are shell scripts, modes of files")
 LONGEST = 60  # seconds of one process
-VERBS = ("check", "derive", "doctor", "new", "reactions", "schema", "simulate", "solve", "codegen")
-USED = [*(f"eomgen.verbs.{verb}" for verb in VERBS), "eomgen.documents.plots", "eomgen.documents.latex"]
+USED = [f"eomgen.verbs.{each.name}" for each in pkgutil.iter_modules(eomgen.verbs.__path__)]
+USED += ["eomgen.documents.plots", "eomgen.documents.latex"]
 USED += ["matplotlib.backends.backend_agg", "scipy.integrate", "eomgen.documents.statics.result"]  # slow to import
 
 

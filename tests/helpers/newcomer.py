@@ -76,6 +76,20 @@ IN_FILES = {
     "gravity as one number": ('[0, "-g"]', '"g"', "["),
     "a semicolon at the end": ("eomgen = 1", "eomgen = 1;", "leave it out"),
     "a remark in C": ("eomgen = 1", "eomgen = 1 // version", "#"),
+    "a semicolon in a list": ("axis = [1, 0]", "axis = [1; 0]", "a comma stands between two of a list"),
+    "a name without quotes": ('space = "plane"', "space = plane", 'space = "plane"'),
+    "quotes of a book": ('space = "plane"', "space = “plane”", "quotes are straight"),
+    "a coordinate as a function of time": ("\"phi''\"", '"phi(t)"', "phi"),
+    "degrees by their sign in a formula": ("phi - pi/2", "phi - 90°", "write pi/2"),
+    "an instant by two signs": ("a = \"phi''\"", 'a = { value = "phi", at = "t == 3" }', "an equation has one ="),
+    "an instant by an inequality": (
+        "a = \"phi''\"",
+        'a = { value = "phi", at = "t > 3" }',
+        "an instant is an equation",
+    ),
+    "a condition as in C": ("\"phi''\"", '"phi ? 1 : 0"', "max, min, abs, sign"),
+    "a function without its brackets": ("\"phi''\"", '"kinetic_energy"', "kinetic_energy(...)"),
+    "a force without a name": ("[forces.weight]", "[forces]", "[forces.NAME]"),
     "a value for a name": ("eomgen = 1", "eomgen: 1", "="),
 }
 """of the model file"""

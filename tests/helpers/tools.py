@@ -13,25 +13,27 @@ from collections.abc import Iterable
 import pytest
 
 from eomgen.codegen import build
-from eomgen.codegen.targets import ALL, cpp, fortran, rust
+from eomgen.codegen.targets import ALL, cpp, fortran, rust, wasm
 
 ASKED = "all" if os.environ.get("CI") else os.environ.get("EOMGEN_REQUIRE", "")
 REQUIRED = None if ASKED in ("1", "all") else frozenset(ASKED.replace(",", " ").split())  # None: all
 NAMES = {"chromium": ("chromium", "chromium-browser", "google-chrome")}
 COMPILERS = {"c": build.C, "cpp": cpp.COMPILER, "rust": rust.COMPILER, "fortran": fortran.COMPILER}
+COMPILERS |= {"wasm": wasm.COMPILER}
 NEEDS = {  # of a language the programs and packages (with a dot before them) that run it and its own test
     "c": (),
     "cpp": (),
     "rust": ("cargo",),
     "fortran": (),
     "javascript": ("node",),
+    "wasm": ("node",),
     "matlab": ("octave-cli",),
     "jax": (".jax",),
     "casadi": (".casadi",),
     "numba": (".numba",),
     "fmu": (".fmpy",),
 }
-SLOW = ("matlab", "jax", "casadi", "numba", "fmu")  # to start, or to compile: they take part in few tests
+SLOW = ("wasm", "matlab", "jax", "casadi", "numba", "fmu")  # to start, or to compile: they take part in few tests
 
 
 def found(name: str) -> str | None:

@@ -524,3 +524,41 @@ along = [1, 0]
     text = text.replace("cos(2*t)", "(1 + sin(2*t))")
     found = found_in(model_of(text, m=1, k=2))
     assert found.statics.held == ("y",) and exact(found.found[0]) == {"y": "3/10", "x": "3/10"}
+
+
+# -- places of rest at which V'' vanishes, known in numbers only --------------------------------------
+
+FLAT = """
+[coordinates]
+x = {near}
+[bodies.b]
+mass = "m"
+joint = {{ kind = "prismatic", axis = [1, 0], displacement = "x" }}
+[forces.well]
+kind = "force"
+point = "b.center"
+force = ["-c*({gap})^{order}*({slope})", 0]
+"""
+GAPS = {
+    "cos(x/l) - x/l": ("-sin(x/l) - 1", 0.739085133215161),
+    "exp(x/l) - 2 - x/l": ("exp(x/l) - 1", 1.14619322062058),
+}
+
+
+@pytest.mark.parametrize("order", [1, 2, 3])
+@pytest.mark.parametrize("gap", GAPS)
+@pytest.mark.parametrize("scale", [1.0, 50.0])
+def test_a_place_where_the_stiffness_vanishes_is_judged_by_the_force_beside_it(gap, order, scale):
+    """V = c f^(n+1)/(n+1): stable for odd n, a point of inflection for even n; to first order only n = 1 holds it"""
+    slope, root = GAPS[gap]
+    text = FLAT.format(near=(root + 0.1) * scale, gap=gap, slope=slope, order=order)
+    model = model_of(text, m=2, c=3, l=scale)
+    small = eomgen.linearize(model)
+    assert small.certify().ok
+    stiffness = small.K[0, 0]
+    assert (stiffness > 0) if order == 1 else (stiffness == 0)
+    statics = eomgen.statics(model)
+    assert statics.certify().ok
+    place = min(found_in(model).found, key=lambda each: abs(number(each, "x") - root * scale))
+    assert number(place, "x") == pytest.approx(root * scale, rel=1e-6)
+    assert place.stability.kind == ("stable" if order % 2 else "unstable")

@@ -189,6 +189,7 @@ acceleration = [0, -9.81]
         drag_1="kind = 'torsion_damper'\nbody = 'two'\ndamping = 'c'",
         pull="kind = 'between'\npoints = ['two.Q', 'one.start']\npull = \"k/r^2 - c*r'\"",
         field="kind = 'potential'\nenergy = 'k*cos(a - b)*t'",
+        water="kind = 'kinetic'\nenergy = \"m*l^2*(a'^2 + cos(b)*a'*b'/2)\"",
         push="kind = 'generalized'\ncoordinate = 'a'\nvalue = \"u - c*a'\"",
     ),
     "pin": tie("kind = 'pin'\npoints = ['plate.P']", free()),

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from pathlib import Path
+
 import numpy as np
 import pytest
 from scipy.integrate import solve_ivp
@@ -10,6 +12,7 @@ import eomgen
 from eomgen.codegen.program import right_hand_side
 from eomgen.codegen.rhs import compiled
 from eomgen.mechanics.equations.articulated import with_accelerations
+from eomgen.mechanics.first_integrals import integrals
 from eomgen.mechanics.first_integrals.integrals import energy_integral, momentum_integrals
 from eomgen.mechanics.first_integrals.laws import laws_of_motion
 from eomgen.mechanics.first_integrals.speeds import rates_of
@@ -219,6 +222,8 @@ ONE_WAY = {  # name -> (model, how far along the motion is followed: no speed ch
     "block on a rough plane": (INCLINE, 0.2),
     "bead on a rough ring": (ROUGH_RING, 0.1),
 }
+
+MODELS = Path(__file__).parents[2] / "models"
 
 
 def phase(text: str) -> PhaseEquations:
@@ -559,3 +564,11 @@ def test_the_work_of_a_constant_couple_belongs_to_the_energy_that_stays():
     names = {**symbols.parameters, "x": symbols.q[0], "x'": symbols.u[0]}
     expected = parse("3/4*m*x'^2 + F*x/l").evaluate(names)
     assert equal_at_random_states([(energy.expression, expected)]).equal
+
+
+def test_what_is_seen_to_change_is_not_multiplied_out(monkeypatch):
+    """Of twenty links none has a momentum that stays, and no rate is written out to see that."""
+    read = []
+    monkeypatch.setattr(integrals, "readable", lambda x, limit: read.append(x) or x)
+    assert integrals.momentum_integrals(eomgen.derive(MODELS / "chain20.toml").graph) == ()
+    assert read == []

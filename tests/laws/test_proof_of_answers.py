@@ -18,6 +18,7 @@ from eomgen.questions.at_instant import StateAtInstant
 pytestmark = pytest.mark.slow
 
 MODELS = Path(__file__).parent.parent.parent / "models"
+FORMULAS = "formulas, read back, hold at other states"
 TEXTS = "exact texts, read back, give the numbers"
 NUMBERS = "numbers are those of the formulas at the state"
 INSTANTS = "a run in time leads to the instants asked for"
@@ -84,7 +85,8 @@ def test_a_text_that_says_something_else_is_seen(name):
     found = solved(PENDULUM)
     exact = found[name].exact if found[name].exact != "0" else "l"
     found[name] = replace(found[name], exact=f"2*({exact})" if exact != "l" else "l")
-    assert failing(found) == {TEXTS: failing(found)[TEXTS]} and name in failing(found)[TEXTS]
+    wrong = failing(found)
+    assert {TEXTS} <= wrong.keys() <= {TEXTS, FORMULAS} and name in wrong[TEXTS]
 
 
 def test_a_wrong_sense_of_the_speed_is_seen():

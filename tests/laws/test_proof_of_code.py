@@ -17,14 +17,14 @@ from eomgen.codegen import build
 from eomgen.codegen.targets import ALL
 
 MODELS = Path(__file__).parent.parent.parent / "models"
-ROLES = ("rhs", "reactions", "outputs", "matrices", "jacobian", "inverse")
+ROLES = ("rhs", "reactions", "outputs", "matrices", "jacobian", "inverse", "regressor")
 needs_cc = pytest.mark.skipif(build.compiler() is None, reason="no C compiler")
 
 
 def generated(target: str, name: str = "cart_pole"):
     actuated = {"four_bar": ("alpha",), "robot_with_trailer": ("left", "right")}.get(name, ())
     model, slopes = eomgen.load(MODELS / f"{name}.toml"), name != "robot_with_trailer"
-    return eomgen.generate(model, (target,), name=name, actuated=actuated, jacobian=slopes)
+    return eomgen.generate(model, (target,), name=name, actuated=actuated, jacobian=slopes, regressor=slopes)
 
 
 def failing(found) -> set[str]:
@@ -34,7 +34,7 @@ def failing(found) -> set[str]:
 @each_target
 @pytest.mark.parametrize("name", ["cart_pole", "four_bar"])
 def test_every_function_that_is_written_is_run(target, name):
-    """Equations, reactions and inverse dynamics in each language, trees and loops."""
+    """Equations, reactions, inverse dynamics and Y in each language, trees and loops."""
     certificate = generated(target, name).certify()
     assert certificate.ok, str(certificate)
     held = [check.name for check in certificate.checks if check.status == "holds"]

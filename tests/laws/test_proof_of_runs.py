@@ -31,7 +31,8 @@ def bent(run, phase: int, change):
     old = run.phases[phase]
     t, x = old.track
     phases = list(run.phases)
-    phases[phase] = replace(old, track=(t, change(t, x.copy())))
+    changed = t, change(t, x.copy())
+    phases[phase] = replace(old, tracked=lambda: changed)
     return replace(run, phases=tuple(phases))
 
 

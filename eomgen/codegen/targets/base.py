@@ -3,12 +3,12 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
 
 from eomgen.codegen.program import Program
+from eomgen.records import dataclass
 
 
 @dataclass(frozen=True)
@@ -96,6 +96,12 @@ MATRICES = Role(
     "out",
     "out = f(t, x, p), of M a = forcing + J^T lam and, where ties close, J a + gamma = 0",
 )
+REGRESSOR = Role(
+    "regressor",
+    "_regressor",
+    "out",
+    "out = f(t, x, a, p), of tau + J^T lam = Y pi + y0 = Y_base base + y0, tau what the inputs push",
+)
 JACOBIAN = Role("jacobian", "_jacobian", "out", "out = f(t, x, p), A = d x'/d x and B = d x'/d inputs")
 
 
@@ -111,6 +117,7 @@ class Description:
         role: what the program is for.
         outputs: names of the outputs, () where they are in the order of x.
         blocks: (name, rows, columns) of matrices that are the outputs, one after the other, each row after row.
+        columns: of each block what its columns stand for; () of none, or of all.
     """
 
     title: str
@@ -120,6 +127,7 @@ class Description:
     role: Role = RHS
     outputs: tuple[str, ...] = ()
     blocks: tuple[tuple[str, int, int], ...] = ()
+    columns: tuple[tuple[str, ...], ...] = ()
 
 
 FileContent = str | bytes
@@ -158,6 +166,17 @@ class Target:
     def writes(self, role: Role) -> bool:
         """Whether a function is among its files."""
         return self.roles is None or role.name in self.roles
+
+
+def files_of_each(
+    one: Callable[[str, Program, Description], Mapping[str, FileContent]],
+) -> Callable[[str, Sequence[Emitted]], dict[str, FileContent]]:
+    """The files of a target whose functions lie each in files of its own, by those of one: (stem, program, told)."""
+
+    def files(stem: str, emitted: Sequence[Emitted]) -> dict[str, FileContent]:
+        return {path: text for program, told in emitted for path, text in one(stem, program, told).items()}
+
+    return files
 
 
 Many = Callable[[np.ndarray, np.ndarray, np.ndarray, "np.ndarray | None"], np.ndarray]
@@ -236,9 +255,11 @@ def header(program: Program, description: Description) -> list[str]:
     for place, name in enumerate(description.outputs):
         lines.append(f"    {result}[{place}]  {name}  {description.remarks.get(name, '')}".rstrip())
     first = 0
-    for name, rows, columns in description.blocks:
+    told = description.columns or ((),) * len(description.blocks)
+    for (name, rows, columns), meant in zip(description.blocks, told, strict=True):
         last = first + rows * columns - 1
         lines.append(f"    {result}[{first}..{last}]  {name}, {rows} x {columns}, row after row")
+        lines += [f"        column {k} of {name}  {column}" for k, column in enumerate(meant, 1)]
         first = last + 1
     if not description.outputs and not description.blocks:
         lines.append(f"    {result}  {len(program.outputs)} values, in the order of x")

@@ -7,13 +7,24 @@ The reactions alike: `NAME_reactions(..., double *out)`; inverse dynamics has th
 from __future__ import annotations
 
 import ctypes
+import re
 from collections.abc import Mapping, Sequence
 
 from eomgen.codegen.build import function_of, library
 from eomgen.codegen.lowered import CHANGED, INDICES, INT, PLACES, READ, REAL, ROOM, Language, one_line
 from eomgen.codegen.lowering import Lowered, lowered
 from eomgen.codegen.program import Program
-from eomgen.codegen.targets.base import RHS, Called, Description, Emitted, FileContent, Functions, Role, Target, header
+from eomgen.codegen.targets.base import (
+    RHS,
+    Called,
+    Description,
+    FileContent,
+    Functions,
+    Role,
+    Target,
+    files_of_each,
+    header,
+)
 from eomgen.codegen.targets.c_loading import functions_of
 from eomgen.codegen.targets.c_self_test import self_test
 
@@ -50,7 +61,7 @@ C = Language(
         READ: "const double *{name}",
         CHANGED: "double *{name}",
         INDICES: "const int *{name}",
-        PLACES: "int *{name}",
+        PLACES: "long *{name}",
     },
     at="{array}[{index}]",
     let="const {declared} = {value};",
@@ -60,7 +71,7 @@ C = Language(
     arrays={
         CHANGED: "double {name}[{size}] = {{0}};",
         ROOM: "double {name}[{size}];",
-        PLACES: "int {name}[{size}] = {{0}};",
+        PLACES: "long {name}[{size}] = {{0}};",
     },
     tables={
         INT: "enum {{ {name} = {value} }};",
@@ -159,6 +170,13 @@ def c_text(program: Program, stem: str, role: Role = RHS, remarks: Mapping[str, 
     return _text(_lowered(program, stem, role, remarks), stem, role)
 
 
+def constants_of(text: str) -> int:
+    """How many constants a function has, as its caller in the text says; 1 of none."""
+    found = re.search(r"double c\[(\d+)\];", text)
+    assert found is not None
+    return int(found[1])
+
+
 def _lowered(program: Program, stem: str, role: Role, remarks: Mapping[str, str] | None = None) -> Lowered:
     return lowered(program, C, role.result, f"{role.others(stem)}_", remarks)
 
@@ -203,12 +221,8 @@ def _apart(made: Lowered, stem: str, role: Role) -> str:
     return "\n".join((*before, _text(made, stem, role), *after))
 
 
-def c_files(stem: str, emitted: Sequence[Emitted]) -> dict[str, FileContent]:
-    """NAME_rhs.c and NAME_rhs.h; the former with a self-test: `cc -DEOMGEN_SELFTEST NAME_rhs.c -lm && ./a.out`."""
-    return {name: text for each in emitted for name, text in _files(stem, *each).items()}
-
-
 def _files(stem: str, program: Program, description: Description) -> dict[str, str]:
+    """NAME_rhs.c and NAME_rhs.h; the former with a self-test: `cc -DEOMGEN_SELFTEST NAME_rhs.c -lm && ./a.out`."""
     role, made = description.role, _lowered(program, stem, description.role, description.remarks)
     name = role.main(stem)
     guard = f"{name.upper()}_H"
@@ -244,4 +258,4 @@ def run(texts: Mapping[str, FileContent], program: Program, stem: str, role: Rol
 
 
 USE = ("cc -O2 -c {stem}_rhs.c", "cc -O2 -DEOMGEN_SELFTEST {stem}_rhs.c -lm -o selftest && ./selftest")
-TARGET = Target("c", "C99, no dependencies", c_text, c_files, USE, c_functions, run)
+TARGET = Target("c", "C99, no dependencies", c_text, files_of_each(_files), USE, c_functions, run)

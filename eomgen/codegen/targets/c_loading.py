@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import ctypes
 import threading
-from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
@@ -12,6 +11,7 @@ import numpy as np
 from eomgen.codegen.build import function_of
 from eomgen.codegen.program import Program
 from eomgen.codegen.targets.base import Address, Functions
+from eomgen.records import dataclass
 
 _ADDRESS = ctypes.c_void_p
 

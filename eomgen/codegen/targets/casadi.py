@@ -2,16 +2,16 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Mapping
 from dataclasses import replace
 
 from eomgen.codegen.lowering import lowered
 from eomgen.codegen.program import Program
 from eomgen.codegen.targets import branch_free
-from eomgen.codegen.targets.base import RHS, Called, Emitted, FileContent, Functions, Role, Target
+from eomgen.codegen.targets.base import RHS, Role
 from eomgen.codegen.targets.library_call import sizes
 from eomgen.codegen.targets.numpy import PYTHON
-from eomgen.codegen.targets.python_files import called_each, executed, functions_each, module_files
+from eomgen.codegen.targets.python_files import python_target
 
 UNARY = "sin cos asin acos atan sinh cosh tanh exp log sqrt".split()
 _ARRAYS = """
@@ -35,6 +35,7 @@ _one = ca.SX.eye
 """
 CASADI = replace(
     PYTHON,
+    reserved=PYTHON.reserved | {"ca"},
     functions={
         **{op: f"ca.{op}({{0}})" for op in UNARY},
         "abs": "ca.fabs({0})",
@@ -113,31 +114,5 @@ def casadi_text(program: Program, stem: str, role: Role = RHS, remarks: Mapping[
     )
 
 
-def casadi_files(stem: str, emitted: Sequence[Emitted]) -> dict[str, FileContent]:
-    """NAME_casadi.py of the right-hand side, NAME_reactions_casadi.py, and the tests."""
-    return {
-        name: text
-        for program, told in emitted
-        for name, text in module_files(
-            casadi_text(program, stem, told.role, told.remarks), module(stem, told.role), stem, program, told
-        ).items()
-    }
-
-
-def module(stem: str, role: Role) -> str:
-    """The name of the module of a function."""
-    return f"{role.others(stem)}_casadi"
-
-
-def functions(program: Program) -> Functions:
-    """The program as a function of CasADi."""
-    return functions_each(executed(casadi_text(program, "eomgen"), "eomgen_casadi", "casadi")["eomgen_rhs"], program)
-
-
-def run(texts: Mapping[str, FileContent], program: Program, stem: str, role: Role) -> Called:
-    """The function of the file."""
-    return called_each(texts, module(stem, role), program, stem, role, "casadi")
-
-
 USE = ("from {stem}_casadi import rhs, slopes", "python -m pytest")
-TARGET = Target("casadi", "SX functions of CasADi with their jacobians", casadi_text, casadi_files, USE, functions, run)
+TARGET = python_target("casadi", "SX functions of CasADi with their jacobians", casadi_text, USE)

@@ -15,20 +15,14 @@ from eomgen.codegen.lowering import lowered
 from eomgen.codegen.program import Program
 from eomgen.codegen.targets.base import (
     RHS,
-    Called,
     Description,
-    Emitted,
-    FileContent,
-    Functions,
     Role,
-    Target,
-    called_by,
-    functions_by,
+    files_of_each,
     header,
 )
 from eomgen.codegen.targets.c import C, comment
 from eomgen.codegen.targets.c_self_test import self_test
-from eomgen.codegen.targets.library_call import many_of, sizes
+from eomgen.codegen.targets.library_call import compiled_target, sizes
 from eomgen.symbolic.expression.graph import Number
 
 
@@ -67,7 +61,7 @@ CPP = Language(
         READ: "const Real *{name}",
         CHANGED: "Real *{name}",
         INDICES: "const int *{name}",
-        PLACES: "int *{name}",
+        PLACES: "long *{name}",
     },
     at=C.at,
     let=C.let,
@@ -77,7 +71,7 @@ CPP = Language(
     arrays={
         CHANGED: "Real {name}[{size}] = {{}};",
         ROOM: "Real {name}[{size}];",
-        PLACES: "int {name}[{size}] = {{}};",
+        PLACES: "long {name}[{size}] = {{}};",
     },
     tables={
         INT: "static constexpr long {name} = {value};",
@@ -170,12 +164,8 @@ def _quoted(name: str) -> str:
     return json.dumps(name, ensure_ascii=False).replace("??", "?\\?")
 
 
-def cpp_files(stem: str, emitted: Sequence[Emitted]) -> dict[str, FileContent]:
-    """NAME_rhs.hpp and NAME_rhs_test.cpp."""
-    return {name: text for each in emitted for name, text in _files(stem, *each).items()}
-
-
 def _files(stem: str, program: Program, told: Description) -> dict[str, str]:
+    """NAME_rhs.hpp and NAME_rhs_test.cpp."""
     main = told.role.main(stem)
     head, guard = "\n".join(f"// {comment(line)}".rstrip() for line in header(program, told)), f"{main.upper()}_HPP"
     text = cpp_text(program, stem, told.role, told.remarks)
@@ -193,16 +183,14 @@ def _many_text(text: str, program: Program, stem: str, role: Role) -> str:
     return text + _ENTRY.format(**sizes(program, role, stem), size=constants, a=a)
 
 
-def functions(program: Program) -> Functions:
-    """The program compiled and callable."""
-    return functions_by(many_of(_many_text(cpp_text(program, "eomgen"), program, "eomgen", RHS), program, COMPILER))
-
-
-def run(texts: Mapping[str, FileContent], program: Program, stem: str, role: Role) -> Called:
-    """The function of the header, compiled."""
-    text = _many_text(str(texts[f"{role.main(stem)}.hpp"]), program, stem, role)
-    return called_by(many_of(text, program, COMPILER, quickly=True))
-
-
 USE = ('#include "{stem}_rhs.hpp"', "g++ -std=c++17 -Wall -Wextra -pedantic {stem}_rhs_test.cpp -o test && ./test")
-TARGET = Target("cpp", "C++17 header, templates over the scalar", cpp_text, cpp_files, USE, functions, run)
+TARGET = compiled_target(
+    "cpp",
+    "C++17 header, templates over the scalar",
+    cpp_text,
+    files_of_each(_files),
+    USE,
+    source="{main}.hpp",
+    called=_many_text,
+    by=COMPILER,
+)

@@ -18,7 +18,6 @@ from collections.abc import Mapping, Sequence
 from importlib import resources
 from pathlib import Path
 from typing import Any
-from xml.sax.saxutils import quoteattr
 
 from eomgen.codegen.build import C as COMPILER
 from eomgen.codegen.build import Compiler, library
@@ -34,7 +33,7 @@ from eomgen.codegen.targets.base import (
     Target,
     header,
 )
-from eomgen.codegen.targets.c import apart, c_functions, c_text
+from eomgen.codegen.targets.c import apart, c_functions, c_text, constants_of
 from eomgen.errors import RunFailed, ToolMissing
 from eomgen.symbolic.numeric.tolerances import BEST, RUN
 
@@ -111,7 +110,7 @@ def source(stem: str, emitted: Sequence[Emitted]) -> str:
         "PARAMETERS": len(symbols.parameters),
         "INPUTS": len(symbols.inputs),
         "OUTPUTS": sum(len(each.outputs) for each, _ in further),
-        "CONSTANTS": _constants(parts[0]),
+        "CONSTANTS": constants_of(parts[0]),
         "FIRST_X": _braces(start[0]),
         "FIRST_P": _braces(start[1]),
         "TOLERANCE": repr(RUN),
@@ -126,12 +125,6 @@ def source(stem: str, emitted: Sequence[Emitted]) -> str:
         resources.files("eomgen.codegen").joinpath(name).read_text("utf-8") for name in ("dop853.c", "targets/fmi3.c")
     ]
     return "\n".join([*parts, texts[0].replace("static void dop853_dense", "void dop853_dense"), defined, texts[1]])
-
-
-def _constants(text: str) -> int:
-    """How many constants the right-hand side has, as its caller says."""
-    found = re.search(r"double c\[(\d+)\];", text)
-    return int(found[1]) if found else 1
 
 
 def _places(kept: Sequence[Emitted]) -> list[int]:
@@ -164,6 +157,8 @@ def token(stem: str, emitted: Sequence[Emitted]) -> str:
 
 def description(stem: str, emitted: Sequence[Emitted]) -> str:
     """modelDescription.xml."""
+    from xml.sax.saxutils import quoteattr  # with it come urllib, http and email, for every verb
+
     kept = [(program, told) for program, told in emitted if told.role.name in ROLES]
     program, told = kept[0]
     symbols, (x, p) = program.symbols, _start(told, program)

@@ -15,19 +15,13 @@ from eomgen.codegen.lowering import lowered
 from eomgen.codegen.program import Program
 from eomgen.codegen.targets.base import (
     RHS,
-    Called,
     Description,
-    Emitted,
-    FileContent,
-    Functions,
     Role,
-    Target,
-    called_by,
-    functions_by,
+    files_of_each,
     header,
     vector_lines,
 )
-from eomgen.codegen.targets.library_call import many_of, sizes
+from eomgen.codegen.targets.library_call import compiled_target, sizes
 from eomgen.symbolic.expression.graph import Number
 
 WIDTH = 120  # of a line; the standard has 132
@@ -286,12 +280,8 @@ def _short(lines: Iterable[str]) -> Iterable[str]:
         yield line
 
 
-def fortran_files(stem: str, emitted: Sequence[Emitted]) -> dict[str, FileContent]:
-    """NAME_rhs.f90 and NAME_rhs_test.f90."""
-    return {name: text for each in emitted for name, text in _files(stem, *each).items()}
-
-
 def _files(stem: str, program: Program, told: Description) -> dict[str, str]:
+    """NAME_rhs.f90 and NAME_rhs_test.f90."""
     main, given = told.role.main(stem), bool(program.accelerations)
     head = "\n".join(f"! {FORTRAN.harmless(line)}".rstrip() for line in header(program, told))
     a = "{a}, " if given else ""
@@ -324,17 +314,14 @@ def _many_text(text: str, program: Program, stem: str, role: Role) -> str:
     return text + _ENTRY.format(**sizes(program, role, stem), size=size[1], x=x)
 
 
-def functions(program: Program) -> Functions:
-    """The program compiled and callable."""
-    text = _many_text(fortran_text(program, "eomgen"), program, "eomgen", RHS)
-    return functions_by(many_of(text, program, COMPILER))
-
-
-def run(texts: Mapping[str, FileContent], program: Program, stem: str, role: Role) -> Called:
-    """The subroutine of the module, compiled."""
-    text = _many_text(str(texts[f"{role.main(stem)}.f90"]), program, stem, role)
-    return called_by(many_of(text, program, COMPILER, quickly=True))
-
-
 USE = ("use {stem}_rhs, only: rhs", "gfortran -std=f2008 -Wall {stem}_rhs.f90 {stem}_rhs_test.f90 -o test && ./test")
-TARGET = Target("fortran", "a Fortran 2008 module", fortran_text, fortran_files, USE, functions, run)
+TARGET = compiled_target(
+    "fortran",
+    "a Fortran 2008 module",
+    fortran_text,
+    files_of_each(_files),
+    USE,
+    source="{main}.f90",
+    called=_many_text,
+    by=COMPILER,
+)

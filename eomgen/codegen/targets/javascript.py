@@ -5,27 +5,13 @@ With it comes a test over the test vectors, run by `node --test`.
 
 from __future__ import annotations
 
-import json
-from collections.abc import Mapping, Sequence
 from dataclasses import replace
 
 from eomgen.codegen.lowered import CHANGED, INDICES, INT, PLACES, READ, REAL, ROOM, Language
 from eomgen.codegen.lowering import lowered
 from eomgen.codegen.program import Program
-from eomgen.codegen.targets.base import (
-    RHS,
-    Called,
-    Description,
-    Emitted,
-    FileContent,
-    Functions,
-    Role,
-    Target,
-    called_by,
-    functions_by,
-    header,
-)
-from eomgen.codegen.targets.node import many_of_module
+from eomgen.codegen.targets.base import RHS, Description, FileContent, Role
+from eomgen.codegen.targets.node import node_target
 
 _OUT = "function {name}({arguments}, {out} = new Float64Array({size})) {{"
 JAVASCRIPT = Language(
@@ -51,9 +37,13 @@ JAVASCRIPT = Language(
     put="{place} = {value};",
     call="{function}({arguments});",
     back="return {value};",
-    arrays=dict.fromkeys(
-        (CHANGED, ROOM, PLACES), "const {name} = new Array({size}).fill(0);"
-    ),  # cheaper than typed ones
+    arrays={
+        **dict.fromkeys(
+            (CHANGED, PLACES), "const {name} = {name}_of_{of};\nfor (let i = 0; i < {size}; i++) {name}[i] = 0;"
+        ),
+        ROOM: "const {name} = {name}_of_{of};",
+    },
+    kept="const {name}_of_{of} = new Float64Array({size});",  # cheaper than one a call
     tables={INT: "const {name} = {value};", INDICES: "const {name} = {values};", READ: "const {name} = {values};"},
     listed=("[", "]"),
     loop=("for (let {name} = {first}; {name} < {last}; {name}++) {{", "}"),
@@ -70,28 +60,6 @@ _CALLER = """\
 export function {role}(t, x, {a}p, inputs = null) {{
     return evaluate(t, x, {a}p, constants(p), inputs);
 }}
-"""
-
-_TEST = """\
-// Held against the answers in test_vectors.json: node --test
-import assert from "node:assert/strict";
-import {{ readFileSync }} from "node:fs";
-import {{ test }} from "node:test";
-import {{ {role} }} from "./{main}.mjs";
-
-const told = JSON.parse(readFileSync(new URL("test_vectors.json", import.meta.url), "utf8"));
-
-test("{main} gives the values of its test vectors", () => {{
-    for (const [place, v] of told{where}.vectors.entries()) {{
-        const found = {role}(v.t, v.x, {a}v.p, v.inputs);
-        assert.equal(found.length, v.{result}.length);
-        const largest = Math.max(1, ...v.{result}.map(Math.abs));
-        v.{result}.forEach((right, k) => assert.ok(
-            right === null ? Number.isNaN(found[k]) : Math.abs(found[k] - right) <= v.tolerance*largest,
-            `vector ${{place}}: {result}[${{k}}] is ${{found[k]}}, not ${{right}}`,
-        ));
-    }}
-}});
 """
 
 
@@ -115,47 +83,14 @@ def _functions(program: Program, language: Language, role: Role) -> str:
     return "\n\n".join(lowered(program, language, role.result).texts(language))
 
 
-def javascript_files(stem: str, emitted: Sequence[Emitted]) -> dict[str, FileContent]:
-    """NAME_rhs.mjs and NAME_rhs.test.mjs, which `node --test` finds."""
-    return {name: text for each in emitted for name, text in _files(stem, *each).items()}
+def _written(stem: str, program: Program, told: Description) -> dict[str, FileContent]:
+    return {f"{told.role.main(stem)}.mjs": javascript_text(program, stem, told.role)}
 
 
-def _files(stem: str, program: Program, description: Description) -> dict[str, str]:
-    role, main = description.role, description.role.main(stem)
-    head = "\n".join(f"// {JAVASCRIPT.harmless(line)}".rstrip() for line in header(program, description))
-    listed = {
-        "x": [x.name for x in program.states],
-        "p": list(program.symbols.parameters),
-        "inputs": list(program.symbols.inputs),
-    }
-    named = "\n".join(f"    {key}: {json.dumps(names)}," for key, names in listed.items())
-    text = f"{head}\n\nexport const names = {{\n{named}\n}};\n\n{javascript_text(program, stem, role)}"
-    tested = _TEST.format(
-        main=main,
-        role=role.name,
-        result=role.result,
-        where="" if role is RHS else f".{role.name}",
-        a="v.a, " if program.accelerations else "",
-    )
-    return {f"{main}.mjs": text, f"{main}.test.mjs": tested}
-
-
-def javascript_functions(program: Program) -> Functions:
-    """The program run by node."""
-    return functions_by(many_of_module(javascript_text(program), program))
-
-
-def run(texts: Mapping[str, FileContent], program: Program, stem: str, role: Role) -> Called:
-    """The function of the file, run by node."""
-    return called_by(many_of_module(str(texts[f"{role.main(stem)}.mjs"]), program))
-
-
-TARGET = Target(
+TARGET = node_target(
     "javascript",
     "an ECMAScript module, for browsers and node",
     javascript_text,
-    javascript_files,
+    _written,
     ('import {{ rhs }} from "./{stem}_rhs.mjs";', "node --test"),
-    javascript_functions,
-    run,
 )

@@ -2,15 +2,15 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Mapping
 from dataclasses import replace
 
 from eomgen.codegen.lowering import lowered
 from eomgen.codegen.program import Program
 from eomgen.codegen.targets import branch_free
-from eomgen.codegen.targets.base import RHS, Called, Emitted, FileContent, Functions, Role, Target
+from eomgen.codegen.targets.base import RHS, Role
 from eomgen.codegen.targets.numpy import PYTHON
-from eomgen.codegen.targets.python_files import called_each, executed, functions_each, module_files
+from eomgen.codegen.targets.python_files import python_target
 
 UNARY = {
     **{op: f"jnp.{op}" for op in "sin cos sinh cosh tanh exp log abs sign".split()},
@@ -38,6 +38,7 @@ _one = jnp.eye
 """
 JAX = replace(
     PYTHON,
+    reserved=PYTHON.reserved | {"jnp"},
     functions={
         **{op: f"{name}({{0}})" for op, name in UNARY.items()},
         **{op: f"{name}({{0}}, {{1}})" for op, name in BINARY.items()},
@@ -107,31 +108,5 @@ def jax_text(program: Program, stem: str, role: Role = RHS, remarks: Mapping[str
     )
 
 
-def jax_files(stem: str, emitted: Sequence[Emitted]) -> dict[str, FileContent]:
-    """NAME_jax.py of the right-hand side, NAME_reactions_jax.py, and the tests."""
-    return {
-        name: text
-        for program, told in emitted
-        for name, text in module_files(
-            jax_text(program, stem, told.role, told.remarks), module(stem, told.role), stem, program, told
-        ).items()
-    }
-
-
-def module(stem: str, role: Role) -> str:
-    """The name of the module of a function."""
-    return f"{role.others(stem)}_jax"
-
-
-def functions(program: Program) -> Functions:
-    """The program compiled by JAX."""
-    return functions_each(executed(jax_text(program, "eomgen"), "eomgen_jax", "jax")["eomgen_rhs"], program)
-
-
-def run(texts: Mapping[str, FileContent], program: Program, stem: str, role: Role) -> Called:
-    """The function of the file."""
-    return called_each(texts, module(stem, role), program, stem, role, "jax")
-
-
 USE = ("from {stem}_jax import {stem}_rhs", "python -m pytest")
-TARGET = Target("jax", "Python with JAX, in doubles: jit, vmap, grad", jax_text, jax_files, USE, functions, run)
+TARGET = python_target("jax", "Python with JAX, in doubles: jit, vmap, grad", jax_text, USE)

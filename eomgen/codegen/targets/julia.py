@@ -15,11 +15,10 @@ from eomgen.codegen.program import Program
 from eomgen.codegen.targets.base import (
     RHS,
     Description,
-    Emitted,
-    FileContent,
     Functions,
     Role,
     Target,
+    files_of_each,
     header,
     vector_lines,
 )
@@ -135,12 +134,8 @@ def _quoted(name: str) -> str:
     return json.dumps(name, ensure_ascii=False).replace("$", "\\$")
 
 
-def julia_files(stem: str, emitted: Sequence[Emitted]) -> dict[str, FileContent]:
-    """NAME_rhs.jl and NAME_rhs_test.jl."""
-    return {name: text for each in emitted for name, text in _files(stem, *each).items()}
-
-
 def _files(stem: str, program: Program, told: Description) -> dict[str, str]:
+    """NAME_rhs.jl and NAME_rhs_test.jl."""
     main, a = told.role.main(stem), "{a}, " if program.accelerations else ""
     head = "\n".join(f"# {JULIA.harmless(line)}".rstrip() for line in header(program, told))
     call = f"    check({{t}}, {{x}}, {a}{{p}}, {{inputs}}, {{result}}, {{tolerance}})"
@@ -174,4 +169,4 @@ def functions(program: Program) -> Functions:
 
 
 USE = (NOT_RUN, 'include("{stem}_rhs.jl"); using .{stem}_rhs', "julia {stem}_rhs_test.jl")
-TARGET = Target("julia", "a Julia module (not run here)", julia_text, julia_files, USE, functions)
+TARGET = Target("julia", "a Julia module (not run here)", julia_text, files_of_each(_files), USE, functions)

@@ -8,12 +8,24 @@ x has a after it in each row, where a is an argument; inputs NULL: the model's o
 from __future__ import annotations
 
 import ctypes
+from collections.abc import Callable, Mapping, Sequence
 
 import numpy as np
 
 from eomgen.codegen.build import Compiler, function_of, library
 from eomgen.codegen.program import Program
-from eomgen.codegen.targets.base import Many, Role
+from eomgen.codegen.targets.base import (
+    RHS,
+    Called,
+    Emitted,
+    FileContent,
+    Functions,
+    Many,
+    Role,
+    Target,
+    called_by,
+    functions_by,
+)
 
 ENTRY = "eomgen_many"
 
@@ -39,6 +51,37 @@ def many_of(text: str, program: Program, by: Compiler, *, quickly: bool = False)
         return out
 
     return many
+
+
+def compiled_target(
+    name: str,
+    language: str,
+    text: Callable[[Program, str, Role], str],
+    files: Callable[[str, Sequence[Emitted]], dict[str, FileContent]],
+    use: tuple[str, ...],
+    *,
+    source: str,
+    called: Callable[[str, Program, str, Role], str],
+    by: Compiler,
+) -> Target:
+    """A language whose texts become libraries.
+
+    Args:
+        text, files, use: as of Target.
+        source: the path of a function's text among its files, with {main}, {stem} and {role}.
+        called: (text, program, stem, role) -> it with the function above.
+        by: what compiles it.
+    """
+
+    def load(program: Program) -> Functions:
+        whole = called(text(program, "eomgen", RHS), program, "eomgen", RHS)
+        return functions_by(many_of(whole, program, by))
+
+    def run(texts: Mapping[str, FileContent], program: Program, stem: str, role: Role) -> Called:
+        path = source.format(main=role.main(stem), stem=stem, role=role.name)
+        return called_by(many_of(called(str(texts[path]), program, stem, role), program, by, quickly=True))
+
+    return Target(name, language, text, files, use, load, run)
 
 
 def sizes(program: Program, role: Role, stem: str) -> dict[str, object]:

@@ -18,13 +18,13 @@ from eomgen.codegen.targets.base import (
     RHS,
     Called,
     Description,
-    Emitted,
     FileContent,
     Functions,
     Many,
     Role,
     Target,
     called_by,
+    files_of_each,
     functions_by,
     header,
     vector_lines,
@@ -172,12 +172,8 @@ def _text(program: Program, stem: str, role: Role, remarks: Mapping[str, str], h
     )  # fmt: skip
 
 
-def matlab_files(stem: str, emitted: Sequence[Emitted]) -> dict[str, FileContent]:
-    """NAME_rhs.m and NAME_rhs_test.m."""
-    return {name: text for each in emitted for name, text in _files(stem, *each).items()}
-
-
 def _files(stem: str, program: Program, told: Description) -> dict[str, str]:
+    """NAME_rhs.m and NAME_rhs_test.m."""
     main, given = told.role.main(stem), bool(program.accelerations)
     head = [f"% {MATLAB.harmless(line)}".rstrip() for line in header(program, told)]
     files = {f"{main}.m": _text(program, stem, told.role, told.remarks, [f"%{main.upper()}", *head])}
@@ -227,4 +223,6 @@ def run(texts: Mapping[str, FileContent], program: Program, stem: str, role: Rol
 
 
 USE = ("[t, x] = ode45(@(t, x) {stem}_rhs(t, x, p), [0 10], x0);", "octave --eval {stem}_rhs_test")
-TARGET = Target("matlab", "function files of MATLAB and Octave", matlab_text, matlab_files, USE, functions, run)
+TARGET = Target(
+    "matlab", "function files of MATLAB and Octave", matlab_text, files_of_each(_files), USE, functions, run
+)

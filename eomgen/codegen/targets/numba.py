@@ -2,15 +2,15 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Mapping
 from dataclasses import replace
 
 from eomgen.codegen.lowered import CHANGED, INDICES, PLACES, READ, ROOM
 from eomgen.codegen.lowering import lowered
 from eomgen.codegen.program import Program
-from eomgen.codegen.targets.base import RHS, Called, Emitted, FileContent, Functions, Role, Target
+from eomgen.codegen.targets.base import RHS, Role
 from eomgen.codegen.targets.numpy import PYTHON
-from eomgen.codegen.targets.python_files import called_each, executed, functions_each, module_files
+from eomgen.codegen.targets.python_files import python_target
 
 _DEFINED = {
     "abs": ("value", "math.fabs(value)"),
@@ -75,32 +75,5 @@ def numba_text(program: Program, stem: str, role: Role = RHS, remarks: Mapping[s
     )
 
 
-def numba_files(stem: str, emitted: Sequence[Emitted]) -> dict[str, FileContent]:
-    """NAME_numba.py of the right-hand side, NAME_reactions_numba.py, and the tests."""
-    return {
-        name: text
-        for program, told in emitted
-        for name, text in module_files(
-            numba_text(program, stem, told.role, told.remarks), module(stem, told.role), stem, program, told
-        ).items()
-    }
-
-
-def module(stem: str, role: Role) -> str:
-    """The name of the module of a function."""
-    return f"{role.others(stem)}_numba"
-
-
-def functions(program: Program) -> Functions:
-    """The program compiled by numba."""
-    space = executed(numba_text(program, "eomgen"), "eomgen_numba", "numba")
-    return functions_each(space["eomgen_rhs"], program)
-
-
-def run(texts: Mapping[str, FileContent], program: Program, stem: str, role: Role) -> Called:
-    """The function of the file."""
-    return called_each(texts, module(stem, role), program, stem, role, "numba")
-
-
 USE = ("from {stem}_numba import {stem}_rhs", "python -m pytest")
-TARGET = Target("numba", "Python compiled by numba", numba_text, numba_files, USE, functions, run)
+TARGET = python_target("numba", "Python compiled by numba", numba_text, USE)

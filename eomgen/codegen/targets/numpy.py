@@ -10,7 +10,7 @@ from typing import Any
 from eomgen.codegen.lowered import CHANGED, INDICES, INT, PLACES, READ, REAL, ROOM, Language
 from eomgen.codegen.lowering import Lowered, lowered
 from eomgen.codegen.program import Program
-from eomgen.codegen.targets.base import RHS, Called, Description, Emitted, FileContent, Functions, Role, Target
+from eomgen.codegen.targets.base import RHS, Called, Description, FileContent, Functions, Role, Target, files_of_each
 from eomgen.codegen.targets.python_files import module_files
 
 PYTHON = Language(
@@ -189,12 +189,8 @@ def numpy_functions(program: Program) -> Functions:
     return Functions(constants_of, one, many)
 
 
-def numpy_files(stem: str, emitted: Sequence[Emitted]) -> dict[str, FileContent]:
-    """NAME_rhs.py, a module of its own: it needs numpy and nothing of ours; and its test."""
-    return {name: text for each in emitted for name, text in _files(stem, *each).items()}
-
-
 def _files(stem: str, program: Program, told: Description) -> dict[str, str]:
+    """NAME_rhs.py, a module of its own: it needs numpy and nothing of ours; and its test."""
     return module_files(python_text(program, stem, told.role), told.role.main(stem), stem, program, told)
 
 
@@ -214,4 +210,4 @@ def run(texts: Mapping[str, FileContent], program: Program, stem: str, role: Rol
 
 
 USE = ("from {stem}_rhs import {stem}_rhs", "python -m pytest")
-TARGET = Target("numpy", "Python with numpy", python_text, numpy_files, USE, numpy_functions, run)
+TARGET = Target("numpy", "Python with numpy", python_text, files_of_each(_files), USE, numpy_functions, run)

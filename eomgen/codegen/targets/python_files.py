@@ -2,13 +2,24 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
 from typing import Any
 
 import numpy as np
 
 from eomgen.codegen.program import Program
-from eomgen.codegen.targets.base import RHS, Called, Description, FileContent, Functions, Role, functions_by, header
+from eomgen.codegen.targets.base import (
+    RHS,
+    Called,
+    Description,
+    Emitted,
+    FileContent,
+    Functions,
+    Role,
+    Target,
+    functions_by,
+    header,
+)
 from eomgen.errors import ToolMissing
 
 _TEST = '''\
@@ -32,6 +43,37 @@ def test_{main}_gives_the_values_of_its_test_vectors():
         largest = max([1.0, *abs(right[known])])
         assert (abs(found[known] - right[known]) <= v["tolerance"]*largest).all(), (found, right)
 '''
+
+
+def python_target(name: str, language: str, text: Callable[..., str], use: tuple[str, ...]) -> Target:
+    """A language that is a Python package: STEM_NAME.py of the right-hand side, STEM_ROLE_NAME.py, and their tests.
+
+    Args:
+        name: of the package, too.
+        language: in words.
+        text: the module of a program.
+        use: how it is imported, and what runs its tests.
+    """
+
+    def module(stem: str, role: Role) -> str:
+        return f"{role.others(stem)}_{name}"
+
+    def files(stem: str, emitted: Sequence[Emitted]) -> dict[str, FileContent]:
+        return {
+            path: content
+            for program, told in emitted
+            for path, content in module_files(
+                text(program, stem, told.role, told.remarks), module(stem, told.role), stem, program, told
+            ).items()
+        }
+
+    def functions(program: Program) -> Functions:
+        return functions_each(executed(text(program, "eomgen"), f"eomgen_{name}", name)["eomgen_rhs"], program)
+
+    def run(texts: Mapping[str, FileContent], program: Program, stem: str, role: Role) -> Called:
+        return called_each(texts, module(stem, role), program, stem, role, name)
+
+    return Target(name, language, text, files, use, functions, run)
 
 
 def module_files(text: str, module: str, stem: str, program: Program, told: Description) -> dict[str, str]:

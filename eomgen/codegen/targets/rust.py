@@ -14,19 +14,14 @@ from eomgen.codegen.lowering import lowered
 from eomgen.codegen.program import Program
 from eomgen.codegen.targets.base import (
     RHS,
-    Called,
     Description,
     Emitted,
     FileContent,
-    Functions,
     Role,
-    Target,
-    called_by,
-    functions_by,
     header,
     vector_lines,
 )
-from eomgen.codegen.targets.library_call import many_of, sizes
+from eomgen.codegen.targets.library_call import compiled_target, sizes
 
 UNARY = "sin cos asin acos atan sinh cosh tanh exp log sqrt".split()
 RUST = Language(
@@ -199,6 +194,7 @@ description = {about}
 
 _CHECK = """\
 //! Held against the test vectors: cargo test
+#![allow(clippy::approx_constant, clippy::excessive_precision)]
 
 fn agree(found: &[f64], right: &[f64], tolerance: f64) {
     let largest = right.iter().fold(1.0_f64, |most, value| most.max(value.abs()));
@@ -278,7 +274,7 @@ def _case(stem: str, program: Program, told: Description) -> str:
     return _CASE.format(**sizes(program, told.role, stem), lines="\n".join(lines))
 
 
-def _many_text(text: str, program: Program, role: Role) -> str:
+def _many_text(text: str, program: Program, _: str, role: Role) -> str:
     """One text of the modules with a function that Python calls."""
     size = text.partition("let c = &mut [0.0; ")[2].partition("]")[0]
     given, n = program.accelerations, len(program.states)
@@ -286,16 +282,14 @@ def _many_text(text: str, program: Program, role: Role) -> str:
     return f"mod math {{\n{_MATH}\n}}\nmod {role.name} {{\n{text}\n}}\n{entry}"
 
 
-def functions(program: Program) -> Functions:
-    """The program compiled and callable."""
-    return functions_by(many_of(_many_text(rust_text(program), program, RHS), program, COMPILER))
-
-
-def run(texts: Mapping[str, FileContent], program: Program, stem: str, role: Role) -> Called:
-    """The function of the crate, compiled."""
-    text = _many_text(str(texts[f"{stem}_rhs/src/{role.name}.rs"]), program, role)
-    return called_by(many_of(text, program, COMPILER, quickly=True))
-
-
 USE = ("use {stem}_rhs::rhs::rhs;", "cd {stem}_rhs && cargo test && cargo clippy -- -D warnings")
-TARGET = Target("rust", "a Rust crate without std and without dependencies", rust_text, rust_files, USE, functions, run)
+TARGET = compiled_target(
+    "rust",
+    "a Rust crate without std and without dependencies",
+    rust_text,
+    rust_files,
+    USE,
+    source="{stem}_rhs/src/{role}.rs",
+    called=_many_text,
+    by=COMPILER,
+)

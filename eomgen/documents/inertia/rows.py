@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass
 from functools import cache, cached_property, partial
 
 from eomgen.mechanics.bodies.composition import made_of
@@ -12,6 +11,7 @@ from eomgen.mechanics.bodies.kinematics import Motion
 from eomgen.mechanics.masses.principal import numbers_in, short_form
 from eomgen.model.composite import about, matrix_times
 from eomgen.model.shapes import MassProperties
+from eomgen.records import dataclass
 from eomgen.symbolic.expression.functions import over
 from eomgen.symbolic.expression.graph import Scalar, is_zero
 from eomgen.symbolic.expression.node import State

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass
 from functools import cached_property
 
 import numpy as np
@@ -13,6 +12,7 @@ from eomgen.documents.latex_names import letter_law
 from eomgen.documents.statements import Cell, Formula, Grid, Law, Side, Statement, prose
 from eomgen.mechanics.masses.principal import Principal, principal_of
 from eomgen.model.outputs.moments_of_inertia import about_axis, polar, second_moments
+from eomgen.records import dataclass
 from eomgen.symbolic.expression.functions import over, sqrt
 from eomgen.symbolic.expression.graph import Scalar, is_zero
 from eomgen.symbolic.expression.spatial import Matrix, Vector

@@ -3,13 +3,14 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass, field
+from dataclasses import field
 from typing import Any
 
 import numpy as np
 
 from eomgen.errors import DerivationError, ToolMissing
 from eomgen.mechanics.small_motions.state_space import StateMatrices
+from eomgen.records import dataclass
 
 LETTERS = ("A", "B", "C_y", "D_y")
 

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
-from dataclasses import dataclass
 from functools import cached_property
 from typing import Any
 
@@ -28,6 +27,7 @@ from eomgen.mechanics.small_motions.first_order import first_order_of
 from eomgen.model.parts import Model
 from eomgen.proof.check import Certificate, unchecked
 from eomgen.proof.resting import BY_MOTION, NOTHING_ACCELERATED, balance_check, pushes_check, resting_checks
+from eomgen.records import dataclass
 from eomgen.symbolic.expression.derivative import depends_on
 from eomgen.symbolic.expression.graph import Node, Scalar
 from eomgen.symbolic.print.text import to_text

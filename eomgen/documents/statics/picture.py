@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterable
-from dataclasses import dataclass
 from functools import cached_property
 from typing import Any
 
@@ -25,6 +24,7 @@ from eomgen.mechanics.structures.blocks import members_of
 from eomgen.model.forces.load import Couple, PointForce, SpreadLoad
 from eomgen.model.parts import Model
 from eomgen.model.values import exact_parameters
+from eomgen.records import dataclass
 from eomgen.symbolic.expression.graph import Scalar
 from eomgen.symbolic.expression.spatial import ZERO
 from eomgen.symbolic.numeric.tolerances import COMPUTED

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
-from dataclasses import dataclass
 from typing import Any
 
 from eomgen.documents.latex_names import letter_law
@@ -13,6 +12,7 @@ from eomgen.mechanics.reactions.reactions import Reactions
 from eomgen.mechanics.statics.influence import InfluenceLine
 from eomgen.mechanics.statics.section_forces import KINDS, SectionForces, SectionPiece, section_forces
 from eomgen.model.trusses import is_node
+from eomgen.records import dataclass
 from eomgen.symbolic.expression.graph import Node, Scalar
 from eomgen.symbolic.print.text import to_text
 

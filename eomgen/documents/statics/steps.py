@@ -43,11 +43,6 @@ def statics_derivation(statics: StaticReactions, values: Mapping[str, float], mo
     return with_symbols(document_of(model, METHOD, steps), declared)
 
 
-def symbols_of_reactions(statics: StaticReactions) -> dict[str, Node]:
-    """A symbol for each reaction by its name: the component's where it is one, else one of its own."""
-    return _named(statics)[0]
-
-
 def _named(statics: StaticReactions) -> tuple[dict[str, Node], dict[str, Symbol]]:
     """(a symbol for each reaction by its name, how they are set in LaTeX where that is declared)."""
     letters = lettered(statics.balance, statics.system.scope.names)

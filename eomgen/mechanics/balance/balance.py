@@ -9,7 +9,7 @@ unknowns are the components of all reactions, of joints and of ties; what drives
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass, field
+from dataclasses import field
 from functools import cached_property
 
 from eomgen.errors import DerivationError
@@ -22,6 +22,7 @@ from eomgen.mechanics.equations.system import System
 from eomgen.model.driven import driven_coordinates, driving_ties
 from eomgen.model.forces.load import PointForce
 from eomgen.model.unknowns import in_loads
+from eomgen.records import dataclass
 from eomgen.symbolic.expression.derivative import depends_on, gradient
 from eomgen.symbolic.expression.graph import Node, Scalar, is_zero
 from eomgen.symbolic.expression.spatial import Vector, apply, cross, in_turned_axes, plus, times, vector_of

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
 from functools import cached_property
 
 from eomgen.errors import DerivationError
@@ -20,6 +19,7 @@ from eomgen.mechanics.constraints.ties import Row
 from eomgen.mechanics.equations.system import System
 from eomgen.model.driven import driven_coordinates
 from eomgen.model.forces.load import Couple, PointForce
+from eomgen.records import dataclass
 from eomgen.symbolic.expression.derivative import depends_on
 from eomgen.symbolic.expression.graph import Node, Scalar, is_zero
 from eomgen.symbolic.expression.spatial import ZERO, Vector, in_turned_axes, transposed, vector_of

@@ -10,7 +10,7 @@ are not linear (see `round_contacts`). What comes out is friction as a generaliz
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from functools import cached_property
 
 from eomgen.errors import DerivationError
@@ -23,6 +23,7 @@ from eomgen.mechanics.equations.equations_of_motion import EquationsOfMotion
 from eomgen.mechanics.equations.explicit_accelerations import bordered_rows, regular_rows
 from eomgen.mechanics.equations.system import System
 from eomgen.mechanics.formulations import recursive
+from eomgen.records import dataclass
 from eomgen.symbolic.expression.derivative import gradient, substituted
 from eomgen.symbolic.expression.functions import function
 from eomgen.symbolic.expression.graph import Node, Scalar

@@ -8,12 +8,12 @@ surface along both tangents.
 from __future__ import annotations
 
 from collections.abc import Callable, Container, Iterable, Sequence
-from dataclasses import dataclass
 
 from eomgen.mechanics.balance.balance import Balance
 from eomgen.mechanics.balance.components import Component
 from eomgen.mechanics.balance.unit_wrenches import Effect, efforts_of
 from eomgen.model.constraints.members import ends_asked
+from eomgen.records import dataclass
 from eomgen.symbolic.expression.derivative import derivative
 from eomgen.symbolic.expression.expressions import Call, Expression, Reference
 from eomgen.symbolic.expression.graph import Scalar, is_zero

@@ -6,7 +6,6 @@ which stands where it is `placed`, is freed along the tie's push: a new coordina
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from typing import Any
 
 from eomgen.errors import DerivationError
@@ -18,6 +17,7 @@ from eomgen.model.forces.load import PointForce
 from eomgen.model.part import altered
 from eomgen.model.parts import Coordinate, Model
 from eomgen.model.table import Table
+from eomgen.records import dataclass
 from eomgen.symbolic.exact.normal_form import readable_all
 from eomgen.symbolic.expression.expressions import Expression, as_expression
 from eomgen.symbolic.expression.functions import over

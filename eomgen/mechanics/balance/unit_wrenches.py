@@ -5,7 +5,6 @@ The axes are the ground's in the plane, the body's own in space.
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from functools import cached_property
 
 from eomgen.mechanics.bodies.inertia import mass_properties
@@ -14,6 +13,7 @@ from eomgen.mechanics.bodies.loads import JointEffort, in_ground_axes
 from eomgen.mechanics.equations.system import System
 from eomgen.model.forces.load import Couple, PointForce
 from eomgen.model.shapes import MassProperties
+from eomgen.records import dataclass
 from eomgen.symbolic.expression.functions import over
 from eomgen.symbolic.expression.graph import Scalar, is_zero
 from eomgen.symbolic.expression.spatial import (

@@ -7,11 +7,11 @@ viscous:  -c |N| v.  While a contact sticks, its sliding velocity is held at 0 b
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping
-from dataclasses import dataclass
 from typing import Any
 
 from eomgen.model.constraints.row import TieRow
 from eomgen.model.friction import Resistance
+from eomgen.records import dataclass
 from eomgen.symbolic.expression.functions import function
 from eomgen.symbolic.expression.graph import Scalar
 

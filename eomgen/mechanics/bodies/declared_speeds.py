@@ -10,12 +10,13 @@ the coordinates, then the declared ones in the order of the model.
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import replace
 
 from eomgen.errors import DerivationError, ModelError
 from eomgen.mechanics.bodies.scope import Scope
 from eomgen.model.joints.orientation import rate_matrix_of
 from eomgen.model.quaternions import quaternions_of
+from eomgen.records import dataclass
 from eomgen.symbolic.expression.derivative import depends_on, jacobian, substituted, symbols_of
 from eomgen.symbolic.expression.functions import combined, inner
 from eomgen.symbolic.expression.graph import Node, Scalar, is_zero

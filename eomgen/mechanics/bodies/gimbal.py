@@ -6,9 +6,8 @@ second angle. Where it vanishes two of the axes are one, and the rates of the an
 
 from __future__ import annotations
 
-from dataclasses import dataclass
-
 from eomgen.mechanics.bodies.kinematics import Motion
+from eomgen.records import dataclass
 from eomgen.symbolic.expression.derivative import depends_on
 from eomgen.symbolic.expression.functions import cos, sin
 from eomgen.symbolic.expression.graph import Scalar

@@ -7,13 +7,13 @@ recursive forms derive, and their agreement proves something.
 
 from __future__ import annotations
 
-from dataclasses import dataclass
-
 from eomgen.errors import ModelError
+from eomgen.mechanics.bodies.armature import given_energy
 from eomgen.mechanics.bodies.composition import made_of
 from eomgen.mechanics.bodies.kinematics import BodyLink, Motion, spin_between
 from eomgen.mechanics.bodies.scope import Scope
 from eomgen.model.shapes import MassProperties
+from eomgen.records import dataclass
 from eomgen.symbolic.expression.expressions import Expression
 from eomgen.symbolic.expression.graph import Scalar
 from eomgen.symbolic.expression.rational import Fraction
@@ -129,7 +129,7 @@ def armature_energy(motion: Motion, link: BodyLink) -> Scalar:
 
 def kinetic_energy(motion: Motion) -> Scalar:
     """T of the whole system [J]."""
-    total: Scalar = 0
+    total = given_energy(motion.scope)
     for link, energy in zip(motion.links, body_energies(motion), strict=True):
         total = total + energy.translation + energy.rotation + armature_energy(motion, link)
     return total

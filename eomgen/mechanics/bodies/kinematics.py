@@ -11,7 +11,6 @@ derivatives of the poses. The certificate compares them.
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from functools import cached_property
 from typing import Any
 
@@ -20,6 +19,7 @@ from eomgen.mechanics.bodies.composition import made_of
 from eomgen.mechanics.bodies.scope import Scope
 from eomgen.mechanics.bodies.simplify import shorter
 from eomgen.model.joints.base import Z, oriented
+from eomgen.records import dataclass
 from eomgen.symbolic.expression.derivative import jacobian, symbols_of
 from eomgen.symbolic.expression.functions import cos, sin
 from eomgen.symbolic.expression.graph import Scalar, collected

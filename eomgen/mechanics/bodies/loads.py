@@ -7,7 +7,6 @@ Q_k = sum F . dp/dq_k - dV/dq_k, and wrenches on twists, Q = sum B^T W.
 from __future__ import annotations
 
 from collections.abc import Iterable, Mapping, Sequence
-from dataclasses import dataclass
 from functools import cached_property
 from typing import Any
 
@@ -18,6 +17,7 @@ from eomgen.mechanics.bodies.scope import Scope, primitive
 from eomgen.model.forces.load import BodyPoint, Couple, GeneralizedForce, Load, PointForce, SpreadLoad, UniformField
 from eomgen.model.quaternions import quaternions_of
 from eomgen.model.values import exact_parameters, no_orientation
+from eomgen.records import dataclass
 from eomgen.symbolic.exact.equality import equal_at_random_states
 from eomgen.symbolic.exact.normal_form import readable_all
 from eomgen.symbolic.expression.derivative import depends_on, gradient, substituted, symbols_of

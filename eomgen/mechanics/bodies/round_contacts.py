@@ -11,9 +11,9 @@ reach has no value.
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
 from typing import Any
 
+from eomgen.records import dataclass
 from eomgen.symbolic.expression.derivative import gradient, substituted
 from eomgen.symbolic.expression.functions import function, inner, over, selected, sqrt
 from eomgen.symbolic.expression.graph import Node, Scalar, is_zero

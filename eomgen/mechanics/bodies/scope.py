@@ -8,7 +8,7 @@ speeds take the place of rates last of all (`declared_speeds`); until then their
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass, field, replace
+from dataclasses import field, replace
 from functools import cached_property
 
 from eomgen.errors import DerivationError
@@ -19,6 +19,7 @@ from eomgen.model.parts import Coordinate, Model
 from eomgen.model.quaternions import quaternions_of
 from eomgen.model.trusses import in_parts
 from eomgen.model.values import exact_parameters
+from eomgen.records import dataclass
 from eomgen.symbolic.expression.derivative import depends_on, substituted, symbols_of, tangent
 from eomgen.symbolic.expression.expressions import Expression
 from eomgen.symbolic.expression.graph import Graph, Node, Scalar
@@ -91,6 +92,15 @@ class Scope:
         derivatives = {x: tangent((law,), {self.symbols.t: 1})[0] for x, law in self.laws.items()}
         derivatives = {x: self.names.get(f"{x.name}'", rate) for x, rate in derivatives.items()}
         return {self.symbols.t: 1, **dict(zip(self.symbols.q, self.rates, strict=True)), **derivatives}
+
+    @cached_property
+    def given_kinetic(self) -> tuple[tuple[Node, ...], Scalar]:
+        """(w, T): the kinetic energies that the model gives, in names w of the rates of all coordinates."""
+        w = tuple(self.graph.symbol(f"({q.name}')") for q in self.symbols.q)  # no name of a model has parentheses
+        names = self.names | {f"{q.name}'": x for q, x in zip(self.symbols.q, w, strict=True)}
+        names |= _speeds_by_rates(self.model, names)
+        given = [force.kinetic for force in self.model.forces.values() if force.kinetic is not None]
+        return w, sum((energy.evaluate(names) for energy in given), start=0)
 
     @cached_property
     def composites(self) -> dict[str, Composite]:
@@ -174,14 +184,20 @@ def scope_of(model: Model, *, with_laws: bool = False) -> Scope:
 
 def with_speeds_named(scope: Scope) -> Scope:
     """The scope in which declared speeds, and their derivatives, stand for what they are in its own speeds."""
-    model, names = scope.model, scope.names
+    names = scope.names
+    found = _speeds_by_rates(scope.model, names)
+    rates = scope.with_accelerations(tuple(found.values()))
+    found |= {f"{name}'": rate for name, rate in zip(found, rates, strict=True)}
+    return replace(scope, names={**names, **found})
+
+
+def _speeds_by_rates(model: Model, names: Mapping[str, Scalar]) -> dict[str, Scalar]:
+    """Declared speeds as they are declared, in what the names of rates stand for."""
     found = {name: part.rate.evaluate(names) for name, part in model.speeds.items() if part.rate is not None}
     for each in quaternions_of(model):
         e, rates = (tuple(names[name + prime] for name in each.coordinates) for prime in ("", "'"))
         found |= dict(zip(each.speeds, spin_of_quaternion(e, rates), strict=True))
-    rates = scope.with_accelerations(tuple(found.values()))
-    found |= {f"{name}'": rate for name, rate in zip(found, rates, strict=True)}
-    return replace(scope, names={**names, **found})
+    return found
 
 
 def _is_long(law: Scalar, t: Node) -> bool:
@@ -241,7 +257,7 @@ def primitive(f: Scalar, x: Node) -> Scalar | None:
     from sympy import Integral
     from sympy.integrals.manualintegrate import manualintegrate
 
-    from eomgen.symbolic.print.sympy_form import from_sympy, to_sympy
+    from eomgen.symbolic.print.sympy_form import scalar_from_sympy, to_sympy
 
     expression, variable = to_sympy((f, x))
     found = manualintegrate(expression, variable)
@@ -249,7 +265,7 @@ def primitive(f: Scalar, x: Node) -> Scalar | None:
         return None
     lookup = {symbol.name: symbol for symbol in symbols_of((f, x))}
     try:
-        return from_sympy(found, lookup)
+        return scalar_from_sympy(found, lookup)
     except DerivationError:  # a function that the graph does not have
         return None
 

@@ -8,10 +8,9 @@ second moments of mass m, h = int r dm, J = int r r^T dm, about that origin.
 
 from __future__ import annotations
 
-from dataclasses import dataclass
-
 from eomgen.mechanics.bodies.inertia import mass_properties
 from eomgen.mechanics.bodies.kinematics import GROUND, BodyLink, Motion, shortened_twist
+from eomgen.records import dataclass
 from eomgen.symbolic.expression.derivative import symbols_of, tangent
 from eomgen.symbolic.expression.graph import Node, Scalar
 from eomgen.symbolic.expression.rational import Fraction

@@ -9,7 +9,6 @@ accelerations with J a + gamma = 0 must exist too,
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
 from random import Random
 from typing import Any
 
@@ -17,6 +16,7 @@ import numpy as np
 
 from eomgen.mechanics.constraints.freedom import rank_of_ties
 from eomgen.mechanics.constraints.ties import Ties
+from eomgen.records import dataclass
 from eomgen.symbolic.expression.derivative import jacobian
 from eomgen.symbolic.expression.graph import Node, Scalar
 from eomgen.symbolic.expression.node import State

@@ -7,7 +7,6 @@ makes redundant rows differ by d. So positions are sought to 1e-28.
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
 from random import Random
 from typing import Any
 
@@ -16,6 +15,7 @@ import numpy as np
 from eomgen.errors import DerivationError, EomgenError, MissingValues
 from eomgen.mechanics.constraints.ties import Ties
 from eomgen.model.values import exact_parameters, first_guesses, start_values
+from eomgen.records import dataclass
 from eomgen.symbolic.expression.derivative import jacobian
 from eomgen.symbolic.expression.functions import sqrt
 from eomgen.symbolic.expression.graph import Node, Scalar

@@ -9,7 +9,7 @@ centre, a change point) the dependent coordinates do not follow the independent 
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from typing import Any
 
 import numpy as np
@@ -19,6 +19,7 @@ from eomgen.mechanics.bodies.scope import Scope, with_speeds_named
 from eomgen.mechanics.bodies.simplify import shorter
 from eomgen.mechanics.constraints.closure import generic_state, scattered_state
 from eomgen.mechanics.constraints.ties import Ties, holds_identically
+from eomgen.records import dataclass
 from eomgen.symbolic.expression.derivative import depends_on
 from eomgen.symbolic.expression.graph import Node, Scalar, is_zero
 from eomgen.symbolic.expression.traversal import operations, order

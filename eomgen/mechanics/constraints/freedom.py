@@ -8,8 +8,6 @@ By formula:  f = 3 Nb + 2 Np - sum of the components of joints, ties and given m
 
 from __future__ import annotations
 
-from dataclasses import dataclass
-
 import numpy as np
 
 from eomgen.errors import DerivationError, MissingValues, NotYet
@@ -23,6 +21,7 @@ from eomgen.mechanics.constraints.ties import Ties, ties_of
 from eomgen.model.reader import ModelOrPath, model_at
 from eomgen.model.replaced import Values
 from eomgen.model.unbuilt import unbuilt_ties
+from eomgen.records import dataclass
 from eomgen.symbolic.expression.graph import is_zero
 from eomgen.symbolic.expression.node import State
 from eomgen.symbolic.expression.spatial import Vector

@@ -13,7 +13,6 @@ Source: Bloch, Nonholonomic Mechanics and Control, 2nd ed., sections 2.2 and 4.1
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
 from itertools import combinations_with_replacement
 from typing import Any
 
@@ -24,6 +23,7 @@ from eomgen.mechanics.bodies.loads import SystemScene
 from eomgen.mechanics.bodies.scope import primitive
 from eomgen.mechanics.constraints.closure import generic_state
 from eomgen.mechanics.constraints.ties import Row, Ties, holds_identically
+from eomgen.records import dataclass
 from eomgen.symbolic.exact.normal_form import simplest
 from eomgen.symbolic.expression.derivative import gradient, jacobian, tangent
 from eomgen.symbolic.expression.functions import over

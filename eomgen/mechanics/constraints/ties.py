@@ -10,7 +10,7 @@ A row without bodies (`equation`) gives dphi/dq, or its row in the rates, direct
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from functools import cached_property
 from random import Random
 from typing import Any
@@ -24,6 +24,7 @@ from eomgen.model.constraints.row import TieRow
 from eomgen.model.forces.load import PointForce, Push
 from eomgen.model.unbuilt import unbuilt_ties
 from eomgen.model.values import exact_parameters
+from eomgen.records import dataclass
 from eomgen.symbolic.exact.equality import Equality, equal_at_random_states, equal_at_real_states, equal_in_field
 from eomgen.symbolic.expression.derivative import depends_on, jacobian, substituted
 from eomgen.symbolic.expression.functions import over, sqrt

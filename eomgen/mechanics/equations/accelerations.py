@@ -2,12 +2,12 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
 
 from eomgen.mechanics.equations.equations_of_motion import EquationsOfMotion
+from eomgen.records import dataclass
 from eomgen.symbolic.expression.node import State
 from eomgen.symbolic.numeric.dense import balanced, independent, scaled_condition, weighted, without_rounding
 from eomgen.symbolic.numeric.evaluation import NoValue, evaluate, fifty_digits

@@ -9,7 +9,7 @@ Source: Featherstone, Rigid Body Dynamics Algorithms (2008), §7.3.
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
+from dataclasses import replace
 
 from eomgen.mechanics.bodies.armature import armature_bias, armature_mass
 from eomgen.mechanics.bodies.kinematics import GROUND, Motion
@@ -18,6 +18,7 @@ from eomgen.mechanics.bodies.recursion import applied_wrenches, inertia_wrench, 
 from eomgen.mechanics.bodies.tree import Branch, branches_of
 from eomgen.mechanics.equations.equations_of_motion import EquationsOfMotion
 from eomgen.mechanics.equations.work import joint_forces, placeless_forces
+from eomgen.records import dataclass
 from eomgen.symbolic.expression.functions import over
 from eomgen.symbolic.expression.graph import Scalar, is_zero
 from eomgen.symbolic.expression.spatial import (

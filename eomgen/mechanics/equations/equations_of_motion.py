@@ -2,9 +2,9 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
-
 from eomgen.mechanics.equations.system import System
+from eomgen.records import dataclass
+from eomgen.symbolic.expression.functions import inner
 from eomgen.symbolic.expression.graph import Scalar
 from eomgen.symbolic.expression.node import ScalarRow
 from eomgen.symbolic.expression.symbols import Symbols
@@ -52,6 +52,17 @@ class EquationsOfMotion:
     def symbols(self) -> Symbols:
         """The symbols in which everything is written."""
         return self.system.symbols
+
+    @property
+    def residual(self) -> tuple[ScalarRow, ScalarRow]:
+        """(M a - forcing - J^T lam, J a + gamma) with a and lam as symbols: zero in every motion."""
+        a, lam = self.symbols.a, self.symbols.lam
+        pushes = list(zip(*self.J, strict=True)) if self.J else [()] * len(self.M)
+        balance = tuple(
+            inner(row, a) - force - inner(push, lam)
+            for row, force, push in zip(self.M, self.forcing, pushes, strict=True)
+        )
+        return balance, tuple(inner(row, a) + bias for row, bias in zip(self.J, self.gamma, strict=True))
 
     @property
     def inputs(self) -> dict[str, Scalar]:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass, field, replace
+from dataclasses import field, replace
 from functools import cached_property
 from typing import Any
 
@@ -16,6 +16,7 @@ from eomgen.mechanics.bodies.simplify import shorter
 from eomgen.mechanics.constraints.elimination import Elimination, dependent_coordinates, elimination_of
 from eomgen.mechanics.constraints.ties import Ties, holds_identically, ties_of
 from eomgen.model.parts import Model
+from eomgen.records import dataclass
 from eomgen.symbolic.expression.derivative import substituted
 from eomgen.symbolic.expression.graph import Node, Scalar
 from eomgen.symbolic.expression.symbols import Symbols

@@ -7,7 +7,6 @@ coordinates. What is found is taken only where all equations hold at it as funct
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
-from dataclasses import dataclass
 from functools import cached_property
 from typing import Any
 
@@ -17,6 +16,7 @@ from eomgen.errors import DerivationError
 from eomgen.mechanics.bodies.loads import start_value
 from eomgen.mechanics.bodies.places import Located, places_of
 from eomgen.mechanics.equilibria.static_equations import StaticEquations
+from eomgen.records import dataclass
 from eomgen.symbolic.exact.normal_form import readable_all, simplest
 from eomgen.symbolic.expression.derivative import depends_on, gradient, jacobian, substituted
 from eomgen.symbolic.expression.graph import Node, Scalar, is_zero

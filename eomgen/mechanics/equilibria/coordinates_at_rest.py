@@ -8,7 +8,6 @@ columns before them may be anything near: they stay where they start, and the ot
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass
 from functools import cached_property
 from typing import Any
 
@@ -17,6 +16,7 @@ import numpy as np
 from eomgen.mechanics.constraints.consistency import is_guess
 from eomgen.mechanics.equilibria.rest_places import place_near
 from eomgen.mechanics.equilibria.static_equations import StaticEquations
+from eomgen.records import dataclass
 from eomgen.symbolic.expression.derivative import jacobian
 from eomgen.symbolic.expression.graph import Node
 from eomgen.symbolic.numeric import dense

@@ -6,13 +6,13 @@ Q_k + (J^T lam)_k = 0        linear in the unknowns and the multipliers
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass
 from random import Random
 
 from eomgen.errors import DerivationError
 from eomgen.mechanics.equations.system import System
 from eomgen.mechanics.equilibria.static_equations import StaticEquations, static_equations
 from eomgen.mechanics.initial_state.values_at_rest import values_of_parameters, values_where_at_rest
+from eomgen.records import dataclass
 from eomgen.symbolic.exact.normal_form import readable_all, simplest
 from eomgen.symbolic.expression.derivative import depends_on, jacobian, substituted
 from eomgen.symbolic.expression.graph import Node, Scalar, is_zero

@@ -4,13 +4,13 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
 from functools import cached_property
 from typing import Any
 
 import numpy as np
 
 from eomgen.mechanics.equilibria.static_equations import StaticEquations
+from eomgen.records import dataclass
 from eomgen.symbolic.exact.normal_form import readable
 from eomgen.symbolic.expression.derivative import depends_on, jacobian, substituted
 from eomgen.symbolic.expression.graph import Node, Scalar, is_zero
@@ -22,7 +22,7 @@ from eomgen.symbolic.numeric.roots_nearby import Descent
 from eomgen.symbolic.numeric.tolerances import NEARLY_SINGULAR, RANK, SAME_PLACE, UNBALANCED
 from eomgen.symbolic.numeric.work import Work
 from eomgen.symbolic.solve import cramer
-from eomgen.symbolic.solve.solving import has_period
+from eomgen.symbolic.solve.solving import has_period, outside_of_turns
 
 MOST_ISOLATED = 3  # coordinates of equations whose roots are isolated
 REACH = 1000.0  # how far from the guess a coordinate that is no angle is sought, against its size and 1
@@ -157,10 +157,11 @@ class _Search:
     def _turning(self) -> frozenset[Node]:
         """Angles after a whole turn of which all equations are the same."""
         equations = [x for x in self.statics.equations if not is_zero(x)]
+        outside = outside_of_turns(equations)
         return frozenset(
             q
             for q in self._angles
-            if all(not depends_on(x, (q,)) or has_period(x, q, 2 * q.graph.pi) for x in equations)
+            if q not in outside or all(not depends_on(x, (q,)) or has_period(x, q, 2 * q.graph.pi) for x in equations)
         )
 
     @cached_property

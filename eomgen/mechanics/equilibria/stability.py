@@ -10,7 +10,6 @@ derivatives decide. With several, and forces without a potential, K has another 
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
 from functools import cached_property
 from random import Random
 from typing import Any
@@ -20,9 +19,16 @@ import numpy as np
 from eomgen.errors import DerivationError
 from eomgen.mechanics.constraints.freedom import rank_of_ties
 from eomgen.mechanics.equilibria.coordinates_at_rest import Chosen
-from eomgen.mechanics.equilibria.higher_derivatives import INDIFFERENT, STABLE, UNSTABLE, by_higher_derivatives
+from eomgen.mechanics.equilibria.higher_derivatives import (
+    INDIFFERENT,
+    STABLE,
+    UNSTABLE,
+    by_higher_derivatives,
+    states_beside,
+)
 from eomgen.mechanics.equilibria.static_equations import StaticEquations
 from eomgen.mechanics.initial_state.values_at_rest import values_of_parameters
+from eomgen.records import dataclass
 from eomgen.symbolic.exact.normal_form import simplest
 from eomgen.symbolic.exact.signs import sign_of_terms
 from eomgen.symbolic.expression.derivative import jacobian, substituted
@@ -276,10 +282,9 @@ class _Place:
 
     @cached_property
     def _size_of_terms(self) -> float:
-        """The largest second derivative nearby: what K is measured against."""
+        """The largest second derivative there and beside it: what K is measured against."""
         found = [0.0]
-        for shift in (-0.3, 0.2, 0.4):
-            state = dict(self.state) | {q: self.state[q] + shift for q in self.statics.q}
+        for state in (self.state, *states_beside(self.state, self.statics.q)):
             try:
                 entries = [x for row in self._H for x in row]
                 found += [abs(float(x)) for x in evaluate(entries, state, fifty_digits())]

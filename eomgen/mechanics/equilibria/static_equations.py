@@ -9,7 +9,7 @@ gives by itself (a wheel that rolls) are taken from the start. The norm of a qua
 from __future__ import annotations
 
 from collections.abc import Collection, Mapping, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from functools import cached_property
 from typing import Any
 
@@ -24,6 +24,7 @@ from eomgen.model.contacts import rough_contacts
 from eomgen.model.part import altered
 from eomgen.model.quaternions import quaternions_of
 from eomgen.model.table import Table
+from eomgen.records import dataclass
 from eomgen.symbolic.exact.normal_form import readable_all
 from eomgen.symbolic.expression.derivative import depends_on, substituted
 from eomgen.symbolic.expression.expressions import as_expression

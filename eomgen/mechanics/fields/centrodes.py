@@ -7,14 +7,13 @@ Where one parameter moves the body (one freedom, or time alone) they are functio
 
 from __future__ import annotations
 
-from dataclasses import dataclass
-
 from eomgen.errors import DerivationError, MissingValues
 from eomgen.mechanics.constraints.freedom import freedoms
 from eomgen.mechanics.equations.system import System
 from eomgen.mechanics.fields.curves import Curve, curve_of
 from eomgen.mechanics.fields.field import field_of, rotation_center
 from eomgen.mechanics.fields.motion_kind import PLANE, Kinds, in_body
+from eomgen.records import dataclass
 from eomgen.symbolic.exact.normal_form import simplest
 from eomgen.symbolic.expression.derivative import depends_on, substituted
 from eomgen.symbolic.expression.graph import is_zero

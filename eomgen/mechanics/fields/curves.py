@@ -7,10 +7,10 @@ a circle: the centre of curvature stays, c + |c'|^2 (c' x c'') x c' / |c' x c''|
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
-from dataclasses import dataclass
 
 from eomgen.errors import DerivationError
 from eomgen.mechanics.fields.possible import Possible
+from eomgen.records import dataclass
 from eomgen.symbolic.exact.normal_form import simplest
 from eomgen.symbolic.expression.derivative import depends_on, substituted
 from eomgen.symbolic.expression.functions import over, sqrt

@@ -8,10 +8,11 @@ O is the origin of the body's frame. Accelerations hold the symbols a and are li
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping
-from dataclasses import dataclass, replace
+from dataclasses import replace
 
 from eomgen.errors import DerivationError
 from eomgen.mechanics.bodies.kinematics import Motion
+from eomgen.records import dataclass
 from eomgen.symbolic.expression.derivative import substituted
 from eomgen.symbolic.expression.functions import function, over, sqrt
 from eomgen.symbolic.expression.graph import Node, Scalar

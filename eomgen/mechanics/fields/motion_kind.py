@@ -11,13 +11,13 @@ it turns about that axis, and moves helically where omega.v does not vanish: by 
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass
 from functools import cached_property
 
 from eomgen.mechanics.equations.system import System
 from eomgen.mechanics.fields.curves import Constants, Curve, curve_of
 from eomgen.mechanics.fields.field import VelocityField, axis_point, field_of
 from eomgen.mechanics.fields.possible import Possible
+from eomgen.records import dataclass
 from eomgen.symbolic.expression.functions import over
 from eomgen.symbolic.expression.graph import Node, Scalar
 from eomgen.symbolic.expression.spatial import Vector, apply, cross, dot, minus, plus, times, transposed

@@ -10,7 +10,6 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
-from dataclasses import dataclass
 from functools import cached_property
 from random import Random
 from typing import Any
@@ -20,6 +19,7 @@ import numpy as np
 from eomgen.errors import DerivationError
 from eomgen.mechanics.constraints.closure import generic_state, of_50_digits
 from eomgen.mechanics.equations.system import System
+from eomgen.records import dataclass
 from eomgen.symbolic.expression.derivative import tangent
 from eomgen.symbolic.expression.graph import Node, Scalar
 from eomgen.symbolic.expression.node import State

@@ -9,10 +9,9 @@ body that the moving point passes. In the body's frame a particle moves as if -m
 
 from __future__ import annotations
 
-from dataclasses import dataclass
-
 from eomgen.mechanics.bodies.kinematics import Motion
 from eomgen.mechanics.fields.field import VelocityField, field_of
+from eomgen.records import dataclass
 from eomgen.symbolic.expression.spatial import (
     IDENTITY,
     Matrix,

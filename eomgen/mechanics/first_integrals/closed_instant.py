@@ -8,7 +8,6 @@ the numbers.
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
 
 from eomgen.errors import DerivationError
 from eomgen.mechanics.bodies.places import Located, places_of
@@ -18,6 +17,7 @@ from eomgen.mechanics.equations.system import System
 from eomgen.mechanics.first_integrals.laws import laws_of_motion
 from eomgen.mechanics.first_integrals.speeds import rates_of
 from eomgen.mechanics.first_integrals.speeds_from_momenta import Relations, relations_of
+from eomgen.records import dataclass
 from eomgen.symbolic.exact.normal_form import simplest
 from eomgen.symbolic.expression.derivative import depends_on, gradient, substituted, symbols_of
 from eomgen.symbolic.expression.graph import Node, Scalar, is_zero

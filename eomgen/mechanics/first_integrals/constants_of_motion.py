@@ -9,7 +9,6 @@ that is, the row (g, -r) follows from the rows (M, forcing): decided exactly, at
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
 from random import Random
 from typing import Any
 
@@ -19,6 +18,7 @@ from eomgen.mechanics.bodies.kinematics import GROUND, velocity_of
 from eomgen.mechanics.equations.equations_of_motion import EquationsOfMotion
 from eomgen.mechanics.equations.system import System
 from eomgen.mechanics.masses.inertia_about import angular_momentum, shapeless
+from eomgen.records import dataclass
 from eomgen.symbolic.exact.equality import equal_at_random_states, exact_state, real_values
 from eomgen.symbolic.expression.derivative import depends_on, gradient
 from eomgen.symbolic.expression.functions import inner, over

@@ -13,9 +13,9 @@ Coriolis terms, no damping. With M = S^2, whose eigenvalues mu are two and real,
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass
 
 from eomgen.mechanics.first_integrals.linear_motion import MotionConstants, waves
+from eomgen.records import dataclass
 from eomgen.symbolic.expression.functions import over, sqrt
 from eomgen.symbolic.expression.graph import Node, Scalar, is_zero
 from eomgen.symbolic.expression.node import ScalarRows

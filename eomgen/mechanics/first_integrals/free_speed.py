@@ -10,13 +10,13 @@ Where energy is lost, but a_s = F0(q_s) + F2(q_s) u_s^2, y = u_s^2 is the soluti
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
 
 from eomgen.mechanics.bodies.scope import primitive
 from eomgen.mechanics.equations.equations_of_motion import EquationsOfMotion
 from eomgen.mechanics.first_integrals.integrals import energy_integral
 from eomgen.mechanics.first_integrals.linear_motion import LinearEquation, MotionConstants, particular
 from eomgen.mechanics.first_integrals.speeds_from_momenta import Relations, value_at_start
+from eomgen.records import dataclass
 from eomgen.symbolic.exact.normal_form import simplest
 from eomgen.symbolic.exact.signs import sign_of_terms
 from eomgen.symbolic.expression.derivative import depends_on, derivative, substituted

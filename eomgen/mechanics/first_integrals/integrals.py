@@ -7,20 +7,25 @@ u . dT/du - T + V = const    (Jacobi's, where what moves by itself does so at a 
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass, replace
+from dataclasses import replace
+from random import Random
 
 from eomgen.errors import DerivationError
 from eomgen.mechanics.bodies.scope import integral_from_zero
+from eomgen.mechanics.constraints.closure import of_50_digits, on_unit_spheres, scattered_state
 from eomgen.mechanics.constraints.ties import hold_identically
 from eomgen.mechanics.equations.equations_of_motion import EquationsOfMotion
 from eomgen.mechanics.equations.system import System
 from eomgen.mechanics.equations.wellposed import is_conservative
 from eomgen.mechanics.first_integrals.constants_of_motion import jacobi
 from eomgen.model.forces.load import Couple, GeneralizedForce, Load, PointForce
+from eomgen.records import dataclass
 from eomgen.symbolic.exact.normal_form import readable
 from eomgen.symbolic.expression.derivative import depends_on, gradient
 from eomgen.symbolic.expression.graph import Node, Scalar
 from eomgen.symbolic.expression.spatial import dot
+from eomgen.symbolic.numeric.evaluation import NoValue, evaluate, fifty_digits
+from eomgen.symbolic.numeric.tolerances import ZERO_AT_50
 from eomgen.symbolic.numeric.work import Work
 
 
@@ -93,7 +98,7 @@ def momentum_integrals(equations: EquationsOfMotion) -> tuple[Integral, ...]:
     others, found = (*symbols.q, *symbols.u, *symbols.inputs.values()), []
     free = [k for k in range(len(symbols.u)) if all(hold_identically([row[k] for row in equations.J]))]
     rates = [drifts[k] + equations.forcing[k] for k in free]
-    for k, rate in zip(free, _of_time_alone(rates, others), strict=True):
+    for k, rate in zip(free, _of_time_alone(equations.system, rates, others), strict=True):
         u, p = symbols.u[k], momenta[k]
         if rate is None:
             continue
@@ -106,12 +111,29 @@ def momentum_integrals(equations: EquationsOfMotion) -> tuple[Integral, ...]:
     return tuple(found)
 
 
-def _of_time_alone(rates: Sequence[Scalar], others: Sequence[Node]) -> list[Scalar | None]:
-    """Each rate where it depends on none of the others, else None."""
-    return [
-        rate if not depends_on(rate, others) else 0 if vanishes else _read_of_time(rate, others)
-        for rate, vanishes in zip(rates, hold_identically(rates), strict=True)
-    ]
+def _of_time_alone(system: System, rates: Sequence[Scalar], others: Sequence[Node]) -> list[Scalar | None]:
+    """Each rate where it depends on none of the others, else None; what is seen to change needs no exact look."""
+    changes = _seen_to_change(system, rates, others)
+    left = [rate for rate, seen in zip(rates, changes, strict=True) if not seen]
+    looked_at = iter(zip(left, hold_identically(left), strict=True))
+    return [None if seen else _alone(*next(looked_at), others) for seen in changes]
+
+
+def _alone(rate: Scalar, vanishes: bool, others: Sequence[Node]) -> Scalar | None:
+    return rate if not depends_on(rate, others) else 0 if vanishes else _read_of_time(rate, others)
+
+
+def _seen_to_change(system: System, rates: Sequence[Scalar], others: Sequence[Node]) -> list[bool]:
+    """Of each rate whether it is another one, by 50 digits, where the others are and t is not."""
+    state, rng = scattered_state(system.ties), Random(2)
+    moved = state | {x: state[x] + of_50_digits(rng.uniform(0.1, 0.4)) for x in others}
+    moved |= on_unit_spheres(system.scope.quaternions, moved)
+    try:
+        here, there = (evaluate(rates, each, fifty_digits()) for each in (state, moved))
+    except NoValue:
+        return [False] * len(rates)
+    size = max((abs(x) for x in (*here, *there)), default=0)
+    return [abs(x - y) > ZERO_AT_50 * max(1, size) for x, y in zip(here, there, strict=True)]
 
 
 def _read_of_time(rate: Scalar, others: Sequence[Node]) -> Scalar | None:

@@ -8,7 +8,6 @@ are pairs that have no damping. A coordinate whose rate is a known function of t
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
 from itertools import combinations
 from random import Random
 
@@ -18,6 +17,7 @@ from eomgen.mechanics.equations.system import System
 from eomgen.mechanics.first_integrals.coupled_motion import CoupledEquations, pair_solution
 from eomgen.mechanics.first_integrals.linear_motion import LinearEquation, MotionConstants, law_of_motion
 from eomgen.model.values import exact_parameters
+from eomgen.records import dataclass
 from eomgen.symbolic.exact.normal_form import simplest
 from eomgen.symbolic.exact.signs import sign_of_terms
 from eomgen.symbolic.expression.derivative import depends_on, derivative, substituted, symbols_of

@@ -8,10 +8,10 @@ A root of a number of unknown sign is real or imaginary: `sign` decides, and whe
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import dataclass
 
 from eomgen.errors import DerivationError
 from eomgen.mechanics.bodies.scope import integral_from_zero
+from eomgen.records import dataclass
 from eomgen.symbolic.exact.normal_form import readable
 from eomgen.symbolic.expression.derivative import depends_on, derivative, substituted
 from eomgen.symbolic.expression.functions import function, over, sqrt

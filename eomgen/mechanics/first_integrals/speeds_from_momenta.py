@@ -3,13 +3,13 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
 
 from eomgen.errors import DerivationError, MissingValues
 from eomgen.mechanics.constraints.closure import generic_state
 from eomgen.mechanics.equations.equations_of_motion import EquationsOfMotion
 from eomgen.mechanics.equations.system import System
 from eomgen.mechanics.first_integrals.integrals import momentum_integrals
+from eomgen.records import dataclass
 from eomgen.symbolic.exact.normal_form import simplest
 from eomgen.symbolic.expression.derivative import depends_on, gradient, substituted
 from eomgen.symbolic.expression.graph import Node, Scalar

@@ -1,11 +1,11 @@
 """Formulations: the seam of ways to the equations of motion, and which of them a method of derivation goes."""
 
 from collections.abc import Callable
-from dataclasses import dataclass
 
 from eomgen.mechanics.equations.equations_of_motion import EquationsOfMotion
 from eomgen.mechanics.equations.system import System
 from eomgen.mechanics.formulations import lagrange, projection, recursive
+from eomgen.records import dataclass
 from eomgen.symbolic.expression.node import ScalarRow
 
 Along = Callable[[System], tuple[ScalarRow, ScalarRow, ScalarRow]]

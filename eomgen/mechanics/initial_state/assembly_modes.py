@@ -9,7 +9,6 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
 from random import Random
 from typing import Any
 
@@ -23,6 +22,7 @@ from eomgen.mechanics.equations.system import System
 from eomgen.mechanics.initial_state.assembly_sides import AssemblySide, assembly_sides
 from eomgen.model.own_units import in_own_unit
 from eomgen.model.values import numeric_parameters
+from eomgen.records import dataclass
 from eomgen.symbolic.expression.derivative import jacobian, symbols_of
 from eomgen.symbolic.expression.graph import Node, Scalar
 from eomgen.symbolic.expression.node import State

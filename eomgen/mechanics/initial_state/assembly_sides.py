@@ -7,12 +7,12 @@ two ways in which such a pair closes (open and crossed, elbow up and down). In l
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass
 from typing import Any
 
 from eomgen.mechanics.bodies.kinematics import BodyLink
 from eomgen.mechanics.equations.system import System
 from eomgen.model.forces.load import PointForce
+from eomgen.records import dataclass
 from eomgen.symbolic.expression.graph import Node, Scalar, is_zero
 from eomgen.symbolic.numeric.evaluation import FLOAT, evaluate
 from eomgen.symbolic.numeric.tolerances import COMPUTED

@@ -9,7 +9,6 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterable, Mapping, Sequence
-from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
@@ -29,6 +28,7 @@ from eomgen.model.contacts import contacts_of
 from eomgen.model.own_units import in_own_unit
 from eomgen.model.parts import Model
 from eomgen.model.values import exact_parameters, first_guesses, numeric_parameters, start_values
+from eomgen.records import dataclass
 from eomgen.symbolic.expression.derivative import substituted, symbols_of
 from eomgen.symbolic.expression.graph import Node, Scalar
 from eomgen.symbolic.expression.node import State

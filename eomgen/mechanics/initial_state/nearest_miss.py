@@ -6,7 +6,6 @@ min |phi(q)|^2    over the coordinates that are not driven, by Levenberg and Mar
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass
 from functools import cached_property
 from random import Random
 from typing import Any
@@ -15,6 +14,7 @@ import numpy as np
 
 from eomgen.mechanics.constraints.closure import closed, gaps_of, movable, norms_of, of_50_digits
 from eomgen.mechanics.equations.system import System
+from eomgen.records import dataclass
 from eomgen.symbolic.expression.derivative import jacobian, symbols_of
 from eomgen.symbolic.expression.graph import Node, Scalar
 from eomgen.symbolic.numeric.evaluation import FLOAT, NoValue, evaluate

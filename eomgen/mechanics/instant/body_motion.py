@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass
 from functools import cached_property
 
 from eomgen.errors import DerivationError, MissingValues
@@ -18,6 +17,7 @@ from eomgen.mechanics.fields.field import (
 )
 from eomgen.mechanics.fields.motion_kind import Kind, Kinds, instant_kind
 from eomgen.model.trusses import is_node
+from eomgen.records import dataclass
 from eomgen.symbolic.exact.normal_form import Legibly
 from eomgen.symbolic.expression.derivative import substituted
 from eomgen.symbolic.expression.functions import sqrt

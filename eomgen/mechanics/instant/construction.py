@@ -9,7 +9,6 @@ lines may meet at infinity.
 from __future__ import annotations
 
 from collections.abc import Iterator
-from dataclasses import dataclass
 from functools import cached_property
 from itertools import combinations
 
@@ -19,6 +18,7 @@ from eomgen.mechanics.constraints.freedom import is_particle
 from eomgen.mechanics.constraints.ties import holds_identically
 from eomgen.mechanics.instant.mechanism import Mechanism
 from eomgen.model.part import leaves_of
+from eomgen.records import dataclass
 from eomgen.symbolic.expression.derivative import substituted
 from eomgen.symbolic.expression.graph import is_zero
 from eomgen.symbolic.expression.spatial import Vector, cross, plus, vector_of

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import dataclass
 from random import Random
 
 import numpy as np
@@ -14,6 +13,7 @@ from eomgen.mechanics.equations.system import System
 from eomgen.mechanics.initial_state.values_at_rest import values_for, values_of_parameters
 from eomgen.mechanics.instant.outputs import Quantities
 from eomgen.model.fields import WrittenEquation
+from eomgen.records import dataclass
 from eomgen.symbolic.exact.normal_form import collected_in, readable_all
 from eomgen.symbolic.expression.derivative import depends_on, substituted
 from eomgen.symbolic.expression.expressions import Expression

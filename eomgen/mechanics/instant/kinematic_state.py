@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
-from dataclasses import dataclass
 from functools import cached_property
 from typing import Any
 
@@ -16,6 +15,7 @@ from eomgen.mechanics.initial_state.numeric_value import Worth
 from eomgen.mechanics.instant.construction import FoundPoint, PointPair, constructed
 from eomgen.mechanics.instant.mechanism import Mechanism
 from eomgen.model.trusses import is_node
+from eomgen.records import dataclass
 from eomgen.symbolic.exact.normal_form import Legibly
 from eomgen.symbolic.expression.derivative import substituted
 from eomgen.symbolic.expression.functions import sqrt

@@ -7,7 +7,6 @@ c_ij = c_j - c_i. Bodies that move as one are one block; those at rest belong to
 from __future__ import annotations
 
 from collections.abc import Iterable, Mapping
-from dataclasses import dataclass
 from functools import cached_property
 from itertools import combinations
 
@@ -16,6 +15,7 @@ from eomgen.mechanics.fields.centers import Homogeneous, homogeneous_center
 from eomgen.mechanics.fields.field import field_of
 from eomgen.mechanics.initial_state.numeric_value import Worth
 from eomgen.model.trusses import is_node
+from eomgen.records import dataclass
 from eomgen.symbolic.exact.normal_form import Legibly
 from eomgen.symbolic.expression.functions import over
 from eomgen.symbolic.expression.graph import Node, Scalar

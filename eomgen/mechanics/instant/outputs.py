@@ -7,7 +7,7 @@ the symbols a, in which they are linear.
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, field
+from dataclasses import field
 from functools import cached_property
 
 from eomgen.errors import DerivationError
@@ -29,6 +29,7 @@ from eomgen.mechanics.statics.section_forces import SectionForces, section_force
 from eomgen.model.outputs import FUNCTIONS
 from eomgen.model.outputs.context import GROUND
 from eomgen.model.shapes import MassProperties
+from eomgen.records import dataclass
 from eomgen.symbolic.exact.normal_form import simplest
 from eomgen.symbolic.expression.derivative import derivative, substituted
 from eomgen.symbolic.expression.expressions import Call, Expression

@@ -5,7 +5,6 @@ ties alone say what it can do. So it gets displacements from where it stands, 0 
 plane; x, y, z and three turns about its own successive axes in space. Then the ties are rows in their rates.
 """
 
-from dataclasses import dataclass
 from typing import Annotated, Any, ClassVar
 
 from eomgen.model.joints.base import Column, Effort, Joint, Scalars, X, Y, Z, angular, linear
@@ -17,6 +16,7 @@ from eomgen.model.part import PartRule, altered, part_of_values
 from eomgen.model.parts import Body, Coordinate, Model
 from eomgen.model.table import Table
 from eomgen.model.trusses import in_parts
+from eomgen.records import dataclass
 from eomgen.symbolic.expression.expressions import Expression
 from eomgen.symbolic.expression.functions import cos, sin
 from eomgen.symbolic.expression.spatial import Matrix, Pose, apply, plus, product, rotation, transposed, vector_of

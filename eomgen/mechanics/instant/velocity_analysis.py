@@ -10,7 +10,7 @@ on it (a ratio of two spins, a centre of rotation) has its answer.
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import dataclass, field, replace
+from dataclasses import field, replace
 from functools import cached_property
 
 from eomgen.errors import DerivationError, MissingValues
@@ -33,6 +33,7 @@ from eomgen.model.part import altered
 from eomgen.model.parts import Model
 from eomgen.model.trusses import is_node
 from eomgen.model.values import exact_parameters
+from eomgen.records import dataclass
 from eomgen.symbolic.exact.normal_form import legible
 from eomgen.symbolic.expression.derivative import depends_on, substituted
 from eomgen.symbolic.expression.expressions import Expression, parse

@@ -12,11 +12,11 @@ characteristic polynomial is split into factors; where it has none, its three re
 from __future__ import annotations
 
 from collections.abc import Collection, Mapping, Sequence
-from dataclasses import dataclass
 from functools import cached_property, cmp_to_key
 
 from eomgen.mechanics.bodies.scope import Scope
 from eomgen.mechanics.initial_state.numeric_value import known_exactly
+from eomgen.records import dataclass
 from eomgen.symbolic.exact.normal_form import common_factor, simplest
 from eomgen.symbolic.exact.signs import sign_of_terms
 from eomgen.symbolic.expression.derivative import substituted, symbols_of

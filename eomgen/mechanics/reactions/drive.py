@@ -45,11 +45,17 @@ def drive(system: System, coordinate: str) -> Scalar:
             f"drive({coordinate}): '{coordinate}' is not driven, it moves freely",
             mend="ask it of a coordinate with `motion`, `rate` or `acceleration`",
         )
-    freed = altered(part, motion=None, rate=None, acceleration=None)
-    free = system_of(altered(model, coordinates=Table({**model.coordinates, coordinate: freed})), system.modes)
+    free = with_drive_let_go(system, coordinate)
     equations = recursive.assembled_by_recursion(free)
     k = [u.name for u in free.symbols.u].index(f"{coordinate}'")
     return _carried(drive_residual(equations, k), system) - _friction(system, free, k)
+
+
+def with_drive_let_go(system: System, coordinate: str) -> System:
+    """The same without what moves a driven coordinate: a coordinate like others."""
+    model = system.scope.model
+    freed = altered(model.coordinates[coordinate], motion=None, rate=None, acceleration=None)
+    return system_of(altered(model, coordinates=Table({**model.coordinates, coordinate: freed})), system.modes)
 
 
 def _friction(system: System, free: System, k: int) -> Scalar:

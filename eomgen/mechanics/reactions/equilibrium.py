@@ -11,7 +11,6 @@ whole are taken as the loads give them, not from the bodies' equations.
 from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
-from dataclasses import dataclass
 from functools import cached_property
 from random import Random
 
@@ -26,6 +25,7 @@ from eomgen.mechanics.equations.body_numbers import BodyNumbers
 from eomgen.mechanics.equations.system import System
 from eomgen.mechanics.reactions.reactions import Reactions
 from eomgen.model.forces.load import Couple, PointForce
+from eomgen.records import dataclass
 from eomgen.symbolic.expression.graph import Scalar, is_zero
 from eomgen.symbolic.expression.node import State
 from eomgen.symbolic.expression.spatial import ZERO, Vector, apply, cross, plus, times

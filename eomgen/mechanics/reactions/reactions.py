@@ -7,7 +7,7 @@ they hold fewer independent ones, some reactions are indeterminate, and the null
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from functools import cached_property
 
 from eomgen.errors import DerivationError
@@ -23,6 +23,7 @@ from eomgen.mechanics.equations.system import System
 from eomgen.mechanics.initial_state.values_at_rest import values_where_at_rest
 from eomgen.mechanics.reactions.unheld import refuse_unheld
 from eomgen.model.driven import driving_ties
+from eomgen.records import dataclass
 from eomgen.symbolic.expression.derivative import substituted
 from eomgen.symbolic.expression.functions import sqrt
 from eomgen.symbolic.expression.graph import Node, Scalar, is_zero

@@ -11,13 +11,13 @@ Nothing is solved for, so nothing is divided by.
 from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
-from dataclasses import dataclass
 from functools import cached_property
 
 from eomgen.mechanics.balance.balance import Balance
 from eomgen.mechanics.balance.components import Component
 from eomgen.mechanics.balance.unit_wrenches import Axes, Effect
 from eomgen.mechanics.bodies.kinematics import GROUND
+from eomgen.records import dataclass
 from eomgen.symbolic.exact.normal_form import equal
 from eomgen.symbolic.expression.graph import Scalar, is_zero
 from eomgen.symbolic.expression.spatial import (

@@ -3,10 +3,10 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Collection, Iterator, Mapping
-from dataclasses import dataclass
 from typing import Any
 
 from eomgen.mechanics.small_motions.polynomial import Polynomial, factors_of
+from eomgen.records import dataclass
 from eomgen.symbolic.exact.expansion import Expansion
 from eomgen.symbolic.exact.normal_form import simplest
 from eomgen.symbolic.exact.terms import TooLarge, content

@@ -6,10 +6,11 @@ The laws of small motions are written once, over entries that are either exact s
 from __future__ import annotations
 
 from collections.abc import Collection, Iterable, Mapping, Sequence
-from dataclasses import dataclass, replace
 from dataclasses import field as dataclass_field
+from dataclasses import replace
 from typing import Any, Protocol
 
+from eomgen.records import dataclass
 from eomgen.symbolic.exact.normal_form import simplest
 from eomgen.symbolic.expression.derivative import substituted
 from eomgen.symbolic.expression.functions import inner, over
@@ -105,8 +106,18 @@ def at(field: NumberField, rows: Sequence[Sequence[Scalar]]) -> Entries:
 
 def matrix_product(field: NumberField, A: Entries, B: Entries) -> Entries:
     """A B."""
+    if _is_one(A) or _is_one(B):
+        return [[0 if is_zero(x) else field.tidy(x) for x in row] for row in (B if _is_one(A) else A)]
     columns = list(zip(*B, strict=True))
     return [[field.tidy(inner(row, column)) for column in columns] for row in A]
+
+
+def _is_one(A: Entries) -> bool:
+    """Whether A is the unit matrix, written so."""
+    n = len(A)
+    return n > 0 and all(
+        len(row) == n and all(type(x) is int and x == (i == j) for j, x in enumerate(row)) for i, row in enumerate(A)
+    )
 
 
 def matrix_sum(field: NumberField, *matrices: Entries) -> Entries:

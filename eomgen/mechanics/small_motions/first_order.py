@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
 from functools import cached_property
 from random import Random
 from typing import Any
@@ -18,6 +17,7 @@ from eomgen.mechanics.equations.wellposed import refuse_massless
 from eomgen.mechanics.first_integrals.closed_instant import position_equations
 from eomgen.mechanics.small_motions.field import Entries, Numbers, at
 from eomgen.mechanics.small_motions.reference import ReferenceMotion
+from eomgen.records import dataclass
 from eomgen.symbolic.expression.derivative import depends_on, jacobian, symbols_of
 from eomgen.symbolic.expression.functions import inner
 from eomgen.symbolic.expression.graph import Node, Scalar
@@ -69,12 +69,7 @@ class FirstOrder:
     @cached_property
     def residual(self) -> tuple[Scalar, ...]:
         """M a - forcing - J^T lam."""
-        graph, symbols = self.equations, self.system.symbols
-        pushes = list(zip(*graph.J, strict=True)) if graph.J else [()] * len(graph.M)
-        return tuple(
-            inner(row, symbols.a) - force - inner(push, symbols.lam)
-            for row, force, push in zip(graph.M, graph.forcing, pushes, strict=True)
-        )
+        return self.equations.residual[0]
 
     @cached_property
     def seen(self) -> frozenset[str]:
@@ -88,7 +83,7 @@ class FirstOrder:
         """(J u + sigma, J a + gamma)."""
         graph, symbols = self.equations, self.system.symbols
         velocities = tuple(inner(row, symbols.u) + bias for row, bias in zip(graph.J, graph.sigma, strict=True))
-        return velocities, tuple(inner(row, symbols.a) + bias for row, bias in zip(graph.J, graph.gamma, strict=True))
+        return velocities, self.equations.residual[1]
 
     @cached_property
     def derivatives(self) -> Mapping[str, ScalarRows]:

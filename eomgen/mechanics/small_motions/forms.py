@@ -76,15 +76,19 @@ def _strangeness(row: np.ndarray) -> int:
     return 2 if np.count_nonzero(row) != 1 else int(row.max() != 1)
 
 
-def equations_without_rounding(e: LinearEquations) -> LinearEquations:
+def equations_without_rounding(e: LinearEquations, nearby: np.ndarray) -> LinearEquations:
     """The equations in numbers, 0 where an entry is what is left of it: beside its row and column, or the whole.
 
     Of C also beside what inertia and stiffness make of a rate: sqrt(M K).
+
+    Args:
+        nearby: how large the entries of K are beside the place, where what vanishes there does not.
     """
     M, C, K, B = (floats(x) for x in (e.M, e.C, e.K, e.B))
     usual = np.sqrt(abs(M).max(initial=0) * abs(K).max(initial=0))
     masses = np.sqrt(abs(np.diagonal(M)))  # an entry of M is none beside those of its own two speeds, however light
     M = np.where(abs(M) > SOLVED * np.outer(masses, masses), M, 0.0)
+    K = np.where(abs(K) > COMPUTED * nearby, K, 0.0)
     return replace(e, M=[[*row] for row in M.tolist()], C=_rounded(C, usual), K=_rounded(K), B=_rounded(B))
 
 

@@ -3,15 +3,16 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Mapping, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from functools import cached_property
 
 import numpy as np
 
 from eomgen.errors import DerivationError, EomgenError, MissingValues, NotYet
 from eomgen.mechanics.equations.system import System
+from eomgen.mechanics.equilibria.higher_derivatives import states_beside
 from eomgen.mechanics.small_motions.dependent_values import with_followers
-from eomgen.mechanics.small_motions.field import Exact, Numbers
+from eomgen.mechanics.small_motions.field import Exact, NumberField, Numbers
 from eomgen.mechanics.small_motions.first_order import Choice, FirstOrder, choice_of, first_order_of
 from eomgen.mechanics.small_motions.forms import (
     equations_without_rounding,
@@ -41,6 +42,7 @@ from eomgen.mechanics.small_motions.steady import steady_start
 from eomgen.mechanics.small_motions.steady_family import family_of
 from eomgen.model.unknowns import refuse_motion
 from eomgen.model.values import exact_parameters
+from eomgen.records import dataclass
 from eomgen.symbolic.expression.graph import Node
 from eomgen.symbolic.expression.traversal import operations
 from eomgen.symbolic.numeric.evaluation import NoValue
@@ -62,6 +64,9 @@ class SmallMotions:
         whole: those in floats of every coordinate and speed, of which `numbers` are a part.
         left_out: coordinates on which nothing depends, and which have no speed of their own.
         first: the equations of motion from which they come.
+        choice: what stays independent in them.
+        kept: the coordinates that carry the motion, by their places among the independent ones.
+        wanted: the names of those that are asked; () for all.
     """
 
     reference: ReferenceMotion
@@ -70,9 +75,18 @@ class SmallMotions:
     whole: LinearEquations
     left_out: tuple[Node, ...]
     first: FirstOrder
+    choice: Choice
+    kept: tuple[int, ...]
+    wanted: tuple[str, ...]
 
     def __repr__(self) -> str:
         return f"<small motions of {self.reference.system.scope.model.name!r}>"
+
+    def over(self, field: NumberField) -> LinearEquations:
+        """The same equations with entries of another kind."""
+        whole = over_coordinates(field, reduced_equations(self.first, self.choice, self.reference, field), self.kept)
+        decided = over_coordinates(Numbers(self.reference.numbers), self.whole, self.kept)
+        return restricted(field, whole, self.wanted, decided)
 
     @property
     def is_second_order(self) -> bool:
@@ -144,16 +158,30 @@ def _about(first: FirstOrder, reference: ReferenceMotion, wanted: Sequence[str])
     refuse_corners(first, choice, reference, raw, kept)
     refuse_singular(Reducing(first, choice, Numbers(reference.numbers)), raw)
     decided = over_coordinates(Numbers(reference.numbers), raw, kept)
-    numbers = equations_without_rounding(restricted(Numbers(reference.numbers), decided, wanted, decided))
-    field = _exact_field(reference, first, choice)
-    exact = None
-    if field is not None:
-        whole = over_coordinates(field, reduced_equations(first, choice, reference, field), kept)
-        exact = restricted(field, whole, wanted, decided)
-    if exact is None:
-        _refuse_unvalued(reference)
+    numbers = restricted(Numbers(reference.numbers), decided, wanted, decided)
     left = tuple(q for k, q in enumerate(raw.coordinates) if k not in kept)
-    return SmallMotions(reference, numbers, exact, raw, left, first)
+    small = SmallMotions(reference, numbers, None, raw, left, first, choice, kept, tuple(wanted))
+    small = replace(small, numbers=equations_without_rounding(numbers, _stiffness_beside(small)))
+    field = _exact_field(reference, first, choice)
+    if field is None:
+        _refuse_unvalued(reference)
+        return small
+    return replace(small, exact=small.over(field))
+
+
+def _stiffness_beside(small: SmallMotions) -> np.ndarray:
+    """How large the entries of K are beside a place of rest that is known in numbers only."""
+    largest, reference = np.zeros_like(floats(small.numbers.K)), small.reference
+    if reference.place is None or reference.is_exact:
+        return largest
+    for there in states_beside(reference.numbers, reference.place.statics.q):
+        try:
+            found = floats(small.over(Numbers(there)).K)
+        except (DerivationError, NoValue, ZeroDivisionError, np.linalg.LinAlgError):
+            continue
+        if found.shape == largest.shape:
+            largest = np.maximum(largest, abs(found))
+    return largest
 
 
 def _steady_equations(

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from functools import cached_property
 from itertools import pairwise
 from random import Random
@@ -20,6 +19,7 @@ from eomgen.mechanics.small_motions.polynomial import (
 )
 from eomgen.mechanics.small_motions.spectrum import Mode, Spectrum, spectrum_of
 from eomgen.mechanics.small_motions.transfer import TransferFunction, transfer_functions, transfers_in_numbers
+from eomgen.records import dataclass
 from eomgen.symbolic.exact.normal_form import simplest
 from eomgen.symbolic.expression.graph import Node, Scalar, is_zero
 from eomgen.symbolic.expression.rational import Fraction
@@ -167,6 +167,16 @@ class Modes:
             DerivationError: a coordinate that is none of the linearized system.
         """
         equations = self.small.exact or self.small.numbers
+        row, column = self.place(function, *names)
+        return getattr(equations, MATRICES[function])[row][column], self.small.exact is not None
+
+    def place(self, function: str, *names: str) -> tuple[int, int]:
+        """The row and column of an entry of M, C or K.
+
+        Raises:
+            DerivationError: a coordinate that is none of the linearized system.
+        """
+        equations = self.small.exact or self.small.numbers
         rows = {u.name.removesuffix("'"): k for k, u in enumerate(equations.speeds)}
         if self.small.is_second_order:
             rows |= {q.name: k for k, q in enumerate(equations.coordinates)}
@@ -175,8 +185,7 @@ class Modes:
             if name not in known:
                 what = f"{function}({', '.join(names)}): '{name}' is no coordinate of the linearized system"
                 raise DerivationError(what, mend=f"one of {', '.join(known)}")
-        matrix = getattr(equations, MATRICES[function])
-        return matrix[rows[names[0]]][columns[names[1]]], self.small.exact is not None
+        return rows[names[0]], columns[names[1]]
 
     def frequency(self, k: int) -> Frequency:
         """The k-th frequency, from 1.

@@ -6,13 +6,13 @@ p(s) = det [ s 1 - F,  -E ;  K,  s M + C ],      of second order  p(s) = det(s^2
 from __future__ import annotations
 
 from collections.abc import Callable, Collection, Iterator, Mapping
-from dataclasses import dataclass
 from typing import Any
 
 from eomgen.errors import DerivationError
 from eomgen.mechanics.small_motions.field import Entries
 from eomgen.mechanics.small_motions.forms import is_second_order
 from eomgen.mechanics.small_motions.reduction import LinearEquations
+from eomgen.records import dataclass
 from eomgen.symbolic.exact.expansion import Expansion
 from eomgen.symbolic.exact.factoring import factored, square_root
 from eomgen.symbolic.exact.normal_form import simplest

@@ -20,7 +20,6 @@ and Z^T in front, by which dlam goes:
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from functools import cached_property
 
 from eomgen.mechanics.small_motions.field import (
@@ -35,6 +34,7 @@ from eomgen.mechanics.small_motions.field import (
     negative,
 )
 from eomgen.mechanics.small_motions.first_order import Choice, FirstOrder
+from eomgen.records import dataclass
 from eomgen.symbolic.expression.functions import inner
 from eomgen.symbolic.expression.graph import Node
 from eomgen.symbolic.numeric.tolerances import SOLVED

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from functools import cached_property
 from random import Random
 from typing import Any
@@ -22,6 +22,7 @@ from eomgen.mechanics.initial_state.values_at_rest import values_of_parameters
 from eomgen.mechanics.small_motions.family import Family
 from eomgen.model.contacts import contacts_of
 from eomgen.model.values import exact_parameters
+from eomgen.records import dataclass
 from eomgen.symbolic.expression.derivative import depends_on, substituted
 from eomgen.symbolic.expression.graph import Node, Scalar
 from eomgen.symbolic.numeric.evaluation import evaluate, fifty_digits

@@ -13,13 +13,15 @@ import numpy as np
 from eomgen.mechanics.small_motions.first_order import FirstOrder
 from eomgen.symbolic.expression.graph import Node, Scalar
 from eomgen.symbolic.numeric.evaluation import FLOAT, evaluate
+from eomgen.symbolic.numeric.tolerances import RANK
 
 
-def slopes_at(first: FirstOrder, state: Mapping[Node, Any]) -> tuple[np.ndarray, np.ndarray]:
+def slopes_at(first: FirstOrder, state: Mapping[Node, Any], *, single: bool = False) -> tuple[np.ndarray, np.ndarray]:
     """(d x'/d x, d x'/d w) at a state, x = (q, u); where ties follow from others their multipliers are the least.
 
     Args:
         state: t, parameters, inputs, q and u as floats.
+        single: nan where a change opens ties that follow from others: no acceleration then closes them all.
     """
     e, s = first.equations, first.system.symbols
     nq, nu, k, w = len(s.q), len(s.u), len(e.J), len(s.inputs)
@@ -31,7 +33,11 @@ def slopes_at(first: FirstOrder, state: Mapping[Node, Any]) -> tuple[np.ndarray,
     columns = {"R_q": nq, "R_u": nu, "W": w, "A_q": nq, "A_u": nu, "S_q": nq}
     at = {name: _matrix(state, first.derivatives[name], n) for name, n in columns.items()}
     slopes = np.block([[at["R_q"], at["R_u"], -at["W"]], [at["A_q"], at["A_u"], np.zeros((k, w))]])
-    below = 0.0 - _solved(K, slopes, k)[:nu]
+    changes = _solved(K, slopes, k)
+    below = 0.0 - changes[:nu]
+    if single:
+        left = abs(K @ changes - slopes).max(axis=0, initial=0.0)
+        below[:, left > RANK * (1.0 + abs(slopes).max(axis=0, initial=0.0))] = np.nan
     both = np.vstack([np.hstack([at["S_q"], N, np.zeros((nq, w))]), below])
     return both[:, : nq + nu], both[:, nq + nu :]
 

@@ -9,7 +9,6 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
 
 import numpy as np
 
@@ -18,6 +17,7 @@ from eomgen.mechanics.small_motions.forms import floats
 from eomgen.mechanics.small_motions.linearization import SmallMotions, state_matrix_of
 from eomgen.mechanics.small_motions.polynomial import Polynomial
 from eomgen.mechanics.small_motions.reference import EQUILIBRIUM
+from eomgen.records import dataclass
 from eomgen.symbolic.expression.graph import Node
 from eomgen.symbolic.numeric.tolerances import COMPUTED, ITERATED, RANK, ROUNDING, SHARE, SOLVED, SUMMED
 

@@ -15,7 +15,7 @@ stay the same about axes that stand still, R dtheta with T R^T in the place of T
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from typing import Any
 
 from eomgen.mechanics.equations.system import System
@@ -34,6 +34,7 @@ from eomgen.mechanics.small_motions.reduction import LinearEquations
 from eomgen.mechanics.small_motions.reference import ReferenceMotion
 from eomgen.model.joints.orientation import rotation_of
 from eomgen.model.quaternions import quaternions_of
+from eomgen.records import dataclass
 from eomgen.symbolic.expression.graph import Node
 from eomgen.symbolic.expression.spatial import Matrix, apply, vector_of
 from eomgen.symbolic.numeric.evaluation import fifty_digits

@@ -6,12 +6,12 @@ x = (dq_i, du_i),   A = [F, E; -M^-1 K, -M^-1 C],   B = [0; M^-1 B_w]
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
 
 from eomgen.errors import UsageError
 from eomgen.mechanics.small_motions.field import Entries, Exact, matrix_solution
 from eomgen.mechanics.small_motions.linearization import SmallMotions
 from eomgen.mechanics.small_motions.reduction import LinearEquations
+from eomgen.records import dataclass
 from eomgen.symbolic.expression.traversal import operations
 
 MOST = 4  # speeds of a state space that is written exactly

@@ -11,7 +11,6 @@ leaves enough to move: `start` of a coordinate without `near`, `speed` of a coor
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
 from functools import cached_property
 from typing import Any
 
@@ -24,6 +23,7 @@ from eomgen.mechanics.small_motions.first_order import Choice, FirstOrder, choic
 from eomgen.mechanics.small_motions.forms import floats
 from eomgen.mechanics.small_motions.reduction import LinearEquations, Reducing, dependent_speeds, unsettled
 from eomgen.mechanics.small_motions.reference import ReferenceMotion
+from eomgen.records import dataclass
 from eomgen.symbolic.expression.graph import Node
 from eomgen.symbolic.expression.node import State
 from eomgen.symbolic.numeric.evaluation import NoValue, evaluate, fifty_digits

@@ -10,7 +10,7 @@ multipliers, dependent speeds and accelerations eliminated, which stand in them 
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from functools import cached_property
 
 import numpy as np
@@ -25,6 +25,7 @@ from eomgen.mechanics.small_motions.first_order import Choice, FirstOrder, choic
 from eomgen.mechanics.small_motions.reduction import Reducing, dependent_speeds
 from eomgen.mechanics.small_motions.reference import ReferenceMotion
 from eomgen.mechanics.small_motions.steady import Here
+from eomgen.records import dataclass
 from eomgen.symbolic.exact.normal_form import simplest
 from eomgen.symbolic.expression.derivative import depends_on, substituted
 from eomgen.symbolic.expression.graph import Node, Scalar, is_zero

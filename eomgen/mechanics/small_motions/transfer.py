@@ -3,13 +3,13 @@
 from __future__ import annotations
 
 from collections.abc import Collection, Mapping
-from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
 
 from eomgen.mechanics.small_motions.polynomial import Polynomial, laplace_variable, pencil_of, polynomial_in
 from eomgen.mechanics.small_motions.reduction import LinearEquations
+from eomgen.records import dataclass
 from eomgen.symbolic.exact.expansion import Expansion
 from eomgen.symbolic.exact.quotient import reduced
 from eomgen.symbolic.exact.terms import TooLarge

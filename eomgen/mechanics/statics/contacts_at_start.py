@@ -8,7 +8,7 @@ hold, a contact is taken as closed, pushing along its normal, and that is said.
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, field
+from dataclasses import field
 from functools import cached_property
 from random import Random
 
@@ -25,6 +25,7 @@ from eomgen.mechanics.statics.rest_contacts import modes_at_rest
 from eomgen.model.contacts import Contact, contacts_of
 from eomgen.model.parts import Model
 from eomgen.model.values import exact_parameters
+from eomgen.records import dataclass
 from eomgen.symbolic.expression.derivative import symbols_of
 from eomgen.symbolic.expression.graph import Scalar
 from eomgen.symbolic.expression.node import State

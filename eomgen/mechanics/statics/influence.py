@@ -11,7 +11,6 @@ body. For the force in a section the section is released (`section_release`).
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Sequence
-from dataclasses import dataclass
 from itertools import pairwise
 from typing import TypeVar
 
@@ -24,6 +23,7 @@ from eomgen.mechanics.structures.structure import Structure
 from eomgen.mechanics.structures.velocity_plan import VelocityPlan
 from eomgen.model.findings import nearest
 from eomgen.model.trusses import is_node
+from eomgen.records import dataclass
 from eomgen.symbolic.expression.derivative import substituted
 from eomgen.symbolic.expression.expressions import Call, single_call
 from eomgen.symbolic.expression.graph import Scalar

@@ -8,13 +8,14 @@ left out.
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, field
+from dataclasses import field
 from itertools import pairwise
 from typing import Any
 
 from eomgen.errors import DerivationError
 from eomgen.mechanics.bodies.kinematics import Motion
 from eomgen.mechanics.initial_state.values_at_rest import values_of_parameters
+from eomgen.records import dataclass
 from eomgen.symbolic.exact.normal_form import readable, readable_all, simplest
 from eomgen.symbolic.exact.signs import sign_of_terms
 from eomgen.symbolic.expression.derivative import substituted, symbols_of

@@ -7,7 +7,7 @@ a linear function of the place. All in the axes of the body.
 from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from functools import cached_property
 
 from eomgen.errors import DerivationError
@@ -19,6 +19,7 @@ from eomgen.mechanics.fields.field import field_of
 from eomgen.mechanics.reactions.reactions import Reactions
 from eomgen.mechanics.statics.member_axis import Sizes
 from eomgen.model.forces.load import Couple, PointForce
+from eomgen.records import dataclass
 from eomgen.symbolic.expression.functions import over, sqrt
 from eomgen.symbolic.expression.graph import Scalar, is_zero
 from eomgen.symbolic.expression.spatial import ZERO, Vector, apply, dot, minus, plus, times, transposed, vector_of

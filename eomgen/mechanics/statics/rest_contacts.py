@@ -7,12 +7,12 @@ only push, or only pull, needs N >= 0.
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
 
 from eomgen.mechanics.bodies.contact_modes import ContactMode, ContactModes
 from eomgen.mechanics.statics.two_ways import StaticReaction, StaticReactions
 from eomgen.model.contacts import contacts_of, rough_contacts
 from eomgen.model.parts import Model
+from eomgen.records import dataclass
 from eomgen.symbolic.expression.functions import function, sqrt
 from eomgen.symbolic.expression.graph import Scalar
 

@@ -12,7 +12,6 @@ fibre: of a beam drawn from left to right the lower one. What a rod weighs, and 
 from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
-from dataclasses import dataclass
 from functools import cached_property
 from itertools import pairwise
 
@@ -20,6 +19,7 @@ from eomgen.errors import DerivationError
 from eomgen.mechanics.reactions.reactions import Reactions
 from eomgen.mechanics.statics.member_axis import Leg, MemberAxis, Sizes, axis_of, sizes_of
 from eomgen.mechanics.statics.member_loads import MemberLoad, MemberLoads
+from eomgen.records import dataclass
 from eomgen.symbolic.expression.functions import over, sqrt
 from eomgen.symbolic.expression.graph import Scalar
 from eomgen.symbolic.expression.rational import Fraction

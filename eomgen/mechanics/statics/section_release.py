@@ -11,7 +11,6 @@ and the part before it moves by v + w.
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import dataclass
 
 from eomgen.errors import DerivationError, UsageError
 from eomgen.mechanics.balance.named_reactions import argument_name
@@ -21,6 +20,7 @@ from eomgen.mechanics.statics.member_loads import place_of
 from eomgen.mechanics.structures.structure import Structure
 from eomgen.model.findings import nearest
 from eomgen.model.trusses import is_node
+from eomgen.records import dataclass
 from eomgen.symbolic.expression.derivative import substituted
 from eomgen.symbolic.expression.expressions import Call, Reference, parse
 from eomgen.symbolic.expression.graph import Scalar, is_zero

@@ -8,7 +8,6 @@ nothing else: the loads' works are those of their own points, line loads by the 
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
 from functools import cached_property
 
 from eomgen.errors import DerivationError, ExpressionError, UsageError
@@ -26,6 +25,7 @@ from eomgen.mechanics.statics.virtual_work import (
 from eomgen.mechanics.structures.loose_motion import refuse_loose
 from eomgen.mechanics.structures.structure import Structure, structure_of
 from eomgen.model.findings import nearest
+from eomgen.records import dataclass
 from eomgen.symbolic.exact.equality import equal_at_random_states
 from eomgen.symbolic.exact.normal_form import simplest
 from eomgen.symbolic.expression.derivative import substituted

@@ -8,7 +8,6 @@ With one reaction R released the bodies have one motion. In it all other reactio
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass
 
 from eomgen.mechanics.balance.named_reactions import NamedReaction, named_reactions
 from eomgen.mechanics.balance.unit_wrenches import Effect, efforts_of
@@ -18,6 +17,7 @@ from eomgen.mechanics.structures.structure import Structure
 from eomgen.mechanics.structures.velocity_plan import VelocityPlan
 from eomgen.model.forces.load import Couple, PointForce, SpreadLoad, UniformField
 from eomgen.model.outputs import FUNCTIONS
+from eomgen.records import dataclass
 from eomgen.symbolic.expression.derivative import substituted
 from eomgen.symbolic.expression.functions import over
 from eomgen.symbolic.expression.graph import Node, Scalar

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
-from dataclasses import dataclass
 from typing import Any
 
 from eomgen.mechanics.equations.system import System
@@ -11,6 +10,7 @@ from eomgen.mechanics.fields.field import VelocityField
 from eomgen.mechanics.structures.velocity_plan import PlanCenter, VelocityPlan
 from eomgen.model.constraints.members import trusses_of
 from eomgen.model.trusses import is_node
+from eomgen.records import dataclass
 from eomgen.symbolic.expression.functions import over
 from eomgen.symbolic.expression.graph import Scalar
 from eomgen.symbolic.expression.spatial import ZERO, Vector, cross, dot, minus, plus, vector_of
@@ -105,13 +105,17 @@ def _members(plan: VelocityPlan) -> Iterable[RigidBlock]:
     """The moving members in the plane that keep their length, each by itself: w = r x (v_2 - v_1) / r.r"""
     if plan.system.scope.model.space != "plane":
         return
-    for truss, member, (first, second) in members_of(plan.system):
-        if first not in plan.moving and second not in plan.moving:
-            continue
-        v, position = plan.raw_velocity((first, ZERO)), plan.position((first, ZERO))
-        apart = minus(plan.raw_velocity((second, ZERO)), v)
-        along = minus(plan.position((second, ZERO)), position)
-        if plan.vanishes((dot(apart, along),)):
+    moving = {*plan.moving}
+    members = [each for each in members_of(plan.system) if not moving.isdisjoint(each[2])]
+    nodes = dict.fromkeys(node for _, _, ends in members for node in ends)
+    flat = iter(plan.numbers([x for n in nodes for x in (*plan.raw_velocity((n, ZERO)), *plan.position((n, ZERO)))]))
+    known = {n: [next(flat) for _ in range(6)] for n in nodes}
+    for truss, member, (first, second) in members:
+        change = [x - y for x, y in zip(known[second], known[first], strict=True)]
+        if abs(sum(v * r for v, r in zip(change[:3], change[3:], strict=True))) <= ZERO_AT_50:
+            v, position = plan.raw_velocity((first, ZERO)), plan.position((first, ZERO))
+            apart = minus(plan.raw_velocity((second, ZERO)), v)
+            along = minus(plan.position((second, ZERO)), position)
             spin: Vector = (0, 0, over(cross(along, apart)[2], dot(along, along)))
             moved = plus(v, cross(spin, minus(ZERO, position)))
             yield RigidBlock((), ((truss, member),), (), spin, (moved[0], moved[1], 0))

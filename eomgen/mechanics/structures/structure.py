@@ -13,7 +13,6 @@ A force that is asked for ([unknowns]) holds the bodies like a reaction.
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
 from functools import cached_property
 from typing import Any
 
@@ -26,10 +25,13 @@ from eomgen.mechanics.constraints.ties import holds_identically
 from eomgen.mechanics.equations.system import System
 from eomgen.mechanics.initial_state.values_at_rest import values_for, values_where_at_rest
 from eomgen.mechanics.structures.velocity_plan import VelocityPlan
+from eomgen.model.forces.load import BodyPoint
+from eomgen.records import dataclass
 from eomgen.symbolic.exact.normal_form import readable_all
 from eomgen.symbolic.expression.derivative import derivative, substituted, tangent
 from eomgen.symbolic.expression.graph import Node, Scalar, is_zero
 from eomgen.symbolic.expression.node import State
+from eomgen.symbolic.expression.spatial import Vector
 from eomgen.symbolic.numeric.dense import sparse_rank
 from eomgen.symbolic.numeric.evaluation import digits_at, evaluate, fifty_digits
 from eomgen.symbolic.numeric.work import Work
@@ -179,7 +181,12 @@ class Structure:
         velocities: list[list[Scalar]] = [[0] * 6 for _ in self.system.motion.links]
         for (body, direction), value in zip(self.columns, self._readable(xi), strict=True):
             velocities[body][direction] = value
-        return VelocityPlan(self.system, self.at, self._solved.parameters, tuple(tuple(six) for six in velocities))
+        rows = tuple(tuple(six) for six in velocities)
+        return VelocityPlan(self.system, self.at, self._solved.parameters, rows, self._places)
+
+    @cached_property
+    def _places(self) -> dict[BodyPoint, Vector]:
+        return {}
 
     def _readable(self, scalars: Sequence[Scalar]) -> tuple[Scalar, ...]:
         return readable_all(tuple(scalars), Work.ANSWER, self.system.scope.positive)

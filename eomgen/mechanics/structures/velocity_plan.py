@@ -7,7 +7,8 @@ of a line load q: the integral of q(s) . v(s) ds
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import field as dataclass_field
+from dataclasses import replace
 from functools import cached_property
 from typing import Any
 
@@ -16,6 +17,7 @@ from eomgen.mechanics.bodies.loads import in_ground_axes
 from eomgen.mechanics.equations.system import System
 from eomgen.mechanics.fields.field import VelocityField, rotation_center
 from eomgen.model.forces.load import BodyPoint, Couple, PointForce, SpreadLoad
+from eomgen.records import dataclass
 from eomgen.symbolic.exact.normal_form import Legibly, readable_all
 from eomgen.symbolic.expression.derivative import substituted
 from eomgen.symbolic.expression.functions import sqrt
@@ -51,12 +53,14 @@ class VelocityPlan:
         at: the configuration.
         parameters: values of 50 digits at which the motion is what it is for all others, or is asked for.
         velocities: of each body (velocity of the mass centre, spin) in the axes of its equations, 6.
+        places: where those points are that were asked for; plans of one structure share them.
     """
 
     system: System
     at: Mapping[Node, Scalar]
     parameters: Mapping[Node, Any]
     velocities: tuple[tuple[Scalar, ...], ...]
+    places: dict[BodyPoint, Vector] = dataclass_field(default_factory=dict, compare=False, repr=False)
 
     def scaled(self, k: Scalar) -> VelocityPlan:
         """k times as fast."""
@@ -116,7 +120,9 @@ class VelocityPlan:
 
     def position(self, place: BodyPoint) -> Vector:
         """Of a place in this configuration, ground axes."""
-        return vector_of(substituted(self.system.motion.position(place), self.at))
+        if place not in self.places:
+            self.places[place] = vector_of(substituted(self.system.motion.position(place), self.at))
+        return self.places[place]
 
     def mass_center(self, body: str) -> Vector:
         return self.position((body, self._axes.masses[self.system.motion.index[body]].com))
@@ -161,7 +167,8 @@ class VelocityPlan:
         """Whether all of them are 0, beside what they are multiples of."""
         if not all(is_zero(x) for x in scalars if type(x) is not Node):
             return False
-        size = max(map(abs, self.numbers(beside)), default=0)
+        known = beside if not any(type(x) is Node for x in beside) else self.numbers(beside)
+        size = max(map(abs, known), default=0)
         return all(abs(x) <= ZERO_AT_50 * size for x in self.numbers([x for x in scalars if type(x) is Node]))
 
     def numbers(self, scalars: Sequence[Scalar]) -> list[Any]:

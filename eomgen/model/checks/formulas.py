@@ -6,6 +6,7 @@ from eomgen.model.arithmetic import in_order
 from eomgen.model.catalog import Catalog
 from eomgen.model.fields import EVERYTHING, Leaf, is_mixed, mixed
 from eomgen.model.findings import Finding, article, nearest, whereabouts
+from eomgen.model.outputs import FUNCTIONS
 from eomgen.model.positions import DocumentPath
 from eomgen.symbolic.expression.expressions import Expression
 from eomgen.symbolic.expression.habits import DEGREES, degrees, meant_name
@@ -59,6 +60,8 @@ def _declare(catalog: Catalog, name: str) -> str:
         return "outputs do not refer to outputs: write its expression here"
     if name in catalog.table("bodies"):
         return "this is a body: ask for one of its quantities, like angle(...)"
+    if name in FUNCTIONS:
+        return f"a function has its arguments behind it: {name}({'' if not FUNCTIONS[name].kinds else '...'})"
     return f"declare '{name.rstrip(chr(39))}' in [parameters]"
 
 

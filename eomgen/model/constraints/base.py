@@ -2,7 +2,6 @@
 
 from abc import ABC, abstractmethod
 from collections.abc import Iterator
-from dataclasses import dataclass
 from typing import ClassVar
 
 from eomgen.model.catalog import Catalog
@@ -14,6 +13,7 @@ from eomgen.model.forces.load import LoadContext
 from eomgen.model.part import Part
 from eomgen.model.positions import DocumentPath
 from eomgen.model.symbols import ReactionSymbolsField
+from eomgen.records import dataclass
 from eomgen.symbolic.expression.graph import Scalar
 
 

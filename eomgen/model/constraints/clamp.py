@@ -1,6 +1,5 @@
 """Clamp: a point of a body is built in."""
 
-from dataclasses import dataclass
 from typing import ClassVar
 
 from eomgen.model.constraints.base import Constraint
@@ -9,6 +8,7 @@ from eomgen.model.constraints.plane import same_turn
 from eomgen.model.constraints.row import TieRow
 from eomgen.model.forces.load import LoadContext
 from eomgen.model.kinds import PointName, Points
+from eomgen.records import dataclass
 from eomgen.symbolic.expression.graph import Scalar
 from eomgen.symbolic.expression.spatial import IDENTITY
 

@@ -1,7 +1,6 @@
 """Equation: a tie written as an expression."""
 
 from collections.abc import Mapping
-from dataclasses import dataclass
 from typing import ClassVar
 
 from eomgen.model.constraints.base import Constraint
@@ -9,6 +8,7 @@ from eomgen.model.constraints.measured import Measured
 from eomgen.model.constraints.row import TieRow
 from eomgen.model.forces.load import LoadContext, Push
 from eomgen.model.kinds import Gap, VelocityLaw
+from eomgen.records import dataclass
 from eomgen.symbolic.expression.expressions import Call
 from eomgen.symbolic.expression.spatial import AnyScalar
 

@@ -1,6 +1,5 @@
 """Gear: two bodies turn in a fixed ratio."""
 
-from dataclasses import dataclass
 from typing import ClassVar
 
 from eomgen.model.constraints.base import Constraint
@@ -8,6 +7,7 @@ from eomgen.model.constraints.plane import same_turn
 from eomgen.model.constraints.row import TieRow
 from eomgen.model.forces.load import Couple, LoadContext, Push
 from eomgen.model.kinds import Pure, TwoBodies
+from eomgen.records import dataclass
 from eomgen.symbolic.expression.spatial import AnyScalar, times
 
 

@@ -1,6 +1,5 @@
 """Guide: a body slides without turning."""
 
-from dataclasses import dataclass
 from typing import ClassVar
 
 from eomgen.model.constraints.base import Constraint
@@ -9,6 +8,7 @@ from eomgen.model.constraints.plane import same_turn
 from eomgen.model.constraints.row import TieRow, direction_of, normals_of
 from eomgen.model.forces.load import LoadContext, PointForce
 from eomgen.model.kinds import Direction, PointName
+from eomgen.records import dataclass
 from eomgen.symbolic.expression.graph import Scalar
 from eomgen.symbolic.expression.spatial import IDENTITY, dot
 

@@ -1,6 +1,5 @@
 """Link: a massless rod or wire of constant length."""
 
-from dataclasses import dataclass
 from typing import ClassVar
 
 from eomgen.errors import ModelError
@@ -9,6 +8,7 @@ from eomgen.model.constraints.meeting import Thread
 from eomgen.model.constraints.row import TieRow
 from eomgen.model.forces.load import LoadContext, PointForce
 from eomgen.model.kinds import Flag, Length, TwoPoints
+from eomgen.records import dataclass
 from eomgen.symbolic.expression.functions import over, sqrt
 from eomgen.symbolic.expression.rational import Fraction
 from eomgen.symbolic.expression.spatial import AnyScalar, Vector, dot, minus, times, vector_of

@@ -7,11 +7,10 @@ vx(P, B), omega_x(A, B)  the same pushes; e is an axis of the ground, or of the 
 
 from __future__ import annotations
 
-from dataclasses import dataclass
-
 from eomgen.errors import ModelError
 from eomgen.model.constraints.plane import Touch, angle_of, opposite
 from eomgen.model.forces.load import BodyPoint, Couple, LoadContext, Push
+from eomgen.records import dataclass
 from eomgen.symbolic.expression.expressions import Call, Reference
 from eomgen.symbolic.expression.spatial import IDENTITY, ZERO, AnyScalar, Vector, apply, dot, minus, times
 

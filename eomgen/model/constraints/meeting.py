@@ -1,7 +1,8 @@
 """What touches what in a tie, as it is declared: fields and names alone, no formulas. Proofs look at them."""
 
-from dataclasses import dataclass
 from typing import Any
+
+from eomgen.records import dataclass
 
 
 @dataclass(frozen=True)

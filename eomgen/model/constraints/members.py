@@ -1,7 +1,7 @@
 """Members: the two-force bars of a truss. A model holds them once its trusses are taken apart; no file names them."""
 
 from collections.abc import Mapping
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from typing import Annotated, ClassVar
 
 from eomgen.errors import ModelError
@@ -12,6 +12,7 @@ from eomgen.model.containers import ListRule
 from eomgen.model.fields import NameRule
 from eomgen.model.forces.load import LoadContext, PointForce
 from eomgen.model.kinds import Text
+from eomgen.records import dataclass
 from eomgen.symbolic.expression.expressions import Call, Reference
 from eomgen.symbolic.expression.functions import over, sqrt
 from eomgen.symbolic.expression.graph import Node

@@ -1,12 +1,12 @@
 """Motion: a coordinate is driven through a tie, which gives its driving force."""
 
-from dataclasses import dataclass
 from typing import ClassVar
 
 from eomgen.model.constraints.base import Constraint
 from eomgen.model.constraints.row import TieRow
 from eomgen.model.forces.load import LoadContext
 from eomgen.model.kinds import CoordinateName, MotionOfCoordinate
+from eomgen.records import dataclass
 from eomgen.symbolic.expression.expressions import as_expression
 
 

@@ -1,6 +1,5 @@
 """Pin: a hinge of points."""
 
-from dataclasses import dataclass
 from typing import ClassVar
 
 from eomgen.model.constraints.base import Constraint
@@ -8,6 +7,7 @@ from eomgen.model.constraints.row import AXIS_NAMES, TieRow, scene_axes
 from eomgen.model.forces.load import BodyPoint, Couple, LoadContext, PointForce
 from eomgen.model.joints.base import across, unit
 from eomgen.model.kinds import Points, SpaceDirection
+from eomgen.records import dataclass
 from eomgen.symbolic.expression.graph import Scalar
 from eomgen.symbolic.expression.spatial import IDENTITY, Vector, apply, cross, dot, matrix_of, minus, times, transposed
 

@@ -2,10 +2,9 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
-
 from eomgen.model.constraints.row import TieRow
 from eomgen.model.forces.load import BodyPoint, Couple, LoadContext, PointForce, Push
+from eomgen.records import dataclass
 from eomgen.symbolic.expression.spatial import ZERO, AnyScalar, Vector, cross, times
 
 

@@ -1,7 +1,6 @@
 """Rolling: a round body on a line, a circle or another body; in space on a plane, a ball or a pipe."""
 
 from collections.abc import Iterator
-from dataclasses import dataclass
 from typing import Annotated, Any, ClassVar
 
 from eomgen.errors import ModelError
@@ -28,6 +27,7 @@ from eomgen.model.friction import FrictionLaw
 from eomgen.model.kinds import BodyName, Flag, Length, OwnPointName, Radius, Size, SpaceDirection
 from eomgen.model.part import PartRule
 from eomgen.model.positions import DocumentPath
+from eomgen.records import dataclass
 from eomgen.symbolic.expression.spatial import AnyScalar, minus
 
 TrackField = Annotated[Track, PartRule(Track)]

@@ -13,11 +13,10 @@ is an extreme one, it may wander in the body, and the gap's rate is still n . v 
 
 from __future__ import annotations
 
-from dataclasses import dataclass
-
 from eomgen.errors import ModelError
 from eomgen.model.forces.load import LoadContext
 from eomgen.model.joints.base import unit
+from eomgen.records import dataclass
 from eomgen.symbolic.exact.normal_form import readable
 from eomgen.symbolic.expression.functions import cos, over, sin, sqrt
 from eomgen.symbolic.expression.graph import Node

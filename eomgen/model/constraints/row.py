@@ -2,10 +2,9 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
-
 from eomgen.model.forces.load import Couple, LoadContext, PointForce
 from eomgen.model.joints.base import across, unit
+from eomgen.records import dataclass
 from eomgen.symbolic.expression.spatial import AnyScalar, Vector
 
 

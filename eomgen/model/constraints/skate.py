@@ -1,7 +1,6 @@
 """Skate: a knife edge."""
 
 from collections.abc import Iterator
-from dataclasses import dataclass
 from typing import ClassVar
 
 from eomgen.model.catalog import Catalog, not_in_the_plane
@@ -14,6 +13,7 @@ from eomgen.model.findings import Finding
 from eomgen.model.forces.load import LoadContext, PointForce
 from eomgen.model.kinds import Direction, PointName, SpaceDirection
 from eomgen.model.positions import DocumentPath
+from eomgen.records import dataclass
 from eomgen.symbolic.expression.functions import over
 from eomgen.symbolic.expression.spatial import apply, cross, dot, times
 

@@ -1,7 +1,7 @@
 """Slider: a point stays on the line of a body."""
 
 from collections.abc import Iterator
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from typing import Any, ClassVar
 
 from eomgen.errors import ModelError
@@ -15,6 +15,7 @@ from eomgen.model.forces.load import LoadContext
 from eomgen.model.friction import FrictionLaw
 from eomgen.model.kinds import BodyName, Flag, PointName
 from eomgen.model.positions import DocumentPath
+from eomgen.records import dataclass
 from eomgen.symbolic.expression.spatial import apply, dot, minus
 
 

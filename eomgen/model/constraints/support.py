@@ -1,6 +1,6 @@
 """Support: a point stays on a line or a plane."""
 
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from typing import ClassVar
 
 from eomgen.model.constraints.base import Constraint
@@ -10,6 +10,7 @@ from eomgen.model.constraints.row import TieRow, direction_of
 from eomgen.model.forces.load import LoadContext, PointForce
 from eomgen.model.friction import FrictionLaw
 from eomgen.model.kinds import Direction, Flag, GroundPlace, PointName
+from eomgen.records import dataclass
 from eomgen.symbolic.expression.spatial import Vector, dot, minus, vector_of
 
 

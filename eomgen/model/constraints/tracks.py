@@ -1,6 +1,5 @@
 """What a round body rolls on: a plane (in the plane a line), a ball or pipe (in the plane a circle)."""
 
-from dataclasses import dataclass
 from typing import ClassVar
 
 from eomgen.errors import ModelError
@@ -11,6 +10,7 @@ from eomgen.model.forces.load import BodyPoint, LoadContext
 from eomgen.model.joints.base import unit
 from eomgen.model.kinds import Direction, Flag, GroundPlace, Length, SpaceDirection
 from eomgen.model.part import Part
+from eomgen.records import dataclass
 from eomgen.symbolic.expression.expressions import Expression
 from eomgen.symbolic.expression.functions import over
 from eomgen.symbolic.expression.rational import Fraction

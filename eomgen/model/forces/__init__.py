@@ -8,6 +8,7 @@ from eomgen.model.forces.distributed import Distributed
 from eomgen.model.forces.force import PointForce
 from eomgen.model.forces.generalized import Generalized
 from eomgen.model.forces.gravity import Gravity
+from eomgen.model.forces.kinetic import Kinetic
 from eomgen.model.forces.potential import Potential
 from eomgen.model.forces.spring import Spring
 from eomgen.model.forces.torsion_damper import TorsionDamper
@@ -24,6 +25,7 @@ ALL = (
     TorsionDamper,
     Between,
     Potential,
+    Kinetic,
     Generalized,
 )
 
@@ -36,6 +38,7 @@ __all__ = [
     "Force",
     "Generalized",
     "Gravity",
+    "Kinetic",
     "PointForce",
     "Potential",
     "Spring",

@@ -1,7 +1,6 @@
 """What every force is: fields that say where it acts and by which law."""
 
 from collections.abc import Iterator
-from dataclasses import dataclass
 from typing import ClassVar
 
 from eomgen.model.catalog import Catalog
@@ -10,6 +9,8 @@ from eomgen.model.forces.element import Element
 from eomgen.model.forces.load import Load, LoadContext, SpreadLoad
 from eomgen.model.part import Part
 from eomgen.model.positions import DocumentPath
+from eomgen.records import dataclass
+from eomgen.symbolic.expression.expressions import Expression
 from eomgen.symbolic.expression.spatial import AnyScalar
 
 
@@ -35,6 +36,11 @@ class Force(Part):
     @property
     def element(self) -> Element | None:
         """What it is between two points or two bodies; None for what acts otherwise."""
+        return None
+
+    @property
+    def kinetic(self) -> Expression | None:
+        """T [J] of what moves and is no body; None of a force that has none."""
         return None
 
     def loads(self, scene: LoadContext) -> tuple[Load, ...]:

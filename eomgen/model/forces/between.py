@@ -1,6 +1,5 @@
 """Between: a pull between two points as a law of their distance."""
 
-from dataclasses import dataclass
 from typing import ClassVar
 
 from eomgen.model.forces.base import Force
@@ -8,6 +7,7 @@ from eomgen.model.forces.element import Element
 from eomgen.model.forces.load import Load, LoadContext
 from eomgen.model.forces.reach import reach
 from eomgen.model.kinds import Pull, TwoPoints
+from eomgen.records import dataclass
 from eomgen.symbolic.expression.spatial import AnyScalar
 
 

@@ -1,11 +1,11 @@
 """Couple: on a body."""
 
-from dataclasses import dataclass
 from typing import ClassVar
 
 from eomgen.model.forces import load
 from eomgen.model.forces.base import Force
 from eomgen.model.kinds import AxesName, BodyName, CoupleFormula, OwnPointName
+from eomgen.records import dataclass
 
 
 @dataclass(frozen=True, kw_only=True)

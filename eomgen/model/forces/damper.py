@@ -1,6 +1,5 @@
 """Damper: between two points."""
 
-from dataclasses import dataclass
 from typing import ClassVar
 
 from eomgen.model.forces.base import Force
@@ -8,6 +7,7 @@ from eomgen.model.forces.element import Element
 from eomgen.model.forces.load import Load, LoadContext
 from eomgen.model.forces.reach import reach
 from eomgen.model.kinds import Direction, LinearDamping, TwoPoints
+from eomgen.records import dataclass
 
 
 @dataclass(frozen=True, kw_only=True)

@@ -1,12 +1,12 @@
 """Distributed: a line load between two points of a body."""
 
-from dataclasses import dataclass
 from typing import ClassVar
 
 from eomgen.errors import ModelError
 from eomgen.model.forces.base import Force
 from eomgen.model.forces.load import Load, LoadContext, PointForce, SpreadLoad
 from eomgen.model.kinds import BodyName, LineLoad, TwoLineLoads, TwoOwnPoints
+from eomgen.records import dataclass
 from eomgen.symbolic.expression.functions import sqrt
 from eomgen.symbolic.expression.graph import is_zero
 from eomgen.symbolic.expression.rational import Fraction

@@ -3,8 +3,7 @@
 Proofs look at it.
 """
 
-from dataclasses import dataclass
-
+from eomgen.records import dataclass
 from eomgen.symbolic.expression.formula import Expression
 
 
@@ -28,8 +27,3 @@ class Element:
     damping: Expression | None = None
     slack: Expression | str | None = None
     pull: Expression | None = None
-
-    @property
-    def spring_ends(self) -> tuple[str, ...]:
-        """The two points between which a spring is drawn; () for what is none."""
-        return self.points if self.stiffness is not None else ()

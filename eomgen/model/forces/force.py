@@ -1,11 +1,11 @@
 """Force: at a point."""
 
-from dataclasses import dataclass
 from typing import ClassVar
 
 from eomgen.model.forces import load
 from eomgen.model.forces.base import Force
 from eomgen.model.kinds import AxesName, ForceVector, PointName
+from eomgen.records import dataclass
 
 
 @dataclass(frozen=True, kw_only=True)

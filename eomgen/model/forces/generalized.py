@@ -1,11 +1,11 @@
 """Generalized: a force that belongs to a coordinate and to no point."""
 
-from dataclasses import dataclass
 from typing import ClassVar
 
 from eomgen.model.forces.base import Force
 from eomgen.model.forces.load import GeneralizedForce, Load, LoadContext
 from eomgen.model.kinds import CoordinateName, WorkingForce
+from eomgen.records import dataclass
 
 
 @dataclass(frozen=True, kw_only=True)

@@ -1,11 +1,11 @@
 """Gravity: a weight on every body, or on some."""
 
-from dataclasses import dataclass
 from typing import ClassVar
 
 from eomgen.model.forces.base import Force
 from eomgen.model.forces.load import Load, LoadContext, PointForce, UniformField
 from eomgen.model.kinds import Acceleration, Bodies, Flag
+from eomgen.records import dataclass
 from eomgen.symbolic.expression.spatial import AnyScalar, dot, times
 
 

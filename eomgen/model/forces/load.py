@@ -3,9 +3,9 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass
 from typing import Any, Protocol
 
+from eomgen.records import dataclass
 from eomgen.symbolic.expression.spatial import AnyScalar, Matrix, Vector
 
 BodyPoint = tuple["str | None", Vector]

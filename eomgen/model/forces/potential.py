@@ -1,11 +1,11 @@
 """Potential: an energy of the coordinates."""
 
-from dataclasses import dataclass
 from typing import ClassVar
 
 from eomgen.model.forces.base import Force
 from eomgen.model.forces.load import LoadContext
 from eomgen.model.kinds import Energy
+from eomgen.records import dataclass
 from eomgen.symbolic.expression.spatial import AnyScalar
 
 

@@ -2,10 +2,9 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
-
 from eomgen.errors import DerivationError
 from eomgen.model.forces.load import BodyPoint, Load, LoadContext, PointForce
+from eomgen.records import dataclass
 from eomgen.symbolic.expression.expressions import Expression
 from eomgen.symbolic.expression.functions import over, sqrt
 from eomgen.symbolic.expression.graph import is_zero

@@ -1,6 +1,5 @@
 """Torsion damper: between two bodies, or a body and the ground."""
 
-from dataclasses import dataclass
 from typing import ClassVar
 
 from eomgen.model.forces.base import Force
@@ -8,6 +7,7 @@ from eomgen.model.forces.element import Element
 from eomgen.model.forces.load import Load, LoadContext
 from eomgen.model.forces.twist import relative, turned
 from eomgen.model.kinds import AngularDamping, BodyName, TwoBodies
+from eomgen.records import dataclass
 
 
 @dataclass(frozen=True, kw_only=True)

@@ -1,6 +1,5 @@
 """Torsion spring: between two bodies, or a body and the ground."""
 
-from dataclasses import dataclass
 from typing import ClassVar
 
 from eomgen.model.forces.base import Force
@@ -8,6 +7,7 @@ from eomgen.model.forces.element import Element
 from eomgen.model.forces.load import Load, LoadContext
 from eomgen.model.forces.twist import relative, turned
 from eomgen.model.kinds import AngularStiffness, BodyName, RestAngle, TwoBodies
+from eomgen.records import dataclass
 from eomgen.symbolic.expression.rational import Fraction
 from eomgen.symbolic.expression.spatial import AnyScalar
 

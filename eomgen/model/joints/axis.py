@@ -1,11 +1,11 @@
 """Joints of one axis: the child turns about it, slides along it, or both."""
 
 from abc import abstractmethod
-from dataclasses import dataclass
 from typing import Any
 
 from eomgen.model.joints.base import Column, Joint, Scalars, X, Y, Z, across, angular, linear
 from eomgen.model.kinds import ValueOf
+from eomgen.records import dataclass
 from eomgen.symbolic.expression.functions import cos, sin
 from eomgen.symbolic.expression.spatial import (
     IDENTITY,

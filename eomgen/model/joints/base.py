@@ -6,7 +6,6 @@ A column of S or W has six entries, angular part (torque) first, at the joint po
 """
 
 from collections.abc import Iterator
-from dataclasses import dataclass
 from typing import Annotated, Any, ClassVar
 
 from eomgen.errors import NotYet
@@ -19,6 +18,7 @@ from eomgen.model.part import Part, PartRule
 from eomgen.model.positions import DocumentPath
 from eomgen.model.shapes.forms import Form
 from eomgen.model.symbols import ReactionSymbolsField
+from eomgen.records import dataclass
 from eomgen.symbolic.expression.expressions import Expression
 from eomgen.symbolic.expression.functions import cos, over, sin, sqrt
 from eomgen.symbolic.expression.spatial import IDENTITY, Matrix, Pose, Vector, cross, dot, product, rotation, vector_of

@@ -1,12 +1,12 @@
 """Cylindrical: the child turns about an axis and slides along it."""
 
-from dataclasses import dataclass
 from typing import Any, ClassVar
 
 from eomgen.model.joints.axis import AxisJoint
 from eomgen.model.joints.base import Effort, Z, unit, vector
 from eomgen.model.joints.moves import Move, SlideAlong, TurnAbout
 from eomgen.model.kinds import Angle, Displacement, ForceFormula, SpaceDirection, Torque, ValueOf
+from eomgen.records import dataclass
 from eomgen.symbolic.expression.expressions import Expression
 from eomgen.symbolic.expression.spatial import Vector
 

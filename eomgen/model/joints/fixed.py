@@ -1,11 +1,11 @@
 """Fixed: the child does not move against its parent."""
 
-from dataclasses import dataclass
 from typing import Any, ClassVar
 
 from eomgen.model.joints.base import Column, Joint, Scalars, X, Y, Z, angular, linear, unit, vector
 from eomgen.model.joints.moves import Move, TurnAbout
 from eomgen.model.kinds import ConstantAngle, SpaceDirection, ValueOf
+from eomgen.records import dataclass
 from eomgen.symbolic.expression.expressions import Expression
 from eomgen.symbolic.expression.functions import cos, sin
 from eomgen.symbolic.expression.spatial import Pose, rotation

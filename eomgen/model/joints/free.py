@@ -1,7 +1,6 @@
 """Free: nothing holds the child."""
 
 from collections.abc import Iterator
-from dataclasses import dataclass
 from typing import Annotated, Any, ClassVar
 
 from eomgen.model.catalog import Catalog
@@ -23,6 +22,7 @@ from eomgen.model.joints.orientation import (
 from eomgen.model.joints.planar import PLANE_COMPLEMENT, in_plane, plane_subspace
 from eomgen.model.kinds import Angle, Displacement, ValueOf
 from eomgen.model.positions import DocumentPath
+from eomgen.records import dataclass
 from eomgen.symbolic.expression.expressions import Expression, as_expression
 from eomgen.symbolic.expression.spatial import Pose, apply, transposed, vector_of
 

@@ -3,8 +3,9 @@
 Fields and names alone, no formulas. Proofs look at them.
 """
 
-from dataclasses import dataclass
 from typing import Any
+
+from eomgen.records import dataclass
 
 
 @dataclass(frozen=True)

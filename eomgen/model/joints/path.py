@@ -1,7 +1,6 @@
 """Path: a point on pieces of lines and arcs."""
 
 from collections.abc import Callable, Iterator, Sequence
-from dataclasses import dataclass
 from typing import Annotated, Any, ClassVar
 
 from eomgen.model.catalog import Catalog
@@ -14,6 +13,7 @@ from eomgen.model.kinds import ConstantAngle, Displacement, Length, MovingPlace,
 from eomgen.model.part import Part, PartRule, part_of_values, slots_of
 from eomgen.model.positions import DocumentPath as FilePath
 from eomgen.model.shapes.forms import ArcForm, Form, LineForm
+from eomgen.records import dataclass
 from eomgen.symbolic.expression.expressions import Expression
 from eomgen.symbolic.expression.functions import cos, function, over, selected, sin
 from eomgen.symbolic.expression.spatial import Pose, Vector, apply, plus

@@ -1,7 +1,6 @@
 """Placed: where the child stands is given as expressions. Geometry, which carries no reaction."""
 
 from collections.abc import Iterator
-from dataclasses import dataclass
 from typing import Any, ClassVar
 
 from eomgen.model.catalog import Catalog
@@ -20,6 +19,7 @@ from eomgen.model.joints.orientation import (
 )
 from eomgen.model.kinds import Angle, SpaceDirection, ValueOf
 from eomgen.model.positions import DocumentPath
+from eomgen.records import dataclass
 from eomgen.symbolic.expression.expressions import Expression, as_expression
 from eomgen.symbolic.expression.functions import cos, sin
 from eomgen.symbolic.expression.spatial import Matrix, Pose, apply, rotation, transposed

@@ -1,11 +1,11 @@
 """Planar: the child moves in a plane of its parent."""
 
-from dataclasses import dataclass
 from typing import Any, ClassVar
 
 from eomgen.model.joints.base import Column, Effort, Joint, Scalars, X, Y, Z, angular, linear
 from eomgen.model.joints.moves import Move, SlideAlong, TurnAbout
 from eomgen.model.kinds import Angle, Displacement, ValueOf
+from eomgen.records import dataclass
 from eomgen.symbolic.expression.expressions import Expression
 from eomgen.symbolic.expression.functions import cos, sin
 from eomgen.symbolic.expression.spatial import Pose, apply, rotation, transposed

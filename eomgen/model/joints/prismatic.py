@@ -1,6 +1,5 @@
 """Prismatic: the child slides along one axis."""
 
-from dataclasses import dataclass
 from typing import Any, ClassVar
 
 from eomgen.model.joints.axis import AxisJoint
@@ -17,6 +16,7 @@ from eomgen.model.kinds import (
     SlideInertia,
     ValueOf,
 )
+from eomgen.records import dataclass
 from eomgen.symbolic.expression.expressions import Expression
 from eomgen.symbolic.expression.functions import cos, sin
 from eomgen.symbolic.expression.spatial import Matrix, Vector, rotation

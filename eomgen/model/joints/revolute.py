@@ -1,6 +1,5 @@
 """Revolute: the child turns about one axis."""
 
-from dataclasses import dataclass
 from typing import Any, ClassVar
 
 from eomgen.model.joints.axis import AxisJoint
@@ -16,6 +15,7 @@ from eomgen.model.kinds import (
     Torque,
     ValueOf,
 )
+from eomgen.records import dataclass
 from eomgen.symbolic.expression.expressions import Expression
 from eomgen.symbolic.expression.spatial import Vector
 

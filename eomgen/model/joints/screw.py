@@ -1,6 +1,5 @@
 """Screw: the child turns about an axis and advances with it."""
 
-from dataclasses import dataclass
 from typing import Annotated, Any, ClassVar
 
 from eomgen.model.fields import FormulaRule
@@ -17,6 +16,7 @@ from eomgen.model.kinds import (
     Torque,
     ValueOf,
 )
+from eomgen.records import dataclass
 from eomgen.symbolic.expression.expressions import Expression
 from eomgen.symbolic.expression.spatial import Vector
 

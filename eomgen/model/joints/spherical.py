@@ -1,7 +1,6 @@
 """Spherical: a ball joint."""
 
 from collections.abc import Iterator
-from dataclasses import dataclass
 from typing import ClassVar
 
 from eomgen.model.catalog import Catalog
@@ -20,6 +19,7 @@ from eomgen.model.joints.orientation import (
 )
 from eomgen.model.kinds import ValueOf
 from eomgen.model.positions import DocumentPath
+from eomgen.records import dataclass
 from eomgen.symbolic.expression.expressions import Expression, as_expression
 from eomgen.symbolic.expression.spatial import Pose
 

@@ -1,6 +1,5 @@
 """Universal: a Cardan joint, two turns about axes that cross."""
 
-from dataclasses import dataclass
 from typing import Annotated, ClassVar
 
 from eomgen.model.containers import ListRule
@@ -8,6 +7,7 @@ from eomgen.model.fields import CONFIGURATION, FormulaRule, VectorRule
 from eomgen.model.joints.base import Column, Joint, Scalars, X, Y, Z, angular, linear, unit, vector
 from eomgen.model.joints.moves import Move, TurnAbout
 from eomgen.model.kinds import ValueOf
+from eomgen.records import dataclass
 from eomgen.symbolic.expression.expressions import Expression
 from eomgen.symbolic.expression.functions import cos, sin
 from eomgen.symbolic.expression.spatial import Matrix, Pose, Vector, apply, cross, product, rotation, transposed

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator
-from dataclasses import dataclass
 from typing import Any
 
 from eomgen.errors import DerivationError
@@ -11,6 +10,7 @@ from eomgen.model.catalog import Catalog
 from eomgen.model.fields import Leaf
 from eomgen.model.findings import Finding
 from eomgen.model.outputs.context import OutputContext, Trial
+from eomgen.records import dataclass
 from eomgen.symbolic.expression.expressions import Call, Expression, Reference, parse
 from eomgen.symbolic.expression.spatial import AnyScalar
 from eomgen.symbolic.expression.units import Unit, parse_unit

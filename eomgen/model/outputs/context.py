@@ -130,6 +130,13 @@ class Trial(Protocol):
             NoValue: something acts at no place.
         """
 
+    def demanded(self, coordinate: str) -> Any:
+        """What the free bodies, each by Newton and Euler, ask for along a driven coordinate when nothing drives it.
+
+        Raises:
+            NoValue: a tie drives it; something rubs.
+        """
+
     def faster(self, speed: str, by: int) -> Trial:
         """The same with one speed larger.
 

@@ -20,5 +20,6 @@ DRIVE = OutputFunction(
     per=(0,),
     gives="force or couple that moves a driven coordinate as given",
     value=lambda scene, call: scene.drive(name_at(call, 0)),
+    second=lambda trial, call: trial.demanded(name_at(call, 0)),
     source=BALANCE,
 )

@@ -1,13 +1,13 @@
 """Annulus: a thin round plate with a concentric hole."""
 
 from collections.abc import Sequence
-from dataclasses import dataclass
 from typing import Any, ClassVar
 
 from eomgen.model.kinds import ValueOf
 from eomgen.model.shapes.base import PI, MassProperties, around, between, diagonal
 from eomgen.model.shapes.forms import Form, round_plate
 from eomgen.model.shapes.hollow import Hollow
+from eomgen.records import dataclass
 from eomgen.symbolic.expression.rational import Fraction
 from eomgen.symbolic.expression.spatial import ZERO, Vector
 

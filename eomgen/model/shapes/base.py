@@ -3,12 +3,12 @@
 import math
 from abc import ABC, abstractmethod
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass
 from typing import Any, ClassVar
 
 from eomgen.model.kinds import Mass, ValueOf
 from eomgen.model.part import Part
 from eomgen.model.shapes.forms import Form
+from eomgen.records import dataclass
 from eomgen.symbolic.expression.expressions import parse
 from eomgen.symbolic.expression.spatial import ZERO, Matrix, Vector, matrix_of
 from eomgen.symbolic.numeric.tolerances import SOLVED

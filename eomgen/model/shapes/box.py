@@ -1,12 +1,12 @@
 """Box: a solid block."""
 
 from collections.abc import Sequence
-from dataclasses import dataclass
 from typing import Any, ClassVar
 
 from eomgen.model.kinds import Size, ValueOf
 from eomgen.model.shapes.base import HALF, MassProperties, Shape, diagonal
 from eomgen.model.shapes.forms import BoxForm, Form
+from eomgen.records import dataclass
 from eomgen.symbolic.expression.rational import Fraction
 from eomgen.symbolic.expression.spatial import ZERO, Vector
 

@@ -1,12 +1,12 @@
 """Conical shell: the thin mantle of a cone, without its base."""
 
 from collections.abc import Sequence
-from dataclasses import dataclass
 from typing import Any, ClassVar
 
 from eomgen.model.kinds import Length, ValueOf
 from eomgen.model.shapes.base import PI, THIRD, MassProperties, Shape, around, diagonal
 from eomgen.model.shapes.forms import Form, turned_profile
+from eomgen.records import dataclass
 from eomgen.symbolic.expression.functions import sqrt
 from eomgen.symbolic.expression.rational import Fraction
 from eomgen.symbolic.expression.spatial import ZERO, Vector

@@ -1,12 +1,12 @@
 """Disc: a thin round plate."""
 
 from collections.abc import Sequence
-from dataclasses import dataclass
 from typing import Any, ClassVar
 
 from eomgen.model.kinds import Length, ValueOf
 from eomgen.model.shapes.base import PI, MassProperties, Shape, around, diagonal
 from eomgen.model.shapes.forms import Form, round_plate
+from eomgen.records import dataclass
 from eomgen.symbolic.expression.rational import Fraction
 from eomgen.symbolic.expression.spatial import ZERO, Vector
 

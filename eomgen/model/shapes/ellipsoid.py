@@ -1,12 +1,12 @@
 """Ellipsoid: a solid one."""
 
 from collections.abc import Sequence
-from dataclasses import dataclass
 from typing import Any, ClassVar
 
 from eomgen.model.kinds import Size, ValueOf
 from eomgen.model.shapes.base import PI, MassProperties, Shape, diagonal, on_ball
 from eomgen.model.shapes.forms import EllipsoidForm, Form
+from eomgen.records import dataclass
 from eomgen.symbolic.expression.rational import Fraction
 from eomgen.symbolic.expression.spatial import ZERO, Vector, vector_of
 

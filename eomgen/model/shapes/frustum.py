@@ -1,12 +1,12 @@
 """Frustum: a solid round cone without its tip."""
 
 from collections.abc import Sequence
-from dataclasses import dataclass
 from typing import Any, ClassVar
 
 from eomgen.model.kinds import Length, ValueOf
 from eomgen.model.shapes.base import PI, MassProperties, Shape, around, between, diagonal
 from eomgen.model.shapes.forms import Form, turned_profile
+from eomgen.records import dataclass
 from eomgen.symbolic.expression.functions import over
 from eomgen.symbolic.expression.rational import Fraction
 from eomgen.symbolic.expression.spatial import Vector

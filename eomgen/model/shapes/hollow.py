@@ -1,10 +1,10 @@
 """What lies between two concentric round surfaces."""
 
 from abc import ABC
-from dataclasses import dataclass
 
 from eomgen.model.kinds import Length, ValueOf
 from eomgen.model.shapes.base import Shape, not_inside
+from eomgen.records import dataclass
 
 
 @dataclass(frozen=True, kw_only=True)

@@ -1,13 +1,13 @@
 """Hollow sphere: a ball with a concentric cavity."""
 
 from collections.abc import Sequence
-from dataclasses import dataclass
 from typing import Any, ClassVar
 
 from eomgen.model.kinds import ValueOf
 from eomgen.model.shapes.base import PI, MassProperties, between, diagonal, on_ball
 from eomgen.model.shapes.forms import EllipsoidForm, Form
 from eomgen.model.shapes.hollow import Hollow
+from eomgen.records import dataclass
 from eomgen.symbolic.expression.functions import over
 from eomgen.symbolic.expression.rational import Fraction
 from eomgen.symbolic.expression.spatial import ZERO, Vector

@@ -1,11 +1,11 @@
 """Particle: a mass without size."""
 
 from collections.abc import Sequence
-from dataclasses import dataclass
 from typing import Any, ClassVar
 
 from eomgen.model.kinds import ValueOf
 from eomgen.model.shapes.base import MassProperties, Shape, diagonal
+from eomgen.records import dataclass
 from eomgen.symbolic.expression.spatial import ZERO, Vector
 
 

@@ -1,7 +1,6 @@
 """Polygon: a thin plate with straight edges."""
 
 from collections.abc import Sequence
-from dataclasses import dataclass
 from typing import Annotated, Any, ClassVar
 
 from eomgen.model.containers import ListRule
@@ -9,6 +8,7 @@ from eomgen.model.fields import FormulaRule, VectorRule
 from eomgen.model.kinds import ValueOf
 from eomgen.model.shapes.base import Cell, MassProperties, Shape, between
 from eomgen.model.shapes.forms import Form, PolygonForm
+from eomgen.records import dataclass
 from eomgen.symbolic.expression.expressions import Expression
 from eomgen.symbolic.expression.functions import function, over
 from eomgen.symbolic.expression.rational import Fraction

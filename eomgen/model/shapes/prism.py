@@ -1,12 +1,12 @@
 """Prism: a solid whose section is a polygon."""
 
-from dataclasses import dataclass
 from typing import Any, ClassVar
 
 from eomgen.model.kinds import Length, ValueOf
 from eomgen.model.shapes.base import HALF, Cell, MassProperties, Shape, diagonal
 from eomgen.model.shapes.forms import HALF_OF, Form, PrismForm
 from eomgen.model.shapes.polygon import Polygon, Vertices
+from eomgen.records import dataclass
 from eomgen.symbolic.expression.rational import Fraction
 from eomgen.symbolic.expression.spatial import added
 

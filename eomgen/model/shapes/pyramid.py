@@ -1,12 +1,12 @@
 """Pyramid: a solid one on a rectangle."""
 
 from collections.abc import Sequence
-from dataclasses import dataclass
 from typing import Any, ClassVar
 
 from eomgen.model.kinds import Length, ValueOf
 from eomgen.model.shapes.base import HALF, MassProperties, Shape, diagonal
 from eomgen.model.shapes.forms import HALF_OF, Form, PolyhedronForm
+from eomgen.records import dataclass
 from eomgen.symbolic.expression.rational import Fraction
 from eomgen.symbolic.expression.spatial import ZERO, Vector
 

@@ -1,12 +1,12 @@
 """Ring: a thin hoop."""
 
 from collections.abc import Sequence
-from dataclasses import dataclass
 from typing import Any, ClassVar
 
 from eomgen.model.kinds import Length, ValueOf
 from eomgen.model.shapes.base import PI, MassProperties, Shape, around, diagonal
 from eomgen.model.shapes.forms import Form, hoop
+from eomgen.records import dataclass
 from eomgen.symbolic.expression.rational import Fraction
 from eomgen.symbolic.expression.spatial import ZERO, Vector
 

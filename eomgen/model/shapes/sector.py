@@ -1,7 +1,6 @@
 """Sector: a thin plate cut out of a disc by two radii."""
 
 from collections.abc import Sequence
-from dataclasses import dataclass
 from typing import Any, ClassVar
 
 from eomgen.model.kinds import Length, Opening, ValueOf
@@ -15,6 +14,7 @@ from eomgen.model.shapes.base import (
     part_of_turn,
 )
 from eomgen.model.shapes.forms import HALF_OF, ArcForm, Form
+from eomgen.records import dataclass
 from eomgen.symbolic.expression.functions import over, sin
 from eomgen.symbolic.expression.rational import Fraction
 from eomgen.symbolic.expression.spatial import ZERO, Vector

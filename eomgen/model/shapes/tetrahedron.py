@@ -1,7 +1,6 @@
 """Tetrahedron: a solid with four corners."""
 
 from collections.abc import Sequence
-from dataclasses import dataclass
 from typing import Annotated, Any, ClassVar
 
 from eomgen.model.containers import ListRule
@@ -9,6 +8,7 @@ from eomgen.model.fields import FormulaRule, VectorRule
 from eomgen.model.kinds import ValueOf
 from eomgen.model.shapes.base import MassProperties, Shape, tensor
 from eomgen.model.shapes.forms import Form, PolyhedronForm
+from eomgen.records import dataclass
 from eomgen.symbolic.expression.expressions import Expression
 from eomgen.symbolic.expression.functions import function
 from eomgen.symbolic.expression.rational import Fraction

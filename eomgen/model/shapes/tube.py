@@ -1,13 +1,13 @@
 """Tube: a round bar with a concentric bore."""
 
 from collections.abc import Sequence
-from dataclasses import dataclass
 from typing import Any, ClassVar
 
 from eomgen.model.kinds import Length, ValueOf
 from eomgen.model.shapes.base import HALF, PI, MassProperties, around, between, diagonal
 from eomgen.model.shapes.forms import Form, cylinder_form
 from eomgen.model.shapes.hollow import Hollow
+from eomgen.records import dataclass
 from eomgen.symbolic.expression.rational import Fraction
 from eomgen.symbolic.expression.spatial import ZERO, Vector
 

@@ -25,27 +25,54 @@ export class Run {
     constructor(n) {
         this.n = n;
         this.t = [];  // of the beginning of each step, and of the end
-        this.steps = [];  // five rows of n: of y(s) = r0 + s (r1 + (1 - s) (r2 + s (r3 + (1 - s) r4)))
+        this.rows = new Float64Array(640*n);  // of a step five rows of n: of y(s) = r0 + s (r1 + (1 - s) (r2 + s (r3 + (1 - s) r4)))
         this.message = "";
         this.evaluations = 0;
     }
+
+    /** How many steps there are. */
+    get steps() { return this.t.length - 1; }
 
     get end() { return this.t[this.t.length - 1]; }
 
     /** The state at an instant, into `out`. */
     at(t, out = new Float64Array(this.n)) {
         const n = this.n;
-        if (!this.steps.length) { out.set(this.first); return out; }
-        let low = 0, high = this.steps.length - 1;
+        if (this.steps < 1) { out.set(this.first); return out; }
+        let low = 0, high = this.steps - 1;
         while (low < high) {
             const middle = (low + high + 1) >> 1;
             if (this.t[middle] <= t) low = middle; else high = middle - 1;
         }
-        const r = this.steps[low], begin = this.t[low];
+        const r = this.rows, first = 5*n*low, begin = this.t[low];
         const s = Math.min(Math.max((t - begin)/(this.t[low + 1] - begin), 0), 1), left = 1 - s;
-        for (let i = 0; i < n; i++)
-            out[i] = r[i] + s*(r[n + i] + left*(r[2*n + i] + s*(r[3*n + i] + left*r[4*n + i])));
+        for (let i = 0; i < n; i++) {
+            const at = first + i;
+            out[i] = r[at] + s*(r[at + n] + left*(r[at + 2*n] + s*(r[at + 3*n] + left*r[at + 4*n])));
+        }
         return out;
+    }
+
+    /** The step to t, from x to y with the slopes k. */
+    stepped(t, x, y, k) {
+        const n = this.n, h = t - this.end, first = 5*n*this.steps;
+        if (first + 5*n > this.rows.length) {
+            const more = new Float64Array(2*this.rows.length);
+            more.set(this.rows);
+            this.rows = more;
+        }
+        const r = this.rows;
+        for (let i = 0; i < n; i++) {
+            const at = first + i, whole = y[i] - x[i], bend = h*k[0][i] - whole;
+            let sum = 0;
+            for (let j = 0; j < 7; j++) sum += DENSE[j]*k[j][i];
+            r[at] = x[i];
+            r[at + n] = whole;
+            r[at + 2*n] = bend;
+            r[at + 3*n] = whole - h*k[6][i] - bend;
+            r[at + 4*n] = h*sum;
+        }
+        this.t.push(t);
     }
 }
 
@@ -72,7 +99,7 @@ export function integrated(rate, x0, end, { rtol, atol, kept = () => false, stop
         const stop = Math.min(end, ...breaks.filter(b => b > t + 1e-12*Math.max(1, t)));
         const least = 10*Number.EPSILON*Math.max(t, Number.MIN_VALUE);
         if (!(h >= least)) { run.message = `The step went to zero at t = ${t.toPrecision(6)} s.`; break; }
-        if (run.steps.length === most) { run.message = `Gave up after ${most} steps at t = ${t.toPrecision(6)} s.`; break; }
+        if (run.steps === most) { run.message = `Gave up after ${most} steps at t = ${t.toPrecision(6)} s.`; break; }
         const last = t + h*1.0000001 >= stop, step = last ? stop - t : h;
         for (let stage = 1; stage < 7; stage++) {
             const a = A[stage];
@@ -97,9 +124,8 @@ export function integrated(rate, x0, end, { rtol, atol, kept = () => false, stop
             grows = 1;
             continue;
         }
-        run.steps.push(polynomial(x, y, k, step, n));
         t = last ? stop : t + step;
-        run.t.push(t);
+        run.stepped(t, x, y, k);
         const factor = Math.min(grows, error === 0 ? LARGEST : SAFETY*error**-0.2);
         h = last && h > step ? Math.max(h, step*factor) : step*factor;
         grows = LARGEST;
@@ -110,21 +136,6 @@ export function integrated(rate, x0, end, { rtol, atol, kept = () => false, stop
         else { const first = k[0]; k[0] = k[6]; k[6] = first; }
     }
     return run;
-}
-
-function polynomial(x, y, k, h, n) {
-    const r = new Float64Array(5*n);
-    for (let i = 0; i < n; i++) {
-        const whole = y[i] - x[i], bend = h*k[0][i] - whole;
-        let sum = 0;
-        for (let j = 0; j < 7; j++) sum += DENSE[j]*k[j][i];
-        r[i] = x[i];
-        r[n + i] = whole;
-        r[2*n + i] = bend;
-        r[3*n + i] = whole - h*k[6][i] - bend;
-        r[4*n + i] = h*sum;
-    }
-    return r;
 }
 
 function firstStep(rate, x, k, y, end, rtol, atol) {

@@ -78,7 +78,7 @@ export class Motion {
         const least = rank ? Math.min(SINGULAR, pivots[rank - 1]/100) : 0;
         let singular = false;
         const astray = (t, y, run) => {
-            if (!rank || !run.steps.length || this.ties.pivots(t, y, sizes)[rank - 1] > NEAR_SINGULAR) return "";
+            if (!rank || !run.steps || this.ties.pivots(t, y, sizes)[rank - 1] > NEAR_SINGULAR) return "";
             const begun = run.t[run.t.length - 2];
             const within = Array.from({ length: LOOKS }, (_, k) => begun + (t - begun)*(k + 1)/LOOKS);
             singular = within.some(s => this.ties.pivots(s, run.at(s), sizes)[rank - 1] < least);
@@ -88,7 +88,7 @@ export class Motion {
             rtol: Math.max(OF_A_STEP*rtol, 1e-13), atol: allowed, kept, breaks: this.told.breaks,
             stopped: (t, y, run) => lost || this._stopped(t, y) || astray(t, y, run),
         });
-        if (singular) { found.steps.pop(); found.t.pop(); }
+        if (singular) found.t.pop();
         return found;
     }
 

@@ -27,6 +27,13 @@ function made(name, attributes = {}, ...children) {
     return node;
 }
 
+/** A name as formulas have it, where the page was given that. */
+function sign(told, name) {
+    const node = made("span", { class: "sign" }, name);
+    if (told.signs[name]) node.innerHTML = told.signs[name];  // of our own making
+    return node;
+}
+
 /** A run as it was recorded: rows of states, between them by Hermite's cubic; or rows of frames, between them straight. */
 class Recorded {
     constructor(told, rate) {
@@ -94,8 +101,17 @@ export class Player {
     /** The column of that name at an instant, by the state and the frame there. */
     value(name, t, x = this.inner(t), frame = null) {
         if (!this.motion) return name in this.told.columns ? x[this.told.columns[name][1]] : NaN;
+        if (name === "E") { frame ??= this.motion.of.frame(t, x); return this.value("T", t, x, frame) + this.value("V", t, x, frame); }
         const [where, k] = this.told.columns[name];
         return where === "x" ? x[k] : (frame ?? this.motion.of.frame(t, x))[k];
+    }
+
+    /** States and pictures of the run at instants as far apart as curves need them; computed once. */
+    sampled() {
+        if (this.samples?.run === this.run) return this.samples;
+        const times = this._times(POINTS), states = times.map(t => Float64Array.from(this.inner(t)));
+        const frames = times.map((t, i) => this.motion ? this.motion.of.frame(t, states[i]) : this.run.frame(t));
+        return this.samples = { run: this.run, times, states, frames };
     }
 
     /** Coordinates, then speeds, in the order of `names`. */
@@ -173,7 +189,8 @@ export class Player {
     _energy() {
         this.energy.hidden = !this.told.energy;
         if (!this.told.energy) return;
-        const every = Math.ceil(this.run.t.length/POINTS), times = Array.from(this.run.t).filter((_, k) => k % every === 0), rows = times.map(t => [this.value("T", t), this.value("V", t)]);
+        const every = Math.ceil(this.run.t.length/POINTS), times = Array.from(this.run.t).filter((_, k) => k % every === 0);
+        const rows = times.map(t => { const x = this.inner(t), frame = this.motion.of.frame(t, x); return [this.value("T", t, x, frame), this.value("V", t, x, frame)]; });
         const [T, V] = rows[0], first = T + V;
         let drift = 0, moves = 0;
         for (const [kinetic, potential] of rows) {
@@ -186,7 +203,8 @@ export class Player {
 
     _trail() {
         const at = this.told.scene.points.find(point => point.name === this.trailed)?.at;
-        this.trail = at ? this._times(POINTS).map(t => [t, this._point(this.frame(t))]) : [];
+        const { times, frames } = at ? this.sampled() : {};
+        this.trail = at ? times.map((t, i) => [t, this._point(frames[i])]) : [];
         if (!at) this.view.trailed([]);
     }
 
@@ -276,7 +294,7 @@ export class Player {
             typed.addEventListener("change", changed);
             this.sliders.push({ told: each, shown });
             shown(each.value);
-            return made("div", { class: "slider", title: each.about || null }, made("span", { class: "name" }, each.name), range, typed, made("span", { class: "unit" }, written(each.unit)));
+            return made("div", { class: "slider", title: each.about || null }, made("span", { class: "name" }, sign(this.told, each.name)), range, typed, made("span", { class: "unit" }, written(each.unit)));
         });
         const rests = this.told.rests ? made("p", { class: "rests" }, this.told.rests) : null;
         if (!told.length) return rests;
@@ -305,9 +323,9 @@ export class Player {
             this.plots.forEach(plot => { plot.draw(); plot.cursor(this.t); });
         };
         const boxes = names.map(each => {
-            const input = made("input", { type: "checkbox", onchange: event => { if (event.target.checked) chosen.add(each.name); else chosen.delete(each.name); draw(); } });
+            const input = made("input", { type: "checkbox", "aria-label": each.name, onchange: event => { if (event.target.checked) chosen.add(each.name); else chosen.delete(each.name); draw(); } });
             input.checked = chosen.has(each.name);
-            return made("label", {}, input, ` ${each.name}`);
+            return made("label", {}, input, " ", sign(this.told, each.name));
         });
         draw();
         return made("div", { class: "plotting" }, this.plotting, made("details", {}, made("summary", {}, "What is plotted"), made("div", { class: "options" }, ...boxes)));
@@ -428,7 +446,7 @@ class Plot {
         const SVG = "http://www.w3.org/2000/svg", node = (name, attributes, parent) => { const n = document.createElementNS(SVG, name); for (const [a, v] of Object.entries(attributes)) n.setAttribute(a, v); parent.append(n); return n; };
         this.root = made("figure", { class: "plot", style: `--curve: var(--c${k % 8})` });
         this.value = made("span", { class: "value" });
-        this.root.append(made("figcaption", {}, `${told.name}${told.unit ? ` [${written(told.unit)}]` : ""} `, this.value));
+        this.root.append(made("figcaption", {}, sign(player.told, told.name), `${told.unit ? ` [${written(told.unit)}]` : ""} `, this.value));
         const svg = document.createElementNS(SVG, "svg");
         svg.setAttribute("viewBox", "0 0 600 110");
         svg.setAttribute("preserveAspectRatio", "none");
@@ -441,8 +459,8 @@ class Plot {
     }
 
     draw() {
-        const { player, told } = this, times = player._times(POINTS);
-        const values = times.map(t => (told.name === "E" ? player.value("T", t) + player.value("V", t) : player.value(told.name, t))/told.size);
+        const { player, told } = this, { times, states, frames } = player.sampled();
+        const values = times.map((t, i) => player.value(told.name, t, states[i], frames[i])/told.size);
         const finite = values.filter(Number.isFinite);
         let low = Math.min(...finite), high = Math.max(...finite);
         if (!finite.length) [low, high] = [0, 1];
@@ -457,7 +475,7 @@ class Plot {
     cursor(t) {
         const { player, told } = this, x = player.run.end > 0 ? 600*t/player.run.end : 0;
         this.line.setAttribute("x1", x), this.line.setAttribute("x2", x);
-        const v = (told.name === "E" ? player.value("T", t) + player.value("V", t) : player.value(told.name, t))/told.size;
+        const v = player.value(told.name, t)/told.size;
         this.value.textContent = `= ${rounded(v)}`;
     }
 }

@@ -1,6 +1,8 @@
 // Scene, frame -> a picture in space, by three.js; z up. A drag turns it, the wheel or + and - bring it nearer.
 
 const UNIT = 0.028;  // a symbol's unit, of the extent of what moves
+const FLATTEST = 0.12;  // the shortest half-axis of an ellipsoid that one sees, of its longest
+const FAR = 6;  // times its size at the start: what goes farther is followed
 const LONGEST_ARROW = 0.3;  // of the same: the arrow that 98 % of a run's are shorter than
 const ARROWS = ["force", "reaction", "velocity"];
 const AT_REST = ["dimension", "angle", "axes", "label"];
@@ -20,6 +22,17 @@ async function threeOf(packed) {
     return module.exports;
 }
 
+/** The rotation of z to what is against the weight; x stays as far to the right as it can. */
+function upright(three, scene, frame) {
+    const field = scene.marks.find(mark => mark.kind === "field"), z = new three.Vector3(0, 0, 1);
+    if (field) z.set(...field.vector.map(v => -(typeof v === "number" ? v : frame?.[v[0]])));
+    if (!(z.length() > 0)) z.set(0, 0, 1);
+    z.normalize();
+    const x = new three.Vector3(...(Math.abs(z.x) < 0.9 ? [1, 0, 0] : [0, 1, 0]));
+    x.addScaledVector(z, -x.dot(z)).normalize();
+    return new three.Matrix4().makeBasis(x, new three.Vector3().crossVectors(z, x), z);
+}
+
 export class SpaceView {
     constructor(root, scene, packed) {
         Object.assign(this, { root, scene, turn: -0.9, lift: 0.45, near: 1, frame: null, frames: null, points: [] });
@@ -33,8 +46,10 @@ export class SpaceView {
         this.frames = frames;
         if (!this.three) return;
         this.extent = 0;
+        this.away = null;
+        this.floors = [];
         for (const part of this.parts) part.key = null;
-        const box = new this.three.Box3(), sizes = {};
+        const box = new this.three.Box3(), first = new this.three.Box3(), sizes = {};
         for (const frame of frames) {
             this._drawn(frame);
             this.world.updateMatrixWorld(true);
@@ -48,19 +63,31 @@ export class SpaceView {
                     if (Number.isFinite(own.min.x + own.max.x)) box.union(own);
                 }
             }
+            if (first.isEmpty()) first.copy(box);
         }
         if (box.isEmpty()) box.set(new this.three.Vector3(-1, -1, -1), new this.three.Vector3(1, 1, 1));
         const size = box.getSize(new this.three.Vector3());
         this.extent = Math.max(size.x, size.y, size.z, 1e-6);
-        this.radius = 0.62*this.extent;
-        this.center = box.getCenter(new this.three.Vector3());
+        first.getSize(size);
+        this.solid = Math.max(size.x, size.y, size.z) || this.extent;
+        this.away = this.extent > FAR*this.solid ? this._middle(frames[0]) : null;
+        this.radius = this.away ? 1.2*this.solid : 0.62*this.extent;
+        this.center = (this.away ? first : box).getCenter(new this.three.Vector3());
         for (const [key, values] of Object.entries(sizes)) {
             const most = values.sort((a, b) => a - b)[Math.floor(0.98*(values.length - 1))];
-            this.scales[key] = most > 0 ? LONGEST_ARROW*this.extent/most : 0;
+            this.scales[key] = most > 0 ? LONGEST_ARROW*this.solid/most : 0;
         }
         for (const part of this.parts) part.key = null;
+        this.floors = [];
         if (this.frame) this._drawn(this.frame);
         this.resized();
+    }
+
+    /** Where the bodies are on the whole. */
+    _middle(frame) {
+        const mean = new this.three.Vector3(), free = this.scene.frames.filter(({ parent }, k) => k && parent < 1);
+        for (const { pose } of free) mean.add(new this.three.Vector3(...pose.slice(0, 3).map(v => typeof v === "number" ? v : frame[v[0]])));
+        return mean.divideScalar(free.length || 1);
     }
 
     resized() {
@@ -102,7 +129,8 @@ export class SpaceView {
         sun.position.set(2, -3, 5);
         this.world.add(sun);
         this.camera = new three.PerspectiveCamera(32, 1, 0.01, 100);
-        this.camera.up.set(0, 0, 1);
+        this.upright = upright(three, this.scene, this.frame ?? this.frames?.[0]);
+        this.camera.up.set(0, 0, 1).applyMatrix4(this.upright);
         this.groups = this.scene.frames.map(() => new three.Group());
         this.groups.forEach((group, k) => {
             group.matrixAutoUpdate = false;
@@ -180,7 +208,7 @@ export class SpaceView {
             });
     }
 
-    _made(mark, value, unit = UNIT*(this.extent ?? 0)) {
+    _made(mark, value, unit = UNIT*(this.solid ?? 0)) {
         const { three } = this, spot = at => new three.Vector3(...at.map(value)), role = mark.role ?? "joint";
         const mesh = geometry => new three.Mesh(geometry, this._material(role));
         const line = points => new three.Line(new three.BufferGeometry().setFromPoints(points), this._material(role, true));
@@ -204,7 +232,8 @@ export class SpaceView {
             case "box": { const made = mesh(new three.BoxGeometry(...mark.size.map(v => Math.abs(value(v)) || 1e-6))); return at(made, spot(mark.at)); }
             case "ellipsoid": {
                 const made = mesh(new three.SphereGeometry(1, 40, 24));
-                made.scale.set(...mark.size.map(v => Math.abs(value(v)) || 1e-6));
+                const half = mark.size.map(v => Math.abs(value(v)) || 1e-6), least = FLATTEST*Math.max(...half);
+                made.scale.set(...half.map(a => Math.max(a, least)));
                 const rim = new three.Line(new three.BufferGeometry().setFromPoints(new three.EllipseCurve(0, 0, 1.002, 1.002, 0, 2*Math.PI).getPoints(64).map(p => new three.Vector3(p.x, 0, p.y))), this._material("ground", true));
                 rim.scale.copy(made.scale);
                 return mark.role === "inertia" ? [at(made, spot(mark.at))] : [at(made, spot(mark.at)), at(rim, spot(mark.at))];
@@ -227,6 +256,13 @@ export class SpaceView {
             }
             case "polyhedron": return this._faces(mark.points.map(spot), mark.faces, role);
             case "rod": return this._bar(spot(mark.a), spot(mark.b), 0.35*unit, role);
+            case "wheel": {
+                const [r, at_, n] = [value(mark.radius), spot(mark.at), spot(mark.axis).normalize()], whole = new three.Group();
+                whole.add(mesh(new three.TorusGeometry(r, 0.3*unit, 8, 48)));
+                for (const v of [new three.Vector3(r, 0, 0), new three.Vector3(0, r, 0)]) whole.add(...[this._bar(v.clone().negate(), v, 0.12*unit, role)].flat());
+                whole.quaternion.setFromUnitVectors(new three.Vector3(0, 0, 1), n);
+                return at(whole, at_);
+            }
             case "spring": return this._spring(spot(mark.a), spot(mark.b), 0.6*unit, role);
             case "damper": {
                 const a = spot(mark.a), b = spot(mark.b), half = a.clone().lerp(b, 0.6);
@@ -293,10 +329,11 @@ export class SpaceView {
             const e = spot(mark.along).normalize().multiplyScalar(long);
             return new three.Line(new three.BufferGeometry().setFromPoints([place.clone().sub(e), place.clone().add(e)]), this._material(role, true));
         }
-        const grid = new three.GridHelper(long, 16), normal = spot(mark.normal).normalize();
+        const own = this.away ? 12*this.solid : long, grid = new three.GridHelper(own, 16), normal = spot(mark.normal).normalize();
         grid.material = this._material(role, true);
         grid.position.copy(place);
         grid.quaternion.setFromUnitVectors(new three.Vector3(0, 1, 0), normal);
+        if (this.away && !mark.frame) this.floors.push({ grid, place, cell: own/16 });
         return grid;
     }
 
@@ -313,9 +350,16 @@ export class SpaceView {
 
     _seen() {
         if (!this.center) return;
+        const center = this.center.clone();
+        if (this.away && this.frame) center.add(this._middle(this.frame)).sub(this.away);  // it goes far: one goes with it
+        for (const { grid, place, cell } of this.floors) {  // by whole cells, so that it seems to rest
+            const off = center.clone().sub(place).applyQuaternion(grid.quaternion.clone().invert());
+            off.set(cell*Math.round(off.x/cell), 0, cell*Math.round(off.z/cell)).applyQuaternion(grid.quaternion);
+            grid.position.copy(place).add(off);
+        }
         const { camera } = this, narrow = Math.min(1, camera.aspect), away = this.radius*1.08/Math.sin(camera.fov*Math.PI/360)/narrow/this.near;
-        camera.position.set(Math.cos(this.lift)*Math.cos(this.turn), Math.cos(this.lift)*Math.sin(this.turn), Math.sin(this.lift)).multiplyScalar(away).add(this.center);
-        camera.lookAt(this.center);
+        camera.position.set(Math.cos(this.lift)*Math.cos(this.turn), Math.cos(this.lift)*Math.sin(this.turn), Math.sin(this.lift)).applyMatrix4(this.upright).multiplyScalar(away).add(center);
+        camera.lookAt(center);
         camera.near = away/100;
         camera.far = 20*away;
         camera.updateProjectionMatrix();

@@ -61,6 +61,8 @@ export class Ties {
         this.values = values;
         const { gaps, rates, positionSlopes, speedSlopes } = told;
         this.found = new Float64Array(gaps + rates + positionSlopes.length + speedSlopes.length);
+        this.J = new Float64Array(rates*told.speeds);
+        this.G = new Float64Array(rates*rates);
         this.movable = Array.from({ length: told.coordinates }, (_, j) => told.fixed.includes(j) ? 0 : 1);
     }
 
@@ -123,19 +125,31 @@ export class Ties {
      * sizes: of the rows where they were longest, which grow here: one that vanishes depends on the others too.
      */
     pivots(t, x, sizes) {
-        const [rows] = this.speedRows(t, x), found = [];
-        const unit = rows.map((row, m) => {
-            sizes[m] = Math.max(sizes[m] ?? 0, Math.hypot(...row));
-            return sizes[m] > 0 ? row.map(a => a/sizes[m]) : row;
-        });
-        const G = unit.map(row => unit.map(other => dot(row, other))), left = new Set(G.keys());
-        while (left.size) {
-            const c = [...left].reduce((best, m) => G[m][m] > G[best][best] ? m : best);
-            left.delete(c);
-            found.push(G[c][c]);
-            if (G[c][c] > 0) for (const i of left) for (const j of left) G[i][j] -= G[i][c]*G[c][j]/G[c][c];
+        const { speeds: n, gaps, rates, positionSlopes, speedSlopes } = this.told, { J, G, found } = this;
+        this.values(t, x, found);
+        J.fill(0);
+        for (let k = 0; k < speedSlopes.length; k++)
+            J[speedSlopes[k][0]*n + speedSlopes[k][1]] = found[gaps + rates + positionSlopes.length + k];
+        for (let m = 0; m < rates; m++) {
+            let square = 0;
+            for (let j = 0; j < n; j++) square += J[m*n + j]*J[m*n + j];
+            sizes[m] = Math.max(sizes[m] ?? 0, Math.sqrt(square));
         }
-        return found;
+        for (let m = 0; m < rates; m++) for (let i = 0; i <= m; i++) {
+            let sum = 0;
+            for (let j = 0; j < n; j++) sum += J[m*n + j]*J[i*n + j];
+            const size = sizes[m]*sizes[i];
+            G[m*rates + i] = G[i*rates + m] = size > 0 ? sum/size : sum;
+        }
+        const pivots = [], left = Array.from({ length: rates }, (_, m) => m);
+        while (left.length) {
+            let best = 0;
+            for (let k = 1; k < left.length; k++) if (G[left[k]*(rates + 1)] > G[left[best]*(rates + 1)]) best = k;
+            const [c] = left.splice(best, 1), pivot = G[c*(rates + 1)];
+            pivots.push(pivot);
+            if (pivot > 0) for (const i of left) for (const j of left) G[i*rates + j] -= G[i*rates + c]*G[c*rates + j]/pivot;
+        }
+        return pivots;
     }
 
     /** phi = 0 by moving coordinates, each by its weight; whether |phi| is small then. */

@@ -3,8 +3,9 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass, field
+from dataclasses import field
 
+from eomgen.records import dataclass
 from eomgen.symbolic.exact.terms import AngleSum, Key, Monomial, Terms
 from eomgen.symbolic.expression.graph import Node, Number, Scalar
 from eomgen.symbolic.expression.node import Owner
@@ -29,11 +30,13 @@ class Atoms:
         graph: owner of the nodes.
         nodes: the node of every atom and angle, by its index.
         opaque: what those atoms are that are no symbols.
+        waves: those that were written, as nodes.
     """
 
     graph: Owner
     nodes: dict[int, Node] = field(default_factory=dict)
     opaque: dict[int, Opaque] = field(default_factory=dict)
+    waves: dict[tuple[str, AngleSum], Scalar] = field(default_factory=dict, repr=False)
 
     def is_a(self, atom: int, op: str) -> bool:
         """Whether the atom is an opaque one of this op."""
@@ -84,7 +87,9 @@ class Atoms:
 
     def wave_node(self, kind: str, k: AngleSum) -> Scalar:
         """cos or sin of k . angles."""
-        return self.graph.call(kind, self.angle_node(k))
+        if (kind, k) not in self.waves:
+            self.waves[kind, k] = self.graph.call(kind, self.angle_node(k))
+        return self.waves[kind, k]
 
     def angle_node(self, k: AngleSum) -> Scalar:
         """k . angles"""

@@ -13,8 +13,10 @@ from __future__ import annotations
 
 from collections import Counter
 from collections.abc import Callable, Collection, Iterable, Mapping, Sequence
-from dataclasses import dataclass, field
+from dataclasses import field
+from typing import Any
 
+from eomgen.records import dataclass
 from eomgen.symbolic.exact.by_parameters import by_parameters
 from eomgen.symbolic.exact.expansion import Expansion, expanded
 from eomgen.symbolic.exact.normal_form import in_whole_numbers, quotients
@@ -22,7 +24,7 @@ from eomgen.symbolic.exact.quotient import in_half_angles, reduced
 from eomgen.symbolic.exact.rational_polynomial import RationalPolynomial
 from eomgen.symbolic.exact.terms import AngleSum, Terms, TooLarge, common_number
 from eomgen.symbolic.exact.writing import Writer
-from eomgen.symbolic.expression.derivative import substituted
+from eomgen.symbolic.expression.derivative import substituted, symbols_of
 from eomgen.symbolic.expression.exact_numbers import tidy
 from eomgen.symbolic.expression.graph import Node, Number, Scalar
 from eomgen.symbolic.expression.node import holds_op
@@ -94,7 +96,59 @@ def _written(x: Scalar, limit: int, positive: Collection[Node]) -> tuple[Scalar,
     if divided:
         forms += _of_its_parameters(expansion, writer, book, terms)
     best = min(range(len(forms)), key=lambda k: _length(forms[k]))
-    return _roots_read(forms[best], limit, positive), not divided or best < whole
+    form, settled = _roots_read(forms[best], limit, positive), not divided or best < whole
+    other = _roots_as_letters(x, limit, positive) if type(x) is Node else None
+    return (form if other is None or _length(other) >= _length(form) else other), settled
+
+
+def _roots_as_letters(x: Node, limit: int, positive: Collection[Node]) -> Scalar | None:
+    """x with each root of a sum as one letter, and its square where a divisor is its sum: r*l/sqrt(l^2 - r^2).
+
+    None where there are none.
+    """
+    every = order((x,)) if holds_op(x, "sqrt") else []
+    roots = [node for node in every if node.op == "sqrt" and _is_sum(node.args[0])]
+    inner = {node for root in roots for node in order((root.args[0],))}
+    graph: Any = x.graph
+    letters, known = dict[Node, Node](), dict[Node, Scalar]()
+    try:
+        for k, root in enumerate(each for each in roots if each not in inner):
+            number, inside = _without_number(root.args[0], limit, positive)
+            rest = graph.sqrt(inside)
+            if type(rest) is not Node or rest.op != "sqrt":  # the number was all of it
+                continue
+            letter = graph.symbol(f"root {k}")
+            letters[letter] = rest
+            known[root] = graph.mul(graph.sqrt(number), letter)
+    except TooLarge:
+        return None
+    if not letters:
+        return None
+    for below in (node.args[1] for node in every if node.op == "div" and _is_sum(node.args[1])):
+        for letter, root in letters.items():
+            ratio, _ = _written(graph.div(below, root.args[0]), limit, positive)
+            if not symbols_of((ratio,)):
+                known.setdefault(below, graph.mul(ratio, graph.mul(letter, letter)))
+    (lettered,) = substituted((x,), known)
+    form, _ = _written(lettered, limit, (*positive, *letters))
+    return substituted((form,), letters)[0]
+
+
+def _without_number(x: Node, limit: int, positive: Collection[Node]) -> tuple[Number, Scalar]:
+    """(number, rest) of a sum: the number that leaves the shortest rest.
+
+    Twice the common one is tried, too: what is expanded holds squares of sines as sums of cosines.
+    """
+    _, (terms,) = expanded((x,), limit, positive)
+    common = abs(Fraction(common_number(terms.values())))
+    graph: Any = x.graph
+    read = {n: _written(graph.div(x, tidy(n)), limit, positive)[0] for n in (Fraction(1), common, 2 * common)}
+    number = min(read, key=lambda n: _length(read[n]))
+    return tidy(number), read[number]
+
+
+def _is_sum(x: Scalar) -> bool:
+    return type(x) is Node and x.op in ("add", "sub")
 
 
 def _roots_read(x: Scalar, limit: int, positive: Collection[Node]) -> Scalar:

@@ -8,13 +8,13 @@ theorems. Modulo a prime of 61 bits two different expressions agree there with a
 from __future__ import annotations
 
 from collections.abc import Iterable, Mapping, Sequence
-from dataclasses import dataclass
 from itertools import accumulate
 from math import lcm
 from random import Random
 from typing import Any
 
 from eomgen.errors import DerivationError
+from eomgen.records import dataclass
 from eomgen.symbolic.expression.graph import Node, Number, Scalar, linear_terms
 from eomgen.symbolic.expression.rational import Fraction
 from eomgen.symbolic.expression.traversal import order, united

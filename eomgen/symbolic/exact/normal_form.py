@@ -8,9 +8,10 @@ a number of products of terms; where it is not enough, what is readable stays as
 from __future__ import annotations
 
 from collections.abc import Collection, Iterable, Sequence
-from dataclasses import dataclass, field
+from dataclasses import field
 
 from eomgen.errors import DerivationError
+from eomgen.records import dataclass
 from eomgen.symbolic.exact.equality import equal_at_random_states
 from eomgen.symbolic.exact.expansion import Expansion, expanded
 from eomgen.symbolic.exact.quotient import reduced
@@ -225,6 +226,15 @@ def simplest(x: Scalar, limit: int = Work.ANSWER, positive: Collection[Node] = (
     Args:
         most: terms; a longer sum stays as it is.
     """
+    if type(x) is not Node:
+        return _simplest(x, limit, positive, most)
+    asked = (x, limit, frozenset(positive), most)
+    if asked not in x.graph.simplest:
+        x.graph.simplest[asked] = _simplest(x, limit, positive, most)
+    return x.graph.simplest[asked]
+
+
+def _simplest(x: Scalar, limit: int, positive: Collection[Node], most: int | None) -> Scalar:
     try:
         expansion, (terms,) = expanded((x,), limit, positive)
         if most is not None and len(terms) > most:

@@ -9,8 +9,8 @@ where its sign is known; sqrt(p)/p is 1/sqrt(p) where p > 0, and an f of which t
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
 
+from eomgen.records import dataclass
 from eomgen.symbolic.exact.expansion import Expansion
 from eomgen.symbolic.exact.polynomials import Polynomials
 from eomgen.symbolic.exact.quotient import fraction_of

@@ -9,11 +9,11 @@ second, and so on.
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Mapping
-from dataclasses import dataclass
 from functools import cache, lru_cache
 from math import prod
 from typing import Any
 
+from eomgen.records import dataclass
 from eomgen.symbolic.exact.terms import TooLarge, common_number
 from eomgen.symbolic.expression.exact_numbers import tidy
 from eomgen.symbolic.expression.graph import Number

@@ -7,8 +7,8 @@ k*(1 - l0/r)*(x2 - x1), and nothing is made rational that was not.
 from __future__ import annotations
 
 from collections.abc import Callable, Container, Iterator, Sequence
-from dataclasses import dataclass
 
+from eomgen.records import dataclass
 from eomgen.symbolic.exact.expansion import Expansion
 from eomgen.symbolic.exact.normal_form import readable
 from eomgen.symbolic.exact.terms import (

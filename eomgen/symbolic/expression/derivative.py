@@ -6,12 +6,16 @@ evaluation order. The rules of the functions stand once, in PARTIALS.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Container, Iterable, Mapping, Sequence
+from collections.abc import Callable, Collection, Container, Iterable, Mapping, Sequence
+from functools import lru_cache
 
 from eomgen.symbolic.expression.graph import Graph, Node, Scalar
 from eomgen.symbolic.expression.node import argument
 from eomgen.symbolic.expression.splines import number_of_sampled, sampled_of
 from eomgen.symbolic.expression.traversal import order
+
+LONG, FEWER = 10_000, 3  # nodes that sweeps meet; how many times fewer change their way
+JACOBIANS_KEPT = 8  # of matrices that are asked again: a search for roots, and the stability there
 
 
 def tangent(outputs: Sequence[Scalar], seeds: Mapping[Node, Scalar]) -> tuple[Scalar, ...]:
@@ -71,10 +75,17 @@ def pullback(outputs: Sequence[Scalar], weights: Sequence[Scalar], symbols: Sequ
 
 
 def jacobian(outputs: Sequence[Scalar], symbols: Sequence[Node]) -> tuple[tuple[Scalar, ...], ...]:
-    """The matrix d outputs / d symbols, one row an output, by whichever sweeps are fewer."""
-    if len(outputs) < len(symbols):
+    """The matrix d outputs / d symbols, one row an output, by whichever sweeps are fewer, or meet far fewer nodes."""
+    return _jacobian(tuple(outputs), tuple(symbols))
+
+
+@lru_cache(maxsize=JACOBIANS_KEPT)
+def _jacobian(outputs: tuple[Scalar, ...], symbols: tuple[Node, ...]) -> tuple[tuple[Scalar, ...], ...]:
+    nodes = order(outputs)
+    followers = _followers(nodes, symbols)
+    if len(outputs) < len(symbols) or _is_shorter_backward(outputs, nodes, followers):
         return tuple(gradient(x, symbols) for x in outputs)
-    each = zip(symbols, _followers(order(outputs), symbols), strict=True)
+    each = zip(symbols, followers, strict=True)
     columns = [_swept(outputs, {symbol: 1}, nodes, (symbol,)) for symbol, nodes in each]
     return tuple(tuple(column[i] for column in columns) for i in range(len(outputs)))
 
@@ -111,6 +122,11 @@ def rebuilt(x: Node, args: Sequence[Scalar]) -> Scalar:
 def symbols_of(outputs: Iterable[Scalar]) -> tuple[Node, ...]:
     """The symbols that the outputs hold, in the order of their making."""
     return tuple(x for x in order(tuple(outputs)) if x.op == "symbol")
+
+
+def depends_on_any(scalars: Iterable[Scalar], symbols: Collection[Node]) -> bool:
+    """True where one of the symbols (or nodes) occurs in one of them."""
+    return any(depends_on(x, symbols) for x in scalars)
 
 
 def depends_on(x: Scalar, symbols: Iterable[Node]) -> bool:
@@ -158,6 +174,31 @@ def _followers(nodes: Sequence[Node], symbols: Sequence[Node]) -> list[list[Node
             found[k].append(x)
             bits ^= 1 << k
     return found
+
+
+def _is_shorter_backward(outputs: Sequence[Scalar], nodes: Sequence[Node], followers: Sequence[Sequence[Node]]) -> bool:
+    """Whether of long matrices the sweeps from each output back meet far fewer nodes than those from each symbol.
+
+    So it is of sums in which every symbol stands in most of what follows: the angles along a chain.
+    """
+    forward = sum(map(len, followers))
+    if forward < LONG:
+        return False
+    active = {x for each in followers for x in each}
+    into: dict[Node, int] = {}  # bit k: output k is made of it
+    for k, x in enumerate(outputs):
+        if type(x) is Node:
+            into[x] = into.get(x, 0) | 1 << k
+    backward = 0
+    for x in reversed(nodes):
+        if x not in active:
+            continue
+        bits = into[x]
+        backward += bits.bit_count()
+        for a in x.args if x.op != "symbol" else ():
+            if type(a) is Node:
+                into[a] = into.get(a, 0) | bits
+    return backward * FEWER < forward
 
 
 def _rate(x: Node, rates: Sequence[Scalar]) -> Scalar:

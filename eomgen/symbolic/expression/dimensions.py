@@ -9,11 +9,12 @@ Angles are numbers. A plain number fits anything: it is an unknown of its own.
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Iterator, Mapping
-from dataclasses import dataclass, field, replace
+from dataclasses import field, replace
 from itertools import count
 from typing import Any
 
 from eomgen.errors import ExpressionError
+from eomgen.records import dataclass
 from eomgen.symbolic.expression.formula import Call, Expression
 from eomgen.symbolic.expression.rational import EXACT, Fraction
 from eomgen.symbolic.expression.tokens import token_at
@@ -178,7 +179,7 @@ class Clash:
     Args:
         one, other: the terms; other None: what the place needs is in `needed`.
         needed: the dimension that `one` ought to have.
-        in_function: that takes numbers only; "" elsewhere.
+        in_function: that takes numbers only, or arguments of one dimension; "" elsewhere.
     """
 
     one: Place
@@ -191,12 +192,13 @@ class Clash:
 
     @property
     def what(self) -> str:
-        if self.in_function:
+        if self.in_function and self.other is None:
             return f"{self.in_function} of {kind_of(self.one_is)}: {quoted(self.one)} is {told(self.one_is)}"
         if self.other is None:
             return f"{quoted(self.one)} is {told(self.one_is)}, and {told(self.needed)} is needed"
         two = f"{quoted(self.other)} is {told(self.needed)}, {quoted(self.one)} {told(self.one_is)}"
-        return f"{kind_of(self.needed)} and {kind_of(self.one_is)} have no sum: {two}"
+        joined = f"do not fit together in {self.in_function}" if self.in_function else "have no sum"
+        return f"{kind_of(self.needed)} and {kind_of(self.one_is)} {joined}: {two}"
 
 
 def quoted(place: Place) -> str:
@@ -306,7 +308,7 @@ class Walk:
         if name in KEEPS or name in ALL_SAME or name == "atan2":
             for other in args[1:]:
                 if not self.inference.equal(args[0].dimension, other.dimension):
-                    self._clash(other, args[0].dimension, args[0])
+                    self._clash(other, args[0].dimension, args[0], name)
             return Term(NUMBER if name == "atan2" else args[0].dimension, first, k, names)
         if name == "sqrt":
             return Term(args[0].dimension.raised(Fraction(1, 2)), first, k, names)

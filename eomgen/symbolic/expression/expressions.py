@@ -99,8 +99,15 @@ def as_expression(value: Any, *, references: bool = False) -> Expression:
     if isinstance(value, (float, Decimal)):
         if not math.isfinite(value):
             raise ExpressionError(f"{value} is not a number that can be calculated with", length=len(str(value)))
-        return parse(repr(float(value)) if isinstance(value, float) else str(value))
+        return _decimal(repr(float(value)) if isinstance(value, float) else str(value))
     raise ExpressionError(f"{value!r} is neither a number nor a text", mend="write a number or an expression")
+
+
+def _decimal(text: str) -> Expression:
+    """`parse` of a decimal, without its passes: models have thousands of values, which are put in many times."""
+    if text[0] == "-":
+        return parse(text)
+    return Expression(text, (("number", number_in(Token("number", text, 0))),), (0,))
 
 
 def _exact_number(value: Fraction) -> Expression:
@@ -261,7 +268,8 @@ class _Parser:
         if token.kind == "end" and not self.text.strip():
             return ExpressionError("the expression is empty")
         where = f"after '{before.text}'" if before.text else "at the beginning"
-        return ExpressionError(f"a value is missing {where}", max(0, token.start - (token.kind == "end")))
+        mend = "an equation has one =" if token.text == "=" else ""
+        return ExpressionError(f"a value is missing {where}", max(0, token.start - (token.kind == "end")), mend)
 
     def misplaced(self) -> ExpressionError:
         """The error for a token that cannot follow the value before it."""

@@ -8,10 +8,11 @@ from __future__ import annotations
 
 import difflib
 from collections.abc import Callable, Iterable, Mapping
-from dataclasses import dataclass, field
+from dataclasses import field
 from typing import Any, TypeVar
 
 from eomgen.errors import DerivationError, ExpressionError
+from eomgen.records import dataclass
 from eomgen.symbolic.expression import scalar_operations
 from eomgen.symbolic.expression.rational import Fraction
 from eomgen.symbolic.expression.scalar_operations import AnyScalar
@@ -102,8 +103,10 @@ class Expression:
     @property
     def names(self) -> frozenset[str]:
         """The names on which the value depends, with their primes; `t` and `pi` too, functions not."""
-        own = {what for kind, what in self.code if kind == "name"}
-        return frozenset(own.union(*(a.names for call in self.calls for a in call.args if isinstance(a, Expression))))
+        found = {what for kind, what in self.code if kind == "name"}
+        for call in self.calls:
+            found.update(*(a.names for a in call.args if isinstance(a, Expression)))
+        return frozenset(found)
 
     @property
     def calls(self) -> tuple[Call, ...]:

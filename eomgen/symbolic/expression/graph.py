@@ -60,11 +60,13 @@ class Graph:
         self._nodes: dict[tuple[str, tuple[Any, ...]], Node] = {}
         self._listed: tuple[Node, ...] = ()
         self._adopted: dict[Node, Node] = {}
+        self._waves: dict[tuple[str, Node], Scalar] = {}  # of arguments that were met
         self.pi = self.held("pi", ())
         self._constants = {self.pi}
         self.spheres: list[tuple[Node, ...]] = []
         self.text_sizes: dict[Node, int] = {}  # those that were asked for
         self.lengths: dict[Node, tuple[int, int]] = {}  # as typeset, of those that were asked for
+        self.simplest: dict[tuple[Any, ...], Scalar] = {}  # of those that were asked for, with what was asked
 
     def __len__(self) -> int:
         return len(self._nodes)
@@ -384,9 +386,9 @@ class Graph:
         if name == "sqrt":
             return self.sqrt(args[0])
         if name in ("sin", "cos"):
-            return circular(self, name, args[0])
+            return self._wave(name, args[0])
         if name == "tan":
-            return self.div(circular(self, "sin", args[0]), circular(self, "cos", args[0]))
+            return self.div(self._wave("sin", args[0]), self._wave("cos", args[0]))
         if name == "neg":
             return self.neg(args[0])
         a = args[0]
@@ -407,6 +409,14 @@ class Graph:
                     return self.call("cosh", a.args[0])
             return self.held(name, (a,))
         return self._binary(name, *args)
+
+    def _wave(self, name: str, a: Scalar) -> Scalar:
+        """sin or cos of a; its argument is put in order once."""
+        if type(a) is not Node:
+            return circular(self, name, a)
+        if (name, a) not in self._waves:
+            self._waves[name, a] = circular(self, name, a)
+        return self._waves[name, a]
 
     def _binary(self, name: str, a: Scalar, b: Scalar) -> Scalar:
         if type(a) is not Node and type(b) is not Node:

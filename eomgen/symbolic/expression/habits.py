@@ -21,10 +21,13 @@ _ENDS = (("_ddot", 2), ("_dotdot", 2), ("ddot", 2), ("_dot", 1), ("dot", 1), ("_
 _NUMBER = r"\d+(?:\.\d*)?(?:[eE][-+]?\d+)?|\.\d+"
 _COMMA = re.compile(r"(\d+)\s*,\s*(\d+)")
 _POWER = re.compile(r"(\w+)\s*(?:\^|\*\*)\s*(\d+)\s*$")
-_DEGREES = re.compile(rf"({_NUMBER})\s*\*?\s*({'|'.join(DEGREES)})(?!\w)")
+_DEGREES = re.compile(rf"({_NUMBER})\s*(?:\*?\s*(?:{'|'.join(DEGREES)})(?!\w)|°)")
 _WITH_UNIT = re.compile(rf"\s*([-+]?(?:{_NUMBER}))(?:\s+([A-Za-z][\w^*/]*)|(kg|mm|cm|kN|N|deg|rad|rpm))\s*")
+_OF_TIME = re.compile(r"\s*(\w+)\s*\(\s*t\s*\)")
 _POW = re.compile(r"\s*pow\(\s*(\w+)\s*,\s*(\w+)\s*\)")
-_RATE = re.compile(rf"\s*({'|'.join(RATES)})\(\s*(\w+)\s*(?:\(\s*t\s*\)\s*)?(?:,\s*t\s*(?:,\s*([12t])\s*)?)?\)")
+_RATE = re.compile(
+    rf"\s*({'|'.join(RATES)})\(\s*(\w+)\s*(?:\(\s*t\s*\)\s*)?(?:,\s*\(?\s*t\s*(?:,\s*([12t])\s*)?\)?\s*)?\)"
+)
 
 
 def spelled(letter: str) -> str:
@@ -63,14 +66,20 @@ def decimal_comma(text: str, place: int) -> str:
     return "" if found is None else f"write a decimal point: {found[1]}.{found[2]}"
 
 
-def rate_of_call(text: str) -> str:
-    """The mend of diff(phi, t), ddot(phi) or pow(phi, 2), or ""."""
+def called_rate(text: str) -> tuple[str, int, int] | None:
+    """(phi, how many dots, where it ends) of diff(phi, t), ddot(phi); None of others."""
     found = _RATE.match(text)
+    return None if found is None else (found[2], max(RATES[found[1]], 2 if found[3] in ("2", "t") else 1), found.end())
+
+
+def rate_of_call(text: str) -> str:
+    """The mend of diff(phi, t), ddot(phi), phi(t) or pow(phi, 2), or ""."""
+    if of_time := _OF_TIME.match(text):
+        return f"write {of_time[1]}: what moves depends on t by itself"
     if power := _POW.match(text):
         return f"write {power[1]}^{power[2]}"
-    if found is None:
-        return ""
-    return f"write {found[2]}{chr(39) * max(RATES[found[1]], 2 if found[3] in ('2', 't') else 1)}"
+    found = called_rate(text)
+    return "" if found is None else f"write {found[0]}{chr(39) * found[1]}"
 
 
 def meant_name(name: str, allowed: Container[str]) -> str:

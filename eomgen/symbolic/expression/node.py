@@ -16,6 +16,7 @@ class Owner(Protocol):
     spheres: list[tuple[Node, ...]]
     text_sizes: dict[Node, int]
     lengths: dict[Node, tuple[int, int]]
+    simplest: dict[tuple[Any, ...], Scalar]
 
     @property
     def nodes(self) -> tuple[Node, ...]: ...

@@ -8,9 +8,9 @@ expression; nothing here asks which. A twist has its angular part first; a wrenc
 from __future__ import annotations
 
 from collections.abc import Iterable
-from dataclasses import dataclass
 from typing import Any
 
+from eomgen.records import dataclass
 from eomgen.symbolic.expression.node import Scalar
 from eomgen.symbolic.expression.rational import Fraction
 

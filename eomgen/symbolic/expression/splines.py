@@ -12,12 +12,13 @@ from __future__ import annotations
 
 from bisect import bisect_right
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from functools import cache
 from hashlib import blake2b
 from itertools import pairwise
 from typing import Any
 
+from eomgen.records import dataclass
 from eomgen.symbolic.expression.rational import Fraction
 
 WAYS = ("cubic", "linear", "steps")

@@ -6,8 +6,9 @@ derivative for deriving.
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field
+from dataclasses import field
 
+from eomgen.records import dataclass
 from eomgen.symbolic.expression.graph import Graph, Node
 
 

@@ -3,9 +3,10 @@
 from __future__ import annotations
 
 import re
-from dataclasses import dataclass
 
 from eomgen.errors import ExpressionError
+from eomgen.records import dataclass
+from eomgen.symbolic.expression.habits import degrees
 from eomgen.symbolic.expression.rational import Fraction
 
 LARGEST_EXPONENT = 300  # of ten, in a decimal: what a double can hold
@@ -20,6 +21,7 @@ _SPACE = re.compile(r"\s*")
 _REFERENCE = re.compile(rf"(?P<number>{_NUMBER}\s*[,)])|(?P<reference>\w+(?:\.\w+)*(?:\s*-\s*\w+(?:\.\w+)*)*)\s*[,)]")
 _DOTTED = re.compile(rf"{_NAME}(?:\.\w+)+")
 
+CASES = "nothing is compared here: an instant is an equation, x = 1; cases are made by max, min, abs, sign"
 _MENDS = {
     "−": "write -",
     "–": "write -",
@@ -35,6 +37,9 @@ _MENDS = {
     "√": "write sqrt(...)",
     "|": "write abs(...)",
     "°": 'give the unit beside it: { start = 20, unit = "deg" }',
+    ">": CASES,
+    "<": CASES,
+    "?": CASES,
     "[": "use round parentheses",
     "{": "use round parentheses",
 }
@@ -84,7 +89,9 @@ def _strange(text: str, start: int) -> ExpressionError:
         if owner in ("np", "numpy", "math", "sp", "sympy"):
             mend = f"write {what}(...)"
         return ExpressionError(f"'{dotted.group()}' is a point, not a number", dotted.start(), mend, length)
-    return ExpressionError(f"unexpected character {character!r}", start, _MENDS.get(character, ""))
+    in_formula = character == "°" and not text[:start].strip().isdigit()
+    mend = degrees(text) if in_formula else _MENDS.get(character, "")
+    return ExpressionError(f"unexpected character {character!r}", start, mend)
 
 
 def _word_start(text: str, end: int) -> int:

@@ -6,10 +6,10 @@ The loops run in the order of `Node.index`, never by recursion: a chain of 50 li
 from __future__ import annotations
 
 from collections.abc import Iterable, Mapping, Sequence
-from dataclasses import dataclass
 from operator import attrgetter
 from typing import Any
 
+from eomgen.records import dataclass
 from eomgen.symbolic.expression.graph import CONSTANTS, Node, Scalar
 from eomgen.symbolic.expression.node import Owner
 

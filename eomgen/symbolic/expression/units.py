@@ -8,10 +8,10 @@ from __future__ import annotations
 import difflib
 import math
 import re
-from dataclasses import dataclass
 from typing import Any
 
 from eomgen.errors import ExpressionError
+from eomgen.records import dataclass
 from eomgen.symbolic.expression.formula import Expression
 from eomgen.symbolic.expression.functions import over
 from eomgen.symbolic.expression.rational import Fraction

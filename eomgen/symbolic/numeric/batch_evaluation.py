@@ -8,12 +8,12 @@ from __future__ import annotations
 
 import operator
 from collections.abc import Callable, Mapping
-from dataclasses import dataclass
 from functools import cached_property
 from typing import Any
 
 import numpy as np
 
+from eomgen.records import dataclass
 from eomgen.symbolic.expression.graph import Node, Scalar
 from eomgen.symbolic.expression.splines import sampled_of
 from eomgen.symbolic.expression.traversal import order

@@ -8,13 +8,13 @@ A piece whose last coefficients do not vanish is halved: what is smooth needs fe
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import dataclass
 from functools import cache
 from itertools import pairwise
 
 import numpy as np
 from numpy.polynomial import chebyshev
 
+from eomgen.records import dataclass
 from eomgen.symbolic.numeric.tolerances import BEST, CARRIED, ITERATED, SOLVED
 
 DEGREE = 16

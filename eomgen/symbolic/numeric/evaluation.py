@@ -5,11 +5,12 @@ from __future__ import annotations
 import math
 import operator
 from collections.abc import Callable, Iterable, Mapping, Sequence
-from dataclasses import dataclass
 from functools import cache, lru_cache
+from functools import partial as partial_of
 from typing import Any
 
 from eomgen.errors import DerivationError
+from eomgen.records import dataclass
 from eomgen.symbolic.expression.graph import LARGEST_POWER, Node, Number, Scalar
 from eomgen.symbolic.expression.rational import Fraction
 from eomgen.symbolic.expression.splines import sampled_of
@@ -17,6 +18,7 @@ from eomgen.symbolic.expression.traversal import order
 from eomgen.symbolic.numeric.work import LARGEST_OF_50_DIGITS, check_patience
 
 WAYS_KEPT = 16  # of evaluations that may come again
+_Step = tuple[Node, str, tuple[int, ...]]
 PRIME = 2305843009213682039  # 61 bits, 7 mod 8; 2, 3, 5, ..., 37 are squares modulo it
 
 
@@ -37,12 +39,14 @@ class Arithmetic:
         number: turns an exact number into one of this kind.
         functions: the operation of each op, "pi" as a function of nothing.
         failed: the value of a node outside its domain; may raise NoValue instead.
+        quickly: (values that are given, steps, places of the outputs) -> these, by a quicker way; None: not by that.
     """
 
     name: str
     number: Callable[[Number], Any]
     functions: Mapping[str, Callable[..., Any]]
     failed: Callable[[Node], Any]
+    quickly: Callable[[Sequence[Any], Sequence[_Step], Sequence[int]], list[Any] | None] | None = None
 
 
 def evaluate(outputs: Sequence[Scalar], values: Mapping[Node, Any], arithmetic: Arithmetic) -> list[Any]:
@@ -65,6 +69,8 @@ def evaluate(outputs: Sequence[Scalar], values: Mapping[Node, Any], arithmetic: 
     known = [number(x) for x in way.constants]
     known += [values[x] for x in way.symbols]
     known += [values[x] for x in way.given]
+    if arithmetic.quickly is not None and (found := arithmetic.quickly(known, way.steps, way.outputs)) is not None:
+        return found
     for x, op, places in way.steps:
         try:
             known.append(functions[op](*[known[i] for i in places]))
@@ -97,7 +103,7 @@ class _Way:
     constants: tuple[Number, ...]
     symbols: tuple[Node, ...]
     given: tuple[Node, ...]
-    steps: tuple[tuple[Node, str, tuple[int, ...]], ...]
+    steps: tuple[_Step, ...]
     outputs: tuple[int, ...]
 
 
@@ -272,6 +278,8 @@ def fifty_digits(partial: bool = False) -> Arithmetic:
     """
     from mpmath.ctx_mp import MPContext
 
+    from eomgen.symbolic.numeric.sure_digits import by_balls
+
     mp = MPContext()
     mp.dps = 50
 
@@ -300,9 +308,16 @@ def fifty_digits(partial: bool = False) -> Arithmetic:
     own: dict[str, Callable[..., Any]] = {"pow": real(power), "pi": lambda: +mp.pi}
     own["sampled"] = lambda t, k: sampled_of(k).at(t, number, +mp.pi)
     failed = (lambda x: mp.nan) if partial else _no_value
-    return Arithmetic("50 digits", number, _RING | _ORDERED | functions | own, failed)
+    return Arithmetic("50 digits", number, _RING | _ORDERED | functions | own, failed, partial_of(by_balls, mp))
 
 
 def digits_at(state: Mapping[Node, Any]) -> Callable[[Sequence[Scalar]], list[Any]]:
     """scalars -> their values at the state, with 50 digits."""
     return lambda scalars: evaluate(scalars, state, fifty_digits())
+
+
+def solved_quickly(rows: Sequence[Sequence[Any]]) -> list[Any] | None:
+    """x of as many rows [A | b] as unknowns, with 50 digits; None where they are few, or A is nearly singular."""
+    from eomgen.symbolic.numeric.sure_digits import solved_by_balls
+
+    return solved_by_balls(fifty_digits().number(1).context, rows)

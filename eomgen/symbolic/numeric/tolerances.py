@@ -40,6 +40,7 @@ RANK_NEARBY = 1e-7  # at a place that was found in doubles, or is met on the way
 LEAST_CHANGE = 1e-11  # of the least change that closes gaps: near a singular place it must still be made
 REGULAR = 1e-12  # of a scaled mass matrix, 1 / condition number, below which it is singular
 PIVOT = 1e-11  # of a row's pivot in emitted code: the squared sine of its angle to the rows before it
+SURE_PIVOT = 1e-3  # of the same: above it a row need not wait for one that is farther from those before it
 DEPENDENT_EASE = 1e-7  # of J A^-1 J^T, added to its diagonal: dependent rows are solved without pivots, in rounds
 NEARLY_SINGULAR = 1e-5  # at a place that is known to half of the digits only, or where ties resist too little
 BRANCHES_MEET = 1e-4  # of the largest singular value: two branches meet so near that neither is told from the other
@@ -48,6 +49,8 @@ DEGENERATE = 1e-6  # of a determinant, length or diagonal entry that a descripti
 
 # Places, instants and shapes.
 SAME_PLACE = 1e-6  # of coordinates against their size and 1: so near, two places are one (a double root is so wide)
+BESIDE_A_PLACE = 1e-4  # of coordinates against their size and 1: what vanishes at a place does not so far from it
+AT_A_MULTIPLE_ROOT = 1e-4  # of a derivative so far from it: a root of order 5 is known to 8 digits where f is to 40
 SAME_PERIOD = 0.05  # of a time between passages: more, and what is damped or modulated has no one period
 SAME_EIGENVALUE = 1e-7  # of two eigenvalues: a double one comes out as two, the root of rounding apart
 NEAR_ROOT = 1e-7  # of scaled equations: so near, Newton's method has a root; a box that is not halved again
@@ -77,6 +80,7 @@ RUNS_AGREE = 1e-7  # of the motion's size: two runs across a singular place diff
 
 # Steps of differences [of the coordinate's size and 1].
 DIFFERENCE_STEP = 1e-5  # of a first derivative in doubles, near the cube root of rounding
+PARAMETER_STEP = 1e-3  # of a parameter, of a difference of fourth order: near the fifth root of rounding
 IMAGINARY_STEP = 1e-30  # i h of a derivative Im f(s + i h) / h, which has no difference and so no rounding
 ASIDE_STEP = 1e-6  # [rad] beside a place where a description is locked
 WIDE_STEP = 1e-4  # of a second difference, near the fourth root of rounding; of what is drawn

@@ -14,10 +14,11 @@ import time
 from collections.abc import Iterator
 from contextlib import contextmanager
 from contextvars import ContextVar
-from dataclasses import dataclass, field
+from dataclasses import field
 from enum import IntEnum
 
 from eomgen.errors import EomgenError
+from eomgen.records import dataclass
 
 
 class Work(IntEnum):
@@ -59,6 +60,7 @@ class _Clock:
         end: on the monotonic clock [s].
         told: what is being done, the outermost first.
         done: what was.
+        kept: what stays of it.
         closed: when nothing is to be stopped any more; thrown: whether something was, from outside.
     """
 
@@ -66,6 +68,7 @@ class _Clock:
     end: float
     told: list[str] = field(default_factory=list)
     done: list[str] = field(default_factory=list)
+    kept: str = "nothing is kept"
     closed: threading.Event = field(default_factory=threading.Event)
     thrown: bool = False
     lock: threading.Lock = field(default_factory=threading.Lock)
@@ -74,7 +77,7 @@ class _Clock:
         """What was done, what was given up, and what helps."""
         given_up = ", ".join(self.told[-2:]) or "the work"
         before = f" (done before: {', '.join(self.done[-4:])})" if self.done else ""
-        what = f"given up after {self.seconds:g} s, nothing is kept: {given_up}{before}"
+        what = f"given up after {self.seconds:g} s, {self.kept}: {given_up}{before}"
         return OutOfPatience(what, mend="ask for less, or wait longer: --patience SECONDS, --patience none")
 
 
@@ -101,6 +104,23 @@ def keep_what_there_is() -> None:
             clock.closed.set()
             if clock.thrown:
                 _throw(threading.get_ident(), None)
+
+
+def another_stretch(kept: str) -> None:
+    """Of work that goes on step by step, each of which stays: the next one may take as long as all so far.
+
+    Args:
+        kept: what there is now, for whoever is told that the rest was given up.
+    """
+    clock = _CLOCK.get()
+    if clock is not None:
+        with clock.lock:
+            clock.closed.set()
+            if clock.thrown:
+                _throw(threading.get_ident(), None)
+            clock.closed, clock.thrown = threading.Event(), False
+            clock.end, clock.kept = time.monotonic() + clock.seconds, kept
+        _watch(clock)
 
 
 @contextmanager
@@ -135,7 +155,7 @@ def patience(seconds: float | None) -> Iterator[None]:
         return
     clock = _Clock(seconds, time.monotonic() + seconds)
     token = _CLOCK.set(clock)
-    threading.Thread(target=_stop_late, args=(clock, threading.get_ident()), daemon=True).start()
+    _watch(clock)
     try:
         yield
     except PatienceEnded:
@@ -148,13 +168,18 @@ def patience(seconds: float | None) -> Iterator[None]:
                 _throw(threading.get_ident(), None)
 
 
-def _stop_late(clock: _Clock, thread: int) -> None:
+def _watch(clock: _Clock) -> None:
+    asked = (clock, clock.closed, threading.get_ident())
+    threading.Thread(target=_stop_late, args=asked, daemon=True).start()
+
+
+def _stop_late(clock: _Clock, closed: threading.Event, thread: int) -> None:
     """Throws into a thread that does not ask, again where a library swallowed it."""
     wait = clock.seconds + LATE
-    while not clock.closed.wait(wait):
+    while not closed.wait(wait):
         with clock.lock:
             importing = _imports(thread)
-            if not importing and not clock.closed.is_set():
+            if not importing and not closed.is_set():
                 clock.thrown = True
                 _throw(thread, PatienceEnded)
         wait = SOON if importing else LATE

@@ -7,10 +7,10 @@ expression whose tree is exponentially large costs what its graph costs.
 from __future__ import annotations
 
 from collections.abc import Container
-from dataclasses import dataclass
 from heapq import heappop, heappush
 from typing import Any
 
+from eomgen.records import dataclass
 from eomgen.symbolic.expression.exact_numbers import tidy
 from eomgen.symbolic.expression.graph import Node, Number, Scalar
 from eomgen.symbolic.expression.node import SUMS

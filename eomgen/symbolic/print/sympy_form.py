@@ -165,7 +165,7 @@ _TO_SYMPY: dict[str, Callable[..., Any]] = {
 # -- sympy -> graph -----------------------------------------------------------------------------
 
 
-def from_sympy(expression: Any, symbols: Mapping[str, Node]) -> Scalar:
+def scalar_from_sympy(expression: Any, symbols: Mapping[str, Node]) -> Scalar:
     """A sympy expression as a scalar of the symbols' graph.
 
     Args:

@@ -10,9 +10,9 @@ and each block is solved by its own determinant:
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Mapping, Sequence
-from dataclasses import dataclass
 
 from eomgen.errors import DerivationError
+from eomgen.records import dataclass
 from eomgen.symbolic.expression.functions import inner, over
 from eomgen.symbolic.expression.graph import Node, Scalar, is_zero
 from eomgen.symbolic.expression.node import SparseRow

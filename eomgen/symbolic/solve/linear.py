@@ -12,11 +12,11 @@ which for equations without contradiction have the same solution, and with W = A
 from __future__ import annotations
 
 from collections.abc import Callable, Collection, Iterable, Mapping, Sequence
-from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
 
+from eomgen.records import dataclass
 from eomgen.symbolic.expression.graph import Node, Scalar, is_zero
 from eomgen.symbolic.expression.node import SparseRow
 from eomgen.symbolic.numeric.tolerances import ELIMINATED_AT_50, RANK

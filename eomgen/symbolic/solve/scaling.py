@@ -10,8 +10,9 @@ these rows, scaled or not; a row whose factor vanishes says nothing, where anoth
 from __future__ import annotations
 
 from collections.abc import Callable, Collection, Mapping, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import replace
 
+from eomgen.records import dataclass
 from eomgen.symbolic.expression.derivative import symbols_of
 from eomgen.symbolic.expression.functions import over
 from eomgen.symbolic.expression.graph import Node, Number, Scalar

@@ -8,12 +8,13 @@ their magnitudes. Roots that these brought in are left out where numbers show th
 from __future__ import annotations
 
 import math
-from collections.abc import Collection, Iterator
-from dataclasses import dataclass, replace
+from collections.abc import Collection, Iterable, Iterator
+from dataclasses import replace
 from math import gcd
 from random import Random
 
 from eomgen.errors import DerivationError
+from eomgen.records import dataclass
 from eomgen.symbolic.exact.equality import equal_at_random_states
 from eomgen.symbolic.exact.expansion import Expansion
 from eomgen.symbolic.exact.factoring import factored, square_root
@@ -24,6 +25,7 @@ from eomgen.symbolic.expression.derivative import depends_on, substituted, symbo
 from eomgen.symbolic.expression.exact_numbers import tidy
 from eomgen.symbolic.expression.functions import over
 from eomgen.symbolic.expression.graph import Node, Scalar
+from eomgen.symbolic.expression.node import argument, linear_terms
 from eomgen.symbolic.expression.rational import Fraction
 from eomgen.symbolic.expression.traversal import order
 from eomgen.symbolic.numeric.evaluation import FLOAT, evaluate
@@ -60,6 +62,26 @@ def has_period(equation: Scalar, unknown: Node, period: Scalar) -> bool:
     """Whether equation(x + period) is the same function as equation(x)."""
     (shifted,) = substituted((equation,), {unknown: unknown + period})
     return shifted is equation or vanishes(shifted - equation)
+
+
+def outside_of_turns(equations: Iterable[Scalar]) -> frozenset[Node]:
+    """The symbols that stand elsewhere than in the argument of a sine or cosine, times a whole number.
+
+    After a whole turn of any other, all of the equations are the same.
+    """
+    stack = [x for x in equations if type(x) is Node]
+    seen = {*stack}
+    while stack:
+        x = stack.pop()
+        inside: Iterable[Scalar | None] = x.args
+        if x.op in ("sin", "cos"):
+            terms = linear_terms(argument(x, 0))
+            inside = (a for a, c in terms.items() if a is not None and (a.op != "symbol" or type(c) is not int))
+        for a in inside:
+            if type(a) is Node and a not in seen:
+                seen.add(a)
+                stack.append(a)
+    return frozenset(x for x in seen if x.op == "symbol")
 
 
 def vanishes(x: Scalar) -> bool:

@@ -31,11 +31,13 @@ export function constants(p, c = new Float64Array(4)) {
     return c;
 }
 
+const acting_of_evaluate = new Float64Array(1);
 export function evaluate(t, x, p, c, inputs, dx = new Float64Array(4)) {
     const theta = x[1];
     const x_dot = x[2]; // x'
     const theta_dot = x[3]; // theta'
-    const acting = new Array(1).fill(0);
+    const acting = acting_of_evaluate;
+    for (let i = 0; i < 1; i++) acting[i] = 0;
     if (inputs !== null) {
         acting[0] = inputs[0];
     } else {

@@ -1,4 +1,5 @@
 //! Held against the test vectors: cargo test
+#![allow(clippy::approx_constant, clippy::excessive_precision)]
 
 fn agree(found: &[f64], right: &[f64], tolerance: f64) {
     let largest = right.iter().fold(1.0_f64, |most, value| most.max(value.abs()));

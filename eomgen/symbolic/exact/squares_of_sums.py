@@ -1,11 +1,8 @@
-"""A scalar -> the same with each product of what moves written once, and squares of sums as squares.
-
-(I3 - I2)*w2*w3, and not I3*w2*w3 - I2*w2*w3;  1/2*I_3*(cos(theta)*phi' + psi')^2, and not its three terms.
-"""
+"""A scalar -> the same with squares of sums as squares: 1/2*I_3*(cos(theta)*phi' + psi')^2, not its three terms."""
 
 from __future__ import annotations
 
-from collections.abc import Callable, Collection
+from collections.abc import Collection
 
 from eomgen.symbolic.exact.expansion import Expansion, expanded
 from eomgen.symbolic.exact.quotient import powers_in, reduced
@@ -14,34 +11,18 @@ from eomgen.symbolic.exact.terms import (
     Monomial,
     Terms,
     TooLarge,
-    accumulate,
-    common_monomial,
     content,
-    inverse,
     terms_scaled,
     terms_times,
 )
-from eomgen.symbolic.exact.trigonometric_form import Factors
 from eomgen.symbolic.exact.writing import Writer
-from eomgen.symbolic.expression.exact_numbers import tidy
 from eomgen.symbolic.expression.graph import Node, Scalar
 from eomgen.symbolic.expression.rational import Fraction
 from eomgen.symbolic.numeric.work import Work
 
 
-def gathered(x: Scalar, limit: int = Work.ENTRY, positive: Collection[Node] = ()) -> Scalar:
-    """x with the parameters' sums in parentheses before what moves; x itself where that takes too much work."""
-    return _rewritten(x, limit, positive, _by_what_moves)
-
-
 def with_squares(x: Scalar, limit: int = Work.ENTRY, positive: Collection[Node] = ()) -> Scalar:
     """x with the parts that are squares of sums, of one product of parameters each, as squares."""
-    return _rewritten(x, limit, positive, _by_parameters)
-
-
-def _rewritten(
-    x: Scalar, limit: int, positive: Collection[Node], write: Callable[[Expansion, Writer, Terms], Scalar]
-) -> Scalar:
     if type(x) is not Node:
         return x
     try:
@@ -49,7 +30,7 @@ def _rewritten(
         above, below = reduced(expansion, terms)
         writer = Writer(expansion)
         number = content(below) if len(below) > 1 else Fraction(1)
-        top = write(expansion, writer, terms_scaled(above, 1 / number))
+        top = _by_parameters(expansion, writer, terms_scaled(above, 1 / number))
         return expansion.graph.div(top, writer.in_powers(terms_scaled(below, 1 / number)))
     except TooLarge:
         return x
@@ -60,36 +41,6 @@ def _parted(expansion: Expansion, monomial: Monomial) -> tuple[Monomial, Monomia
     graph, nodes = expansion.graph, expansion.atoms.nodes
     still = tuple(item for item in monomial if item[0] < 0 or graph.is_constant(nodes[item[0]]))
     return still, tuple(item for item in monomial if item not in still)
-
-
-def _by_what_moves(expansion: Expansion, writer: Writer, terms: Terms) -> Scalar:
-    """sum of (sum of parameters) * (product of what moves)"""
-    groups: dict[tuple[Monomial, Factors], Terms] = {}
-    for c, monomial, factors in writer.written(terms):
-        still, moving = _parted(expansion, monomial)
-        accumulate(groups.setdefault((moving, factors), {}), (still, ()), c)
-    total: Scalar = 0
-    for (moving, factors), part in groups.items():
-        if not part:
-            continue
-        common = common_monomial(part)
-        product = writer.term(1, tuple(sorted((*common, *moving))), factors)
-        total = expansion.graph.add(total, expansion.graph.mul(_sum_of(writer, part, common), product))
-    return total
-
-
-def _sum_of(writer: Writer, part: Terms, common: Monomial) -> Scalar:
-    """The sum over what its terms have in common, its number outside, a positive term first."""
-    inverted, factor = inverse(common)
-    number = content(part) if len(part) > 1 else Fraction(1)
-    if len(part) > 1 and all(c < 0 for c in part.values()):
-        number = -number
-    rest = terms_times(terms_scaled(part, 1 / number), {(inverted, ()): factor})
-    ordered = sorted(rest.items(), key=lambda item: item[1] < 0)
-    total: Scalar = 0
-    for key, c in ordered:
-        total = writer.graph.add(total, writer.sum({key: c}))
-    return writer.graph.mul(tidy(number), total)
 
 
 def _by_parameters(expansion: Expansion, writer: Writer, terms: Terms) -> Scalar:

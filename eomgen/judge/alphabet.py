@@ -1,0 +1,110 @@
+"""What letters and names may be: their plain forms, how names are set, and what of a model they can stand for."""
+
+from __future__ import annotations
+
+import re
+import unicodedata
+from collections.abc import Container, Iterable, Mapping
+from functools import cached_property
+
+from eomgen.records import dataclass
+from eomgen.symbolic.expression.habits import spelled
+
+ALIKE = {"−": "-", "–": "-", "·": "*", "⋅": "*", "×": "*", "∙": "*", "÷": "/", "[": "(", "]": ")", "′": "'", "’": "'"}
+ALIKE |= {
+    "″": "''",
+    '"': "''",
+    "“": "''",
+    "”": "''",
+    "≈": "=",
+    "≡": "=",
+    "ʹ": "'",
+    "\u00a0": " ",
+}
+
+
+@dataclass(frozen=True)
+class Vocabulary:
+    """What the names in an equation can stand for.
+
+    Args:
+        names: of the model, without primes.
+        functions: that can be asked of it: speed, T, Q.
+        set_as: how names are set in LaTeX, by name.
+    """
+
+    names: frozenset[str]
+    functions: frozenset[str]
+    set_as: Mapping[str, str]
+
+    @cached_property
+    def _by_key(self) -> dict[str, str]:
+        found: dict[str, str] = {}
+        for name in sorted(self.names):
+            found.setdefault(key(name), name)
+        for name, latex in self.set_as.items():
+            found.setdefault(key(latex), name)
+        return found
+
+    def known(self, letters: str) -> str | None:
+        """The model's name for letters with their index, or None."""
+        if letters in self.names:
+            return letters
+        return self._by_key.get(key(letters))
+
+    @property
+    def rates(self) -> Container[str]:
+        """The names with their primes."""
+        return frozenset(name + primes for name in self.names for primes in ("'", "''"))
+
+    def cut(self, word: str) -> list[str] | None:
+        """A word taken apart into names of the model, the fewest: mgl is m, g, l; None where it cannot be."""
+        best: list[list[str] | None] = [[], *([None] * len(word))]
+        for end in range(1, len(word) + 1):
+            for start in range(end):
+                before, name = best[start], self.known(word[start:end])
+                if before is not None and name is not None and not word[start].isdigit():
+                    now = best[end]
+                    if word[end - 1] != "_" and (now is None or len(before) + 1 < len(now)):
+                        best[end] = [*before, name]
+        return best[-1]
+
+
+def key(letters: str) -> str:
+    """What of a name is compared: its letters and digits, Greek ones by their names."""
+    plain = re.sub(r"\\(?:mathrm|mathit|text|mathbf|mathsf|mathcal|left|right)\b", "", letters)
+    return "".join(spelled(c) or c for c in plain if c.isalnum()).replace("varphi", "phi").replace("vartheta", "theta")
+
+
+def plain_forms(written: str) -> tuple[str, list[int]]:
+    """The characters in their plain forms, dots behind their letters; and where each was written."""
+    found, places = "", list[int]()
+    for at, c in enumerate(written):
+        plain = ALIKE.get(c) or _fraction(c) or unicodedata.normalize("NFD", c)
+        found += plain
+        places += [at] * len(plain)
+    return found, places or [0]
+
+
+def _fraction(c: str) -> str:
+    """⅙ as (1/6), "" of others."""
+    above, slash, below = unicodedata.normalize("NFKD", c).partition("\u2044")
+    return f"({above}/{below})" if slash and above and below else ""
+
+
+def spelled_command(command: str) -> str:
+    """A Greek letter's command by its name (\\varphi is phi), "" of others."""
+    bare = command.removeprefix("var") if command.startswith("var") else command
+    try:
+        kind = "CAPITAL" if bare[:1].isupper() else "SMALL"
+        name = {"lambda": "LAMDA", "Lambda": "LAMDA"}.get(bare, bare.upper())
+        unicodedata.lookup(f"GREEK {kind} LETTER {name}")
+    except KeyError:
+        return ""
+    return bare
+
+
+def vocabulary(names: Iterable[str], functions: Iterable[str], set_as: Mapping[str, str]) -> Vocabulary:
+    """Names without their primes, functions, and how names are set."""
+    bare = frozenset(name.rstrip("'") for name in names)
+    return Vocabulary(bare, frozenset(functions), set_as)

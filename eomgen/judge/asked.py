@@ -1,0 +1,108 @@
+"""Both sides as the solver of outputs answers them -> Verdict: instants, rest, small motions, structures.
+
+Sides are equal exactly, or in numbers at several sets of values of the parameters. A side that is a number alone speaks
+of the values of the file, and is right if it is rounded rightly.
+"""
+
+from __future__ import annotations
+
+import re
+from dataclasses import replace
+
+from eomgen.errors import EomgenError, ExpressionError
+from eomgen.judge.case import Case
+from eomgen.judge.causes import causes_of
+from eomgen.judge.comparison import LONG, Comparison, excess
+from eomgen.judge.decision import is_zero_everywhere
+from eomgen.judge.implied import Instant, implied_by, simplest_explanation
+from eomgen.judge.reading import HandEquation
+from eomgen.judge.verdict import RIGHT, UNDECIDED, WRONG, Cause, Verdict
+from eomgen.model.replaced import with_values
+from eomgen.model.values import exact_parameters
+from eomgen.questions.answers import Answer
+from eomgen.symbolic.numeric.tolerances import COMPUTED
+
+
+def asked(case: Case, written: HandEquation, kind: str, at: Instant) -> Verdict:
+    """The verdict on an equation about an instant, rest, small motions or a structure.
+
+    Raises:
+        ExpressionError: a name that the model does not have.
+    """
+    unknown = case.unknown_names(written)
+    if unknown:
+        column = max(written.given.find(unknown[0]), 0)
+        raise ExpressionError(f"unknown name '{unknown[0]}'", column, length=len(unknown[0]))
+    try:
+        left, right = case.sides(written, at)
+    except ExpressionError as error:
+        if case.clash(written):
+            return Verdict(written.given, kind, WRONG, causes=(Cause("unit", error.what, quantity="the dimensions"),))
+        raise
+    open_ = next((each for each in (left, right) if not each.answered), None)
+    if open_ is not None:
+        return Verdict(written.given, kind, UNDECIDED, reason=open_.message or "it has no value")
+    exact = [case.exact(each) for each in (left, right)]
+    if exact[0] is not None and exact[1] is not None and is_zero_everywhere(case.system, exact[0] - exact[1]).holds:
+        return Verdict(written.given, kind, RIGHT)
+    if left.value is not None and right.value is not None:
+        apart, rounded = abs(left.value - right.value), _rounding(written)
+        if rounded is not None and apart <= rounded:
+            return Verdict(written.given, kind, RIGHT, f"the rounding of {written.right.text}")
+        if apart <= COMPUTED * max(abs(left.value), abs(right.value), COMPUTED):
+            if not written.right.names - {"pi"} and not written.right.calls:
+                return Verdict(written.given, kind, RIGHT, "the values of the file")
+            return _by_numbers(case, written, kind, at)
+    return _wrong(case, written, kind, at, left, right)
+
+
+def _by_numbers(case: Case, written: HandEquation, kind: str, at: Instant) -> Verdict:
+    """Whether sides that are equal in numbers are so with other values of the parameters, too."""
+    tried = 0
+    own = {name: x for name, x in exact_parameters(case.model).items() if name in case.model.parameters}
+    for shares in ((1.07, 0.95, 1.02), (0.94, 1.05, 0.99)):
+        values = {n: float(x) * shares[k % 3] * (1 + k / 300) for k, (n, x) in enumerate(own.items())}
+        try:
+            left, right = Case(with_values(case.model, values).model, case.at_rest).sides(written, at)
+        except EomgenError:
+            continue
+        if left.value is None or right.value is None:
+            continue
+        if abs(left.value - right.value) > COMPUTED * max(abs(left.value), abs(right.value), COMPUTED):
+            text = "it holds with the values of the file alone, and not with others"
+            return Verdict(written.given, kind, WRONG, causes=(Cause("other", text, quantity="the value"),))
+        tried += 1
+    if not tried:
+        return Verdict(written.given, kind, UNDECIDED, reason="in numbers the sides are equal; no exact form says so")
+    return Verdict(written.given, kind, RIGHT, f"numbers, at {tried + 1} sets of values of the parameters")
+
+
+def _wrong(case: Case, written: HandEquation, kind: str, at: Instant, left: Answer, right: Answer) -> Verdict:
+    """Both sides have values, and these differ: by what the author put into the equations, or in the answer itself."""
+    difference = f"{left.value - right.value:.6g}" if left.value is not None and right.value is not None else ""
+    causes: tuple[Cause, ...] = ()
+    clash = case.clash(written)
+    if not clash:
+        target, found = simplest_explanation(implied_by(case, written, kind, at, left, right))
+        causes = causes_of(case, found, moving=False) if found else ()
+        if isinstance(target, Comparison) and target.squared:
+            causes = tuple(replace(cause, text=f"under the root {cause.text}") for cause in causes)
+    true, author = (case.exact(each) for each in (left, right))
+    if true is not None and author is not None:
+        difference = excess(case, true - author) or difference
+    it_is = ""
+    if left.exact is not None and len(left.exact) <= LONG and len(written.left.code) == 1:
+        it_is = f"it is {written.left.text} = {left.exact}"
+    if clash:
+        causes = (Cause("unit", clash, quantity="the dimensions"),)
+    elif not causes:
+        causes = (Cause("other", f"the left side minus the right side is {difference} there", quantity="the value"),)
+    if it_is:
+        causes = (*causes[:-1], replace(causes[-1], text=f"{causes[-1].text}; {it_is}"))
+    return Verdict(written.given, kind, WRONG, difference=difference, causes=causes)
+
+
+def _rounding(written: HandEquation) -> float | None:
+    """Half of the last digit of a side that is a decimal number; None where none is."""
+    found = re.fullmatch(r"\s*[-+]?\d+\.(\d+)\s*", written.right.text)
+    return None if found is None else 0.5000001 * 10.0 ** -len(found[1])

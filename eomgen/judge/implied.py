@@ -1,0 +1,300 @@
+"""An answer of somebody -> the equation of motion that it would follow from, beside the model's.
+
+Of one freedom: omega implies q'' = -omega^2 q, a place of rest that the forces balance there, a course its own rates, a
+speed at an instant its kinetic energy. Put into the model's equation, what is left is explained by the contributions:
+
+    E + sum y_j C_j = 0
+
+Of a structure the reactions are sums over the loads. Where none of these applies, the answer is looked at term by term,
+as it stands and under its root.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable, Iterator, Mapping
+from contextlib import suppress
+from dataclasses import replace
+from functools import cached_property
+from itertools import islice
+from typing import TypeVar
+
+from eomgen.errors import DerivationError, EomgenError, ExpressionError
+from eomgen.judge.case import Case
+from eomgen.judge.comparison import Comparison
+from eomgen.judge.corruption import PLAIN, Corruption
+from eomgen.judge.corruptions import Corruptions
+from eomgen.judge.decision import is_zero_everywhere
+from eomgen.judge.diagnosis import MOST_MISTAKES, Explanation, Search, explained, samples_of
+from eomgen.judge.reading import HandEquation
+from eomgen.model.fields import AtRest, WrittenEquation
+from eomgen.model.table import Table
+from eomgen.questions.answers import Answer
+from eomgen.records import dataclass
+from eomgen.symbolic.expression.derivative import depends_on, derivative, substituted
+from eomgen.symbolic.expression.functions import over
+from eomgen.symbolic.expression.graph import Node, Scalar, is_zero
+from eomgen.symbolic.expression.node import ScalarRow
+from eomgen.symbolic.expression.traversal import order
+
+
+@dataclass(frozen=True)
+class PutIn:
+    """How an answer is put into an equation.
+
+    Args:
+        case: the model in the phase of the answer.
+        what: of which equation, as of Corruptions.
+        into: a row, the answer put in.
+        resisting: what of a row answers to a change.
+    """
+
+    case: Case
+    what: str
+    into: Callable[[Scalar], Scalar]
+    resisting: Callable[[Scalar], Scalar]
+
+
+Instant = WrittenEquation | AtRest | None
+STATES_OF_VALUES = 12  # sets of values of the parameters at which an answer is compared
+MOST_LOADS = 30  # of a structure whose reactions are taken apart
+
+
+@dataclass(frozen=True)
+class Implied:
+    """What an answer leaves of the model's equation.
+
+    Args:
+        case: the model.
+        left: E, with the answer put in.
+        corruptions: with the answer put in.
+        resisting: of E and of every corruption what answers to a change: inertia, or stiffness. Some must be left.
+    """
+
+    case: Case
+    left: Scalar
+    corruptions: tuple[Corruption, ...]
+    resisting: ScalarRow
+
+    def explained(self, number: int) -> list[Explanation]:
+        """The explanations by so many mistakes."""
+        return explained(self._searches, self.proves, number)
+
+    @cached_property
+    def _searches(self) -> tuple[Search, ...]:
+        flat = [self.left, *(each.rows[0] for each in self.corruptions), *self.resisting]
+        samples = samples_of(self.case.system, flat, places=STATES_OF_VALUES)
+        if samples is None:
+            return ()
+        found, n = samples.of(flat), len(self.corruptions)
+        resisting = (found[n + 1], found[n + 2 :])
+        return (Search(None, found[0], found[1 : n + 1], self.corruptions, 0, resisting=resisting),)
+
+    def proves(self, explanation: Explanation) -> bool:
+        """Whether the answer satisfies the model's equation with these mistakes, exactly."""
+        pi = self.case.system.scope.graph.pi
+        total = sum((share.added(pi)[0] for share in explanation.shares), start=self.left)
+        return bool(is_zero_everywhere(self.case.system, total).holds)
+
+
+def implied_by(
+    case: Case, written: HandEquation, kind: str, at: Instant, true: Answer, author: Answer
+) -> Iterator[Implied | Comparison]:
+    """What an answer may be compared with, the most telling first.
+
+    Args:
+        true, author: the answer of the model and that of somebody.
+    """
+    own, other = case.exact(true), case.exact(author)
+    if other is None:
+        return
+    for put in _puttings(case, written, kind, at, author):
+        with suppress(EomgenError):
+            found = _implied(put)
+            if found is not None:
+                yield found
+    if own is None:
+        return
+    call = written.left.calls[0] if len(written.left.code) == 1 and written.left.calls else None
+    of_loads = tuple(_loads(case, written)) if kind in ("statics", "reaction") else ()
+    yield Comparison(case, other - own, (own,), "", call, more=of_loads)
+    if any(x.op == "sqrt" for x in order((own, other))):
+        yield Comparison(case, other * other - own * own, (own * own,), "", squared=True)
+
+
+Compared = TypeVar("Compared", Implied, Comparison, Implied | Comparison)
+
+
+def simplest_explanation(targets: Iterable[Compared]) -> tuple[Compared | None, list[Explanation]]:
+    """The first of the comparisons that is explained by the fewest mistakes, with its explanations."""
+    known = tuple(targets)
+    for number in range(1, MOST_MISTAKES + 1):
+        for target in known:
+            with suppress(DerivationError):
+                if found := target.explained(number):
+                    return target, found
+    return None, []
+
+
+def implied_by_course(case: Case, known: Mapping[Node, Scalar]) -> Implied | None:
+    """What a course of one coordinate leaves of the equation of motion; None: there are several."""
+    if len(case.rows) != 1:
+        return None
+    a = case.system.symbols.a[0]
+    return _implied(
+        PutIn(
+            case,
+            "motion",
+            lambda row: substituted((row,), known)[0],
+            lambda row: substituted((derivative(row, a),), known)[0],
+        )
+    )
+
+
+def implied_by_rest(case: Case, written: HandEquation) -> Implied | None:
+    """What a place q = value leaves of the forces that should balance there; None: it is no such place."""
+    names = [q for q in case.system.symbols.q if written.left.code == (("name", q.name),)]
+    if len(case.rows) != 1 or not names or written.right.names & case.model.coordinates.keys():
+        return None
+    return _implied(_resting(case, names[0], case.value(written.right)))
+
+
+def _implied(put: PutIn) -> Implied | None:
+    """The one equation of the model and its corruptions, with an answer put in."""
+    case, known = put.case, Corruptions(put.case.parts, put.what)
+    if put.what == "motion":
+        (whole,) = case.rows
+    else:
+        whole = sum((known.rows(part)[0] for part in case.parts.elementary if part.row is None), start=0)
+    left = put.into(whole)
+    if is_zero(left) or depends_on(left, (*case.system.symbols.u, *case.system.symbols.a)):
+        return None
+    found, resisting = list[Corruption](), [put.resisting(whole)]
+    for each in known.all:
+        with suppress(DerivationError):
+            row = put.into(each.rows[0])
+            if not is_zero(row):
+                resisting.append(put.resisting(each.rows[0]))
+                found.append(replace(each, rows=(row,)))
+    return Implied(case, left, tuple(found), tuple(resisting))
+
+
+def _puttings(case: Case, written: HandEquation, kind: str, at: Instant, author: Answer) -> Iterator[PutIn]:
+    """How the answer is put into the equation of a model of one freedom."""
+    symbols, value = case.system.symbols, case.exact(author)
+    free = [q for q in symbols.q if not case.model.coordinates[q.name].driven]
+    if len(case.rows) != 1 or len(free) != 1 or len(symbols.u) != 1 or case.closing or case.system.free is not None:
+        return
+    assert value is not None
+    (q,), (u,), (a,) = free, symbols.u, symbols.a
+    still: dict[Node, Scalar] = {u: 0, a: 0}
+    if kind == "frequency" and [call.name for call in written.left.calls] == ["frequency"]:
+        place = _place(case, q)
+        if place is not None and len(written.left.code) == 1:
+
+            def slope(row: Scalar, x: Node) -> Scalar:
+                return substituted((derivative(row, x),), {**still, **place})[0]
+
+            yield PutIn(
+                case, "motion", lambda row: slope(row, q) - value * value * slope(row, a), lambda row: slope(row, a)
+            )
+    elif isinstance(at, AtRest) or kind == "equilibrium":
+        if written.left.names == {q.name} and len(written.left.code) == 1:
+            yield _resting(case, q, value)
+    elif isinstance(at, WrittenEquation):
+        begun = case.as_begun or case
+        moment = begun.exact(author)
+        if moment is not None:
+            yield from _at_instant(begun, written, at, moment)
+
+
+def _resting(case: Case, q: Node, value: Scalar) -> PutIn:
+    """A place of rest, put into the equation of what does not move."""
+    at = {q: value, **dict.fromkeys((*case.system.symbols.u, *case.system.symbols.a), 0)}
+    return PutIn(
+        case,
+        "motion",
+        lambda row: substituted((row,), at)[0],
+        lambda row: substituted((derivative(row, q),), at)[0],
+    )
+
+
+def _place(case: Case, q: Node) -> dict[Node, Scalar] | None:
+    """Where the small motions are; {} where that does not matter."""
+    u, a = case.system.symbols.u[0], case.system.symbols.a[0]
+    slopes = substituted((derivative(case.rows[0], q), derivative(case.rows[0], a)), {u: 0, a: 0})
+    if not any(depends_on(slope, (q,)) for slope in slopes):
+        return {}
+    return {q: case.places_of_rest[0][q]} if case.places_of_rest else None
+
+
+def _at_instant(case: Case, written: HandEquation, at: WrittenEquation, author: Scalar) -> Iterator[PutIn]:
+    """A speed at a place, a way or a time at a speed: by the energies, or by a constant acceleration."""
+    symbols, start = case.system.symbols, case.start
+    (u,), (a,) = symbols.u, symbols.a
+    q = next(x for x in symbols.q if x.name == u.name.removesuffix("'"))
+    if not start or at.left.text not in (q.name, u.name):
+        return
+    (reached,) = substituted((case.value(at.right),), start)
+    if depends_on(reached, (*symbols.q, *symbols.u, symbols.t)):
+        return
+    steady = not depends_on(case.rows[0], (symbols.t, q, u))
+    q1: Scalar | None = reached
+    squared: Scalar | None = reached * reached
+    if at.left.text != u.name:
+        squared = _squared_speed(case, written, author, {q: reached})
+    else:
+        q1 = author if written.left.text == q.name else None
+    acceleration: Scalar | None = None
+    if written.left.text == "t" and at.left.text == u.name:
+        acceleration = over(reached - start[u], author)
+    elif q1 is not None and squared is not None:
+        acceleration = over(squared - start[u] * start[u], 2 * (q1 - start[q]))
+        if not any(part.Q or part.row is not None for part in case.parts.elementary):
+
+            def inertia(x: Scalar) -> Scalar:
+                return substituted((derivative(derivative(x, u), u),), {q: q1})[0]
+
+            def energy(x: Scalar) -> Scalar:
+                (held,) = substituted((x,), {u: 0, q: q1})
+                return over(inertia(x) * squared, 2) + held - substituted((x,), start)[0]
+
+            yield PutIn(case, "energy", energy, inertia)
+    if acceleration is not None and steady:
+        yield PutIn(
+            case, "motion", lambda row: substituted((row,), {a: acceleration})[0], lambda row: derivative(row, a)
+        )
+
+
+def _squared_speed(case: Case, written: HandEquation, author: Scalar, place: Mapping[Node, Scalar]) -> Scalar | None:
+    """u^2, where what is asked is a speed, c u or |c u|."""
+    u = case.system.symbols.u[0]
+    try:
+        asked = case.value(written.left)
+    except ExpressionError:
+        return None
+    (square,) = substituted((asked * asked,), place)
+    second = derivative(derivative(square, u), u)
+    (still,) = substituted((square,), {u: 0})
+    if depends_on(second, (u, *case.system.symbols.a)) or is_zero(second):
+        if not is_zero_everywhere(case.system, *(derivative(second, x) for x in (u, *case.system.symbols.a))).holds:
+            return None
+        (second,) = substituted((second,), {u: 1})
+    if is_zero(second) or not is_zero_everywhere(case.system, still).holds:
+        return None
+    return over(2 * author * author, second)
+
+
+def _loads(case: Case, written: HandEquation) -> Iterator[Corruption]:
+    """Of what a structure's answer is the sum: what each load does alone."""
+    forces = case.model.forces
+    if case.model.coordinates or not 0 < len(forces) <= MOST_LOADS:
+        return
+    for name in islice(forces, MOST_LOADS):
+        try:
+            alone = Case(replace(case.model, forces=Table({name: forces[name]}), outputs=Table()))
+            left, _ = alone.sides(written, None)
+        except EomgenError:
+            continue
+        value = case.exact(left)
+        if value is not None and not is_zero(value):
+            yield Corruption(f"the force {name}", "factor", (value,), PLAIN, "", name)

@@ -1,0 +1,145 @@
+"""Contributions -> what they change by where a mass, an inertia or a force is taken at another point of its body."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping, Sequence
+
+from eomgen.judge.contributions import Contribution, Contributions
+from eomgen.judge.corruption import PLACED, SHARED
+from eomgen.mechanics.bodies.inertia import HALF, BodyEnergy, body_energies, mass_properties
+from eomgen.mechanics.bodies.kinematics import velocity_of
+from eomgen.mechanics.equations.work import load_row
+from eomgen.model.forces.load import BodyPoint, PointForce
+from eomgen.model.shapes.base import MassProperties
+from eomgen.records import dataclass
+from eomgen.symbolic.expression.graph import Scalar, is_zero
+from eomgen.symbolic.expression.spatial import Vector, cross, dot, minus, vector_of
+
+
+@dataclass(frozen=True)
+class Altered:
+    """What a contribution changes by through a mistake.
+
+    Args:
+        name: what it concerns.
+        kind: of the cause.
+        text: the sentence.
+        part: by what energies and forces change, with the body and the force that it is about.
+        rank: how readily it is believed.
+    """
+
+    name: str
+    kind: str
+    text: str
+    part: Contribution
+    rank: float
+
+
+def changes_of_places(parts: Contributions, whole: Sequence[Contribution]) -> Iterator[Altered]:
+    """Every body's mass, inertia and forces at its other points."""
+    motion = parts.operator.base.motion
+    for link, energy in zip(motion.links, body_energies(motion), strict=True):
+        mass = mass_properties(motion.scope, link.name)
+        if not is_zero(mass.m):
+            mine = tuple(part for part in whole if part.body == link.name)
+            yield from _Places(parts, link.name, mass, energy, mine).changes()
+
+
+@dataclass(frozen=True)
+class _Places:
+    """The points of one body."""
+
+    parts: Contributions
+    body: str
+    mass: MassProperties
+    energy: BodyEnergy
+    mine: tuple[Contribution, ...]
+
+    def changes(self) -> Iterator[Altered]:
+        places = self._others()
+        translation = next((part.T for part in self.mine if part.kind == "translation"), None)
+        if self.body not in self.parts.operator.base.motion.index:
+            translation = None
+        for point, r in places.items():
+            if any(not is_zero(x) for x in self.energy.spin):
+                yield from self._inertia(point, r)
+            if translation is not None:
+                yield from self._mass(f"its {point}", r, translation)
+        if translation is not None and any(not is_zero(x) for x in self.mass.com):
+            for factor, how in ((2, "twice"), (HALF, "half")):
+                T = self._moving(r := vector_of(factor * x for x in self.mass.com)) - translation
+                T = T + (factor * factor - 1) * self.energy.rotation
+                text = f"{self.body} is treated as if it were {how} as long"
+                yield self._change(f"the length of {self.body}", text, T, self._raised(r), SHARED)
+        for part in self.mine:
+            yield from self._other_place(part, places)
+
+    def _others(self) -> dict[str, Vector]:
+        """The points of the body that are not its mass centre, each once."""
+        found: dict[str, Vector] = {}
+        for name, r in self.parts.operator.base.motion.points[self.body].items():
+            if r not in found.values() and any(not is_zero(x - y) for x, y in zip(r, self.mass.com, strict=True)):
+                found[name] = r
+        return found
+
+    def _change(self, name: str, text: str, T: Scalar, V: Scalar = 0, rank: float = PLACED) -> Altered:
+        return Altered(name, "wrong_point", text, Contribution("", self.body, T=T, V=V), rank)
+
+    def _inertia(self, point: str, r: Vector) -> Iterator[Altered]:
+        """Steiner's term too often, or not at all."""
+        swept = cross(self.energy.spin, minus(r, self.mass.com))
+        T = HALF * self.mass.m * dot(swept, swept)
+        name = f"the moment of inertia of {self.body}"
+        text = (
+            f"{name} about {point} stands where that about its mass centre is needed: what the mass centre does is"
+            " counted in the translation already"
+        )
+        yield self._change(name, text, T)
+        yield self._change(
+            name, f"{name} about its mass centre stands where that about {point} is needed (Steiner)", -T
+        )
+
+    def _mass(self, where: str, r: Vector, translation: Scalar) -> Iterator[Altered]:
+        """The mass centre at another point, in the kinetic energy alone and in all."""
+        T = self._moving(r) - translation
+        if not is_zero(self.energy.rotation):
+            text = f"the mass of {self.body} is taken as if all of it were at {where}"
+            yield self._change(f"the kinetic energy of {self.body}", text, T - self.energy.rotation)
+        point = where.removeprefix("its ")
+        text = f"the velocity of {self.body}.{point} stands where that of its mass centre is needed"
+        yield self._change(f"the translation of {self.body}", text, T)
+        V = self._raised(r)
+        if not is_zero(V):
+            text = f"{self.body} is treated as if its mass centre were at {where}"
+            yield self._change(f"the mass centre of {self.body}", text, T, V)
+
+    def _moving(self, r: Vector) -> Scalar:
+        """The kinetic energy of all of the mass at one point."""
+        v = velocity_of(self.parts.operator.base.motion, (self.body, r))
+        T: Scalar = HALF * self.mass.m * dot(v, v)
+        return T
+
+    def _raised(self, r: Vector) -> Scalar:
+        """What the potential energy of the weights changes by where they act at another place."""
+        return sum((self._lifted(part.load, (self.body, r)) for part in self.mine if not is_zero(part.V)), start=0)
+
+    def _lifted(self, load: object, place: BodyPoint) -> Scalar:
+        motion = self.parts.operator.base.motion
+        if not isinstance(load, PointForce):
+            return 0
+        return -dot(load.force, minus(motion.position(place), motion.position(load.place)))
+
+    def _other_place(self, part: Contribution, places: Mapping[str, Vector]) -> Iterator[Altered]:
+        """A force of the body at another point of it."""
+        load, loads = part.load, self.parts.operator.base.loads
+        if not isinstance(load, PointForce) or load.place[0] is None:
+            return
+        for point, r in places.items():
+            place = (load.place[0], r)
+            changed = Contribution("", part.body, part.force, V=self._lifted(load, place))
+            if is_zero(part.V):
+                moved = load_row(loads, PointForce(place, load.force))
+                row = tuple(x - y for x, y in zip(moved, load_row(loads, load), strict=True))
+                changed = Contribution("", part.body, part.force, Q=row)
+            text = f"{part.name} acts at {load.place[0]}.{point} in the equation: its lever arm is wrong"
+            yield Altered(part.name, "wrong_point", text, changed, PLACED)

@@ -1,0 +1,350 @@
+"""A System of sympy whose bodies hang on joints -> the tables of a model file.
+
+The axes of a body are those of its side of the joint (sympy's child_interframe), its origin is the joint's point of it.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import field
+from typing import Any
+
+import sympy
+from sympy.physics.mechanics import (
+    CylindricalJoint,
+    Force,
+    LinearDamper,
+    LinearPathway,
+    LinearSpring,
+    Particle,
+    PinJoint,
+    PlanarJoint,
+    PrismaticJoint,
+    SphericalJoint,
+    TorqueActuator,
+    WeldJoint,
+    find_dynamicsymbols,
+)
+
+from eomgen.records import dataclass
+from eomgen.robots.drawn_up import Entries, LegalNames, without_empty
+from eomgen.robots.sympy_words import Words, speeds_as_rates, with_rationals
+
+
+class _NoBodies(Exception):
+    """Its energies say what bodies on joints do not."""
+
+
+@dataclass(frozen=True)
+class BodyAxes:
+    """A body of sympy as one of the model: its name, axes and origin; the ground has no name."""
+
+    name: str | None
+    frame: Any
+    origin: Any
+    body: Any = None
+
+
+def tables_of_joints(system: Any) -> Entries | None:
+    """The tables; None where bodies hang otherwise, or something acts that only energies say."""
+    try:
+        return _Joints(system).tables()
+    except _NoBodies:
+        return None
+
+
+@dataclass
+class _Joints:
+    """A system, and what is made of it."""
+
+    system: Any
+    bodies: LegalNames = field(default_factory=LegalNames)
+    placed: dict[Any, BodyAxes] = field(default_factory=dict)
+    found: Entries = field(default_factory=dict)
+    points: dict[Any, Entries] = field(default_factory=dict)
+    forces: LegalNames = field(default_factory=LegalNames)
+    frames: dict[Any, BodyAxes] = field(default_factory=dict)
+
+    def tables(self) -> Entries:
+        system = self.system
+        rates = speeds_as_rates(system.q, system.u, system.kdes)
+        if not system.joints or len(system.u_aux) or len(rates) != len(system.u) or len(system.q) != len(system.u):
+            raise _NoBodies
+        self.words = Words(tuple(system.q), tuple(system.u), rates)
+        self._place()
+        for joint in system.joints:
+            self.found |= self._hung(joint)
+        forces = self._forces()
+        for key, own in self.points.items():
+            if key is not None:
+                self.found[key]["points"] = {**self.found[key].get("points", {}), **own}
+        words = self.words
+        gaps, rows = list(system.holonomic_constraints), list(system.nonholonomic_constraints)
+        ties = [{"kind": "equation", "gap": x} for x in words.texts(gaps)]
+        ties += [{"kind": "equation", "rate": x} for x in words.texts(rows)]
+        coordinates = {words.of(q): {"start": 0} for q in system.q}
+        return without_empty(
+            {
+                "parameters": {name: {} for name in words.parameters.values()},
+                "coordinates": coordinates,
+                "inputs": {name: {"value": 0} for name in words.inputs.values()},
+                "points": self.points.get(None, {}),
+                "bodies": self.found,
+                "constraints": {f"tie{k}": tie for k, tie in enumerate(ties, 1)},
+                "forces": forces,
+            }
+        )
+
+    def _place(self) -> None:
+        """The axes and the origin of every body.
+
+        Raises:
+            _NoBodies: a body on no joint, or on several, that is not the ground.
+        """
+        system, own = self.system, [joint.child for joint in self.system.joints]
+        ground = BodyAxes(None, system.frame, system.fixed_point)
+        for body in {joint.parent: None for joint in system.joints if joint.parent not in own}:
+            if not _stands(body, system):
+                raise _NoBodies
+            self.placed[body] = ground
+        for joint in system.joints:
+            if joint.child in self.placed:
+                raise _NoBodies
+            name = self.bodies.new(joint.child.name, "body")
+            self.placed[joint.child] = BodyAxes(name, joint.child_interframe, joint.child_point, joint.child)
+        if any(body not in self.placed and not _stands(body, system) for body in system.bodies):
+            raise _NoBodies
+        self.frames = {body.frame: at for body, at in self.placed.items() if hasattr(body, "frame")}
+
+    # bodies on their joints
+
+    def _hung(self, joint: Any) -> dict[str, Entries]:
+        above, own = self.placed[joint.parent], self.placed[joint.child]
+        R = above.frame.dcm(joint.parent_interframe)
+        at = self._vector(joint.parent_point.pos_from(above.origin), above.frame)
+        seat: Entries = {} if above.name is None else {"on": above.name}
+        seat |= {"at": at} if any(x != 0 for x in at) else {}
+        seat |= {} if R == sympy.eye(3) else {"turned": self._turn(R)}
+        assert own.name is not None
+        found: dict[str, Entries] = {}
+        *before, last = self._moves(joint)
+        for move in before:  # frames without mass between its freedoms
+            frame = self.bodies.new(f"{own.name}_{next(reversed(move.values()))}")
+            found[frame] = {
+                "about": f"between the joints of {own.name}",
+                "joint": {"kind": move["kind"], **seat, **move},
+            }
+            seat = {"on": frame}
+        return found | {own.name: {**self._body(own), "joint": {"kind": last["kind"], **seat, **last}}}
+
+    def _turn(self, R: Any) -> Entries:
+        """The turn about an axis that a constant rotation is.
+
+        Raises:
+            _NoBodies: it is none in closed form.
+        """
+        R = sympy.simplify(R)
+        cosine = sympy.simplify((R.trace() - 1) / 2)
+        axis = [R[2, 1] - R[1, 2], R[0, 2] - R[2, 0], R[1, 0] - R[0, 1]]
+        if cosine == -1:
+            k = max(range(3), key=lambda i: sympy.Abs(R[i, i] + 1).evalf() if (R[i, i]).is_number else 0)
+            axis = [R[i, k] + (i == k) for i in range(3)]
+        if find_dynamicsymbols(R) or all(sympy.simplify(x) == 0 for x in axis):
+            raise _NoBodies
+        size = max(map(sympy.Abs, axis), key=lambda x: x.evalf() if x.is_number else 0)
+        axis = [sympy.simplify(x / size) for x in axis]
+        return {"axis": self.words.texts(axis), "angle": self.words.text(sympy.acos(cosine))}
+
+    def _body(self, at: BodyAxes) -> Entries:
+        body, words = at.body, self.words
+        found: Entries = {} if body.name == at.name else {"about": str(body.name)}
+        if body.mass != 0:
+            found["mass"] = words.text(body.mass)
+            center = self._vector(body.masscenter.pos_from(at.origin), at.frame)
+            found |= {"center": center} if any(x != 0 for x in center) else {}
+            if not isinstance(body, Particle):
+                I = body.central_inertia.to_matrix(at.frame)
+                six = words.texts([I[0, 0], I[1, 1], I[2, 2], I[0, 1], I[1, 2], I[0, 2]])
+                found["inertia"] = six if any(x != 0 for x in six[3:]) else six[:3]
+                if sum(x == 0 for x in six) == 5:  # of a plane system people give one moment alone
+                    found["measured"] = True
+        return found
+
+    def _vector(self, vector: Any, frame: Any) -> list[Any]:
+        """A vector in a frame, as it stands in a file."""
+        return [0, 0, 0] if vector == 0 else list(self.words.texts(vector.to_matrix(frame)))
+
+    def _moves(self, joint: Any) -> list[Entries]:
+        """The joint that there is for it, or several in a row.
+
+        Raises:
+            _NoBodies: a kind of joint that no model has.
+        """
+        own = joint.parent_interframe
+        q = [self.words.of(x) if x in self.words.moving else self.words.text(x) for x in joint.coordinates]
+        if isinstance(joint, WeldJoint):
+            return [{"kind": "fixed"}]
+        if isinstance(joint, PinJoint):
+            return [{"kind": "revolute", "axis": self._vector(joint.joint_axis, own), "angle": q[0]}]
+        if isinstance(joint, PrismaticJoint):
+            return [{"kind": "prismatic", "axis": self._vector(joint.joint_axis, own), "displacement": q[0]}]
+        if isinstance(joint, CylindricalJoint):
+            return [
+                {
+                    "kind": "cylindrical",
+                    "axis": self._vector(joint.joint_axis, own),
+                    "angle": q[0],
+                    "displacement": q[1],
+                }
+            ]
+        if isinstance(joint, PlanarJoint):
+            slides = zip(joint.planar_vectors, q[1:], strict=True)
+            found: list[Entries] = [
+                {"kind": "prismatic", "axis": self._vector(v, own), "displacement": x} for v, x in slides
+            ]
+            return [*found, {"kind": "revolute", "axis": self._vector(joint.rotation_axis, own), "angle": q[0]}]
+        if isinstance(joint, SphericalJoint):
+            amounts = joint._amounts or joint.coordinates
+            return [{"kind": "spherical", **self._sequence(joint, self.words.texts(amounts))}]
+        raise _NoBodies
+
+    def _sequence(self, joint: Any, angles: list[Any]) -> Entries:
+        """The three turns about axes of the body; about axes of the parent they come in the opposite order."""
+        letters = "".join("xyz"[int(x) - 1] if x.isdigit() else x for x in str(joint._rot_order).lower())
+        if joint._rot_type.upper() == "SPACE":
+            letters, angles = letters[::-1], angles[::-1]
+        return {"orientation": letters, "angles": angles}
+
+    # what acts
+
+    def _forces(self) -> Entries:
+        found: Entries = {}
+        loads = list(self._weights(found))
+        for each in self.system.actuators:
+            if not self._spring(each, found) and not self._motor(each):
+                loads += each.to_loads()
+        for load in loads:
+            self._load(load, found)
+        return found
+
+    def _weights(self, found: Entries) -> Iterator[Any]:
+        """The loads that are no weights; weights become gravity, one for each field."""
+        ground, fields = self.system.frame, dict[Any, list[str]]()
+        places = {at.body.masscenter: at for at in self.placed.values() if at.body is not None and at.body.mass != 0}
+        for load in self.system.loads:
+            at = places.get(load.location) if isinstance(load, Force) else None
+            if at is None or at.name is None:
+                yield load
+                continue
+            field = with_rationals(load.vector.to_matrix(ground) / at.body.mass).applyfunc(sympy.simplify)
+            if find_dynamicsymbols(field) or field.free_symbols & sympy.sympify(at.body.mass, strict=True).free_symbols:
+                yield load
+            else:
+                fields.setdefault(sympy.ImmutableMatrix(field), []).append(at.name)
+        everyone = [at.name for at in places.values() if at.name is not None]
+        for acceleration, names in fields.items():
+            weight: Entries = {"kind": "gravity", "acceleration": list(self.words.texts(acceleration))}
+            if sorted(names) != sorted(everyone):
+                if len(set(names)) < len(names):
+                    raise _NoBodies
+                weight["bodies"] = names
+            found[self.forces.new("weight")] = weight
+
+    def _spring(self, actuator: Any, found: Entries) -> bool:
+        """Whether it is a spring or damper between two points."""
+        pathway = getattr(actuator, "pathway", None)
+        if type(actuator) not in (LinearSpring, LinearDamper) or not isinstance(pathway, LinearPathway):
+            return False
+        points = [self._point(x) for x in pathway.attachments]
+        if type(actuator) is LinearSpring:
+            own = {"stiffness": actuator.stiffness, "length": actuator.equilibrium_length}
+            kind = "spring"
+        else:
+            own, kind = {"damping": actuator.damping}, "damper"
+        if any(find_dynamicsymbols(sympy.sympify(x, strict=True)) for x in own.values()):
+            return False
+        found[self.forces.new(kind)] = {"kind": kind, "points": points} | {
+            k: self.words.text(x) for k, x in own.items()
+        }
+        return True
+
+    def _motor(self, actuator: Any) -> bool:
+        """Whether it turns the child of a hinge against the parent, about the axis of it: then the joint has it."""
+        frames = [self.frames.get(getattr(actuator, key, None)) for key in ("target_frame", "reaction_frame")]
+        for joint in (each for each in self.system.joints if isinstance(each, PinJoint)):
+            ends = [self.placed[joint.child], self.placed[joint.parent]]
+            if (
+                type(actuator) is not TorqueActuator
+                or None in frames
+                or sorted(map(id, frames)) != sorted(map(id, ends))
+            ):
+                continue
+            along = sympy.simplify(actuator.axis.normalize().dot(joint.joint_axis.normalize()))
+            own = self.found[ends[0].name or ""]["joint"]
+            if along in (1, -1) and "torque" not in own:
+                own["torque"] = self.words.text(along * actuator.torque * (1 if frames[0] is ends[0] else -1))
+                return True
+        return False
+
+    def _load(self, load: Any, found: Entries) -> None:
+        """A force at a point, or a couple on a body.
+
+        Raises:
+            _NoBodies: at a point that is fixed in no body.
+        """
+        if load.vector == 0:
+            return
+        if isinstance(load, Force):
+            at, _ = self._whose(load.location)
+            if at.name is not None:
+                force = {"kind": "force", "point": self._point(load.location)}
+                found[self.forces.new("force")] = force | self._components("force", load.vector, at)
+            return
+        frame = load.location
+        candidates = (x for x in self.placed.values() if not find_dynamicsymbols(frame.dcm(x.frame)))
+        held = self.frames.get(frame) or next(candidates, None)
+        if held is None:
+            raise _NoBodies
+        if held.name is not None:
+            couple = {"kind": "couple", "body": held.name} | self._components("couple", load.vector, held)
+            found[self.forces.new("couple")] = couple
+
+    def _components(self, key: str, vector: Any, at: BodyAxes) -> Entries:
+        """A vector in the ground's axes, or in those of its body where that is shorter."""
+        own, ground = (self._vector(vector, frame) for frame in (at.frame, self.system.frame))
+        return {key: ground} if len(str(ground)) <= len(str(own)) else {key: own, "axes": at.name}
+
+    def _whose(self, point: Any) -> tuple[BodyAxes, Any]:
+        """(the body that a point is fixed in, where it is in that).
+
+        Raises:
+            _NoBodies: none.
+        """
+        for shorter in (sympy.sympify, sympy.trigsimp):  # most need none, and it takes long
+            for at in self.placed.values():
+                vector = point.pos_from(at.origin)
+                place = sympy.zeros(3, 1) if vector == 0 else vector.to_matrix(at.frame).applyfunc(shorter)
+                if not find_dynamicsymbols(place):
+                    return at, place
+        raise _NoBodies
+
+    def _point(self, point: Any) -> str:
+        """The name of a point of the body that it is fixed in."""
+        at, place = self._whose(point)
+        if at.body is not None and at.body.mass != 0 and point is at.body.masscenter:
+            return f"{at.name}.center"
+        own, value = self.points.setdefault(at.name, {}), self.words.texts(place)
+        known = next((name for name, x in own.items() if x == value), None)
+        name = known or LegalNames({*own, "origin", "center"}).new(point.name, "P")
+        own[name] = value
+        return name if at.name is None else f"{at.name}.{name}"
+
+
+def _stands(body: Any, system: Any) -> bool:
+    """Whether a body is the ground: its frame and its mass centre do not move."""
+    frame = getattr(body, "frame", system.frame)
+    try:
+        still = frame.dcm(system.frame) == sympy.eye(3) and body.masscenter.pos_from(system.fixed_point) == 0
+    except ValueError:  # what sympy raises where nothing connects them
+        return False
+    return bool(still)

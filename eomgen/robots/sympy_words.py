@@ -1,0 +1,148 @@
+"""sympy's functions of time -> names of a model and texts of its grammar."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Mapping, Sequence
+from dataclasses import field
+from decimal import Decimal
+from functools import cached_property
+from typing import Any
+
+import sympy
+from sympy.physics.vector import dynamicsymbols
+
+from eomgen.errors import DerivationError
+from eomgen.records import dataclass
+from eomgen.robots.drawn_up import LegalNames
+from eomgen.symbolic.exact.normal_form import simplest
+from eomgen.symbolic.expression.graph import Graph, Node, Scalar
+from eomgen.symbolic.expression.rational import Fraction
+from eomgen.symbolic.numeric.work import Work
+from eomgen.symbolic.print.sympy_form import scalar_from_sympy
+from eomgen.symbolic.print.text import text_size, to_text
+
+PLAIN = re.compile(r"[{}\\^]")  # of sympy's names, as in \dot{q}
+
+
+@dataclass
+class Words:
+    """The names that sympy's symbols get, each the nearest that is legal.
+
+    Args:
+        q, u: coordinates and speeds, functions of time; a speed that is a rate is called as that.
+        rates: {u: its coordinate} of speeds that are rates.
+    """
+
+    q: Sequence[Any]
+    u: Sequence[Any] = ()
+    rates: Mapping[Any, Any] = field(default_factory=dict)
+    names: LegalNames = field(default_factory=LegalNames)
+    parameters: dict[Any, str] = field(default_factory=dict)
+    inputs: dict[Any, str] = field(default_factory=dict)
+    graph: Graph = field(default_factory=Graph)
+
+    @cached_property
+    def moving(self) -> dict[Any, str]:
+        """The names of q, q', q'', u and u'."""
+        t = dynamicsymbols._t
+        own = {q: self.names.new(_plain(q), "q") for q in self.q}
+        found = {q.diff(t, k): name + k * "'" for q, name in own.items() for k in range(3)}
+        for u in self.u:
+            name = f"{own[self.rates[u]]}'" if u in self.rates else self.names.new(_plain(u), "u")
+            found |= {u: name, u.diff(t): f"{name}'"}
+        return found
+
+    def of(self, symbol: Any) -> str:
+        """The name of a coordinate, rate or speed."""
+        return self.moving[symbol]
+
+    @cached_property
+    def nodes(self) -> dict[str, Node]:
+        """The symbols of the graph by name; parameters and inputs come as they are met."""
+        return {name: self.graph.symbol(name) for name in ("t", *self.moving.values())}
+
+    def scalar(self, expression: Any) -> Scalar:
+        """An expression in the symbols of the graph.
+
+        Raises:
+            DerivationError: what a model has no word for.
+        """
+        t = dynamicsymbols._t
+        expression = sympy.sympify(expression, strict=True)
+        known = {x: sympy.Symbol(name) for x, name in self.moving.items()} | {t: sympy.Symbol("t")}
+        expression = expression.xreplace(known)
+        for rate in sorted(expression.atoms(sympy.Derivative), key=str):
+            what = f"the rate {rate} of a given function of time stands in the equations"
+            raise DerivationError(what, mend="make it a coordinate, and give that its `motion` in the model")
+        met: dict[Any, Any] = {
+            x: sympy.Symbol(self._input(x)) for x in _sorted(expression.atoms(sympy.core.function.AppliedUndef))
+        }
+        expression = expression.xreplace(met)
+        own = {*self.nodes}
+        met = {x: sympy.Symbol(self._parameter(x)) for x in _sorted(expression.free_symbols) if x.name not in own}
+        return scalar_from_sympy(with_rationals(expression.xreplace(met)), self.nodes)
+
+    def _input(self, function: Any) -> str:
+        """Raises: DerivationError: it is no function of time alone."""
+        if function.args != (dynamicsymbols._t,):
+            raise DerivationError(f"{function} is a function that sympy does not know", mend="put its formula in")
+        if function not in self.inputs:
+            self.inputs[function] = self._new(_plain(function), "input")
+        return self.inputs[function]
+
+    def _parameter(self, symbol: Any) -> str:
+        if symbol not in self.parameters:
+            self.parameters[symbol] = self._new(_plain(symbol), "p")
+        return self.parameters[symbol]
+
+    def _new(self, wanted: str, otherwise: str) -> str:
+        name = self.names.new(wanted, otherwise)
+        self.nodes[name] = self.graph.symbol(name)
+        return name
+
+    def texts(self, expressions: Sequence[Any]) -> list[Any]:
+        """Expressions as they stand in a model file, each in its shorter form."""
+        return file_texts([self.scalar(x) for x in expressions])
+
+    def text(self, expression: Any) -> Any:
+        return self.texts([expression])[0]
+
+
+def with_rationals(expression: Any) -> Any:
+    """An expression or matrix in which decimals are the numbers that are written."""
+    return expression.xreplace({x: sympy.Rational(str(x)) for x in expression.atoms(sympy.Float)})
+
+
+def file_texts(scalars: Sequence[Scalar]) -> list[Any]:
+    """Scalars as they stand in a model file, numbers as decimals where they end."""
+    shortest = [min((simplest(x, Work.FORMULA), x), key=text_size) for x in scalars]
+    return [to_text(x) if (value := _decimal(x)) is None else value for x in shortest]
+
+
+def _decimal(x: Scalar) -> Decimal | None:
+    """A number whose decimals end."""
+    if type(x) is Node:
+        return None
+    found = Decimal(int(Fraction(x).numerator)) / Decimal(int(Fraction(x).denominator))
+    return found if Fraction(str(found)) == x else None
+
+
+def speeds_as_rates(q: Sequence[Any], u: Sequence[Any], kinematic: Sequence[Any]) -> dict[Any, Any]:
+    """{speed: coordinate} of the speeds that are rates, by what vanishes of q' and u."""
+    t, found = dynamicsymbols._t, {}
+    for x in kinematic:
+        for coordinate in (each for each in q if x.has(each.diff(t))):
+            for speed in (each for each in u if x.has(each)):
+                if (difference := (coordinate.diff(t) - speed)) in (x, -x) or sympy.expand(x**2 - difference**2) == 0:
+                    found[speed] = coordinate
+    return found
+
+
+def _plain(symbol: Any) -> str:
+    name = symbol.name if isinstance(symbol, sympy.Symbol) else symbol.func.__name__
+    return PLAIN.sub("", name)
+
+
+def _sorted(symbols: Any) -> list[Any]:
+    return sorted(symbols, key=lambda x: (str(x), sympy.default_sort_key(x)))

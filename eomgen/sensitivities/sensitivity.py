@@ -1,0 +1,435 @@
+"""Model -> Sensitivity: exact derivatives of what is asked of it, by its parameters and by where it starts.
+
+At the start, where all forces balance, of small motions, or along a run; each in closed form where the question has
+one, as a number always, by differentiating the equations that define it: no step, no difference.
+"""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import field, replace
+from functools import cached_property
+from typing import Any
+
+import numpy as np
+
+from eomgen.documents.document import Document, plain_document
+from eomgen.documents.linearize.result import Linearization, linearize
+from eomgen.documents.quantity import Quantity
+from eomgen.documents.result import Result
+from eomgen.documents.statements import Found, Listing
+from eomgen.errors import DerivationError, EomgenError, UsageError
+from eomgen.mechanics.initial_state.initial_state import start_state
+from eomgen.mechanics.initial_state.start_slopes import Seeds, parameter_seeds, start_seeds
+from eomgen.mechanics.instant.outputs import asks_of
+from eomgen.mechanics.small_motions.modes import MATRICES
+from eomgen.mechanics.small_motions.parameter_slopes import ParameterSlopes
+from eomgen.mechanics.statics.contacts_at_start import contacts_at_start
+from eomgen.model.fields import AtRest
+from eomgen.model.outputs.base import OF_A_RUN, SMALL_MOTIONS, names_of
+from eomgen.model.own_units import units_of
+from eomgen.model.parts import Model, Output
+from eomgen.model.reader import ModelOrPath, model_at
+from eomgen.model.replaced import Values
+from eomgen.model.table import Table
+from eomgen.model.values import numeric_parameters
+from eomgen.proof.check import Certificate, Check
+from eomgen.questions.in_phase import PhaseEquations, phase_equations_of
+from eomgen.questions.of_a_run import asked_of
+from eomgen.records import dataclass
+from eomgen.sensitivities.along_a_run import ChangingRun, changing_run
+from eomgen.sensitivities.at_a_state import ChangingState
+from eomgen.sensitivities.differences import checks_of
+from eomgen.symbolic.exact.book_form import book_form
+from eomgen.symbolic.exact.normal_form import legible
+from eomgen.symbolic.expression.derivative import substituted, tangent
+from eomgen.symbolic.expression.expressions import Call, Expression, single_call
+from eomgen.symbolic.expression.graph import Node, Scalar
+from eomgen.symbolic.expression.rational import Fraction
+from eomgen.symbolic.expression.units import Unit, parse_unit
+from eomgen.symbolic.numeric.evaluation import evaluate, fifty_digits
+from eomgen.symbolic.numeric.work import Work, doing
+from eomgen.symbolic.print.text import LONGEST_RESULT, readable_text, text_size
+
+RHS, STATE, FREQUENCIES, REST = "rhs", "state", "frequencies", "equilibrium"
+MOST_WRITTEN = 6  # speeds of equations whose slopes are written out
+SAMPLES, LAST = 101, 2
+NO_VALUE = "it has no finite value"
+SLOPE = re.compile(r"d\((?P<of>.+)\)/d\((?P<to>[^()]+)\)")
+
+
+@dataclass(frozen=True)
+class Sensitivity(Result):
+    """What is asked, and how it changes.
+
+    Args:
+        model: the model.
+        of: what is asked, as formulas.
+        to: the parameters and starts.
+        values: of each formula what it is.
+        slopes: by (formula, name) its derivative: exact where it has a closed form; the value in the formula's unit
+            over the name's.
+        run: the same along a motion; None where none was asked.
+    """
+
+    model: Model
+    of: tuple[str, ...]
+    to: tuple[str, ...]
+    values: Mapping[str, Quantity]
+    slopes: Mapping[tuple[str, str], Quantity]
+    run: ChangingRun | None = None
+    in_si: Mapping[tuple[str, str], float] = field(default_factory=dict, repr=False)
+
+    def __repr__(self) -> str:
+        return f"<sensitivities of {self.model.name!r}: {len(self.of)} by {', '.join(self.to)}>"
+
+    def __getitem__(self, pair: tuple[str, str]) -> Quantity:
+        """The derivative of a formula by a name."""
+        if pair not in self.slopes:
+            raise UsageError(f"no derivative of '{pair[0]}' by '{pair[1]}' was asked")
+        return self.slopes[pair]
+
+    @property
+    def matrix(self) -> np.ndarray:
+        """The derivatives in SI, len(of) x len(to); nan where there is none."""
+        return np.array([[self.in_si.get((of, to), np.nan) for to in self.to] for of in self.of])
+
+    @property
+    def failed(self) -> str:
+        """Which have no answer, in words; "" as it must be."""
+        missing = [named(of, to) for (of, to), slope in self.slopes.items() if not slope.answered]
+        return f"not answered: {', '.join(missing)}" if missing else ""
+
+    @property
+    def derivation(self) -> Document:
+        """Each derivative by its name."""
+        rows = [Found(named(of, to), slope) for (of, to), slope in self.slopes.items()]
+        return plain_document(self.model, self.entries, Listing(tuple(rows)))
+
+    def entries(self) -> dict[str, Any]:
+        """For machines; of a run its end, and the columns."""
+        found: dict[str, Any] = {"name": self.model.name, "to": list(self.to), "values": dict(self.values)}
+        found["slopes"] = {of: {to: self.slopes[of, to] for to in self.to} for of in self.of}
+        if self.run is not None:
+            columns = {of: {to: self.run.slopes[of, to].tolist() for to in self.to} for of in self.of}
+            found["run"] = {"t": self.run.t.tolist(), "values": {of: self.run.values[of].tolist() for of in self.of}}
+            found["run"]["slopes"] = columns
+        return found
+
+    def to_pandas(self) -> Any:
+        """The matrix as a DataFrame, a row for each formula (needs pandas)."""
+        import pandas
+
+        return pandas.DataFrame(self.matrix, index=list(self.of), columns=list(self.to))
+
+    def certify(self) -> Certificate:
+        """Each derivative against central differences of the whole computation, made anew at other values."""
+        return checks_of(self.model, self.in_si, self.run)
+
+
+def named(of: str, to: str) -> str:
+    """A derivative by its name."""
+    return f"d({of})/d({to})"
+
+
+def slope_asked(text: str) -> tuple[str, str] | None:
+    """("frequency(1)", "k") of "d(frequency(1))/d(k)"; None of any other text."""
+    found = SLOPE.fullmatch(text.strip())
+    return None if found is None else (found["of"].strip(), found["to"].strip())
+
+
+def unit_of_slope(model: Model, of: str, to: str) -> Unit:
+    """The unit of a derivative: of the formula over that of the name, as the model has them; 1 of a number."""
+    above, below = _unit_of(model, of), _unit_of(model, to)
+    if below is None:
+        return above or parse_unit("1")
+    under = f"({below.text})" if set(below.text) & set("*/") else below.text
+    return parse_unit(f"{'1' if above is None else above.text}/{under}")
+
+
+def _unit_of(model: Model, text: str) -> Unit | None:
+    """The unit of a name or formula."""
+    output = asked_of(model, text)
+    own = units_of(model, [text]).get(text) if text in (*model.coordinates, *model.parameters) else None
+    if own is not None or text in model.parameters:
+        return own
+    if output.at is not None and output.value.text in model.coordinates and output.unit is None:
+        return units_of(model, [output.value.text]).get(output.value.text)
+    return units_of(replace(model, outputs=Table({"asked": output})), ["asked"]).get("asked")
+
+
+@doing("the sensitivities")
+def sensitivity(
+    model: ModelOrPath,
+    of: Sequence[str] | str = (),
+    to: Sequence[str] | str = (),
+    *,
+    time: float | None = None,
+    samples: int | Sequence[float] = SAMPLES,
+    parameters: Values | None = None,
+    start: Values | None = None,
+) -> Sensitivity:
+    """Exact derivatives of what a model is asked.
+
+    Args:
+        of: outputs by name and formulas as outputs have them: "theta''", "reaction_y(A)", "frequency(1)",
+            "x(B) at equilibrium"; "rhs" for q' and u' at the start; "frequencies"; "equilibrium" for every
+            coordinate at rest. (): the model's outputs. The start moves along, as its expressions and the ties say.
+        to: parameters, those that depend on one following it; coordinates and speeds, for where they start; (): all
+            parameters.
+        time: how long a motion is followed [s]; then `of` are functions of the state along it, "state" for all
+            coordinates and speeds (()), and the derivatives are those at its end.
+        samples: of the run, how many, or at which instants.
+        parameters, start: values that replace the model's, each as `model_at` takes it.
+    Raises:
+        UsageError: a name that the model does not have.
+        MissingValues: a parameter without a value.
+        NotYet: contacts may change along the run, or a force jumps.
+    """
+    model = model_at(model, parameters, start)
+    asking = _Asking(model)
+    names = (to,) if isinstance(to, str) else tuple(to) or tuple(model.parameters)
+    wanted = (of,) if isinstance(of, str) else tuple(of)
+    asking.refuse_unknown(names)
+    if time is not None:
+        return asking.along(wanted or (STATE,), names, time, samples)
+    return asking.now(tuple(asking.formulas(wanted or tuple(model.outputs) or (RHS,))), names)
+
+
+def _alone(model: Model, of: str, to: str, time: float) -> Sensitivity:
+    """One derivative; of "last(F)" that of F at the end of a run."""
+    call = single_call(of)
+    if call is not None and call.name == "last":
+        return sensitivity(model, of[of.index("(") + 1 : -1], to, time=time, samples=LAST)
+    return sensitivity(model, of, to)
+
+
+def slope_in_si(model: Model, of: str, to: str, time: float) -> tuple[float | None, str]:
+    """(one derivative in SI, why there is none).
+
+    Args:
+        of: a formula as `sensitivity` takes it, or "last(F)", F at the end of a run.
+        time: of the run [s].
+    """
+    found = _alone(model, of, to, time)
+    value = float(found.matrix[0, 0])
+    return (value, "") if np.isfinite(value) else (None, next(iter(found.slopes.values())).message or NO_VALUE)
+
+
+def checks_of_slope(model: Model, of: str, to: str, time: float) -> Sequence[Check]:
+    """Its proof; arguments as of `slope_in_si`."""
+    return _alone(model, of, to, time).certify().checks
+
+
+Derived = tuple[float, float, Scalar | None]
+"""value, derivative in SI, and this in closed form where it has one"""
+
+
+@dataclass(frozen=True)
+class _Asking:
+    """A model, and what its derivatives need."""
+
+    model: Model
+
+    @cached_property
+    def phase(self) -> PhaseEquations:
+        return phase_equations_of(self.model, contacts_at_start(self.model).modes)
+
+    @cached_property
+    def small(self) -> Linearization:
+        return linearize(self.model)
+
+    def refuse_unknown(self, names: Sequence[str]) -> None:
+        """Refuses what is no parameter and no start."""
+        symbols = self.phase.system.symbols
+        known = (*self.model.parameters, *(x.name for x in (*symbols.q, *symbols.u)))
+        for name in names:
+            if name not in known:
+                raise UsageError(f"no parameter, coordinate or speed '{name}'", mend=f"one of {', '.join(known)}")
+
+    def formulas(self, wanted: Sequence[str]) -> Iterator[str]:
+        """What is asked, one by one."""
+        symbols = self.phase.system.symbols
+        for text in wanted:
+            if text == RHS and text not in self.model.outputs:
+                yield from (*(f"{q.name}'" for q in symbols.q), *(f"{u.name}'" for u in symbols.u))
+            elif text == STATE and text not in self.model.outputs:
+                yield from (x.name for x in (*symbols.q, *symbols.u))
+            elif text == FREQUENCIES:
+                yield from (f"frequency({k})" for k, _ in enumerate(self.small.frequencies, start=1))
+            elif text == REST:
+                parts = self.model.coordinates
+                yield from (f"{q.name} at {AtRest.text}" for q in symbols.q if not parts[q.name].driven)
+            else:
+                yield text
+
+    # -- at one state ----------------------------------------------------------------------------------------
+
+    def now(self, of: tuple[str, ...], to: tuple[str, ...]) -> Sensitivity:
+        """At the start, at rest, of small motions."""
+        values: dict[str, Quantity] = {}
+        slopes: dict[tuple[str, str], Quantity] = {}
+        in_si: dict[tuple[str, str], float] = {}
+        for text in of:
+            output = asked_of(self.model, text)
+            for name in to:
+                unit = unit_of_slope(self.model, text, name)
+                try:
+                    value, slope, exact = self._slope(output, name)
+                except EomgenError as error:
+                    slopes[text, name] = Quantity(unit=unit.text, message=error.what)
+                    continue
+                in_si[text, name] = slope
+                written = None if exact is None or text_size(exact) > LONGEST_RESULT else self._written(exact)
+                slopes[text, name] = Quantity(written, slope / unit.size, unit.text, "derivative of the equations")
+                values.setdefault(text, Quantity(None, value, ""))
+        return Sensitivity(self.model, of, to, values, slopes, None, in_si)
+
+    def _slope(self, output: Output, name: str) -> Derived:
+        """One derivative.
+
+        Raises:
+            DerivationError: it is of a whole run, or of an instant.
+        """
+        if asks_of(output.value, OF_A_RUN) or output.from_ is not None or output.event is not None:
+            raise DerivationError("it is of a whole run, or of one instant of it: no derivative is sought of that")
+        rest = isinstance(output.at, AtRest)
+        if output.at is not None and not rest:
+            raise DerivationError("it is asked at an instant", mend="give `time`: derivatives along the run")
+        if asks_of(output.value, SMALL_MOTIONS):
+            return self._of_small_motions(output.value, name)
+        return self._at_rest(output.value, name) if rest else self._at_the_start(output.value, name)
+
+    def _changed(self, name: str, phase: PhaseEquations | None = None) -> Seeds:
+        """How the parameters change: with one of them, or not at all."""
+        scope = (phase or self.phase).system.scope
+        return parameter_seeds(scope, name) if name in self.model.parameters else {}
+
+    def _at_the_start(self, formula: Expression, name: str) -> Derived:
+        phase = self.phase
+        symbols = phase.system.symbols
+        numbers, seeds = self._start(name)
+        value, slope = ChangingState(phase, numbers, seeds).formula(formula)
+        stays = name in self.model.parameters and not any(seeds.get(x, 0) for x in (*symbols.q, *symbols.u))
+        if not stays or len(symbols.u) > MOST_WRITTEN:
+            return value, slope, None
+        closed = substituted((phase.of_state(formula),), _own_inputs(phase))[0]
+        return value, slope, tangent((closed,), self._changed(name))[0]
+
+    def _start(self, name: str) -> tuple[dict[Node, Any], Seeds]:
+        """(the state at the start, how it changes with a name)."""
+        system = self.phase.system
+        numbers = self._numbers
+        changed = dict(self._changed(name))
+        changed |= _seeds_of_inputs(self.phase, numbers, changed)
+        begun = start_seeds(system, numbers, changed, "" if name in self.model.parameters else name)
+        seeds = {**changed, **begun}
+        return numbers, seeds | _seeds_of_inputs(self.phase, numbers, seeds)
+
+    @cached_property
+    def _numbers(self) -> dict[Node, Any]:
+        """t, parameters, inputs, q and u at the start, with 50 digits."""
+        system, number = self.phase.system, fifty_digits().number
+        symbols, p = system.symbols, numeric_parameters(self.model)
+        given = {symbols.t: 0.0} | {symbols.parameters[name]: x for name, x in p.items()}
+        state = start_state(system)
+        given |= {x: state[x.name] for x in (*symbols.q, *symbols.u)}
+        found = {x: number(Fraction(value)) for x, value in given.items()}
+        inputs = _own_inputs(self.phase)
+        return found | dict(zip(inputs, evaluate(tuple(inputs.values()), found, fifty_digits()), strict=True))
+
+    def _at_rest(self, formula: Expression, name: str) -> Derived:
+        """At the place of rest, which moves."""
+        reference = self.small.small.reference
+        phase = PhaseEquations(reference.system)
+        changed = self._changed(name, phase)
+        seeds = ParameterSlopes(self.small.small, changed).seeds if changed else {}
+        value, slope = ChangingState(phase, reference.numbers, seeds).formula(formula)
+        known = {x: y for x, y in reference.exact.items() if type(y) is not float}
+        closed = formula.evaluate(phase.system.scope.names, _refused) if not formula.calls else None
+        if closed is None or not reference.is_exact or not changed:
+            return value, slope, None
+        return value, slope, tangent(substituted((closed,), known), changed)[0]
+
+    def _of_small_motions(self, formula: Expression, name: str) -> Derived:
+        """A formula of frequencies and entries of M, C and K."""
+        small = self.small.small
+        phase = PhaseEquations(small.reference.system)
+        scope, changed = phase.system.scope, self._changed(name, phase)
+        changing = ParameterSlopes(small, changed)
+        found: dict[Node, tuple[float, float, Scalar | None]] = {}
+
+        def value(call: Call) -> Scalar:
+            node = scope.graph.symbol(str(call))
+            found[node] = self._called(call, changing)
+            return node
+
+        scalar = formula.evaluate(scope.names, value)
+        number = fifty_digits().number
+        numbers = {**small.reference.numbers, **{x: number(Fraction(y)) for x, (y, _, _) in found.items()}}
+        seeds = {**changed, **{x: Fraction(slope) for x, (_, slope, _) in found.items()}}
+        ((at, slope),) = ChangingState(phase, numbers, seeds).of([scalar])
+        exact = {x: y for x, (_, _, y) in found.items() if y is not None}
+        if len(exact) < len(found) or not changed:
+            return at, slope, None
+        return at, slope, tangent(substituted((scalar,), exact), changed)[0]
+
+    def _called(self, call: Call, changing: ParameterSlopes) -> Derived:
+        """A frequency, or an entry of a matrix: (value, slope, the value in closed form)."""
+        if call.name == "frequency":
+            frequency = self.small.modes.frequency(int(call.args[0].literal or 0))  # type: ignore[union-attr]
+            value = frequency.mode.frequency or 0.0
+            if value == 0:
+                raise DerivationError("a motion that does not swing has no frequency that would change")
+            slope = changing.eigenvalue(frequency.mode.eigenvalue).imag if changing.parameters else 0.0
+            return value, slope, frequency.exact
+        modes, names = self.small.modes, names_of(call)
+        entry, exact = modes.entry(call.name, *names)
+        found = changing.entry(MATRICES[call.name], *modes.place(call.name, *names))
+        return found.value, found.slope, entry if exact else None
+
+    def _written(self, scalar: Scalar) -> str | None:
+        """The text of a closed form."""
+        positive = self.phase.system.scope.positive
+        return readable_text(book_form(legible(scalar, Work.ANSWER, positive, LONGEST_RESULT), Work.FORMULA, positive))
+
+    # -- along a run -----------------------------------------------------------------------------------------
+
+    def along(
+        self, of: tuple[str, ...], to: tuple[str, ...], time: float, samples: int | Sequence[float]
+    ) -> Sensitivity:
+        """Along a motion, and at its end."""
+        if not time > 0:
+            raise UsageError(f"the time {time:g} s makes no sense", mend="give one above 0")
+        texts = tuple(self.formulas(of))
+        formulas = {text: asked_of(self.model, text).value for text in texts}
+        instants = np.linspace(0.0, time, samples) if isinstance(samples, int) else np.array([*samples], dtype=float)
+        symbols = self.phase.system.symbols
+        x = (*symbols.q, *symbols.u)
+        begun: dict[str, Any] = {name: self._start(name)[1] for name in to}
+        start = np.array([float(self._numbers[node]) for node in x])
+        changes = {name: np.array([float(seeds.get(node, 0)) for node in x]) for name, seeds in begun.items()}
+        run = changing_run(self.phase, (start, changes), {name: self._changed(name) for name in to}, formulas, instants)
+        in_si = {pair: float(column[-1]) for pair, column in run.slopes.items()}
+        slopes = {}
+        for pair, slope in in_si.items():
+            unit = unit_of_slope(self.model, *pair)
+            slopes[pair] = Quantity(None, slope / unit.size, unit.text, "variational equations")
+        values = {text: Quantity(None, float(run.values[text][-1]), "") for text in texts}
+        return Sensitivity(self.model, texts, to, values, slopes, run, in_si)
+
+
+def _refused(call: Call) -> Scalar:
+    raise DerivationError(f"'{call}' has no closed form")
+
+
+def _own_inputs(phase: PhaseEquations) -> dict[Node, Scalar]:
+    """The inputs by the model's own expressions."""
+    return {node: phase.system.inputs[name] for name, node in phase.system.symbols.inputs.items()}
+
+
+def _seeds_of_inputs(phase: PhaseEquations, numbers: Mapping[Node, Any], seeds: Seeds) -> dict[Node, Fraction]:
+    inputs = _own_inputs(phase)
+    found = evaluate(tangent(tuple(inputs.values()), seeds), numbers, fifty_digits())
+    return {x: Fraction(float(rate)) for x, rate in zip(inputs, found, strict=True)}

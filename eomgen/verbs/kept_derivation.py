@@ -1,0 +1,152 @@
+"""A derivation that was proven before, told again: by the content of all that it hangs on, and checked before.
+
+Kept is what was told: the text, the lines beside it, the exit code, of results whose certificate holds. It is found by
+the digest of the model's text, what was asked, every file of this package, and the versions below. It is believed where
+
+    the file is this user's alone, whole, and made for this key (`eomgen.kept`), and
+    the equations of motion, derived anew from the model as it was read now, have the values that they had then
+
+in doubles, at a state that the key draws: M a - forcing - J^T lam, J a + gamma, J u + sigma, N u + nu, T and V, bit for
+bit. That is of the equations; how they are written, and that they were proven, the digest alone says. The state is
+drawn by no secret: against somebody who may write as this user nothing is kept safe here.
+"""
+
+from __future__ import annotations
+
+import json
+import platform
+from collections.abc import Mapping, Sequence
+from functools import cache
+from hashlib import sha256
+from pathlib import Path
+from random import Random
+from typing import Any
+
+import numpy
+
+from eomgen import kept
+from eomgen.errors import EomgenError
+from eomgen.files import beside
+from eomgen.mechanics.balance.friction import equations_of_motion
+from eomgen.mechanics.bodies.contact_modes import ContactModes
+from eomgen.mechanics.equations.system import system_of
+from eomgen.model.contacts import contacts_of
+from eomgen.model.parts import Model
+from eomgen.records import dataclass
+from eomgen.symbolic.expression.derivative import symbols_of
+from eomgen.symbolic.expression.functions import inner
+from eomgen.symbolic.expression.graph import Scalar
+from eomgen.symbolic.numeric.evaluation import FLOAT, evaluate
+
+SUFFIX = ".json"
+ENTRY = {"key": str, "values": list, "text": str, "lines": list, "code": int}
+LIBRARIES = ("numpy", "mpmath", "quicktions", "python_flint", "sympy", "scipy")
+
+
+@dataclass(frozen=True)
+class KeptDerivation:
+    """One derivation among those that are kept.
+
+    Args:
+        key: the digest of all that it hangs on.
+        model: as it was read now.
+    """
+
+    key: str
+    model: Model
+
+    def found(self) -> tuple[str, tuple[str, ...], int] | None:
+        """(text, lines, code) as they were told; None where it was not derived before, or is not believed."""
+        for path, content in kept.contents(kept.cache_place(), self.key[:32], SUFFIX):
+            entry = _entry(content)
+            if entry is not None and entry["key"] == self.key and entry["values"] == self.values:
+                kept.used(path)
+                return entry["text"], tuple(entry["lines"]), entry["code"]
+        return None
+
+    def keep(self, text: str, lines: tuple[str, ...], code: int) -> None:
+        """Keeps what was told; where it cannot be written, nothing."""
+        values = self.values
+        if values is None:
+            return
+        entry = {"key": self.key, "values": values, "text": text, "lines": lines, "code": code}
+        try:
+            with beside(kept.cache_place()) as place:
+                made = place / f"made{SUFFIX}"
+                made.write_text(json.dumps(entry), encoding="utf-8")
+                kept.put_whole(made, kept.cache_place(), self.key[:32])
+        except OSError:
+            return
+
+    @property
+    def values(self) -> list[str] | None:
+        """The equations of motion at a state that the key draws, to the last bit; None where they have none."""
+        try:
+            return _values(self.model, Random(self.key))
+        except EomgenError:
+            return None
+
+
+def kept_derivation(data: bytes, name: str, model: Model, asked: Mapping[str, Any]) -> KeptDerivation | None:
+    """Where a derivation would be kept; None where this package is not made of files.
+
+    Args:
+        data: the model's text.
+        name: by which problems tell of its file.
+        model: what was read of it, with the values that were typed.
+        asked: all that was typed besides.
+    """
+    package = _package()
+    if package is None:
+        return None
+    parts = (package, repr(name).encode(), repr(sorted(asked.items())).encode(), data)
+    content = b"".join(len(part).to_bytes(8, "big") + part for part in parts)
+    return KeptDerivation(sha256(content).hexdigest(), model)
+
+
+@cache
+def _package() -> bytes | None:
+    """This package, file by file, the version of Python and those of the libraries that it stands on."""
+    root = Path(__file__).parents[1]
+    if not root.is_dir():
+        return None
+    found = sha256(platform.python_version().encode() + platform.platform().encode())
+    for path in sorted(root.rglob("*.py")):
+        content = path.read_bytes()
+        found.update(f"{path.relative_to(root)}\0{len(content)}\0".encode() + content)
+    beside_numpy = Path(numpy.__file__).parents[1]
+    found.update(repr(sorted(x.name for name in LIBRARIES for x in beside_numpy.glob(f"{name}-*.dist-info"))).encode())
+    return found.digest()
+
+
+def _entry(content: bytes) -> dict[str, Any] | None:
+    try:
+        entry = json.loads(content)
+    except ValueError:
+        return None
+    whole = isinstance(entry, dict) and {name: type(x) for name, x in entry.items()} == ENTRY
+    return entry if whole else None
+
+
+def _values(model: Model, rng: Random) -> list[str]:
+    equations = equations_of_motion(system_of(model, _modes(model)))
+    symbols = equations.symbols
+    balance, ties = equations.residual
+    rows = [*balance, *ties, *_linear(equations.J, symbols.u, equations.sigma)]
+    rows += [*_linear(equations.N, symbols.u, equations.nu), equations.T, equations.V]
+    state = {x: rng.uniform(0.3, 1.2) for x in sorted(symbols_of(rows), key=lambda x: x.name)}
+    return [float(x).hex() for x in evaluate(rows, state, FLOAT)]
+
+
+def _linear(A: Sequence[Sequence[Scalar]], x: Sequence[Scalar], b: Sequence[Scalar]) -> list[Scalar]:
+    """A x + b"""
+    return [inner(row, x) + bias for row, bias in zip(A, b, strict=True)]
+
+
+def _modes(model: Model) -> ContactModes | None:
+    """How the contacts are at the start, where there are any."""
+    if not contacts_of(model):
+        return None
+    from eomgen.mechanics.statics.contacts_at_start import contacts_at_start
+
+    return contacts_at_start(model).modes

@@ -1,0 +1,110 @@
+"""Equations that people get wrong, and right ones as they write them: how the judge fares.
+
+`human_errors.txt` holds mistakes from the literature on misconceptions (the square of a relative velocity without its
+product, Steiner's distance, moment arms, follower loads, rest lengths, absolute for relative damping, gears inverted,
+N = m g on an incline, ...) in every kind of equation; `right_disguises.txt` right ones from papers, notes and programs.
+
+    python tests/helpers/human_errors.py              # both tables
+"""
+
+from __future__ import annotations
+
+import time
+from collections import Counter, defaultdict
+from collections.abc import Iterator
+from dataclasses import dataclass
+from functools import cache
+from pathlib import Path
+
+import eomgen
+from eomgen.errors import EomgenError
+from eomgen.judge.case import Case
+from eomgen.judge.judge import Judge
+
+HERE = Path(__file__).parent
+MODELS = HERE.parent.parent / "models"
+
+
+@dataclass(frozen=True)
+class Answer:
+    """What somebody wrote.
+
+    Args:
+        kind: of the mistake; "" of what is right.
+        causes, words: kinds of causes that name it, and words of which one must be told.
+        options: of `verify`.
+    """
+
+    model: str
+    text: str
+    options: tuple[tuple[str, str], ...] = ()
+    kind: str = ""
+    causes: tuple[str, ...] = ()
+    words: tuple[str, ...] = ()
+
+    def verdict(self) -> eomgen.Verdict:
+        return _judge(self.model).verdict(self.text, **dict(self.options))
+
+    def is_named(self, verdict: eomgen.Verdict) -> bool:
+        """Whether one cause is told, and it is the mistake."""
+        if verdict.verdict != "wrong" or len(verdict.causes) != (2 if self.kind == "two errors" else 1):
+            return False
+        told = " ".join(f"{x.text} {x.term} {x.body} {x.force}" for x in verdict.causes)
+        return verdict.causes[0].kind in self.causes and (not self.words or any(word in told for word in self.words))
+
+
+@cache
+def _judge(name: str) -> Judge:
+    folder = HERE / "hand_models" if name.startswith("~") else MODELS
+    return Judge(Case(eomgen.load(folder / f"{name.removeprefix('~')}.toml")))
+
+
+def _lines(name: str) -> Iterator[list[str]]:
+    for line in (HERE / name).read_text().splitlines():
+        if line.strip() and not line.startswith("#"):
+            yield [part.strip() for part in line.split(" | ")]
+
+
+def _options(given: list[str]) -> tuple[tuple[str, str], ...]:
+    return tuple((name, value) for name, _, value in (each.partition(":") for each in given if each))
+
+
+def wrong_answers() -> list[Answer]:
+    """Every wrong one."""
+    return [
+        Answer(model, text, _options(more[1:]), kind, tuple(causes.split(",")), _words(more))
+        for kind, model, text, causes, *more in _lines("human_errors.txt")
+    ]
+
+
+def _words(more: list[str]) -> tuple[str, ...]:
+    return tuple(word for word in (more[0].split(",") if more else ()) if word not in ("", "-"))
+
+
+def right_answers() -> list[Answer]:
+    """Every right one."""
+    return [Answer(model, text, _options(more)) for model, text, *more in _lines("right_disguises.txt")]
+
+
+def main() -> None:
+    for title, some in (("wrong", wrong_answers()), ("right", right_answers())):
+        table: dict[str, Counter[str]] = defaultdict(Counter)
+        for each in some:
+            try:
+                found = each.verdict()
+                told = "; ".join(f"[{x.kind}] {x.text}" for x in found.causes)
+                table[each.kind].update({"all": 1, found.verdict: 1, "named": each.is_named(found)})
+            except EomgenError as error:
+                found, told = None, error.what
+                table[each.kind].update({"all": 1, "error": 1})
+            if found is None or found.verdict != title or (title == "wrong" and not each.is_named(found)):
+                print(f"{found.verdict if found else 'error'}: {each.kind} {each.model}: {each.text}\n    {told}")
+        for kind in sorted(table):
+            print(f"    {kind:16} {dict(table[kind])}")
+        models = len({each.model for each in some})
+        total = sum(table.values(), Counter())
+        print(f"{title}: {dict(total)}, {models} models, {time.process_time():.0f} s CPU\n")
+
+
+if __name__ == "__main__":
+    main()

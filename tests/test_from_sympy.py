@@ -1,0 +1,119 @@
+"""Systems of sympy.physics.mechanics as models, and equations as sympy's objects."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from random import Random
+from typing import Any
+
+import numpy as np
+import pytest
+import sympy as sm
+from sympy.physics.mechanics import KanesMethod, LagrangesMethod, dynamicsymbols
+
+import eomgen
+from eomgen.errors import DerivationError, UsageError
+from tests.helpers.sympy_systems import SYSTEMS, accelerations_by_sympy
+
+MODELS = Path(__file__).parent.parent / "models"
+
+CLOSES = {"l1": 2.0, "l2": 1.0, "l3": 2.1, "l4": 1.9}, {"q1": 1.1, "q2": -0.613, "q3": -2.222}  # of the four-bar
+
+
+def random_state(model: Any, seed: int) -> tuple[dict[str, float], dict[str, float]]:
+    """(numbers by name: parameters, inputs, q, q'; accelerations by name) at a random state in which the ties hold."""
+    rng = Random(seed)
+    parameters = {name: rng.uniform(0.6, 1.4) for name in model.parameters}
+    speeds = [u.name for u in eomgen.derive(model).graph.symbols.u]
+    start = {q: rng.uniform(0.3, 1.1) for q in model.coordinates} | {u: rng.uniform(-1, 1) for u in speeds}
+    if "l1" in parameters:
+        parameters, start = parameters | CLOSES[0], start | CLOSES[1]
+    equations = eomgen.derive(model, parameters=parameters, start=start)
+    inputs = {name: rng.uniform(-1, 1) for name in model.inputs}
+    x = equations.start()
+    dx = equations.rhs("numpy")(0.0, x, list(parameters.values()), list(inputs.values()))
+    q, symbols = equations.coordinates, equations.graph.symbols
+    numbers = parameters | inputs | dict(zip(q, x, strict=False)) | dict(zip([f"{n}'" for n in q], dx, strict=False))
+    return numbers, dict(zip((a.name for a in symbols.a), dx[len(q) :], strict=True))
+
+
+@pytest.mark.parametrize("name", SYSTEMS)
+def test_accelerations_are_those_of_sympy(name):
+    """u' at random states that keep the ties, against sympy's own full M and forcing: 1e-10."""
+    system = SYSTEMS[name]()
+    model = eomgen.from_sympy(system, name=name)
+    for seed in (1, 2):
+        numbers, found = random_state(model, seed)
+        expected = accelerations_by_sympy(system, numbers)
+        shared = [u for u in found if u in expected]
+        assert len(shared) == min(len(found), len(expected))
+        size = max(map(abs, expected.values()))
+        assert [found[u] for u in shared] == pytest.approx([expected[u] for u in shared], rel=1e-10, abs=1e-10 * size)
+
+
+@pytest.mark.parametrize("name", SYSTEMS)
+def test_a_model_of_sympy_is_proven_and_written(name, tmp_path):
+    """Its certificate holds; the file that is written reads as the same model."""
+    model = eomgen.from_sympy(SYSTEMS[name](), name=name, path=tmp_path / "model.toml")
+    assert eomgen.derive(model).certify().ok is not False
+    assert eomgen.load(tmp_path / "model.toml") == model
+
+
+def test_bodies_on_joints_are_bodies_on_joints():
+    """Of a System with joints the model has its bodies, hinges, springs, weight and motors; no energies."""
+    model = eomgen.from_sympy(SYSTEMS["cart_and_pendulum_on_joints"]())
+    assert [body.joint.kind for body in model.bodies.values()] == ["prismatic", "revolute"]
+    assert [force.kind for force in model.forces.values()] == ["gravity", "spring", "damper", "force", "force"]
+    assert model.bodies["rod"].joint.torque.text == "tau - l*c*q_p'" and set(model.inputs) == {"F", "tau"}
+
+
+def test_what_sympy_derives_is_judged_against_the_model_and_simulates():
+    """verify of an equation of sympy, right and with a wrong sign; T + V of a run stays, frequencies by hand."""
+    model = eomgen.from_sympy(SYSTEMS["pendulum"]())
+    assert eomgen.verify(model, "l*q'' + g*sin(q) = 0").verdict == "right"
+    assert eomgen.verify(model, "l*q'' - g*sin(q) = 0").verdict == "wrong"
+    values = {"m": 2, "l": 1, "g": 9.81, "c": 0}
+    double = eomgen.from_sympy(SYSTEMS["double_pendulum_by_lagrange"]())
+    run = eomgen.simulate(double, time=3, parameters=values, start={"q1": 1})
+    assert run.status == "finished" and np.ptp(run.energy) < 1e-6 * np.ptp(run["q1'"]) ** 2
+    A = eomgen.linearize(double, parameters=values).state_space().A
+    found = np.linalg.eigvals(A)
+    assert np.allclose(np.unique(np.abs(found.imag).round(9)), np.sqrt(9.81 * (2 + np.sqrt(2) * np.array([-1, 1]))))
+
+
+def test_what_is_none_of_sympys_systems_is_refused():
+    """What it is, and how to mend it."""
+    with pytest.raises(UsageError, match="a System, KanesMethod or LagrangesMethod"):
+        eomgen.from_sympy(sm.Symbol("x"))
+    q, u, a, f = dynamicsymbols("q u a f")
+    pendulum = SYSTEMS["pendulum"]()
+    with pytest.raises(DerivationError, match="auxiliary speeds"):
+        eomgen.from_sympy(
+            KanesMethod(pendulum._inertial, [q], [u], [q.diff() - u], u_auxiliary=[a], bodies=pendulum.bodies)
+        )
+    with pytest.raises(DerivationError, match="has no bodies"):
+        eomgen.from_sympy(KanesMethod(pendulum._inertial, [q], [u], [q.diff() - u]))
+    with pytest.raises(DerivationError, match="of a given function of time"):
+        eomgen.from_sympy(LagrangesMethod(q.diff() ** 2 / 2 + f.diff() * q.diff(), [q]))
+    with pytest.raises(DerivationError, match="does not know"):
+        eomgen.from_sympy(LagrangesMethod(q.diff() ** 2 / 2 - sm.Function("V")(q), [q]))
+
+
+@pytest.mark.parametrize("name", ["double_pendulum", "four_bar", "gyrostat", "cart_pole", "whipple_bicycle"])
+def test_equations_go_to_sympy_as_they_are(name):
+    """M x' = right of the SymbolicSystem at the start, moved a little: q' and u' are the right-hand side's."""
+    equations = eomgen.derive(MODELS / f"{name}.toml")
+    rhs, system = equations.rhs("numpy"), equations.to_sympy_system()
+    x, rng = equations.start(), np.random.default_rng(2)
+    n, nu = len(equations.coordinates), len(equations.speeds)
+    x[n:] += 0 if len(equations.graph.J) else rng.normal(size=nu)
+    p, given = rhs.p0, rng.normal(size=len(equations.inputs))
+    known = dict(zip([*system.coordinates, *system.speeds[:nu]], x, strict=True))
+    known |= {f: v for f, v in zip([sm.Function(w)(dynamicsymbols._t) for w in equations.inputs], given, strict=True)}
+    known |= dict(zip((equations.symbols[name] for name in equations.parameters), p, strict=True))
+    numbers = [np.array(part.xreplace(known).xreplace({dynamicsymbols._t: 0}).evalf(), dtype=float)
+               for part in (system.dyn_implicit_mat, system.dyn_implicit_rhs, system.kin_explicit_rhs)]  # fmt: skip
+    expected = rhs(0.0, x, p, given)
+    assert np.allclose(numbers[2].ravel(), expected[:n], rtol=1e-12, atol=1e-12)
+    solved = np.linalg.lstsq(numbers[0], numbers[1].ravel(), rcond=None)[0][:nu]
+    assert np.allclose(solved, expected[n:], rtol=1e-9, atol=1e-9)
