@@ -17,7 +17,7 @@ from eomgen.records import dataclass
 from eomgen.robots.drawn_up import LegalNames
 from eomgen.symbolic.exact.normal_form import simplest
 from eomgen.symbolic.expression.graph import Graph, Node, Scalar
-from eomgen.symbolic.expression.rational import Fraction
+from eomgen.symbolic.expression.rational import Fraction, fraction_of
 from eomgen.symbolic.numeric.work import Work
 from eomgen.symbolic.print.sympy_form import scalar_from_sympy
 from eomgen.symbolic.print.text import text_size, to_text
@@ -125,7 +125,7 @@ def _decimal(x: Scalar) -> Decimal | None:
     if type(x) is Node:
         return None
     found = Decimal(int(Fraction(x).numerator)) / Decimal(int(Fraction(x).denominator))
-    return found if Fraction(str(found)) == x else None
+    return found if fraction_of(str(found)) == x else None
 
 
 def speeds_as_rates(q: Sequence[Any], u: Sequence[Any], kinematic: Sequence[Any]) -> dict[Any, Any]:

@@ -357,7 +357,7 @@ def test_reading_ends_where_a_model_would_be_too_long(tmp_path):
     os.waitpid(pid, 0)
     assert ended.code == 1 and f"{fifo}:2:" in ended.said
     assert forked(("check", str(tmp_path))).code == 2
-    assert time.process_time() - begun < 5
+    assert time.process_time() - begun < 30
 
 
 def test_a_file_is_on_the_disk_before_it_takes_the_place_of_the_old_one(tmp_path, monkeypatch):

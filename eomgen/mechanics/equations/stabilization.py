@@ -14,7 +14,7 @@ from dataclasses import replace
 
 from eomgen.errors import UsageError
 from eomgen.mechanics.equations.equations_of_motion import EquationsOfMotion
-from eomgen.symbolic.expression.rational import Fraction
+from eomgen.symbolic.expression.rational import Fraction, fraction_of
 
 PullBack = tuple[float, float]
 
@@ -44,4 +44,4 @@ def _exact(rate: float) -> Fraction:
     """A decimal as it was written."""
     if not 0 < rate < float("inf"):
         raise UsageError(f"Baumgarte's rates must be positive, not {rate:g}", mend="give alpha and beta in 1/s")
-    return Fraction(repr(float(rate)))
+    return fraction_of(repr(float(rate)))

@@ -7,7 +7,7 @@ import unicodedata
 from collections.abc import Container, Iterable
 
 from eomgen.symbolic.expression.functions import NAMES
-from eomgen.symbolic.expression.rational import Fraction
+from eomgen.symbolic.expression.rational import fraction_of
 
 DEGREES = ("deg", "degree", "degrees", "grad", "Grad")
 RATES = {  # functions and ends of names that stand for dots: how many
@@ -55,7 +55,7 @@ def degrees(text: str) -> str:
     found = _DEGREES.search(text)
     if found is None:
         return ""
-    share = Fraction(found[1]) / 180
+    share = fraction_of(found[1]) / 180
     above = "pi" if share.numerator == 1 else f"{share.numerator}*pi"
     return f"angles are in rad here: write {above}{'' if share.denominator == 1 else f'/{share.denominator}'}"
 

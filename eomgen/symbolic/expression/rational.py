@@ -1,7 +1,7 @@
 """Exact rationals: compiled where quicktions is installed, else Python's own. Same values, texts and hashes either way.
 
-Every module takes its Fraction from here, and nowhere else is a choice made. It is never made of text of one
-character: quicktions 1.24 then writes over the interpreter's own b"\\0".
+Every module takes its Fraction from here, and nowhere else is a choice made. Text becomes one by fraction_of alone: of
+one character quicktions 1.24 writes over the interpreter's own b"\\0", and GIFs and zips written after it are broken.
 """
 
 from __future__ import annotations
@@ -18,9 +18,14 @@ else:
     except ImportError:
         from fractions import Fraction
 
-__all__ = ["EXACT", "Fraction", "known_to_sympy"]
+__all__ = ["EXACT", "Fraction", "fraction_of", "known_to_sympy"]
 
 EXACT = (int, Fraction, fractions.Fraction)  # what is taken as an exact number; what is made is an int or a Fraction
+
+
+def fraction_of(text: str) -> Fraction:
+    """The number that a text spells ("3", "0.1", "1e-6", "1/180")."""
+    return Fraction(f"{text} ")
 
 
 def known_to_sympy() -> None:

@@ -7,7 +7,7 @@ import re
 from eomgen.errors import ExpressionError
 from eomgen.records import dataclass
 from eomgen.symbolic.expression.habits import degrees
-from eomgen.symbolic.expression.rational import Fraction
+from eomgen.symbolic.expression.rational import Fraction, fraction_of
 
 LARGEST_EXPONENT = 300  # of ten, in a decimal: what a double can hold
 MOST_DIGITS = 320
@@ -119,7 +119,7 @@ def number_in(token: Token) -> int | Fraction:
         shown = token.text if len(token.text) < 30 else f"{token.text[:24]}..."
         what = f"the number {shown} has too many digits or too large an exponent"
         raise ExpressionError(what, token.start, f"at most {LARGEST_EXPONENT} in each", len(token.text))
-    value = Fraction(f"{mantissa}e{exponent or 0}")
+    value = fraction_of(f"{mantissa}e{exponent or 0}")
     if value.numerator.bit_length() - value.denominator.bit_length() > LARGEST_SIZE:
         what = f"{token.text[:24]}... is too large for a number"
         raise ExpressionError(what, token.start, f"at most 1e{LARGEST_EXPONENT}", len(token.text))

@@ -14,7 +14,7 @@ from eomgen.errors import ExpressionError
 from eomgen.records import dataclass
 from eomgen.symbolic.expression.formula import Expression
 from eomgen.symbolic.expression.functions import over
-from eomgen.symbolic.expression.rational import Fraction
+from eomgen.symbolic.expression.rational import Fraction, fraction_of
 from eomgen.symbolic.expression.tokens import skip_space
 
 LONGEST = 80  # characters
@@ -121,7 +121,7 @@ _SI_NAMES = {(1, 1, -2): "N", (2, 1, -3): "W", (-1, 1, -2): "Pa"}
 
 def _table() -> dict[str, Unit]:
     def unit(name: str, factor: str | int = 1, m: int = 0, kg: int = 0, s: int = 0) -> tuple[str, Unit]:
-        return name, Unit(name, Fraction(factor), 0, m, kg, s)
+        return name, Unit(name, fraction_of(str(factor)), 0, m, kg, s)
 
     entries = [
         unit("1"),
@@ -145,7 +145,7 @@ def _table() -> dict[str, Unit]:
         ("rpm", "1/30", 1, -1),
     )
     for name, size, pi_power, time in angles:
-        table[name] = Unit(name, Fraction(size), pi_power, time=time, angle=1)
+        table[name] = Unit(name, fraction_of(str(size)), pi_power, time=time, angle=1)
     return table
 
 
