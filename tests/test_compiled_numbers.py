@@ -14,7 +14,7 @@ import sympy
 
 from eomgen.symbolic.expression.functions import over, sqrt
 from eomgen.symbolic.expression.graph import Graph
-from eomgen.symbolic.expression.rational import Fraction, known_to_sympy
+from eomgen.symbolic.expression.rational import Fraction, fraction_of
 
 pytestmark = pytest.mark.slow
 
@@ -31,7 +31,7 @@ import sys
 if sys.argv.pop(1) == "without":
     sys.modules |= {"quicktions": None, "flint": None}
 from eomgen.symbolic.exact.rational_polynomial import RationalPolynomial
-from eomgen.symbolic.expression.rational import Fraction
+from eomgen.symbolic.expression.rational import Fraction, fraction_of
 RationalPolynomial.of({(1,): 2}).factors()
 print(Fraction.__module__, "flint" in sys.modules and sys.modules["flint"] is not None, file=sys.stderr)
 from eomgen.cli import main
@@ -87,3 +87,15 @@ def test_one_module_chooses_the_rationals_and_one_the_polynomials():
         if path.name not in home and re.search(rf"^\s*(from|import) ({libraries})\b", path.read_text(), re.M)
     ]
     assert wrong == []
+
+
+def test_text_of_one_character_is_a_number_and_changes_nothing_else():
+    """quicktions 1.24 writes a lone digit over the interpreter's own b"\\0", by which GIFs written later are broken."""
+    zero = b"\0after"
+    assert [fraction_of(text) for text in ("7", "1/180", "0.1", "1e-3")] == [
+        7,
+        1 / Fraction(180),
+        Fraction(1, 10),
+        Fraction(1, 1000),
+    ]
+    assert zero[:1][0] == 0
