@@ -14,7 +14,7 @@ import sympy
 
 from eomgen.symbolic.expression.functions import over, sqrt
 from eomgen.symbolic.expression.graph import Graph
-from eomgen.symbolic.expression.rational import Fraction, fraction_of
+from eomgen.symbolic.expression.rational import Fraction, fraction_of, known_to_sympy
 
 pytestmark = pytest.mark.slow
 
@@ -31,7 +31,7 @@ import sys
 if sys.argv.pop(1) == "without":
     sys.modules |= {"quicktions": None, "flint": None}
 from eomgen.symbolic.exact.rational_polynomial import RationalPolynomial
-from eomgen.symbolic.expression.rational import Fraction, fraction_of
+from eomgen.symbolic.expression.rational import Fraction
 RationalPolynomial.of({(1,): 2}).factors()
 print(Fraction.__module__, "flint" in sys.modules and sys.modules["flint"] is not None, file=sys.stderr)
 from eomgen.cli import main
