@@ -2,21 +2,23 @@
 
 from __future__ import annotations
 
+import re
 import runpy
 from pathlib import Path
 
 import numpy as np
 import pytest
 from hand_made import equations_of, spring_row, symbols
-from tools import each_target
+from tools import RUN_HERE, each_target, marked
 
 import eomgen
 from eomgen.codegen.kernel_reader import solve_bordered
 from eomgen.codegen.lowering import lowered
+from eomgen.codegen.matrices import program_of_blocks, slopes_of
 from eomgen.codegen.program import Program, Solve, bordered, program_of, right_hand_side
 from eomgen.codegen.rhs import compiled
 from eomgen.codegen.sparsity import zeros_of, zeros_with_ties
-from eomgen.codegen.targets.c import C
+from eomgen.codegen.targets.c import C, c_text
 from eomgen.codegen.vectors import vectors
 from eomgen.mechanics.equations.equations_of_motion import EquationsOfMotion
 from eomgen.symbolic.expression.functions import cos, sin
@@ -93,6 +95,34 @@ def test_emitted_solves_agree_with_fifty_digits(target, case):
     function = compiled(program, target)
     for v in vectors(program):
         assert np.abs(function(v.t, v.x, v.p) - v.result).max() <= v.tolerance * max(1, *map(abs, v.result))
+
+
+def turning_bars(n: int = 13) -> EquationsOfMotion:
+    """Bars on one another by their angles: every entry of M turns, and it is factored in a loop."""
+    s = symbols(" ".join(f"q{i}" for i in range(n)))
+    M = [[cos(a - b) + (3 if a is b else 0) for b in s.q] for a in s.q]
+    return equations_of(s, M, [0] * n, [-sin(a) - u / 3 for a, u in zip(s.q, s.u, strict=True)])
+
+
+MANY = {"a full matrix": turning_bars, "massless legs": lambda: legs_under_a_plate(2, massless=True)}
+
+
+@marked(name for name in RUN_HERE if name not in ("jax", "numba", "fmu"))  # which take long, by the texts of others
+@pytest.mark.parametrize("name", MANY)
+def test_many_right_sides_have_one_factorization(target, name):
+    """A = df/dx by the solve of the motion, factored once in the text, in every language: the differences of f."""
+    made = MANY[name]()
+    found = slopes_of(made)
+    assert len(found.solves) > 1
+    program = program_of_blocks(found.blocks, made, found.motion, found.solves)
+    once = re.findall(r"^ +solve_(?:factors|plain)\(", c_text(program, "m"), flags=re.MULTILINE)
+    assert len(once) == 1
+    function, rhs, n = compiled(program, target), compiled(right_hand_side(made), "numpy"), 2 * len(made.M)
+    x, h, p = np.random.default_rng(1).uniform(-0.3, 0.3, n), 1e-5, [1.7] * len(made.symbols.parameters)
+    A = function(0.0, x, p).reshape(n, n)
+    moved = [(rhs(0.0, x + h * e, p) - rhs(0.0, x - h * e, p)) / (2 * h) for e in np.eye(n)]
+    assert np.transpose(moved) == pytest.approx(A, rel=1e-7, abs=1e-7)
+    assert function.many([0.0, 0.0], [x, x], p)[1].reshape(n, n) == pytest.approx(A, rel=1e-11, abs=1e-11)
 
 
 @each_case

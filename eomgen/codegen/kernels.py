@@ -50,26 +50,62 @@ def places(n: int) -> Places:
     return [0] * n
 
 
-def solve(M: Work, J: Reals, f: Work, g: Work) -> None:
-    """f, g become a, lam of M a - J^T lam = f, J a = g (upper triangle of M), or nan.
-
-    M = L D L^T,  Y = L^-1 J^T,  (Y^T D^-1 Y) lam = g - Y^T D^-1 L^-1 f,  a = L^-T D^-1 (L^-1 f + Y lam)
-
-    Rows that depend on others have lam 0. Where M is no more positive, M + J^T W J stands in its place, and
-    f + J^T W g in that of f. All is done once more for what rounding left.
-    """
+def solve(M: Reals, J: Reals, f: Work, g: Work) -> None:
+    """f, g become a, lam of M a - J^T lam = f, J a = g (upper triangle of M), or nan."""
     L = room(N * N)
-    weight = zeros(K)
+    weight = room(K)
+    mobility = room(N)
+    Y = room(K * N)
+    S = room(K * K)
+    order = places(K + 3)
+    solve_factors(M, J, L, weight, mobility, Y, S, order)
+    solve_by(M, J, L, weight, mobility, Y, S, order, f, g)
+
+
+def solve_factors(M: Reals, J: Reals, L: Work, weight: Work, mobility: Work, Y: Work, S: Work, order: Places) -> None:
+    """What any f, g are solved by.
+
+    M = L D L^T,  Y = L^-1 J^T,  S = Y^T D^-1 Y
+
+    Where M is no more positive, M + J^T W J stands in its place. In order: rows of J as they are eliminated; at K how
+    many of them are sure, then the rank, then which M it is (0, 1; -1 of neither).
+    """
+    for m in range(K):
+        weight[m] = 0.0
+    for i in range(K * K):
+        S[i] = 0.0
     w = chosen(M, J, L, weight)
+    order[K + 2] = w
+    if w < 0:
+        return
+    flexibility(w, L, J, mobility, Y, S)
+    rank = eliminated(w, S, order)
+    order[K + 1] = rank
+
+
+def solve_by(
+    M: Reals,
+    J: Reals,
+    L: Reals,
+    weight: Reals,
+    mobility: Reals,
+    Y: Reals,
+    S: Reals,
+    order: Places,
+    f: Work,
+    g: Work,
+) -> None:
+    """f, g become a, lam by the factors.
+
+    (Y^T D^-1 Y) lam = g - Y^T D^-1 L^-1 f,  a = L^-T D^-1 (L^-1 f + Y lam)
+
+    Rows that depend on others have lam 0. Where M is no more positive, f + J^T W g stands in the place of f. All is
+    done once more for what rounding left.
+    """
+    w = order[K + 2]
     if w < 0:
         spoil(f, g)
         return
-    mobility = room(N)
-    Y = room(K * N)
-    S = zeros(K * K)
-    order = places(K + 1)
-    flexibility(w, L, J, mobility, Y, S)
-    rank = eliminated(w, S, order)
     a = zeros(N)
     lam = zeros(K)
     for again in range(2):
@@ -88,7 +124,7 @@ def solve(M: Work, J: Reals, f: Work, g: Work) -> None:
             for e in range(START[w * (K + 1) + m], START[w * (K + 1) + m + 1]):
                 j = REACH[e]
                 gap[m] -= Y[m * N + j] * (left[j] * mobility[j])
-        multipliers(w, S, order, rank, gap)
+        multipliers(w, S, order, order[K + 1], gap)
         for m in range(K):
             pull = gap[m]
             for e in range(START[w * (K + 1) + m], START[w * (K + 1) + m + 1]):
@@ -106,12 +142,16 @@ def solve(M: Work, J: Reals, f: Work, g: Work) -> None:
 
 
 def solve_plain(M: Work, f: Work) -> None:
-    """f becomes a of M a = f (upper triangle of M, which is lost); all nan where M is not positive definite."""
+    """f becomes a of M a = f (upper triangle), M its factors; all nan where it is not positive definite."""
     done = factored(0, ROUNDING, M)
     if done == 0:
         for i in range(N):
-            f[i] = nan
-        return
+            M[i * N + i] = nan
+    solve_plain_by(M, f)
+
+
+def solve_plain_by(M: Reals, f: Work) -> None:
+    """The same of another f, by what M became."""
     for j in range(N):
         forward(0, M, j, f)
     backward(0, M, f)

@@ -55,9 +55,12 @@ class Layout:
         return tuple(s for s in self.program.statements if type(s) is Solve)
 
     @property
-    def entry(self) -> str:
-        """The kernel that solves; "" of none."""
-        return "" if not self.solves else "solve" if self.solves[0].border else "solve_plain"
+    def solvers(self) -> tuple[str, ...]:
+        """The kernels that solve: all at once, or what factors the one matrix of several solves and what goes on."""
+        if not self.solves:
+            return ()
+        first, more = ("solve_factors", "solve_by") if self.solves[0].border else ("solve_plain", "solve_plain_by")
+        return (first, more) if len(self.solves) > 1 else ("solve" if self.solves[0].border else first,)
 
     @cached_property
     def stretches(self) -> tuple[tuple[Node, ...], ...]:
@@ -129,12 +132,12 @@ class Layout:
 
     @cached_property
     def kernels(self) -> tuple[str, ...]:
-        return (*((self.entry,) if self.solves else ()), *self.sampled.values())
+        return (*self.solvers, *self.sampled.values())
 
     @cached_property
     def called_kernels(self) -> frozenset[str]:
         """The kernels among the ops, by the names that a language may define in its own way."""
-        return frozenset((*self.kernels[: 1 if self.solves else 0], *(["through_samples"] if self.sampled else [])))
+        return frozenset((*self.solvers, *(["through_samples"] if self.sampled else [])))
 
     @cached_property
     def sampled(self) -> dict[int, str]:

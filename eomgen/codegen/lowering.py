@@ -16,8 +16,10 @@ from eomgen.codegen.layout import Layout, stripped
 from eomgen.codegen.lowered import (
     CHANGED,
     GIVEN,
+    PLACES,
     READ,
     REAL,
+    ROOM,
     Array,
     Call,
     Function,
@@ -156,7 +158,7 @@ def _inputs(layout: Layout) -> list[Statement]:
 def _solved(layout: Layout, writer: ExpressionWriter, number: int) -> list[Statement]:
     """Fill the arrays, solve, name the unknowns, and leave them where other functions read them.
 
-    Matrix and border are filled once; only a bordered solve leaves them as they are.
+    Matrix and border are filled, and factored, once.
     """
     solve, later = layout.solves[number], str(number) * (number > 0)
     n, k = len(solve.matrix), len(solve.border)
@@ -174,12 +176,28 @@ def _solved(layout: Layout, writer: ExpressionWriter, number: int) -> list[State
     for name in new:
         held_there = {place: x for place, x in filled[name].items() if type(x) is Node or x != 0}
         lines += [Put(name, str(place), writer.value(x)) for place, x in held_there.items()]
-    lines += [Call(layout.entry, tuple(arrays), tuple(name for name in arrays if name != "solve_J"))]
+    lines += _calls(layout, arrays, number, n, k)
     for place, x in enumerate(solve.unknowns):
         text = layout.language.place(*((f, place) if place < n else (g, place - n)))
         lines += [layout.stored(x, text)] if x in layout.parts.places else []
         writer.define(x, text)
     return lines
+
+
+def _calls(layout: Layout, arrays: list[str], number: int, n: int, k: int) -> list[Statement]:
+    """The kernels that solve: of several systems with ties the first is preceded by the factors."""
+    matrix, right = arrays[: 1 + bool(k)], arrays[1 + bool(k) :]
+    if layout.solvers[0] != "solve_factors":
+        entry = layout.solvers[min(number, len(layout.solvers) - 1)]
+        return [Call(entry, tuple(arrays), tuple(arrays if entry == "solve_plain" else right))]
+    sizes = {"L": n * n, "weight": k, "mobility": n, "Y": k * n, "S": k * k, "order": k + 3}
+    factors = [f"solve_{name}" for name in sizes]
+    lines: list[Statement] = []
+    if not number:
+        kinds = [*[ROOM] * (len(sizes) - 1), PLACES]
+        lines += [Array(name, str(size), kind) for name, size, kind in zip(factors, sizes.values(), kinds, strict=True)]
+        lines += [Call("solve_factors", (*matrix, *factors), tuple(factors))]
+    return [*lines, Call("solve_by", (*matrix, *factors, *right), ("solve_order", *right))]
 
 
 def _computed(layout: Layout, writer: ExpressionWriter, nodes: tuple[Node, ...], parts: range) -> Sequence[Statement]:
@@ -205,8 +223,10 @@ def _kernels(layout: Layout) -> tuple[tuple[Table, ...], tuple[Function, ...]]:
     """The kernels that a program calls, and the numbers that these read."""
     tables: dict[str, Table] = {}
     functions: dict[str, Function] = {}
-    if layout.solves and layout.entry not in layout.language.defined:
-        read, called = kernel(layout.entry, layout.solves[0].tables, layout.language)
+    for entry in layout.solvers:
+        if entry in layout.language.defined:
+            continue
+        read, called = kernel(entry, layout.solves[0].tables, layout.language)
         tables |= {t.name: t for t in read}
         functions |= {f.name: f for f in called}
     for number, name in layout.sampled.items():

@@ -6,10 +6,10 @@ from collections.abc import Mapping, Sequence
 from dataclasses import replace
 
 from eomgen.codegen.factorization import factor_solution
-from eomgen.codegen.program import Program, Solve, bordered, kinematic_rates, program_of
+from eomgen.codegen.program import Program, Solve, bordered, is_short, kinematic_rates, program_of
 from eomgen.mechanics.equations.equations_of_motion import EquationsOfMotion
 from eomgen.records import dataclass
-from eomgen.symbolic.expression.derivative import jacobian
+from eomgen.symbolic.expression.derivative import jacobian, substituted
 from eomgen.symbolic.expression.graph import Node, Scalar, is_zero
 from eomgen.symbolic.expression.node import ScalarRow, ScalarRows
 
@@ -31,7 +31,7 @@ class RateSlopes:
 
     Args:
         blocks: A = d x'/d x and, where there are inputs, B = d x'/d inputs.
-        motion: the system behind a and lam, where ties close; None where a is written out.
+        motion: the system behind a and lam; None where a is written out.
         solves: the systems behind their slopes, one for each column that is not zero.
     """
 
@@ -43,24 +43,50 @@ class RateSlopes:
 def slopes_of(equations: EquationsOfMotion) -> RateSlopes:
     """The slopes of x' = (N u + nu, a) in x and inputs.
 
-    Where ties close they come from the matrix of the motion itself, with its pivots:
+    From the matrix of the motion itself, factored once, with its pivots where ties close:
 
         [[M, -J^T], [J, 0]] [da; dlam] = -d(M a - J^T lam - forcing, J a + gamma) at fixed a, lam
+
+    Where no ties close and it takes fewer operations, those of the accelerations written out.
 
     Raises:
         DerivationError: the mass matrix is singular whatever the state.
     """
-    symbols, rates = equations.symbols, kinematic_rates(equations)
-    columns = {"A": (*symbols.q, *symbols.u)}
-    columns |= {"B": tuple(symbols.inputs.values())} if symbols.inputs else {}
-    if not equations.J or equations.friction:
-        a = equations.accelerations or factor_solution(equations.M, equations.forcing)
-        return RateSlopes({name: jacobian((*rates, *a), x) for name, x in columns.items()})
-    motion = bordered(equations)
+    if equations.J and not equations.friction:
+        return _solved(equations)
+    a = equations.accelerations or factor_solution(equations.M, equations.forcing)
+    rates = (*kinematic_rates(equations), *a)
+    found = [RateSlopes({name: jacobian(rates, x) for name, x in _columns(equations).items()})]
+    if not equations.friction:
+        found.append(_written_out(equations, a) if is_short(equations) else _solved(equations))
+    return min(found, key=lambda s: program_of_blocks(s.blocks, equations, s.motion, s.solves).count.total)
+
+
+def _written_out(equations: EquationsOfMotion, a: ScalarRow) -> RateSlopes:
+    """M da = -d(M a - forcing) by one factorization, that of all columns."""
+    rates, (left, _) = kinematic_rates(equations), equations.residual
+    known, blocks = dict(zip(equations.symbols.a, a, strict=True)), {}
+    for name, states in _columns(equations).items():
+        changes = zip(*jacobian(left, states), strict=True)
+        slopes = [factor_solution(equations.M, [-y for y in substituted(column, known)]) for column in changes]
+        blocks[name] = (*jacobian(rates, states), *zip(*slopes, strict=True))
+    return RateSlopes(blocks)
+
+
+def _columns(equations: EquationsOfMotion) -> dict[str, tuple[Node, ...]]:
+    """What A and B are slopes in."""
+    symbols = equations.symbols
+    columns: dict[str, tuple[Node, ...]] = {"A": (*symbols.q, *symbols.u)}
+    return columns | ({"B": tuple(symbols.inputs.values())} if symbols.inputs else {})
+
+
+def _solved(equations: EquationsOfMotion) -> RateSlopes:
+    """By the `Solve` of the motion, and one of its right sides for each column that is not zero."""
+    symbols, rates, motion = equations.symbols, kinematic_rates(equations), bordered(equations)
     left = dict(zip((*symbols.a, *symbols.lam), (x for rows in equations.residual for x in rows), strict=True))
     solves: dict[Node, Solve] = {}
     blocks: dict[str, ScalarRows] = {}
-    for name, states in columns.items():
+    for name, states in _columns(equations).items():
         changes = jacobian([left[y] for y in motion.unknowns], states)
         solves |= {
             x: _change(motion, x, column)

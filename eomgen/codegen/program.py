@@ -164,7 +164,7 @@ def program_in_motion(outputs: ScalarRow, equations: EquationsOfMotion) -> Progr
     if equations.J and not equations.friction:
         return _program(outputs, equations, bordered(equations))
     candidates = [_explicit(outputs, equations, a) for a in _explicit_accelerations(equations)]
-    if not candidates or not (equations.friction or _is_short(equations)):
+    if not candidates or not (equations.friction or is_short(equations)):
         solve = _ordered(equations.M, (), equations.forcing, equations.symbols.a)
         if all(solve.operations < program.count.total for program in candidates):
             candidates.append(_program(outputs, equations, solve))
@@ -174,12 +174,13 @@ def program_in_motion(outputs: ScalarRow, equations: EquationsOfMotion) -> Progr
 def _explicit_accelerations(equations: EquationsOfMotion) -> list[ScalarRow]:
     """a written out: as the formulation gives them, and by a factorization that is not too long."""
     found = [] if equations.accelerations is None else [equations.accelerations]
-    if not equations.friction and _is_short(equations):
+    if not equations.friction and is_short(equations):
         found.append(factorization.factor_solution(equations.M, equations.forcing))
     return found
 
 
-def _is_short(equations: EquationsOfMotion) -> bool:
+def is_short(equations: EquationsOfMotion) -> bool:
+    """Whether M is factored by operations that are written out."""
     return factorization.operation_count(equations.M) <= UNROLLED_AT_MOST
 
 
@@ -266,9 +267,14 @@ def program_of(
         hoisted=tuple(map(Assign, hoisted)),
         statements=_scheduled(moving, (solves[:1], solves[1:])),
         outputs=outputs,
-        count=Count(len(moving) + sum(each.operations for each in solves), len(hoisted)),
+        count=Count(len(moving) + _solving(solves), len(hoisted)),
         accelerations=accelerations,
     )
+
+
+def _solving(solves: Sequence[Solve]) -> int:
+    """Operations of all: the one matrix is factored once."""
+    return sum(solve.plain.more if k else solve.operations for k, solve in enumerate(solves))
 
 
 def _defaults(needed: Sequence[Node], symbols: Symbols, inputs: Mapping[str, Scalar]) -> ScalarRow:

@@ -46,15 +46,21 @@ class Zeros:
 
     @property
     def operations(self) -> int:
-        """Of M = L D L^T, L^-1 J^T and J M^-1 J^T, of that one factored, and of two solutions and what they leave."""
+        """Of M = L D L^T, L^-1 J^T and J M^-1 J^T, of that one factored, and of a solution."""
         degrees = [len(partners) for partners in self.partners]
-        k, joined = len(self.reach), [len(later) for later in self.later]
         factor = sum(d * d + 2 * d for d in degrees)
         border = sum(2 * degrees[j] + 5 for row in self.reach for j in row)
-        multipliers = sum(len(rows) * (len(rows) + 2) for rows in self.rows) + sum(d * d + 2 * d + 2 for d in joined)
-        once = sum(4 * d + 2 for d in degrees) + (k and border + sum(4 * d + 1 for d in joined))
-        again = (k and 2 * sum(2 * d + 1 for d in degrees) + 4 * sum(map(len, self.reach))) + once if k else 0
-        return factor + (k and border + multipliers) + once + again
+        multipliers = sum(len(rows) * (len(rows) + 2) for rows in self.rows)
+        multipliers += sum(d * d + 2 * d + 2 for d in map(len, self.later))
+        return factor + border + multipliers + self.more
+
+    @property
+    def more(self) -> int:
+        """Of a solution by the factors; with rows of J of two, and of what the first leaves."""
+        degrees, touched = [len(partners) for partners in self.partners], sum(map(len, self.reach))
+        once = sum(4 * d + 2 for d in degrees) + sum(4 * len(later) + 1 for later in self.later) + 4 * touched
+        left = sum(4 * d + 2 for d in degrees) + 4 * touched
+        return 2 * once + left if self.reach else once
 
 
 def zeros_of(M: Sequence[MatrixRow], J: Sequence[MatrixRow]) -> Zeros:

@@ -372,7 +372,7 @@ class _Writer:
                 if type(x) is Node or x != 0:
                     self.say(f"(&{array})[{at}] = {self.texts.value(x)};")
         unknown = [f"solve_f[{i}]" for i in range(n)] + [f"solve_g[{m}]" for m in range(k)]
-        self.say(*2 * (f"REAL again[{n * n}], solve_f[{n}], solve_g[{max(k, 1)}];",))
+        self.say(*2 * (f"REAL solve_f[{n}], solve_g[{max(k, 1)}];",))
         for place, x in zip(unknown, solve.right, strict=True):
             self.say(f"{place} = {self.texts.value(x)};", f"{place} = {self.now(x)};")
         a, lam = solve.unknowns[:n], solve.unknowns[n:]
@@ -385,7 +385,12 @@ class _Writer:
             if self.moves(x):
                 self.say("", f"solve_f[{i}] += {self.below(self.of(x), self.row(lam[m]))};")
                 self.say("", f"solve_g[{m}] -= {self.below(self.of(x), self.row(a[i]))};")
-        arguments = f"again, &{J}, solve_f, solve_g" if k else "again, solve_f"
-        self.say(*2 * (f"(void)solve_g, memcpy(again, &{M}, sizeof again), {self.layout.entry}({arguments});",))
+        if k:
+            factors = ", ".join(f"&{self.store('', size)}" for size in (n * n, k, n, k * n, k * k))
+            kept = f"&{M}, &{J}, {factors}, (long *)&{self.store('', k + 3)}"
+            self.say(f"solve_factors({kept});")
+            self.say(*2 * (f"solve_by({kept}, solve_f, solve_g);",))
+        else:
+            self.say(*(f"(void)solve_g, solve_plain{by}(&{M}, solve_f);" for by in ("", "_by")))
         for place, x in zip(unknown, solve.unknowns, strict=True):
             self.define(x, f"own_{len(self.named)}", place, place)

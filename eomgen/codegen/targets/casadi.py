@@ -51,8 +51,7 @@ CASADI = replace(
         "less_equal": 'def less_equal(a, b):\n    return ca.if_else(a <= b, 1, ca.if_else(a > b, 0, float("nan")))\n\n',
         "select": "def select(given, a, b):\n"
         '    return ca.if_else(given == 0, b, ca.if_else(ca.logic_or(given > 0, given < 0), a, float("nan")))\n\n',
-        "solve": branch_free.TEXT,
-        "solve_plain": branch_free.PLAIN,
+        **branch_free.SOLVERS,
         "through_samples": """
 def through_samples(t, n, closed, steps, depth, bounds, degree, v):
     found = 0
@@ -106,7 +105,7 @@ def casadi_text(program: Program, stem: str, role: Role = RHS, remarks: Mapping[
     made, given = lowered(program, CASADI, role.result, remarks=remarks), len(program.accelerations)
     return _TEXT.format(
         **sizes(program, role, stem),
-        arrays=_ARRAYS if made.ops & {"solve", "solve_plain"} else "",
+        arrays=_ARRAYS if made.ops & branch_free.SOLVERS.keys() else "",
         functions="\n\n".join(made.texts(CASADI)),
         a="a, " if given else "",
         a_name='"a", ' if given else "",

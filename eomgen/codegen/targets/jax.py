@@ -48,8 +48,7 @@ JAX = replace(
         "less_equal": "def less_equal(a, b):\n    return jnp.where(a <= b, 1.0, jnp.where(a > b, 0.0, jnp.nan))\n\n",
         "select": "def select(given, a, b):\n"
         "    return jnp.where(given == 0, b, jnp.where(given == given, a, jnp.nan))\n\n",
-        "solve": branch_free.TEXT,
-        "solve_plain": branch_free.PLAIN,
+        **branch_free.SOLVERS,
         "through_samples": """
 def through_samples(t, n, closed, steps, depth, bounds, degree, v):
     bounds, v = jnp.array(bounds), jnp.array(v).reshape(degree + 2, n + 1)
@@ -97,7 +96,7 @@ def jax_text(program: Program, stem: str, role: Role = RHS, remarks: Mapping[str
     """The module of a program."""
     given, made = bool(program.accelerations), lowered(program, JAX, role.result, remarks=remarks)
     return _TEXT.format(
-        arrays=_ARRAYS if made.ops & {"solve", "solve_plain"} else "",
+        arrays=_ARRAYS if made.ops & branch_free.SOLVERS.keys() else "",
         functions="\n\n".join(made.texts(JAX)),
         main=role.main(stem),
         jacobian=f"{role.main(stem)}_by_x",

@@ -57,22 +57,23 @@ ARRAYS = {
 _EACH = '''
 
 def _each(solve):
-    """A solve at many states: lists of which some entries are arrays; the later half of them is changed."""
+    """A solve at many states: lists of which some entries are arrays; all are given back."""
     def solve_each(*lists):
         entries = np.broadcast_arrays(*(value for values in lists for value in values))
         states = np.stack(entries, axis=-1).reshape(-1, len(entries))
-        found = np.empty_like(states)
-        for state, row in zip(found, states.tolist()):
+        whole = [all(np.asarray(value).dtype.kind == "i" for value in values) for values in lists]
+        for state, row in zip(states, states.tolist()):
             parts, start = [], 0
-            for values in lists:
-                parts.append(row[start : start + len(values)])
+            for values, counts in zip(lists, whole):
+                part = row[start : start + len(values)]
+                parts.append([int(value) for value in part] if counts else part)
                 start += len(values)
             solve(*parts)
             state[:] = [value for part in parts for value in part]
         start = 0
-        for place, values in enumerate(lists):
-            if 2*place >= len(lists):
-                values[:] = found.T[start : start + len(values)]
+        for values, counts in zip(lists, whole):
+            found = states.T[start : start + len(values)]
+            values[:] = found.astype(int) if counts else found
             start += len(values)
 
     return solve_each
