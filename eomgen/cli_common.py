@@ -22,6 +22,7 @@ from eomgen.edge import INTERRUPTED, Placed, failure, guarded, problems_of, say
 from eomgen.errors import EomgenError, UsageError
 from eomgen.records import dataclass
 from eomgen.symbolic.expression.habits import other_words
+from eomgen.symbolic.numeric.gc_pause import seldom
 from eomgen.symbolic.numeric.work import doing, patience
 from eomgen.version import SCHEMA_VERSION
 
@@ -105,7 +106,8 @@ class Verbs(click.Group):
     def _run(self, words: list[str], name: str, complete_var: str | None, extra: dict[str, Any]) -> int:
         os.environ.setdefault(*ONE_THREAD)
         run = super().main
-        return guarded(lambda: run(words, name, complete_var, standalone_mode=False, **extra) or 0, words)
+        with seldom():
+            return guarded(lambda: run(words, name, complete_var, standalone_mode=False, **extra) or 0, words)
 
 
 def _unknown_verb(name: str, verbs: list[str]) -> str:

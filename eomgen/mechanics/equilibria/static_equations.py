@@ -36,6 +36,8 @@ from eomgen.symbolic.numeric.work import Work
 from eomgen.symbolic.print.text import to_text
 from eomgen.symbolic.solve.solving import vanishes
 
+MOST_TERMS = 1000  # of all forces together, when they are written out: they share their parts as they come
+
 
 @dataclass(frozen=True)
 class StaticEquations:
@@ -164,7 +166,7 @@ def static_equations(system: System) -> StaticEquations:
     Q = substituted(forces, given)
     unbalanced = substituted(powered_forces(free.loads), given)
     phi = _relations(system, given, q)
-    Q, unbalanced, phi = (readable_all(x, Work.FORMULA) if x else () for x in (Q, unbalanced, phi))
+    Q, unbalanced, phi = (readable_all(x, Work.FORMULA, most=MOST_TERMS) if x else () for x in (Q, unbalanced, phi))
     lam = free.symbols.lam
     kept = [i for i, row in enumerate(rows) if not all(map(is_zero, row))]
     statics = StaticEquations(

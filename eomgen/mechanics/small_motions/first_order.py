@@ -18,9 +18,9 @@ from eomgen.mechanics.first_integrals.closed_instant import position_equations
 from eomgen.mechanics.small_motions.field import Entries, Numbers, at
 from eomgen.mechanics.small_motions.reference import ReferenceMotion
 from eomgen.records import dataclass
-from eomgen.symbolic.expression.derivative import depends_on, jacobian, symbols_of
+from eomgen.symbolic.expression.derivative import depends_on, jacobian, substituted, symbols_of
 from eomgen.symbolic.expression.functions import inner
-from eomgen.symbolic.expression.graph import Node, Scalar
+from eomgen.symbolic.expression.graph import Node, Scalar, is_zero
 from eomgen.symbolic.expression.node import ScalarRows
 from eomgen.symbolic.numeric import dense
 from eomgen.symbolic.numeric.evaluation import fifty_digits
@@ -55,10 +55,12 @@ class FirstOrder:
     Args:
         system: the system.
         relations: what is known between positions: they vanish.
+        at_rest: whether it is looked at where all speeds are 0 alone: what holds none of them is far shorter.
     """
 
     system: System
     relations: tuple[Scalar, ...]
+    at_rest: bool = False
 
     @cached_property
     def equations(self) -> EquationsOfMotion:
@@ -79,6 +81,13 @@ class FirstOrder:
         return frozenset(x.name for x in symbols_of(x for row in rows for x in row))
 
     @cached_property
+    def held(self) -> frozenset[Node]:
+        """What stands in the equations of motion, in the rates and in the relations."""
+        scope, rows = self.system.scope, (*self.equations.M, *self.equations.J, *self.rows)
+        entries = (x for row in (*rows, *scope.N) for x in row)
+        return frozenset(symbols_of((*entries, *self.residual, *scope.rates, *self.relations)))
+
+    @cached_property
     def rows(self) -> tuple[tuple[Scalar, ...], tuple[Scalar, ...]]:
         """(J u + sigma, J a + gamma)."""
         graph, symbols = self.equations, self.system.symbols
@@ -91,16 +100,28 @@ class FirstOrder:
         symbols = self.system.symbols
         q, u, w = symbols.q, symbols.u, tuple(symbols.inputs.values())
         velocities, accelerations = self.rows
+        unmoved, still = self._unmoved, dict.fromkeys(u, 0) if self.at_rest else {}
+
+        def by_places(rows: Sequence[Scalar]) -> ScalarRows:
+            return jacobian(substituted(rows, unmoved | still), q)
+
         return {
-            "R_q": jacobian(self.residual, q),
-            "R_u": jacobian(self.residual, u),
-            "S_q": jacobian(self.system.scope.rates, q),
-            "V_q": jacobian(velocities, q),
-            "A_q": jacobian(accelerations, q),
-            "A_u": jacobian(accelerations, u),
+            "R_q": by_places(self.residual),
+            "R_u": jacobian(substituted(self.residual, unmoved), u),
+            "S_q": by_places(self.system.scope.rates),
+            "V_q": by_places(velocities),
+            "A_q": by_places(accelerations),
+            "A_u": jacobian(substituted(accelerations, unmoved), u),
             "G": (*jacobian(self.relations, q), *_held(self.system)),
             "W": [[-x for x in row] for row in jacobian(self.residual, w)],
         }
+
+    @cached_property
+    def _unmoved(self) -> dict[Node, Scalar]:
+        """Accelerations that are 0 in every state that is looked at: all of them at rest, where no tie asks for one."""
+        e, s = self.equations, self.system.symbols
+        asked = substituted(e.gamma, dict.fromkeys(s.u, 0))
+        return dict.fromkeys(s.a, 0) if self.at_rest and all(map(is_zero, asked)) else {}
 
 
 def first_order_of(system: System) -> FirstOrder:

@@ -174,7 +174,7 @@ class ParameterSlopes:
         moved = {x: Fraction(slope) for x, slope in zip(reference.system.symbols.q, aside.tolist(), strict=True)}
         left = slopes_in([Reducing(first, choice, WithSlopes(reference.numbers, here | moved)).unbalanced])[0]
         reducing = Reducing(first, choice, Numbers(reference.numbers))
-        e = reducing.equations()
+        e = reducing.equations
         K = floats(e.K)
         step = -np.linalg.lstsq(K, left, rcond=RANK)[0]
         if np.max(abs(K @ step + left), initial=0.0) > CARRIED * np.max(abs(left), initial=0.0):

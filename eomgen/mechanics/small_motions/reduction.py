@@ -163,6 +163,7 @@ class Reducing:
         place = {k: j for j, k in enumerate(choice.q)}
         return [[int(place[k] == j) for j in range(len(choice.q))] if k in place else found[k] for k in range(n)]
 
+    @cached_property
     def equations(self) -> LinearEquations:
         """The equations of small motions."""
         field, choice, symbols = self.field, self.choice, self.first.system.symbols
@@ -222,7 +223,7 @@ def unsettled(reducing: Reducing, share: float) -> list[int]:
     left = [i for i, x in enumerate(found) if abs(x) > share * scale]
     if not left:
         return []
-    e = reducing.equations()
+    e = reducing.equations
     places, speeds = ([max(1.0, abs(x)) for x in reducing.field.of(part)] for part in (e.coordinates, e.speeds))
     rows = [_size(K, places) + _size(C, speeds) + _size(M, speeds) for K, C, M in zip(e.K, e.C, e.M, strict=True)]
     return [i for i in left if abs(found[i]) > SOLVED * rows[i]]

@@ -24,7 +24,7 @@ from eomgen.model.contacts import contacts_of
 from eomgen.model.values import exact_parameters
 from eomgen.records import dataclass
 from eomgen.symbolic.expression.derivative import depends_on, substituted
-from eomgen.symbolic.expression.graph import Node, Scalar
+from eomgen.symbolic.expression.graph import Node, Scalar, is_zero
 from eomgen.symbolic.numeric.evaluation import evaluate, fifty_digits
 from eomgen.symbolic.numeric.tolerances import SOLVED
 
@@ -56,6 +56,11 @@ class ReferenceMotion:
         """Whether everything is known in closed form."""
         symbols = self.system.symbols
         return all(x in self.exact for x in (*symbols.q, *symbols.u))
+
+    @cached_property
+    def at_rest(self) -> bool:
+        """Whether all speeds are 0, not only nearly."""
+        return all(is_zero(self.exact.get(u, u)) for u in self.system.symbols.u)
 
     @cached_property
     def valued(self) -> bool:

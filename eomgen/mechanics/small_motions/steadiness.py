@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Mapping, Sequence
+from functools import cache
 from random import Random
 from typing import Any
 
@@ -33,8 +34,13 @@ def reduced_equations(
     first: FirstOrder, choice: Choice, reference: ReferenceMotion, field: NumberField
 ) -> LinearEquations:
     """The equations at a state of the reference, small turns in the place of quaternions that move in it."""
-    equations = Reducing(first, choice, field).equations()
-    return over_turns(field, first.system, equations, spinning(reference, choice))
+    return reduced_of(Reducing(first, choice, field), reference)
+
+
+def reduced_of(reducing: Reducing, reference: ReferenceMotion) -> LinearEquations:
+    """`reduced_equations`, of what is known of the state."""
+    turns = spinning(reference, reducing.choice)
+    return over_turns(reducing.field, reducing.first.system, reducing.equations, turns)
 
 
 def refuse_corners(
@@ -126,21 +132,22 @@ def refuse_singular(reducing: Reducing, equations: LinearEquations) -> None:
 def _changed(
     first: FirstOrder, choice: Choice, reference: ReferenceMotion, raw: LinearEquations, kept: Sequence[int]
 ) -> Callable[[Mapping[Node, Any]], bool]:
-    """Whether the equations are others at a shifted state."""
-    here = list(_compared(raw, kept))
+    """Whether the equations are others at a shifted state; they are those here where they hold nothing that shifts."""
+    here, held = list(_compared(raw, kept)), first.held
 
-    def changes(shift: Mapping[Node, Any]) -> bool:
-        shifted = {**reference.numbers, **{x: reference.numbers[x] + d for x, d in shift.items()}}
-        reducing = Reducing(first, choice, Numbers(shifted))
+    @cache
+    def found(shift: tuple[tuple[Node, Any], ...]) -> bool:
+        reducing = Reducing(first, choice, Numbers({**reference.numbers, **dict(shift)}))
         try:
-            there = list(_compared(reduced_equations(first, choice, reference, reducing.field), kept))
-            pushed = unsettled(reducing, COMPUTED)
+            if unsettled(reducing, COMPUTED):
+                return True
+            there = list(_compared(reduced_of(reducing, reference), kept)) if shift else here
         except (NoValue, ZeroDivisionError):
             return True
         pairs = zip(here, there, strict=True)
-        return bool(pushed) or any(np.any(abs(A - B) > COMPUTED * (abs(A).max(initial=0) + 1e-3)) for A, B in pairs)
+        return any(np.any(abs(A - B) > COMPUTED * (abs(A).max(initial=0) + 1e-3)) for A, B in pairs)
 
-    return changes
+    return lambda shift: found(tuple((x, reference.numbers[x] + d) for x, d in shift.items() if x in held))
 
 
 def _compared(equations: LinearEquations, kept: Sequence[int]) -> Iterator[np.ndarray]:

@@ -156,7 +156,7 @@ class Here:
 
     @cached_property
     def equations(self) -> LinearEquations:
-        return self.reducing.equations()
+        return self.reducing.equations
 
     @cached_property
     def still(self) -> list[int]:

@@ -114,17 +114,25 @@ def readable(x: Scalar, limit: int = Work.ANSWER, positive: Collection[Node] = (
 
 
 def readable_all(
-    outputs: Sequence[Scalar], limit: int = Work.ANSWER, positive: Collection[Node] = ()
+    outputs: Sequence[Scalar], limit: int = Work.ANSWER, positive: Collection[Node] = (), most: int | None = None
 ) -> tuple[Scalar, ...]:
-    """`readable` of several expressions that share their parts; those beyond the limit stay as they are."""
+    """`readable` of several expressions that share their parts; those beyond the limit stay as they are.
+
+    Args:
+        most: terms of all of them, beyond which all stay as they are.
+    """
     graph, outputs = united(outputs)
     expansion = Expansion(graph, limit, positive)
     writer = Writer(expansion)
-    written = []
+    written, terms = [], 0
     for x in outputs:
         expansion.work = 0
         try:
-            written.append(writer.sum(expansion.of(x)))
+            found = expansion.of(x)
+            terms += len(found)
+            if most is not None and terms > most:
+                return tuple(outputs)
+            written.append(writer.sum(found))
         except TooLarge:
             written.append(x)
     return tuple(written)

@@ -1,10 +1,12 @@
-"""A rest for the cycle collector while a graph grows."""
+"""A rest for the cycle collector while graphs grow."""
 
 from __future__ import annotations
 
 import gc
 from collections.abc import Iterator
 from contextlib import contextmanager
+
+SELDOM = (50_000, 20, 100)  # objects made between two looks at the youngest; looks between two at the older
 
 
 @contextmanager
@@ -20,3 +22,14 @@ def growing() -> Iterator[None]:
     finally:
         if was:
             gc.enable()
+
+
+@contextmanager
+def seldom() -> Iterator[None]:
+    """One command in a process of its own: cycles are looked for, but not after every 700 objects."""
+    was = gc.get_threshold()
+    gc.set_threshold(*SELDOM)
+    try:
+        yield
+    finally:
+        gc.set_threshold(*was)
