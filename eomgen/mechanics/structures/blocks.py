@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Sequence
+from collections.abc import Callable, Iterable, Sequence
+from functools import cache, partial
+from itertools import chain
 from typing import Any
 
 from eomgen.mechanics.equations.system import System
@@ -47,26 +49,23 @@ class RigidBlock:
 
 def blocks_of(plan: VelocityPlan) -> tuple[RigidBlock, ...]:
     """The blocks that move, in the order of the model; what is in none of them stays at rest."""
-    parts = [*_bodies(plan), *_members(plan)]
-    flat = iter(plan.numbers([x for part in parts for x in (*part.spin, *part.velocity)]))
-    fields = [[next(flat) for _ in range(6)] for _ in parts]
-    groups: list[list[int]] = []
-    for i, field in enumerate(fields):
-        group = next((g for g in groups if _agree(fields[g[0]], field)), None)
+    groups: list[list[_Part]] = []
+    for part in (*_bodies(plan), *_members(plan)):
+        group = next((g for g in groups if _agree(g[0].numbers, part.numbers)), None)
         if group is None:
-            groups.append([i])
+            groups.append([part])
         else:
-            group.append(i)
-    blocks = [_joined(plan, [parts[i] for i in group]) for group in groups]
+            group.append(part)
+    blocks = [_joined(plan, group) for group in groups]
     return (*blocks, *_single_nodes(plan, blocks))
 
 
 def turning_by_one(plan: VelocityPlan) -> Scalar:
     """1/w of the first block that turns about one axis; 1 where none does."""
-    for part in (*_bodies(plan), *_members(plan)):
-        spins = [w for w in part.spin if not plan.vanishes((w,))]
-        if len(spins) == 1:
-            return plan.simple(over(1, spins[0]))
+    for part in chain(_bodies(plan), _members(plan)):
+        turning = [k for k, w in enumerate(part.numbers[:3]) if abs(w) > ZERO_AT_50]
+        if len(turning) == 1:
+            return plan.simple(over(1, part.motion()[0][turning[0]]))
     return 1
 
 
@@ -94,41 +93,68 @@ def members_of(system: System) -> list[tuple[str, str, tuple[str, str]]]:
     return [(name, member, truss.ends(member)) for name, truss in trusses.items() for member in truss.members]
 
 
-def _bodies(plan: VelocityPlan) -> Iterable[RigidBlock]:
-    """The bodies that are no nodes, each by itself."""
-    for name in plan.moving:
-        if not is_node(name):
-            yield RigidBlock((name,), (), (), plan.raw_spin(name), plan.raw_velocity_at(name, ZERO))
+@dataclass(frozen=True)
+class _Part:
+    """A body or a member that moves, by itself.
+
+    Args:
+        numbers: its spin, and the velocity of its point at the ground's origin, 6, with 50 digits.
+        motion: both in closed form, where they are asked for.
+    """
+
+    bodies: tuple[str, ...]
+    members: tuple[tuple[str, str], ...]
+    numbers: Sequence[Any]
+    motion: Callable[[], tuple[Vector, Vector]]
 
 
-def _members(plan: VelocityPlan) -> Iterable[RigidBlock]:
-    """The moving members in the plane that keep their length, each by itself: w = r x (v_2 - v_1) / r.r"""
+def _bodies(plan: VelocityPlan) -> Iterable[_Part]:
+    """The bodies that are no nodes."""
+    names = [name for name in plan.moving if not is_node(name)]
+    fields = [(plan.raw_spin(name), plan.raw_velocity_at(name, ZERO)) for name in names]
+    flat = iter(plan.numbers([x for field in fields for three in field for x in three]))
+    for name, field in zip(names, fields, strict=True):
+        yield _Part((name,), (), [next(flat) for _ in range(6)], partial(tuple, field))
+
+
+def _members(plan: VelocityPlan) -> Iterable[_Part]:
+    """The moving members in the plane that keep their length: w = r x (v_2 - v_1) / r.r"""
     if plan.system.scope.model.space != "plane":
         return
     moving = {*plan.moving}
     members = [each for each in members_of(plan.system) if not moving.isdisjoint(each[2])]
-    nodes = dict.fromkeys(node for _, _, ends in members for node in ends)
-    flat = iter(plan.numbers([x for n in nodes for x in (*plan.raw_velocity((n, ZERO)), *plan.position((n, ZERO)))]))
-    known = {n: [next(flat) for _ in range(6)] for n in nodes}
-    for truss, member, (first, second) in members:
-        change = [x - y for x, y in zip(known[second], known[first], strict=True)]
-        if abs(sum(v * r for v, r in zip(change[:3], change[3:], strict=True))) <= ZERO_AT_50:
-            v, position = plan.raw_velocity((first, ZERO)), plan.position((first, ZERO))
-            apart = minus(plan.raw_velocity((second, ZERO)), v)
-            along = minus(plan.position((second, ZERO)), position)
-            spin: Vector = (0, 0, over(cross(along, apart)[2], dot(along, along)))
-            moved = plus(v, cross(spin, minus(ZERO, position)))
-            yield RigidBlock((), ((truss, member),), (), spin, (moved[0], moved[1], 0))
+    known = cache(lambda node: plan.numbers(_of_node(plan, node)))
+    for truss, member, ends in members:
+        (vx, vy, x, y), (wx, wy, x_2, y_2) = map(known, ends)
+        ax, ay, dx, dy = wx - vx, wy - vy, x_2 - x, y_2 - y
+        if abs(ax * dx + ay * dy) <= ZERO_AT_50:
+            w = (dx * ay - dy * ax) / (dx * dx + dy * dy) if ax or ay else 0
+            numbers = (0, 0, w, vx + w * y, vy - w * x, 0)
+            yield _Part((), ((truss, member),), numbers, partial(_of_ends, plan, ends))
+
+
+def _of_node(plan: VelocityPlan, name: str) -> tuple[Scalar, ...]:
+    """Velocity and place of a node in the plane."""
+    return (*plan.raw_velocity((name, ZERO))[:2], *plan.position((name, ZERO))[:2])
+
+
+def _of_ends(plan: VelocityPlan, ends: tuple[str, str]) -> tuple[Vector, Vector]:
+    """The motion of a member by its nodes, in closed form."""
+    (v, place), (v_2, place_2) = ((plan.raw_velocity((n, ZERO)), plan.position((n, ZERO))) for n in ends)
+    along, apart = minus(place_2, place), minus(v_2, v)
+    spin: Vector = (0, 0, over(cross(along, apart)[2], dot(along, along)))
+    moved = plus(v, cross(spin, minus(ZERO, place)))
+    return spin, (moved[0], moved[1], 0)
 
 
 def _agree(one: Sequence[Any], other: Sequence[Any]) -> bool:
     return all(abs(x - y) < ZERO_AT_50 for x, y in zip(one, other, strict=True))
 
 
-def _joined(plan: VelocityPlan, group: list[RigidBlock]) -> RigidBlock:
+def _joined(plan: VelocityPlan, group: list[_Part]) -> RigidBlock:
     bodies = tuple(name for part in group for name in part.bodies)
     members = tuple(member for part in group for member in part.members)
-    spin, velocity = (vector_of(map(plan.simple, x)) for x in (group[0].spin, group[0].velocity))
+    spin, velocity = (vector_of(map(plan.simple, x)) for x in group[0].motion())
     return RigidBlock(bodies, members, (), spin, velocity)
 
 

@@ -182,10 +182,14 @@ class Structure:
         for (body, direction), value in zip(self.columns, self._readable(xi), strict=True):
             velocities[body][direction] = value
         rows = tuple(tuple(six) for six in velocities)
-        return VelocityPlan(self.system, self.at, self._solved.parameters, rows, self._places)
+        return VelocityPlan(self.system, self.at, self._solved.parameters, rows, self._places, self._known)
 
     @cached_property
     def _places(self) -> dict[BodyPoint, Vector]:
+        return {}
+
+    @cached_property
+    def _known(self) -> dict[Scalar, Any]:
         return {}
 
     def _readable(self, scalars: Sequence[Scalar]) -> tuple[Scalar, ...]:

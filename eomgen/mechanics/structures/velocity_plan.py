@@ -54,6 +54,7 @@ class VelocityPlan:
         parameters: values of 50 digits at which the motion is what it is for all others, or is asked for.
         velocities: of each body (velocity of the mass centre, spin) in the axes of its equations, 6.
         places: where those points are that were asked for; plans of one structure share them.
+        known: what scalars are worth that were asked for; shared too.
     """
 
     system: System
@@ -61,6 +62,7 @@ class VelocityPlan:
     parameters: Mapping[Node, Any]
     velocities: tuple[tuple[Scalar, ...], ...]
     places: dict[BodyPoint, Vector] = dataclass_field(default_factory=dict, compare=False, repr=False)
+    known: dict[Scalar, Any] = dataclass_field(default_factory=dict, compare=False, repr=False)
 
     def scaled(self, k: Scalar) -> VelocityPlan:
         """k times as fast."""
@@ -81,6 +83,7 @@ class VelocityPlan:
     def moving(self) -> tuple[str, ...]:
         """The bodies that do not stay at rest."""
         links = self.system.motion.links
+        self.numbers([x for six in self.velocities for x in six])  # all at once
         return tuple(link.name for link, six in zip(links, self.velocities, strict=True) if not self.vanishes(six))
 
     def spin(self, body: str | None) -> Vector:
@@ -173,7 +176,9 @@ class VelocityPlan:
 
     def numbers(self, scalars: Sequence[Scalar]) -> list[Any]:
         """What scalars are worth at these parameters, with 50 digits."""
-        return evaluate(scalars, self.parameters, fifty_digits())
+        new = tuple(dict.fromkeys(x for x in scalars if x not in self.known))
+        self.known.update(zip(new, evaluate(new, self.parameters, fifty_digits()), strict=True))
+        return [self.known[x] for x in scalars]
 
     # -- helpers -------------------------------------------------------------------------------------
 
