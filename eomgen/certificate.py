@@ -8,7 +8,8 @@ every body and of the whole, the emitted code.
 
 from __future__ import annotations
 
-from eomgen.codegen.rhs import RightHandSide
+from typing import TYPE_CHECKING
+
 from eomgen.mechanics.balance.friction import rubs
 from eomgen.mechanics.equations.equations_of_motion import EquationsOfMotion
 from eomgen.proof import identities
@@ -17,6 +18,9 @@ from eomgen.proof.printed import Printed
 from eomgen.proof.trials import Trials
 from eomgen.symbolic.numeric.gc_pause import growing
 from eomgen.symbolic.numeric.work import doing
+
+if TYPE_CHECKING:
+    from eomgen.codegen.rhs import RightHandSide
 
 
 @growing()

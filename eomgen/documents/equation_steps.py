@@ -153,8 +153,10 @@ def _shortest_sides(reader: Reader, equations: EquationsOfMotion) -> tuple[Scala
     rows = sides_of(equations, equations.M, [0] * len(equations.M), equations.forcing)
     sides = [x for row in rows for x in (row.left, row.right)]
     simple = simple_constants(sides, equations.symbols.parameters.values())
-    sizes = {x: (operations((x,)).total, operations((found,)).total) for x, found in simple.items()}
+    sizes = {x: (operations((x,)).total, operations((found,)).total) for x, found in simple.items() if found is not x}
     forms: list[Sequence[Scalar]] = [sides]
+    if not sizes:
+        return reader.with_symbols(sides)
     for share in SIMPLER:  # the constants that keep that share of their operations at most
         forms.append(substituted(sides, {x: simple[x] for x, (was, now) in sizes.items() if now <= share * was}))
     return reader.with_symbols(min(forms, key=lambda form: operations(form).total))

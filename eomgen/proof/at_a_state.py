@@ -25,14 +25,13 @@ from eomgen.mechanics.instant.outputs import Quantities
 from eomgen.mechanics.reactions.reactions import reactions_of
 from eomgen.model.outputs import FUNCTIONS
 from eomgen.model.outputs.base import BALANCE
+from eomgen.proof.printed import least_multipliers
 from eomgen.records import dataclass
 from eomgen.simulation.reaction_columns import ReactionColumns
 from eomgen.symbolic.expression.derivative import depends_on
 from eomgen.symbolic.expression.expressions import Call, Expression, parse
 from eomgen.symbolic.expression.graph import Node, Scalar
-from eomgen.symbolic.expression.node import State
 from eomgen.symbolic.expression.rational import Fraction
-from eomgen.symbolic.numeric.dense import of_one_length
 from eomgen.symbolic.numeric.evaluation import NoValue, evaluate, fifty_digits
 from eomgen.symbolic.numeric.tolerances import COMPUTED, ROUNDING, SAME_PLACE, SOLVED
 
@@ -138,21 +137,6 @@ class NumericState:
         moved = ({node: x + sign * turns[node] for node, x in self.numbers.items()} for sign in (1, -1))
         first, last = (replace(self, numbers=numbers) for numbers in moved)
         return first, last
-
-
-def least_multipliers(equations: EquationsOfMotion, state: State) -> dict[Node, Any]:
-    """Of J^T lam = M a - forcing the multipliers of least size, at a state of the motion."""
-    if not equations.J:
-        return {}
-    n, symbols = len(equations.M), equations.symbols
-    entries = (*(x for row in (*equations.M, *equations.J) for x in row), *equations.forcing)
-    wide = np.array(evaluate(entries, state, fifty_digits()), dtype=object)
-    M, J = wide[: n * n].reshape(n, n), wide[n * n : -n].reshape(-1, n).astype(float)
-    needed = (M @ np.array([state[a] for a in symbols.a], dtype=object) - wide[-n:]).astype(float)
-    sizes = np.linalg.norm(J, axis=1)
-    scaled = np.linalg.lstsq(of_one_length(J).T, needed, rcond=COMPUTED)[0]
-    lam = scaled / np.where(sizes > 0, sizes, 1.0)
-    return {node: precise(float(x)) for node, x in zip(symbols.lam, lam, strict=True)}
 
 
 def read_back(system: System, text: str) -> Scalar:

@@ -12,13 +12,15 @@ from dataclasses import field
 from functools import cached_property
 from typing import Any
 
+import numpy as np
+
 from eomgen.errors import DerivationError, ExpressionError, UsageError
 from eomgen.mechanics.bodies.inertia import spin_of
+from eomgen.mechanics.constraints.closure import of_50_digits as precise
 from eomgen.mechanics.equations.equations_of_motion import EquationsOfMotion
 from eomgen.mechanics.instant.outputs import Quantities
 from eomgen.model.outputs import FUNCTIONS
 from eomgen.model.outputs.base import BALANCE
-from eomgen.proof.at_a_state import least_multipliers
 from eomgen.proof.states import refuse_open
 from eomgen.records import dataclass
 from eomgen.symbolic.expression.derivative import gradient
@@ -26,6 +28,7 @@ from eomgen.symbolic.expression.expressions import Call, parse
 from eomgen.symbolic.expression.graph import Node, Scalar
 from eomgen.symbolic.expression.node import State
 from eomgen.symbolic.expression.spatial import Vector
+from eomgen.symbolic.numeric.dense import of_one_length
 from eomgen.symbolic.numeric.evaluation import evaluate, fifty_digits
 from eomgen.symbolic.numeric.tolerances import COMPUTED
 
@@ -170,3 +173,18 @@ class ReadBack:
         path = dict(zip(symbols.q, rates, strict=True)) | {symbols.t: 1}
         path |= {u: state[a] for u, a in zip(symbols.u, symbols.a, strict=True)}
         return {**state, **{x: state[x] + h * rate for x, rate in path.items()}}
+
+
+def least_multipliers(equations: EquationsOfMotion, state: State) -> dict[Node, Any]:
+    """Of J^T lam = M a - forcing the multipliers of least size, at a state of the motion."""
+    if not equations.J:
+        return {}
+    n, symbols = len(equations.M), equations.symbols
+    entries = (*(x for row in (*equations.M, *equations.J) for x in row), *equations.forcing)
+    wide = np.array(evaluate(entries, state, fifty_digits()), dtype=object)
+    M, J = wide[: n * n].reshape(n, n), wide[n * n : -n].reshape(-1, n).astype(float)
+    needed = (M @ np.array([state[a] for a in symbols.a], dtype=object) - wide[-n:]).astype(float)
+    sizes = np.linalg.norm(J, axis=1)
+    scaled = np.linalg.lstsq(of_one_length(J).T, needed, rcond=COMPUTED)[0]
+    lam = scaled / np.where(sizes > 0, sizes, 1.0)
+    return {node: precise(float(x)) for node, x in zip(symbols.lam, lam, strict=True)}

@@ -9,9 +9,8 @@ import math
 from collections.abc import Callable, Iterable, Sequence
 from functools import cached_property
 from random import Random
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
-from eomgen.codegen.rhs import RightHandSide
 from eomgen.errors import DerivationError
 from eomgen.mechanics.balance.friction import frictions, push_sizes, rubbing_contacts
 from eomgen.mechanics.bodies.contact_modes import CLOSED
@@ -39,6 +38,9 @@ from eomgen.symbolic.expression.rational import Fraction
 from eomgen.symbolic.expression.spatial import apply, dot, matrix_of, transposed, vector_of
 from eomgen.symbolic.numeric.evaluation import NoValue, evaluate, fifty_digits, floats_of
 from eomgen.symbolic.numeric.tolerances import COMPUTED, DIFFERENCE_AT_50, ZERO_AT_50
+
+if TYPE_CHECKING:
+    from eomgen.codegen.rhs import RightHandSide
 
 DIRECTIONS = ((2, 3, 5), (7, -4, 3))  # about which moments of inertia are compared
 NOWHERE = "no state with values was found, at the start, near it or at random"

@@ -43,13 +43,13 @@ def eigenpairs(A: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
 
 
 def squares_of(M: np.ndarray, K: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """(w^2, v) of K v = w^2 M v, both symmetric."""
-    from scipy.linalg import eigh
-
+    """(w^2, v) of K v = w^2 M v, both symmetric: A y = w^2 y of A = L^-1 K L^-T, M = L L^T, v = L^-T y."""
     M, K = (M + M.T) / 2, (K + K.T) / 2
-    squares, vectors = eigh(K, M)
+    lower = np.linalg.cholesky(M)
+    A = np.linalg.solve(lower, np.linalg.solve(lower, K).T)
+    squares, vectors = np.linalg.eigh((A + A.T) / 2)
     if not _is_wide(squares):
-        return squares, vectors
+        return squares, np.linalg.solve(lower.T, vectors)
     from mpmath import mp
 
     with mp.workdps(DIGITS):
