@@ -105,7 +105,7 @@ class _Part:
     bodies: tuple[str, ...]
     members: tuple[tuple[str, str], ...]
     numbers: Sequence[Any]
-    motion: Callable[[], tuple[Vector, Vector]]
+    motion: Callable[[], tuple[Vector, ...]]
 
 
 def _bodies(plan: VelocityPlan) -> Iterable[_Part]:
