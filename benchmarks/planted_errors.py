@@ -162,10 +162,16 @@ def sample(size: int) -> list[Planted]:
 
 
 def words_of(run: str, model: str, folder: str) -> list[str]:
-    """The command line of an entry: the model's path put in, results as JSON, files (@) in a folder."""
+    """The command line of an entry: the model's path put in, results as JSON, files (@) in a folder.
+
+    NAME=VALUE before the verb stands in the environment, as in a shell: CC=none runs what steps without a compiler.
+    """
     import shlex
 
-    verb, name, *options = shlex.split(run)
+    words = shlex.split(run)
+    while "=" in words[0]:
+        name, _, os.environ[name] = words.pop(0).partition("=")
+    verb, name, *options = words
     path = Path(folder) / "model.toml"
     if name == "-":
         path.write_text(model, encoding="utf-8")
