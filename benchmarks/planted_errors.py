@@ -141,6 +141,15 @@ class Patch(importlib.abc.MetaPathFinder, importlib.abc.Loader):
         exec(compile(self.text, self.path, "exec", dont_inherit=True), module.__dict__)
 
 
+def plant(planted: Planted) -> None:
+    """This process loads the module, or reads the text that is compiled elsewhere (.c, .mjs), with the error."""
+    if planted.file.endswith(".py"):
+        sys.meta_path.insert(0, Patch(planted))
+        return
+    path, text, read = ROOT / "eomgen" / planted.file, planted.patched, Path.read_text
+    Path.read_text = lambda self, *args, **options: text if self == path else read(self, *args, **options)  # type: ignore[method-assign]
+
+
 def entries(path: Path = LIST) -> tuple[Planted, ...]:
     """The list, in its order."""
     found = tomllib.loads(path.read_text(encoding="utf-8"))
@@ -183,7 +192,7 @@ def words_of(run: str, model: str, folder: str) -> list[str]:
 def _child(planted: Planted | None, run: str, model: str, pipe: multiprocessing.connection.Connection) -> None:
     """In a process of its own: the verb, with the error."""
     if planted is not None:
-        sys.meta_path.insert(0, Patch(planted))
+        plant(planted)
     out, err = io.StringIO(), io.StringIO()
     with tempfile.TemporaryDirectory() as folder, contextlib.redirect_stdout(out), contextlib.redirect_stderr(err):
         os.environ["XDG_CACHE_HOME"] = folder  # no code of another patch

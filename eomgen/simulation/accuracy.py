@@ -23,7 +23,8 @@ class Accuracy:
     """How well the states of a run are known.
 
     Args:
-        error: of the last state, of each column against its largest value in the run; the largest.
+        error: of the last state, of each column against its largest value in the run; the largest. Infinite where one
+            of the two runs has left the numbers.
         until: the first instant at which no digit holds any more [s]; None where some hold to the end.
     """
 
@@ -36,7 +37,7 @@ class Accuracy:
         return max(0, math.floor(-math.log10(max(self.error, BEST)))) if self.until is None else 0
 
     def as_dict(self) -> dict[str, float | None]:
-        return {"digits": self.digits, "error": self.error, "until": self.until}
+        return {"digits": self.digits, "error": self.error if math.isfinite(self.error) else None, "until": self.until}
 
     def __str__(self) -> str:
         if self.until is not None:
@@ -61,7 +62,7 @@ def accuracy_of(run: Trajectory, other: Trajectory, share: float) -> Accuracy | 
         return None
     largest = np.max(np.abs(run.x), axis=0, initial=0.0)
     apart = np.abs(run.x[mine] - other.x[its]) / np.where(largest > 0, largest, 1.0)
-    errors = share * np.max(apart, axis=1, initial=0.0)
+    errors = np.nan_to_num(share * np.max(apart, axis=1, initial=0.0), nan=np.inf, posinf=np.inf)
     lost = np.flatnonzero(~(errors < LOST))
     ended = len(run.t) and common[-1] < run.t[-1]  # the other came to another end
     until = float(common[lost[0]]) if lost.size else float(common[-1]) if ended else None
