@@ -6,6 +6,8 @@ from collections.abc import Callable, Mapping
 from dataclasses import replace
 from pathlib import Path
 
+import numpy as np
+
 from eomgen.documents.document import Document
 from eomgen.documents.statements import Prose, Step
 from eomgen.model.table import Table
@@ -29,6 +31,9 @@ SECTIONS = {
     "downloads": "Downloads",
 }
 """Every section that there is, in the order of the page, with its title."""
+
+PLAYER = "motion-player"
+"""The element of a page in which the motion is played."""
 
 INKS = ("#1f5fa8", "#b8431f", "#1f7a4a", "#7a3f9d", "#8a6a00", "#0f7c86", "#a12d63", "#4f5a66")
 """The colours of curves on light paper, by the number of their class."""
@@ -72,11 +77,15 @@ class ReportFigure:
 
 @dataclass(frozen=True)
 class Attachment:
-    """A file inside a report."""
+    """A file inside a report.
+
+    Args:
+        content: its bytes; or, of a table, its columns, of which the page makes the lines when it is asked for them.
+    """
 
     name: str
     media: str
-    content: bytes
+    content: bytes | Mapping[str, np.ndarray]
     about: str
 
 
@@ -90,6 +99,7 @@ class ReportSection:
         drawings: in their order, after the steps.
         attachments: files that it offers.
         live: gives what moves, as HTML that is complete in itself; None where nothing does.
+        computed: the columns of the motion that it computes.
         remark: why it is empty, or what else is to be said.
     """
 
@@ -98,6 +108,7 @@ class ReportSection:
     drawings: tuple[ReportFigure, ...] = ()
     attachments: tuple[Attachment, ...] = ()
     live: Callable[[], Html] | None = None
+    computed: frozenset[str] = frozenset()
     remark: str = ""
 
     @property

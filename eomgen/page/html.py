@@ -2,9 +2,11 @@
 
 from __future__ import annotations
 
+import json
 import re
 from collections.abc import Callable, Sequence
 from importlib import resources
+from itertools import chain, zip_longest
 
 from eomgen.documents.latex import (
     Group,
@@ -18,13 +20,18 @@ from eomgen.documents.latex_math import Setter
 from eomgen.documents.statements import Cell, Code, Formula, Grid, Lines, Piece, Prose, Step
 from eomgen.documents.text import formula_text
 from eomgen.errors import ToolMissing
+from eomgen.page.columns import table_bytes
 from eomgen.page.contents import Attachment, Report, ReportFigure, ReportSection
-from eomgen.page.markup import Html, element, html, in_a_row, packed, script, style
+from eomgen.page.far_copies import with_far_copies
+from eomgen.page.markup import Html, element, html, in_a_row, in_a_script, packed, script, style
 from eomgen.page.mathml import font_face, mathml
 from eomgen.proof.check import SIGNS, Certificate
 from eomgen.version import __version__
 
+DIGITS = 9  # of the numbers of a table that a page offers: as many as a run is sure of
 _NUMBER = re.compile(r"(-?)(\d+(?:\.\d+)?)(?:e([-+]\d+))?")
+_TEX = r'<annotation encoding="application/x-tex">(.*?)</annotation>'
+_DISPLAY = re.compile(rf'(<math display="block">.*?{_TEX}.*?</math>)', re.DOTALL)
 _POWER = re.compile(r"\^\(?(-?\d+)\)?")
 MINUS = "\N{MINUS SIGN}"
 
@@ -34,11 +41,13 @@ def html_page(report: Report) -> str:
     setter = setter_of(report.as_document)
     title = report.head.title
     sections = [element_of(setter, section, report) for section in report.sections]
+    shown, formulas = _set_apart(element("main", *sections))
     body = (
         element("header", *_head(report)),
-        element("main", *sections),
+        shown,
         element("footer", element("p", *_made(report))),
-        script(own_text("page.js")),
+        element("template", packed(json.dumps(formulas).encode()), id="formulas"),
+        script(f"{in_a_script(own_text('player/columns.mjs'))}\n{own_text('page.js')}"),
     )
     head = (
         element("meta", charset="utf-8"),
@@ -49,6 +58,16 @@ def html_page(report: Report) -> str:
         style(font_face() + own_text("style.css")),
     )
     return f"<!doctype html>\n{element('html', element('head', *head), element('body', *body), lang='en')}\n"
+
+
+def _set_apart(shown: Html) -> tuple[Html, list[str]]:
+    """(the same with the LaTeX of formulas that stand alone, the formulas as MathML, in their order).
+
+    Packed, MathML takes a twentieth; a program of the page puts it in its place, and who runs none reads the LaTeX.
+    """
+    parts = _DISPLAY.split(shown)
+    texts = (element("pre", Html(rf"\[{tex}\]"), class_="tex") for tex in parts[2::3])
+    return Html("".join(chain(*zip_longest(parts[::3], texts, fillvalue="")))), parts[1::3]
 
 
 def own_text(name: str) -> str:
@@ -83,7 +102,7 @@ def element_of(setter: Setter, section: ReportSection, report: Report) -> Html:
         inside += step_html(setter, step, titled=step.title != section.title)
     inside += [drawing_html(setter, drawing) for drawing in section.drawings]
     inside += [_live(section.live)] if section.live else []
-    inside += [_attachments(section.attachments)] if section.attachments else []
+    inside += [_attachments(section.attachments, _computed(report))] if section.attachments else []
     if section.key == "certificate" and report.certificate is not None:
         inside.append(_certificate(report.certificate))
     return element("section", *inside, id=section.key)
@@ -116,9 +135,9 @@ def _group(setter: Setter, group: Group) -> Html:
 def _formulas(setter: Setter, formulas: Sequence[Formula]) -> Html:
     """Formulas below one another, which can be copied as LaTeX and as text of the grammar."""
     blocks = display_blocks(setter, formulas)
-    tex, text = "\n".join(rf"\[{block}\]" for block in blocks), "\n".join(map(formula_text, formulas))
+    text = "\n".join(map(formula_text, formulas))
     buttons = (
-        element("button", "LaTeX", type="button", data_copy=tex, aria_label="Copy as LaTeX"),
+        element("button", "LaTeX", type="button", data_copy="", aria_label="Copy as LaTeX"),
         element("button", "text", type="button", data_copy=text, aria_label="Copy as text"),
     )
     shown = _scrolled(in_a_row(*(mathml(block, display=True) for block in blocks)), "formula")
@@ -208,16 +227,35 @@ def svg(drawing: ReportFigure, **attributes: str | None) -> Html:
     return element("svg", drawing.marks, viewBox=f"0 0 {width:g} {height:g}", **attributes)
 
 
-def _attachments(files: Sequence[Attachment]) -> Html:
-    """Links to files that the page carries, packed; a program of the page unpacks what is asked for."""
+def _attachments(files: Sequence[Attachment], computed: frozenset[str]) -> Html:
+    """Links to files that the page carries, packed; a program of the page unpacks what is asked for.
+
+    Args:
+        computed: columns that the player of the page gives: a table is carried without them.
+    """
     rows = []
     for file in files:
-        source = f"data:application/gzip;base64,{packed(file.content)}"
-        link = element(
-            "a", file.name, href=source, download=f"{file.name}.gz", data_name=file.name, data_media=file.media
-        )
-        rows.append(element("li", link, f" ({max(1, round(len(file.content) / 1024))} KB): {file.about}"))
+        if isinstance(file.content, bytes):
+            told, size, content = None, f" ({max(1, round(len(file.content) / 1024))} KB)", file.content
+        else:
+            carried = {name: column for name, column in file.content.items() if name not in computed}
+            told, size, content = json.dumps(tuple(file.content)), "", table_bytes(carried, DIGITS)
+        named = {"data_name": file.name, "data_media": file.media, "data_columns": told}
+        link = element("a", file.name, href="#downloads", data_packed=packed(with_far_copies(content)), **named)
+        rows.append(element("li", link, f"{size}: {file.about}"))
     return element("ul", *rows, class_="files")
+
+
+def _computed(report: Report) -> frozenset[str]:
+    """The columns that a player in the page computes: none where there is no player."""
+    for section in report.sections:
+        try:
+            if section.live:
+                section.live()
+                return section.computed
+        except ToolMissing:
+            pass
+    return frozenset()
 
 
 def _certificate(certificate: Certificate) -> Html:

@@ -3,12 +3,15 @@
 from __future__ import annotations
 
 import gzip
+import re
 from base64 import b64encode
 from html import escape
 
 from eomgen.errors import visible
 
 VOID = frozenset({"br", "img", "input", "link", "meta"})  # elements without an end
+_IMPORT = re.compile(r"^import .*\n", re.MULTILINE)
+_EXPORT = re.compile(r"^export (?=(?:const|class|function) (\w+))", re.MULTILINE)
 
 
 class Html(str):
@@ -55,3 +58,11 @@ def script(text: str) -> Html:
 def packed(content: bytes) -> str:
     """Bytes as a page carries them: gzip, then base64."""
     return b64encode(gzip.compress(content, 9, mtime=0)).decode("ascii")
+
+
+def in_a_script(module: str) -> str:
+    """A module as a statement that gives its names to those after it; without comments of a line of their own."""
+    names = ", ".join(_EXPORT.findall(module))
+    text = _EXPORT.sub("", _IMPORT.sub("", module))
+    lines = [line for each in text.splitlines() if (line := each.strip()) and not line.startswith(("//", "/*", "*"))]
+    return f"const {{ {names} }} = (() => {{\n{chr(10).join(lines)}\nreturn {{ {names} }};\n}})();"

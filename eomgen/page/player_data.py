@@ -16,6 +16,7 @@ from eomgen.documents.latex_names import notation_of
 from eomgen.errors import ToolMissing, UsageError
 from eomgen.model.own_units import units_of
 from eomgen.model.parts import Model
+from eomgen.page.columns import packed_columns
 from eomgen.page.live import Live, single_reactions
 from eomgen.page.mathml import mathml
 from eomgen.records import dataclass
@@ -31,6 +32,7 @@ from eomgen.symbolic.numeric.tolerances import CARRIED
 VECTORS = 3  # of each program in the page
 CHECKED = (0.02, 0.05)  # of the time: where the page's own motion is held against the recorded one
 MOST_CHECKED = 0.5  # s
+STATES, DRAWN = 12, 7  # digits of the recorded states, and of what is only drawn
 PLOTTED = 3  # coordinates, from the start
 ROUND = 4.0  # m, rad: how far a start value that is 0 may be moved
 SliderRange = tuple[float, float]
@@ -107,6 +109,11 @@ class PlayedRun:
         return replace(scene, marks=(*scene.marks, *arrows))
 
     @property
+    def computed(self) -> frozenset[str]:
+        """The columns of the run that the page computes."""
+        return frozenset() if self.live is None else frozenset((*self.live.columns, "t", "energy")) - {"T", "V"}
+
+    @property
     def moves(self) -> bool:
         """Whether the model lives in the page."""
         return self.options.moves and not self.rests
@@ -160,16 +167,15 @@ class PlayedRun:
     def _recorded(self) -> dict[str, Any]:
         """The run: states as they are integrated, or of contacts that change as they are named, with frames."""
         run = self.run
-        told = {"t": doubles_text(run.t), "message": "" if run.ok else run.message}
+        told = {"t": rows_told(run.t[:, None]), "message": "" if run.ok else run.message}
         if self.live is not None:
             assert run.phases[0].track is not None
             times, states = run.phases[0].track
             x = states[np.searchsorted(times, run.t)]
-            return {**told, "x": doubles_text(x), "states": x.shape[1]}
+            return {**told, "x": rows_told(x)}
         frames = self.drawn[1]
         assert frames is not None
-        recorded = {"x": doubles_text(run.x), "states": run.x.shape[1], "slots": frames.shape[1]}
-        return {**told, **recorded, "frames": coded_text(frames.astype("<f4"))}
+        return {**told, "x": rows_told(run.x), "frames": rows_told(frames, DRAWN)}
 
     def _parameters(self) -> list[dict[str, Any]]:
         names = self.phase.declared.symbols.parameters
@@ -252,11 +258,12 @@ def _unit(unit: Any) -> dict[str, Any]:
     return {"unit": "" if unit is None else unit.text, "size": 1.0 if unit is None else float(unit.size)}
 
 
-def doubles_text(values: Sequence[float] | np.ndarray) -> str:
-    """Numbers as a page reads them: the bytes of doubles, base64."""
-    return coded_text(np.ascontiguousarray(values, dtype="<f8"))
+def rows_told(rows: np.ndarray, digits: int = STATES) -> dict[str, Any]:
+    """Numbers as a page reads them.
 
-
-def coded_text(values: np.ndarray) -> str:
-    """The bytes of numbers, base64."""
-    return base64.b64encode(values.tobytes()).decode("ascii")
+    Args:
+        rows: n x columns.
+        digits: of the largest of a column.
+    """
+    packed = packed_columns(rows.T, digits)
+    return packed.head(content=base64.b64encode(packed.content).decode("ascii"))

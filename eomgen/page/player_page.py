@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import html
 import json
-import re
 from importlib import resources
 from typing import Any, Protocol
 
@@ -12,15 +11,13 @@ from eomgen.codegen.targets.javascript import javascript_expression
 from eomgen.errors import ToolMissing, visible
 from eomgen.model.parts import Model
 from eomgen.page.live import Live
-from eomgen.page.markup import packed
+from eomgen.page.markup import in_a_script, packed
 from eomgen.page.player_data import PlayedRun, PlayerOptions
 from eomgen.records import dataclass
 from eomgen.simulation.result import Trajectory
 from eomgen.version import __version__
 
-SCRIPTS = ("integrator.mjs", "ties.mjs", "motion.mjs", "plane.mjs", "space.mjs", "player.mjs")
-_IMPORT = re.compile(r"^import .*\n", re.MULTILINE)
-_EXPORT = re.compile(r"^export (?=(?:const|class|function) (\w+))", re.MULTILINE)
+SCRIPTS = ("columns.mjs", "integrator.mjs", "ties.mjs", "motion.mjs", "plane.mjs", "space.mjs", "player.mjs")
 
 _PAGE = """\
 <!doctype html>
@@ -120,7 +117,7 @@ def player_parts_of(played: Playable, identity: str, *, page: bool = False) -> P
     live = played.live
     needed = () if live is None else live.programs if played.moves else ("begin", "rate", "frame")
     programs = ",\n".join(f"{name}: {javascript_expression(live.programs[name])}" for name in needed) if live else ""
-    text = "\n".join(map(_in_a_script, map(_asset, SCRIPTS)))
+    text = "\n".join(map(in_a_script, map(_asset, SCRIPTS)))
     begin = f'begun(document.getElementById("{identity}"), {told}, {{{programs}}});'
     body = f'<div class="eomgen-player" id="{identity}"></div>'
     whole = f"(() => {{\n{_harmless(text)}\n{begin}\n}})();"
@@ -146,14 +143,6 @@ def three_js() -> str:
 def _asset(name: str) -> str:
     """A file of the player."""
     return resources.files("eomgen.page").joinpath("player", name).read_text(encoding="utf-8")
-
-
-def _in_a_script(module: str) -> str:
-    """A module as a statement that gives its names to those after it; without comments of a line of their own."""
-    names = ", ".join(_EXPORT.findall(module))
-    text = _EXPORT.sub("", _IMPORT.sub("", module))
-    lines = [line for each in text.splitlines() if (line := each.strip()) and not line.startswith(("//", "/*", "*"))]
-    return f"const {{ {names} }} = (() => {{\n{chr(10).join(lines)}\nreturn {{ {names} }};\n}})();"
 
 
 def _harmless(text: str) -> str:

@@ -7,7 +7,7 @@ from typing import Any
 import numpy as np
 
 from eomgen.model.parts import Model
-from eomgen.page.player_data import coded_text, doubles_text
+from eomgen.page.player_data import DRAWN, rows_told
 from eomgen.records import dataclass
 from eomgen.scene.phase_frames import joined
 from eomgen.scene.virtual import VirtualDisplacement
@@ -41,8 +41,8 @@ class PlayedDisplacements:
         ]
         numbers = joined(pieces)
         t = PERIOD * np.concatenate([k + share for k in range(len(pieces))])
-        frames = coded_text(numbers.frames.astype("<f4"))
-        run = {"t": doubles_text(t), "message": "", "x": "", "states": 0, "slots": numbers.frames.shape[1]}
+        states = rows_told(np.empty((len(t), 0)))
+        run = {"t": rows_told(t[:, None]), "message": "", "x": states, "frames": rows_told(numbers.frames, DRAWN)}
         return {
             "name": self.model.name,
             "time": float(t[-1]),
@@ -50,7 +50,7 @@ class PlayedDisplacements:
             "names": [],
             "columns": {},
             "energy": False,
-            "run": {**run, "frames": frames},
+            "run": run,
             "live": None,
             "moves": False,
             "parameters": [],

@@ -217,14 +217,11 @@ class Trajectory:
         named |= ({} if self.energy is None else {"energy": self.energy}) | dict(self.reactions)
         return named | {f"{name}{OUTPUT}" if name in named else name: y for name, y in self.outputs.items()}
 
-    def to_csv(
-        self, path: str | Path | IO[str], units: Mapping[str, Unit] | None = None, digits: int | None = None
-    ) -> None:
+    def to_csv(self, path: str | Path | IO[str], units: Mapping[str, Unit] | None = None) -> None:
         """A header line and one line an instant.
 
         Args:
             units: in which the columns are given, "theta [deg]"; None: plain names, and SI.
-            digits: of each number; None: every digit of a double.
         Raises:
             WriteFailed: the file cannot be written; what was there before is then still there.
         """
@@ -234,8 +231,7 @@ class Trajectory:
         told = dict[str, Unit]() if units is None else units
         writer.writerow(f"{name} [{told[name]}]" if name in told else name for name in columns)
         given = (x / told[name].size if name in told else x for name, x in columns.items())
-        rows = zip(*(column.tolist() for column in given), strict=True)
-        writer.writerows(rows if digits is None else ([f"{x:.{digits}g}" for x in row] for row in rows))
+        writer.writerows(zip(*(column.tolist() for column in given), strict=True))
         if isinstance(path, (str, Path)):
             files.write(path, text.getvalue())
         else:

@@ -6,7 +6,7 @@ import io
 import zipfile
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import replace
-from functools import cached_property
+from functools import cache, cached_property
 from pathlib import Path
 from typing import Any
 
@@ -26,7 +26,7 @@ from eomgen.model.own_units import units_of
 from eomgen.model.parts import Model
 from eomgen.model.reader import ModelOrPath, bytes_at, loads, model_at
 from eomgen.model.replaced import Values
-from eomgen.page.contents import SECTIONS, Attachment, Report, ReportFigure, ReportSection, joint_proof
+from eomgen.page.contents import PLAYER, SECTIONS, Attachment, Report, ReportFigure, ReportSection, joint_proof
 from eomgen.page.curves import motion_drawings
 from eomgen.page.figure import figure_of, rest_figure
 from eomgen.page.formats import FORMATS, written_as
@@ -57,7 +57,6 @@ CAPTIONS = {
     "linearize": "Shapes of the modes.",
 }
 EPOCH = (1980, 1, 1, 0, 0, 0)  # of files in archives: the same bytes at any time
-DIGITS = 9  # of the numbers of a run in a page: as many as a run is sure of
 
 
 @dataclass(frozen=True)
@@ -351,7 +350,8 @@ def _motion(subject: Subject) -> ReportSection | None:
         return _released(subject.found["statics"])
     if subject.main[0] != "derivation":
         return None
-    return _played(PlayedRun(subject.run, PlayerOptions()))
+    played = PlayedRun(subject.run, PlayerOptions())
+    return replace(_played(played), computed=played.computed)
 
 
 def _released(found: Result) -> ReportSection | None:
@@ -371,8 +371,9 @@ def _released(found: Result) -> ReportSection | None:
 def _played(played: Playable, words: str = "") -> ReportSection:
     """What moves in a page, under words of its own."""
 
+    @cache
     def live() -> Html:
-        parts = player_parts_of(played, "motion-player")
+        parts = player_parts_of(played, PLAYER)
         above = [element("p", words)] if words else []
         return in_a_row(*above, Html(f"<style>{parts.style}</style>{parts.body}{parts.script}"))
 
@@ -388,10 +389,8 @@ def _downloads(subject: Subject) -> ReportSection | None:
     if subject.source:
         found.append(Attachment(f"{stem}.toml", "text/plain", subject.source.encode(), "the model"))
     if "run" in vars(subject):
-        table = io.StringIO()
-        subject.run.to_csv(table, digits=DIGITS)
-        about = f"the motion: a header, then a line an instant, in SI, numbers of {DIGITS} digits"
-        found.append(Attachment(f"{stem}.csv", "text/csv", table.getvalue().encode(), about))
+        about = "the motion: a header, then a line an instant, in SI, 9 digits of the largest number of each column"
+        found.append(Attachment(f"{stem}.csv", "text/csv", subject.run.columns(), about))
     if "equations" in vars(subject) and subject.equations.speeds:
         about = "the equations and reactions as code in C and for numpy, with test vectors"
         found.append(Attachment(f"{stem}_code.zip", "application/zip", _archive(subject.code.texts), about))

@@ -1,5 +1,6 @@
 // What is told of a motion -> its player: picture, time, plots, and where the model lives here, its sliders.
 
+import { unpackedRows } from "./columns.mjs";
 import { Motion } from "./motion.mjs";
 import { PlaneView, inGround } from "./plane.mjs";
 import { SpaceView } from "./space.mjs";
@@ -9,8 +10,6 @@ const FRAMES_TO_FIT = 60;
 const POINTS = 400;  // of a curve
 const NEAR = 1e-6;  // of a state against the recorded one
 
-const doubles = text => new Float64Array(Uint8Array.from(atob(text), c => c.charCodeAt(0)).buffer);
-const singles = text => new Float32Array(Uint8Array.from(atob(text), c => c.charCodeAt(0)).buffer);
 const DIGITS = "\u2070\u00b9\u00b2\u00b3\u2074\u2075\u2076\u2077\u2078\u2079";
 const written = unit => unit.replaceAll("*", "\u00b7").replace(/\^(-?)(\d)/g, (_, sign, digit) => (sign && "\u207b") + DIGITS[digit]);
 const rounded = v => v === 0 ? "0" : Number.isFinite(v) ? String(+v.toPrecision(5)) : "none";
@@ -37,13 +36,13 @@ function sign(told, name) {
 /** A run as it was recorded: rows of states, between them by Hermite's cubic; or rows of frames, between them straight. */
 class Recorded {
     constructor(told, rate) {
-        this.t = doubles(told.t);
-        this.n = told.states;
-        this.x = doubles(told.x);
+        this.t = unpackedRows(told.t);
+        this.n = told.x.columns.length;
+        this.x = unpackedRows(told.x);
         this.end = this.t[this.t.length - 1];
         this.message = told.message;
         this.rate = rate;
-        if (told.frames) { this.frames = singles(told.frames); this.slots = told.slots; }
+        if (told.frames) { this.frames = unpackedRows(told.frames); this.slots = told.frames.columns.length; }
     }
 
     row(k) { return this.x.subarray(k*this.n, (k + 1)*this.n); }
@@ -118,6 +117,13 @@ export class Player {
     state(t) {
         const x = this.inner(t), frame = this.motion ? this.motion.of.frame(t, x) : null;
         return this.told.names.map(name => this.value(name, t, x, frame));
+    }
+
+    /** The column of that name at the recorded instants. */
+    column(name) {
+        if (name === "t") return this.recorded.t;
+        this.rows ??= Array.from(this.recorded.t, (t, k) => [t, this.recorded.row(k), this.motion.of.frame(t, this.recorded.row(k))]);
+        return this.rows.map(row => this.value(name === "energy" ? "E" : name, ...row));
     }
 
     seek(t) {
@@ -482,7 +488,7 @@ class Plot {
 
 /** A player in the page. */
 export function begun(root, told, programs) {
-    const player = new Player(root, told, programs);
+    const player = root.player = new Player(root, told, programs);
     player.recalled();
     if (!told.page) return player;
     window.eomgen = {
