@@ -86,4 +86,5 @@ def _seven_bits(values: np.ndarray) -> bytes:
     left = zigzag >> SEVEN_BITS
     more = np.concatenate([left[:, 1:] > 0, np.zeros((len(values), 1), dtype=bool)], axis=1)
     used = np.concatenate([np.ones((len(values), 1), dtype=bool), left[:, 1:] > 0], axis=1)
-    return ((left & 127) | np.where(more, 128, 0)).astype(np.uint8)[used].tobytes()
+    found: bytes = ((left & 127) | np.where(more, 128, 0)).astype(np.uint8)[used].tobytes()
+    return found
