@@ -623,7 +623,11 @@ def animate_command(model: str, wants_json: bool, format_: str | None, output: s
 @click.option("--regressor", is_flag=True, help="Y of tau = Y pi + y0 too, and the columns of the base parameters.")
 @click.option("--actuated", metavar="NAMES", help='Which coordinates, inputs or joints act: "q1,q2".  [default: all]')
 @click.option("--integrator", is_flag=True, help="In C too: an integrator, and a program that writes a motion as CSV.")
-@click.option("--float32", is_flag=True, help="The C in single precision; the tolerances of its tests are measured.")
+@click.option(
+    "--float32",
+    is_flag=True,
+    help="Single precision; the tolerances of its tests are measured.",
+)
 @CERTIFY
 @click.option(
     "--baumgarte",

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import replace
 from functools import cached_property, partial
 from pathlib import Path
@@ -16,7 +16,8 @@ from eomgen.codegen.matrices import Blocks, entries_of, matrices_of, program_of_
 from eomgen.codegen.names import identifier
 from eomgen.codegen.program import Program, Solve, program_of
 from eomgen.codegen.rhs import RightHandSide, target_named
-from eomgen.codegen.single_precision import single_error, single_text, single_vectors
+from eomgen.codegen.single_precision import single_error, single_vectors
+from eomgen.codegen.targets import ALL
 from eomgen.codegen.targets.base import (
     INVERSE,
     JACOBIAN,
@@ -65,7 +66,7 @@ class Generated:
         targets: the languages.
         actuated: the actuators of inverse dynamics, () for all speeds; None where these are not asked for.
         integrator: whether the C has one of its own.
-        float32: whether the C is in single precision.
+        float32: whether all is in single precision.
         slopes: whether the slopes of the right-hand side are asked for.
         linear: whether the regressor is asked for.
     """
@@ -190,7 +191,14 @@ class Generated:
         if not self.float32:
             return self._in_doubles
         found = self._texts([(p, replace(told, vectors=single_vectors(p, told.vectors))) for p, told in self.emitted])
-        return {path: single_text(str(text)) if path.endswith((".c", ".h")) else text for path, text in found.items()}
+        for target in self.targets:
+            single, folder = target_named(target).single, self._folder(target)
+            assert single is not None
+            found |= {f"{folder}{path}": text for path, text in single.files(_inside(found, folder)).items()}
+        return found
+
+    def _folder(self, target: str) -> str:
+        return "" if len(self.targets) == 1 else f"{target}/"
 
     @cached_property
     def _in_doubles(self) -> dict[str, FileContent]:
@@ -198,8 +206,7 @@ class Generated:
 
     def _texts(self, emitted: Sequence[Emitted]) -> dict[str, FileContent]:
         texts = texts_of(self.stem, emitted, targets=self.targets, notes=self.notes)
-        folder = "" if len(self.targets) == 1 else "c/"
-        found = texts | {f"{folder}{name}": text for name, text in self._integrator.items()}
+        found = texts | {f"{self._folder('c')}{name}": text for name, text in self._integrator.items()}
         return {path: visible(text) if isinstance(text, str) else text for path, text in found.items()}
 
     @property
@@ -249,17 +256,19 @@ class Generated:
             for emitted in self.emitted:
                 if target_named(target).writes(emitted[1].role):
                     yield judged[emitted[1].role].check(self._written(target, emitted), start)
-        for emitted in self.emitted if self.float32 else ():
-            yield self._single(emitted)
+        for target in self.targets if self.float32 else ():
+            for emitted in self.emitted:
+                yield self._single(target, emitted)
 
-    def _single(self, emitted: Emitted) -> Check:
+    def _single(self, target: str, emitted: Emitted) -> Check:
         """The text in single precision, run, against the vectors and the tolerances that stand beside it."""
         program, told = emitted
-        name, how = told.role.main(identifier(self.stem)), "the code in single precision, run"
-        text = str(self.texts[f"{name}.c"]).replace(f'#include "{name}.h"\n', str(self.texts[f"{name}.h"]), 1)
-        what = f"{name} in single precision is as near as its tolerances say"
+        stem, single = identifier(self.stem), target_named(target).single
+        assert single is not None
+        how, texts = "the code in single precision, run", _inside(self.texts, self._folder(target))
+        what = f"{told.role.main(stem)} in single precision ({target}) is as near as its tolerances say"
         try:
-            error = single_error(text, name, program, single_vectors(program, told.vectors))
+            error = single_error(single.run(texts, program, stem, told.role), single_vectors(program, told.vectors))
         except (RunFailed, ToolMissing) as failure:
             return unchecked(what, failure.what, how)
         return checked(what, f"{error:.2g} tolerances away" if error > 1 else "", how)
@@ -277,9 +286,7 @@ class Generated:
 
     def _written(self, target: str, emitted: Emitted) -> Written:
         program, told = emitted
-        folder = "" if len(self.targets) == 1 else f"{target}/"
-        whole = (self._in_doubles if self.float32 else self.texts).items()
-        texts = {path.removeprefix(folder): text for path, text in whole if path.startswith(folder)}
+        texts = _inside(self._in_doubles if self.float32 else self.texts, self._folder(target))
         return Written(target, texts, program, identifier(self.stem), told.role, told.vectors)
 
     @cached_property
@@ -330,7 +337,7 @@ def generate(
         regressor: Y and y0 of tau = Y pi + y0, and the columns of the base parameters, too.
         baumgarte: alpha and beta of closing rows that pull back what has opened [1/s]; None: they do not pull.
         integrator: an integrator of its own in C too, with a program that writes a motion as CSV.
-        float32: the C in single precision; the tolerances of its tests are measured.
+        float32: single precision, of c, cpp, rust, fortran, wasm and jax; the tolerances of its tests are measured.
         parameters, start: values that replace the model's, each as `model_at` takes it.
     Raises:
         UsageError: a language that there is none; an integrator of what is not in C, or whose contacts change.
@@ -338,10 +345,10 @@ def generate(
     model = model_at(model, parameters, start)
     if integrator:
         _refuse_integrator(model, targets)
-    if float32 and tuple(targets) != ("c",):
-        raise UsageError("single precision is written in C alone", mend="take --target c, and no other")
-    for target in targets:
-        target_named(target)  # refuses what is none before anything is derived
+    doubles = [target for target in targets if target_named(target).single is None]  # refuses what is none
+    if float32 and doubles:
+        some = ", ".join(target.name for target in ALL if target.single is not None)
+        raise UsageError(f"no single precision in {', '.join(doubles)}: its numbers are doubles", mend=f"take {some}")
     equations = pipeline.derive(model)
     equations = equations if baumgarte is None else pulling(equations, baumgarte)
     if float32 and equations.graph.J:
@@ -372,6 +379,11 @@ def _refuse_integrator(model: Model, targets: Sequence[str]) -> None:
     if changing:
         names = ", ".join(f"'{name}'" for name in changing)
         raise UsageError(f"no integrator for what changes its equations: {names}", mend="take eomgen simulate")
+
+
+def _inside(texts: Mapping[str, FileContent], folder: str) -> dict[str, FileContent]:
+    """The files of one language."""
+    return {path.removeprefix(folder): text for path, text in texts.items() if path.startswith(folder)}
 
 
 def _remarks(model: Model) -> dict[str, str]:

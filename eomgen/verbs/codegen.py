@@ -36,7 +36,7 @@ def codegen_document(
         regressor: write Y, y0 and the columns of the base parameters too.
         baumgarte: alpha and beta of closing rows that pull back what has opened [1/s]; None: they do not pull.
         integrator: an integrator in C too.
-        float32: the C in single precision.
+        float32: single precision.
     """
     acting = actuated if inverse or actuated else None
     found = generate(

@@ -12,6 +12,7 @@ from functools import cache
 from importlib import import_module
 from pathlib import Path
 
+import numpy as np
 import pytest
 from hand_made import PUSHED, symbols
 from tools import marked, tool
@@ -23,6 +24,7 @@ from eomgen.codegen.files import texts_of
 from eomgen.codegen.lowered import Language
 from eomgen.codegen.names import RESERVED
 from eomgen.codegen.program import program_of
+from eomgen.codegen.rhs import target_named
 from eomgen.codegen.targets import ALL, cpp, fortran, wasm
 from eomgen.codegen.targets.base import Description
 from eomgen.codegen.vectors import vectors
@@ -179,6 +181,22 @@ def test_the_language_s_own_test_notices_a_wrong_sign(target, tmp_path):
     source.write_text(text[:at] + turned)
     said = OWN_TESTS[target](folder)
     assert said and " not " in said, said
+
+
+@marked(target.name for target in ALL if target.single is not None)
+def test_single_precision_passes_its_own_test_by_measured_tolerances(target, tmp_path):
+    """Friction, samples of inputs: within a few 1e-6, and not by doubles: some number is 1e-9 away."""
+    for model in (MODELS / "rough_incline.toml", eomgen.loads(PUSHED)):
+        name = model.stem if isinstance(model, Path) else "pushed"
+        made = eomgen.generate(model, (target,), name=name, float32=True)
+        files.write_all(tmp_path / name, made.texts)
+        run, (program, told) = target_named(target).single.run, made.motion
+        called, far = run(made.texts, program, name, told.role), 0.0
+        for v in told.vectors:
+            found = np.array(called(v.t, v.x, v.a, v.p, v.inputs))
+            far = max(far, np.nanmax(np.abs(found - v.result)) / max(1.0, np.nanmax(np.abs(v.result))))
+        assert (1e-9 < far or name == "pushed") and far < 1e-5
+    assert OWN_TESTS[target](tmp_path) == ""
 
 
 @marked(["fmu"])

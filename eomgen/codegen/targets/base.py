@@ -139,6 +139,19 @@ Called = Callable[[float, Sequence[float], Sequence[float], Sequence[float], Seq
 
 
 @dataclass(frozen=True)
+class Single:
+    """A language in single precision.
+
+    Args:
+        files: its files in doubles -> the same in single precision.
+        run: these, as of `Target`.
+    """
+
+    files: Callable[[Mapping[str, FileContent]], dict[str, FileContent]]
+    run: Callable[[Mapping[str, FileContent], Program, str, Role], Called]
+
+
+@dataclass(frozen=True)
 class Target:
     """A language that programs are written in.
 
@@ -152,6 +165,7 @@ class Target:
         run: (those files, program, stem, role) -> (t, x, a, p, inputs or None) -> outputs: the very text that others
             get, run here; None where nothing here runs the language.
         roles: names of the functions that it writes; None: all.
+        single: the same in single precision; None where its numbers are doubles.
     """
 
     name: str
@@ -162,6 +176,7 @@ class Target:
     load: Callable[[Program], Functions]
     run: Callable[[Mapping[str, FileContent], Program, str, Role], Called] | None = None
     roles: tuple[str, ...] | None = None
+    single: Single | None = None
 
     def writes(self, role: Role) -> bool:
         """Whether a function is among its files."""

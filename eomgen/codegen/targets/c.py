@@ -9,6 +9,8 @@ from __future__ import annotations
 import ctypes
 import re
 from collections.abc import Mapping, Sequence
+from functools import partial
+from typing import Any
 
 from eomgen.codegen.build import function_of, library
 from eomgen.codegen.lowered import CHANGED, INDICES, INT, PLACES, READ, REAL, ROOM, Language, one_line
@@ -21,12 +23,14 @@ from eomgen.codegen.targets.base import (
     FileContent,
     Functions,
     Role,
+    Single,
     Target,
     files_of_each,
     header,
 )
 from eomgen.codegen.targets.c_loading import functions_of
 from eomgen.codegen.targets.c_self_test import self_test
+from eomgen.codegen.targets.in_single import FUNCTIONS, QUOTED, SUFFIXED, Words
 
 
 def comment(text: str) -> str:
@@ -236,26 +240,42 @@ def _files(stem: str, program: Program, description: Description) -> dict[str, s
     return {f"{name}.c": f"{defined}\n{self_test(program, name, description.vectors, role)}", f"{name}.h": declared}
 
 
-def run(texts: Mapping[str, FileContent], program: Program, stem: str, role: Role) -> Called:
-    """NAME_rhs of the files, compiled."""
+def run(
+    texts: Mapping[str, FileContent], program: Program, stem: str, role: Role, real: Any = ctypes.c_double
+) -> Called:
+    """NAME_rhs of the files, compiled; `real` is the type of its numbers."""
     name = role.main(stem)
     text = str(texts[f"{name}.c"]).replace(f'#include "{name}.h"\n', str(texts[f"{name}.h"]), 1)
     function, outputs = function_of(library(text, quickly=True), name), len(program.outputs)
-    reals = ctypes.POINTER(ctypes.c_double)
-    function.argtypes = [ctypes.c_double, *[reals] * (5 if program.accelerations else 4)]
+    reals = ctypes.POINTER(real)
+    function.argtypes = [real, *[reals] * (5 if program.accelerations else 4)]
     function.restype = None
 
     def called(
         t: float, x: Sequence[float], a: Sequence[float], p: Sequence[float], inputs: Sequence[float] | None
     ) -> Sequence[float]:
-        arrays = [(ctypes.c_double * max(len(y), 1))(*y) for y in ((x, a, p) if program.accelerations else (x, p))]
-        acting = None if inputs is None else (ctypes.c_double * max(len(inputs), 1))(*inputs)
-        found = (ctypes.c_double * max(outputs, 1))()
+        arrays = [(real * max(len(y), 1))(*y) for y in ((x, a, p) if program.accelerations else (x, p))]
+        acting = None if inputs is None else (real * max(len(inputs), 1))(*inputs)
+        found = (real * max(outputs, 1))()
         function(t, *arrays, acting, found)
-        return found[:outputs]
+        result: list[float] = found[:outputs]
+        return result
 
     return called
 
 
 USE = ("cc -O2 -c {stem}_rhs.c", "cc -O2 -DEOMGEN_SELFTEST {stem}_rhs.c -lm -o selftest && ./selftest")
-TARGET = Target("c", "C99, no dependencies", c_text, files_of_each(_files), USE, c_functions, run)
+SINGLE = Words(
+    (
+        (r"\bdouble\b", "float"),
+        (r"\bDBL_EPSILON\b", "FLT_EPSILON"),
+        (rf"\b({FUNCTIONS})(?=\()", r"\1f"),
+        SUFFIXED,
+    ),
+    rf"/\*.*?\*/|{QUOTED}",
+    r"\.[ch]$",
+)
+TARGET = Target(
+    "c", "C99, no dependencies", c_text, files_of_each(_files), USE, c_functions, run,
+    single=Single(SINGLE.files, partial(run, real=ctypes.c_float)),
+)  # fmt: skip

@@ -9,6 +9,7 @@ from eomgen.codegen.lowering import lowered
 from eomgen.codegen.program import Program
 from eomgen.codegen.targets import branch_free
 from eomgen.codegen.targets.base import RHS, Role
+from eomgen.codegen.targets.in_single import Words
 from eomgen.codegen.targets.numpy import PYTHON
 from eomgen.codegen.targets.python_files import python_target
 
@@ -108,4 +109,13 @@ def jax_text(program: Program, stem: str, role: Role = RHS, remarks: Mapping[str
 
 
 USE = ("from {stem}_jax import {stem}_rhs", "python -m pytest")
-TARGET = python_target("jax", "Python with JAX, in doubles: jit, vmap, grad", jax_text, USE)
+SINGLE = Words(
+    (
+        (r'^jax\.config\.update\("jax_enable_x64", True\)\n+', ""),
+        (r"\bdtype=float\b", "dtype=jnp.float32"),
+        (r"\bin doubles\b", "in single precision"),
+    ),
+    r'"""\w+ \w+.*?"""|#[^\n]*',
+    r"(^|/)(?!test_)\w+_jax\.py$|README\.md$",
+)
+TARGET = python_target("jax", "Python with JAX, in doubles: jit, vmap, grad", jax_text, USE, SINGLE)

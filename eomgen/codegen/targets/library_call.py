@@ -9,6 +9,7 @@ from __future__ import annotations
 
 import ctypes
 from collections.abc import Callable, Mapping, Sequence
+from typing import Any
 
 import numpy as np
 
@@ -22,16 +23,18 @@ from eomgen.codegen.targets.base import (
     Functions,
     Many,
     Role,
+    Single,
     Target,
     called_by,
     functions_by,
 )
+from eomgen.codegen.targets.in_single import Words
 
 ENTRY = "eomgen_many"
 
 
-def many_of(text: str, program: Program, by: Compiler, *, quickly: bool = False) -> Many:
-    """The function, compiled.
+def many_of(text: str, program: Program, by: Compiler, *, quickly: bool = False, real: Any = np.float64) -> Many:
+    """The function, compiled; `real` is the type of its numbers.
 
     Raises:
         ToolMissing, RunFailed: as of `library`.
@@ -41,9 +44,9 @@ def many_of(text: str, program: Program, by: Compiler, *, quickly: bool = False)
     function.argtypes, function.restype = [ctypes.c_size_t, *[ctypes.c_void_p] * 5], None
 
     def many(t: np.ndarray, x: np.ndarray, p: np.ndarray, inputs: np.ndarray | None) -> np.ndarray:
-        out = np.empty((len(t), outputs))
-        t, x, p = (np.ascontiguousarray(part, dtype=float) for part in (t, x, p))
-        given = None if inputs is None else np.ascontiguousarray(inputs, dtype=float)
+        out: np.ndarray = np.empty((len(t), outputs), dtype=real)
+        t, x, p = (np.ascontiguousarray(part, dtype=real) for part in (t, x, p))
+        given: np.ndarray | None = None if inputs is None else np.ascontiguousarray(inputs, dtype=real)
         function(
             len(t), t.ctypes.data, x.ctypes.data, p.ctypes.data, None if given is None else given.ctypes.data,
             out.ctypes.data,
@@ -63,6 +66,7 @@ def compiled_target(
     source: str,
     called: Callable[[str, Program, str, Role], str],
     by: Compiler,
+    single: Words,
 ) -> Target:
     """A language whose texts become libraries.
 
@@ -71,6 +75,7 @@ def compiled_target(
         source: the path of a function's text among its files, with {main}, {stem} and {role}.
         called: (text, program, stem, role) -> it with the function above.
         by: what compiles it.
+        single: its words in single precision.
     """
 
     def load(program: Program) -> Functions:
@@ -81,7 +86,12 @@ def compiled_target(
         path = source.format(main=role.main(stem), stem=stem, role=role.name)
         return called_by(many_of(called(str(texts[path]), program, stem, role), program, by, quickly=True))
 
-    return Target(name, language, text, files, use, load, run)
+    def run_single(texts: Mapping[str, FileContent], program: Program, stem: str, role: Role) -> Called:
+        path = source.format(main=role.main(stem), stem=stem, role=role.name)
+        whole = single.text(called(str(texts[path]), program, stem, role))
+        return called_by(many_of(whole, program, by, quickly=True, real=np.float32))
+
+    return Target(name, language, text, files, use, load, run, single=Single(single.files, run_single))
 
 
 def sizes(program: Program, role: Role, stem: str) -> dict[str, object]:

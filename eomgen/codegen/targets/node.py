@@ -21,6 +21,7 @@ from eomgen.codegen.targets.base import (
     Functions,
     Many,
     Role,
+    Single,
     Target,
     called_by,
     functions_by,
@@ -104,6 +105,7 @@ def node_target(
     written: Callable[[str, Program, Description], dict[str, FileContent]],
     use: tuple[str, ...],
     alone: Callable[[Mapping[str, FileContent], str], str] | None = None,
+    single: Callable[[Mapping[str, FileContent]], dict[str, FileContent]] | None = None,
 ) -> Target:
     """A language whose files are ECMAScript modules: STEM_ROLE.mjs, what it needs beside it, and its test.
 
@@ -112,6 +114,7 @@ def node_target(
         written: (stem, program, what is told of it) -> {path: content}, STEM_ROLE.mjs the first of them.
         use: how it is imported, and what runs its tests.
         alone: (files, STEM_ROLE) -> the module as it needs no file beside it; None where it never does.
+        single: the files in doubles -> in single precision, where there are such.
     """
 
     def module(files: Mapping[str, FileContent], main: str) -> str:
@@ -131,7 +134,7 @@ def node_target(
     def run(texts: Mapping[str, FileContent], program: Program, stem: str, role: Role) -> Called:
         return called_by(many_of_module(module(texts, role.main(stem)), program))
 
-    return Target(name, language, text, files, use, functions, run)
+    return Target(name, language, text, files, use, functions, run, single=single and Single(single, run))
 
 
 def _module_files(

@@ -16,10 +16,12 @@ from eomgen.codegen.targets.base import (
     FileContent,
     Functions,
     Role,
+    Single,
     Target,
     functions_by,
     header,
 )
+from eomgen.codegen.targets.in_single import Words
 from eomgen.errors import ToolMissing
 
 _TEST = '''\
@@ -45,7 +47,9 @@ def test_{main}_gives_the_values_of_its_test_vectors():
 '''
 
 
-def python_target(name: str, language: str, text: Callable[..., str], use: tuple[str, ...]) -> Target:
+def python_target(
+    name: str, language: str, text: Callable[..., str], use: tuple[str, ...], single: Words | None = None
+) -> Target:
     """A language that is a Python package: STEM_NAME.py of the right-hand side, STEM_ROLE_NAME.py, and their tests.
 
     Args:
@@ -53,6 +57,7 @@ def python_target(name: str, language: str, text: Callable[..., str], use: tuple
         language: in words.
         text: the module of a program.
         use: how it is imported, and what runs its tests.
+        single: its words in single precision, where there are such.
     """
 
     def module(stem: str, role: Role) -> str:
@@ -73,7 +78,16 @@ def python_target(name: str, language: str, text: Callable[..., str], use: tuple
     def run(texts: Mapping[str, FileContent], program: Program, stem: str, role: Role) -> Called:
         return called_each(texts, module(stem, role), program, stem, role, name)
 
-    return Target(name, language, text, files, use, functions, run)
+    return Target(
+        name,
+        language,
+        text,
+        files,
+        use,
+        functions,
+        run,
+        single=Single(single.files, run) if single is not None else None,
+    )
 
 
 def module_files(text: str, module: str, stem: str, program: Program, told: Description) -> dict[str, str]:

@@ -21,6 +21,7 @@ from eomgen.codegen.targets.base import (
     header,
     vector_lines,
 )
+from eomgen.codegen.targets.in_single import QUOTED, Words
 from eomgen.codegen.targets.library_call import compiled_target, sizes
 
 UNARY = "sin cos asin acos atan sinh cosh tanh exp log sqrt".split()
@@ -282,6 +283,7 @@ def _many_text(text: str, program: Program, _: str, role: Role) -> str:
     return f"mod math {{\n{_MATH}\n}}\nmod {role.name} {{\n{text}\n}}\n{entry}"
 
 
+_OF_C = "|".join((*UNARY, "atan2", "pow"))
 USE = ("use {stem}_rhs::rhs::rhs;", "cd {stem}_rhs && cargo test && cargo clippy -- -D warnings")
 TARGET = compiled_target(
     "rust",
@@ -292,4 +294,14 @@ TARGET = compiled_target(
     source="{stem}_rhs/src/{role}.rs",
     called=_many_text,
     by=COMPILER,
+    single=Words(
+        (
+            (r"(?<!\w)f64\b|(?<=\d_)f64\b", "f32"),
+            (r"1 << 63\b", "1 << 31"),
+            (rf"\bc::({_OF_C})(?=\()", r"c::\1f"),
+            (rf"^( +pub fn )({_OF_C})(?=\([^{{\n]*;)", r"\1\2f"),
+        ),
+        rf"//[^\n]*|{QUOTED}",
+        r"\.rs$",
+    ),
 )

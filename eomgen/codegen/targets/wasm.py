@@ -12,7 +12,8 @@ from itertools import accumulate
 from eomgen.codegen.build import Compiler, binary
 from eomgen.codegen.program import Program
 from eomgen.codegen.targets.base import RHS, Description, FileContent, Role
-from eomgen.codegen.targets.c import c_text, constants_of
+from eomgen.codegen.targets.c import SINGLE, c_text, constants_of
+from eomgen.codegen.targets.in_single import QUOTED, Words
 from eomgen.codegen.targets.node import node_target
 
 FLAGS = ("--target=wasm32-wasi", "-mexec-model=reactor", "-std=c99", "-s")
@@ -141,4 +142,16 @@ USE = (
     "node --test",
     f"python -m ziglang cc {' '.join(FLAGS)} -O2 {{stem}}_rhs.c -o {{stem}}_rhs.wasm",
 )
-TARGET = node_target("wasm", "WebAssembly, made of the C, and its ECMAScript module", wasm_text, _written, USE, _alone)
+
+
+def _single(files: Mapping[str, FileContent]) -> dict[str, FileContent]:
+    """The files in single precision, the binary made anew."""
+    found = SINGLE.files(_LOADED.files(files))
+    binaries = (path for path in files if path.endswith(".wasm"))
+    return found | {path: binary(str(found[f"{path.removesuffix('.wasm')}.c"]), COMPILER) for path in binaries}
+
+
+_LOADED = Words(((r"\bFloat64Array\b", "Float32Array"),), rf"//[^\n]*|{QUOTED}", r"\.mjs$")
+TARGET = node_target(
+    "wasm", "WebAssembly, made of the C, and its ECMAScript module", wasm_text, _written, USE, _alone, _single
+)
