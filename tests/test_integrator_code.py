@@ -15,7 +15,7 @@ from click.testing import CliRunner
 import eomgen
 from eomgen.cli import main
 from eomgen.codegen.targets.c import SINGLE
-from eomgen.codegen.targets.in_single import Words
+from eomgen.codegen.targets.in_single import SingleWords
 from eomgen.errors import UsageError
 
 MODELS = Path(__file__).parent.parent / "models"
@@ -117,8 +117,8 @@ def test_single_precision_keeps_what_it_says(name, tmp_path):
 @needs_compiler
 def test_what_single_precision_cannot_do_is_seen(monkeypatch):
     """A constant that is wrong by 1e-4 is outside of the measured tolerances."""
-    right = Words.text
-    monkeypatch.setattr(Words, "text", lambda self, text: right(self, text).replace("2.0f*", "2.0002f*"))
+    right = SingleWords.text
+    monkeypatch.setattr(SingleWords, "text", lambda self, text: right(self, text).replace("2.0f*", "2.0002f*"))
     certificate = eomgen.generate(MODELS / "double_pendulum.toml", name="it", float32=True).certify()
     assert certificate.ok is False
 

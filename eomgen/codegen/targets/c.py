@@ -30,7 +30,7 @@ from eomgen.codegen.targets.base import (
 )
 from eomgen.codegen.targets.c_loading import functions_of
 from eomgen.codegen.targets.c_self_test import self_test
-from eomgen.codegen.targets.in_single import FUNCTIONS, QUOTED, SUFFIXED, Words
+from eomgen.codegen.targets.in_single import FUNCTIONS, QUOTED, SUFFIXED, SingleWords
 
 
 def comment(text: str) -> str:
@@ -265,7 +265,7 @@ def run(
 
 
 USE = ("cc -O2 -c {stem}_rhs.c", "cc -O2 -DEOMGEN_SELFTEST {stem}_rhs.c -lm -o selftest && ./selftest")
-SINGLE = Words(
+SINGLE = SingleWords(
     (
         (r"\bdouble\b", "float"),
         (r"\bDBL_EPSILON\b", "FLT_EPSILON"),

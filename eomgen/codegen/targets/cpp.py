@@ -22,7 +22,7 @@ from eomgen.codegen.targets.base import (
 )
 from eomgen.codegen.targets.c import C, comment
 from eomgen.codegen.targets.c_self_test import self_test
-from eomgen.codegen.targets.in_single import QUOTED, SUFFIXED, Words
+from eomgen.codegen.targets.in_single import QUOTED, SUFFIXED, SingleWords
 from eomgen.codegen.targets.library_call import compiled_target, sizes
 from eomgen.symbolic.expression.graph import Number
 
@@ -194,5 +194,5 @@ TARGET = compiled_target(
     source="{main}.hpp",
     called=_many_text,
     by=COMPILER,
-    single=Words(((r"\bdouble\b", "float"), SUFFIXED), rf"//[^\n]*|{QUOTED}", r"_test\.cpp$"),
+    single=SingleWords(((r"\bdouble\b", "float"), SUFFIXED), rf"//[^\n]*|{QUOTED}", r"_test\.cpp$"),
 )

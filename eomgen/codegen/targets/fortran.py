@@ -21,7 +21,7 @@ from eomgen.codegen.targets.base import (
     header,
     vector_lines,
 )
-from eomgen.codegen.targets.in_single import Words
+from eomgen.codegen.targets.in_single import SingleWords
 from eomgen.codegen.targets.library_call import compiled_target, sizes
 from eomgen.symbolic.expression.graph import Number
 
@@ -325,5 +325,7 @@ TARGET = compiled_target(
     source="{main}.f90",
     called=_many_text,
     by=COMPILER,
-    single=Words(((r"=> real64\b", "=> real32"), (r"\bc_double\b", "c_float")), r'![^\n]*|"(?:[^"]|"")*"', r"\.f90$"),
+    single=SingleWords(
+        ((r"=> real64\b", "=> real32"), (r"\bc_double\b", "c_float")), r'![^\n]*|"(?:[^"]|"")*"', r"\.f90$"
+    ),
 )

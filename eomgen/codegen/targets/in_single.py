@@ -15,7 +15,7 @@ SUFFIXED = (r"(?<![\w.])(\d+\.\d*(?:e[+-]?\d+)?|\d+e[+-]?\d+|\.\d+(?:e[+-]?\d+)?
 
 
 @dataclass(frozen=True)
-class Words:
+class SingleWords:
     """What becomes of the words of a language; what they became stays as it is.
 
     Args:

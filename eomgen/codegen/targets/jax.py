@@ -9,7 +9,7 @@ from eomgen.codegen.lowering import lowered
 from eomgen.codegen.program import Program
 from eomgen.codegen.targets import branch_free
 from eomgen.codegen.targets.base import RHS, Role
-from eomgen.codegen.targets.in_single import Words
+from eomgen.codegen.targets.in_single import SingleWords
 from eomgen.codegen.targets.numpy import PYTHON
 from eomgen.codegen.targets.python_files import python_target
 
@@ -109,7 +109,7 @@ def jax_text(program: Program, stem: str, role: Role = RHS, remarks: Mapping[str
 
 
 USE = ("from {stem}_jax import {stem}_rhs", "python -m pytest")
-SINGLE = Words(
+SINGLE = SingleWords(
     (
         (r'^jax\.config\.update\("jax_enable_x64", True\)\n+', ""),
         (r"\bdtype=float\b", "dtype=jnp.float32"),

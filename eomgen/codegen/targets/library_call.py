@@ -28,7 +28,7 @@ from eomgen.codegen.targets.base import (
     called_by,
     functions_by,
 )
-from eomgen.codegen.targets.in_single import Words
+from eomgen.codegen.targets.in_single import SingleWords
 
 ENTRY = "eomgen_many"
 
@@ -66,7 +66,7 @@ def compiled_target(
     source: str,
     called: Callable[[str, Program, str, Role], str],
     by: Compiler,
-    single: Words,
+    single: SingleWords,
 ) -> Target:
     """A language whose texts become libraries.
 

@@ -21,7 +21,7 @@ from eomgen.codegen.targets.base import (
     functions_by,
     header,
 )
-from eomgen.codegen.targets.in_single import Words
+from eomgen.codegen.targets.in_single import SingleWords
 from eomgen.errors import ToolMissing
 
 _TEST = '''\
@@ -48,7 +48,7 @@ def test_{main}_gives_the_values_of_its_test_vectors():
 
 
 def python_target(
-    name: str, language: str, text: Callable[..., str], use: tuple[str, ...], single: Words | None = None
+    name: str, language: str, text: Callable[..., str], use: tuple[str, ...], single: SingleWords | None = None
 ) -> Target:
     """A language that is a Python package: STEM_NAME.py of the right-hand side, STEM_ROLE_NAME.py, and their tests.
 

@@ -21,7 +21,7 @@ from eomgen.codegen.targets.base import (
     header,
     vector_lines,
 )
-from eomgen.codegen.targets.in_single import QUOTED, Words
+from eomgen.codegen.targets.in_single import QUOTED, SingleWords
 from eomgen.codegen.targets.library_call import compiled_target, sizes
 
 UNARY = "sin cos asin acos atan sinh cosh tanh exp log sqrt".split()
@@ -294,7 +294,7 @@ TARGET = compiled_target(
     source="{stem}_rhs/src/{role}.rs",
     called=_many_text,
     by=COMPILER,
-    single=Words(
+    single=SingleWords(
         (
             (r"(?<!\w)f64\b|(?<=\d_)f64\b", "f32"),
             (r"1 << 63\b", "1 << 31"),

@@ -13,7 +13,7 @@ from eomgen.codegen.build import Compiler, binary
 from eomgen.codegen.program import Program
 from eomgen.codegen.targets.base import RHS, Description, FileContent, Role
 from eomgen.codegen.targets.c import SINGLE, c_text, constants_of
-from eomgen.codegen.targets.in_single import QUOTED, Words
+from eomgen.codegen.targets.in_single import QUOTED, SingleWords
 from eomgen.codegen.targets.node import node_target
 
 FLAGS = ("--target=wasm32-wasi", "-mexec-model=reactor", "-std=c99", "-s")
@@ -151,7 +151,7 @@ def _single(files: Mapping[str, FileContent]) -> dict[str, FileContent]:
     return found | {path: binary(str(found[f"{path.removesuffix('.wasm')}.c"]), COMPILER) for path in binaries}
 
 
-_LOADED = Words(((r"\bFloat64Array\b", "Float32Array"),), rf"//[^\n]*|{QUOTED}", r"\.mjs$")
+_LOADED = SingleWords(((r"\bFloat64Array\b", "Float32Array"),), rf"//[^\n]*|{QUOTED}", r"\.mjs$")
 TARGET = node_target(
     "wasm", "WebAssembly, made of the C, and its ECMAScript module", wasm_text, _written, USE, _alone, _single
 )
