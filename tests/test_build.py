@@ -2,17 +2,23 @@
 
 from __future__ import annotations
 
+import ctypes
 import threading
 
+import numpy as np
 import pytest
 from forked import needs_sh
 from hand_made import cart_pole, pendulum
 
 from eomgen import kept
 from eomgen.codegen import build, rhs
-from eomgen.codegen.program import right_hand_side
+from eomgen.codegen.program import program_of, right_hand_side
 from eomgen.codegen.rhs import compiled
+from eomgen.codegen.targets.c import c_text
 from eomgen.errors import RunFailed, ToolMissing
+from eomgen.symbolic.expression.functions import cos, sin, sqrt
+from eomgen.symbolic.expression.graph import Graph
+from eomgen.symbolic.expression.symbols import Symbols
 
 needs_cc = pytest.mark.skipif(build.compiler() is None, reason="no C compiler")
 
@@ -31,6 +37,28 @@ def test_a_program_is_compiled_once(own_cache, monkeypatch):
     monkeypatch.setattr(build, "_ran", lambda command: pytest.fail("compiled again"))
     assert compiled(right_hand_side(pendulum()), "c")(0, [0.0, 1.0], [1, 1, 1])[0] == 1
     assert [path.suffix for path in own_cache.iterdir()] == [".so"]
+
+
+@needs_cc
+def test_registers_of_this_machine_change_no_bit():
+    """Each operation is rounded as by a compiler that knows none of them: no product is fused with a sum."""
+    graph = Graph()
+    x, u, k = (graph.symbol(name) for name in "xuk")
+    parts = (x * u - k * x * x, sin(x) * cos(u) - k / (1 + u * u), sqrt(x * x + k * k * u * u))
+    text = c_text(program_of(parts, Symbols(graph, graph.symbol("t"), {"k": k}, {}, (x,), (u,), (), ())), "eomgen")
+    plain, own = (build.library(text, by=by) for by in (build.C, build.of_this_machine()))
+    assert build.of_this_machine().flags != build.C.flags
+    rng = np.random.default_rng(1)
+    for _ in range(100):
+        values = [np.ascontiguousarray(rng.normal(size=n)) for n in (2, 1)]
+        found = []
+        for made in (plain, own):
+            c, dx = np.zeros(64), np.zeros(3)
+            at = [ctypes.c_void_p(each.ctypes.data) for each in (*values, c, dx)]
+            made.eomgen_constants(at[1], at[2])
+            made.eomgen_evaluate(ctypes.c_double(0.3), at[0], at[1], at[2], None, at[3])
+            found.append(dx)
+        assert np.all(np.isfinite(found[0])) and found[0].tobytes() == found[1].tobytes()
 
 
 TEXT = "double twice(double x);\ndouble twice(double x) { return 2*x; }\n"

@@ -10,7 +10,9 @@ import pytest
 import eomgen
 from eomgen.codegen.build import compiler
 from eomgen.simulation.compiled_steps import CompiledSteps
+from eomgen.simulation.contact_signals import ContactSignals, divisors
 from eomgen.simulation.integrator import Stepping, march
+from eomgen.symbolic.expression.graph import Graph
 
 MODELS = Path(__file__).parent.parent / "models"
 
@@ -65,6 +67,7 @@ def test_a_step_shrinks_until_it_goes_no_further():
 
 RUNS = [  # contacts that change, ties in all forms, change points, quaternions, samples
     ("sliding_ladder", 2.0),
+    ("rough_incline", 2.0),
     ("four_bar", 3.0),
     ("n_four_bar", 3.0),
     ("bricard", 1.0),
@@ -164,3 +167,33 @@ def test_an_event_is_seen_in_c_and_found_as_by_scipy(until, monkeypatch):
     own, other = (eomgen.simulate(MODELS / "double_pendulum.toml", target=target, **how) for target in ("c", "numpy"))
     assert own.status == other.status == "event" and own.t[-1] == pytest.approx(other.t[-1], abs=1e-9)
     assert own.x[-1] == pytest.approx(other.x[-1], abs=1e-8) and len(calls) < own.steps / 2
+
+
+@pytest.mark.parametrize("name", ["sliding_ladder", "rough_incline", "bowling_ball", "disc_leaves_cylinder"])
+def test_what_a_contact_says_by_its_formula_is_what_the_balance_solved_with_rank_says(name):
+    """The force of a contact along a run: its formula, by which C finds events, and A rho = b of the bodies."""
+    run, seen = eomgen.simulate(MODELS / f"{name}.toml", time=0.3, samples=9), 0
+    for phase in run.phases:
+        t, x = phase.track
+        own = phase.model.signals
+        other = ContactSignals(own.watch, own.functions)
+        other.__dict__["_with_rank"] = frozenset(signal.column for signal in own.watch.signals if signal.column)
+        seen += len(other._with_rank - own._with_rank)
+        assert own.watched(t, x) == pytest.approx(other.watched(t, x), rel=1e-9, abs=1e-9)
+    assert seen
+
+
+def test_events_of_contacts_are_found_in_c(monkeypatch):
+    """Python asks what the contacts say a few times a phase, not at each look into a step."""
+    calls = []
+    watched = ContactSignals.watched
+    monkeypatch.setattr(ContactSignals, "watched", lambda self, t, x: calls.append(len(t)) or watched(self, t, x))
+    run = eomgen.simulate(MODELS / "rough_incline.toml", time=2, samples=3, target="c")
+    assert len(run.phases) > 1 and sum(calls) <= 2 * len(run.phases)
+
+
+def test_a_formula_divides_by_what_its_quotients_and_roots_have_below():
+    """a/b + c^2 + 1/(1 + d): b and 1 + d."""
+    graph = Graph()
+    a, b, c, d = (graph.symbol(name) for name in "abcd")
+    assert set(divisors(a / b + c**2 + 1 / (1 + d))) == {b, 1 + d}

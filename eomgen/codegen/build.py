@@ -12,6 +12,8 @@ import signal
 import subprocess
 import sys
 from contextlib import suppress
+from dataclasses import replace
+from functools import cache
 from pathlib import Path
 from typing import Any
 
@@ -90,6 +92,28 @@ C = Compiler(
     "install cc or `pip install ziglang`, set CC, or take --target numpy",
     zig="cc",
 )
+
+
+_EXTENSIONS = {"avx512f": "-mavx512f", "avx512dq": "-mavx512dq", "avx2": "-mavx2", "fma": "-mfma"}
+
+
+@cache
+def of_this_machine() -> Compiler:
+    """The C compiler, told which registers this machine has; every operation is rounded as without them."""
+    flags = [flag for name, flag in _EXTENSIONS.items() if name in _processor()]
+    return replace(C, flags=(*C.flags, *flags, "-fno-math-errno", "-ffp-contract=off"))
+
+
+def _processor() -> frozenset[str]:
+    """What the processor says that it can do; nothing where it does not say so."""
+    if platform.machine() not in ("x86_64", "AMD64"):
+        return frozenset()
+    try:
+        told = Path("/proc/cpuinfo").read_text(encoding="utf-8")
+    except OSError:
+        return frozenset()
+    lines = [line for line in told.splitlines() if line.startswith("flags")]
+    return frozenset(lines[0].split()) if lines else frozenset()
 
 
 def compiler(of: Compiler = C) -> str | None:

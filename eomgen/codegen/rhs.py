@@ -16,7 +16,7 @@ from eomgen.codegen.spheres import spheres_of
 from eomgen.codegen.targets import ALL
 from eomgen.codegen.targets.base import RHS, Address, Functions, Target
 from eomgen.codegen.targets.c import c_together
-from eomgen.codegen.taylor import Series, series_of
+from eomgen.codegen.taylor import Series, series_of, without_series
 from eomgen.errors import RunFailed, ToolMissing, UsageError
 from eomgen.model.parts import Model
 from eomgen.model.values import numeric_parameters
@@ -96,6 +96,11 @@ class RightHandSide:
     def _in_lanes(self) -> ProgramInLanes:
         """The program in lanes."""
         return ProgramInLanes(self.program)
+
+    @cached_property
+    def without_series(self) -> str:
+        """What of it has no power series, as `without_series` of its program."""
+        return without_series(self.program)
 
     def series(self, order: int) -> Series | None:
         """The power series of the motion, in C; None of what has none."""

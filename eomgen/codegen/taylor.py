@@ -22,12 +22,12 @@ from eomgen.codegen.lowered import Language
 from eomgen.codegen.lowering import lowered
 from eomgen.codegen.program import Assign, Program, Solve
 from eomgen.codegen.targets.c import C
-from eomgen.codegen.targets.c_lanes import text_of, vector_compiler
+from eomgen.codegen.targets.c_lanes import WIDTH, text_of, vector_compiler
 from eomgen.records import dataclass
 from eomgen.symbolic.expression.graph import Node, Scalar
 
 LEAST, MOST = 3, 20  # orders: the highest is what 1e-16 asks for
-MOST_UNROLLED = 4000  # sums x order^2 that are written out for each order: they take a compiler a second
+MOST_UNROLLED = 8000  # sums x order^2 that are written out for each order: they take a compiler a second
 UNROLL, INLINE = '_Pragma("GCC unroll 32")', "static inline __attribute__((always_inline))"
 _PAIRS = {"sin": ("cos", "-"), "cos": ("sin", "-"), "sinh": ("cosh", ""), "cosh": ("sinh", "")}  # and signs of rates
 _PARTS = {"tan": ("sin", "cos"), "tanh": ("sinh", "cosh")}
@@ -95,7 +95,8 @@ def series_text(program: Program, language: Language, order: int) -> tuple[str, 
     written for each j apart: a compiler then knows the length of every sum.
     """
     written = _Writer(Layout(program, language, "dx", "eomgen_", {}), order)
-    return written.text(), (order + 1) * len(written.rows) + written.kept
+    text = written.text()
+    return text, written.summed_at + 2 * (order - 1) * written.summed
 
 
 @dataclass
@@ -107,7 +108,8 @@ class _Writer:
         first, rest: (the row without which it is not needed, a line).
         named: what is no constant, and how its coefficient is called.
         same: of an input what it stands for.
-        kept: numbers that stay from the first coefficients on; sums: over products of coefficients.
+        kept: numbers that stay from the first coefficients on.
+        sums: the two rows of each sum over products of coefficients.
     """
 
     layout: Layout
@@ -118,7 +120,7 @@ class _Writer:
     named: dict[object, str] = field(default_factory=dict)
     same: dict[Node, Scalar] = field(default_factory=dict)
     kept: int = 0
-    sums: int = 0
+    sums: list[tuple[str, str]] = field(default_factory=list)
 
     def __post_init__(self) -> None:
         self.texts, self.number = self.layout.writer(), self.layout.language.real
@@ -140,18 +142,20 @@ class _Writer:
         for k, output in enumerate(program.outputs):
             self.say(f"X[{n + k}] = {self.texts.value(output)};", f"X[(j + 1)*{n} + {k}] = {self.now(output)}*next;")
         first, rest = self.needed(self.first), self.needed(self.rest)
-        short = self.sums * order * order < MOST_UNROLLED
+        short = len(self.sums) * order * order < MOST_UNROLLED
         arrays = "const REAL *restrict p, const REAL *restrict c, REAL *restrict X, REAL *restrict W"
         zero, one, called = self.number(0), self.number(1), "eomgen_next({}, p, c, X, W);"
         steps = [called.format(j) for j in range(1, order)]
         loop = [f"for (size_t j = 1; j < {order}; j++)", f"    {called.format('j')}"]
         lines = [
-            f"enum {{ KEPT = {(order + 1) * len(self.rows)} }};",
+            f"enum {{ KEPT = {(order + 1) * len(self.rows)}, SUMMED = {self.summed_at} }};",
             f"SERIES_INLINE void eomgen_next(const size_t j, {arrays})",
             "{",
             f"    const REAL whole = {zero} + (double)j, each = {one}/whole, next = {one}/(whole + {one});",
             "    (void)each, (void)p, (void)c, (void)W;",
+            "    SERIES_BEGIN(W + SUMMED, j)",
             *(f"    {line}" for line in rest),
+            *(f"    SERIES_END(W + SUMMED, j, {k}, {a}, {b})" for k, (a, b) in enumerate(self.sums)),
             "}",
             "",
             f"void eomgen_series(REAL t, const REAL *restrict x, {arrays})",
@@ -164,6 +168,7 @@ class _Writer:
         defined = {
             "STATES": n,
             "ORDER": order,
+            "SUMS": self.summed,
             "UNROLL": UNROLL if short else "",
             "INLINE": INLINE if short else "static",
         }
@@ -230,15 +235,33 @@ class _Writer:
         self.of(x)
         return self.row(("rate", self.key(x)))
 
+    @property
+    def summed(self) -> int:
+        """How many sums there are, in whole vectors of them."""
+        return -(-max(len(self.sums), 1) // WIDTH) * WIDTH
+
+    @property
+    def summed_at(self) -> int:
+        """Where the series that they are over lie, in whole vectors too."""
+        return -(-((self.order + 1) * len(self.rows) + self.kept) // WIDTH) * WIDTH
+
     def below(self, a: str, b: str) -> str:
         """sum over i > 0 of a_i b_(j-i)"""
-        self.sums += 1
-        return f"series_dot({a} + 1, {b} + j - 1, j)"
+        return f"({a}[j]*{b}[0] + {self.between(a, b)})"
 
     def between(self, a: str, b: str) -> str:
         """sum over 0 < i < j of a_i b_(j-i)"""
-        self.sums += 1
-        return f"series_dot({a} + 1, {b} + j - 1, j - 1)"
+        self.sums.append((a, b))
+        return f"SERIES_SUM({len(self.sums) - 1}, {a}, {b}, j)"
+
+    def product(self, a: str, b: str) -> str:
+        """sum of a_i b_(j-i); what has come last is added last, so that nothing waits for it"""
+        return f"({a}[j]*{b}[0] + ({a}[0]*{b}[j] + {self.between(a, b)}))"
+
+    def square(self, a: str) -> str:
+        """sum of a_i a_(j-i)"""
+        self.sums.append((a, a))
+        return f"(({a}[0] + {a}[0])*{a}[j] + SERIES_SQUARE({len(self.sums) - 1}, {a}, j))"
 
     def over(self, name: str, text: str) -> str:
         """The reciprocal of a first coefficient."""
@@ -286,14 +309,13 @@ class _Writer:
         a, b = x.args
         if not (self.moves(a) and self.moves(b)):
             return text
-        self.sums += 1
         if a is b:
-            return f"series_square({self.of(a)}, j)"
+            return self.square(self.of(a))
         for one, other in ((a, b), (b, a)):  # a (k a)
             if one.op == "mul" and other in one.args and sum(map(self.moves, one.args)) == 1:
                 k = next(each for each in one.args if each is not other)
-                return f"{self.texts.factor(k)}*series_square({self.of(other)}, j)"
-        return f"series_product({self.of(a)}, {self.of(b)}, j)"
+                return f"{self.texts.factor(k)}*{self.square(self.of(other))}"
+        return self.product(self.of(a), self.of(b))
 
     def of_div(self, x: Node, name: str, text: str) -> str:
         """(a - sum over i > 0 of b_i x_(j-i)) / b_0"""
@@ -332,10 +354,10 @@ class _Writer:
             return self.texts.factor(a), self.of(a)
         if key not in self.named:
             one, row = self.power(a, n - 1 if n % 2 else n // 2)
-            self.sums += 1
-            other, rest = (self.texts.factor(a), f"series_product({row}, {self.of(a)}, j)")
             if n % 2 == 0:
-                other, rest = one, f"series_square({row}, j)"
+                other, rest = one, self.square(row)
+            else:
+                other, rest = self.texts.factor(a), self.product(row, self.of(a))
             self.define(key, f"power_{len(self.named)}", f"{one}*{other}", rest)
         return self.named[key], self.row(key)
 
@@ -353,7 +375,7 @@ class _Writer:
         """j w_0 x_j = j a_j - sum over 0 < i < j of i x_i w_(j-i),  w = 1 + a a"""
         a, own = x.args[0], ("1 + square", x)
         held, series = self.texts.factor(a), self.of(a)
-        self.define(own, f"w_{name}", f"{self.number(1)} + {held}*{held}", f"series_square({series}, j)")
+        self.define(own, f"w_{name}", f"{self.number(1)} + {held}*{held}", self.square(series))
         over = self.over(name, f"w_{name}")
         return f"({self.now(a)} - {self.between(self.row(('rate', x)), self.row(own))}*each)*{over}"
 

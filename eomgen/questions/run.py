@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import replace
 from typing import Any
 
@@ -150,9 +150,9 @@ def run(
     )
     runs = _followed(through(models, here, plan))
     words = until.text if isinstance(until, WrittenEquation) else until
-    again = replace(how, rtol=finer(how.rtol), atol=finer(how.atol))
 
     def estimated(found: Trajectory) -> Accuracy | None:
+        again = replace(how, rtol=finer(how.rtol), atol=finer(how.atol))
         other = run(
             equations,
             time=time,
@@ -167,8 +167,8 @@ def run(
         return accuracy_of(found, other, min(1.0, how.rtol / again.rtol))
 
     whole = WholeRun(model, runs, plan, parameters or {})
-    found = finished_run(equations, models, whole, how, samples, until=words, reactions=reactions, outputs=outputs)
-    return replace(found, estimate=estimated)
+    asked = {"until": words, "reactions": reactions, "outputs": outputs, "estimate": estimated}
+    return finished_run(equations, models, whole, how, samples, **asked)
 
 
 def finished_run(
@@ -181,17 +181,22 @@ def finished_run(
     until: str | None = None,
     reactions: bool = True,
     outputs: Mapping[str, Expression] | None = None,
+    estimate: Callable[[Trajectory], Accuracy | None] | None = None,
 ) -> Trajectory:
     """The phases of a run as one trajectory, with its columns and its proof; the arguments as of `run`."""
     model, runs = equations.model, whole.runs
     found = _told(joined(models, runs), until)
     found = with_reactions(found, runs) if reactions else found
     found = with_outputs(found, runs, formulas_of(model) if outputs is None else outputs)
-    quantities = whole.outputs() if outputs is None else {}
     begun = runs[0].here.begun
-    proof = RunProof(equations, models.p, how, models, whole)
-    found = replace(found, assembled="" if begun is None else begun.words, whole=whole.value, quantities=quantities)
-    return thinned(replace(found, proof=proof), samples)
+    more = {
+        "assembled": "" if begun is None else begun.words,
+        "whole": whole.value,
+        "quantities": whole.outputs() if outputs is None else {},
+        "proof": RunProof(equations, models.p, how, models, whole),
+        "estimate": estimate,
+    }
+    return thinned(found, samples, **more)
 
 
 def phase_models(equations: Equations, p: np.ndarray, how: Stepping, target: str | None) -> PhaseModels:

@@ -17,7 +17,7 @@ from typing import Any, Protocol
 import numpy as np
 from numpy.polynomial.polynomial import polyval
 
-from eomgen.codegen.build import function_of, library
+from eomgen.codegen.build import function_of, library, of_this_machine
 from eomgen.codegen.rhs import RightHandSide
 from eomgen.codegen.targets.base import Address
 from eomgen.codegen.targets.c import c_together
@@ -36,7 +36,7 @@ SWEEPS = 30  # of turning pairs of rows; a handful does
 MOST_AT_ONCE, FEW = 1024, 8  # steps in a call; in the first
 NEWTON_STEPS = 6  # of Radau's method, as scipy's
 EASY = HELD_SHORT / 2  # h |lambda| of implicit steps with which DOP853 would go as far
-A_CALL = 0.05  # [s] of a call: after it Python looks whether somebody has lost patience
+A_CALL = 0.03  # [s] of a call: after it Python looks whether somebody has lost patience
 BY_SERIES = 2  # what dense_of tells
 _GOES_ON, _LOOK, _REACHED, _TOO_SMALL, _STIFF = range(5)
 
@@ -130,17 +130,21 @@ class _March(ctypes.Structure):
 
 
 @functools.cache
-def _library() -> tuple[Any, Any, Any]:
-    """(begin, march, dense) of march.c, compiled."""
+def _library() -> tuple[Any, Any, Any, Any]:
+    """(begin, march, dense, look) of march.c, compiled."""
     defined = [f"#define {name} {value!r}" for name, value in _CONSTANTS.items()]
     here = resources.files("eomgen.simulation")
     texts = [resources.files("eomgen.codegen") / "dop853.c", here / "march.c", here / "radau.c"]
-    made = library("\n".join([*defined, *(text.read_text(encoding="utf-8") for text in texts)]))
-    begin, march, dense = (function_of(made, name) for name in ("march_begin", "march", "march_dense"))
+    text = "\n".join([*defined, *(text.read_text(encoding="utf-8") for text in texts)])
+    made = library(text, by=of_this_machine())
+    begin, march, dense, look = (
+        function_of(made, name) for name in ("march_begin", "march", "march_dense", "march_look")
+    )
     begin.argtypes, begin.restype = [_AT], None
     march.argtypes, march.restype = [_AT, _AT], ctypes.c_int
     dense.argtypes, dense.restype = [_AT], None
-    return begin, march, dense
+    look.argtypes, look.restype = [_AT, _SIZE, _AT, _AT], None
+    return begin, march, dense, look
 
 
 @functools.lru_cache(maxsize=256)
@@ -204,27 +208,27 @@ class CompiledSteps:
         watched: Watched,
         slope: LateSlope,
     ) -> None:
-        self._begin, self._march, self._dense = _library()
+        self._begin, self._march, self._dense, self._look = _library()
         n = len(x0)
         self._fun, at = f, f.address
         self._kept: list[Any] = [f]
         sizes = {"x": n, "x_old": n, "f": n, "F": 7 * n, "K": 16 * n, "room": 3 * n}
-        sizes |= {"track_t": MOST_AT_ONCE, "track_x": MOST_AT_ONCE * n}
-        self._numbers = np.zeros(sum(sizes.values()))
-        ends = list(accumulate(sizes.values()))
-        parts = {name: self._numbers[end - sizes[name] : end] for name, end in zip(sizes, ends, strict=True)}
-        self._x, self._x_old, self._f, self._F = (parts[name] for name in ("x", "x_old", "f", "F"))
-        self._x[:] = self._x_old[:] = x0
-        self._F, self._track_t = self._F.reshape(7, n), parts["track_t"]
-        self._track_x = parts["track_x"].reshape(MOST_AT_ONCE, n)
+        sizes |= {"track_t": MOST_AT_ONCE, "track_x": MOST_AT_ONCE * n, "pivots": 2 * n}
         self._instants = np.zeros(0) if instants is None else np.ascontiguousarray(instants)
         self._instants = self._instants[np.searchsorted(self._instants, span[0], side="right") :]
-        self._rows, self._given = np.zeros((len(self._instants), n)), 0
+        sizes |= {"rows": n * len(self._instants)}
+        ends = list(accumulate(sizes.values()))
+        numbers = np.zeros(ends[-1])
+        first = self._put(numbers)
         m = self._m = _March(n=n, rate=_at(at), t=span[0], t_old=span[0], end=span[1], rtol=how.rtol, atol=how.atol)
-        first = self._put(self._numbers)
-        for name, end in zip(sizes, ends, strict=True):
-            setattr(m, name, first + 8 * (end - sizes[name]))
-        m.rows = self._put(self._rows)
+        parts = {}
+        for (name, size), end in zip(sizes.items(), ends, strict=True):
+            setattr(m, name, first + 8 * (end - size))
+            parts[name] = numbers[end - size : end]
+        self._x, self._x_old, self._f, self._track_t = (parts[name] for name in ("x", "x_old", "f", "track_t"))
+        self._x[:] = self._x_old[:] = x0
+        self._F, self._track_x = parts["F"].reshape(7, n), parts["track_x"].reshape(MOST_AT_ONCE, n)
+        self._rows, self._given = parts["rows"].reshape(-1, n), 0
         m.stops, m.n_stops = self._put(np.array(how.breakpoints, dtype=float)), len(how.breakpoints)
         m.instants, m.n_instants = self._put(self._instants), len(self._instants)
         self._search: EventSearch | None = None
@@ -235,7 +239,8 @@ class CompiledSteps:
         self._slope, m.most_seen = slope, SEEN
         self.stiff_from: float | None = None
         m.is_auto = how.method == AUTO
-        m.pivots = self._put(np.zeros(max(3 * n, self._most_rows), dtype=np.int32))
+        if self._most_rows > 3 * n:
+            m.pivots = self._put(np.zeros(self._most_rows, dtype=np.int32))
         if how.method == "Radau":
             self._stiffen()
         if how.method == TAYLOR:
@@ -282,6 +287,8 @@ class CompiledSteps:
                 self._lookout = lookout
                 self._near(lookout, functions)
         m.is_blind = blind
+        if search is not None and not blind:
+            search.seen = self._seen
         made = _together(tuple(function for _, function, _ in functions)) if functions and not blind else ()
         for (name, _, p), address in zip(functions, made, strict=False):
             found = address(p)
@@ -303,6 +310,12 @@ class CompiledSteps:
         m.floors, m.either = self._put(np.array(search.events.floors, dtype=float)), self._put(either)
         m.signs, m.largest, m.armed = self._put(self._signs), self._put(self._largest), self._put(self._armed)
         m.looks = self._put(np.zeros((event_location.PARTS + 3, k)))
+
+    def _seen(self, times: np.ndarray) -> np.ndarray:
+        """The functions of the events at instants of the last step."""
+        times, found = np.ascontiguousarray(times), np.empty((len(times), self._m.n_events))
+        self._look(ctypes.byref(self._m), len(times), times.ctypes.data, found.ctypes.data)
+        return found
 
     def _near(self, lookout: RankLookout, functions: list[tuple[str, RightHandSide, np.ndarray]]) -> None:
         m, nearness = self._m, lookout.nearness
@@ -341,9 +354,12 @@ class CompiledSteps:
         m = self._m
         m.order = order_for(m.rtol)
         series = self._fun.rhs.series(m.order)
-        self._X = np.zeros((2, m.order + 1, m.n))
-        m.series, m.along, m.X, m.W = series.address, series.along, self._put(self._X), self._put(np.zeros(series.size))
-        m.X_old = m.X + self._X[0].nbytes
+        rows = 2 * (m.order + 1) * m.n
+        numbers = _aligned(series.size + rows)
+        self._X = numbers[series.size :].reshape(2, -1, m.n)
+        m.series, m.along, m.W = series.address, series.along, self._put(numbers)
+        m.X = m.W + 8 * series.size
+        m.X_old = m.X + 4 * rows
 
     def _room(self, projection: Any) -> int:
         """Numbers in between: what a correction of a state takes, and what tells how near a singular position is."""
@@ -368,7 +384,7 @@ class CompiledSteps:
         taken = self._most.value
         spent = time.perf_counter() - began
         if spent > 0:
-            self._few = max(1, min(MOST_AT_ONCE, int(taken * min(A_CALL / spent, 8.0))))
+            self._few = max(1, min(MOST_AT_ONCE, int(taken * A_CALL / spent)))
         self._heard()
         if found == _STIFF:
             self._stiffen()
@@ -473,8 +489,16 @@ class CompiledSteps:
 
     def _put(self, array: np.ndarray) -> int:
         """Where an array lies; it stays there."""
+        if not array.size:
+            return 0
         self._kept.append(array)
         return int(array.__array_interface__["data"][0])
+
+
+def _aligned(size: int) -> np.ndarray:
+    """So many numbers, in whole lines of the cache: vectors of them lie across none."""
+    room = np.zeros(size + 8)
+    return room[-(room.__array_interface__["data"][0] // 8) % 8 :][:size]
 
 
 def _at(address: Address) -> _Function:

@@ -13,7 +13,10 @@ from eomgen.simulation.contact_events import ContactEvents, EventFunction, stopp
 from eomgen.simulation.event_location import Measured
 from eomgen.simulation.phase_functions import PhaseFunctions
 from eomgen.simulation.reaction_columns import ReactionColumns
+from eomgen.symbolic.expression.derivative import symbols_of
 from eomgen.symbolic.expression.graph import Scalar
+from eomgen.symbolic.expression.traversal import order
+from eomgen.symbolic.numeric.evaluation import FLOAT, evaluate
 from eomgen.symbolic.numeric.tolerances import COMPUTED, SUMMED
 
 
@@ -26,7 +29,17 @@ class ContactSignals:
 
     def look(self, t: float, x: np.ndarray) -> dict[tuple[str, str], float]:
         """The signals at one state, by owner and kind; nan where a reaction has no single value there."""
-        return {key: float(found[0]) for key, found in self._along(np.array([t]), x[None, :]).items()}
+        key = t, x.tobytes()
+        if key not in self._last:
+            self._last.clear()
+            found = self._along(np.array([t]), x[None, :])
+            self._last[key] = {name: float(values[0]) for name, values in found.items()}
+        return self._last[key]
+
+    @cached_property
+    def _last(self) -> dict[tuple[float, bytes], dict[tuple[str, str], float]]:
+        """The signals at the state that was looked at last: it is looked at several times."""
+        return {}
 
     def _along(self, t: np.ndarray, x: np.ndarray) -> dict[tuple[str, str], np.ndarray]:
         """The signals at n states."""
@@ -36,7 +49,7 @@ class ContactSignals:
         reactions = np.zeros((len(t), 0)) if columns is None else columns.along(t, inner, self.functions.p)
         found = {}
         for signal in self.watch.signals:
-            if signal.column and columns is not None:
+            if signal.column in self._with_rank and columns is not None:
                 values = reactions[:, columns.names.index(signal.column)]
             elif signal.value is None:
                 values = self.functions.slacks(x)[:, self.watch.loose.index(signal.owner)]
@@ -86,7 +99,11 @@ class ContactSignals:
             return False
         contact = self.watch.contact(bound.owner)
         stops = bound.kind == "stops" and bool(stopped_below(contact))
-        return bound.value is None or stops or any(s.column for s in self.watch.signals if s.owner == bound.owner)
+        return (
+            bound.value is None
+            or stops
+            or any(s.column in self._with_rank for s in self.watch.signals if s.owner == bound.owner)
+        )
 
     def _left(self, bound: EventFunction, signals: Mapping[tuple[str, str], np.ndarray]) -> np.ndarray:
         """What is left of a bound of a contact."""
@@ -106,17 +123,30 @@ class ContactSignals:
     @cached_property
     def _looked(self) -> RightHandSide:
         return self.functions.function(
-            tuple(s.value for s in self.watch.signals if s.value is not None and not s.column)
+            tuple(s.value for s in self.watch.signals if s.value is not None and s.column not in self._with_rank)
         )
 
     @cached_property
     def _columns(self) -> ReactionColumns | None:
         """The reactions behind the signals that follow from the balance of the bodies; None without such."""
-        return (
-            ReactionColumns(self.watch.reactions, self.functions.rhs)
-            if any(s.column for s in self.watch.signals)
-            else None
-        )
+        return ReactionColumns(self.watch.reactions, self.functions.rhs) if self._with_rank else None
+
+    @cached_property
+    def _with_rank(self) -> frozenset[str]:
+        """The columns for which the balance of the bodies is solved at each state, with its rank.
+
+        A formula that divides by nothing but what the parameters make, and here is not zero, has a value at all states.
+        """
+        symbols = self.functions.equations.symbols
+        known = dict(zip(symbols.parameters.values(), self.functions.p.tolist(), strict=True))
+
+        def moves(value: Scalar) -> bool:
+            below = divisors(value)
+            if not known.keys() >= {*symbols_of(below)}:
+                return True
+            return any(not np.isfinite(x) or x == 0 for x in evaluate(below, known, FLOAT))
+
+        return frozenset(s.column for s in self.watch.signals if s.column and s.value is not None and moves(s.value))
 
     @cached_property
     def _ways(self) -> RightHandSide:
@@ -127,3 +157,14 @@ class ContactSignals:
     @cached_property
     def _sized(self) -> RightHandSide:
         return self.functions.function((*self.functions.equations.forcing, *self.functions.equations.symbols.a))
+
+
+def divisors(value: Scalar) -> list[Scalar]:
+    """What a formula divides by, powers that are not whole among it."""
+    found: list[Scalar] = []
+    for x in order((value,)):
+        if x.op == "div":
+            found.append(x.args[1])
+        elif x.op == "pow" and not (type(x.args[1]) is int and x.args[1] >= 0):
+            found.append(x.args[0])
+    return found

@@ -83,6 +83,7 @@ class EventSearch:
     """Follows the functions of `events` from step to step.
 
     Args:
+        seen: instants of the step -> the functions there, where there is a quicker way than by its states.
         signs: by which each function is multiplied so that it falls; 0 where that is not known yet.
         armed: those that have been above their floor.
         largest: their largest absolute values so far.
@@ -91,6 +92,7 @@ class EventSearch:
     events: Events
     t: float
     x: np.ndarray
+    seen: Callable[[np.ndarray], np.ndarray] | None = None
     signs: np.ndarray = field(init=False)
     armed: np.ndarray = field(init=False)
     largest: np.ndarray = field(init=False)
@@ -135,12 +137,16 @@ class EventSearch:
         """(instants of a step, the functions there): so many that those of either side are resolved between them."""
         parts, either = PARTS, list(self.events.either)
         times = _looks(t_old, t_new, parts)
-        g = self.events.values(times, dense(times).T)
+        g = self._at(times, dense)
         while either and parts < MOST_PARTS and not _is_resolved(g[:, either]):
             parts *= 2
             times = _looks(t_old, t_new, parts)
-            g = self.events.values(times, dense(times).T)
+            g = self._at(times, dense)
         return times, g
+
+    def _at(self, times: np.ndarray, dense: Callable[[Any], np.ndarray]) -> np.ndarray:
+        """The functions at instants of the step, n x k."""
+        return self.seen(times) if self.seen is not None else self.events.values(times, dense(times).T)
 
     def _first(
         self, k: int, floor: float, times: np.ndarray, g: np.ndarray, dense: Callable[[Any], Any]
@@ -150,7 +156,7 @@ class EventSearch:
         touch = self.events.touch * self.largest[k] if k in self.events.either else None
 
         def value(t: float, level: float = 0.0) -> float:
-            return float(sign * self.events.values(np.array([t]), np.asarray(dense(t))[None, :])[0, k]) - level
+            return float(sign * self._at(np.array([t]), dense)[0, k]) - level
 
         for i in range(1, len(times)):
             if self.armed[k]:

@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable, Sequence
+from functools import lru_cache
 from typing import Any
 
 import numpy as np
@@ -87,7 +89,7 @@ def integrate(
         x=run.x,
         coordinates=rhs.coordinates,
         speeds=rhs.speeds,
-        energy=E,
+        energies=None if E is None else lambda: E,
         measure=lambda: kept,
         phases=(Phase(start, run.end, run.message, (0, len(run.t)), tracked=lambda: track),),
         status=run.status,
@@ -144,11 +146,18 @@ def instants_of(samples: int | Sequence[float] | None, start: float, end: float)
             raise UsageError(f"{samples} samples: at least the start and the end are needed")
         if samples > MOST_SAMPLES:
             raise UsageError(f"{samples} samples: at most {MOST_SAMPLES} are given", mend="ask for fewer")
-        return np.linspace(start, end, int(samples))
+        return _evenly(start, end, int(samples))
     times = np.asarray(samples, dtype=float)
     if times.ndim != 1 or np.any(np.diff(times) <= 0) or len(times) == 0 or times[0] < start or times[-1] > end:
         raise UsageError(f"samples must be instants between {start:g} s and {end:g} s, in order")
     return times
+
+
+@lru_cache(maxsize=16)
+def _evenly(start: float, end: float, count: int) -> np.ndarray:
+    found = np.linspace(start, end, count)
+    found.setflags(write=False)
+    return found
 
 
 def _vector(what: str, values: Any) -> np.ndarray:
@@ -166,9 +175,9 @@ def refuse_bad_run(start: float, end: float, how: Stepping) -> None:
     Raises:
         UsageError: the time, a tolerance, the method, or how ties are kept closed.
     """
-    if not (np.isfinite(start) and np.isfinite(end) and end >= start):
+    if not (math.isfinite(start) and math.isfinite(end) and end >= start):
         raise UsageError(f"the time from {start:g} s to {end:g} s makes no sense", mend="give an end after the start")
-    if not (how.rtol > 0 and how.atol > 0 and np.isfinite(how.rtol) and np.isfinite(how.atol)):
+    if not (how.rtol > 0 and how.atol > 0 and math.isfinite(how.rtol) and math.isfinite(how.atol)):
         raise UsageError(f"tolerances must be positive, not rtol = {how.rtol:g}, atol = {how.atol:g}")
     if how.method not in (*METHODS, HEYOKA):
         raise UsageError(f"unknown method '{how.method}'", mend=f"methods are {', '.join((*METHODS, HEYOKA))}")

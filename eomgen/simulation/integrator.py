@@ -12,7 +12,6 @@ import numpy as np
 
 from eomgen.codegen.rhs import RateFunction
 from eomgen.codegen.spheres import SpherePlaces
-from eomgen.codegen.taylor import without_series
 from eomgen.records import dataclass
 from eomgen.simulation.compiled_steps import COMPILED, CompiledSteps, Watched
 from eomgen.simulation.constraint_drift import DriftCorrection, EnergyLevel, Projection
@@ -305,7 +304,7 @@ def _possible(how: Stepping, f: StateRate) -> tuple[Stepping, str]:
     if getattr(f, "address", None) is None:
         why = "not in C" if isinstance(f, RateFunction) else "more than the equations of motion is stepped"
     else:
-        lacks = without_series(f.rhs.program) if isinstance(f, RateFunction) else ""
+        lacks = f.rhs.without_series if isinstance(f, RateFunction) else ""
         why = lacks and f"'{lacks}' has none"
     return (replace(how, method=AUTO), f"Not by power series ({why}).") if why else (how, "")
 

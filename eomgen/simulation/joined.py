@@ -4,6 +4,8 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import replace
+from functools import cache
+from typing import Any
 
 import numpy as np
 
@@ -27,14 +29,13 @@ def joined(models: PhaseModels, runs: Sequence[PhaseRun]) -> Trajectory:
         np.array([found.get(name, np.zeros(len(t))) for name in (*coordinates, *speeds)]).reshape(-1, len(t)).T
         for t, found in zip((phase_run.run.t for phase_run in runs), columns, strict=True)
     ]
-    energies = [phase_run.phase.energies(phase_run.run.t, phase_run.run.x) for phase_run in runs]
     ends = np.cumsum([0, *(len(phase_run.run.t) for phase_run in runs)])
     return Trajectory(
         t=np.concatenate([phase_run.run.t for phase_run in runs]),
         x=np.concatenate(tables),
         coordinates=coordinates,
         speeds=speeds,
-        energy=np.concatenate([T + V for T, V in energies]),
+        energies=lambda: np.concatenate([sum(s.phase.energies(s.run.t, s.run.x)) for s in runs]),
         measure=lambda: Kept(_drift(runs), *_open(runs)),
         phases=tuple(
             Phase(s.here.t, s.run.end, phase_text(models, s), (int(first), int(last)), s.phase, s.tracked)
@@ -116,34 +117,41 @@ def with_outputs(full: Trajectory, runs: Sequence[PhaseRun], formulas: Mapping[s
     return replace(full, outputs=given, remark=" ".join(filter(None, (full.remark, *told))))
 
 
-def thinned(full: Trajectory, samples: int | Sequence[float] | None) -> Trajectory:
+def thinned(full: Trajectory, samples: int | Sequence[float] | None, **more: Any) -> Trajectory:
     """The motion with one row an instant, at the instants asked for; one that ended early keeps its last row.
+
+    Of the trajectory `more` is replaced.
 
     Where one phase ends and another begins the row is the state after; both are in the phases, `last` and `first`.
     """
     if not len(full.t):
-        return full
-    kept = np.append(np.diff(full.t) > 0, True)
+        return replace(full, **more)
+    kept = np.ones(len(full.t), dtype=bool)
+    kept[:-1] = full.t[1:] > full.t[:-1]
     if samples is not None and not isinstance(samples, (int, np.integer)):
         kept &= np.isin(full.t, np.asarray(samples))
         kept[-1] |= full.status != "finished"
-    before = np.concatenate([[0], np.cumsum(kept)])
-    columns = full.columns()
+    before = np.concatenate([[0], np.cumsum(kept)]).tolist()
+    columns = cache(full.columns)
 
     def of(phase: Phase) -> Phase:
         begin, end = phase.rows
-        first, last = ({n: float(c[i]) for n, c in columns.items()} if end > begin else {} for i in (begin, end - 1))
-        return replace(phase, rows=(int(before[begin]), int(before[end])), first=first, last=last)
 
-    phases = tuple(map(of, full.phases))
+        def edges() -> tuple[dict[str, float], dict[str, float]]:
+            first, last = ({n: float(c[i]) for n, c in columns().items()} for i in (begin, end - 1))
+            return first, last
+
+        return replace(phase, rows=(before[begin], before[end]), edges=edges if end > begin else None)
+
+    more["phases"] = tuple(map(of, full.phases))
     if kept.all():
-        return replace(full, phases=phases)
-    energy = None if full.energy is None else full.energy[kept]
+        return replace(full, **more)
     reactions, outputs = (
         {name: column[kept] for name, column in table.items()} for table in (full.reactions, full.outputs)
     )
-    kept_rows = {"t": full.t[kept], "x": full.x[kept], "energy": energy, "reactions": reactions, "outputs": outputs}
-    return replace(full, **kept_rows, phases=phases)
+    energies = None if full.energies is None else lambda: full["energy"][kept]
+    more |= {"t": full.t[kept], "x": full.x[kept], "energies": energies, "reactions": reactions, "outputs": outputs}
+    return replace(full, **more)
 
 
 def phase_text(models: PhaseModels, phase_run: PhaseRun) -> str:

@@ -534,17 +534,23 @@ static int is_resolved(const double *g)
     return 1;
 }
 
-/* the functions of the events at the looks into the last step */
+/* the functions of the events at instants of the last step */
+void march_look(struct march *m, size_t count, const double *times, double *g)
+{
+    for (size_t i = 0; i < count; i++) {
+        between(m, times[i], m->room + m->n);
+        CALL(&m->events, times[i], m->room + m->n, g + i*m->n_events);
+    }
+}
+
+/* the same at the looks into it */
 static void look(struct march *m, double *times)
 {
     double near = EDGE*(m->t - m->t_old)/PARTS;
     times[0] = m->t_old, times[1] = m->t_old + near, times[LOOKS - 2] = m->t - near, times[LOOKS - 1] = m->t;
     for (int i = 1; i < PARTS; i++)
         times[i + 1] = m->t_old + i*((m->t - m->t_old)/PARTS);
-    for (int i = 0; i < LOOKS; i++) {
-        between(m, times[i], m->room + m->n);
-        CALL(&m->events, times[i], m->room + m->n, m->looks + (size_t)i*m->n_events);
-    }
+    march_look(m, LOOKS, times, m->looks);
 }
 
 /* whether function j does not come down to zero in the looks, as `EventSearch.step`; its memory where that is kept */

@@ -156,7 +156,7 @@ def _at_edge(phase: PhaseModel, run: Run) -> Run:
 
 def _determined(phase: PhaseModel, run: Run, how: Stepping) -> Run:
     """The run, ended where the ties do not say how it goes on, and it went astray."""
-    if run.status == "singular":
+    if run.status == "singular" or not phase.undetermined:
         return run
     finer = replace(how, rtol=_finer(how.rtol), atol=_finer(how.atol), most_steps=STEPS_AGAIN, breakpoints=())
     flow = Flow(phase.rate, finer, phase.functions.rhs.spheres, phase.projection)

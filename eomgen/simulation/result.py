@@ -46,7 +46,7 @@ class Phase:
             that of the other, in the state after.
         model: its equations, contacts and reactions, where contacts are that change; else None.
         tracked: -> `track`, put together where somebody asks for it.
-        first, last: every column at its beginning and at its end, where contacts are that change; else empty.
+        edges: -> `first`, `last`: every column at its beginning and at its end, where contacts are that change.
     """
 
     start: float
@@ -55,13 +55,28 @@ class Phase:
     rows: tuple[int, int] = (0, 0)
     model: Any = field(default=None, repr=False, compare=False)
     tracked: Callable[[], tuple[np.ndarray, np.ndarray]] | None = field(default=None, repr=False, compare=False)
-    first: Mapping[str, float] = field(default_factory=dict, repr=False, compare=False)
-    last: Mapping[str, float] = field(default_factory=dict, repr=False, compare=False)
+    edges: Callable[[], tuple[Mapping[str, float], Mapping[str, float]]] | None = field(
+        default=None, repr=False, compare=False
+    )
 
     @cached_property
     def track(self) -> tuple[np.ndarray, np.ndarray] | None:
         """(instants, states) of the phase: those asked for and the integrator's steps, in order; None where unknown."""
         return None if self.tracked is None else self.tracked()
+
+    @cached_property
+    def _edges(self) -> tuple[Mapping[str, float], Mapping[str, float]]:
+        return ({}, {}) if self.edges is None else self.edges()
+
+    @property
+    def first(self) -> Mapping[str, float]:
+        """Every column at its beginning; empty where no contacts are that change."""
+        return self._edges[0]
+
+    @property
+    def last(self) -> Mapping[str, float]:
+        """The same at its end."""
+        return self._edges[1]
 
 
 @dataclass(frozen=True)
@@ -86,7 +101,7 @@ class Trajectory:
         t: times, n [s], one row each: strictly later from row to row.
         x: states (q, u), n x (nq + nu), in the order of `coordinates`, `speeds`.
         coordinates, speeds: the names.
-        energy: T + V, n [J]; None where nobody gave it.
+        energies: -> `energy`, found where somebody asks for it; None where nobody gave it.
         measure: -> how well the laws were kept, found where somebody asks for it.
         phases: in order.
         status: "finished" or what stopped it.
@@ -108,7 +123,7 @@ class Trajectory:
     x: np.ndarray
     coordinates: tuple[str, ...]
     speeds: tuple[str, ...]
-    energy: np.ndarray | None
+    energies: Callable[[], np.ndarray] | None = field(repr=False)
     measure: Callable[[], Kept] = field(repr=False)
     phases: tuple[Phase, ...]
     status: RunStatus
@@ -125,6 +140,11 @@ class Trajectory:
     whole: Callable[[Any], Any] | None = field(default=None, repr=False)
     quantities: Mapping[str, Any] = field(default_factory=dict)
     estimate: Callable[[Trajectory], Any] | None = None
+
+    @cached_property
+    def energy(self) -> np.ndarray | None:
+        """T + V, n [J]; None where nobody gave it."""
+        return None if self.energies is None else self.energies()
 
     @cached_property
     def kept(self) -> Kept:

@@ -12,7 +12,7 @@ from collections.abc import Mapping, Sequence
 from functools import partial
 from typing import Any
 
-from eomgen.codegen.build import function_of, library
+from eomgen.codegen.build import function_of, library, of_this_machine
 from eomgen.codegen.lowered import CHANGED, INDICES, INT, PLACES, READ, REAL, ROOM, Language, one_line
 from eomgen.codegen.lowering import Lowered, lowered
 from eomgen.codegen.program import Program
@@ -195,14 +195,14 @@ def _text(made: Lowered, stem: str, role: Role) -> str:
 def c_functions(program: Program) -> Functions:
     """The program compiled (or found in the cache) and callable."""
     made = _lowered(program, "eomgen", RHS)
-    return functions_of(library(_text(made, "eomgen", RHS)), program, "eomgen", made.constants)
+    return functions_of(library(_text(made, "eomgen", RHS), by=of_this_machine()), program, "eomgen", made.constants)
 
 
 def c_together(programs: Sequence[Program]) -> tuple[Functions, ...]:
     """Several programs, compiled as one text."""
     made = [_lowered(program, f"eomgen{i}", RHS) for i, program in enumerate(programs)]
     text = "\n".join(_apart(each, f"eomgen{i}", RHS) for i, each in enumerate(made))
-    compiled = library(text)
+    compiled = library(text, by=of_this_machine())
     return tuple(
         functions_of(compiled, program, f"eomgen{i}", each.constants)
         for i, (program, each) in enumerate(zip(programs, made, strict=True))

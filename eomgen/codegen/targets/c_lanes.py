@@ -5,11 +5,9 @@ Programs that solve by kernels, or read samples, branch on numbers; they are run
 
 from __future__ import annotations
 
-import platform
 from dataclasses import replace
 from functools import cache
 from importlib import resources
-from pathlib import Path
 
 from eomgen.codegen import build
 from eomgen.codegen.expressions import ATOM, RankedText, ranked_number
@@ -21,7 +19,6 @@ from eomgen.symbolic.expression.functions import NAMES
 from eomgen.symbolic.expression.graph import Number
 
 WIDTH = 8  # lanes
-_EXTENSIONS = {"avx512f": "-mavx512f", "avx512dq": "-mavx512dq", "avx2": "-mavx2", "fma": "-mfma"}
 _NAMED = {"abs": "fabs", **{name: name for name in (*NAMES, "pow", "less", "less_equal", "select") if name != "abs"}}
 
 
@@ -66,20 +63,7 @@ def constants_of(program: Program) -> int:
 
 @cache
 def vector_compiler() -> build.Compiler:
-    """The C compiler, told which vectors this machine has."""
-    flags = [flag for name, flag in _EXTENSIONS.items() if name in _processor()]
-    wide = ["-mprefer-vector-width=512"] if "-mavx512f" in flags and "clang" not in build.C.command()[0] else []
-    more = (*flags, *wide, "-fno-math-errno", "-ffp-contract=fast", "-Wno-psabi")
-    return replace(build.C, flags=(*build.C.flags, *more))
-
-
-def _processor() -> frozenset[str]:
-    """What the processor says that it can do; nothing where it does not say so."""
-    if platform.machine() not in ("x86_64", "AMD64"):
-        return frozenset()
-    try:
-        told = Path("/proc/cpuinfo").read_text(encoding="utf-8")
-    except OSError:
-        return frozenset()
-    lines = [line for line in told.splitlines() if line.startswith("flags")]
-    return frozenset(lines[0].split()) if lines else frozenset()
+    """The C compiler for vectors of this machine's; products are added to unrounded."""
+    usual = build.of_this_machine()
+    wide = ["-mprefer-vector-width=512"] if "-mavx512f" in usual.flags and "clang" not in build.C.command()[0] else []
+    return replace(usual, flags=(*usual.flags, *wide, "-ffp-contract=fast", "-Wno-psabi"))
