@@ -167,8 +167,17 @@ def run(
         return accuracy_of(found, other, min(1.0, how.rtol / again.rtol))
 
     whole = WholeRun(model, runs, plan, parameters or {})
-    asked = {"until": words, "reactions": reactions, "outputs": outputs, "estimate": estimated}
-    return finished_run(equations, models, whole, how, samples, **asked)
+    return finished_run(
+        equations,
+        models,
+        whole,
+        how,
+        samples,
+        until=words,
+        reactions=reactions,
+        outputs=outputs,
+        estimate=estimated,
+    )
 
 
 def finished_run(
