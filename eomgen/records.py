@@ -1,7 +1,10 @@
-"""Frozen records: what `dataclasses.dataclass` makes of a class, in a quarter of its time.
+"""Frozen records: what `dataclasses.dataclass` makes of a class, in 2/5 of its time.
 
-The library writes and compiles six methods of each class, and some four hundred classes are a third of a short
-command. Here `__init__` alone is compiled; what compares, hashes, shows and refuses is the same for all.
+The library writes and compiles six methods of each class. For the four hundred classes that a verb loads that is
+0.18 s of CPU of the 0.83 s of `check`, and 0.22 s of the 1.23 s of `derive` (Python 3.11); by what follows it is 0.07
+and 0.08 s: one part in eight of both commands, which is why this file is kept. Here `__init__` alone is compiled; what
+compares, hashes, shows and refuses is the same for all. The library's own way got faster in later versions: when 3.13
+is the oldest that is supported, measure again, and if nothing is left of the difference, delete this file.
 """
 
 from __future__ import annotations

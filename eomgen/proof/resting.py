@@ -25,7 +25,7 @@ from eomgen.records import dataclass
 from eomgen.symbolic.expression.derivative import jacobian
 from eomgen.symbolic.expression.graph import Node
 from eomgen.symbolic.numeric.evaluation import NoValue, evaluate, fifty_digits
-from eomgen.symbolic.numeric.tolerances import COMPUTED, DIFFERENCE_STEP, SAME_PLACE, ZERO_AT_50
+from eomgen.symbolic.numeric.tolerances import COMPUTED, DIFFERENCE_STEP, SAME_PLACE, SHARE, ZERO_AT_50
 
 MOST = 12  # places that are looked at
 STEP = fifty_digits().number(1) / 10**15  # of a central difference
@@ -209,11 +209,20 @@ class _Proof:
 
     def _wrong_when_pushed(self, q: Node, row: int) -> str:
         """It goes back from both sides where it is stable, and from one of them it does not where it is unstable."""
-        place, kind = self.numbers[q], self.place.stability.kind
-        push = DIFFERENCE_STEP * max(1, abs(place))
-        goes_back = [sign * self._accelerations({q: place + sign * push})[row] < 0 for sign in (1, -1)]
+        kind = self.place.stability.kind
+        goes_back = [sign * pull < 0 for sign, pull in zip((1, -1), self._pulls(q, row), strict=True)]
         if kind == "stable" and not all(goes_back):
             return "said to be stable, and what is pushed aside does not come back"
         if kind == "unstable" and all(goes_back):
             return "said to be unstable, and what is pushed aside comes back"
         return ""
+
+    def _pulls(self, q: Node, row: int) -> list[Any]:
+        """The accelerations from both sides, of the least push at which they are more than is left at the place."""
+        place, left = self.numbers[q], abs(self._accelerations({})[row])
+        push, most = STEP, DIFFERENCE_STEP * max(1, abs(place))
+        while True:
+            pulls = [self._accelerations({q: place + sign * push})[row] for sign in (1, -1)]
+            if push >= most or min(map(abs, pulls)) > left / COMPUTED:
+                return pulls
+            push = min(push / SHARE, most)

@@ -60,6 +60,36 @@ joint = { kind = "revolute", angle = "a", turned = { axis = [0, 0, 1], angle = "
 """
 
 
+SLIDER = """
+[coordinates]
+x = 0
+[bodies.slider]
+shape = { kind = "particle", mass = 1 }
+joint = { kind = "prismatic", axis = [1, 0], displacement = "x" }
+[forces.push]
+kind = "generalized"
+coordinate = "x"
+value = "VALUE"
+"""
+
+
+@pytest.mark.parametrize("l", ["1", "1e-3", "1e-6", "1e-8"])
+@pytest.mark.parametrize(
+    ("force", "places"),
+    [
+        ("-k*(x/l - 1)*(x/l - 2)*(x/l - 3)", (1, 2, 3)),
+        ("-k*(x/l)*(x/l - 1)^3", (0, 1)),
+        ("k*(exp(-x/l) - 3*exp(-2*x/l))", (math.log(3),)),
+        ("k*exp(-x/l)", ()),
+        ("k/(1 + (x/l)^2)", ()),
+    ],
+)
+def test_places_of_rest_are_so_many_in_every_unit_of_length(force, places, l):
+    """F(x/l) = 0 at x = l s: as many s for every l, and where a force only gets small there is none."""
+    found = found_in(model_of(SLIDER.replace("VALUE", force), k=2, l=l))
+    assert sorted(number(e, "x") / float(l) for e in found.found) == pytest.approx(places, abs=1e-9)
+
+
 def test_a_pendulum_rests_below_and_above():
     """m g l sin(theta) = 0: theta = 0 stable, theta = pi unstable."""
     found = found_in(eomgen.load("models/simple_pendulum.toml"))

@@ -55,11 +55,11 @@ class Located:
         return abs(self.value(x) - number) <= CARRIED * (1 + abs(number))
 
     def chosen(self, candidates: Sequence[Scalar], node: Node, equation: Scalar) -> Scalar | None:
-        """The candidate that the node is worth there, whole turns added where the equation does not see them.
+        """The candidate that the node is worth there, the nearest of several; whole turns added if the equation has them.
 
         One of more than a page is none: no reader follows it, and what depends on it would be longer still.
         """
-        turn = 2 * node.graph.pi
+        turn, found = 2 * node.graph.pi, list[tuple[float, Scalar]]()
         for candidate in candidates:
             if text_size(candidate) > PAGE:
                 continue
@@ -67,8 +67,8 @@ class Located:
             turns = round(away) if math.isfinite(away) else 0
             shifted = candidate + turns * turn if turns else candidate
             if self.agrees(shifted, node) and (not turns or has_period(equation, node, turn)):
-                return shifted
-        return None
+                found.append((abs(self.value(shifted) - self.numbers[node]), shifted))
+        return min(found, key=lambda each: each[0])[1] if found else None
 
     def root(self, equation: Scalar, node: Node) -> Scalar | None:
         """The root of the equation that the node is worth there."""

@@ -19,7 +19,7 @@ from eomgen.symbolic.numeric.batch_evaluation import Layers
 from eomgen.symbolic.numeric.dense import rank
 from eomgen.symbolic.numeric.isolation import can_isolate, isolated
 from eomgen.symbolic.numeric.roots_nearby import Descent
-from eomgen.symbolic.numeric.tolerances import NEARLY_SINGULAR, RANK, SAME_PLACE, UNBALANCED
+from eomgen.symbolic.numeric.tolerances import COMPUTED, NEAR_ROOT, NEARLY_SINGULAR, RANK, SAME_PLACE, UNBALANCED
 from eomgen.symbolic.numeric.work import Work
 from eomgen.symbolic.solve import cramer
 from eomgen.symbolic.solve.solving import has_period, outside_of_turns
@@ -36,7 +36,7 @@ LONG = 500  # operations
 MOST_OF_FAMILIES = 400  # where many of them are one family: bodies that turn freely
 UNDECIDED = 60  # boxes that may hold a root, from which one is sought
 ANYWHERE = "anywhere"
-CLUSTER = 1e-3  # distance of an undecided box from a root, at which it belongs to that root
+CLUSTER = 3.0  # times as far from a root as those that belong to it so far, a box that may hold it does too
 
 
 @dataclass(frozen=True)
@@ -140,16 +140,22 @@ class _Search:
     def _isolated(self, equations: tuple[Scalar, ...]) -> Places:
         low, high = self._range
         boxes = isolated(equations, self.statics.q, self.floats, low, high)
-        guesses = np.concatenate([boxes.roots, boxes.undecided[:: 1 + len(boxes.undecided) // UNDECIDED]])
-        found = self._descent.roots_near(self._with_multipliers(guesses))
+        found, guesses = [], boxes.undecided[:: 1 + len(boxes.undecided) // UNDECIDED]
+        for z in self._with_multipliers(boxes.roots):
+            polished = self._descent.polished(z)
+            found += self._descent.roots_near(z[None, :]) if polished is None else [polished]
+        found += self._descent.roots_near(self._with_multipliers(guesses))
         found = [z for z in found if self._is_held(z)]
         if not boxes.finished:
             found += self._descent.roots_near(self._with_multipliers(self._scattered()), MOST_PLACES)
         n = len(self.statics.q)
         size = high - low
-        lost = [x for x in boxes.undecided if not any(np.all(abs(x - z[:n]) <= CLUSTER * size) for z in found)]
+        left, halves = boxes.undecided / size, boxes.halves / size
+        for z in found:
+            apart = ~_about(z[:n] / size, left, halves)
+            left, halves = left[apart], halves[apart]
         inside = [z for z in found if np.all((z[:n] >= low) & (z[:n] <= high))]
-        return self._sorted(inside, complete=boxes.finished and not lost, where=self._where)
+        return self._sorted(inside, complete=boxes.finished and not len(left), where=self._where)
 
     # -- ranges and guesses ------------------------------------------------------------------------
 
@@ -236,17 +242,17 @@ class _Search:
     def _sorted(self, found: Sequence[np.ndarray], *, complete: bool, where: str) -> Places:
         """Each place once, angles in (-pi, pi], the nearest to the guess first."""
         n = len(self.statics.q)
-        unique: list[np.ndarray] = []
+        unique: list[tuple[np.ndarray, np.ndarray]] = []
         for z in found:
-            z = z.copy()
+            z, reach = z.copy(), self._descent.reach(z)[:n] if n else np.zeros(0)
             for k, q in enumerate(self.statics.q):
                 if q in self._turning:
                     z[k] = -((-z[k] + math.pi) % math.tau - math.pi)
                     z[k] = math.pi if abs(z[k] + math.pi) < SAME_PLACE else z[k]
-            if not any(np.all(abs(z[:n] - other[:n]) <= SAME_PLACE * (1 + abs(z[:n]))) for other in unique):
-                unique.append(z)
-        unique.sort(key=lambda z: self._distance(z[:n]))
-        return Places(tuple(unique), complete, where, self._turning if self.statics.q else frozenset())
+            if not any(np.all(abs(z - other)[:n] <= np.maximum(reach, more)) for other, more in unique):
+                unique.append((z, reach))
+        places = sorted((z for z, _ in unique), key=lambda z: self._distance(z[:n]))
+        return Places(tuple(places), complete, where, self._turning if self.statics.q else frozenset())
 
     def _distance(self, q: np.ndarray) -> float:
         """From the guess, angles the short way round."""
@@ -254,6 +260,18 @@ class _Search:
         turning = [x in self._turning for x in self.statics.q]
         away = np.where(turning, np.minimum(away % math.tau, math.tau - away % math.tau), away)
         return float(np.sum((away / (1 + np.abs(self.guess))) ** 2))
+
+
+def _about(z: np.ndarray, boxes: np.ndarray, halves: np.ndarray) -> np.ndarray:
+    """Which of the undecided boxes belong to the root at z: those that lie about it without a wide gap."""
+    away = np.max(np.abs(boxes - z) - halves, axis=1, initial=0.0)
+    ends = np.max(np.abs(boxes - z) + halves, axis=1, initial=0.0)
+    kept, radius = np.zeros(len(boxes), dtype=bool), NEAR_ROOT * COMPUTED
+    for k in np.argsort(away):
+        if away[k] > CLUSTER * radius:
+            break
+        kept[k], radius = True, max(radius, ends[k])
+    return kept
 
 
 def _balancing(J: np.ndarray, Q: np.ndarray) -> np.ndarray:

@@ -5,7 +5,8 @@ where Krawczyk's operator maps it into its own inside:
 
     K(x) = m - C f(m) + (1 - C f'(x)) (x - m),      m the middle of the box, C the inverse of f'(m)
 
-Where f' is singular at a root, boxes about it stay undecided down to the smallest size.
+Where f' is singular at a root, boxes about it stay undecided down to the smallest size, a share of how far they are
+from 0: places of rest may be micrometres apart, and the range in which they are sought is a kilometre wide.
 Source: Neumaier, Interval Methods for Systems of Equations (1990), sections 5.1 and 5.2.
 """
 
@@ -22,11 +23,14 @@ from eomgen.symbolic.expression.graph import Node, Scalar
 from eomgen.symbolic.expression.traversal import order
 from eomgen.symbolic.numeric.evaluation import evaluate
 from eomgen.symbolic.numeric.intervals import INTERVALS, interval
-from eomgen.symbolic.numeric.tolerances import NEAR_ROOT
+from eomgen.symbolic.numeric.tolerances import COMPUTED, NEAR_ROOT, TINIEST
 
 MOST_BOXES = 60_000  # examined in all
 MOST_STATEMENTS = 30_000_000  # operations in all, of long equations
 TOGETHER = 4096  # boxes of one evaluation
+NARROWER = 60  # times that a box about one root is made smaller, while any gets narrower
+STILL_NARROWER = 0.9
+OF_ROUNDING = 8.0  # times the rounding of an equation at a point
 HALF = 0.4837  # where a box is halved: roots at round numbers do not lie on borders
 JUMPS = frozenset(("sign", "select", "less", "less_equal"))
 
@@ -37,12 +41,13 @@ class Isolation:
 
     Args:
         roots: the middle of a box about each root, roots x unknowns.
-        undecided: the middles of boxes that may hold roots.
+        undecided: the middles of boxes that may hold roots, `halves` how far they reach to each side.
         finished: whether every box was examined.
     """
 
     roots: np.ndarray
     undecided: np.ndarray
+    halves: np.ndarray
     finished: bool
 
 
@@ -71,7 +76,7 @@ class _Boxes:
 
     def examined(self, low: np.ndarray, high: np.ndarray) -> Isolation:
         slopes = tuple(x for row in jacobian(self.equations, self.unknowns) for x in row)
-        roots, undecided = [np.zeros((0, len(low)))], [np.zeros((0, len(low)))]
+        roots, undecided, halves = ([np.zeros((0, len(low)))] for _ in range(3))
         lows, highs, seen = low[None, :], high[None, :], 0
         most = min(MOST_BOXES, MOST_STATEMENTS // len(order((*self.equations, *slopes))))
         while len(lows) and seen < most:
@@ -79,13 +84,16 @@ class _Boxes:
             a, b, rest_a, rest_b = lows[:TOGETHER], highs[:TOGETHER], lows[TOGETHER:], highs[TOGETHER:]
             a, b = _kept(self._may_vanish(a, b), a, b)
             a, b, alone, empty = self._krawczyk(slopes, a, b)
-            roots.append((a[alone] + b[alone]) / 2)
+            roots.append(self._narrowed(slopes, a[alone], b[alone]))
             a, b = _kept(~alone & ~empty, a, b)
-            small = np.all(b - a <= NEAR_ROOT * self.size, axis=1)
+            small = np.all(b - a <= NEAR_ROOT * np.maximum(abs(a + b) / 2, COMPUTED * self.size), axis=1)
+            small |= self._is_vain(slopes, a, b)
             undecided.append((a[small] + b[small]) / 2)
+            halves.append((b[small] - a[small]) / 2)
             a, b = self._halved(*_kept(~small, a, b))
             lows, highs = np.concatenate([a, rest_a]), np.concatenate([b, rest_b])
-        return Isolation(np.concatenate(roots), np.concatenate(undecided), not len(lows))
+        at, open_, wide = (np.concatenate(each) for each in (roots, undecided, halves))
+        return Isolation(at, open_, wide, not len(lows))
 
     def _at(self, scalars: Sequence[Scalar], a: np.ndarray, b: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
         """(lowest, highest) value of each scalar in each box, boxes x scalars."""
@@ -98,7 +106,24 @@ class _Boxes:
 
     def _may_vanish(self, a: np.ndarray, b: np.ndarray) -> np.ndarray:
         low, high = self._at(self.equations, a, b)
-        return np.asarray(np.all((low <= 0) & (high >= 0), axis=1))
+        return np.asarray(np.all(~((low > 0) | (high < 0)), axis=1))  # no value: it may
+
+    def _is_vain(self, slopes: Sequence[Scalar], a: np.ndarray, b: np.ndarray) -> np.ndarray:
+        """Boxes of which halves tell no more: an equation is below all doubles, or has no value at the ends and in the
+        middle, or changes in a small box by little more than the rounding at a point."""
+        low, high = self._at(self.equations, a, b)
+        lost = np.any(np.maximum(-low, high) <= TINIEST, axis=1)
+        lost |= np.all([self._has_no_value(x, y) for x, y in ((a, b), (a, a), ((a + b) / 2,) * 2, (b, b))], axis=0)
+        found = np.all(b - a <= NEAR_ROOT * self.size, axis=1)
+        a, b = a[found], b[found]
+        (low, high), (least, most) = self._at(slopes, a, b), self._at(self.equations, (a + b) / 2, (a + b) / 2)
+        steepest = np.maximum(-low, high).reshape(len(a), len(self.equations), len(self.unknowns))
+        changes = np.einsum("bij,bj->bi", steepest, b - a)
+        found[found] = np.any((changes <= OF_ROUNDING * (most - least)) & np.isfinite(most - least), axis=1)
+        return np.asarray(lost | found)
+
+    def _has_no_value(self, a: np.ndarray, b: np.ndarray) -> np.ndarray:
+        return np.asarray(~np.all(np.isfinite(self._at(self.equations, a, b)), axis=(0, 2)))
 
     def _krawczyk(
         self, slopes: Sequence[Scalar], a: np.ndarray, b: np.ndarray
@@ -123,6 +148,19 @@ class _Boxes:
         new_b = np.where(bounded[:, None], np.minimum(b, K + reach), b)
         empty = np.any(new_a > new_b, axis=1)
         return np.minimum(new_a, new_b), new_b, bounded & inside, empty
+
+    def _narrowed(self, slopes: Sequence[Scalar], a: np.ndarray, b: np.ndarray) -> np.ndarray:
+        """The middles of boxes that hold one root each, made as small as the operator and halving make them."""
+        for _ in range(NARROWER):
+            before, n = b - a, len(a)
+            low, high, _, empty = self._krawczyk(slopes, *self._halved(a, b))
+            holds = ~empty & self._may_vanish(low, high)
+            holds |= np.tile(~holds[:n] & ~holds[n:], 2)
+            kept = np.where(holds[:, None], np.stack([low, -high]), np.inf).reshape(2, 2, *a.shape)
+            a, b = kept[0].min(axis=0), -kept[1].min(axis=0)
+            if not np.any(b - a < STILL_NARROWER * before):
+                break
+        return np.asarray((a + b) / 2)
 
     def _halved(self, a: np.ndarray, b: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
         """Every box cut in two across its longest side."""

@@ -1,12 +1,16 @@
 """Equations, guesses -> their roots nearby, in numbers: many guesses at once, then 50 digits.
 
 Levenberg and Marquardt: (A^T A + mu 1) dx = -A^T f, A = df/dx, mu smaller after each success; rows and columns are
-scaled first, for equations have units of their own.
+scaled first, for equations have units of their own. What was found is a root only where Newton's next step is smaller
+again: the steps to a root of order k shrink by 1 - 1/k, whatever the units are; those along a tail that has none,
+exp(-x/l) or 1/x^2, do not.
 """
 
 from __future__ import annotations
 
+import math
 from collections.abc import Mapping, Sequence
+from dataclasses import replace
 from functools import cached_property
 from typing import Any
 
@@ -16,22 +20,25 @@ from eomgen.records import dataclass
 from eomgen.symbolic.expression.derivative import jacobian
 from eomgen.symbolic.expression.graph import Node, Scalar
 from eomgen.symbolic.expression.node import State
+from eomgen.symbolic.numeric.balls import balls
 from eomgen.symbolic.numeric.batch_evaluation import Layers
 from eomgen.symbolic.numeric.dense import balanced
-from eomgen.symbolic.numeric.evaluation import evaluate, fifty_digits
+from eomgen.symbolic.numeric.evaluation import NoValue, evaluate, fifty_digits
 from eomgen.symbolic.numeric.newton import Newton
 from eomgen.symbolic.numeric.tolerances import (
     BEST,
     CERTAIN_AT_50,
+    COMPUTED,
     DIFFERENCE_AT_50,
     LEAST_CHANGE,
     MET_AT_50,
     NEAR_ROOT,
-    SAME_PLACE,
 )
 
 STEPS = 80
 UNDAMPED = 8
+SHRINKS = 0.9  # of a step of Newton's method the next, at a root of order 10; along exp(-x^2) it is more
+STEPS_APART = 1e3  # of Newton's steps at two places, within which they are one root
 WANDERS = 1e-2  # how far 50 digits may lead away from what floats found
 POLISHED = Newton(enough=MET_AT_50, still=CERTAIN_AT_50, steps=200, keeps=1e-3)  # steps: at a multiple root
 
@@ -46,12 +53,14 @@ class Descent:
         values: of every other symbol, with 50 digits.
         telling: how many of the unknowns, the first ones, tell two roots apart and how near they are (None: all). The
             others may be free at a root, as the multipliers of redundant ties are.
+        scales: of the rows and of the columns (None: those of slopes at a few places).
     """
 
     equations: tuple[Scalar, ...]
     unknowns: tuple[Node, ...]
     values: Mapping[Node, Any]
     telling: int | None = None
+    scales: tuple[np.ndarray, np.ndarray] | None = None
 
     def roots_near(self, guesses: np.ndarray, most: int | None = None) -> list[np.ndarray]:
         """From each guess the root that is reached; those that reach none are left out.
@@ -67,29 +76,84 @@ class Descent:
         with np.errstate(all="ignore"):
             x = np.vstack([self._undamped(x[0]), x])
             x = x[self._arrived(x)]
-        apart, n = _apart(x, self.telling), self.telling
+            apart = self._apart(x)
         if most is not None:
-            apart = sorted(apart, key=lambda row: float(np.sum((row - guesses[0])[:n] ** 2)))[:most]
+            apart = sorted(apart, key=lambda row: float(np.sum((row - guesses[0])[: self.telling] ** 2)))[:most]
         polished = (self.polished(row) for row in apart)
         return [row for row in polished if row is not None]
 
     def polished(self, x: np.ndarray) -> np.ndarray | None:
         """The root near x to all digits of a float; None where there is none."""
-        start = dict(self.values) | {node: fifty_digits().number(1) * float(v) for node, v in self._pairs(x)}
-        root = POLISHED.root(self, start)
+        near = self._measured_at(x)
+        root = POLISHED.root(near, self._state(x))
         if np.isnan(root.left):
             return None
         found = np.array([float(root.x[node]) for node in self.unknowns])
-        return found if self._holds(root.x) and np.all(abs(found - x) <= WANDERS * (1 + abs(x))) else None
+        wanders = np.any(abs(found - x) > WANDERS * (1 + abs(x)))
+        return None if wanders or not near.closes_in(root.x) else found
+
+    def closes_in(self, state: State) -> bool:
+        """Whether Newton's steps from a state shrink, or are nothing, or what is left is the rounding of terms."""
+        first = self._step(state)
+        if first is None or self._is_nothing(first, state) or self._is_rounding(state):
+            return first is not None
+        moved = state | {node: state[node] + d for node, d in zip(self.unknowns, first, strict=True)}
+        second = self._step(moved)
+        return second is not None and self._length(second) <= SHRINKS * self._length(first)
+
+    def reach(self, x: np.ndarray) -> np.ndarray:
+        """How far about a place the root is that was found there, of each unknown."""
+        step = self._measured_at(x)._step(self._state(x))
+        return np.asarray(COMPUTED * np.abs(x) + (0.0 if step is None else STEPS_APART * np.abs(step.astype(float))))
+
+    def _state(self, x: np.ndarray) -> dict[Node, Any]:
+        """Values of all symbols at x, with 50 digits."""
+        return dict(self.values) | {node: fifty_digits().number(1) * float(v) for node, v in self._pairs(x)}
+
+    def _measured_at(self, x: np.ndarray) -> Descent:
+        """The same with its rows measured by their slopes at x: what is left is then a length.
+
+        With 50 digits, whose exponents have no end: where doubles underflow, nothing would be left and no step.
+        """
+        try:
+            slopes = np.abs(self._at_digits(self._state(x))) * self._columns
+            largest = [max(row, default=0) for row in slopes]
+        except (NoValue, ZeroDivisionError):
+            return self
+        rows = [1 / size if 0 < size < math.inf else r for size, r in zip(largest, self._rows, strict=True)]
+        return replace(self, scales=(np.array(rows, dtype=object), self._columns))
+
+    def _step(self, state: State) -> np.ndarray | None:
+        """Newton's step with 50 digits; None where there is none."""
+        try:
+            f, A = self.left(state), self.slopes(state)
+            largest = max(map(abs, f), default=0)
+            if not largest:
+                return np.zeros(len(self.unknowns))
+            unit = np.linalg.lstsq(A, np.array([-float(y / largest) for y in f]), rcond=LEAST_CHANGE)[0]
+        except (NoValue, ZeroDivisionError, np.linalg.LinAlgError):
+            return None
+        return np.array([largest * float(c * d) for c, d in zip(self._columns, unit, strict=True)])
+
+    def _is_nothing(self, step: np.ndarray, state: State) -> bool:
+        return all(abs(d) <= CERTAIN_AT_50 * (1 + abs(state[x])) for x, d in zip(self.unknowns, step, strict=True))
+
+    def _is_rounding(self, state: State) -> bool:
+        """Whether each equation is 0 as far as its terms, of which much cancels, are known with so many digits."""
+        exact = {node: (x, 0) for node, x in state.items()}
+        return all(abs(x) <= reach for x, reach in evaluate(self.equations, exact, balls(50)))
+
+    def _length(self, step: np.ndarray) -> Any:
+        return max(abs(d) / float(c) for d, c in zip(step, self._columns, strict=True))
 
     def left(self, state: State) -> list[Any]:
         """The equations with 50 digits, rows scaled."""
         values = evaluate(self.equations, state, fifty_digits())
-        return [y * float(r) for y, r in zip(values, self._rows, strict=True)]
+        return [y * r for y, r in zip(values, self._rows, strict=True)]
 
     def slopes(self, state: State) -> np.ndarray:
         """Their derivatives, rows and columns scaled."""
-        return np.asarray(self._rows[:, None] * self._at_digits(state) * self._columns)
+        return np.array(self._rows[:, None] * self._at_digits(state) * self._columns, dtype=float)
 
     def moved(self, state: State, step: Sequence[Any]) -> State:
         """The state after a step of the scaled unknowns."""
@@ -97,16 +161,14 @@ class Descent:
         return state | {node: state[node] + float(size) * d for node, size, d in moves}
 
     def _at_digits(self, state: Mapping[Node, Any]) -> np.ndarray:
-        """df/dx with 50 digits, rounded."""
-        return np.reshape([float(y) for y in evaluate(self._derivatives, state, fifty_digits())], self._shape)
+        """df/dx with 50 digits."""
+        found = np.empty(len(self._derivatives), dtype=object)
+        found[:] = evaluate(self._derivatives, state, fifty_digits())
+        return found.reshape(self._shape)
 
     def at_one(self, x: np.ndarray) -> np.ndarray:
         """df/dx at x, equations x unknowns."""
         return np.asarray(self._at(x[None, :])[1][0])
-
-    def _holds(self, state: Mapping[Node, Any]) -> bool:
-        f = np.array([float(y) for y in evaluate(self.equations, state, fifty_digits())])
-        return bool(np.all(abs(self._rows * f) < DIFFERENCE_AT_50))
 
     def _pairs(self, x: np.ndarray) -> zip[tuple[Node, float]]:
         return zip(self.unknowns, x, strict=True)
@@ -132,12 +194,14 @@ class Descent:
     @cached_property
     def _scales(self) -> tuple[np.ndarray, np.ndarray]:
         """(of the rows, of the columns): with them the largest entries of df/dx are near 1, near a few places."""
+        if self.scales is not None:
+            return self.scales
         places = np.random.default_rng(2).uniform(-1, 1, (16, len(self.unknowns)))
         A = np.abs(self._at(places)[1])
-        known = np.isfinite(A)
+        known = np.isfinite(A) & (A > 0)
         with np.errstate(all="ignore"):
-            A = np.sqrt(np.sum(np.where(known, A, 0.0) ** 2, axis=0) / np.sum(known, axis=0))
-        return balanced(np.where(np.isfinite(A), A, 1.0))[1:]
+            A = np.exp(np.sum(np.where(known, np.log(A), 0.0), axis=0) / np.sum(known, axis=0))
+        return balanced(np.where(np.isfinite(A), A, np.any(known, axis=0)))[1:]
 
     @property
     def _rows(self) -> np.ndarray:
@@ -177,6 +241,19 @@ class Descent:
             mu[left] = np.clip(np.where(better, mu[left] / 5, mu[left] * 4), DIFFERENCE_AT_50, 1e12)
         return np.asarray(np.isfinite(size) & (size < NEAR_ROOT))
 
+    def _apart(self, x: np.ndarray) -> list[np.ndarray]:
+        """Of the rows that are one root in the entries that tell, one."""
+        f, A = self._scaled(x)
+        steps = self._columns * np.einsum("bij,bj->bi", np.linalg.pinv(A, rcond=LEAST_CHANGE), f)
+        reaches = (STEPS_APART * np.abs(steps) + COMPUTED * np.abs(x))[:, : self.telling]
+        found: list[int] = []
+        for k, row in enumerate(x[:, : self.telling]):
+            others = x[found, : self.telling]
+            near = np.maximum(reaches[k], reaches[found])
+            if not np.any(np.all(np.abs(others - row) <= near, axis=1)):
+                found.append(k)
+        return [x[k] for k in found]
+
     def _scaled(self, x: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
         f, A = self._at(x)
         A = A * self._rows[:, None] * self._columns
@@ -189,15 +266,6 @@ def _solved(normal: np.ndarray, right: np.ndarray) -> np.ndarray:
         found: np.ndarray = np.linalg.solve(normal, right[:, :, None])[:, :, 0]
     except np.linalg.LinAlgError:
         found = (np.linalg.pinv(normal, hermitian=True) @ right[:, :, None])[:, :, 0]
-    return found
-
-
-def _apart(x: np.ndarray, telling: int | None) -> list[np.ndarray]:
-    """Of the rows that are as good as equal in the entries that tell, one."""
-    found: list[np.ndarray] = []
-    for row in x:
-        if not any(np.all((abs(row - other) <= SAME_PLACE * (1 + abs(row)))[:telling]) for other in found):
-            found.append(row)
     return found
 
 
