@@ -17,6 +17,8 @@ from collections.abc import Iterator, Sequence
 from functools import cached_property
 from typing import Any
 
+import numpy as np
+
 from eomgen.mechanics.bodies.armature import armature_bias, armature_mass
 from eomgen.mechanics.bodies.inertia import mass_properties
 from eomgen.mechanics.bodies.kinematics import BodyLink
@@ -43,7 +45,9 @@ from eomgen.symbolic.expression.spatial import (
     transposed,
     vector_of,
 )
-from eomgen.symbolic.numeric.evaluation import evaluate, fifty_digits
+from eomgen.symbolic.numeric.dense import balanced, rank
+from eomgen.symbolic.numeric.evaluation import NoValue, evaluate, fifty_digits
+from eomgen.symbolic.numeric.tolerances import COMPUTED, RANK
 
 PARTS = 18  # numbers of a joint: E^T, r, r', s
 STEP = Fraction(1, 10**15)  # of differences: with 50 digits their error is below 1e-28
@@ -78,6 +82,31 @@ def demand_of(system: System, state: State) -> Demand:
     rows = pullback(free_rates(system, free), shares, u)
     forces = evaluate(rows, state | dict(zip(shares, found.forces, strict=True)), fifty_digits())
     return Demand(forces, [max(found.sizes, default=0)] * len(u), found.rates)
+
+
+def multipliers_demanded(system: System, state: State) -> dict[tuple[str, int], float]:
+    """lam of every closing and eliminated row, by (tie, number), for which the free bodies ask for nothing more.
+
+    Their demand is linear in lam: it is taken without any, and with each alone. Rows that share a force are left out.
+
+    Raises:
+        NoValue: no lam leave nothing.
+    """
+    free = system.free or system
+    known = _with_free_motion(system, free, state)
+    closing, none = free.ties.closing, dict.fromkeys(free.symbols.lam, fifty_digits().number(0))
+    still = _demand(free, known | none)
+    alone = [_demand(free, known | none | {lam: fifty_digits().number(1)}).forces for lam in free.symbols.lam]
+    right = np.array([float(x) for x in still.forces])
+    A = np.array([[float(x - y) for x, y in zip(still.forces, one, strict=True)] for one in alone]).T
+    _, rows, columns = balanced(A)
+    A, right = rows[:, None] * A * columns, rows * right
+    lam = np.linalg.lstsq(A, right, rcond=RANK)[0]
+    if np.any(abs(A @ lam - right) > COMPUTED * (abs(rows * [float(x) for x in still.sizes]) + abs(A) @ abs(lam))):
+        raise NoValue("the forces of the ties do not balance the free bodies")
+    single = [rank(np.delete(A, k, axis=1)) < rank(A) for k in range(len(closing))]
+    values = zip(closing, columns * lam, single, strict=True)
+    return {(row.tie, row.number): float(x) for row, x, has_one in values if has_one}
 
 
 def _with_free_motion(system: System, free: System, state: State) -> State:

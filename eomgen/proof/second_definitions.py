@@ -21,7 +21,7 @@ from eomgen.mechanics.reactions.drive import with_drive_let_go
 from eomgen.model.forces.load import GeneralizedForce, PointForce
 from eomgen.model.outputs import FUNCTIONS
 from eomgen.proof.at_a_state import NumericState, differing
-from eomgen.proof.free_bodies import demand_of
+from eomgen.proof.free_bodies import demand_of, multipliers_demanded
 from eomgen.proof.instant import STEP
 from eomgen.proof.pushes import Pushes, add_push, pushes_of
 from eomgen.records import dataclass
@@ -194,6 +194,16 @@ class NearbyStates:
         nodes = (*symbols.parameters.values(), *moving)
         there = dict(zip(nodes, evaluate([own[x.name] for x in nodes], known, digits), strict=True))
         return demand_of(free, there).forces[[u.name for u in symbols.u].index(f"{coordinate}'")]
+
+    def held(self, tie: str) -> Any:
+        """lam of a tie of one row, by the balance of the free bodies on which all ties push."""
+        equations = self.state.equations
+        if equations.friction:
+            raise NoValue("something rubs")
+        found = multipliers_demanded(equations.system, self.state.values | self.state.unknowns)
+        if (tie, 1) not in found:
+            raise NoValue("it shares its force with other ties")
+        return found[tie, 1]
 
     def root(self, x: Any) -> Any:
         """Of a number."""

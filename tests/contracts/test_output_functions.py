@@ -362,6 +362,47 @@ def test_a_wrong_value_is_seen_by_the_second_definition(monkeypatch):
         assert " for " in second_definition(state("plane"), parse(call, references=True).calls[0]), call
 
 
+LINKED = """
+eomgen = 1
+name = "crank, link and slider"
+space = "plane"
+[parameters]
+g = 9.81
+[coordinates]
+phi = 0.7
+x = { dependent = true, near = 1.5 }
+[bodies.crank]
+shape = { kind = "rod", mass = 2, length = 0.5 }
+joint = { kind = "revolute", angle = "phi" }
+[bodies.slider]
+shape = { kind = "particle", mass = 3 }
+joint = { kind = "prismatic", axis = [1, 0], displacement = "x" }
+[constraints.link]
+kind = "link"
+points = ["crank.end", "slider.center"]
+length = 1.2
+[forces.weight]
+kind = "gravity"
+acceleration = [0, "-g"]
+"""
+
+
+def test_the_multiplier_of_an_eliminated_row_is_that_of_the_free_bodies(monkeypatch):
+    """r(lam) = M a + c - Q - J^T lam = 0 over all coordinates, r by Newton and Euler; of the wrong sign it is told."""
+    found = system_of(eomgen.loads(LINKED))
+    equations, symbols = recursive.assembled_by_recursion(found), found.symbols
+    values = {
+        node: Fraction(found.scope.model.parameters[n].value.evaluate({})) for n, node in symbols.parameters.items()
+    }
+    phi, x = 0.7, 0.5 * math.cos(0.7) + math.sqrt(1.2**2 - (0.5 * math.sin(0.7)) ** 2)
+    numbers = {symbols.t: 0.0, **dict(zip(symbols.q, (phi, x), strict=True)), symbols.u[0]: 1.3}
+    there, call = NumericState(equations, values, numbers), parse("multiplier(link)", references=True).calls[0]
+    assert second_definition(there, call) == ""
+    right = Quantities.value
+    monkeypatch.setattr(Quantities, "value", lambda self, asked: -right(self, asked))
+    assert " for " in second_definition(there, call)
+
+
 def test_a_wrong_unit_is_seen(monkeypatch):
     """A velocity in m does not grow as one in m/s."""
     monkeypatch.setitem(FUNCTIONS, "vx", replace(velocity.VELOCITY, unit="m"))

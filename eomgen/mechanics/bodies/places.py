@@ -55,7 +55,7 @@ class Located:
         return abs(self.value(x) - number) <= CARRIED * (1 + abs(number))
 
     def chosen(self, candidates: Sequence[Scalar], node: Node, equation: Scalar) -> Scalar | None:
-        """The candidate that the node is worth there, the nearest of several; whole turns added if the equation has them.
+        """The candidate that the node is worth there, the nearest of several; whole turns added if it has them.
 
         One of more than a page is none: no reader follows it, and what depends on it would be longer still.
         """

@@ -137,6 +137,13 @@ class Trial(Protocol):
             NoValue: a tie drives it; something rubs.
         """
 
+    def held(self, tie: str) -> Any:
+        """The multiplier of a tie of one row with which all ties hold the free bodies, each by Newton and Euler.
+
+        Raises:
+            NoValue: it shares its force with others; something rubs.
+        """
+
     def faster(self, speed: str, by: int) -> Trial:
         """The same with one speed larger.
 

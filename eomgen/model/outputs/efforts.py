@@ -10,6 +10,7 @@ MULTIPLIER = OutputFunction(
     per=(0,),
     gives="of a tie of one row",
     value=lambda scene, call: scene.multiplier(name_at(call, 0)),
+    second=lambda trial, call: trial.held(name_at(call, 0)),
     source=BALANCE,
 )
 DRIVE = OutputFunction(
