@@ -189,6 +189,15 @@ def test_redundant_ties_make_nothing_right():
     assert kinds(verdict("four_cranks", right.replace(" + g", " + N + g"))) == ["constraint_force"]
 
 
+@pytest.mark.parametrize("mass", ["1e-8", "1e-30", "1e-293", "1e200"])
+def test_the_size_of_a_unit_makes_nothing_right(mass):
+    """T = m l^2 theta'^2/2 is not 0, however light the bob; its equation, which is not linear in m, stays right."""
+    text = (MODELS / "simple_pendulum.toml").read_text().replace("m = { value = 1.0", f"m = {{ value = {mass}")
+    equations = ("T = 0", "T = m*l^2*theta'^2/2", "abs(m)*l*theta'' = -m*g*sin(theta)", "abs(m)*l*theta'' = 0")
+    found = [eomgen.verify(eomgen.loads(text), each).verdict for each in equations]
+    assert found == ["wrong", "right", "right", "wrong"]
+
+
 def test_own_names_mean_what_the_file_says():
     """Under its own name a coordinate is not turned round: the sign of a weight would be right upside down."""
     assert verdict("simple_pendulum", "l*theta'' = g*sin(theta)").verdict == "wrong"

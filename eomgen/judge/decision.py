@@ -2,7 +2,8 @@
 
 At random exact states of a prime field; where roots or functions have no meaning there, at real states of 50 digits in
 the model's own domain: parameters that are sizes positive, coordinates and speeds of either sign; on the ties where
-these restrict the coordinates. What no state decides stays undecided: nothing is taken for true that was not.
+these restrict the coordinates. What no state decides stays undecided: nothing is taken for true that was not. What
+vanishes with 50 digits is looked at once more in balls: a kinetic energy of 1e-293 J is small, and is not 0.
 """
 
 from __future__ import annotations
@@ -22,6 +23,7 @@ from eomgen.symbolic.expression.derivative import gradient, symbols_of
 from eomgen.symbolic.expression.graph import Node, Scalar
 from eomgen.symbolic.expression.node import ScalarRow
 from eomgen.symbolic.expression.traversal import united
+from eomgen.symbolic.numeric.balls import Ball, balls
 from eomgen.symbolic.numeric.evaluation import (
     FLOAT,
     PRIME,
@@ -65,11 +67,53 @@ class NumberKind:
     inverse: Callable[[Any], Any]
     tidy: Callable[[Any], Any]
     is_zero: Callable[[Any, Any], bool]  # of a number, beside the size of what it was made of
+    number: Callable[[Any], Any] = lambda x: x  # of a whole number
+    states: int = STATES  # at how many it is looked at
 
 
+@dataclass(frozen=True)
+class SureNumber:
+    """A number as far as it is sure: its ball."""
+
+    ball: Ball
+
+    def __sub__(self, other: SureNumber) -> SureNumber:
+        return SureNumber(BALLS.functions["sub"](self.ball, other.ball))
+
+    def __mul__(self, other: SureNumber) -> SureNumber:
+        return SureNumber(BALLS.functions["mul"](self.ball, other.ball))
+
+    def __neg__(self) -> SureNumber:
+        return SureNumber(BALLS.functions["neg"](self.ball))
+
+    def __abs__(self) -> Any:
+        return abs(self.ball[0])
+
+    @property
+    def inverse(self) -> SureNumber:
+        return SureNumber(BALLS.functions["div"](BALLS.number(1), self.ball))
+
+    @property
+    def may_vanish(self) -> bool:
+        return not abs(self.ball[0]) > self.ball[1]
+
+
+BALLS = balls(50, last=True)
 IN_FIELD = NumberKind("prime field", lambda x: pow(x, -1, PRIME), lambda x: x % PRIME, lambda x, size: x % PRIME == 0)
 IN_DIGITS = NumberKind(
-    "50 digits", lambda x: 1 / x, lambda x: x, lambda x, size: abs(x) <= max(ELIMINATED_AT_50 * size, ZERO_AT_50)
+    "50 digits",
+    lambda x: 1 / x,
+    lambda x: x,
+    lambda x, size: abs(x) <= max(ELIMINATED_AT_50 * size, ZERO_AT_50),
+    states=REAL_STATES,
+)
+IN_BALLS = NumberKind(
+    "balls of 50 digits",
+    lambda x: x.inverse,
+    lambda x: x,
+    lambda x, size: x.may_vanish,
+    lambda x: SureNumber(BALLS.number(x)),
+    states=1,
 )
 
 
@@ -87,12 +131,12 @@ def combination(
     flat = [x for each in (row, *rows) for x in each]
     found = _combined(row, rows, _exact_states(flat), IN_FIELD)
     if found.holds is None:
-        found = _combined(row, rows, _real_states(system, flat, on_ties=False), IN_DIGITS)
+        found = _combined_in_digits(system, row, rows, flat, on_ties=False)
     closes = bool(system.ties.J) or any(x.gap is not None and not x.identical for x in system.ties.rows)
     if found.holds is True or not closes:
         return found
     flat += [x for each in tied for x in each]
-    held = _combined(row, (*rows, *tied), _real_states(system, flat, on_ties=True), IN_DIGITS)
+    held = _combined_in_digits(system, row, (*rows, *tied), flat, on_ties=True)
     return replace(held, on_ties=held.holds is True)
 
 
@@ -111,18 +155,33 @@ def linear_row(x: Scalar, symbols: Sequence[Node]) -> tuple[ScalarRow, bool]:
     return (*slopes, rest), linear
 
 
+def _combined_in_digits(
+    system: System,
+    row: Sequence[Scalar],
+    rows: Sequence[Sequence[Scalar]],
+    flat: Sequence[Scalar],
+    *,
+    on_ties: bool,
+) -> Follows:
+    """The same at real states; what 50 digits take for 0 must be able to vanish in balls."""
+    found = _combined(row, rows, _real_states(system, flat, on_ties=on_ties), IN_DIGITS)
+    if found.holds and _combined(row, rows, _sure_states(system, flat, on_ties=on_ties), IN_BALLS).holds is False:
+        return Follows(False, (), IN_BALLS.name)
+    return found
+
+
 def _combined(
     row: Sequence[Scalar], rows: Sequence[Sequence[Scalar]], states: Iterable[NumberRow], numbers: NumberKind
 ) -> Follows:
     """The same at given states; undecided where there are none."""
-    width, used, wanted = len(row), set[int](), STATES if numbers is IN_FIELD else REAL_STATES
+    width, used = len(row), set[int]()
     for seen, values in enumerate(states, start=1):
         table = [values[k : k + width] for k in range(0, len(values), width)]
         factors = factors_in(table[1:], table[0], numbers)
         if factors is None:
             return Follows(False, (), numbers.name)
         used |= {k for k, x in enumerate(factors) if not numbers.is_zero(x, 1)}
-        if seen == wanted:
+        if seen == numbers.states:
             return Follows(True, tuple(sorted(used)), numbers.name)
     return Follows(None)
 
@@ -132,7 +191,7 @@ def factors_in(rows: Sequence[NumberRow], row: NumberRow, numbers: NumberKind) -
     pivots: list[tuple[int, NumberRow, NumberRow]] = []
     for k, each in enumerate((*rows, row)):
         size = max(map(abs, each), default=0)
-        left, made = list(each), [int(j == k) for j in range(len(rows) + 1)]
+        left, made = list(each), [numbers.number(int(j == k)) for j in range(len(rows) + 1)]
         for column, pivot, share in pivots:
             factor = left[column]
             if factor:
@@ -183,6 +242,16 @@ def _real_states(system: System, flat: Sequence[Scalar], *, on_ties: bool) -> It
             continue
         if found == REAL_STATES:
             return
+
+
+def _sure_states(system: System, flat: Sequence[Scalar], *, on_ties: bool) -> Iterator[NumberRow]:
+    """NumberRow in balls at the first such state where all have values; on the ties as far as these are closed."""
+    _, flat = united(list(flat))
+    for state in states_of(system, flat, on_ties=on_ties):
+        moved = {*system.symbols.q, *system.symbols.u} if on_ties else set()
+        values = evaluate(flat, {x: (v, v * 0 + (ZERO_AT_50 if x in moved else 0)) for x, v in state.items()}, BALLS)
+        if not any(x != x for x, _ in values):
+            yield [SureNumber(each) for each in values]
 
 
 def states_of(
@@ -245,7 +314,7 @@ def _either(rng: Random, near: float, attempt: int) -> float:
 def _rational(x: float) -> Any:
     from eomgen.symbolic.expression.rational import Fraction
 
-    return Fraction(round(x * 10**6), 10**6)
+    return Fraction(x)
 
 
 def _start(system: System, own: Mapping[Node, float]) -> dict[Node, float]:

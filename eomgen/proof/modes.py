@@ -150,10 +150,11 @@ class _Proof:
             s = one * self.rate * part / 10
             upper = [[s * int(i == j) - x for j, x in enumerate(row)] + [-x for x in E[i]] for i, row in enumerate(F)]
             lower = [[*K[i], *(s * x + c for x, c in zip(M[i], C[i], strict=True))] for i in range(n)]
-            det, size = (
-                one.context.det(one.context.matrix(upper + lower)),
-                sum(abs(c * s**k) for k, c in enumerate(p.coefficients)),
-            )
+            rows = upper + lower
+            sizes = [max(map(abs, row)) or one for row in rows]  # mpmath takes for singular what is small beside 1
+            scaled = [[x / size for x in row] for row, size in zip(rows, sizes, strict=True)]
+            det = one.context.det(one.context.matrix(scaled)) * one.context.fprod(sizes)
+            size = sum(abs(c * s**k) for k, c in enumerate(p.coefficients))
             if abs(det - p.at(s)) > DIFFERENCE_AT_50 * size:
                 return f"p({float(s):.6g}) = {float(p.at(s)):.10g} against {float(det):.10g}"
         return ""

@@ -95,7 +95,9 @@ def advance(phase: PhaseModel, here: PhaseStart, plan: Plan) -> Run:
 
 
 def _named(phase: PhaseModel, run: Run, begun: float) -> Run:
-    """The run; where it came to a state without a value, with what has none there."""
+    """The run; where it came to a state without a value, with what has none there, or with what is too large."""
+    if run.status in ("step too small", "too many steps") and (large := phase.overlarge(run.end, run.last)):
+        return replace(run, message=f"{run.message[:-1]}: {large.what}.")
     found = phase.valueless(run.end, run.last) if run.status == "not finite" else None
     if found is None:
         return run

@@ -14,7 +14,7 @@ from eomgen.errors import UsageError
 from eomgen.mechanics.balance.friction import equations_of_motion
 from eomgen.mechanics.constraints.edges import edges_of
 from eomgen.mechanics.equations.equations_of_motion import EquationsOfMotion
-from eomgen.mechanics.equations.no_value import Valueless, valueless
+from eomgen.mechanics.equations.no_value import Valueless, overlarge, valueless
 from eomgen.mechanics.equations.system import System
 from eomgen.mechanics.equations.wellposed import is_conservative
 from eomgen.mechanics.initial_state.initial_state import Start, start_of_motion
@@ -31,6 +31,7 @@ from eomgen.simulation.phase_functions import PhaseFunctions
 from eomgen.simulation.slopes import ExactSlope, slope_of
 from eomgen.simulation.solvers import StateRate
 from eomgen.symbolic.expression.derivative import depends_on
+from eomgen.symbolic.expression.graph import Node
 from eomgen.symbolic.numeric.tolerances import COMPUTED
 
 Fed = Callable[[np.ndarray, float, np.ndarray], np.ndarray]
@@ -129,16 +130,19 @@ class PhaseModel:
 
     def valueless(self, t: float, x: np.ndarray) -> Valueless | None:
         """What has no value in a state, or just after it; None where everything has one."""
-        symbols = self.system.symbols
         with np.errstate(all="ignore"):
             after = COMPUTED * max(1.0, abs(t)) * np.nan_to_num(self.rate(t, x))
-        for here in (x, x + after):
-            state = zip((*symbols.q, *symbols.u), self.functions.inner(here).tolist(), strict=True)
-            parameters = zip(symbols.parameters.values(), self.p.tolist(), strict=True)
-            found = valueless(self.system, {symbols.t: t, **dict(state), **dict(parameters)})
-            if found is not None:
-                return found
-        return None
+        found = (valueless(self.system, self._values(t, here)) for here in (x, x + after))
+        return next((each for each in found if each is not None), None)
+
+    def overlarge(self, t: float, x: np.ndarray) -> Valueless | None:
+        """What is too large in a state to be calculated with; None where nothing is."""
+        return overlarge(self.system, self._values(t, x))
+
+    def _values(self, t: float, x: np.ndarray) -> dict[Node, float]:
+        symbols = self.system.symbols
+        state = zip((*symbols.q, *symbols.u), self.functions.inner(x).tolist(), strict=True)
+        return {symbols.t: t, **dict(state), **dict(zip(symbols.parameters.values(), self.p.tolist(), strict=True))}
 
     @property
     def conservative(self) -> bool:

@@ -282,6 +282,7 @@ force = [1e300, "-18000*(y + sin(theta))"]
 """
     found = eomgen.simulate(eomgen.loads(text), time=1, target="numpy")
     assert found.steps == soon and "beyond what doubles can follow" in found.message
+    assert "force 'front' is of the size 1e+300" in found.message
 
 
 @pytest.mark.slow

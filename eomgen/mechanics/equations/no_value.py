@@ -11,8 +11,10 @@ from eomgen.mechanics.equations.system import System
 from eomgen.records import dataclass
 from eomgen.symbolic.expression.derivative import symbols_of
 from eomgen.symbolic.expression.graph import Node, Scalar
+from eomgen.symbolic.expression.rational import Fraction
 from eomgen.symbolic.expression.traversal import order
 from eomgen.symbolic.numeric.evaluation import FLOAT, evaluate
+from eomgen.symbolic.numeric.tolerances import LARGEST_SQUARED
 
 REASONS = {
     "div": "divides by zero",
@@ -49,6 +51,22 @@ def valueless(system: System, values: Mapping[Node, float]) -> Valueless | None:
     return None
 
 
+def overlarge(system: System, values: Mapping[Node, float]) -> Valueless | None:
+    """The largest part of a system in a state, where that is too large to be calculated with; None where none is."""
+    sizes = [(_size(part, values), where, name) for where, name, part in _parts(system)]
+    size, where, name = max(sizes, default=(0.0, "", ""))
+    if not LARGEST_SQUARED < size < math.inf:
+        return None
+    what = f"{name} is of the size {size:.3g} there, beyond what doubles can follow; give it a smaller value"
+    return Valueless(where, what)
+
+
+def _size(part: Any, values: Mapping[Node, float]) -> float:
+    """The largest number in it, in SI; 0 where the state does not say it."""
+    scalars = tuple(x for x in _scalars(part) if all(symbol in values for symbol in symbols_of((x,))))
+    return max((abs(x) for x in evaluate(scalars, values, FLOAT) if not math.isnan(x)), default=0.0)
+
+
 def _parts(system: System) -> Iterator[tuple[str, str, Any]]:
     for name, value in system.inputs.items():
         yield f"inputs.{name}", f"input '{name}'", value
@@ -62,7 +80,7 @@ def _parts(system: System) -> Iterator[tuple[str, str, Any]]:
 
 def _scalars(part: Any) -> Iterator[Scalar]:
     """The formulas in a load or a row."""
-    if type(part) is Node:
+    if type(part) in (Node, int, Fraction):
         yield part
     elif isinstance(part, (tuple, list)):
         for each in part:

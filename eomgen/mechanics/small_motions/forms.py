@@ -85,7 +85,7 @@ def equations_without_rounding(e: LinearEquations, nearby: np.ndarray) -> Linear
         nearby: how large the entries of K are beside the place, where what vanishes there does not.
     """
     M, C, K, B = (floats(x) for x in (e.M, e.C, e.K, e.B))
-    usual = np.sqrt(abs(M).max(initial=0) * abs(K).max(initial=0))
+    usual = np.sqrt(abs(M).max(initial=0)) * np.sqrt(abs(K).max(initial=0))
     masses = np.sqrt(abs(np.diagonal(M)))  # an entry of M is none beside those of its own two speeds, however light
     M = np.where(abs(M) > SOLVED * np.outer(masses, masses), M, 0.0)
     K = np.where(abs(K) > COMPUTED * nearby, K, 0.0)

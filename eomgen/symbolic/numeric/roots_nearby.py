@@ -193,7 +193,10 @@ class Descent:
 
     @cached_property
     def _scales(self) -> tuple[np.ndarray, np.ndarray]:
-        """(of the rows, of the columns): with them the largest entries of df/dx are near 1, near a few places."""
+        """(of the rows, of the columns): with them the largest entries of df/dx are near 1, near a few places.
+
+        Rows first: a load of 1e-100 N is a small force, and no reason to measure angles in units of 1e50 rad.
+        """
         if self.scales is not None:
             return self.scales
         places = np.random.default_rng(2).uniform(-1, 1, (16, len(self.unknowns)))
@@ -201,7 +204,11 @@ class Descent:
         known = np.isfinite(A) & (A > 0)
         with np.errstate(all="ignore"):
             A = np.exp(np.sum(np.where(known, np.log(A), 0.0), axis=0) / np.sum(known, axis=0))
-        return balanced(np.where(np.isfinite(A), A, np.any(known, axis=0)))[1:]
+        A = np.where(np.isfinite(A), A, np.any(known, axis=0))
+        largest = A.max(axis=1)
+        largest = np.where(largest > 0, largest, 1.0)
+        _, rows, columns = balanced(A / largest[:, None])
+        return rows / largest, columns
 
     @property
     def _rows(self) -> np.ndarray:
