@@ -18,6 +18,7 @@ from eomgen.cli_options import (
     MODEL,
     OUTPUT,
     PLOT,
+    TIME,
     folder,
     form_asked,
     refuse_beside,
@@ -73,7 +74,8 @@ def _asked(
     from eomgen.verbs.assignments import typed
 
     valued, rest = typed(_followed(source.model, follow), options)
-    document = replace(made(valued.model, **rest, **more), taken=valued.taken)
+    document = made(valued.model, **rest, **more)
+    document = replace(document, taken=(*valued.taken, *document.taken))
     return source.warned(document, valued.model)
 
 
@@ -416,7 +418,7 @@ def verify_command(from_rest: tuple[str, ...], **options: Any) -> int:
 @FORMAT
 @click.option("-o", "--output", type=click.Path(dir_okay=False), help="Write the trajectory as .csv or .npz.")
 @PLOT
-@click.option("--time", type=float, default=10.0, show_default=True, help="How long [s].")
+@TIME
 @with_values
 @click.option("--rtol", type=float, default=RUN, show_default=True, help="Relative tolerance of the run.")
 @click.option("--atol", type=float, default=RUN, show_default=True, help="Absolute tolerance of the run.")
@@ -511,7 +513,7 @@ def simulate_command(
     "--ask", multiple=True, metavar="EXPR", help='An output, "max(reaction_x(A))", "x at y = 0", "frequency(1)".'
 )
 @click.option("--critical", default="", metavar="EXPR", help="Seek where it changes its sign along the first range.")
-@click.option("--time", type=float, default=10.0, show_default=True, help="How long each run is [s].")
+@TIME
 @click.option("--rtol", type=float, default=RUN, show_default=True, help="Relative tolerance of a run.")
 @click.option("--atol", type=float, default=RUN, show_default=True, help="Absolute tolerance of a run.")
 @click.option("--method", default="DOP853", show_default=True, metavar="NAME", help="As of simulate.")
@@ -584,7 +586,7 @@ def identify_command(**options: Any) -> int:
 @click.option(
     "-o", "--output", required=True, type=click.Path(dir_okay=False), help="Write .gif, .mp4, .html, or a strip .png."
 )
-@click.option("--time", type=float, default=10.0, show_default=True, help="How long the motion is [s].")
+@TIME
 @with_values
 @click.option("--fps", type=float, default=25.0, show_default=True, help="Frames a second.")
 @click.option("--speed", type=float, default=1.0, show_default=True, help="Seconds of the motion in a second.")
@@ -690,7 +692,7 @@ def codegen_command(
 @MODEL
 @JSON
 @click.option("-o", "--output", required=True, type=click.Path(dir_okay=False), help="The page: a file .html.")
-@click.option("--time", type=float, default=10.0, show_default=True, help="How long the motion is [s].")
+@TIME
 @with_values
 @click.option(
     "--slider",
@@ -727,7 +729,7 @@ def play_command(model: str, wants_json: bool, output: str, strict: bool, **opti
     type=click.Path(dir_okay=False),
     help="The file: .html, .pdf, .tex, .md or .ipynb.",
 )
-@click.option("--time", type=float, default=10.0, show_default=True, help="How long the motion is followed [s].")
+@TIME
 @with_values
 @click.option("--with", "with_", metavar="LIST", callback=words, help='Sections besides: "linearize,statics".')
 @click.option("--without", metavar="LIST", callback=words, help='Sections that are left out: "motion,downloads".')

@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable
+from contextlib import suppress
 from pathlib import Path
 
 import click
@@ -60,6 +62,26 @@ def refuse_beside(option: str, heeded: tuple[str, ...]) -> None:
         raise click.UsageError(f"{option} takes no {', '.join(idle)}: leave that out")
 
 
+def seconds(typed: object) -> float:
+    """A time: seconds, or a number with its unit, "500 ms".
+
+    Raises:
+        BadParameter: it is none.
+    """
+    from eomgen.errors import ExpressionError
+    from eomgen.symbolic.expression.typed import parse_typed
+    from eomgen.symbolic.expression.units import parse_unit
+
+    text = str(typed)
+    with suppress(ValueError):
+        return float(text)
+    with suppress(ExpressionError):
+        number, unit = parse_typed(text)
+        if unit is not None and number.names <= {"pi"} and not number.calls and unit.fits(parse_unit("s")):
+            return float(number.evaluate({"pi": math.pi})) * unit.size
+    raise click.BadParameter(f"{text!r} is no time; write 5, or '5 s'")
+
+
 MODEL = click.argument("model", type=click.Path(exists=True, dir_okay=False, allow_dash=True))
 JSON = click.option("--json", "wants_json", is_flag=True, help="Write the result for machines.")
 OUTPUT = click.option("-o", "--output", type=click.Path(dir_okay=False), help="Write the result into a file.")
@@ -71,6 +93,9 @@ FORMAT = click.option(
 )
 PLOT = click.option("--plot", type=click.Path(dir_okay=False), callback=picture, help="Draw it as .png, .svg or .pdf.")
 CERTIFY = click.option("--no-certify", "certify", is_flag=True, flag_value=False, default=True, help="Make no proof.")
+TIME = click.option(
+    "--time", type=seconds, default=10.0, metavar="TIME", show_default=True, help='How long: 5 is in s, or "500 ms".'
+)
 FOLLOW = click.option(
     "--follow",
     multiple=True,

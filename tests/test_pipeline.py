@@ -9,7 +9,7 @@ import pytest
 import sympy
 
 import eomgen
-from eomgen.errors import ModelError, UsageError
+from eomgen.errors import UsageError
 
 BEAM = """
 eomgen = 1
@@ -74,7 +74,7 @@ def test_inputs_are_replaced_by_expressions_numbers_and_samples():
         ({"tua": 1}, UsageError, "no input 'tua'"),
         ({"tau": lambda t: t}, UsageError, r"Python function of \(t\), and is called with \(t, x\)"),
         ({"tau": {"value": lambda t, q, u: t, "every": 0.1}}, UsageError, r"Python function of \(t, q, u\)"),
-        ({"tau": "2*x"}, ModelError, "unknown name 'x'"),
+        ({"tau": "2*x"}, UsageError, "unknown name 'x'"),
     ],
 )
 def test_inputs_that_cannot_be_replaced(inputs, error, words):

@@ -107,7 +107,7 @@ def test_a_run_is_drawn_by_its_number_alone(kind):
 def test_draws_have_their_distribution(text, law, kind):
     """Kolmogorov and Smirnov, against scipy's laws; quasi-random points are far nearer than chance."""
     model = eomgen.loads(SPRING)
-    values = Design({}, (spread_of(model, text),), 2048, kind, 3).runs(0, 2048)[1][:, 0]
+    values = Design({}, (spread_of(model, text)[0],), 2048, kind, 3).runs(0, 2048)[1][:, 0]
     test = stats.kstest(values, law.cdf)
     assert test.pvalue > 1e-3 and np.isfinite(values).all()
     if kind != "random":
@@ -388,7 +388,7 @@ def test_a_folder_resumes_its_own_plan_alone_and_replays_bit_for_bit(spring, tmp
     with sqlite3.connect(tmp_path / "out" / "ledger.sqlite") as ledger:
         ledger.execute("DELETE FROM runs WHERE run IN (1, 3)")
     again = CliRunner().invoke(main, [*words, "--json"])
-    assert json.loads(again.output)["runs"] == 4 and (tmp_path / "out" / "table.csv").read_bytes() == table
+    assert json.loads(again.stdout)["runs"] == 4 and (tmp_path / "out" / "table.csv").read_bytes() == table
     other = CliRunner().invoke(main, [*words[:3], "k=10:90:5", *words[4:]])
     assert other.exit_code == 2 and "another plan: over" in other.output
     replay = CliRunner().invoke(main, ["sweep", "--replay", "2", folder, "-o", str(tmp_path / "run.csv"), "--json"])
@@ -449,7 +449,7 @@ def test_pictures_and_proof(spring, tmp_path):
         done = CliRunner().invoke(
             main, ["sweep", spring, *words, "--ask", "max(x')", "--time", "1", "--plot", str(path), "--json"]
         )
-        told = json.loads(done.output)
+        told = json.loads(done.stdout)
         assert path.stat().st_size > 5000 and told["certificate"]["ok"] is True
         names = {check["name"]: check["status"] for check in told["certificate"]["checks"]}
         assert names["a run made again has the same bits"] == "holds"

@@ -54,8 +54,33 @@ TAKEN = {
         "omega(bob)=30 rpm": ("omega(bob)", 30, "rpm"),
         "omega(bob)=5 m": None,
     },
+    "--over": {
+        "l=40:0.8 m:2": ("l", [40, 80], "cm", "40 cm to 80 cm, 2 values equally apart"),
+        "log:l=40:0.9 m:3": ("l", [40, 90], "cm", "40 cm to 90 cm, 3 values each by one factor"),
+        "l=40,600 mm": ("l", [40, 60], "cm", "40 cm, 60 cm"),
+        "l=40:5 kg:2": None,
+    },
+    "--random": {
+        "theta=normal(10, 0.1 rad)": ("theta", [10, 18 / math.pi], "deg", "normal(10 deg, 5.729577951 deg)"),
+        "m=lognormal(500 g, 0.1)": ("m", [0.5, 0.1], "kg", "lognormal(0.5 kg, 0.1)"),
+        "theta=uniform(0, pi)": None,
+    },
+    "--ask": {
+        "theta' at theta = 10": ("theta", 10, "deg"),
+        "theta' at theta = 0.1 rad": ("theta", 18 / math.pi, "deg"),
+        "theta' at theta = pi/6": None,
+    },
+    "--critical": {"theta' at theta = 10": ("theta", 10, "deg"), "theta' at theta = pi/6": None},
+    "--slider": {
+        "l=0.3 m:90": ("l", [30, 90], "cm", "30 cm to 90 cm"),
+        "theta'=-15 rpm:90": ("theta'", [-90, 90], "deg/s", "-90 deg/s to 90 deg/s"),
+        "theta=0:pi": None,
+    },
 }
-"""of each option: what is typed, and under which name, as which value and in which unit it is taken; None: refused"""
+"""of each option: what is typed, and under which name, as which value and in which unit it is taken, how that is said;
+None: refused"""
+TYPED = OPTIONS | {"over": "--over", "random": "--random", "ask": "--ask", "critical": "--critical"}
+TYPED |= {"sliders": "--slider"}
 BESIDE = {
     "animate": ["-o", "OUT.gif", "--time", "0.2"],
     "codegen": ["-o", "OUT"],
@@ -64,10 +89,11 @@ BESIDE = {
     "play": ["-o", "OUT.html", "--time", "0.2"],
     "report": ["-o", "OUT.html", "--time", "0.2", "--without", "figure,plots,motion,downloads"],
     "simulate": ["--time", "0.2", "--target", "numpy"],
-    "sweep": ["--over", "m=1,2", "--ask", "max(theta)", "--time", "0.2"],
+    "sweep": ["--over", "g=9,10", "--ask", "max(theta)", "--time", "0.2"],
+    ("linearize", "--over"): ["--view", "locus"],
     "verify": ["T = m*l^2*theta'^2/6"],
 }
-"""what else a verb needs"""
+"""what else a verb needs, or one of its options"""
 STILL = ("new", "schema", "doctor", "examples", "import")
 """verbs that compute nothing of a model; import makes one"""
 
@@ -75,11 +101,16 @@ STILL = ("new", "schema", "doctor", "examples", "import")
 def paths() -> list[tuple[str, str]]:
     """(verb, option) of every option whose value has a unit."""
     return [
-        (verb, OPTIONS[parameter.name])
+        (verb, TYPED[parameter.name])
         for verb, command in main.commands.items()
         for parameter in command.params
-        if OPTIONS.get(parameter.name) in parameter.opts
+        if TYPED.get(parameter.name) in parameter.opts
     ]
+
+
+def said(taken: tuple) -> str:
+    """What was taken, in words."""
+    return f"{taken[0]} = {taken[3]}" if len(taken) > 3 else f"{taken[0]} = {taken[1]:.10g} {taken[2]}"
 
 
 def table() -> str:
@@ -90,7 +121,7 @@ def table() -> str:
     rows = ["| verb | option | typed | taken |", "|---|---|---|---|"]
     for verb, option in paths():
         for typed, taken in TAKEN[option].items():
-            told = "refused" if taken is None else f"{taken[0]} = {taken[1]:.10g} {taken[2]}"
+            told = "refused" if taken is None else said(taken)
             rows.append(f"| {verb} | `{option}` | `{typed}` | {told} |")
     return head + "\n".join(rows) + "\n"
 
@@ -109,7 +140,7 @@ def pendulum(tmp_path: Path) -> Path:
 def test_what_is_typed_is_in_the_unit_of_the_file_or_in_its_own_and_what_was_taken_is_said(verb, option, pendulum):
     """45 of an angle in deg is 45 deg; 0.8 m of a length in cm is 80 cm; on stderr and in `taken`."""
     for typed, expected in TAKEN[option].items():
-        words = [verb, str(pendulum), *BESIDE.get(verb, []), option, typed, "--json"]
+        words = [verb, str(pendulum), *BESIDE.get(verb, []), *BESIDE.get((verb, option), []), option, typed, "--json"]
         words = [word.replace("OUT", str(pendulum.parent / "out")) for word in words]
         words += ["--no-certify"] if any("--no-certify" in p.opts for p in main.commands[verb].params) else []
         result = CliRunner().invoke(main, words)
@@ -117,11 +148,11 @@ def test_what_is_typed_is_in_the_unit_of_the_file_or_in_its_own_and_what_was_tak
             assert result.exit_code == 2, typed
             continue
         assert result.exit_code == 0, result.output
-        name, value, unit = expected
+        name, value, unit, *_ = expected
         told = json.loads(result.stdout)["taken"][name]
         assert told["value"] == pytest.approx(value, rel=1e-12)
         assert told["unit"] == unit
-        assert f"taken: {name} = {value:.10g} {unit}" in result.stderr
+        assert f"taken: {said(expected)}" in result.stderr
 
 
 def test_every_verb_that_computes_takes_values_and_starts():
@@ -223,13 +254,62 @@ def test_what_is_typed_wrongly_is_refused_with_its_mend(words, told, pendulum):
     assert (result.exit_code, told in result.stderr) == (2, True), result.stderr
 
 
-if __name__ == "__main__":
-    print(table(), end="")
-
-
 def test_a_start_that_is_typed_takes_the_place_of_the_guess_of_the_file():
     """sin theta = 0: from near = 3 the pendulum stands on its head, from the typed 0.1 it hangs."""
     path = Path(__file__).parents[1] / "models" / "simple_pendulum.toml"
     text = path.read_text(encoding="utf-8").replace("start = 1.0, ", "near = 3, ")
     found = [eomgen.linearize(eomgen.loads(text), start=start).as_dict()["state"] for start in ({}, {"theta": 0.1})]
     assert [state["theta"]["value"] for state in found] == [pytest.approx(math.pi), 0]
+
+
+@pytest.mark.parametrize(
+    "typed", [{"l": ([40, 80], "cm")}, {"l": ["40 cm", 0.8]}, {"l": "0.4:80 cm:2"}, {"l": [0.4, 0.8]}]
+)
+def test_values_of_many_runs_in_python_are_si_or_bring_their_unit(typed, pendulum):
+    """The same of `sweep` and of `simulate_many`, whose values are arrays."""
+    swept = eomgen.sweep(pendulum, over=typed, ask="max(theta)", time=0.1)
+    assert list(swept["l"]) == [0.4, 0.8]
+    if not isinstance(typed["l"], str):
+        runs = eomgen.simulate_many(pendulum, time=0.1, samples=2, parameters=typed)
+        assert list(runs.given["l"]) == [0.4, 0.8]
+    with pytest.raises(UsageError, match="does not fit"):
+        eomgen.sweep(pendulum, over={"l": (1, "kg")}, ask="max(theta)", time=0.1)
+    with pytest.raises(UsageError, match="does not fit"):
+        eomgen.simulate_many(pendulum, time=0.1, parameters={"l": ["1 kg"]})
+
+
+@pytest.mark.parametrize("torque", [2.0, "2 N*m", (0.002, "kN*m"), "2 + 0*t"])
+def test_an_input_in_python_is_si_or_brings_its_unit(torque, pendulum):
+    """A torque declared in kN*m: 2 are 2 N*m, in a run, in many, beside a given motion."""
+    text = PENDULUM.replace("[bodies.bob]", '[inputs]\nM = { value = 0, unit = "kN*m" }\n[bodies.bob]')
+    pendulum.write_text(text.replace('"theta - pi/2" }', '"theta - pi/2", torque = "M" }'))
+    known = eomgen.loads(pendulum.read_text().replace("value = 0, unit", "value = 0.002, unit"))
+    run = eomgen.simulate(pendulum, time=0.2, samples=3, target="numpy", inputs={"M": torque})
+    assert run.x == pytest.approx(eomgen.simulate(known, time=0.2, samples=3, target="numpy").x, rel=1e-12)
+    many = eomgen.simulate_many(pendulum, time=0.2, samples=3, target="numpy", inputs={"M": torque})
+    assert many.x[0] == pytest.approx(run.x, rel=1e-8)
+    with pytest.raises(UsageError, match="does not fit"):
+        eomgen.simulate(pendulum, time=0.2, inputs={"M": "2 kg"})
+
+
+def test_a_given_motion_in_python_is_si_or_brings_its_unit(pendulum):
+    """tau = m g l/2 sin theta of a rod that is held at 30 deg."""
+    found = eomgen.inverse_dynamics(pendulum)
+    times = [0.0, 0.5, 1.0]
+    for angle in (math.pi / 6, "30 deg", (30, "deg"), [math.pi / 6] * 3, ([30] * 3, "deg")):
+        held = found.along(times, {"theta": angle}, {"l": "80 cm"})
+        assert held["theta"] == pytest.approx([2 * 9.81 * 0.8 / 4] * 3, rel=1e-12)
+
+
+def test_a_time_has_its_unit_or_is_in_seconds(pendulum):
+    """--time "500 ms" is 0.5 s; a length is none."""
+    words = ["simulate", str(pendulum), "--target", "numpy", "--no-certify", "--json", "--time"]
+    found = CliRunner().invoke(main, [*words, "500 ms"])
+    assert json.loads(found.stdout)["time"] == 0.5
+    assert CliRunner().invoke(main, [*words, "5 m"]).exit_code == 2
+    with pytest.raises(UsageError, match="no number"):
+        eomgen.simulate(pendulum, time="500 ms")
+
+
+if __name__ == "__main__":
+    print(table(), end="")

@@ -10,13 +10,13 @@ import numpy as np
 
 from eomgen.codegen.program import program_of
 from eomgen.codegen.rhs import compiled
-from eomgen.errors import UsageError
+from eomgen.errors import ExpressionError, UsageError
 from eomgen.mechanics.equations.system import System
 from eomgen.model.findings import nearest
-from eomgen.model.parts import Input
+from eomgen.model.ranges import TypedNumbers, are_several, typed_values
+from eomgen.model.replaced import time_law
 from eomgen.records import dataclass
 from eomgen.symbolic.expression.derivative import depends_on, tangent
-from eomgen.symbolic.expression.expressions import Expression
 from eomgen.symbolic.numeric.tolerances import OPEN_GAP
 
 
@@ -46,11 +46,17 @@ class GivenMotion:
 
     def _of(self, name: str, law: Any) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
         """One coordinate with its rates, n each."""
-        if not isinstance(law, (str, int, float, Expression, Mapping)):
-            return self._through(name, np.asarray(law, dtype=float))
+        model = self.system.scope.model
+        if are_several(law):
+            typed = TypedNumbers(model, name, declared=False)
+            try:
+                values = np.array([typed.number(x) for x in typed_values(law)])
+            except (ValueError, TypeError, ExpressionError) as error:
+                what = error.what if isinstance(error, ExpressionError) else "they are no numbers"
+                raise UsageError(f"the values of '{name}': {what}", mend=getattr(error, "mend", "")) from error
+            return self._through(name, values)
         scope, symbols = self.system.scope, self.system.symbols
-        read: Any = Input  # from what a user writes, its fields read it
-        scalar = scope.value(read(value=law).value.named(name))
+        scalar = scope.value(time_law(model, name, law, "motion").named(name))
         rate = tangent((scalar,), {symbols.t: 1})
         scalars = (scalar, *rate, *tangent(rate, {symbols.t: 1}))
         strangers = [x.name for x in (*symbols.q, *symbols.u) if depends_on(scalar, (x,))]

@@ -19,6 +19,7 @@ from eomgen.codegen.targets.c import c_together
 from eomgen.codegen.taylor import Series, series_of, without_series
 from eomgen.errors import RunFailed, ToolMissing, UsageError
 from eomgen.model.parts import Model
+from eomgen.model.replaced import with_values
 from eomgen.model.values import numeric_parameters
 
 _said: set[str] = set()
@@ -194,7 +195,11 @@ def _wrong_length(what: str, names: tuple[str, ...], given: int) -> UsageError:
 def parameter_vector(model: Model, overrides: Mapping[str, Any] | None = None) -> np.ndarray:
     """p: the value of every parameter, in the model's order.
 
+    Args:
+        overrides: other values: numbers in SI, or what brings its unit.
     Raises:
         MissingValues: parameters without a value, all named.
     """
+    if overrides and not all(isinstance(x, (int, float, np.number)) for x in overrides.values()):
+        model, overrides = with_values(model, overrides).model, None
     return np.array(list(numeric_parameters(model, overrides).values()), dtype=float)

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import json
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
 from typing import Any
 
 from eomgen.documents.document import Document
@@ -11,6 +11,7 @@ from eomgen.documents.latex import names_in, setter_of
 from eomgen.documents.quantity import Quantity
 from eomgen.documents.statements import Formula, Grid, Prose, Statement, Table
 from eomgen.documents.text import cell_text, formula_text, prose_text, side_text, statement_lines
+from eomgen.model.replaced import Taken
 from eomgen.symbolic.print.text import to_text
 from eomgen.version import SCHEMA_VERSION
 
@@ -26,10 +27,18 @@ def as_dict(document: Document) -> dict[str, Any]:
     """The document as plain data; of one without entries what is printed."""
     entries = document.entries() or _printed(document)
     own: dict[str, Any] = {"warnings": [each.as_dict() for each in document.warnings]} if document.title else {}
-    own |= {"taken": {each.name: each.as_dict() for each in document.taken}} if document.title else {}
+    own |= {"taken": taken_as_dict(document.taken)} if document.title else {}
     if document.has_heads:
         own |= {"steps": steps(document), "symbols": symbols(document)}
     return {"schema_version": SCHEMA_VERSION, **_plain(entries), **own}
+
+
+def taken_as_dict(taken: Iterable[Taken]) -> dict[str, dict[str, Any]]:
+    """What was taken, by its name; of a name that was typed twice, as a start and an instant, by all that was said."""
+    found: dict[str, dict[str, Any]] = {}
+    for each in taken:
+        found[str(each) if each.name in found else each.name] = each.as_dict()
+    return found
 
 
 def symbols(document: Document) -> dict[str, str]:

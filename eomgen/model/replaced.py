@@ -11,9 +11,10 @@ from eomgen.errors import ExpressionError, ModelError, UsageError
 from eomgen.model.arithmetic import value_of
 from eomgen.model.feedback import law_of, with_feedback
 from eomgen.model.fields import WrittenEquation, is_mixed
-from eomgen.model.findings import nearest
+from eomgen.model.findings import Finding, nearest
 from eomgen.model.part import altered
 from eomgen.model.parts import Model
+from eomgen.model.samples import TimeLawRule
 from eomgen.model.table import Table
 from eomgen.model.typed import Settled, Typed, Typing, shown
 from eomgen.model.values import exact_parameters
@@ -27,15 +28,24 @@ Values = Mapping[str, Typed]
 
 @dataclass(frozen=True)
 class Taken:
-    """What was made of something that was typed: a value in a unit; None where it needs parameters without one."""
+    """What was made of something that was typed.
+
+    Args:
+        value: in the unit; None where it needs parameters without one; of a range, a slider or a law what it is made
+            of, each.
+        told: how these are said.
+    """
 
     name: str
     typed: str
-    value: float | None
+    value: float | tuple[float, ...] | None
     unit: str
+    told: str = ""
 
     def __str__(self) -> str:
-        return f"{self.name} = {self.typed if self.value is None else f'{self.value:.10g} {self.unit}'.rstrip()}"
+        if self.told or self.value is None:
+            return f"{self.name} = {self.told or self.typed}"
+        return f"{self.name} = {self.value:.10g} {self.unit}".rstrip()
 
     def as_dict(self) -> dict[str, Any]:
         return {"typed": self.typed, "value": self.value, "unit": self.unit}
@@ -110,7 +120,7 @@ def with_values(
         names = ", ".join(option for option, given in zip(options, (parameters, start), strict=True) if given)
         raise UsageError(f"{names}: {error.problems[0].what}", mend=error.problems[0].mend) from error
     valued = altered(model, **changes)
-    taken = tuple(_taken(valued, each) for each in settled)
+    taken = tuple(taken_of(valued, each) for each in settled)
     numbers = {**exact_parameters(valued), "pi": math.pi}
     starts = {each.name: value_of(each.value, numbers) for each in settled if each.name in (start or {})}
     return Valued(valued, taken, Table({name: float(x) for name, x in starts.items() if x is not None}))
@@ -129,7 +139,7 @@ def _settled(typing: Typing, name: str, typed: Typed, option: str) -> Settled:
         raise UsageError(f"{option} {name}={shown(typed)}: {error.what}", mend=error.mend) from error
 
 
-def _taken(model: Model, settled: Settled) -> Taken:
+def taken_of(model: Model, settled: Settled) -> Taken:
     """A settled value in the unit that is declared, else as it was typed, else in SI."""
     number, unit, dimension = None, settled.unit, settled.dimension
     try:
@@ -152,7 +162,7 @@ def equation_typed(model: Model, text: str, *, declared: bool = False) -> tuple[
     """
     (left, one), (right, other) = parse_typed_equation(text)
     equation, settled = Typing(model, declared).equation(WrittenEquation(left, right, text, (one, other)))
-    return equation, tuple(_taken(model, each) for each in settled)
+    return equation, tuple(taken_of(model, each) for each in settled)
 
 
 def _refuse_given(model: Model, name: str, option: str) -> None:
@@ -174,17 +184,36 @@ def _refuse_given(model: Model, name: str, option: str) -> None:
         raise UsageError(f"{option}: '{name}' starts where its `{way}` says", mend="give no other start")
 
 
+def time_law(model: Model, name: str, value: Any, option: str) -> Expression:
+    """A function of time that is given in Python: a number in SI or with a unit, an expression, samples [SI].
+
+    Args:
+        name: whose value it is; option: what messages call it.
+    Raises:
+        UsageError: it is none, or its unit does not fit.
+    """
+    if isinstance(value, Mapping):
+        found: list[Finding] = []
+        law: Expression | None = TimeLawRule().read(value, (option, name), found)
+        if law is None or found:
+            raise UsageError(f"{option}: {name}: {found[0].what}", mend=found[0].mend)
+        return law
+    if isinstance(value, Expression):
+        return value
+    return _settled(Typing(model, declared=False), name, value, option).value
+
+
 def _near(name: str, names: Iterable[str]) -> str:
     return nearest(name, names) or f"there are {', '.join(names) or 'none'}"
 
 
 def with_inputs(model: Model, inputs: Mapping[str, Any]) -> Model:
-    """The model with other values of inputs: numbers, expressions of t and the parameters, `samples(...)`, or laws of
-    the state ("-k*x - c*x'"), which then stand in place of the input.
+    """The model with other values of inputs: numbers in SI or with a unit, expressions of t and the parameters,
+    `samples(...)`, or laws of the state ("-k*x - c*x'"), which then stand in place of the input.
 
     Raises:
-        UsageError: no input of that name, or a Python function, which nothing can differentiate or emit.
-        ModelError: an expression that cannot be read.
+        UsageError: no input of that name, a value that is none, a unit that does not fit; or a Python function, which
+            nothing can differentiate or emit.
     """
     for name, value in inputs.items():
         if name not in model.inputs:
@@ -193,6 +222,9 @@ def with_inputs(model: Model, inputs: Mapping[str, Any]) -> Model:
             what = f"input '{name}' is given by a Python function"
             raise UsageError(what, mend="give an expression of t or the state, or eomgen.samples(times, values)")
     laws = {name: law for name, value in inputs.items() if (law := law_of(model, value)) is not None}
-    changed = {name: replace(model.inputs[name], value=value) for name, value in inputs.items() if name not in laws}
-    made = replace(model, inputs=Table({**model.inputs, **changed})) if changed else model
+    values = {name: time_law(model, name, value, "inputs") for name, value in inputs.items() if name not in laws}
+    changed = {name: _with_value(model.inputs[name], "value", value) for name, value in values.items()}
+    made = altered(model, inputs=Table({**model.inputs, **changed})) if changed else model
+    if changed:
+        replace(model, inputs=made.inputs)  # what is wrong with a model is wrong with this one
     return with_feedback(made, laws)

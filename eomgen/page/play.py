@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Iterator, Sequence
 from functools import cached_property
 from pathlib import Path
@@ -11,11 +12,11 @@ import numpy as np
 from eomgen import files, pipeline
 from eomgen.codegen.rhs import compiled
 from eomgen.codegen.targets.base import TestVector
-from eomgen.errors import RunFailed, ToolMissing, UsageError
+from eomgen.errors import ExpressionError, RunFailed, ToolMissing, UsageError
 from eomgen.model.parts import Model
+from eomgen.model.ranges import TypedNumbers
 from eomgen.model.reader import ModelOrPath, model_at
-from eomgen.model.replaced import Values, with_values
-from eomgen.model.values import numeric_parameters, start_values
+from eomgen.model.replaced import Taken, Values
 from eomgen.page.player_data import PlayedRun, PlayerOptions, SliderRange
 from eomgen.page.player_page import player_page
 from eomgen.proof.check import Certificate, Check, checked, unchecked
@@ -24,6 +25,7 @@ from eomgen.records import dataclass
 from eomgen.symbolic.numeric.work import doing
 
 SAMPLES = 401  # of a run in a page
+LIKE = "write --slider m=0.1:5"
 SUBJECTS = {"rate": "motion", "frame": "picture"}
 
 
@@ -103,7 +105,7 @@ def play(
     Args:
         path: where the page is written; None: nowhere.
         time: how long the motion is [s].
-        sliders: what can be moved, each "NAME" or "NAME=FROM:TO" in the units of the file; () for everything.
+        sliders: what can be moved, each "NAME" or "NAME=FROM:TO", numbers in SI or with a unit; () for everything.
         parameters, start: values that replace the model's, each as `model_at` takes it.
         trail: a point that leaves a trail from the start.
         forces: whether arrows of forces are shown from the start.
@@ -112,7 +114,8 @@ def play(
         UsageError: nothing moves; a slider of what there is not.
     """
     model = model_at(model, parameters, start)
-    options = PlayerOptions(slider_ranges(model, sliders), True, trail, forces, speed)
+    ranges, _ = slider_ranges(model, sliders, declared=False)
+    options = PlayerOptions(ranges, True, trail, forces, speed)
     found = played(model, time, options)
     if path is not None:
         found.write(path)
@@ -132,36 +135,39 @@ def played(model: Model, time: float, options: PlayerOptions) -> Played:
     return made
 
 
-def slider_ranges(model: Model, sliders: Sequence[str]) -> dict[str, SliderRange | None]:
-    """Of each slider that is asked for its range in SI.
+def slider_ranges(
+    model: Model, sliders: Sequence[str], *, declared: bool = True
+) -> tuple[dict[str, SliderRange | None], tuple[Taken, ...]]:
+    """(of each slider that is asked for its range in SI, what was made of what was typed).
 
+    Args:
+        declared: plain numbers are in the unit that the file declares; else in SI.
     Raises:
         UsageError: what is no NAME=FROM:TO.
     """
     found: dict[str, SliderRange | None] = {}
+    taken: list[Taken] = []
     for text in sliders:
-        name, equals, ends = text.partition("=")
-        first, colon, last = ends.partition(":")
+        name, equals, ends = (part.strip() for part in text.partition("="))
+        first, colon, last = (part.strip() for part in ends.partition(":"))
         known = (*model.parameters, *model.coordinates, *(f"{q}'" for q in model.coordinates), *model.speeds)
-        if name.strip() not in known:
-            raise UsageError(f"there is no slider for '{name.strip()}'", mend=f"there are {', '.join(known)}")
-        if equals and not (colon and first.strip() and last.strip()):
-            raise UsageError(f"'{text}' is no slider", mend="write --slider m=0.1:5")
-        found[name.strip()] = (
-            (_typed(model, name.strip(), first), _typed(model, name.strip(), last)) if equals else None
-        )
-    for name, ends_of in found.items():
-        if ends_of is not None and not ends_of[0] < ends_of[1]:
-            raise UsageError(f"the slider '{name}' ends before it begins", mend="write --slider m=0.1:5")
-    return found
-
-
-def _typed(model: Model, name: str, text: str) -> float:
-    """A value as it is typed for a parameter or a start, in SI."""
-    if name in model.parameters:
-        return numeric_parameters(with_values(model, {name: text.strip()}, None, declared=True).model, needed=[name])[
-            name
-        ]
-    valued = with_values(model, None, {name: text.strip()}, declared=True)
-    q, u = start_values(valued.model)
-    return float({**q, **u}[name])
+        if name not in known:
+            raise UsageError(f"there is no slider for '{name}'", mend=f"there are {', '.join(known)}")
+        if name in found:
+            raise UsageError(f"the slider '{name}' is given twice", mend="give it once")
+        if equals and not (colon and first and last):
+            raise UsageError(f"'{text}' is no slider", mend=LIKE)
+        found[name] = None
+        if equals:
+            typed = TypedNumbers(model, name, declared)
+            try:
+                low, high = typed.number(first), typed.number(last)
+            except ValueError as error:
+                raise UsageError(f"'{text}' is no slider: its ends are no numbers", mend=LIKE) from error
+            except ExpressionError as error:
+                raise UsageError(f"'{text}' is no slider: {error.what}", mend=error.mend or LIKE) from error
+            if not low < high < math.inf:
+                raise UsageError(f"the slider '{name}' ends before it begins", mend=LIKE)
+            found[name] = (low, high)
+            taken.append(typed.taken(ends, [first, last], " to ".join))
+    return found, tuple(taken)

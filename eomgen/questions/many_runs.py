@@ -18,11 +18,12 @@ import numpy as np
 from eomgen.codegen.batching import STATUS, Asked, Batch, FoundRuns
 from eomgen.codegen.rhs import parameter_vector
 from eomgen.codegen.taylor import order_for, without_series
-from eomgen.errors import EomgenError, RunFailed, ToolMissing, UsageError
+from eomgen.errors import EomgenError, ExpressionError, RunFailed, ToolMissing, UsageError
 from eomgen.mechanics.initial_state.initial_state import start_of_motion
 from eomgen.model.findings import nearest
 from eomgen.model.part import altered
 from eomgen.model.parts import Model, Parameter
+from eomgen.model.ranges import TypedNumbers, are_several, typed_values
 from eomgen.model.replaced import with_inputs, with_values
 from eomgen.model.table import Table
 from eomgen.proof.check import Certificate
@@ -167,8 +168,8 @@ def _planned(
     simulator: Simulator, time: float, parameters: OfRuns, start: OfRuns, inputs: OfRuns, samples: int | Sequence[float]
 ) -> _Plan:
     """The model with what all runs share, and the arrays."""
-    arrays = {kind: {name: _array(name, v) for name, v in given.items() if _is_array(v)} for kind, given in (
-        ("parameters", parameters), ("start", start), ("inputs", inputs))}  # fmt: skip
+    arrays = {kind: {name: _array(simulator.model, name, v) for name, v in given.items() if are_several(v)}
+        for kind, given in (("parameters", parameters), ("start", start), ("inputs", inputs))}  # fmt: skip
     sizes = {name: len(values) for each in arrays.values() for name, values in each.items()}
     if len(set(sizes.values())) > 1:
         told = ", ".join(f"'{name}' {size}" for name, size in sizes.items())
@@ -188,12 +189,15 @@ def _planned(
     return _Plan(own, runs, {**arrays["parameters"], **of_inputs}, arrays["start"], time, instants)
 
 
-def _is_array(value: Any) -> bool:
-    return isinstance(value, (np.ndarray, list)) and np.ndim(value) == 1
-
-
-def _array(name: str, value: Any) -> np.ndarray:
-    found = np.asarray(value, dtype=float)
+def _array(model: Model, name: str, value: Any) -> np.ndarray:
+    """One value a run, in SI."""
+    typed = TypedNumbers(model, name, declared=False)
+    try:
+        plain = isinstance(value, np.ndarray) and value.dtype.kind in "fiu"
+        found = np.asarray(value, dtype=float) if plain else np.array([typed.number(x) for x in typed_values(value)])
+    except (ValueError, TypeError, ExpressionError) as error:
+        what, mend = (error.what, error.mend) if isinstance(error, ExpressionError) else ("they are no numbers", "")
+        raise UsageError(f"the values of '{name}': {what}", mend=mend) from error
     if not len(found) or not np.all(np.isfinite(found)):
         raise UsageError(f"the values of '{name}' must be finite numbers, one a run")
     return found

@@ -19,7 +19,7 @@ from eomgen.mechanics.instant.outputs import asks_of
 from eomgen.model.fields import EVERY, AtRest, WrittenEquation
 from eomgen.model.outputs.base import OF_A_RUN, SMALL_MOTIONS, formula_at
 from eomgen.model.parts import Model, Output
-from eomgen.model.replaced import equation_typed
+from eomgen.model.replaced import Taken, equation_typed
 from eomgen.model.table import Table
 from eomgen.model.values import numeric_parameters
 from eomgen.proof.check import Check
@@ -30,6 +30,7 @@ from eomgen.simulation.motion import Plan
 from eomgen.simulation.output_columns import OutputColumns
 from eomgen.simulation.phase_run import PhaseRun
 from eomgen.symbolic.expression.expressions import Call, Expression, parse
+from eomgen.symbolic.expression.typed import parse_typed_equation
 from eomgen.symbolic.numeric.chebyshev import ChebyshevPieces, resolved_curve
 from eomgen.symbolic.numeric.tolerances import CARRIED, COMPUTED, SAME_PERIOD, SOLVED
 
@@ -338,6 +339,26 @@ def _less(pieces: ChebyshevPieces, level: float) -> Callable[[np.ndarray], np.nd
 
 
 # -- as it is typed ------------------------------------------------------------------------------------------
+
+
+def asked_typed(model: Model, text: str) -> tuple[str, tuple[Taken, ...]]:
+    """(what is asked, with units beside plain numbers of its instant: the file's; what was taken).
+
+    Raises:
+        UsageError: the instant cannot be read, or a unit does not fit.
+    """
+    formula, at, rest = text.partition(" at ")
+    condition, comma, event = rest.partition(", event")
+    if text in model.outputs or not at or condition.strip() == AtRest.text:
+        return text, ()
+    try:
+        sides = parse_typed_equation(condition)
+        _, taken = equation_typed(model, condition, declared=True)
+    except ExpressionError as error:
+        raise UsageError(f"'{text}': {error.what}", mend=error.mend) from error
+    units = {each.typed: each.unit for each in taken}
+    written = (f"{side.text} {units.get(side.text, '') if unit is None else unit.text}".strip() for side, unit in sides)
+    return f"{formula} at {' = '.join(written)}{comma}{event}", taken
 
 
 def asked_of(model: Model, text: str) -> Output:

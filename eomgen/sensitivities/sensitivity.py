@@ -67,7 +67,7 @@ class Sensitivity(Result):
         model: the model.
         of: what is asked, as formulas.
         to: the parameters and starts.
-        values: of each formula what it is.
+        values: of each formula what it is, in its unit.
         slopes: by (formula, name) its derivative: exact where it has a closed form; the value in the formula's unit
             over the name's.
         run: the same along a motion; None where none was asked.
@@ -283,8 +283,13 @@ class _Asking:
                 in_si[text, name] = slope
                 written = None if exact is None or text_size(exact) > LONGEST_RESULT else self._written(exact)
                 slopes[text, name] = Quantity(written, slope / unit.size, unit.text, "derivative of the equations")
-                values.setdefault(text, Quantity(None, value, ""))
+                values.setdefault(text, self._in_unit(text, value))
         return Sensitivity(self.model, of, to, values, slopes, None, in_si)
+
+    def _in_unit(self, text: str, value: float) -> Quantity:
+        """What a formula is worth, in its unit."""
+        own = _unit_of(self.model, text)
+        return Quantity(None, value, "") if own is None else Quantity(None, value / own.size, own.text)
 
     def _slope(self, output: Output, name: str) -> Derived:
         """One derivative.
@@ -416,7 +421,7 @@ class _Asking:
         for pair, slope in in_si.items():
             unit = unit_of_slope(self.model, *pair)
             slopes[pair] = Quantity(None, slope / unit.size, unit.text, "variational equations")
-        values = {text: Quantity(None, float(run.values[text][-1]), "") for text in texts}
+        values = {text: self._in_unit(text, float(run.values[text][-1])) for text in texts}
         return Sensitivity(self.model, texts, to, values, slopes, run, in_si)
 
 

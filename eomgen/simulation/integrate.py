@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Callable, Sequence
 from functools import lru_cache
+from numbers import Real
 from typing import Any
 
 import numpy as np
@@ -175,6 +176,8 @@ def refuse_bad_run(start: float, end: float, how: Stepping) -> None:
     Raises:
         UsageError: the time, a tolerance, the method, or how ties are kept closed.
     """
+    if not isinstance(end, Real):
+        raise UsageError(f"the time {end!r} is no number", mend="give it in seconds: time=10")
     if not (math.isfinite(start) and math.isfinite(end) and end >= start):
         raise UsageError(f"the time from {start:g} s to {end:g} s makes no sense", mend="give an end after the start")
     if not (how.rtol > 0 and how.atol > 0 and math.isfinite(how.rtol) and math.isfinite(how.atol)):

@@ -9,6 +9,7 @@ from __future__ import annotations
 import math
 import warnings
 from collections.abc import Callable, Mapping, Sequence
+from dataclasses import replace
 from functools import cached_property
 from typing import Any, Literal, get_args
 
@@ -18,6 +19,7 @@ from eomgen.errors import ExpressionError, UsageError
 from eomgen.model.findings import nearest
 from eomgen.model.parts import Model
 from eomgen.model.ranges import TypedNumbers, refuse_what_is_not_set
+from eomgen.model.replaced import Taken
 from eomgen.records import dataclass
 
 DesignKind = Literal["random", "sobol", "lhs"]
@@ -83,8 +85,8 @@ class DrawnValues:
         return LAWS[self.law].quantile(u, *self.arguments)
 
 
-def spread_of(model: Model, text: str, *, declared: bool = True) -> DrawnValues:
-    """The distribution that a text means: "phi=normal(0, 0.1)".
+def spread_of(model: Model, text: str, *, declared: bool = True) -> tuple[DrawnValues, Taken]:
+    """(the distribution that a text means, "phi=normal(0, 0.1)", what was made of it).
 
     Raises:
         UsageError: no parameter or start of that name, no law, or arguments that are none of it.
@@ -103,14 +105,24 @@ def spread_of(model: Model, text: str, *, declared: bool = True) -> DrawnValues:
         raise UsageError(f"'{text}' has {len(given)} arguments", mend=shown)
     typed = TypedNumbers(model, name, declared)
     try:
-        pairs = zip(known.arguments, given, strict=True)
+        pairs = tuple(zip(known.arguments, given, strict=True))
         numbers = tuple(float(x) if what in known.plain else typed.number(x) for what, x in pairs)
     except ValueError as error:
         raise UsageError(f"'{text}': its arguments are no numbers", mend=shown) from error
     except ExpressionError as error:
         raise UsageError(f"'{text}': {error.what}", mend=error.mend) from error
     _refuse_no_law(text, known, numbers)
-    return DrawnValues(name, word.strip(), numbers)
+    drawn = DrawnValues(name, word.strip(), numbers)
+    with_unit = [x.strip() for what, x in pairs if what not in known.plain]
+    plain = {k: x.strip() for k, (what, x) in enumerate(pairs) if what in known.plain}
+
+    def told(words: list[str]) -> str:
+        rest = iter(words)
+        return f"{drawn.law}({', '.join(plain.get(k) or next(rest) for k in range(len(pairs)))})"
+
+    taken = typed.taken(law, with_unit, told)
+    values = iter(taken.value if isinstance(taken.value, tuple) else ())
+    return drawn, replace(taken, value=tuple(numbers[k] if k in plain else next(values) for k in range(len(pairs))))
 
 
 def _refuse_no_law(text: str, law: Distribution, numbers: Sequence[float]) -> None:

@@ -14,10 +14,10 @@ from typing import IO, Any
 import numpy as np
 
 from eomgen import files
-from eomgen.errors import RunFailed, UsageError
+from eomgen.errors import ExpressionError, RunFailed, UsageError
 from eomgen.model.own_units import units_of
 from eomgen.model.parts import Model
-from eomgen.model.ranges import TypedNumbers, range_of
+from eomgen.model.ranges import LIKE, TypedNumbers, range_of, refuse_what_is_not_set, typed_values
 from eomgen.model.reader import ModelOrPath, bytes_at, loads
 from eomgen.model.table import Table
 from eomgen.questions.of_a_run import asked_of
@@ -193,7 +193,7 @@ def sweep(
     text, title, made = _source(model)
     declared = made if made is not None else loads(text, str(model), title)
     grid = {name: _values(declared, name, values) for name, values in (over or {}).items()}
-    spreads = [spread_of(declared, f"{name}={law}", declared=False) for name, law in (random or {}).items()]
+    spreads = [spread_of(declared, f"{name}={law}", declared=False)[0] for name, law in (random or {}).items()]
     plan = planned(
         declared,
         text=text,
@@ -224,9 +224,13 @@ def _values(model: Model, name: str, given: Any) -> tuple[float, ...]:
         logarithmic = given.startswith("log:")
         text = f"{'log:' * logarithmic}{name}={given.removeprefix('log:')}"
         return range_of(model, text, starts=True, declared=False).values
+    refuse_what_is_not_set(model, name, starts=True)
     typed = TypedNumbers(model, name, declared=False)
-    range_of(model, f"{name}=0", starts=True, declared=False)  # refuses other names
-    values = tuple(typed.number(x) if isinstance(x, str) else float(x) for x in np.atleast_1d(given).tolist())
+    try:
+        values = tuple(map(typed.number, typed_values(given)))
+    except (ValueError, TypeError, ExpressionError) as error:
+        what, mend = (error.what, error.mend) if isinstance(error, ExpressionError) else ("they are no numbers", "")
+        raise UsageError(f"over: the values of '{name}': {what}", mend=mend or LIKE) from error
     if not values or not all(map(math.isfinite, values)):
         raise UsageError(f"over: the values of '{name}' are no numbers", mend="give one or more")
     return values
@@ -248,10 +252,12 @@ def planned(model: Model, *, runs: int | None, **fields: Any) -> SweepPlan:
         raise UsageError(
             f"{runs} runs of the same values", mend='give --random "phi=normal(0, 0.1)", or leave --runs out'
         )
-    names = [*fields["over"], *(name for name, _, _ in fields["random"])]
+    fixed = [*fields.get("given", ()), *fields.get("start", ())]
+    names = [*fields["over"], *(name for name, _, _ in fields["random"]), *fixed]
     twice = [name for name in names if names.count(name) > 1]
     if twice:
-        raise UsageError(f"'{twice[0]}' is set twice", mend="once in --over or once in --random")
+        mend = "leave its --set or --start out" if twice[0] in fixed else "once in --over or once in --random"
+        raise UsageError(f"'{twice[0]}' is set twice", mend=mend)
     if fields["critical"] and not fields["over"]:
         raise UsageError("a critical value is sought along a range", mend='give --over "k=100:1000:10"')
     if fields["critical"] and fields["random"] and fields["design"] == "random":

@@ -18,7 +18,9 @@ def shown(found: Result, *, plot: str | None = None, certify: bool = True) -> Do
     """What is found, proven where that is asked for, its picture in a file where one is."""
     if plot is not None:
         found.plot(plot)
-    return found.document.proven(found.certify() if certify else None)
+    document = found.document.proven(found.certify() if certify else None)
+    over = getattr(found, "over", None)  # the range of a picture
+    return document if over is None else replace(document, taken=(*document.taken, over.taken))
 
 
 def with_start_told(document: Document, model: Model) -> Document:

@@ -27,7 +27,8 @@ def play_document(
     certify: bool = True,
 ) -> Document:
     """The page, written, and what it holds."""
-    options = PlayerOptions(slider_ranges(model, sliders), True, trail, forces, speed)
+    ranges, taken = slider_ranges(model, sliders)
+    options = PlayerOptions(ranges, True, trail, forces, speed)
     found = played(model, time, options)
     found.write(output)
 
@@ -38,7 +39,7 @@ def play_document(
 
     run = found.played.run
     document = plain_document(model, payload, Lines((output,)), failed="" if run.ok else run.message)
-    document = replace(document, notes=(found.rests,) if found.rests else ())
+    document = replace(document, taken=taken, notes=(found.rests,) if found.rests else ())
     return with_start_told(document, model).proven(found.certify() if certify else None)
 
 

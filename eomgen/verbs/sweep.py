@@ -16,7 +16,7 @@ from eomgen.model.table import Table
 from eomgen.pipeline import simulate
 from eomgen.proof.check import Certificate, Check
 from eomgen.questions.answers import solve
-from eomgen.questions.of_a_run import asked_of
+from eomgen.questions.of_a_run import asked_of, asked_typed
 from eomgen.records import dataclass
 from eomgen.sensitivities.sensitivity import checks_of_slope
 from eomgen.sweeps.design import spread_of
@@ -60,8 +60,10 @@ def sweep_document(
 ) -> Document:
     """The runs that the folder lacks are made; the document says what they gave."""
     valued, _ = typed(model, {"set_": asked.set_, "start": asked.start})
-    ranges = [range_of(model, word, starts=True) for word in asked.over]
-    spreads = [spread_of(model, word) for word in asked.random]
+    ranges = [range_of(valued.model, word, starts=True) for word in asked.over]
+    spreads = [spread_of(valued.model, word) for word in asked.random]
+    ask = [asked_typed(valued.model, text) for text in asked.ask]
+    critical = asked_typed(valued.model, asked.critical)
     names = [each.name for each in ranges]
     if len(set(names)) < len(names):
         raise UsageError("--over: one name twice", mend="give each range once")
@@ -70,12 +72,12 @@ def sweep_document(
         text=text,
         title=title,
         over={each.name: each.values for each in ranges},
-        random=tuple((each.name, each.law, each.arguments) for each in spreads),
+        random=tuple((each.name, each.law, each.arguments) for each, _ in spreads),
         runs=asked.runs,
         design=asked.design,
         seed=asked.seed,
-        ask=asked.ask,
-        critical=asked.critical,
+        ask=tuple(text for text, _ in ask),
+        critical=critical[0],
         how=asked.how,
         given=dict(assignments(asked.set_, "--set m=2")),
         start=dict(assignments(asked.start, "--start theta=1")),
@@ -86,7 +88,9 @@ def sweep_document(
     if plot:
         found.plot(plot, view)
     document = _told(valued.model, found, [plot] if plot else [])
-    return replace(document.proven(_proof(found) if certify else None), taken=valued.taken)
+    taken = [*valued.taken, *(each.taken for each in ranges), *(each for _, each in spreads)]
+    taken += [each for _, of_one in (*ask, critical) for each in of_one]
+    return replace(document.proven(_proof(found) if certify else None), taken=tuple(taken))
 
 
 def _told(model: Model, found: Sweep, files: list[str]) -> Document:

@@ -100,7 +100,7 @@ IN_COMMANDS = {
     "a value of what is no parameter": (["derive", "MODEL", "--set", "mass=3"], "mass"),
     "a start of a parameter": (["derive", "MODEL", "--start", "m=3"], "--set"),
     "a parameter of a coordinate": (["derive", "MODEL", "--set", "phi=3"], "--start"),
-    "a time with its unit": (["simulate", "MODEL", "--time", "5s"], "5s"),
+    "a time in a unit of length": (["simulate", "MODEL", "--time", "5m"], "5m"),
     "a time that goes back": (["simulate", "MODEL", "--time", "-1"], "time"),
     "an end without an equation": (["simulate", "MODEL", "--until", "phi"], "="),
     "a method of another program": (["simulate", "MODEL", "--method", "ode45"], "RK45"),

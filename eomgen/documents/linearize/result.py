@@ -238,13 +238,13 @@ class Linearization(Result):
         return replace(self, drawn="bode", over=None).picture
 
     def locus(self, over: str) -> Picture:
-        """The eigenvalues over a parameter: "k=100:1000:50", "log:k=1:100:50", in the unit of the file.
+        """The eigenvalues over a parameter: "k=100:1000:50", "log:k=1:100:50", in SI, or with a unit.
 
         Raises:
             UsageError: no such parameter, no range.
             RunFailed: parameters have no values; the equations are only known at those.
         """
-        return replace(self, drawn="locus", over=range_of(self.model, over)).picture
+        return replace(self, drawn="locus", over=range_of(self.model, over, declared=False)).picture
 
     def entries(self) -> dict[str, Any]:
         """For machines."""
