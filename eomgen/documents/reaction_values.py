@@ -97,7 +97,8 @@ class Readings:
 
     def _shortest(self, values: list[Scalar]) -> Scalar:
         """The shortest; of those that divide by nothing that may vanish, where there is one."""
-        return min(self.forms(values), key=lambda x: (divides_by_zero(x), length_of(x)))
+        forms = list(dict.fromkeys(self.forms(values)))
+        return forms[0] if len(forms) == 1 else min(forms, key=lambda x: (divides_by_zero(x), length_of(x)))
 
     def forms(self, values: Sequence[Scalar]) -> list[Scalar]:
         """The values in readable form; without those that divide by zero in one of their cases.

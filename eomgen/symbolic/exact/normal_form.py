@@ -259,7 +259,7 @@ def simple_constants(scalars: Sequence[Scalar], parameters: Collection[Node]) ->
     constant = set(parameters)
     nodes = order(tuple(scalars))
     for x in nodes:
-        if x.args and all(type(a) is not Node or a in constant for a in x.args):
+        if x.op != "symbol" and x.args and all(type(a) is not Node or a in constant for a in x.args):
             constant.add(x)
     carried = {x for x in scalars if type(x) is Node and x in constant}
     carried |= {a for x in nodes if x not in constant for a in x.args if type(a) is Node and a in constant}
