@@ -69,7 +69,7 @@ class Node:
 
     def __init__(self, graph: Owner, op: str, args: tuple[Any, ...], index: int) -> None:
         self.graph, self.op, self.args, self.index = graph, op, args, index
-        ops = op_bits(op)
+        ops = _BITS.get(op) or op_bits(op)
         for a in args:
             if type(a) is Node:
                 ops |= a.ops

@@ -71,9 +71,10 @@ def evaluate(outputs: Sequence[Scalar], values: Mapping[Node, Any], arithmetic: 
     known += [values[x] for x in way.given]
     if arithmetic.quickly is not None and (found := arithmetic.quickly(known, way.steps, way.outputs)) is not None:
         return found
+    value = known.__getitem__
     for x, op, places in way.steps:
         try:
-            known.append(functions[op](*[known[i] for i in places]))
+            known.append(functions[op](*map(value, places)))
         except (ValueError, ZeroDivisionError, OverflowError):
             known.append(arithmetic.failed(x))
     return [known[i] for i in way.outputs]
@@ -117,7 +118,8 @@ def _way(outputs: tuple[Scalar, ...], given: frozenset[Node]) -> _Way:
     numbers = dict.fromkeys(a for x in computed for a in x.args if type(a) is not Node)
     constants = tuple(numbers | dict.fromkeys(x for x in outputs if type(x) is not Node))
     place: dict[Scalar, int] = {x: i for i, x in enumerate((*constants, *symbols, *known, *computed))}
-    steps = tuple((x, x.op, tuple(place[a] for a in x.args)) for x in computed)
+    at = place.__getitem__
+    steps = tuple([(x, x.op, tuple(map(at, x.args))) for x in computed])
     return _Way(constants, symbols, known, steps, tuple(place[x] for x in outputs))
 
 

@@ -50,15 +50,16 @@ def by_balls(mp: Any, given: Sequence[Any], steps: Sequence[_Step], outputs: Seq
     if (
         not HAS_BALLS
         or len(steps) < WORTH * (len(given) + len(outputs))
-        or any(op not in OPERATIONS for _, op, _ in steps)
+        or not {op for _, op, _ in steps} <= OPERATIONS.keys()
     ):
         return None
     with ctx.workprec(mp.prec):
         known = _balls(given)
         if known is None:
             return None
+        value = known.__getitem__
         for _, op, places in steps:
-            known.append(OPERATIONS[op](*[known[i] for i in places]))
+            known.append(OPERATIONS[op](*map(value, places)))
         first = len(given)
         return _numbers(((known[i], given[i] if i < first else None) for i in outputs), mp)
 
