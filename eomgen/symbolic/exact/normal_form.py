@@ -236,10 +236,11 @@ def simplest(x: Scalar, limit: int = Work.ANSWER, positive: Collection[Node] = (
     """
     if type(x) is not Node:
         return _simplest(x, limit, positive, most)
-    asked = (x, limit, frozenset(positive), most)
-    if asked not in x.graph.simplest:
-        x.graph.simplest[asked] = _simplest(x, limit, positive, most)
-    return x.graph.simplest[asked]
+    known, how = x.graph.simplest, (limit, frozenset(positive), most)
+    if (x, *how) not in known:
+        found = known[x, *how] = _simplest(x, limit, positive, most)
+        known.setdefault((found, *how), found)
+    return known[x, *how]
 
 
 def _simplest(x: Scalar, limit: int, positive: Collection[Node], most: int | None) -> Scalar:
