@@ -249,10 +249,10 @@ def _simplest(x: Scalar, limit: int, positive: Collection[Node], most: int | Non
         if most is not None and len(terms) > most:
             return x
         writer = Writer(expansion)
-        forms = [writer.sum(terms), *quotients(expansion, writer, terms)]
+        forms = list(dict.fromkeys((writer.sum(terms), *quotients(expansion, writer, terms))))
     except TooLarge:
         return x
-    return rebuilt_as_written(min(forms, key=_length))
+    return rebuilt_as_written(forms[0] if len(forms) == 1 else min(forms, key=_length))
 
 
 def simple_constants(scalars: Sequence[Scalar], parameters: Collection[Node]) -> dict[Node, Scalar]:

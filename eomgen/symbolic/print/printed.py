@@ -7,7 +7,7 @@ from math import gcd
 
 from eomgen.symbolic.expression.exact_numbers import tidy
 from eomgen.symbolic.expression.graph import Node, Scalar
-from eomgen.symbolic.expression.node import SUMS
+from eomgen.symbolic.expression.node import SUMS, holds_op
 from eomgen.symbolic.expression.rational import Fraction
 from eomgen.symbolic.print.decimals import decimal_of
 from eomgen.symbolic.print.layout import Factor, Product, is_base, plus_first, products_of
@@ -110,6 +110,8 @@ def _number_under(base: Node) -> int:
 
 def has_nested_quotient(x: Scalar) -> bool:
     """True where a sum in a quotient has quotients itself, (a + b/c)/d, functions not looked into."""
+    if not holds_op(x, "div"):
+        return False
     stack: list[tuple[Scalar, bool]] = [(x, False)]
     seen = set()
     while stack:
