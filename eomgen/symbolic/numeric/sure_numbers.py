@@ -11,6 +11,7 @@ from collections.abc import Iterable, Mapping, Sequence
 from math import isfinite, nan
 from typing import Any
 
+from eomgen.symbolic.expression.derivative import symbols_of
 from eomgen.symbolic.expression.graph import Node, Scalar
 from eomgen.symbolic.expression.rational import Fraction
 from eomgen.symbolic.numeric.balls import Ball, balls
@@ -56,8 +57,10 @@ def _decided(ball: Ball, *, last: bool) -> float | None:
 def _at(digits: int, scalars: Sequence[Scalar], values: Mapping[Node, Scalar | float]) -> list[Any]:
     """The balls at one precision."""
     arithmetic = balls(digits, last=digits == PRECISIONS[-1])
-    number = {x: Fraction(v) if isinstance(v, float) and isfinite(v) else v for x, v in values.items()}
+    used = frozenset(symbols_of(scalars))
+    asked = {x: v for x, v in values.items() if x.op != "symbol" or x in used}
+    number = {x: Fraction(v) if isinstance(v, float) and isfinite(v) else v for x, v in asked.items()}
     known = {x: v for x, v in number.items() if not isinstance(v, float)}
-    state: dict[Node, Ball] = dict.fromkeys(values, (nan, 0))
+    state: dict[Node, Ball] = dict.fromkeys(asked, (nan, 0))
     state |= dict(zip(known, evaluate(tuple(known.values()), {}, arithmetic), strict=True))
     return evaluate(tuple(scalars), state, arithmetic)
