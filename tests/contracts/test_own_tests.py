@@ -199,6 +199,16 @@ def test_single_precision_passes_its_own_test_by_measured_tolerances(target, tmp
     assert OWN_TESTS[target](tmp_path) == ""
 
 
+@marked(["c", "fortran", "rust", "javascript"])
+def test_thousands_of_names_and_results_pass_the_language_s_own_test(target, tmp_path):
+    """1200 results of 1200 parameters: more than a statement of Fortran holds, or a constant of Rust."""
+    s = symbols("x", " ".join(f"k{i}" for i in range(1200)))
+    program = program_of([k * s.q[0] for k in s.parameters.values()], s)
+    told = Description("Many", "by hand", {}, vectors(program, count=1))
+    files.write_all(tmp_path, texts_of("many", [(program, told)], targets=[target]))
+    assert OWN_TESTS[target](tmp_path) == ""
+
+
 @marked(["fmu"])
 def test_an_fmu_with_other_rates_than_its_vectors_is_noticed(target, tmp_path):
     """One digit of one rate in the vectors turned: its test fails."""

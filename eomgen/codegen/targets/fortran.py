@@ -7,10 +7,12 @@ from __future__ import annotations
 
 import re
 from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import field, replace
+from typing import Any
 
 from eomgen.codegen.build import Compiler
 from eomgen.codegen.expressions import ATOM, PRODUCT, SUM, RankedText, ranked_number
-from eomgen.codegen.lowered import CHANGED, GIVEN, INDICES, INT, PLACES, READ, REAL, ROOM, Language
+from eomgen.codegen.lowered import CHANGED, GIVEN, INDICES, INT, PLACES, READ, REAL, ROOM, Language, Table
 from eomgen.codegen.lowering import lowered
 from eomgen.codegen.program import Program
 from eomgen.codegen.targets.base import (
@@ -23,9 +25,11 @@ from eomgen.codegen.targets.base import (
 )
 from eomgen.codegen.targets.in_single import SingleWords
 from eomgen.codegen.targets.library_call import compiled_target, sizes
+from eomgen.records import dataclass
 from eomgen.symbolic.expression.graph import Number
 
 WIDTH = 120  # of a line; the standard has 132
+LONGEST_LIST = 500  # values in a statement, which has at most 255 lines
 
 
 def number(a: Number) -> RankedText:
@@ -202,7 +206,7 @@ program {main}_test
     real(dp), parameter :: none(0) = [real(dp) ::]
     real(dp) :: nan
     integer :: vector = 0
-    nan = ieee_value(1.0_dp, ieee_quiet_nan)
+{long}    nan = ieee_value(1.0_dp, ieee_quiet_nan)
 {lines}
 contains
     subroutine check(t, x, {a}p, inputs, right, tolerance)
@@ -238,7 +242,7 @@ def fortran_text(program: Program, stem: str, role: Role = RHS, remarks: Mapping
         bool(program.accelerations),
         program.symbols,
     )
-    tables = [FORTRAN.holds(table) for table in made.tables]
+    tables = [line for table in made.tables for line in _held(table)]
     defined = [FORTRAN.defined[op] for op in sorted(made.ops & FORTRAN.defined.keys())]
     defined += [_STEP] if made.ops & {"less", "less_equal"} else []
     functions = [*defined, *("\n".join(FORTRAN.defines(f)) for f in (*made.kernels, *made.bodies))]
@@ -251,17 +255,39 @@ def fortran_text(program: Program, stem: str, role: Role = RHS, remarks: Mapping
         a="a, " if given else "",
         a_declared=f"a({len(program.accelerations)}), " if given else "",
         ieee="    use, intrinsic :: ieee_arithmetic, only: ieee_value, ieee_quiet_nan\n" if nan else "",
-        names="\n".join(_names(key, list(names)) for key, names in listed.items() if names),
+        names="\n".join(f"    {line}" for key, names in listed.items() if names for line in _names(key, list(names))),
         tables="".join(f"    {line}\n" for line in tables),
         functions="\n".join(f"    {line}".rstrip() for line in body.split("\n")),
     )
     return "\n".join(_short(text.split("\n")))
 
 
-def _names(key: str, names: Sequence[str]) -> str:
-    width = max(len(name.encode()) for name in names)
-    quoted = ", ".join('"' + name.replace('"', '""') + '"' for name in names)
-    return f"    character({width}), parameter, public :: {key}({len(names)}) = [character({width}) :: {quoted}]"
+def _held(table: Table) -> list[str]:
+    """A table; a long one of pieces."""
+    if len(table.values) <= LONGEST_LIST:
+        return [FORTRAN.holds(table)]
+    name = FORTRAN.spelled(table.name)
+    parts = [replace(table, name=f"{name}_{k}", values=part) for k, part in enumerate(_pieces(table.values))]
+    whole = FORTRAN.tables[table.kind].format(
+        name=name, last=len(table.values) - 1, values=f"[{', '.join(part.name for part in parts)}]"
+    )
+    return [*map(FORTRAN.holds, parts), whole]
+
+
+def _pieces(values: Sequence[Any]) -> list[Sequence[Any]]:
+    return [values[i : i + LONGEST_LIST] for i in range(0, len(values), LONGEST_LIST)]
+
+
+def _names(key: str, names: Sequence[str]) -> list[str]:
+    """Names as a constant; many of pieces."""
+    width, parts = max(len(name.encode()) for name in names), _pieces(names)
+    told = [", ".join('"' + name.replace('"', '""') + '"' for name in part) for part in parts]
+    kind, held = f"character({width}), parameter", [f"{key}_{k}" for k in range(len(parts))]
+    if len(parts) == 1:
+        return [f"{kind}, public :: {key}({len(names)}) = [character({width}) :: {told[0]}]"]
+    pieces = zip(held, parts, told, strict=True)
+    lines = [f"{kind} :: {name}({len(part)}) = [character({width}) :: {text}]" for name, part, text in pieces]
+    return [*lines, f"{kind}, public :: {key}({len(names)}) = [{', '.join(held)}]"]
 
 
 def _short(lines: Iterable[str]) -> Iterable[str]:
@@ -287,9 +313,16 @@ def _files(stem: str, program: Program, told: Description) -> dict[str, str]:
     head = "\n".join(f"! {FORTRAN.harmless(line)}".rstrip() for line in header(program, told))
     a = "{a}, " if given else ""
     call = f"    call check({{t}}, {{x}}, {a}{{p}}, {{inputs}}, {{result}}, {{tolerance}})"
-    lines = vector_lines(told.vectors, call, _listed, _number, ("none", "{}"))
+    long = _LongLists()
+    lines = [
+        line
+        for vector in told.vectors
+        for (said,) in [vector_lines([vector], call, long.listed, _number, ("none", "{}"))]
+        for line in (*long.filled(), said)
+    ]
     test = _TEST.format(
         **sizes(program, told.role, stem),
+        long="".join(f"    real(dp) :: {name}({size})\n" for name, size in long.sizes.items()),
         lines="\n".join(lines),
         a="a, " if given else "",
         a_declared="a(:), " if given else "",
@@ -304,6 +337,30 @@ def _number(value: float) -> str:
 
 def _listed(values: Sequence[float]) -> str:
     return f"[{', '.join(map(_number, values))}]" if values else "none"
+
+
+@dataclass
+class _LongLists:
+    """Lists that are too long for the statement in which they stand: arrays that are filled before it."""
+
+    sizes: dict[str, int] = field(default_factory=dict)
+    lines: list[str] = field(default_factory=list)
+
+    def listed(self, values: Sequence[float]) -> str:
+        """A list, or the name of its array."""
+        if len(values) <= LONGEST_LIST:
+            return _listed(values)
+        name, first = f"long_{len(values)}_{len(self.lines)}", 1
+        self.sizes[name] = len(values)
+        for part in _pieces(values):
+            self.lines.append(f"    {name}({first}:{first + len(part) - 1}) = {_listed(part)}")
+            first += len(part)
+        return name
+
+    def filled(self) -> list[str]:
+        """The lines that fill the arrays of one vector."""
+        lines, self.lines[:] = [*self.lines], []
+        return lines
 
 
 def _many_text(text: str, program: Program, stem: str, role: Role) -> str:

@@ -24,6 +24,7 @@ from eomgen.codegen.targets.base import (
 from eomgen.codegen.targets.in_single import QUOTED, SingleWords
 from eomgen.codegen.targets.library_call import compiled_target, sizes
 
+LONGEST_CONST = 1000  # names: a larger constant would be copied where it is used
 UNARY = "sin cos asin acos atan sinh cosh tanh exp log sqrt".split()
 RUST = Language(
     reserved=frozenset(
@@ -221,9 +222,7 @@ def rust_text(program: Program, stem: str = "", role: Role = RHS, remarks: Mappi
     made, given = lowered(program, RUST, role.result, remarks=remarks), bool(program.accelerations)
     text, symbols = "\n\n".join(made.texts(RUST)), program.symbols
     listed = {"STATES": [x.name for x in program.states], "PARAMETERS": symbols.parameters, "INPUTS": symbols.inputs}
-    names = "\n".join(
-        f"pub const {key}: [&str; {len(n)}] = [{', '.join(map(_quoted, n))}];" for key, n in listed.items()
-    )
+    names = "\n".join(_names(key, list(n)) for key, n in listed.items())
     caller = _CALLER.format(
         **sizes(program, role, stem),
         size=made.constants,
@@ -234,6 +233,11 @@ def rust_text(program: Program, stem: str = "", role: Role = RHS, remarks: Mappi
     return f"{ALLOWED}\n{uses}{names}\n\n{text}\n\n{caller}".replace("fn constants", "pub fn constants", 1).replace(
         "pub pub", "pub"
     )
+
+
+def _names(key: str, names: Sequence[str]) -> str:
+    kind, quoted = "const" if len(names) <= LONGEST_CONST else "static", ", ".join(map(_quoted, names))
+    return f"pub {kind} {key}: [&str; {len(names)}] = [{quoted}];"
 
 
 def _quoted(name: str) -> str:
