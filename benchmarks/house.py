@@ -1,6 +1,6 @@
 """The house in figures: names defined twice, private tolerances, sizes of files and functions, arrows between rooms.
 
-python benchmarks/house.py          a table in Markdown
+python benchmarks/house.py          two tables in Markdown: the figures, and the lines of each room
 """
 
 from __future__ import annotations
@@ -8,9 +8,27 @@ from __future__ import annotations
 import ast
 import re
 from collections import Counter, defaultdict
+from fnmatch import fnmatch
 from pathlib import Path
 
 PACKAGE = Path(__file__).resolve().parent.parent / "eomgen"
+LATER = {  # what was built after the house was laid out, by what it is for: patterns of paths inside the package
+    "pages and pictures": "page/ scene/ documents/*motion* documents/*pictur* documents/*drawing* documents/letters* "
+    "verbs/play.py verbs/animate.py verbs/report.py",
+    "equations that somebody derived": "judge/ verbs/verify.py symbolic/expression/habits.py",
+    "other languages, series, lanes": "codegen/targets/[d-z]*.py codegen/targets/beside.py "
+    "codegen/targets/branch_free.py codegen/targets/casadi.py codegen/targets/cpp.py "
+    "codegen/targets/c_integrator.py codegen/targets/c_lanes.py "
+    "codegen/taylor.py codegen/batching.py codegen/matrices.py codegen/given_motion.py codegen/single_precision.py",
+    "robots and other programs": "robots/ exported.py verbs/importing.py verbs/exporting.py",
+    "many runs, sweeps, parameters": "sweeps/ sensitivities/ identification/ questions/many_runs.py "
+    "questions/simulator.py questions/controlled.py questions/of_a_run.py verbs/sweep.py verbs/identify.py",
+    "compiled steps": "simulation/compiled_steps.py simulation/heyoka_steps.py simulation/dense_motion.py "
+    "simulation/phase_functions.py",
+    "kept and compared derivations": "kept.py verbs/kept_derivation.py verbs/derive_difference.py",
+    "units of what is written": "symbolic/expression/dimensions.py",
+}
+STAYS = ("codegen/targets/numpy.py",)
 SMALL = 60  # lines of a file that should live with its owner, unless it is a member of a seam
 
 
@@ -70,6 +88,34 @@ def figures() -> dict[str, str]:
     }
 
 
+def built_later(path: Path) -> str:
+    """For what a file was built after the house was laid out, or ""."""
+    name = path.relative_to(PACKAGE).as_posix()
+    for what, patterns in LATER.items():
+        for pattern in patterns.split():
+            if name not in STAYS and fnmatch(name, pattern + "*" if pattern.endswith("/") else pattern):
+                return what
+    return ""
+
+
+def lines_of_rooms() -> list[tuple[str, int, int]]:
+    """(room, its lines, of these what was built later), the largest first; then the whole."""
+    whole, later = Counter[str](), Counter[str]()
+    for path, text in sources().items():
+        room = path.relative_to(PACKAGE).parts[0]
+        whole[room] += text.count("\n")
+        later[room] += text.count("\n") if built_later(path) else 0
+    rows = [(room, n, later[room]) for room, n in whole.most_common()]
+    return [*rows, ("all", whole.total(), later.total())]
+
+
+def lines_built_later() -> Counter[str]:
+    found = Counter[str]()
+    for path, text in sources().items():
+        found[built_later(path)] += text.count("\n")
+    return found
+
+
 def _kinds(texts: dict[Path, str]) -> int:
     of_members = re.compile(r"\b(joint|shape|force|tie|contact|part)\.kind (==|!=|in) ")
     return sum(len(of_members.findall(t)) for p, t in texts.items() if {"mechanics", "simulation"} & set(p.parts))
@@ -79,6 +125,12 @@ def main() -> None:
     print("| what | now |\n|---|---|")
     for what, value in figures().items():
         print(f"| {what} | {value} |")
+    print("\n| room | lines | as it was laid out | built later |\n|---|---|---|---|")
+    for room, lines, later in lines_of_rooms():
+        print(f"| {room} | {lines} | {lines - later} | {later} |")
+    print("\n| built later | lines |\n|---|---|")
+    for what, lines in lines_built_later().most_common():
+        print(f"| {what} | {lines} |" if what else f"| (as it was laid out) | {lines} |")
 
 
 if __name__ == "__main__":
