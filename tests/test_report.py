@@ -42,6 +42,7 @@ from eomgen.mechanics.equations.work import generalized_forces, per_speed
 from eomgen.proof.check import Certificate
 from eomgen.symbolic.exact.equality import equal_at_random_states
 from eomgen.symbolic.expression.derivative import gradient, substituted
+from eomgen.symbolic.expression.functions import sqrt
 from eomgen.symbolic.expression.graph import Graph, Node, Scalar
 from eomgen.symbolic.print.decimals import MOST_DIGITS
 from eomgen.symbolic.print.text import to_text
@@ -331,6 +332,50 @@ def test_rendering_is_the_same_on_every_run_and_stays_readable(name, format):
     assert text == rendered(equations(name).derivation, format)
     assert len(text) < 80_000
     assert text.endswith("\n")
+
+
+def root_twice(text: str) -> str:
+    """A root that a product of the text has twice, sqrt(x)*a*sqrt(x) or sqrt(x)^2; "" where none has."""
+    products: list[set[str]] = [set()]
+    k = 0
+    while k < len(text):
+        if text.startswith("sqrt(", k):
+            depth, end = 1, k + 5
+            while depth and end < len(text):
+                depth += {"(": 1, ")": -1}.get(text[end], 0)
+                end += 1
+            root = text[k:end]
+            if root in products[-1] or re.match(r"\^\d", text[end:]):
+                return root
+            products[-1].add(root)
+            k += 5
+            products.append(set())
+            continue
+        if text[k] == "(":
+            products.append(set())
+        elif text[k] == ")":
+            products = products[:-1] or [set()]
+        elif not re.match(r"[\w*/^.']", text[k]):
+            products[-1] = set()
+        k += 1
+    return ""
+
+
+@pytest.mark.parametrize("name", derivable())
+def test_no_product_has_the_same_root_twice(name):
+    """sqrt(x)*sqrt(x) = x"""
+    assert not list(filter(None, map(root_twice, rendered(equations(name).derivation, "text").splitlines())))
+
+
+def test_a_root_that_stands_twice_is_seen_and_is_not_printed():
+    graph = Graph()
+    a, b, x = (graph.symbol(name) for name in "abx")
+    root = sqrt(a + x)
+    assert to_text((root * a) * (root * b)) == "a*b*(a + x)"
+    assert to_text((root * a) * (root * b) * root) == "a*b*(a + x)*sqrt(a + x)"
+    assert to_text(a / (root * b) / root) == "a/(b*(a + x))"
+    assert root_twice("2*sqrt(x)*(a + b)*sqrt(x)") and root_twice("c - sqrt(x)^2") and root_twice("(sqrt(a)*sqrt(a))")
+    assert not root_twice("sqrt(x) + sqrt(x)") and not root_twice("sqrt(x)*(1 - sqrt(x))")
 
 
 @pytest.mark.parametrize("name", LARGE)

@@ -15,7 +15,7 @@ from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.figure import Figure
 
 import eomgen
-from eomgen.documents.letters import PageBox
+from eomgen.documents.letters import PageBox, room_for
 from eomgen.documents.letters_artist import NamesArtist
 from eomgen.documents.rest_picture import rest_picture
 from eomgen.documents.space_drawing import sight
@@ -223,7 +223,7 @@ Areas = list[tuple[str, tuple[PageBox, ...]]]
 
 
 def areas_of(fill: Callable[[Figure], None], size: tuple[float, float]) -> list[Areas]:
-    """Of each panel of a picture that names what it shows."""
+    """Of each panel of a picture that names what it shows; none leaves the picture."""
     figure = Figure(figsize=size, layout="constrained")
     FigureCanvasAgg(figure)
     fill(figure)
@@ -232,7 +232,10 @@ def areas_of(fill: Callable[[Figure], None], size: tuple[float, float]) -> list[
     named = [[artist for artist in panel.get_children() if isinstance(artist, NamesArtist)] for panel in panels]
     for panel, artists in zip(panels, named, strict=True):
         assert not artists or not any(text.get_text() for text in panel.texts), "what is written without a look"
-    return [artists[0].areas for artists in named if artists]
+    found = [artists[0].areas for artists in named if artists]
+    page = PageBox(*figure.bbox.extents)
+    assert all(page.holds(box) for areas in found for _, boxes in areas for box in boxes)
+    return found
 
 
 def covering(areas: Areas) -> list[tuple[str, str]]:
@@ -241,9 +244,20 @@ def covering(areas: Areas) -> list[tuple[str, str]]:
     return [(a, b) for (a, p), (b, q) in pairs if any(box.meets(there) for box in p for there in q)]
 
 
+def test_a_name_finds_its_place_inside_the_picture_or_none():
+    """At a corner it goes inwards; where the picture is smaller than the name it is left out."""
+    page, none = PageBox(0, 0, 100, 100), np.zeros((0, 2))
+    for at in ((0.0, 0.0), (100.0, 0.0), (0.0, 100.0), (99.0, 50.0)):
+        box = room_for(at, (40, 10), (), none, (page, page), 1.0)
+        assert box is not None and page.holds(box)
+    crowd = np.stack(np.meshgrid(np.arange(100.0), np.arange(100.0)), -1).reshape(-1, 2)
+    assert room_for((50, 99), (40, 10), (), crowd, (page, page), 1.0) is not None
+    assert room_for((50, 50), (140, 10), (), none, (page, page), 1.0) is None
+
+
 @pytest.mark.parametrize("name", [pytest.param(n, marks=() if n in SOME else pytest.mark.slow) for n in ALL])
 def test_names_do_not_cover_one_another(name):
-    """Of the boxes of all names in a model's picture no two meet, and there are names."""
+    """Of the boxes of all names in a model's picture no two meet, none leaves the picture, and there are names."""
     picture = rest_picture(eomgen.load(MODELS / f"{name}.toml"))
     (areas,) = areas_of(picture.fill, (6, 5))
     assert areas and covering(areas) == []

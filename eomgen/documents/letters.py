@@ -83,14 +83,14 @@ def room_for(
     size: tuple[float, float],
     taken: Sequence[PageBox],
     dots: np.ndarray,
-    inside: PageBox,
+    inside: tuple[PageBox, PageBox],
     point: float,
 ) -> PageBox | None:
     """The best box of a size beside a place, which meets none that is taken; None where there is no room.
 
     Args:
         dots: what should not be covered.
-        inside: the panel.
+        inside: the panel, which it should not leave, and the picture, which it never does.
         point: a point in dots.
     """
     best: tuple[float, PageBox | None] = (math.inf, None)
@@ -98,9 +98,9 @@ def room_for(
     for number, ring in enumerate(RINGS):
         for order, turn in enumerate(TURNS):
             box = _beside(at, size, ring * point, turn)
-            if any(box.meets(other) for other in kept):
+            if not inside[1].holds(box) or any(box.meets(other) for other in kept):
                 continue
-            cost = number + 0.05 * order + 1.5 * box.covered(dots) + (0 if inside.holds(box) else 30)
+            cost = number + 0.05 * order + 1.5 * box.covered(dots) + (0 if inside[0].holds(box) else 30)
             if cost < best[0]:
                 best = (cost, box)
     return best[1]

@@ -44,7 +44,7 @@ class NamesArtist(Artist):
         page = self.axes.transData.transform
         dots = dots_along([page(line) for line in self.lines], STEP * point)
         window = self.axes.get_window_extent(renderer)
-        inside = PageBox(window.x0, window.y0, window.x1, window.y1)
+        inside = PageBox(*window.extents), PageBox(*figure.bbox.extents)
         self.areas = []
         taken = self._others(renderer)
         for name in self.names:

@@ -22,7 +22,8 @@ from eomgen.scene.scene import Mark, plain_number
 from eomgen.scene.strokes import DrawerTable, Drawing, Drawn, Letter, PictureSizes, SceneNumbers, Stroke, drawn_with
 from eomgen.scene.symbols import SPACE, TEETH
 
-ROUND, FALLS = 20, 10  # pieces of a turn, and from pole to pole
+ROUND, FEWEST = 20, 8  # pieces of a turn, from the largest to the smallest
+SEEN = 0.0012  # of the extent: chords need not be nearer to their arc
 FAR = 0.5  # part of what is upright along an axis: more, and the top of a picture is at that end of it
 SMALL = 10  # pieces of a turn of a symbol no larger than its unit
 CUBE = np.array([[x, y, z] for x in (-0.5, 0.5) for y in (-0.5, 0.5) for z in (-0.5, 0.5)])
@@ -71,25 +72,33 @@ def _box(form: BoxForm, mark: Mark, numbers: SceneNumbers, sizes: PictureSizes) 
     return [_faces(numbers.placed(own, mark.frame)[:, SIDES], mark)], []
 
 
+def _pieces(radius: np.ndarray, sizes: PictureSizes) -> int:
+    """Of a turn, so many that its chords stay where the arc is seen: r (1 - cos(pi/n)) = SEEN extent."""
+    largest = float(np.max(np.abs(radius), where=np.isfinite(radius), initial=0.0))
+    return int(np.clip(math.pi / math.sqrt(2 * SEEN * sizes.extent / largest), FEWEST, ROUND)) if largest else FEWEST
+
+
 def _ellipsoid(form: EllipsoidForm, mark: Mark, numbers: SceneNumbers, sizes: PictureSizes) -> Drawn:
-    fall, turn = np.linspace(0, math.pi, FALLS + 1), np.linspace(0, math.tau, ROUND + 1)
+    half = numbers.vector(form.size)
+    least = 0.12 * np.max(np.where(np.isfinite(half), half, 0.0), axis=1, keepdims=True)
+    half = np.maximum(half, least)
+    fall = np.linspace(0, math.pi, _pieces(half, sizes) // 2 + 1)
+    turn = np.linspace(0, math.tau, _pieces(half[:, :2], sizes) + 1)
     ball = np.stack(
         [np.outer(np.sin(fall), np.cos(turn)), np.outer(np.sin(fall), np.sin(turn)), np.outer(np.cos(fall), turn**0)], 2
     )
-    half = numbers.vector(form.size)
-    least = 0.12 * np.max(np.where(np.isfinite(half), half, 0.0), axis=1, keepdims=True)
-    own = numbers.vector(form.at)[:, None, None, :] + np.maximum(half, least)[:, None, None, :] * ball
+    own = numbers.vector(form.at)[:, None, None, :] + half[:, None, None, :] * ball
     return [_faces(numbers.placed(_quads(own), mark.frame), mark)], []
 
 
 def _revolution(form: RevolutionForm, mark: Mark, numbers: SceneNumbers, sizes: PictureSizes) -> Drawn:
     r = np.column_stack([numbers.value(x) for x, _ in form.profile])
     z = np.column_stack([numbers.value(x) for _, x in form.profile])
-    own = numbers.vector(form.at)[:, None, None, :] + _swept(r, z)
+    own = numbers.vector(form.at)[:, None, None, :] + _swept(r, z, _pieces(r, sizes))
     return [_faces(numbers.placed(_quads(own), mark.frame), mark)], []
 
 
-def _swept(r: np.ndarray, z: np.ndarray, pieces: int = ROUND) -> np.ndarray:
+def _swept(r: np.ndarray, z: np.ndarray, pieces: int) -> np.ndarray:
     """A profile n x k about z: n x k x turns x 3."""
     turn = np.linspace(0, math.tau, pieces + 1)
     swept: np.ndarray = np.stack(

@@ -187,6 +187,10 @@ def factors(x: Scalar, named: Container[Node] = ()) -> Product:
         node = heappop(newest)[1]
         power = powers[node]
         parts = None if node in named else _parts(node)
+        if parts is None and node.op == "sqrt" and node not in named:  # sqrt(x)^3 = x sqrt(x)
+            whole = int(power / 2)
+            bases += [(node, power - 2 * whole)] if power % 2 else []
+            parts, power = ((node.args[0], 1),) if whole else (), whole
         if parts is None:
             bases += [(node, power)] if power else []
             continue
