@@ -17,7 +17,7 @@ BODY, TINT, LOAD, REACTION, VELOCITY = "#2f5d8a", "#c9d8e8", "#b03a2e", "#2e7d4f
 LINES: Mapping[str, tuple[str, float]] = {  # colour and width [points]
     "ground": (GREY, 1.2),
     "track": (GREY, 1.2),
-    "axes": ("#9a9a9a", 1.0),
+    "axes": ("#707070", 1.0),
     "member": ("#44627f", 1.8),
     "string": (INK, 1.3),
     "spring": (INK, 1.2),

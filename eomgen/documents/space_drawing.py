@@ -80,8 +80,8 @@ class SpacePicture:
         panel.set_ylim(low[1], high[1])
 
     def limits(self) -> tuple[np.ndarray, np.ndarray]:
-        """The corners of the page: all that is drawn over all frames, but for planes and lines that go on."""
-        clouds = [s.path.reshape(-1, 3) for s in self.drawing.strokes if s.role != "track"]
+        """The corners of the page: all that is drawn over all frames, but for lines that go on."""
+        clouds = [s.path.reshape(-1, 3) for s in self.drawing.strokes if s.role != "track" or s.faces]
         cloud = np.vstack([*clouds, self.drawing.sizes.low[None], self.drawing.sizes.high[None]])
         page = cloud[np.isfinite(cloud).all(axis=1)] @ self.view.T[:, :2]
         margin = MARGIN * self.drawing.sizes.unit
@@ -147,7 +147,7 @@ class SpacePicture:
 
     def names(self, frame: int, notation: Notation) -> list[PlacedName]:
         """The names beside their places on the page, as a notation has them."""
-        found: dict[tuple[str, int, int], PlacedName] = {}
+        found: dict[tuple[str, str, int, int], PlacedName] = {}
         for letter in self.drawing.letters:
             at = letter.at[frame] @ self.view.T
             if np.isfinite(at).all():
@@ -157,7 +157,8 @@ class SpacePicture:
                 name = PlacedName(
                     written(letter, notation), (float(at[0]), float(at[1])), color, 9.0, RANKS.get(letter.role, 4)
                 )
-                found.setdefault((letter.role, round(at[0] * 1e6), round(at[1] * 1e6)), name)
+                of = letter.of if letter.role == "label" else ""  # bodies may have their centres at one place
+                found.setdefault((letter.role, of, round(at[0] * 1e6), round(at[1] * 1e6)), name)
         return list(found.values())
 
     def lines(self, frame: int) -> list[np.ndarray]:

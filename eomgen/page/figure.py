@@ -21,8 +21,11 @@ OFTEN = 4  # times that a look is said before it has a name
 _SVG = re.compile(r'<svg[^>]*viewBox="0 0 ([\d.]+) ([\d.]+)"[^>]*>(.*)</svg>', re.DOTALL)
 
 _PATH = re.compile(r' d="([^"]*)"')
+_CURVED = re.compile("[CQ]")
 _ID = re.compile(r'( id="|href="#|url\(#)')
 _STYLE = re.compile(r' style="([^"]*)"')
+_FILL = re.compile(r' style="fill: (#\w+); (stroke: [^"]*; stroke-linecap: round)"')
+"""A face: its shade, and an edge that it shares with others."""
 _HALO = re.compile(
     r'<path d="([^"]*)" style="fill: (#\w+); stroke: #ffffff; stroke-width: ([\d.]+)"/>\s*'
     r'<path d="\1" style="fill: \2"/>'
@@ -57,8 +60,9 @@ def _lean(marks: str, key: str) -> str:
     """
     marks = re.sub(r"<metadata>.*?</metadata>|<!--.*?-->", "", marks, flags=re.DOTALL)
     marks = _ID.sub(rf"\1{key}-", re.sub(r'<g id="[^"]*"', "<g", marks))
-    marks = _PATH.sub(lambda found: f' d="{stepped(found[1])}"', marks)
+    marks = _PATH.sub(lambda found: f' d="{stepped(found[1], digits=2 if _CURVED.search(found[1]) else 1)}"', marks)
     marks = _HALO.sub(r'<path d="\1" style="fill: \2; stroke: #ffffff; stroke-width: \3; paint-order: stroke"/>', marks)
+    marks = _FILL.sub(r' fill="\1" style="\2"', marks)
     looks = [look for look, times in Counter(_STYLE.findall(marks)).items() if times > OFTEN]
     names = {look: f"{key}-{k}" for k, look in enumerate(looks)}
     marks = _STYLE.sub(lambda found: f' class="{names[found[1]]}"' if found[1] in names else found[0], marks)

@@ -56,6 +56,8 @@ def stepped(path: str, digits: int = 2) -> str:
         k += many
         steps = [value - at[i % 2] for i, value in enumerate(places)]
         letter = command.lower()
+        if letter == "l" and at == (places[0], places[1]) and before != "m":
+            continue
         implied = letter == before or (letter == "l" and before == "m")
         said.append(_joined(("" if implied else letter), (step / size for step in steps), said[-1] if implied else ""))
         at, before = (places[-2], places[-1]), letter

@@ -25,6 +25,7 @@ from eomgen.scene.symbols import SPACE, TEETH
 ROUND, FEWEST = 20, 8  # pieces of a turn, from the largest to the smallest
 SEEN = 0.0012  # of the extent: chords need not be nearer to their arc
 FAR = 0.5  # part of what is upright along an axis: more, and the top of a picture is at that end of it
+BESIDE = 3  # units of a plane around what is drawn over it, and of the weight's arrow from its corner
 SMALL = 10  # pieces of a turn of a symbol no larger than its unit
 CUBE = np.array([[x, y, z] for x in (-0.5, 0.5) for y in (-0.5, 0.5) for z in (-0.5, 0.5)])
 SIDES = ((0, 1, 3, 2), (4, 6, 7, 5), (0, 4, 5, 1), (2, 3, 7, 6), (0, 2, 6, 4), (1, 5, 7, 3))
@@ -199,10 +200,11 @@ def _crossing(n: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
 
 
 def _track(form: forms.TrackForm, mark: Mark, numbers: SceneNumbers, sizes: PictureSizes) -> Drawn:
-    """A line as long as the picture; a plane as a square that all of it fits on."""
+    """A line as long as the picture; a plane as the rectangle below all that is drawn."""
     at = numbers.spot(form.at, mark)
-    middle, reach = 0.5 * (sizes.low + sizes.high), 0.6 * float(np.linalg.norm(sizes.high - sizes.low))
+    middle, half = 0.5 * (sizes.low + sizes.high), 0.5 * (sizes.high - sizes.low)
     if form.along is not None:
+        reach = 1.2 * float(np.linalg.norm(half))
         along = _unit(numbers.way(form.along, mark))
         center = at + np.sum((middle - at) * along, axis=1, keepdims=True) * along
         return [Stroke(np.stack([center - reach * along, center + reach * along], axis=1), mark.role, mark.of)], []
@@ -210,7 +212,7 @@ def _track(form: forms.TrackForm, mark: Mark, numbers: SceneNumbers, sizes: Pict
         return [], []
     n = _unit(numbers.way(form.normal, mark))
     center = middle - np.sum((middle - at) * n, axis=1, keepdims=True) * n
-    x, y = (reach * e for e in _crossing(n))
+    x, y = (((np.abs(e) @ half)[:, None] + BESIDE * sizes.unit) * e for e in _crossing(n))
     corners = np.stack([center + x + y, center - x + y, center - x - y, center + x - y], axis=1)
     return [_faces(corners[:, None], mark)], []
 
@@ -312,7 +314,8 @@ def _field(form: forms.FieldForm, mark: Mark, numbers: SceneNumbers, sizes: Pict
         return [], []
     v = 4.5 * sizes.unit * _unit(numbers.way(form.vector, mark))
     corner = np.where(sizes.up < -FAR, sizes.low, np.where(sizes.up > FAR, sizes.high, [sizes.low[0], *sizes.high[1:]]))
-    begin = np.broadcast_to(corner + 2 * sizes.unit * sizes.up, v.shape)
+    aside = np.eye(3)[0 if abs(sizes.up[0]) < FAR else 1]
+    begin = np.broadcast_to(corner + sizes.unit * (2 * sizes.up - BESIDE * aside), v.shape)
     return _arrow_strokes(begin, begin + v, mark, sizes), [Letter(form.text, begin + 0.5 * v, mark.role, mark.of)]
 
 
