@@ -6,8 +6,8 @@ from typing import Any
 
 from eomgen.documents.figures import Picture
 from eomgen.documents.latex_names import notation_of
-from eomgen.documents.scene_drawing import draw
-from eomgen.documents.space_drawing import draw_space
+from eomgen.documents.scene_drawing import draw, limits
+from eomgen.documents.space_drawing import draw_space, page_limits
 from eomgen.model.parts import Model
 from eomgen.scene.instant import drawn_start, frame_at
 from eomgen.scene.making import scene_of
@@ -15,7 +15,7 @@ from eomgen.scene.plane_strokes import plane_drawing
 from eomgen.scene.space_strokes import space_drawing
 from eomgen.scene.strokes import SceneNumbers
 
-SIZE = (6.4, 4.2)  # [inches]
+WIDTHS, HEIGHT = (3.4, 8.0), 4.2  # [inches]
 
 
 def rest_picture(model: Model) -> Picture:
@@ -28,7 +28,10 @@ def rest_picture(model: Model) -> Picture:
     numbers = SceneNumbers(scene, frame_at(scene, drawn_start(scene.system))[None, :])
     drawing = (plane_drawing if scene.plane else space_drawing)(numbers, dimensions=True)
 
+    low, high = limits(drawing) if scene.plane else page_limits(drawing)
+    width = min(max(HEIGHT * float(high[0] - low[0]) / float(high[1] - low[1]), WIDTHS[0]), WIDTHS[1])
+
     def fill(figure: Any) -> None:
         (draw if scene.plane else draw_space)(figure.subplots(), drawing, notation_of(scene.system.scope.model))
 
-    return Picture(SIZE, fill, model.name)
+    return Picture((width, HEIGHT), fill, model.name)

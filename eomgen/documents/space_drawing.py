@@ -64,6 +64,18 @@ def _sorted_corners(groups: list[np.ndarray], order: np.ndarray) -> Any:
     return np.concatenate(padded)[order] if padded else np.zeros((0, 2, 2))
 
 
+def page_limits(drawing: Drawing) -> tuple[np.ndarray, np.ndarray]:
+    """The corners of the page: all that is drawn over all frames, but for lines that go on."""
+    view, unit = sight(drawing.sizes.up), drawing.sizes.unit
+    clouds = [s.path.reshape(-1, 3) for s in drawing.strokes if s.role != "track" or s.faces]
+    cloud = np.vstack([*clouds, drawing.sizes.low[None], drawing.sizes.high[None]])
+    page = cloud[np.isfinite(cloud).all(axis=1)] @ view.T[:, :2]
+    low, high = page.min(axis=0) - MARGIN * unit, page.max(axis=0) + MARGIN * unit
+    size, middle = high - low, 0.5 * (low + high)
+    size = np.maximum(size, max(NARROWEST * size.max(), SMALLEST * unit))
+    return middle - 0.5 * size, middle + 0.5 * size
+
+
 class SpacePicture:
     """A scene in space on matplotlib axes; `show` sets it to another of its frames."""
 
@@ -75,20 +87,9 @@ class SpacePicture:
         panel.axis("off")
         self.pieces: Any = PolyCollection([], closed=False, capstyle="round", joinstyle="round", clip_on=False)
         panel.add_collection(self.pieces, autolim=False)
-        low, high = self.limits()
+        low, high = page_limits(drawing)
         panel.set_xlim(low[0], high[0])
         panel.set_ylim(low[1], high[1])
-
-    def limits(self) -> tuple[np.ndarray, np.ndarray]:
-        """The corners of the page: all that is drawn over all frames, but for lines that go on."""
-        clouds = [s.path.reshape(-1, 3) for s in self.drawing.strokes if s.role != "track" or s.faces]
-        cloud = np.vstack([*clouds, self.drawing.sizes.low[None], self.drawing.sizes.high[None]])
-        page = cloud[np.isfinite(cloud).all(axis=1)] @ self.view.T[:, :2]
-        margin = MARGIN * self.drawing.sizes.unit
-        low, high = page.min(axis=0) - margin, page.max(axis=0) + margin
-        size, middle = high - low, 0.5 * (low + high)
-        size = np.maximum(size, max(NARROWEST * size.max(), SMALLEST * self.drawing.sizes.unit))
-        return middle - 0.5 * size, middle + 0.5 * size
 
     def show(self, frame: int) -> None:
         """Everything at one frame, sorted by its distance."""

@@ -16,7 +16,6 @@ from eomgen.page.contents import ReportFigure
 from eomgen.page.markup import Html
 from eomgen.page.paths import stepped
 
-SIZE = (8.0, 4.2)  # of the rest picture [inches]
 OFTEN = 4  # times that a look is said before it has a name
 _SVG = re.compile(r'<svg[^>]*viewBox="0 0 ([\d.]+) ([\d.]+)"[^>]*>(.*)</svg>', re.DOTALL)
 
@@ -38,7 +37,7 @@ def rest_figure(model: Model) -> ReportFigure:
     missing = missing_values(model)
     assumed = f"; drawn with {', '.join(missing)} = 1" if missing else ""
     where = "at the start" if model.coordinates else "as it stands"
-    return figure_of(replace(rest_picture(model), size=SIZE, title=""), "figure", f"{model.name} {where}{assumed}.")
+    return figure_of(replace(rest_picture(model), title=""), "figure", f"{model.name} {where}{assumed}.")
 
 
 def figure_of(picture: Picture, key: str, caption: str) -> ReportFigure:

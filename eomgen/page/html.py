@@ -28,6 +28,7 @@ from eomgen.page.mathml import font_face, mathml
 from eomgen.proof.check import SIGNS, Certificate
 from eomgen.version import __version__
 
+LARGEST = 1.5  # pixels of a point of a picture
 DIGITS = 9  # of the numbers of a table that a page offers: as many as a run is sure of
 _NUMBER = re.compile(r"(-?)(\d+(?:\.\d+)?)(?:e([-+]\d+))?")
 _TEX = r'<annotation encoding="application/x-tex">(.*?)</annotation>'
@@ -216,7 +217,8 @@ def drawing_html(setter: Setter, drawing: ReportFigure) -> Html:
         )
         for curve in drawing.legend
     ]
-    picture = svg(drawing, role="img", aria_label=drawing.caption)
+    wide = f"max-width: {LARGEST * drawing.size[0]:.0f}px" if drawing.fixed else None
+    picture = svg(drawing, role="img", aria_label=drawing.caption, style=wide)
     caption = element("figcaption", drawing.caption, *([element("ul", *legend)] if legend else []))
     return element("figure", picture, caption, class_="fixed" if drawing.fixed else "drawn")
 

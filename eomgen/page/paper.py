@@ -21,6 +21,7 @@ from eomgen.proof.check import SIGNS, Certificate
 from eomgen.version import __version__
 
 ENGINES = ("lualatex", "pdflatex", "xelatex", "tectonic")
+WHOLE = 576.0  # points of a picture that is as wide as the text
 WORDY = 24  # characters from which on a column of a table is as wide as there is room
 INK = (
     "text{font-family:'New Computer Modern';font-size:11px;fill:#444}.axis{stroke:#ddd;fill:none}"
@@ -165,7 +166,8 @@ def _unit(unit: str) -> str:
 
 def _drawing(setter: Setter, drawing: ReportFigure) -> str:
     picture = svg_file(drawing)
-    parts = [f'#image(bytes({string(picture)}), format: "svg", width: 100%)']
+    share = min(1.0, drawing.size[0] / WHOLE) if drawing.fixed else 1.0
+    parts = [f'#align(center, image(bytes({string(picture)}), format: "svg", width: {100 * share:.0f}%))']
     for curve in drawing.legend:
         dash = svg_file(ReportFigure("", "", (22, 10), element("path", d="M0 5H22", class_=curve.style)))
         sample = f'box(baseline: -0.15em, image(bytes({string(dash)}), format: "svg", width: 1.9em))'
