@@ -22,6 +22,7 @@ from eomgen.cli_options import (
     folder,
     form_asked,
     refuse_beside,
+    refuse_idle_view,
     with_form,
     with_picture,
     with_values,
@@ -484,6 +485,7 @@ def simulate_command(
 
     if baumgarte and stabilize != "baumgarte":
         raise click.UsageError(f"--baumgarte goes with --stabilize baumgarte, not {stabilize}")
+    refuse_idle_view(options["plot"])
     if project_every and stabilize != "projection":
         raise click.UsageError(f"--project-every goes with --stabilize projection, not {stabilize}")
     rates = baumgarte or RATES
@@ -539,6 +541,7 @@ def sweep_command(where: str, wants_json: bool, output: str | None, strict: bool
     from eomgen.sweeps.plan import Stepped
     from eomgen.verbs.sweep import SweepAsked, replay_document, sweep_document
 
+    refuse_idle_view(options["plot"])
     form = form_asked(wants_json, None)
     replay, samples = options.pop("replay"), options.pop("samples")
     shown = {name: options.pop(name) for name in ("plot", "view", "units", "certify")}

@@ -82,6 +82,16 @@ def seconds(typed: object) -> float:
     raise click.BadParameter(f"{text!r} is no time; write 5, or '5 s'")
 
 
+def refuse_idle_view(plot: str | None) -> None:
+    """Refuses --view where nothing is drawn.
+
+    Raises:
+        UsageError: it was typed.
+    """
+    if plot is None and click.get_current_context().get_parameter_source("view") is ParameterSource.COMMANDLINE:
+        raise click.UsageError("--view says what --plot draws: give both")
+
+
 MODEL = click.argument("model", type=click.Path(exists=True, dir_okay=False, allow_dash=True))
 JSON = click.option("--json", "wants_json", is_flag=True, help="Write the result for machines.")
 OUTPUT = click.option("-o", "--output", type=click.Path(dir_okay=False), help="Write the result into a file.")

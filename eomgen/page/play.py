@@ -127,6 +127,8 @@ def played(model: Model, time: float, options: PlayerOptions) -> Played:
     """The page of a model whose values stand."""
     if not model.coordinates:
         raise UsageError("nothing moves: the model has no coordinates", mend="`statics` and `kinematics` answer it")
+    if not (options.speed > 0 and math.isfinite(options.speed)):
+        raise UsageError(f"a speed of {options.speed:g} makes no sense", mend="1 is as fast as it moves")
     found = run(pipeline.derive(model), time=time, samples=SAMPLES)
     made = Played(PlayedRun(found, options))
     points = [point["name"] for point in made.played.drawn[0]["points"]]

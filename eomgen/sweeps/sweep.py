@@ -23,6 +23,8 @@ from eomgen.model.table import Table
 from eomgen.questions.of_a_run import asked_of
 from eomgen.records import dataclass
 from eomgen.sensitivities.sensitivity import unit_of_slope
+from eomgen.simulation.integrate import refuse_bad_run
+from eomgen.simulation.integrator import Stepping
 from eomgen.simulation.result import Trajectory
 from eomgen.sweeps.critical import critical_values
 from eomgen.sweeps.design import refuse_bad_design, spread_of
@@ -266,8 +268,10 @@ def planned(model: Model, *, runs: int | None, **fields: Any) -> SweepPlan:
     plan = SweepPlan(draws=draws, **fields)
     if not plan.asked:
         raise UsageError("nothing is asked of the runs", mend='--ask "max(theta)"')
-    if not (fields["how"].time > 0 and math.isfinite(fields["how"].time)):
-        raise UsageError(f"the time {fields['how'].time:g} s makes no sense", mend="give one above 0")
+    how = fields["how"]
+    if not (how.time > 0 and math.isfinite(how.time)):
+        raise UsageError(f"the time {how.time:g} s makes no sense", mend="give one above 0")
+    refuse_bad_run(0.0, how.time, Stepping(how.method, how.rtol, how.atol))
     for text in plan.asked:
         of, to = plan.slopes.get(text, (text, ""))
         output = asked_of(model, of)
@@ -343,6 +347,8 @@ def _begun(plan: SweepPlan, folder: Path) -> None:
         UsageError: that of another plan is there.
     """
     path = folder / PLAN
+    if folder.exists() and not folder.is_dir():
+        raise UsageError(f"'{folder}' is a file", mend="-o names the folder of the sweep")
     if not path.exists():
         if (folder / LEDGER).exists():
             raise UsageError(f"'{folder}' has a ledger and no {PLAN}", mend="give -o another folder")

@@ -88,6 +88,8 @@ def animate_document(
         movies = _modes(model, modes, showing)
         summary = f"{len(movies)} mode{'s' * (len(movies) > 1)}"
     else:
+        if not time > 0:
+            raise UsageError(f"a motion of {time:g} s has nothing to show", mend="give a --time above 0")
         times = frame_times(time, showing.fps, showing.speed)
         run = _run(model, times)
         if Path(output).suffix.lower() == ".html":

@@ -70,6 +70,8 @@ def columns_of(path: str) -> dict[str, np.ndarray]:
         raise UsageError(
             f"a value is no number: {error}", path, "write names in the first line, then numbers"
         ) from error
+    if len(numbers) < 2:
+        raise UsageError("it has fewer than two rows of numbers", path, "write names in the first line, then numbers")
     if numbers.ndim != 2 or numbers.shape[1] != len(names):
         raise UsageError("its rows are not as long as its first line", path, "write a number under every name")
     return {name: numbers[:, k] for k, name in enumerate(names)}

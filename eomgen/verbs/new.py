@@ -20,10 +20,13 @@ def new_document(name: str, example: str | None = None) -> Document:
     """A commented starter model NAME.toml, or the example as it is; never over a file that is there.
 
     Raises:
-        UsageError: the file is there already, the name is none, or there is no such example.
+        UsageError: the file is there already, the name is none or that of another kind of file; no such example.
         WriteFailed: it cannot be written.
     """
     path = Path(name if name.endswith(".toml") else f"{name}.toml")
+    ending = Path(name).suffix
+    if ending and ending != ".toml" and ending[1:].isalpha():
+        raise UsageError(f"a model file ends in .toml, not in {ending}", mend=f"eomgen new {Path(name).stem}")
     if not path.stem.isprintable() or path.stem.startswith(".") or path.name == ".toml":
         raise UsageError(f"{name!r} is no name for a model", mend="use letters, digits, _ and -")
     text = (example_named(example) if example else TEMPLATES / "starter.toml").read_text(encoding="utf-8")

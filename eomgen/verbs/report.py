@@ -230,11 +230,13 @@ def report_of(subject: Subject, with_: Sequence[str] = (), without: Sequence[str
     """The report of a model: the sections that fit it, and those that are asked for.
 
     Raises:
-        UsageError: there is no such section.
+        UsageError: there is no such section; one is wanted and left out.
     """
     for name in (*with_, *without):
         if name not in SECTIONS:
             raise UsageError(f"there is no section '{name}'", mend=nearest_name(name, SECTIONS))
+        if name in with_ and name in without:
+            raise UsageError(f"the section '{name}' is wanted and left out", mend="say one of the two")
     keys = [key for key in SECTIONS if key not in without and (key in with_ or key in fitting(subject))]
     made = [_made(subject, key, key in with_) for key in keys]
     sections = tuple(section for section in made if section is not None)

@@ -100,6 +100,22 @@ IN_COMMANDS = {
     "a value of what is no parameter": (["derive", "MODEL", "--set", "mass=3"], "mass"),
     "a start of a parameter": (["derive", "MODEL", "--start", "m=3"], "--set"),
     "a parameter of a coordinate": (["derive", "MODEL", "--set", "phi=3"], "--start"),
+    "a model called like a page": (["new", "crane.html"], "crane.html"),
+    "a method that there is not, of many runs": (
+        ["sweep", "MODEL", "--over", "m=1,2", "--ask", "max(phi)", "--method", "euler"],
+        "euler",
+    ),
+    "a name that is set and swept": (
+        ["sweep", "MODEL", "--over", "m=1,2", "--set", "m=3", "--ask", "max(phi)"],
+        "set twice",
+    ),
+    "a view of no picture": (["simulate", "MODEL", "--view", "phase"], "--plot"),
+    "a moving picture of no time": (["animate", "MODEL", "-o", "OUT.gif", "--time", "0"], "0 s"),
+    "a slider that goes back": (["play", "MODEL", "-o", "OUT.html", "--slider", "m=2:1"], "ends before"),
+    "a section that is wanted and left out": (
+        ["report", "MODEL", "-o", "OUT.md", "--with", "motion", "--without", "motion"],
+        "motion",
+    ),
     "a time in a unit of length": (["simulate", "MODEL", "--time", "5m"], "5m"),
     "a time that goes back": (["simulate", "MODEL", "--time", "-1"], "time"),
     "an end without an equation": (["simulate", "MODEL", "--until", "phi"], "="),
