@@ -50,7 +50,7 @@ def _section(setter: Setter, section: ReportSection, report: Report, pictures: P
 def _picture(drawing: ReportFigure, name: str) -> list[str]:
     if not name:
         return []
-    size = r"width=\linewidth,height=0.8\textheight,keepaspectratio"
+    size = rf"width=\linewidth,height={0.4 if drawing.fixed else 0.8}\textheight,keepaspectratio"
     return [
         rf"\begin{{center}}\includegraphics[{size}]{{{name}}}\par\small {latex_escaped(drawing.caption)}\end{{center}}"
     ]
