@@ -310,6 +310,18 @@ weight = { kind = "gravity", acceleration = [0, -9.81] }
 """
 
 
+BLOCK = """
+eomgen = 1
+space = "plane"
+coordinates.s = 0
+bodies.block = { shape = { kind = "particle", mass = 2 }, joint = { kind = "placed", at = ["s", 0] } }
+constraints.floor = { kind = "support", point = "block.center", normal = [0, 1], friction = 0.5 }
+[forces]
+weight = { kind = "gravity", acceleration = [0, -9.81] }
+push = { kind = "force", point = "block.center", force = ["11.772*sin(2*pi*t)", 0] }
+"""
+
+
 def own_rows() -> Iterator[str]:
     """Motions in C against the loop in Python that they replace."""
     yield "| motion, rtol 1e-9 | steps | in C [s] | Python loop [s] | times | drift | ties open by |"
@@ -319,6 +331,7 @@ def own_rows() -> Iterator[str]:
         "four-bar by multipliers, 1000 s": (eomgen.loads(FOUR_BAR), 1000.0, 0.02),
         "four-bar, dependent coordinates, 100 s": (MODELS / "four_bar.toml", 100.0, 0.1),
         "sliding ladder, 2 s": (MODELS / "sliding_ladder.toml", 2.0, 1.0),
+        "block that sticks and slips, 10 s, 40 events": (eomgen.loads(BLOCK), 10.0, 0.2),
         "flyball governor (stiff), 10 s": (MODELS / "flyball_governor.toml", 10.0, 0.1),
     }
     for name, (model, seconds, share) in motions.items():

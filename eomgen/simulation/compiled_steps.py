@@ -215,7 +215,7 @@ class CompiledSteps:
         sizes = {"x": n, "x_old": n, "f": n, "F": 7 * n, "K": 16 * n, "room": 3 * n}
         sizes |= {"track_t": MOST_AT_ONCE, "track_x": MOST_AT_ONCE * n, "pivots": 2 * n}
         self._instants = np.zeros(0) if instants is None else np.ascontiguousarray(instants)
-        self._instants = self._instants[np.searchsorted(self._instants, span[0], side="right") :]
+        self._instants = self._instants[self._instants.searchsorted(span[0], "right") :]
         sizes |= {"rows": n * len(self._instants)}
         ends = list(accumulate(sizes.values()))
         numbers = np.zeros(ends[-1])

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from bisect import bisect_left, bisect_right
 from collections.abc import Callable, Sequence
 from dataclasses import field, replace
@@ -12,7 +13,7 @@ import numpy as np
 
 from eomgen.codegen.rhs import RateFunction
 from eomgen.codegen.spheres import SpherePlaces
-from eomgen.records import dataclass
+from eomgen.records import dataclass, replaced
 from eomgen.simulation.compiled_steps import COMPILED, CompiledSteps, Watched
 from eomgen.simulation.constraint_drift import DriftCorrection, EnergyLevel, Projection
 from eomgen.simulation.event_location import LOOKED_OUT, Crossing, Events, EventSearch, sharpened
@@ -114,7 +115,8 @@ class Stepping:
 
     def of_one_step(self) -> Stepping:
         """The tolerances of a whole run cut down to one step's: errors of many steps add up."""
-        return replace(self, rtol=max(SHARE * self.rtol, LEAST_RTOL), atol=SHARE * self.atol)
+        step: Stepping = replaced(self, rtol=max(SHARE * self.rtol, LEAST_RTOL), atol=SHARE * self.atol)
+        return step
 
     def hold(
         self, spheres: Sequence[SpherePlaces], projection: Projection | None, level: EnergyLevel | None = None
@@ -250,7 +252,7 @@ def march(
     start, end = span
     hold = how.hold(spheres, projection, level)
     x0 = hold.at(start, x0)
-    if not np.all(np.isfinite(f(start, x0))):
+    if not all(map(math.isfinite, f(start, x0))):
         return Run(np.array([start]), x0[None, :], start, x0, "not finite", _no_value(start), 0, 1)
     if end == start or x0.size == 0:
         times = instants if instants is not None and end > start else np.unique([start, end])

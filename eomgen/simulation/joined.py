@@ -10,6 +10,7 @@ from typing import Any
 import numpy as np
 
 from eomgen.errors import DerivationError
+from eomgen.records import replaced
 from eomgen.simulation.configuration import changed
 from eomgen.simulation.integrate import drift_of
 from eomgen.simulation.output_columns import OutputColumns
@@ -26,7 +27,9 @@ def joined(models: PhaseModels, runs: Sequence[PhaseRun]) -> Trajectory:
     coordinates, speeds = _union(runs)
     columns = [phase_run.phase.columns(phase_run.run.t, phase_run.run.x) for phase_run in runs]
     tables = [
-        np.array([found.get(name, np.zeros(len(t))) for name in (*coordinates, *speeds)]).reshape(-1, len(t)).T
+        np.array([found[name] if name in found else np.zeros(len(t)) for name in (*coordinates, *speeds)])
+        .reshape(-1, len(t))
+        .T
         for t, found in zip((phase_run.run.t for phase_run in runs), columns, strict=True)
     ]
     ends = np.cumsum([0, *(len(phase_run.run.t) for phase_run in runs)])
@@ -141,11 +144,13 @@ def thinned(full: Trajectory, samples: int | Sequence[float] | None, **more: Any
             first, last = ({n: float(c[i]) for n, c in columns().items()} for i in (begin, end - 1))
             return first, last
 
-        return replace(phase, rows=(before[begin], before[end]), edges=edges if end > begin else None)
+        found: Phase = replaced(phase, rows=(before[begin], before[end]), edges=edges if end > begin else None)
+        return found
 
     more["phases"] = tuple(map(of, full.phases))
     if kept.all():
-        return replace(full, **more)
+        whole: Trajectory = replaced(full, **more)
+        return whole
     reactions, outputs = (
         {name: column[kept] for name, column in table.items()} for table in (full.reactions, full.outputs)
     )

@@ -86,7 +86,9 @@ def advance(phase: PhaseModel, here: PhaseStart, plan: Plan) -> Run:
     """
     x = phase.state(here.values)
     _refuse_coarse(phase, here.t, x)
-    wanted = None if plan.instants is None else np.concatenate([[here.t], plan.instants[plan.instants > here.t]])
+    wanted = plan.instants
+    if wanted is not None and not (len(wanted) and wanted[0] == here.t):
+        wanted = np.concatenate([[here.t], wanted[wanted > here.t]])
     events = _events(phase, here.t, x, plan)
     level = phase.level(here.t, x) if plan.how.stabilization == "energy" else None
     flow = Flow(phase.rate, plan.how, phase.functions.rhs.spheres, phase.projection, lambda: phase.slope, level)
@@ -111,6 +113,8 @@ def _refuse_coarse(phase: PhaseModel, t: float, x: np.ndarray) -> None:
     Raises:
         DerivationError: the coordinate is named.
     """
+    if max(map(abs, x.tolist()), default=0.0) < COMPUTED / np.finfo(float).eps:
+        return
     apart = np.spacing(np.abs(x))
     for k in np.flatnonzero(apart[: len(phase.coordinates)] > COMPUTED):
         beside = x.copy()
