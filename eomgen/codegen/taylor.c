@@ -11,13 +11,18 @@
    vectors; SERIES_UNROLL and SERIES_INLINE, with which a compiler may know how long the sums are.
 
    The sum over 0 < i < j of a[i] b[j - i] takes nothing of order j: numbers keep both series of all sums side by side
-   and begin with all sums at once, in vectors. What REAL is several numbers has its vectors already. */
+   and begin with all sums at once, in vectors; of a row they keep its first coefficient. What REAL is several numbers has
+   its vectors already, and keeps rows whole. */
 
 #ifdef LANES
 #define SERIES_BEGIN(at, j)
 #define SERIES_END(at, j, k, a, b)
-#define SERIES_SUM(k, a, b, j) series_dot(a + 1, b + j - 1, j - 1)
-#define SERIES_SQUARE(k, a, j) series_pairs(a, j)
+#define SERIES_ROW(row) (W + (row)*(SERIES_ORDER + 1))
+#define SERIES_PUT(row, j, value) SERIES_ROW(row)[j] = value;
+#define SERIES_NOW(row, j) SERIES_ROW(row)[j]
+#define SERIES_FIRST(row) SERIES_ROW(row)[0]
+#define SERIES_SUM(k, a, b, j) series_dot(SERIES_ROW(a) + 1, SERIES_ROW(b) + j - 1, j - 1)
+#define SERIES_SQUARE(k, a, j) series_pairs(SERIES_ROW(a), j)
 
 /* a[0] b[0] + a[1] b[-1] + ..., so many products */
 SERIES_INLINE REAL series_dot(const REAL *a, const REAL *b, size_t count)
@@ -40,7 +45,11 @@ enum { SERIES_WIDTH = 8, SERIES_HALF = SERIES_SUMS*(SERIES_ORDER - 1) };
 typedef double series_wide __attribute__((vector_size(8*SERIES_WIDTH), aligned(8), may_alias));
 
 #define SERIES_BEGIN(at, j) REAL sums[SERIES_SUMS]; (void)sums; series_sums(at, j, sums);
-#define SERIES_END(at, j, k, a, b) (at)[(j - 1)*SERIES_SUMS + k] = a[j], (at)[SERIES_HALF + (j - 1)*SERIES_SUMS + k] = b[j];
+#define SERIES_END(at, j, k, a, b) \
+    (at)[(j - 1)*SERIES_SUMS + k] = row_##a, (at)[SERIES_HALF + (j - 1)*SERIES_SUMS + k] = row_##b;
+#define SERIES_PUT(row, j, value) const REAL row_##row = value; (void)row_##row;
+#define SERIES_NOW(row, j) row_##row
+#define SERIES_FIRST(row) W[row]
 #define SERIES_SUM(k, a, b, j) sums[k]
 #define SERIES_SQUARE(k, a, j) sums[k]
 

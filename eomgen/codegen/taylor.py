@@ -188,7 +188,8 @@ class _Writer:
 
     def needed(self, lines: list[tuple[object, str]]) -> list[str]:
         """The lines, without those that fill a row which nobody reads."""
-        return [line if key is None else self.row(key) + line for key, line in lines if key is None or key in self.rows]
+        there = [(key, line) for key, line in lines if key is None or key in self.rows]
+        return [line if key is None else line.format(self.row(key)) for key, line in there]
 
     def say(self, first: str, rest: str = "") -> None:
         """Lines of the first coefficients and of the others."""
@@ -197,7 +198,7 @@ class _Writer:
 
     def row(self, key: object) -> str:
         """Where a series lies."""
-        return f"(W + {(self.order + 1) * self.rows.setdefault(key, len(self.rows))})"
+        return str(self.rows.setdefault(key, len(self.rows)))
 
     def define(self, key: object, name: str, first: str, rest: str) -> None:
         """A value and its coefficient j, with a name; into its rows."""
@@ -205,8 +206,8 @@ class _Writer:
         if type(key) is Node:
             self.texts.define(key, name)
         self.say(f"const REAL {name} = {first};", f"const REAL {name} = {rest};")
-        self.first.append((key, f"[0] = {name};"))
-        self.rest += [(key, f"[j] = {name};"), (("rate", key), f"[j] = whole*{name};")]
+        self.first.append((key, f"SERIES_FIRST({{}}) = {name};"))
+        self.rest += [(key, f"SERIES_PUT({{}}, j, {name})"), (("rate", key), f"SERIES_PUT({{}}, j, whole*{name})")]
 
     def key(self, x: Scalar) -> object:
         """By what its row is known."""
@@ -247,7 +248,7 @@ class _Writer:
 
     def below(self, a: str, b: str) -> str:
         """sum over i > 0 of a_i b_(j-i)"""
-        return f"({a}[j]*{b}[0] + {self.between(a, b)})"
+        return f"(SERIES_NOW({a}, j)*SERIES_FIRST({b}) + {self.between(a, b)})"
 
     def between(self, a: str, b: str) -> str:
         """sum over 0 < i < j of a_i b_(j-i)"""
@@ -256,12 +257,14 @@ class _Writer:
 
     def product(self, a: str, b: str) -> str:
         """sum of a_i b_(j-i); what has come last is added last, so that nothing waits for it"""
-        return f"({a}[j]*{b}[0] + ({a}[0]*{b}[j] + {self.between(a, b)}))"
+        last = f"(SERIES_FIRST({a})*SERIES_NOW({b}, j) + {self.between(a, b)})"
+        return f"(SERIES_NOW({a}, j)*SERIES_FIRST({b}) + {last})"
 
     def square(self, a: str) -> str:
         """sum of a_i a_(j-i)"""
         self.sums.append((a, a))
-        return f"(({a}[0] + {a}[0])*{a}[j] + SERIES_SQUARE({len(self.sums) - 1}, {a}, j))"
+        twice = f"(SERIES_FIRST({a}) + SERIES_FIRST({a}))"
+        return f"({twice}*SERIES_NOW({a}, j) + SERIES_SQUARE({len(self.sums) - 1}, {a}, j))"
 
     def over(self, name: str, text: str) -> str:
         """The reciprocal of a first coefficient."""
