@@ -42,7 +42,7 @@ else:
         return made if cls is None else made(cls)
 
 
-def replaced(record: Any, **changes: Any) -> Any:
+def with_fields(record: Any, **changes: Any) -> Any:
     """As `dataclasses.replace` in a tenth of its time, of a frozen record that looks at nothing when it is made."""
     made, held = object.__new__(type(record)), record.__dict__
     made.__dict__.update({name: held[name] for name in record.__dataclass_fields__}, **changes)

@@ -22,7 +22,7 @@ from eomgen.proof.contact_phases import bodies_stand_as_told, changes_follow_imp
 from eomgen.proof.run_outputs import output_columns_hold
 from eomgen.proof.run_reactions import reaction_columns_hold
 from eomgen.questions.of_a_run import WholeRun
-from eomgen.records import dataclass, replaced
+from eomgen.records import dataclass, with_fields
 from eomgen.simulation.accuracy import Accuracy, accuracy_of, finer
 from eomgen.simulation.integrate import SAMPLES, instants_of, refuse_bad_run
 from eomgen.simulation.integrator import Run, Stepping
@@ -144,7 +144,7 @@ def run(
     _refuse_fork_at_rest(models, here)
     plan = Plan(
         time,
-        replaced(how.of_one_step(), breakpoints=models.breakpoints, keeps=True),
+        with_fields(how.of_one_step(), breakpoints=models.breakpoints, keeps=True),
         instants_of(samples, 0.0, time),
         None if condition is None else lambda phase: condition(phase.system),
     )

@@ -13,7 +13,7 @@ import numpy as np
 
 from eomgen.codegen.rhs import RateFunction
 from eomgen.codegen.spheres import SpherePlaces
-from eomgen.records import dataclass, replaced
+from eomgen.records import dataclass, with_fields
 from eomgen.simulation.compiled_steps import COMPILED, CompiledSteps, Watched
 from eomgen.simulation.constraint_drift import DriftCorrection, EnergyLevel, Projection
 from eomgen.simulation.event_location import LOOKED_OUT, Crossing, Events, EventSearch, sharpened
@@ -115,7 +115,7 @@ class Stepping:
 
     def of_one_step(self) -> Stepping:
         """The tolerances of a whole run cut down to one step's: errors of many steps add up."""
-        step: Stepping = replaced(self, rtol=max(SHARE * self.rtol, LEAST_RTOL), atol=SHARE * self.atol)
+        step: Stepping = with_fields(self, rtol=max(SHARE * self.rtol, LEAST_RTOL), atol=SHARE * self.atol)
         return step
 
     def hold(

@@ -10,7 +10,7 @@ from typing import Any
 import numpy as np
 
 from eomgen.errors import DerivationError
-from eomgen.records import replaced
+from eomgen.records import with_fields
 from eomgen.simulation.configuration import changed
 from eomgen.simulation.integrate import drift_of
 from eomgen.simulation.output_columns import OutputColumns
@@ -144,12 +144,12 @@ def thinned(full: Trajectory, samples: int | Sequence[float] | None, **more: Any
             first, last = ({n: float(c[i]) for n, c in columns().items()} for i in (begin, end - 1))
             return first, last
 
-        found: Phase = replaced(phase, rows=(before[begin], before[end]), edges=edges if end > begin else None)
+        found: Phase = with_fields(phase, rows=(before[begin], before[end]), edges=edges if end > begin else None)
         return found
 
     more["phases"] = tuple(map(of, full.phases))
     if kept.all():
-        whole: Trajectory = replaced(full, **more)
+        whole: Trajectory = with_fields(full, **more)
         return whole
     reactions, outputs = (
         {name: column[kept] for name, column in table.items()} for table in (full.reactions, full.outputs)
