@@ -135,7 +135,9 @@ class _Wrenches:
         scope, links = self.system.scope, self.system.motion.links
         centers = tuple(link.pose.point(mass_properties(scope, link.name).com) for link in links)
         p = self.numbers.array(centers).reshape(-1, 3)
-        R = [np.eye(3) if self._plane else self.numbers.array(link.pose.R) for link in links]
+        if self._plane:
+            return [(np.eye(3), center) for center in p]
+        R = self.numbers.array(tuple(row for link in links for row in link.pose.R)).reshape(-1, 3, 3)
         return list(zip(R, p, strict=True))
 
 

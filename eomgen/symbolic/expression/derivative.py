@@ -16,6 +16,7 @@ from eomgen.symbolic.expression.traversal import order
 
 LONG, FEWER = 10_000, 3  # nodes that sweeps meet; how many times fewer change their way
 JACOBIANS_KEPT = 8  # of matrices that are asked again: a search for roots, and the stability there
+GRADIENTS_KEPT = 8  # of T by the rates and by the coordinates, which every route takes
 
 
 def tangent(outputs: Sequence[Scalar], seeds: Mapping[Node, Scalar]) -> tuple[Scalar, ...]:
@@ -55,6 +56,11 @@ def derivative(x: Scalar, symbol: Node) -> Scalar:
 
 def gradient(x: Scalar, symbols: Sequence[Node]) -> tuple[Scalar, ...]:
     """(dx/dsymbol for each symbol), in one sweep from the result back to the symbols."""
+    return _gradient(x, tuple(symbols))
+
+
+@lru_cache(maxsize=GRADIENTS_KEPT)
+def _gradient(x: Scalar, symbols: tuple[Node, ...]) -> tuple[Scalar, ...]:
     return pullback((x,), (1,), symbols)
 
 
@@ -84,7 +90,7 @@ def _jacobian(outputs: tuple[Scalar, ...], symbols: tuple[Node, ...]) -> tuple[t
     nodes = order(outputs)
     followers = _followers(nodes, symbols)
     if len(outputs) < len(symbols) or _is_shorter_backward(outputs, nodes, followers):
-        return tuple(gradient(x, symbols) for x in outputs)
+        return tuple(pullback((x,), (1,), symbols) for x in outputs)
     each = zip(symbols, followers, strict=True)
     columns = [_swept(outputs, {symbol: 1}, nodes, (symbol,)) for symbol, nodes in each]
     return tuple(tuple(column[i] for column in columns) for i in range(len(outputs)))
