@@ -100,7 +100,7 @@ IN_COMMANDS = {
     "a value of what is no parameter": (["derive", "MODEL", "--set", "mass=3"], "mass"),
     "a start of a parameter": (["derive", "MODEL", "--start", "m=3"], "--set"),
     "a parameter of a coordinate": (["derive", "MODEL", "--set", "phi=3"], "--start"),
-    "a model called like a page": (["new", "crane.html"], "crane.html"),
+    "a model called like a page": (["new", "crane.html"], ".toml"),
     "a method that there is not, of many runs": (
         ["sweep", "MODEL", "--over", "m=1,2", "--ask", "max(phi)", "--method", "euler"],
         "euler",
