@@ -301,6 +301,15 @@ def test_a_given_motion_in_python_is_si_or_brings_its_unit(pendulum):
         assert held["theta"] == pytest.approx([2 * 9.81 * 0.8 / 4] * 3, rel=1e-12)
 
 
+def test_an_instant_that_is_asked_of_many_runs_is_in_the_unit_of_the_file(pendulum):
+    """theta' at theta = 10 of an angle in deg is theta' at 10 deg, and its column says so."""
+    words = ["sweep", str(pendulum), "--over", "m=1", "--time", "1", "--no-certify", "--json"]
+    told = json.loads(CliRunner().invoke(main, [*words, "--ask", "theta' at theta = 10"]).stdout)
+    asked = "theta' at theta = 10 deg"
+    right = eomgen.sweep(pendulum, over={"m": 1}, ask=asked, time=1)[asked]
+    assert told["table"][asked] == pytest.approx(list(right), rel=1e-14) and abs(right[0]) > 1
+
+
 def test_a_time_has_its_unit_or_is_in_seconds(pendulum):
     """--time "500 ms" is 0.5 s; a length is none."""
     words = ["simulate", str(pendulum), "--target", "numpy", "--no-certify", "--json", "--time"]
