@@ -11,10 +11,13 @@ from pathlib import Path
 import numpy as np
 import pytest
 from click.testing import CliRunner
+from hand_made import symbols
 
 import eomgen
 from eomgen.cli import main
-from eomgen.codegen.targets.c import SINGLE
+from eomgen.codegen.program import program_of
+from eomgen.codegen.targets.base import RHS, Description
+from eomgen.codegen.targets.c import SINGLE, TARGET
 from eomgen.codegen.targets.in_single import SingleWords
 from eomgen.errors import UsageError
 
@@ -121,6 +124,17 @@ def test_what_single_precision_cannot_do_is_seen(monkeypatch):
     monkeypatch.setattr(SingleWords, "text", lambda self, text: right(self, text).replace("2.0f*", "2.0002f*"))
     certificate = eomgen.generate(MODELS / "double_pendulum.toml", name="it", float32=True).certify()
     assert certificate.ok is False
+
+
+@needs_compiler
+def test_names_of_single_precision_are_harmless():
+    """A parameter sinf beside the function."""
+    s = symbols("float", "sinf double")
+    program = program_of([s.graph.call("sin", s.q[0]) * s.parameters["sinf"] + s.parameters["double"]], s)
+    texts = TARGET.single.files(TARGET.files("odd", [(program, Description("Odd", "", {}))]))
+    assert TARGET.single.run(texts, program, "odd", RHS)(0, [0.5, 0], (), [2, 1], None) == pytest.approx(
+        [2 * np.sin(0.5) + 1], rel=1e-6
+    )
 
 
 def test_the_text_of_numbers_types_and_functions():

@@ -46,7 +46,8 @@ C = Language(
         "register restrict return short signed sizeof static struct switch typedef union unsigned void volatile while "
         "asm main near far huge linux unix errno complex imaginary I bool true false NULL NAN INFINITY HUGE_VAL "
         "pick".split()
-    ),
+    )
+    | {f"{name}f" for name in FUNCTIONS.split("|")},  # those of single precision
     functions={"abs": "fabs({0})", "select": "pick({0}, {1}, {2})"},  # POSIX has another select
     defined={  # C has none of these, or drops a NaN
         "sign": "static double sign(double a) { return a > 0 ? 1 : a < 0 ? -1 : a; }",
