@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping
+from contextlib import suppress
 from dataclasses import replace
 from functools import cached_property
 
@@ -15,6 +16,7 @@ from eomgen.mechanics.equations.equations_of_motion import EquationsOfMotion
 from eomgen.mechanics.equations.system import System, system_of
 from eomgen.mechanics.equilibria.search import Equilibrium, all_equilibria
 from eomgen.mechanics.first_integrals.speeds import rates_of
+from eomgen.mechanics.first_integrals.speeds_from_momenta import relations_of
 from eomgen.mechanics.instant.outputs import Quantities
 from eomgen.mechanics.statics.contacts_at_start import contacts_at_start
 from eomgen.model.fields import AtRest, WrittenEquation
@@ -30,6 +32,7 @@ from eomgen.symbolic.expression.derivative import depends_on, substituted
 from eomgen.symbolic.expression.expressions import Call, Expression, Reference, parse
 from eomgen.symbolic.expression.graph import Node, Scalar
 from eomgen.symbolic.expression.node import ScalarRow
+from eomgen.symbolic.print.text import to_text
 
 
 @dataclass(frozen=True)
@@ -173,6 +176,15 @@ class Case:
         known = {p: self.quantities.reactions.unknown(p.name) for p in held}
         return substituted((found,), known)[0] if held else found
 
+    def called_by(self, call: Call) -> Callable[[Case], Scalar]:
+        """The same function of another case, as a function of its state over the symbols of this one."""
+
+        def value(of: Case) -> Scalar:
+            text = to_text(of.phase.eliminated(of.called(call)))
+            return parse(text, longest=len(text) + 1).evaluate(self.system.scope.names)
+
+        return value
+
     def _multiplier(self, call: Call) -> Scalar | None:
         label = f"{MULTIPLIER}({', '.join(a.name if isinstance(a, Reference) else a.text for a in call.args)})"
         return next((x for x in self.system.symbols.lam if x.name == label), None)
@@ -211,6 +223,16 @@ class Case:
             return rates_of(self.equations, self.start, accelerations=self.phase.accelerations)
         except (DerivationError, MissingValues, ModelError):
             return None
+
+    @cached_property
+    def by_momenta(self) -> dict[Node, Scalar] | None:
+        """The speeds that the momenta from the start and the ties give by one of them; None: there are none."""
+        if self.equations is None or not self.start:
+            return None
+        with suppress(DerivationError, MissingValues, ModelError):
+            found = relations_of(self.equations, self.start)
+            return None if found is None else found.speeds
+        return None
 
     # -- what the solver of outputs answers --------------------------------------------------------
 

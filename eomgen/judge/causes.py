@@ -10,8 +10,9 @@ from eomgen.judge.decision import is_zero_everywhere
 from eomgen.judge.diagnosis import Explanation, Share
 from eomgen.judge.verdict import Cause
 from eomgen.symbolic.exact.normal_form import legible
-from eomgen.symbolic.expression.derivative import depends_on_any, substituted
+from eomgen.symbolic.expression.derivative import depends_on, depends_on_any, substituted
 from eomgen.symbolic.expression.expressions import Call, Expression, Reference
+from eomgen.symbolic.expression.functions import over
 from eomgen.symbolic.expression.graph import Scalar, is_zero
 from eomgen.symbolic.expression.rational import Fraction
 from eomgen.symbolic.numeric.work import Work
@@ -30,12 +31,30 @@ def causes_of(case: Case, found: Sequence[Explanation], *, moving: bool) -> tupl
         moving: it is about accelerations: products of two speeds are Coriolis terms.
     """
     best = found[0]
-    causes = [cause_of(case, share, best.row, moving=moving) for share in best.shares]
+    causes = _joined(case, best, [cause_of(case, share, best.row, moving=moving) for share in best.shares])
     others = [e for e in found[1:] if len(e.shares) == len(best.shares)]
     if len(causes) == 1:
         kinds = dict.fromkeys(cause_of(case, e.shares[0], e.row, told=False, moving=moving).kind for e in others)
         causes[0] = replace(causes[0], others=tuple(kind for kind in kinds if kind != causes[0].kind))
     return tuple(causes)
+
+
+def _joined(case: Case, found: Explanation, causes: list[Cause]) -> list[Cause]:
+    """The causes; what is missing and what stands there in its place as one."""
+    gone = [k for k, share in enumerate(found.shares) if share.corruption.open and share.factor == 0 and not share.unit]
+    extra = [k for k, share in enumerate(found.shares) if share.corruption.kind == "extra_term"]
+    if len(gone) != 1 or len(extra) != 1:
+        return causes
+    (k,), (j,) = gone, extra
+    rows = found.shares[k].corruption.rows
+    ratio = over(found.shares[j].corruption.rows[0], rows[max(found.row, 0)]) if not is_zero(rows[max(found.row, 0)]) else 0
+    symbols = case.system.symbols
+    constant = not depends_on(legible(ratio, Work.FORMULA, case.system.scope.positive, LONG), (symbols.t, *symbols.q, *symbols.u, *case.forced))
+    name, term = causes[k].quantity, causes[k].term
+    what = f"{name}, {term}," if term and term not in name else name
+    text = f"{what} stands there as {causes[j].term}"
+    joined = replace(causes[k], kind="factor" if constant else "other", text=text)
+    return [joined if i == k else cause for i, cause in enumerate(causes) if i != j]
 
 
 def cause_of(case: Case, share: Share, row: int, *, told: bool = True, moving: bool = True) -> Cause:

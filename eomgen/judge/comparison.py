@@ -2,13 +2,14 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+from contextlib import suppress
 from dataclasses import field, replace
 from functools import cached_property
 
 import numpy as np
 
-from eomgen.errors import ExpressionError
+from eomgen.errors import DerivationError, ExpressionError
 from eomgen.judge.case import Case
 from eomgen.judge.causes import other_calls
 from eomgen.judge.corruption import Corruption
@@ -43,7 +44,7 @@ class Comparison:
         what: "motion", "T", "V", "Q", or "" of other values.
         call: what the value is of.
         of: of which body, force or coordinate an energy or a force is asked; () of the whole.
-        more: what else may be wrong.
+        more: what may be wrong, in place of what is known of such a value.
         squared: the value is the square of what is asked: its mistakes stand under a root.
         sizes: what roots and sizes |x| are at the start, where the author wrote x.
     """
@@ -54,7 +55,7 @@ class Comparison:
     what: str
     call: Call | None = None
     of: tuple[str, ...] = ()
-    more: tuple[Corruption, ...] = ()
+    more: Callable[[], Iterable[Corruption]] | None = None
     squared: bool = False
     sizes: Mapping[Node, Scalar] = field(default_factory=dict)
 
@@ -62,7 +63,9 @@ class Comparison:
     def corruptions(self) -> tuple[Corruption, ...]:
         """What may be wrong, the most believable first."""
         system = self.case.system
-        structural: list[Corruption] = [*self.more]
+        if self.more is not None:
+            return tuple(self.more())
+        structural: list[Corruption] = []
         if self.what:
             structural += self._structural()
             if self.sizes:
@@ -93,16 +96,18 @@ class Comparison:
                 yield replace(each, rows=(each.rows[speeds.index(self.of[0])],))
 
     def _classes(self) -> Iterator[Corruption]:
-        """What of a value holds accelerations, what products of speeds, what is there at rest."""
+        """What of a value accelerations do, what speeds, what is there at rest."""
         symbols, (value,) = self.case.system.symbols, self.rows
-        if not depends_on(value, symbols.a):
-            return
-        (unforced,) = substituted((value,), dict.fromkeys(symbols.a, 0))
-        (rest,) = substituted((unforced,), dict.fromkeys(symbols.u, 0))
-        yield Corruption("all that holds accelerations", "factor", (value - unforced,), 2)
-        yield Corruption("all that holds speeds", "factor", (unforced - rest,), 2)
-        yield Corruption("all that is there in motion alone", "factor", (value - rest,), 2)
-        yield Corruption("all that is there at rest", "factor", (rest,), 2)
+        u, a = (tuple(x for x in some if depends_on(value, (x,))) for some in (symbols.u, symbols.a))
+        classes = [("all that holds accelerations", a), ("all that holds speeds", u)]
+        classes += [("all that is there in motion alone", (*u, *a))] if u and a else []
+        classes += [(f"what {x.name} does", (x,)) for some in (u, a) if len(some) > 1 for x in some]
+        for name, some in classes if u or a else ():
+            with suppress(DerivationError):
+                (left,) = substituted((value,), dict.fromkeys(some, 0))
+                yield Corruption(name, "factor", (value - left,), 2)
+                if len(some) == len(u) + len(a):
+                    yield Corruption("all that is there at rest", "factor", (left,), 2)
 
     def _other_arguments(self) -> Iterator[Corruption]:
         """The same function of another point, body or tie."""

@@ -55,7 +55,13 @@ def course_of(case: Case, written: HandEquation, constants: Mapping[str, Scalar]
     start = substituted((q - course, scope.names[f"{name}'"] - rate), {**case.start, symbols.t: 0})
     begins = bool(constants or not case.start or is_zero_everywhere(case.system, *start).holds)
     others = [x for x in (*symbols.q, *symbols.u) if x not in known]
+    if not case.rows:
+        return None
     left = [row for row in substituted(case.rows, known) if not depends_on(row, (*others, *case.forced))]
+    a = scope.names[f"{name}''"]
+    if not left and type(a) is Node and a in known:  # the others move with it: what is left of all equations together
+        (found,) = substituted((known[a] - case.phase.eliminated(a),), known)
+        left = [] if depends_on(found, others) else [found]
     inputs = {node: case.system.inputs[n] for n, node in symbols.inputs.items()}
     mine = substituted(tuple(left), inputs)
     return Course(known, mine, is_zero_everywhere(case.system, *mine).holds if mine else None, begins)

@@ -132,7 +132,7 @@ def combination(
     found = _combined(row, rows, _exact_states(flat), IN_FIELD)
     if found.holds is None:
         found = _combined_in_digits(system, row, rows, flat, on_ties=False)
-    closes = bool(system.ties.J) or any(x.gap is not None and not x.identical for x in system.ties.rows)
+    closes = bool(system.ties.J or _gaps(system, flat))
     if found.holds is True or not closes:
         return found
     flat += [x for each in tied for x in each]
@@ -290,7 +290,7 @@ def states_of(
             length = arithmetic.functions["sqrt"](sum(exact[e] ** 2 for e in four))
             exact |= {e: exact[e] / length for e in four}
         if on_ties:
-            held = _tied(system, exact)
+            held = _tied(system, exact, _gaps(system, flat))
             if held is None:
                 continue
             exact = held
@@ -329,10 +329,17 @@ def _start(system: System, own: Mapping[Node, float]) -> dict[Node, float]:
     return found
 
 
-def _tied(system: System, state: dict[Node, Any]) -> dict[Node, Any] | None:
+def _gaps(system: System, flat: Sequence[Scalar]) -> list[Scalar]:
+    """What vanishes of coordinates: on ties, and of driven ones by their law, where time stands in the scalars too."""
+    found = [row.gap for row in system.ties.rows if row.gap is not None and not row.identical]
+    if system.symbols.t in symbols_of(flat):
+        driven = {q: system.scope.model.coordinates[q.name].motion for q in system.symbols.q}
+        found += [q - system.scope.value(law) for q, law in driven.items() if law is not None]
+    return found
+
+
+def _tied(system: System, state: dict[Node, Any], gaps: Sequence[Scalar]) -> dict[Node, Any] | None:
     """The state moved onto the ties: first its coordinates, by Newton's method, then its speeds; None: it fails."""
-    rows = [row for row in system.ties.rows if row.gap is not None and not row.identical]
-    gaps = [row.gap for row in rows if row.gap is not None]
     q, arithmetic = system.symbols.q, fifty_digits()
     slopes = [gradient(gap, q) for gap in gaps]
     flat = [*gaps, *(x for row in slopes for x in row)]

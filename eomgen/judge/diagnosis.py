@@ -28,6 +28,7 @@ from eomgen.symbolic.numeric.batch_evaluation import ARRAYS
 from eomgen.symbolic.numeric.evaluation import evaluate
 from eomgen.symbolic.numeric.tolerances import CARRIED, COMPUTED, SAME_EIGENVALUE
 
+WELL_KNOWN = 4  # the largest numerator and denominator by which somebody takes all of an answer wrongly
 WHOLE = "the whole"  # what is asked, as one contribution
 PLACES, VARIANTS = 5, 8  # configurations, and speeds and accelerations at each
 SIMPLE = 12  # the largest numerator and denominator of a factor that somebody wrote by mistake
@@ -291,6 +292,8 @@ def _share(corruption: Corruption, y: float) -> Share | None:
         if abs(1 + y - number) < SAME_EIGENVALUE * number:
             return Share(corruption, Fraction(1), name)
     factor = _simple(1 + y)
+    if corruption.name == WHOLE and factor is not None and max(abs(factor.numerator), factor.denominator) > WELL_KNOWN:
+        return None
     return None if factor is None or factor == 1 else Share(corruption, factor)
 
 

@@ -15,19 +15,18 @@ from collections.abc import Callable, Iterable, Iterator, Mapping
 from contextlib import suppress
 from dataclasses import replace
 from functools import cached_property
-from itertools import islice
 from typing import TypeVar
 
 from eomgen.errors import DerivationError, EomgenError, ExpressionError
 from eomgen.judge.case import Case
 from eomgen.judge.comparison import Comparison
-from eomgen.judge.corruption import PLAIN, Corruption
+from eomgen.judge.corruption import Corruption
 from eomgen.judge.corruptions import Corruptions
 from eomgen.judge.decision import is_zero_everywhere
 from eomgen.judge.diagnosis import MOST_MISTAKES, Explanation, Search, explained, samples_of
 from eomgen.judge.reading import HandEquation
+from eomgen.judge.replays import replays
 from eomgen.model.fields import AtRest, WrittenEquation
-from eomgen.model.table import Table
 from eomgen.questions.answers import Answer
 from eomgen.records import dataclass
 from eomgen.symbolic.expression.derivative import depends_on, derivative, substituted
@@ -46,17 +45,18 @@ class PutIn:
         what: of which equation, as of Corruptions.
         into: a row, the answer put in.
         resisting: what of a row answers to a change.
+        row: into which of the rows.
     """
 
     case: Case
     what: str
     into: Callable[[Scalar], Scalar]
     resisting: Callable[[Scalar], Scalar]
+    row: int = 0
 
 
 Instant = WrittenEquation | AtRest | None
 STATES_OF_VALUES = 12  # sets of values of the parameters at which an answer is compared
-MOST_LOADS = 30  # of a structure whose reactions are taken apart
 
 
 @dataclass(frozen=True)
@@ -114,11 +114,19 @@ def implied_by(
                 yield found
     if own is None:
         return
+
+    def answered(of: Case) -> Scalar | None:
+        return case.exact(of.sides(written, at)[0])
+
     call = written.left.calls[0] if len(written.left.code) == 1 and written.left.calls else None
-    of_loads = tuple(_loads(case, written)) if kind in ("statics", "reaction") else ()
-    yield Comparison(case, other - own, (own,), "", call, more=of_loads)
+    again = Comparison(case, other - own, (own,), "", more=lambda: replays(case, own, answered))
+    if not case.model.coordinates:
+        yield again  # of a structure, whose loads add up
+    yield Comparison(case, other - own, (own,), "", call)
     if any(x.op == "sqrt" for x in order((own, other))):
         yield Comparison(case, other * other - own * own, (own * own,), "", squared=True)
+    if case.model.coordinates and not isinstance(at, WrittenEquation):
+        yield again
 
 
 Compared = TypeVar("Compared", Implied, Comparison, Implied | Comparison)
@@ -136,18 +144,22 @@ def simplest_explanation(targets: Iterable[Compared]) -> tuple[Compared | None, 
 
 
 def implied_by_course(case: Case, known: Mapping[Node, Scalar]) -> Implied | None:
-    """What a course of one coordinate leaves of the equation of motion; None: there are several."""
-    if len(case.rows) != 1:
-        return None
-    a = case.system.symbols.a[0]
-    return _implied(
-        PutIn(
-            case,
-            "motion",
-            lambda row: substituted((row,), known)[0],
-            lambda row: substituted((derivative(row, a),), known)[0],
-        )
-    )
+    """What a course of one coordinate leaves of its equation of motion; None: it needs the others."""
+    symbols = case.system.symbols
+    others = [x for x in (*symbols.q, *symbols.u, *case.forced) if x not in known]
+    for k, (row, a) in enumerate(zip(case.rows, symbols.a, strict=True)):
+        left = substituted((row, derivative(row, a)), known)
+        if a in known and not any(depends_on(x, others) for x in left):
+            return _implied(
+                PutIn(
+                    case,
+                    "motion",
+                    lambda row: substituted((row,), known)[0],
+                    lambda row, a=a: substituted((derivative(row, a),), known)[0],  # type: ignore[misc]
+                    k,
+                )
+            )
+    return None
 
 
 def implied_by_rest(case: Case, written: HandEquation) -> Implied | None:
@@ -162,18 +174,19 @@ def _implied(put: PutIn) -> Implied | None:
     """The one equation of the model and its corruptions, with an answer put in."""
     case, known = put.case, Corruptions(put.case.parts, put.what)
     if put.what == "motion":
-        (whole,) = case.rows
+        whole = case.rows[put.row]
     else:
         whole = sum((known.rows(part)[0] for part in case.parts.elementary if part.row is None), start=0)
     left = put.into(whole)
-    if is_zero(left) or depends_on(left, (*case.system.symbols.u, *case.system.symbols.a)):
+    moving = (*case.system.symbols.u, *case.system.symbols.a)
+    if is_zero(left) or depends_on(left, moving):
         return None
     found, resisting = list[Corruption](), [put.resisting(whole)]
     for each in known.all:
         with suppress(DerivationError):
-            row = put.into(each.rows[0])
-            if not is_zero(row):
-                resisting.append(put.resisting(each.rows[0]))
+            row = put.into(each.rows[put.row])
+            if not is_zero(row) and not depends_on(row, moving):
+                resisting.append(put.resisting(each.rows[put.row]))
                 found.append(replace(each, rows=(row,)))
     return Implied(case, left, tuple(found), tuple(resisting))
 
@@ -282,19 +295,3 @@ def _squared_speed(case: Case, written: HandEquation, author: Scalar, place: Map
     if is_zero(second) or not is_zero_everywhere(case.system, still).holds:
         return None
     return over(2 * author * author, second)
-
-
-def _loads(case: Case, written: HandEquation) -> Iterator[Corruption]:
-    """Of what a structure's answer is the sum: what each load does alone."""
-    forces = case.model.forces
-    if case.model.coordinates or not 0 < len(forces) <= MOST_LOADS:
-        return
-    for name in islice(forces, MOST_LOADS):
-        try:
-            alone = Case(replace(case.model, forces=Table({name: forces[name]}), outputs=Table()))
-            left, _ = alone.sides(written, None)
-        except EomgenError:
-            continue
-        value = case.exact(left)
-        if value is not None and not is_zero(value):
-            yield Corruption(f"the force {name}", "factor", (value,), PLAIN, "", name)

@@ -17,6 +17,7 @@ from eomgen.judge.decision import is_zero_everywhere
 from eomgen.judge.implied import Instant, implied_by_course, implied_by_rest, simplest_explanation
 from eomgen.judge.kinds import FUNCTION_KINDS, KINDS, kind_of_equation
 from eomgen.judge.reading import HandEquation
+from eomgen.judge.replays import replays
 from eomgen.judge.renaming import Renaming, renamings, turnings
 from eomgen.judge.rest import is_of_rest
 from eomgen.judge.right import (
@@ -36,6 +37,7 @@ from eomgen.model.fields import AtRest
 from eomgen.model.reader import ModelOrPath, model_at
 from eomgen.model.replaced import equation_typed
 from eomgen.records import dataclass
+from eomgen.simulation.configuration import paths_of
 from eomgen.symbolic.expression.derivative import depends_on, derivative, substituted
 from eomgen.symbolic.expression.expressions import Reference
 from eomgen.symbolic.expression.functions import over
@@ -44,6 +46,7 @@ from eomgen.symbolic.numeric.work import doing
 
 Meanings = Mapping[str, Scalar]
 FAR_FETCHED = 16.0
+MOST_BODIES = 10  # of a model whose reactions are derived anew
 _WHAT = {"kinetic_energy": "T", "potential_energy": "V", "generalized_force": "Q"}
 
 
@@ -148,7 +151,8 @@ class Judge:
             with suppress(EomgenError):
                 so = truth_of(begun, begun.value(written.difference), kind)
                 if so.holds:
-                    told = "contacts that slide as they do at the start"
+                    piece = bool(paths_of(case.model))
+                    told = "the first piece of the path" if piece else "contacts that slide as they do at the start"
                     found = Decided(True, f"{told} and {so.up_to}" if so.up_to else told)
         if found.holds:
             return Verdict(written.given, kind, RIGHT, found.up_to)
@@ -247,7 +251,7 @@ class Judge:
         """Why an equation is wrong; or that another way to count a coordinate makes it right."""
         case = self.case
         found = truth_of(case, scalar, kind)
-        if found.why:
+        if found.why and not (found.why == CONSTANT and written.calls):
             return self._not(written, kind, found, scalar)
         left = self._without_reactions(written, kind, also)
         if left is not None:
@@ -323,6 +327,9 @@ class Judge:
         if depends_on(true, moving) and not depends_on(author, moving):
             so = case.phase.simple(case.phase.eliminated(true))
             found.append(Comparison(case, author - so, (so,), "", call, of))
+            true = so
+        if kind == "reaction" and len(case.model.bodies) <= MOST_BODIES:
+            found.append(Comparison(case, author - true, (true,), "", more=lambda: replays(case, true, case.called_by(call))))
         return found
 
     def _rates(self, scalar: Scalar) -> tuple[Scalar, ...]:

@@ -64,11 +64,23 @@ def truth_of(case: Case, scalar: Scalar, kind: str) -> Decided:
     if kind in ("law", "energy") and (integral := _integral(case, scalar)):
         return integral
     moving = (*case.system.symbols.u, *case.system.symbols.a)
-    if case.speeds and depends_on(scalar, moving) and not depends_on(scalar, case.system.symbols.lam):
-        (started,) = substituted((case.phase.eliminated(scalar),), case.speeds)
-        if is_zero_everywhere(case.system, started).holds:
-            return Decided(True, "the energy theorem and the momenta from the start")
+    if depends_on(scalar, moving):
+        told = _by_integrals(case, scalar, {})
+        if told:
+            return Decided(True, told)
     return Decided(None if undecided else False)
+
+
+def _by_integrals(case: Case, scalar: Scalar, known: Mapping[Node, Scalar]) -> str:
+    """By which integrals from the start a scalar vanishes where nodes are replaced, in words; "": by none."""
+    if depends_on(scalar, case.system.symbols.lam):
+        return ""
+    for told in ("the momenta", "the energy theorem and the momenta"):
+        speeds = case.by_momenta if told == "the momenta" else case.speeds
+        started = substituted((case.phase.eliminated(scalar),), {**speeds, **known}) if speeds else ()
+        if started and is_zero_everywhere(case.system, *started).holds:
+            return f"{told} from the start"
+    return ""
 
 
 def says_nothing(case: Case, written: HandEquation) -> bool:
@@ -194,6 +206,8 @@ def _holds_with(case: Case, kind: str, scalar: Scalar, known: Mapping[Node, Scal
     own, closing = ([linear_row(x, case.forced)[0] for x in some] for some in (rows[:n], rows[n:]))
     row, linear = linear_row(plain, case.forced)
     if rows and linear and combination(case.system, row, own, closing).holds:
+        return True
+    if kind == "motion" and _by_integrals(case, scalar, known):
         return True
     if kind not in ("law", "energy") or not case.start or not depends_on(scalar, case.system.symbols.u):
         return False

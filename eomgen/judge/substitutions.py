@@ -12,9 +12,8 @@ from functools import cached_property
 from eomgen.errors import DerivationError
 from eomgen.judge.contributions import Contribution, Contributions
 from eomgen.judge.corruption import EXCHANGED, ODD, PLACED, SHARED, TERMS
-from eomgen.judge.terms import angles_in, term_text, turned_angles
+from eomgen.judge.terms import angles_in, term_text, turned_angles, wrong_parameter
 from eomgen.judge.wrong_points import Altered
-from eomgen.mechanics.bodies.inertia import HALF
 from eomgen.model.catalog import Catalog
 from eomgen.model.dimensions import inferred
 from eomgen.records import dataclass
@@ -105,13 +104,9 @@ class _Substitutions:
         for x in held:
             meant = f"stands where {x.name} is meant"
             length = "wrong_point" if self._dimensions.get(x.name) == "m" else "factor"
-            for kind, value, what, rank in (
-                ("missing_term", 0, f"{x.name} is left out", EXCHANGED),
-                ("sign", -x, f"{x.name} has the wrong sign", EXCHANGED),
-                (length, 2 * x, f"2*{x.name} {meant}", EXCHANGED + 1),
-                (length, HALF * x, f"{x.name}/2 {meant}", EXCHANGED + 1),
-            ):
-                yield from self._change(part, kind, {x: value}, f"in {part.name} {what}", rank)
+            for kind, value, what in wrong_parameter(x):
+                of, rank = (length, EXCHANGED + 1) if kind == "factor" else (kind, EXCHANGED)
+                yield from self._change(part, of, {x: value}, f"in {part.name} {what}", rank)
             for name, y in known.items():
                 if y is not x and self._alike(name, x.name):
                     text = f"in {part.name} {name} {meant}"

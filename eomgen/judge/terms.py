@@ -41,12 +41,18 @@ def corrupted_terms(
     """What may be wrong with single terms of each row."""
     known = tuple(parameters)
     for k, row in enumerate(rows):
-        for term in terms_of(row, positive):
+        terms = terms_of(row, positive)
+        whole = sum(terms, start=0)
+        if type(whole) is Node:
+            yield from _Wrong(whole, k, len(rows), "everything").throughout(known)
+        for term in terms:
             squared = [u for u in rates if depends_on(term, (u,))]
             row_ = tuple(term if j == k else 0 for j in range(len(rows)))
-            yield Corruption(f"the term {term_text(term)}", "coriolis" if len(squared) == 2 else "factor", row_, TERMS)
+            if len(terms) > 1:
+                kind = "coriolis" if len(squared) == 2 else "factor"
+                yield Corruption(f"the term {term_text(term)}", kind, row_, TERMS)
             if type(term) is Node:
-                wrong = _Wrong(term, k, len(rows), term_text(term))
+                wrong = _Wrong(term, k, len(rows), f"the term {term_text(term)}")
                 yield from wrong.angles()
                 yield from wrong.parameters(known)
                 yield from wrong.rates(rates)
@@ -58,23 +64,19 @@ class _Wrong:
 
     Args:
         place, number: which row of how many.
-        told: the term as it is written.
+        name: the term as it is written.
     """
 
     term: Node
     place: int
     number: int
-    told: str
-
-    @property
-    def name(self) -> str:
-        return f"the term {self.told}"
+    name: str
 
     def row(self, x: Scalar) -> tuple[Scalar, ...]:
         return tuple(x if j == self.place else 0 for j in range(self.number))
 
     def changed(self, kind: str, to: Scalar, what: str, rank: float) -> Corruption:
-        text = f"in the term {self.told} {what}"
+        text = f"in {self.name} {what}"
         return Corruption(self.name, kind, self.row(to - self.term), rank, open=False, text=text)
 
     def replaced(self, kind: str, mapping: Mapping[Node, Scalar], what: str, rank: float) -> Iterator[Corruption]:
@@ -96,10 +98,24 @@ class _Wrong:
             for kind, mapping, what in _all_turned(angles):
                 yield from self.replaced(kind, mapping, what, TERMS)
 
+    def throughout(self, known: Sequence[Node]) -> Iterator[Corruption]:
+        """What may be wrong wherever it stands: angles, and parameters."""
+        for angle in angles_in((self.term,)):
+            for kind, mapping, what in turned_angles(angle):
+                yield from self.replaced(kind, mapping, what.format(term_text(angle)), EXCHANGED)
+        for x in known:
+            for kind, value, what in wrong_parameter(x) if depends_on(self.term, (x,)) else ():
+                yield from self.replaced(kind, {x: value}, what, EXCHANGED)
+        yield from self.exchanged(known)
+
     def parameters(self, known: Sequence[Node]) -> Iterator[Corruption]:
         for x in known:
             yield self.changed("factor", self.term * x, f"a factor {x.name} is too many", ODD)
             yield self.changed("factor", over(self.term, x), f"a factor {x.name} is missing", ODD)
+        yield from self.exchanged(known)
+
+    def exchanged(self, known: Sequence[Node]) -> Iterator[Corruption]:
+        for x in known:
             if not depends_on(self.term, (x,)):
                 continue
             for y in known:
@@ -123,6 +139,14 @@ class _Wrong:
 def term_text(x: Scalar) -> str:
     """A term or an angle as a text."""
     return readable_text(readable(x, Work.FORMULA)) or "that is too long to be shown"
+
+
+def wrong_parameter(x: Node) -> Iterator[tuple[str, Scalar, str]]:
+    """What may happen to a parameter: (kind of the cause, what replaces it, in words)."""
+    yield "missing_term", 0, f"{x.name} is left out"
+    yield "sign", -x, f"{x.name} has the wrong sign"
+    yield "factor", 2 * x, f"2*{x.name} stands where {x.name} is meant"
+    yield "factor", over(x, 2), f"{x.name}/2 stands where {x.name} is meant"
 
 
 # -- angles ------------------------------------------------------------------------------------------
@@ -151,6 +175,7 @@ def turned_angles(angle: Node) -> Iterator[tuple[str, dict[Node, Scalar], str]]:
         yield "unit", mapping, f"{{0}} is taken in {how}"
     yield "other", {sin: angle, cos: 1}, "sin({0}) and cos({0}) are those of a small angle"
     yield "other", {sin: angle}, "sin({0}) is replaced by the angle"
+    yield "other", {sin: 0, cos: 1}, "{0} is taken as zero"
     yield "other", {cos: 1}, "cos({0}) is left out"
     yield "other", {sin: 1}, "sin({0}) is left out"
     terms = linear_terms(angle)

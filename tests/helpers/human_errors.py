@@ -4,14 +4,15 @@
 product, Steiner's distance, moment arms, follower loads, rest lengths, absolute for relative damping, gears inverted,
 N = m g on an incline, ...) in every kind of equation; `right_disguises.txt` right ones from papers, notes and programs.
 
-    python tests/helpers/human_errors.py              # both tables
+    python tests/helpers/human_errors.py [first | second | third ...]     # both tables, or of these halves
 """
 
 from __future__ import annotations
 
+import sys
 import time
 from collections import Counter, defaultdict
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from functools import cache
 from pathlib import Path
@@ -32,6 +33,7 @@ class Answer:
     Args:
         kind: of the mistake; "" of what is right.
         causes, words: kinds of causes that name it, and words of which one must be told.
+        part: the part of the file that it stands in.
         options: of `verify`.
     """
 
@@ -41,6 +43,7 @@ class Answer:
     kind: str = ""
     causes: tuple[str, ...] = ()
     words: tuple[str, ...] = ()
+    part: str = ""
 
     def verdict(self) -> eomgen.Verdict:
         return _judge(self.model).verdict(self.text, **dict(self.options))
@@ -59,10 +62,13 @@ def _judge(name: str) -> Judge:
     return Judge(Case(eomgen.load(folder / f"{name.removeprefix('~')}.toml")))
 
 
-def _lines(name: str) -> Iterator[list[str]]:
+def _lines(name: str) -> Iterator[tuple[str, list[str]]]:
+    part = ""
     for line in (HERE / name).read_text().splitlines():
-        if line.strip() and not line.startswith("#"):
-            yield [part.strip() for part in line.split(" | ")]
+        if line.startswith("# -- "):
+            part = line.split()[2]
+        elif line.strip() and not line.startswith("#"):
+            yield part, [x.strip() for x in line.split(" | ")]
 
 
 def _options(given: list[str]) -> tuple[tuple[str, str], ...]:
@@ -72,8 +78,8 @@ def _options(given: list[str]) -> tuple[tuple[str, str], ...]:
 def wrong_answers() -> list[Answer]:
     """Every wrong one."""
     return [
-        Answer(model, text, _options(more[1:]), kind, tuple(causes.split(",")), _words(more))
-        for kind, model, text, causes, *more in _lines("human_errors.txt")
+        Answer(model, text, _options(more[1:]), kind, tuple(causes.split(",")), _words(more), part)
+        for part, (kind, model, text, causes, *more) in _lines("human_errors.txt")
     ]
 
 
@@ -83,28 +89,33 @@ def _words(more: list[str]) -> tuple[str, ...]:
 
 def right_answers() -> list[Answer]:
     """Every right one."""
-    return [Answer(model, text, _options(more)) for model, text, *more in _lines("right_disguises.txt")]
+    return [Answer(model, text, _options(more)) for _, (model, text, *more) in _lines("right_disguises.txt")]
 
 
-def main() -> None:
-    for title, some in (("wrong", wrong_answers()), ("right", right_answers())):
-        table: dict[str, Counter[str]] = defaultdict(Counter)
+def main(parts: Sequence[str]) -> None:
+    wrong = [each for each in wrong_answers() if not parts or each.part in parts]
+    for title, some in (("wrong", wrong), ("right", [] if parts else right_answers())):
+        table: dict[tuple[str, str], Counter[str]] = defaultdict(Counter)
         for each in some:
+            row = table[each.part, each.kind]
             try:
                 found = each.verdict()
                 told = "; ".join(f"[{x.kind}] {x.text}" for x in found.causes)
-                table[each.kind].update({"all": 1, found.verdict: 1, "named": each.is_named(found)})
+                row.update({"all": 1, found.verdict: 1, "named": each.is_named(found)})
             except EomgenError as error:
                 found, told = None, error.what
-                table[each.kind].update({"all": 1, "error": 1})
+                row.update({"all": 1, "error": 1})
             if found is None or found.verdict != title or (title == "wrong" and not each.is_named(found)):
-                print(f"{found.verdict if found else 'error'}: {each.kind} {each.model}: {each.text}\n    {told}")
-        for kind in sorted(table):
-            print(f"    {kind:16} {dict(table[kind])}")
+                label = " ".join((found.verdict if found else "error", each.part, each.kind, each.model))
+                print(f"{label}: {each.text}\n    {told}")
+        for (_, kind), row in sorted(table.items()):
+            print(f"    {kind:16} {dict(row)}")
+        for part in dict.fromkeys(each.part for each in some):
+            print(f"  {part:18} {dict(sum((row for (of, _), row in table.items() if of == part), Counter()))}")
         models = len({each.model for each in some})
         total = sum(table.values(), Counter())
         print(f"{title}: {dict(total)}, {models} models, {time.process_time():.0f} s CPU\n")
 
 
 if __name__ == "__main__":
-    main()
+    main(sys.argv[1:])
