@@ -130,6 +130,18 @@ class Case:
         )
 
     @cached_property
+    def gained(self) -> Scalar | None:
+        """T + V less what they are at the start, work of constant forces counted as a potential; None: it changes."""
+        parts = self.parts.elementary
+        if not self.start or any(part.Q or part.row is not None for part in parts):
+            return None
+        energy = sum((self.parts.operator.energy(part.T) + part.V for part in parts), start=0)
+        gained: Scalar = energy - substituted((energy,), self.start)[0]
+        with suppress(DerivationError):
+            return gained if self.follows(self.system.scope.with_accelerations((gained,))[0]).holds else None
+        return None
+
+    @cached_property
     def closing(self) -> ScalarRow:
         """J a + gamma, one for each closing row."""
         e = self.equations

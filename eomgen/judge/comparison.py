@@ -41,7 +41,7 @@ class Comparison:
         case: the model.
         scalar: of an equation of motion its left minus its right side; else what the author's value is too much.
         rows: the model's equations of motion; else its value alone.
-        what: "motion", "T", "V", "Q", or "" of other values.
+        what: "motion"; "energy": what T + V have gained since the start; "T", "V", "Q", or "" of other values.
         call: what the value is of.
         of: of which body, force or coordinate an energy or a force is asked; () of the whole.
         more: what may be wrong, in place of what is known of such a value.
@@ -73,13 +73,18 @@ class Comparison:
         else:
             structural += self._other_arguments()
             structural += self._classes()
-        if self.what != "motion":
+        if not self._is_equation:
             structural.append(Corruption(WHOLE, "factor", self.rows, 1))
         if self._is_long:
             return tuple(structural)
         rates = frozenset((*system.symbols.u, *system.symbols.a))
         terms = corrupted_terms(self.rows, system.symbols.parameters.values(), system.scope.positive, rates)
         return (*structural, *sorted(terms, key=lambda each: each.rank))
+
+    @property
+    def _is_equation(self) -> bool:
+        """Whether the author may have multiplied it by anything."""
+        return self.what in ("motion", "energy")
 
     @cached_property
     def _is_long(self) -> bool:
@@ -89,7 +94,8 @@ class Comparison:
     def _structural(self) -> Iterator[Corruption]:
         """What may be wrong with contributions."""
         speeds = [u.name.removesuffix("'") for u in self.case.system.symbols.u]
-        for each in Corruptions(self.case.parts, self.what, () if self.what == "Q" else self.of).all:
+        start = self.case.start if self.what == "energy" else {}
+        for each in Corruptions(self.case.parts, self.what, () if self.what == "Q" else self.of, start).all:
             if self.what != "Q":
                 yield each
             elif self.of[0] in speeds:
@@ -124,8 +130,8 @@ class Comparison:
         """The author's own terms, each of which may be one too many."""
         if self._is_long:
             return ()
-        own = self.scalar if self.what == "motion" else self.scalar + self.rows[0]
-        known = set(terms_of(self.rows[0], self.case.system.scope.positive)) if self.what != "motion" else set()
+        own = self.scalar if self._is_equation else self.scalar + self.rows[0]
+        known = set() if self._is_equation else set(terms_of(self.rows[0], self.case.system.scope.positive))
         found = []
         for term in terms_of(own, self.case.system.scope.positive):
             if term not in known:
@@ -151,7 +157,7 @@ class Comparison:
         known, n = self.corruptions, len(self.rows)
         flat = samples.of(self._moving([self.scalar, *self.rows, *(x for each in known for x in each.rows)]))
         D, E, C = flat[0], flat[1 : n + 1], flat[n + 1 :].reshape(len(known), n, *flat.shape[1:])
-        if self.what != "motion":
+        if not self._is_equation:
             more = samples.of(self._moving([each.rows[0] for each in self.extra]))
             return (Search(None, -D, np.concatenate([C[:, 0], more]), (*known, *self.extra), 0, E[0]),)
         found = [] if tied else [Search(D, E[k], C[:, k], known, k) for k in range(n)]
@@ -211,11 +217,22 @@ class Comparison:
         extra = [share for share in explanation.shares if share.corruption.kind == "extra_term"]
         added = [share.added(case.system.scope.graph.pi) for share in explanation.shares if share not in extra]
         scalar = self.scalar - sum((share.corruption.rows[0] for share in extra), start=0)
+        if self.what == "energy":
+            return self._is_multiple(scalar, self.rows[0] + sum((x[0] for x in added), start=0))
         if self.what != "motion":
             total = sum((x[0] for x in added), start=0)
             return bool(is_zero_everywhere(case.system, *self._moving([scalar - total])).holds)
         rows = tuple(row + sum((x[k] for x in added), start=0) for k, row in enumerate(self.rows))
         return bool(case.follows(scalar, rows).holds)
+
+    def _is_multiple(self, scalar: Scalar, energy: Scalar) -> bool:
+        """Whether an energy is the scalar times what the configuration alone decides: as their squares of speeds are."""
+        system = self.case.system
+        for u in system.symbols.u:
+            mine, own = (derivative(derivative(x, u), u) for x in (scalar, energy))
+            if not is_zero(mine):
+                return bool(is_zero_everywhere(system, energy * mine - scalar * own).holds)
+        return False
 
     def difference(self, explanation: Explanation) -> str:
         """What is too much in the equation, as it stands in the model's own."""

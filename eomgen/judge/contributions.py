@@ -8,7 +8,7 @@ every equation of motion by one and the same operator:
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from dataclasses import field, replace
 from functools import cached_property
 
@@ -21,9 +21,9 @@ from eomgen.mechanics.equations.work import drive_row, from_potential, load_row,
 from eomgen.mechanics.formulations.lagrange import free_rates
 from eomgen.model.forces.load import Couple, Load, PointForce, UniformField
 from eomgen.records import dataclass
-from eomgen.symbolic.expression.derivative import gradient, jacobian, substituted, tangent
+from eomgen.symbolic.expression.derivative import depends_on_any, gradient, jacobian, substituted, tangent
 from eomgen.symbolic.expression.functions import inner
-from eomgen.symbolic.expression.graph import Scalar, is_zero
+from eomgen.symbolic.expression.graph import Node, Scalar, is_zero
 from eomgen.symbolic.expression.node import ScalarRow
 from eomgen.symbolic.expression.spatial import dot, times
 
@@ -37,7 +37,8 @@ class Contribution:
         body, force: whose it is; "" of others.
         T, V: its share of the energies.
         Q: its generalized forces of what has no potential, one for each speed of the free system.
-        kind: "translation", "rotation", "weight", "force", "friction" or "tie".
+        kind: "translation", "rotation", "weight", "constant" (a force whose work is that of a potential, which the
+            model's V does not hold), "force", "friction" or "tie".
         load: what acts, and where.
         row: its share of the equations, where it is no energy and no load: friction, ties.
     """
@@ -180,9 +181,20 @@ class Contributions:
         many = len(force.loads) > 1
         for number, load in enumerate(force.loads, start=1):
             name = f"the force {force.name}" + (f" ({number})" if many else "")
+            body = _body((load,))
+            if isinstance(load, PointForce) and not depends_on_any(load.force, self._varying):
+                V = -dot(load.force, motion.position(load.place))
+                found.append(Contribution(name, body, force.name, V=V, kind="constant", load=load))
+                continue
             Q = load_row(loads, load)
-            found.append(Contribution(name, _body((load,)), force.name, Q=Q, kind="force", load=load))
+            found.append(Contribution(name, body, force.name, Q=Q, kind="force", load=load))
         return found
+
+    @cached_property
+    def _varying(self) -> tuple[Node, ...]:
+        """What a constant force holds nothing of."""
+        symbols = self.operator.base.symbols
+        return (symbols.t, *symbols.q, *symbols.u, *symbols.inputs.values(), *(symbols.unknowns or {}).values())
 
     def _others(self) -> list[Contribution]:
         """Friction, and what the ties do."""
@@ -203,6 +215,3 @@ def _body(loads: Sequence[Load]) -> str:
     bodies = {load.place[0] for load in loads if isinstance(load, PointForce) and load.place[0]}
     bodies |= {load.body for load in loads if isinstance(load, Couple)}
     return bodies.pop() if len(bodies) == 1 else ""
-
-
-RowsOf = Callable[[Contribution], ScalarRow]

@@ -8,8 +8,8 @@ speed (`substitutions`); a single term of the result (`terms`). What an equation
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
-from dataclasses import replace
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import field, replace
 from functools import cached_property
 from itertools import chain, combinations
 
@@ -19,8 +19,8 @@ from eomgen.judge.substitutions import substitutions_in
 from eomgen.judge.wrong_points import changes_of_places
 from eomgen.mechanics.bodies.inertia import HALF
 from eomgen.records import dataclass
-from eomgen.symbolic.expression.derivative import depends_on, gradient, symbols_of
-from eomgen.symbolic.expression.graph import is_zero
+from eomgen.symbolic.expression.derivative import depends_on, gradient, substituted, symbols_of
+from eomgen.symbolic.expression.graph import Node, Scalar, is_zero
 from eomgen.symbolic.expression.node import ScalarRow
 
 MOST = 1400  # corruptions of one equation
@@ -36,11 +36,13 @@ class Corruptions:
         parts: the contributions.
         what: "motion": the equations of motion; "T", "V", "energy": T + V; "Q": the generalized forces.
         of: only of these bodies or forces; () of all.
+        start: q and u there: of an energy what it has changed by since.
     """
 
     parts: Contributions
     what: str
     of: tuple[str, ...] = ()
+    start: Mapping[Node, Scalar] = field(default_factory=dict)
 
     def rows(self, part: Contribution) -> ScalarRow:
         """What a contribution adds to what is asked."""
@@ -50,7 +52,8 @@ class Corruptions:
         if self.what == "V":
             return (part.V,)
         if self.what == "energy":
-            return (operator.energy(part.T) + part.V,)
+            energy = operator.energy(part.T) + part.V
+            return (energy - substituted((energy,), self.start)[0] if self.start else energy,)
         if self.what == "Q":
             return tuple(-x for x in operator.rows(replace(part, T=0)))
         return operator.rows(part)
@@ -71,7 +74,8 @@ class Corruptions:
     @cached_property
     def whole(self) -> tuple[Contribution, ...]:
         """The contributions that matter here."""
-        mine = (part for part in self.parts.elementary if not self.of or {part.body, part.force} & {*self.of})
+        known = (part for part in self.parts.elementary if self.what != "V" or part.kind != "constant")
+        mine = (part for part in known if not self.of or {part.body, part.force} & {*self.of})
         return tuple(part for part in mine if not all(map(is_zero, self.rows(part))))
 
     def _sought(self) -> Iterator[Corruption]:
@@ -81,7 +85,7 @@ class Corruptions:
         yield from self._together()
         if self.what == "motion":
             yield from self._pieces()
-        if self.what in ("motion", "T"):
+        if self.what in ("motion", "T", "energy"):
             yield from self._products()
         for change in chain(changes_of_places(self.parts, self.whole), substitutions_in(self.parts, self.whole)):
             if self.what == "T" and is_zero(change.part.T):

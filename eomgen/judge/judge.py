@@ -305,10 +305,11 @@ class Judge:
         if kind == "motion" or (kind in ("law", "energy") and not calls):
             if not case.rows:
                 return []
+            of_energy = self._energies(scalar) if kind in ("law", "energy") else []
             of_law = () if depends_on(scalar, case.forced) else self._rates(scalar)
             sizes = signs_at_start(case, sizes_in(case, written, scalar))
             rows = substituted(case.rows, sizes)
-            return [
+            return of_energy + [
                 Comparison(case, each, rows, "motion", sizes=sizes) for each in substituted((*of_law, scalar), sizes)
             ]
         if len(calls) != 1:
@@ -331,6 +332,13 @@ class Judge:
         if kind == "reaction" and len(case.model.bodies) <= MOST_BODIES:
             found.append(Comparison(case, author - true, (true,), "", more=lambda: replays(case, true, case.called_by(call))))
         return found
+
+    def _energies(self, scalar: Scalar) -> list[Comparison]:
+        """The energy theorem, of a law with squares of speeds."""
+        case, u = self.case, self.case.system.symbols.u
+        if depends_on(scalar, case.forced) or not any(depends_on(derivative(scalar, x), (x,)) for x in u):
+            return []
+        return [] if case.gained is None else [Comparison(case, scalar, (case.gained,), "energy")]
 
     def _rates(self, scalar: Scalar) -> tuple[Scalar, ...]:
         """The equation of motion that a law follows from: its rate."""

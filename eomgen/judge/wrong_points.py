@@ -121,7 +121,7 @@ class _Places:
 
     def _raised(self, r: Vector) -> Scalar:
         """What the potential energy of the weights changes by where they act at another place."""
-        return sum((self._lifted(part.load, (self.body, r)) for part in self.mine if not is_zero(part.V)), start=0)
+        return sum((self._lifted(part.load, (self.body, r)) for part in self.mine if part.kind == "weight"), start=0)
 
     def _lifted(self, load: object, place: BodyPoint) -> Scalar:
         motion = self.parts.operator.base.motion
