@@ -222,9 +222,15 @@ class Case:
         row, linear = linear_row(scalar, self.forced)
         if not linear:
             return is_zero_everywhere(self.system, self.phase.eliminated(scalar)) if rows is None else Follows(None)
-        own = self.rows if rows is None else rows
-        mine, closing = ([linear_row(x, self.forced)[0] for x in some] for some in (own, self.closing))
+        own, closing = self._linear
+        mine = own if rows is None else [linear_row(x, self.forced)[0] for x in rows]
         return combination(self.system, row, mine, closing)
+
+    @cached_property
+    def _linear(self) -> tuple[list[ScalarRow], list[ScalarRow]]:
+        """Slopes and rests of the equations of motion, and of the closing rows."""
+        rows, closing = ([linear_row(x, self.forced)[0] for x in some] for some in (self.rows, self.closing))
+        return rows, closing
 
     @cached_property
     def speeds(self) -> dict[Node, Scalar] | None:

@@ -47,9 +47,14 @@ def _joined(case: Case, found: Explanation, causes: list[Cause]) -> list[Cause]:
         return causes
     (k,), (j,) = gone, extra
     rows = found.shares[k].corruption.rows
-    ratio = over(found.shares[j].corruption.rows[0], rows[max(found.row, 0)]) if not is_zero(rows[max(found.row, 0)]) else 0
+    ratio = (
+        over(found.shares[j].corruption.rows[0], rows[max(found.row, 0)]) if not is_zero(rows[max(found.row, 0)]) else 0
+    )
     symbols = case.system.symbols
-    constant = not depends_on(legible(ratio, Work.FORMULA, case.system.scope.positive, LONG), (symbols.t, *symbols.q, *symbols.u, *case.forced))
+    constant = not depends_on(
+        legible(ratio, Work.FORMULA, case.system.scope.positive, LONG),
+        (symbols.t, *symbols.q, *symbols.u, *case.forced),
+    )
     name, term = causes[k].quantity, causes[k].term
     what = f"{name}, {term}," if term and term not in name else name
     text = f"{what} stands there as {causes[j].term}"

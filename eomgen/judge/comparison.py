@@ -226,7 +226,7 @@ class Comparison:
         return bool(case.follows(scalar, rows).holds)
 
     def _is_multiple(self, scalar: Scalar, energy: Scalar) -> bool:
-        """Whether an energy is the scalar times what the configuration alone decides: as their squares of speeds are."""
+        """Whether an energy is the scalar times a function of the configuration, the ratio of their squares of speeds."""
         system = self.case.system
         for u in system.symbols.u:
             mine, own = (derivative(derivative(x, u), u) for x in (scalar, energy))

@@ -24,7 +24,7 @@ from eomgen.symbolic.expression.graph import Node, Scalar, is_zero
 from eomgen.symbolic.expression.node import ScalarRow
 
 MOST = 1400  # corruptions of one equation
-MOST_SPEEDS = 6  # of a body whose products of speeds are looked at one by one
+MOST_SPEEDS = 12  # of a model whose products of speeds are looked at one by one
 MOST_NODES = 100_000  # of expressions that are made for them
 
 
@@ -146,8 +146,8 @@ class Corruptions:
             for x in a:
                 row = tuple(gradient(value, (x,))[0] * x for value in accelerated)
                 yield Corruption(f"the term with {x.name} of the {of}", "factor", row, PIECES, part.body)
-            first = [gradient(value, u) for value in moving]
-            for i, j in [*combinations(range(len(u)), 2), *((k, k) for k in range(len(u)))]:
+            first = [gradient(value, u) for value in moving] if len(u) <= MOST_SPEEDS else []
+            for i, j in [*combinations(range(len(u)), 2), *((k, k) for k in range(len(u)))] if first else ():
                 row = tuple(gradient(row[i], (u[j],))[0] * u[i] * u[j] * (1 if i != j else HALF) for row in first)
                 name = f"{u[i].name}*{u[j].name}" if i != j else f"{u[i].name}^2"
                 kind = "coriolis" if i != j else "factor"

@@ -28,6 +28,7 @@ from eomgen.symbolic.numeric.batch_evaluation import ARRAYS
 from eomgen.symbolic.numeric.evaluation import evaluate
 from eomgen.symbolic.numeric.tolerances import CARRIED, COMPUTED, SAME_EIGENVALUE
 
+FAR_FETCHED = 16.0  # the cost of one mistake from which on something else is rather believed
 WELL_KNOWN = 4  # the largest numerator and denominator by which somebody takes all of an answer wrongly
 WHOLE = "the whole"  # what is asked, as one contribution
 PLACES, VARIANTS = 5, 8  # configurations, and speeds and accelerations at each

@@ -23,13 +23,14 @@ from eomgen.judge.comparison import Comparison
 from eomgen.judge.corruption import Corruption
 from eomgen.judge.corruptions import Corruptions
 from eomgen.judge.decision import is_zero_everywhere
-from eomgen.judge.diagnosis import MOST_MISTAKES, Explanation, Search, explained, samples_of
+from eomgen.judge.diagnosis import FAR_FETCHED, MOST_MISTAKES, Explanation, Search, explained, samples_of
 from eomgen.judge.reading import HandEquation
 from eomgen.judge.replays import replays
 from eomgen.model.fields import AtRest, WrittenEquation
 from eomgen.questions.answers import Answer
 from eomgen.records import dataclass
 from eomgen.symbolic.expression.derivative import depends_on, derivative, substituted
+from eomgen.symbolic.expression.expressions import Call, Reference
 from eomgen.symbolic.expression.functions import over
 from eomgen.symbolic.expression.graph import Node, Scalar, is_zero
 from eomgen.symbolic.expression.node import ScalarRow
@@ -120,6 +121,8 @@ def implied_by(
 
     call = written.left.calls[0] if len(written.left.code) == 1 and written.left.calls else None
     again = Comparison(case, other - own, (own,), "", more=lambda: replays(case, own, answered))
+    if kind == "frequency":
+        yield Comparison(case, other - own, (own,), "", more=lambda: _of_entry(case, call, own))
     if not case.model.coordinates:
         yield again  # of a structure, whose loads add up
     yield Comparison(case, other - own, (own,), "", call)
@@ -133,13 +136,19 @@ Compared = TypeVar("Compared", Implied, Comparison, Implied | Comparison)
 
 
 def simplest_explanation(targets: Iterable[Compared]) -> tuple[Compared | None, list[Explanation]]:
-    """The first of the comparisons that is explained by the fewest mistakes, with its explanations."""
+    """The comparison that is explained by the fewest mistakes, with its explanations: the first that is believed."""
     known = tuple(targets)
     for number in range(1, MOST_MISTAKES + 1):
+        best: tuple[Compared | None, list[Explanation]] = None, []
         for target in known:
             with suppress(DerivationError):
-                if found := target.explained(number):
-                    return target, found
+                found = target.explained(number)
+                if found and (not best[1] or found[0].cost < best[1][0].cost):
+                    best = target, found
+            if best[1] and best[1][0].cost < number * FAR_FETCHED:
+                break
+        if best[1]:
+            return best
     return None, []
 
 
@@ -163,11 +172,22 @@ def implied_by_course(case: Case, known: Mapping[Node, Scalar]) -> Implied | Non
 
 
 def implied_by_rest(case: Case, written: HandEquation) -> Implied | None:
-    """What a place q = value leaves of the forces that should balance there; None: it is no such place."""
-    names = [q for q in case.system.symbols.q if written.left.code == (("name", q.name),)]
-    if len(case.rows) != 1 or not names or written.right.names & case.model.coordinates.keys():
+    """What a place q = value, or cos(q) = value, leaves of the forces that should balance there; None: it is none."""
+    scalar = case.value(written.difference)
+    held = [q for q in case.system.symbols.q if depends_on(scalar, (q,))]
+    if len(case.rows) != 1 or len(held) != 1:
         return None
-    return _implied(_resting(case, names[0], case.value(written.right)))
+    (q,) = held
+    graph = q.graph
+    for x in (q, graph.held("sin", (q,)), graph.held("cos", (q,)), graph.held("tan", (q,))):
+        free = graph.symbol("(x)")
+        (of_it,) = substituted((scalar,), {x: free})
+        slope = derivative(of_it, free)
+        if is_zero(slope) or depends_on(of_it, (q,) if x is not q else ()) or depends_on(slope, (free,)):
+            continue
+        (rest,) = substituted((of_it,), {free: 0})
+        return _implied(_resting(case, q, over(-rest, slope), x))
+    return None
 
 
 def _implied(put: PutIn) -> Implied | None:
@@ -194,10 +214,10 @@ def _implied(put: PutIn) -> Implied | None:
 def _puttings(case: Case, written: HandEquation, kind: str, at: Instant, author: Answer) -> Iterator[PutIn]:
     """How the answer is put into the equation of a model of one freedom."""
     symbols, value = case.system.symbols, case.exact(author)
+    assert value is not None
     free = [q for q in symbols.q if not case.model.coordinates[q.name].driven]
     if len(case.rows) != 1 or len(free) != 1 or len(symbols.u) != 1 or case.closing or case.system.free is not None:
         return
-    assert value is not None
     (q,), (u,), (a,) = free, symbols.u, symbols.a
     still: dict[Node, Scalar] = {u: 0, a: 0}
     if kind == "frequency" and [call.name for call in written.left.calls] == ["frequency"]:
@@ -220,9 +240,32 @@ def _puttings(case: Case, written: HandEquation, kind: str, at: Instant, author:
             yield from _at_instant(begun, written, at, moment)
 
 
-def _resting(case: Case, q: Node, value: Scalar) -> PutIn:
-    """A place of rest, put into the equation of what does not move."""
-    at = {q: value, **dict.fromkeys((*case.system.symbols.u, *case.system.symbols.a), 0)}
+def _of_entry(case: Case, call: Call | None, own: Scalar) -> Iterator[Corruption]:
+    """What may be wrong with an entry of M, C or K: in the slope of the equation that it is of."""
+    symbols, names = case.system.symbols, [x.name for x in call.args if isinstance(x, Reference)] if call else []
+    of = [u.name.removesuffix("'") for u in symbols.u]
+    if len(names) != 2 or not {*names} <= {*of} or case.closing or case.system.free is not None:
+        return
+    assert call is not None
+    i, j = map(of.index, names)
+    q = next(x for x in symbols.q if x.name == names[1])
+    along = {"mass": symbols.a[j], "damping": symbols.u[j]}.get(call.name, q)
+    still = dict.fromkeys((*symbols.u, *symbols.a), 0)
+    for place in ({}, *case.places_of_rest[:1]):
+
+        def slope(rows: ScalarRow, place: Mapping[Node, Scalar] = place) -> Scalar:
+            return substituted((derivative(rows[i], along),), {**still, **place})[0]
+
+        if is_zero_everywhere(case.system, slope(case.rows) - own).holds:
+            for each in Corruptions(case.parts, "motion").all:
+                with suppress(DerivationError):
+                    yield replace(each, rows=(slope(each.rows),))
+            return
+
+
+def _resting(case: Case, q: Node, value: Scalar, of: Node | None = None) -> PutIn:
+    """A place of rest, q or a function of it, put into the equation of what does not move."""
+    at = {q if of is None else of: value, **dict.fromkeys((*case.system.symbols.u, *case.system.symbols.a), 0)}
     return PutIn(
         case,
         "motion",

@@ -14,11 +14,12 @@ from eomgen.judge.causes import causes_of
 from eomgen.judge.comparison import Comparison, excess
 from eomgen.judge.course import course_of
 from eomgen.judge.decision import is_zero_everywhere
+from eomgen.judge.diagnosis import FAR_FETCHED
 from eomgen.judge.implied import Instant, implied_by_course, implied_by_rest, simplest_explanation
 from eomgen.judge.kinds import FUNCTION_KINDS, KINDS, kind_of_equation
 from eomgen.judge.reading import HandEquation
-from eomgen.judge.replays import replays
 from eomgen.judge.renaming import Renaming, renamings, turnings
+from eomgen.judge.replays import replays
 from eomgen.judge.rest import is_of_rest
 from eomgen.judge.right import (
     CONSTANT,
@@ -45,7 +46,6 @@ from eomgen.symbolic.expression.graph import Node, Scalar, is_zero
 from eomgen.symbolic.numeric.work import doing
 
 Meanings = Mapping[str, Scalar]
-FAR_FETCHED = 16.0
 MOST_BODIES = 10  # of a model whose reactions are derived anew
 _WHAT = {"kinetic_energy": "T", "potential_energy": "V", "generalized_force": "Q"}
 
@@ -330,7 +330,9 @@ class Judge:
             found.append(Comparison(case, author - so, (so,), "", call, of))
             true = so
         if kind == "reaction" and len(case.model.bodies) <= MOST_BODIES:
-            found.append(Comparison(case, author - true, (true,), "", more=lambda: replays(case, true, case.called_by(call))))
+            found.append(
+                Comparison(case, author - true, (true,), "", more=lambda: replays(case, true, case.called_by(call)))
+            )
         return found
 
     def _energies(self, scalar: Scalar) -> list[Comparison]:

@@ -6,18 +6,31 @@ takes the other for a structure at rest. So whatever was solved for on the way i
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from contextlib import suppress
 from dataclasses import replace
 
 from eomgen.errors import DerivationError, EomgenError
 from eomgen.judge.case import Case
-from eomgen.judge.corruption import PLAIN, SHARED, Corruption
+from eomgen.judge.corruption import PLACED, PLAIN, SHARED, Corruption
+from eomgen.model.forces.base import Force
+from eomgen.model.forces.couple import CoupleForce
+from eomgen.model.forces.load import PointForce, SpreadLoad
 from eomgen.model.parts import Coordinate, Model
 from eomgen.model.table import Table
 from eomgen.symbolic.expression.expressions import Expression
 from eomgen.symbolic.expression.graph import Scalar, is_zero
+from eomgen.symbolic.expression.rational import Fraction
+from eomgen.symbolic.expression.spatial import Vector, cross, minus, vector_of
 
 MOST_LOADS = 30  # of a model that are left out, one by one
+SHARES = (  # of a line: where the resultant of a load along it is thought to be
+    (Fraction(0), "the start"),
+    (Fraction(1), "the end"),
+    (Fraction(1, 2), "the middle"),
+    (Fraction(1, 3), "a third"),
+    (Fraction(2, 3), "two thirds"),
+)
 MOST_HELD = 6  # coordinates of a model that are held, one by one
 
 
@@ -40,6 +53,44 @@ def replays(case: Case, own: Scalar, asked: Callable[[Case], Scalar | None]) -> 
             yield Corruption(f"the force {name}", "factor", (own - value,), PLAIN, "", name)
         else:
             yield Corruption(text, "missing_term", (value - own,), SHARED, "", name, open=False, text=text)
+    if not model.coordinates and model.space == "plane":
+        yield from _at_other_places(case, asked)
+
+
+def _at_other_places(case: Case, asked: Callable[[Case], Scalar | None]) -> Iterator[Corruption]:
+    """The forces of a plane structure at other places of their bodies: by what a couple on each body does."""
+    system, does = case.system, dict[str, Scalar]()
+    for force in system.loads.applied:
+        for load in force.loads:
+            if not isinstance(load, PointForce) or load.axes is not None or load.place[0] is None:
+                continue
+            body = load.place[0]
+            if body not in does:
+                does[body] = _of_unit_couple(case, body, asked)
+            for where, r in _places(system.motion.points[body], force.spread):
+                moved = minus(system.motion.position((body, r)), system.motion.position(load.place))
+                row = cross(moved, load.force)[2] * does[body]
+                if not is_zero(row):
+                    text = f"the force {force.name} acts at {where} in the equation: its lever arm is wrong"
+                    yield Corruption(text, "wrong_point", (row,), PLACED, body, force.name, open=False, text=text)
+
+
+def _of_unit_couple(case: Case, body: str, asked: Callable[[Case], Scalar | None]) -> Scalar:
+    """What is asked, of the structure with a couple of 1 on a body alone; 0: it has no answer."""
+    turn: Force = CoupleForce(body=body, couple=(Expression.number(1),))
+    with suppress(EomgenError):
+        value = asked(replace(case, model=replace(case.model, outputs=Table(), forces=Table({"turn": turn}))))
+        return 0 if value is None else value
+    return 0
+
+
+def _places(points: Mapping[str, Vector], spread: Sequence[SpreadLoad]) -> Iterator[tuple[str, Vector]]:
+    """Where a force may be thought to act: points of its body, and parts of the line along which it is spread."""
+    yield from points.items()
+    for line in spread:
+        (_, a), (_, b) = line.start, line.end
+        for share, where in SHARES:
+            yield f"{where} of the load", vector_of(x + share * (y - x) for x, y in zip(a, b, strict=True))
 
 
 def _without_forces(model: Model) -> Iterator[tuple[str, str, Model]]:
@@ -65,5 +116,5 @@ def _held(model: Model) -> Iterator[tuple[str, str, Model]]:
 
 
 def _standing(q: Coordinate) -> Coordinate:
-    place = q.start or q.near or Expression.number(0)
+    place = next((x for x in (q.start, q.near) if x is not None), Expression.number(0))
     return replace(q, start=None, speed=None, near=None, motion=place)
