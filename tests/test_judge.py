@@ -9,7 +9,7 @@ import pytest
 import sympy
 from click.testing import CliRunner
 from hand_equations import MODELS, ByHand, named, right_of, wrong_of
-from human_errors import right_answers, wrong_answers
+from human_errors import nearly_right_answers, right_answers, wrong_answers
 
 import eomgen
 from eomgen.cli import main
@@ -353,7 +353,47 @@ def test_mistakes_from_the_literature_are_wrong_and_mostly_named():
     some = random.Random(2).sample(wrong_answers(), 40)
     found = [(x, x.verdict()) for x in some]
     assert [x.text for x, each in found if each.verdict != "wrong" and not each.substitution] == []
-    assert sum(x.is_named(each) for x, each in found) >= 0.75 * len(some)
+    assert sum(x.is_named(each) for x, each in found) >= 0.8 * len(some)
+
+
+def test_what_is_wrong_by_little_is_wrong():
+    """By a thousandth, in motion alone, with other values than those of the file: no tolerance hides it."""
+    some = random.Random(4).sample(nearly_right_answers(), 20)
+    assert [x.text for x in some if x.verdict().verdict != "wrong"] == []
+
+
+@pytest.mark.parametrize(
+    ("model", "equation", "kind", "told"),
+    [
+        ("block_on_wedge", "reaction_n(block) = m*g*cos(alpha)", "missing_term", "stood still"),
+        ("spherical_pendulum", "tension(rod) = m*g*cos(theta)", "missing_term", "all that holds speeds"),
+        ("seeds/ch17_p2", "y = (v_A + v_B)/2*t + g*t^2/2", "sign", "the weight of rod"),
+        (
+            "seeds/ch18_p2",
+            "theta'^2 = g*(3*sin(theta) - 8 + 8*cos(theta))/(2*l*(1 + 7*sin(theta)^2))",
+            "sign",
+            "force P",
+        ),
+        ("half_car", "stiffness(y, theta) = k_f*l_f + k_r*l_r", "sign", "the force rear"),
+        ("bead_on_turning_hoop", "sin(theta) = g/(R*omega^2)", "wrong_axis", "theta"),
+        ("gerber_beam", "reaction_y(B) = 15*p*a", "wrong_point", "on_AC acts at"),
+        ("cart_pole", "(M + m)*x'' = m*l/2*(cos(theta)*theta'' - sin(theta)*theta'^2) + F*cos(theta)", "", "F"),
+    ],
+)
+def test_the_derivation_is_replayed_with_one_thing_wrong(model, equation, kind, told):
+    """What stood still or was left out on the way to an answer; the energy theorem; slopes at rest; another place."""
+    (cause,) = verdict(model, equation).causes
+    assert (not kind or cause.kind == kind) and told in cause.text
+
+
+def test_what_is_driven_is_known_as_a_function_of_time():
+    """x = r cos(w t) where theta = w t is given and x hangs on it; speeds by momenta alone; a path's first piece."""
+    assert verdict("scotch_yoke", "x = r*cos(w*t)") and not verdict("scotch_yoke", "x = r*sin(w*t)")
+    assert (
+        "the momenta from"
+        in verdict("spherical_pendulum", "sin(theta)^3*theta'' = 4*sin(4/5)^4*cos(theta) - g/l*sin(theta)^4").up_to
+    )
+    assert "first piece of the path" in verdict("loop_the_loop", "s'' = g*sin(alpha)").up_to
 
 
 def test_right_equations_of_papers_are_right():

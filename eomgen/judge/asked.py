@@ -12,10 +12,11 @@ from dataclasses import replace
 from eomgen.errors import EomgenError, ExpressionError
 from eomgen.judge.case import Case
 from eomgen.judge.causes import causes_of
-from eomgen.judge.comparison import LONG, Comparison, excess
+from eomgen.judge.comparison import Comparison, excess
 from eomgen.judge.decision import is_zero_everywhere
 from eomgen.judge.implied import Instant, implied_by, simplest_explanation
 from eomgen.judge.reading import HandEquation
+from eomgen.judge.terms import LONG
 from eomgen.judge.verdict import RIGHT, UNDECIDED, WRONG, Cause, Verdict
 from eomgen.model.replaced import with_values
 from eomgen.model.values import exact_parameters

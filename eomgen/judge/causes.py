@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING
 
 from eomgen.judge.decision import is_zero_everywhere
 from eomgen.judge.diagnosis import Explanation, Share
+from eomgen.judge.terms import LONG, short_text
 from eomgen.judge.verdict import Cause
 from eomgen.symbolic.exact.normal_form import legible
 from eomgen.symbolic.expression.derivative import depends_on, depends_on_any, substituted
@@ -16,12 +17,9 @@ from eomgen.symbolic.expression.functions import over
 from eomgen.symbolic.expression.graph import Scalar, is_zero
 from eomgen.symbolic.expression.rational import Fraction
 from eomgen.symbolic.numeric.work import Work
-from eomgen.symbolic.print.text import readable_text
 
 if TYPE_CHECKING:
     from eomgen.judge.case import Case
-
-LONG = 300  # characters of a term that is shown
 
 
 def causes_of(case: Case, found: Sequence[Explanation], *, moving: bool) -> tuple[Cause, ...]:
@@ -66,7 +64,11 @@ def cause_of(case: Case, share: Share, row: int, *, told: bool = True, moving: b
     """The cause that one corruption is."""
     corruption, x = share.corruption, share.factor
     rows = (corruption.rows[row],) if row >= 0 else corruption.rows
-    term = next(filter(None, (_term(case, x) for x in rows if not is_zero(x))), "") if told else ""
+    term = (
+        next(filter(None, (short_text(x, case.system.scope.positive) for x in rows if not is_zero(x))), "")
+        if told
+        else ""
+    )
     kind, text = corruption.kind, corruption.text
     if corruption.open:
         whole = corruption.kind if moving else "factor"
@@ -98,12 +100,6 @@ def _is_coriolis(case: Case, rows: Sequence[Scalar]) -> bool:
         return False
     alone = [x for u in symbols.u for x in substituted(tuple(rows), {w: 0 for w in symbols.u if w is not u})]
     return bool(is_zero_everywhere(case.system, *alone).holds)
-
-
-def _term(case: Case, scalar: Scalar) -> str:
-    form = legible(scalar, Work.FORMULA, case.system.scope.positive, LONG)
-    text = readable_text(form) or ""
-    return text if len(text) <= LONG else ""
 
 
 def other_calls(case: Case, call: Call) -> Iterator[Call]:

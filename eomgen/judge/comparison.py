@@ -16,19 +16,15 @@ from eomgen.judge.corruption import Corruption
 from eomgen.judge.corruptions import Corruptions
 from eomgen.judge.decision import is_zero_everywhere
 from eomgen.judge.diagnosis import WHOLE, Explanation, Samples, Search, explained, samples_of
-from eomgen.judge.terms import corrupted_terms, terms_of
+from eomgen.judge.terms import corrupted_terms, short_text, term_text, terms_of
 from eomgen.records import dataclass
-from eomgen.symbolic.exact.normal_form import legible
 from eomgen.symbolic.expression.derivative import depends_on, derivative, gradient, substituted
 from eomgen.symbolic.expression.expressions import Call
 from eomgen.symbolic.expression.functions import over
 from eomgen.symbolic.expression.graph import Node, Scalar, is_zero
 from eomgen.symbolic.expression.traversal import operations
-from eomgen.symbolic.numeric.tolerances import CARRIED, COMPUTED
-from eomgen.symbolic.numeric.work import Work
-from eomgen.symbolic.print.text import readable_text
+from eomgen.symbolic.numeric.tolerances import CARRIED
 
-LONG = 400  # characters of a difference that is shown
 LONGEST = 3000  # operations of equations that are looked at term by term
 EXTRA = 4.5  # rank of a term of the author that does not belong there
 
@@ -135,7 +131,7 @@ class Comparison:
         found = []
         for term in terms_of(own, self.case.system.scope.positive):
             if term not in known:
-                text = f"the term {readable_text(term) or ''} does not belong there"
+                text = f"the term {term_text(term)} does not belong there"
                 found.append(Corruption(text, "extra_term", (term,) * len(self.rows), EXTRA, open=False, text=text))
         return tuple(found)
 
@@ -226,7 +222,7 @@ class Comparison:
         return bool(case.follows(scalar, rows).holds)
 
     def _is_multiple(self, scalar: Scalar, energy: Scalar) -> bool:
-        """Whether an energy is the scalar times a function of the configuration, the ratio of their squares of speeds."""
+        """Whether an energy is the scalar times a function of the configuration, as their squares of speeds are."""
         system = self.case.system
         for u in system.symbols.u:
             mine, own = (derivative(derivative(x, u), u) for x in (scalar, energy))
@@ -242,44 +238,23 @@ class Comparison:
         return excess(self.case, row)
 
     def unexplained(self) -> tuple[str, str]:
-        """(the difference, what it touches), where nothing explains it."""
+        """(the difference, beside which equation), where nothing explains it."""
         case = self.case
-        if self.what != "motion" or not self.searches:
-            return "" if self._is_long else excess(case, self.scalar), ""
-        best = min(self.searches, key=lambda search: _misfit(search))
         if self._is_long:
             return "", ""
-        if best.row < 0:
+        if self.what != "motion":
+            return excess(case, self.scalar), ""
+        best = min(self.searches, key=lambda search: search.misfit, default=None)
+        if best is not None and best.row < 0:
             return excess(case, case.phase.eliminated(self.scalar)), ""
-        row = self.rows[best.row]
-        a = next((x for x in case.system.symbols.a if depends_on(row, (x,))), None)
-        name = case.system.symbols.u[best.row].name.removesuffix("'")
-        if a is None or is_zero(derivative(self.scalar, a)):
-            return excess(case, self.scalar), f" (beside the equation of {name})"
-        factor = legible(
-            over(derivative(self.scalar, a), derivative(row, a)), Work.FORMULA, case.system.scope.positive, LONG
-        )
-        return excess(case, self.scalar - factor * row), f", beside the equation of {name}{_touched(self, best)}"
-
-
-def _misfit(search: Search) -> float:
-    left, *_ = search.projection
-    return float(np.linalg.norm(left)) if np.all(np.isfinite(left)) else float("inf")
-
-
-def _touched(target: Comparison, search: Search) -> str:
-    """The contributions that lie nearest to what is left."""
-    left, A, kept = search.projection
-    with np.errstate(all="ignore"):
-        along = np.abs(A @ left) / max(float(np.linalg.norm(left)), COMPUTED)
-    named = [
-        (float(along[i]), search.corruptions[kept[i]]) for i in range(len(kept)) if search.corruptions[kept[i]].open
-    ]
-    best = sorted((x for x in named if x[0] > 0.5), key=lambda x: -x[0])[:2]
-    return f"; it lies nearest to {' and '.join(each.name for _, each in best)}" if best else ""
+        a = next((x for x in case.system.symbols.a if best and depends_on(self.rows[best.row], (x,))), None)
+        if best is None or a is None or is_zero(derivative(self.scalar, a)):
+            return excess(case, self.scalar), ""
+        row, name = self.rows[best.row], case.system.symbols.u[best.row].name.removesuffix("'")
+        factor = over(derivative(self.scalar, a), derivative(row, a))
+        return excess(case, self.scalar - factor * row), f", beside the equation of {name}"
 
 
 def excess(case: Case, scalar: Scalar) -> str:
     """A difference as a text; "" where nobody would read it."""
-    form = legible(scalar, Work.FORMULA, case.system.scope.positive, LONG)
-    return readable_text(form) or ""
+    return short_text(scalar, case.system.scope.positive)

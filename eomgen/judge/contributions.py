@@ -9,7 +9,7 @@ every equation of motion by one and the same operator:
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import field, replace
+from dataclasses import field
 from functools import cached_property
 
 from eomgen.mechanics.bodies.armature import given_energy
@@ -52,9 +52,6 @@ class Contribution:
     kind: str = ""
     load: Load | None = None
     row: ScalarRow | None = None
-
-    def with_energies(self, T: Scalar, V: Scalar) -> Contribution:
-        return replace(self, T=T, V=V)
 
 
 @dataclass(frozen=True)

@@ -28,6 +28,7 @@ from eomgen.symbolic.numeric.batch_evaluation import ARRAYS
 from eomgen.symbolic.numeric.evaluation import evaluate
 from eomgen.symbolic.numeric.tolerances import CARRIED, COMPUTED, SAME_EIGENVALUE
 
+BELIEVED = 12.5  # the cost of one mistake up to which nothing else is looked at
 FAR_FETCHED = 16.0  # the cost of one mistake from which on something else is rather believed
 WELL_KNOWN = 4  # the largest numerator and denominator by which somebody takes all of an answer wrongly
 WHOLE = "the whole"  # what is asked, as one contribution
@@ -192,6 +193,12 @@ class Search:
         lengths, sizes = np.linalg.norm(A, axis=1), np.linalg.norm(raw, axis=1)
         kept = [i for i in range(len(A)) if np.isfinite(lengths[i]) and lengths[i] > CARRIED * max(sizes[i], COMPUTED)]
         return flat(self.E), A[kept] / lengths[kept, None], kept
+
+    @property
+    def misfit(self) -> float:
+        """How much of the equation is not the author's."""
+        left, *_ = self.projection
+        return float(np.linalg.norm(left)) if np.all(np.isfinite(left)) else float("inf")
 
     def _single(self, left: np.ndarray, A: np.ndarray) -> Iterator[list[int]]:
         along = A @ left

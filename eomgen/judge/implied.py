@@ -23,7 +23,7 @@ from eomgen.judge.comparison import Comparison
 from eomgen.judge.corruption import Corruption
 from eomgen.judge.corruptions import Corruptions
 from eomgen.judge.decision import is_zero_everywhere
-from eomgen.judge.diagnosis import FAR_FETCHED, MOST_MISTAKES, Explanation, Search, explained, samples_of
+from eomgen.judge.diagnosis import BELIEVED, MOST_MISTAKES, Explanation, Search, explained, samples_of
 from eomgen.judge.reading import HandEquation
 from eomgen.judge.replays import replays
 from eomgen.model.fields import AtRest, WrittenEquation
@@ -145,7 +145,7 @@ def simplest_explanation(targets: Iterable[Compared]) -> tuple[Compared | None, 
                 found = target.explained(number)
                 if found and (not best[1] or found[0].cost < best[1][0].cost):
                     best = target, found
-            if best[1] and best[1][0].cost < number * FAR_FETCHED:
+            if best[1] and best[1][0].cost < number * BELIEVED:
                 break
         if best[1]:
             return best

@@ -123,14 +123,14 @@ class Judge:
         for place in case.places_of_rest if in_balance is None else ():
             if is_zero_everywhere(case.system, *substituted((scalar,), place)).holds:
                 return Verdict(written.given, "equilibrium", RIGHT)
-        if not case.rests and case.system.symbols.u and not case.model.unknowns and in_balance is None:
-            return None
-        target = implied_by_rest(case, written) if in_balance is False else None
+        target = implied_by_rest(case, written)
         _, why = simplest_explanation([target] if target is not None else [])
         if why:
             difference = excess(case, target.left) if target is not None else ""
             causes = causes_of(case, why, moving=False)
             return Verdict(written.given, "equilibrium", WRONG, difference=difference, causes=causes)
+        if not case.rests and case.system.symbols.u and not case.model.unknowns and in_balance is None:
+            return None
         verdict = asked(case, written, "equilibrium", AtRest())
         if in_balance is None or verdict.verdict == WRONG:
             return verdict
@@ -303,8 +303,8 @@ class Judge:
         """What an equation is compared with, the most telling first."""
         case, calls = self.case, set(written.calls)
         if kind == "motion" or (kind in ("law", "energy") and not calls):
-            if not case.rows:
-                return []
+            if not case.rows or not depends_on(scalar, (*case.system.symbols.u, *case.forced)):
+                return []  # of a place alone any equation without motion is some multiple
             of_energy = self._energies(scalar) if kind in ("law", "energy") else []
             of_law = () if depends_on(scalar, case.forced) else self._rates(scalar)
             sizes = signs_at_start(case, sizes_in(case, written, scalar))

@@ -7,9 +7,9 @@ from itertools import product
 
 from eomgen.errors import DerivationError
 from eomgen.judge.case import Case
-from eomgen.judge.comparison import LONG
 from eomgen.judge.decision import combination, is_zero_everywhere, linear_row
 from eomgen.judge.reading import HandEquation
+from eomgen.judge.terms import LONG
 from eomgen.model.values import exact_parameters
 from eomgen.records import dataclass
 from eomgen.symbolic.exact.normal_form import legible

@@ -12,7 +12,7 @@ from functools import cached_property
 from eomgen.errors import DerivationError
 from eomgen.judge.contributions import Contribution, Contributions
 from eomgen.judge.corruption import EXCHANGED, ODD, PLACED, SHARED, TERMS
-from eomgen.judge.terms import angles_in, term_text, turned_angles, wrong_parameter
+from eomgen.judge.terms import angles_in, term_text, turned_angles, wrong_parameters
 from eomgen.judge.wrong_points import Altered
 from eomgen.model.catalog import Catalog
 from eomgen.model.dimensions import inferred
@@ -99,21 +99,15 @@ class _Substitutions:
 
     def parameters(self, part: Contribution) -> Iterator[Altered]:
         """Masses, lengths and other constants."""
-        known = self.parts.system.symbols.parameters
-        held = [x for x in symbols_of((part.T, part.V, *part.Q)) if x.name in known]
-        for x in held:
-            meant = f"stands where {x.name} is meant"
-            length = "wrong_point" if self._dimensions.get(x.name) == "m" else "factor"
-            for kind, value, what in wrong_parameter(x):
-                of, rank = (length, EXCHANGED + 1) if kind == "factor" else (kind, EXCHANGED)
-                yield from self._change(part, of, {x: value}, f"in {part.name} {what}", rank)
-            for name, y in known.items():
-                if y is not x and self._alike(name, x.name):
-                    text = f"in {part.name} {name} {meant}"
-                    yield from self._change(part, "other", {x: y}, text, EXCHANGED)
-                    if y in held and x.name < y.name:
-                        text = f"in {part.name} {x.name} and {y.name} are exchanged"
-                        yield from self._change(part, "other", {x: y, y: x}, text, EXCHANGED)
+        known = tuple(self.parts.system.symbols.parameters.values())
+        for kind, mapping, what in wrong_parameters(symbols_of((part.T, part.V, *part.Q)), known):
+            x, y = next(iter(mapping.items()))
+            length = kind == "factor" and self._dimensions.get(x.name) == "m"
+            if kind != "other" or (type(y) is Node and self._alike(y.name, x.name)):
+                rank = EXCHANGED + 1 if kind == "factor" else EXCHANGED
+                yield from self._change(
+                    part, "wrong_point" if length else kind, mapping, f"in {part.name} {what}", rank
+                )
 
     @cached_property
     def _dimensions(self) -> dict[str, str]:

@@ -9,9 +9,9 @@ from eomgen.errors import DerivationError
 from eomgen.judge.corruption import EXCHANGED, ODD, TERMS, Corruption
 from eomgen.records import dataclass
 from eomgen.symbolic.exact.expansion import Expansion
-from eomgen.symbolic.exact.normal_form import TooLarge, readable
+from eomgen.symbolic.exact.normal_form import TooLarge, legible, readable
 from eomgen.symbolic.exact.writing import Writer
-from eomgen.symbolic.expression.derivative import depends_on, substituted
+from eomgen.symbolic.expression.derivative import depends_on, substituted, symbols_of
 from eomgen.symbolic.expression.functions import over
 from eomgen.symbolic.expression.graph import Node, Scalar
 from eomgen.symbolic.expression.node import linear_terms
@@ -103,27 +103,16 @@ class _Wrong:
         for angle in angles_in((self.term,)):
             for kind, mapping, what in turned_angles(angle):
                 yield from self.replaced(kind, mapping, what.format(term_text(angle)), EXCHANGED)
-        for x in known:
-            for kind, value, what in wrong_parameter(x) if depends_on(self.term, (x,)) else ():
-                yield from self.replaced(kind, {x: value}, what, EXCHANGED)
-        yield from self.exchanged(known)
+        for kind, mapping, what in wrong_parameters(symbols_of((self.term,)), known):
+            yield from self.replaced(kind, mapping, what, EXCHANGED)
 
     def parameters(self, known: Sequence[Node]) -> Iterator[Corruption]:
         for x in known:
             yield self.changed("factor", self.term * x, f"a factor {x.name} is too many", ODD)
             yield self.changed("factor", over(self.term, x), f"a factor {x.name} is missing", ODD)
-        yield from self.exchanged(known)
-
-    def exchanged(self, known: Sequence[Node]) -> Iterator[Corruption]:
-        for x in known:
-            if not depends_on(self.term, (x,)):
-                continue
-            for y in known:
-                if y is not x:
-                    yield from self.replaced("other", {x: y}, f"{y.name} stands where {x.name} is meant", EXCHANGED)
-                    if x.name < y.name and depends_on(self.term, (y,)):
-                        text = f"{x.name} and {y.name} are exchanged"
-                        yield from self.replaced("other", {x: y, y: x}, text, EXCHANGED)
+        for kind, mapping, what in wrong_parameters(symbols_of((self.term,)), known):
+            if kind == "other":
+                yield from self.replaced(kind, mapping, what, EXCHANGED)
 
     def rates(self, rates: Iterable[Node]) -> Iterator[Corruption]:
         for u in rates:
@@ -136,17 +125,33 @@ class _Wrong:
                     yield from self.replaced("other", {u: w}, f"{w.name} stands where {u.name} is meant", ODD)
 
 
+LONG = 400  # characters of a term or a difference that is shown
+
+
+def short_text(x: Scalar, positive: frozenset[Node]) -> str:
+    """A scalar in its most legible form; "" where nobody would read it."""
+    text = readable_text(legible(x, Work.FORMULA, positive, LONG)) or ""
+    return text if len(text) <= LONG else ""
+
+
 def term_text(x: Scalar) -> str:
     """A term or an angle as a text."""
     return readable_text(readable(x, Work.FORMULA)) or "that is too long to be shown"
 
 
-def wrong_parameter(x: Node) -> Iterator[tuple[str, Scalar, str]]:
-    """What may happen to a parameter: (kind of the cause, what replaces it, in words)."""
-    yield "missing_term", 0, f"{x.name} is left out"
-    yield "sign", -x, f"{x.name} has the wrong sign"
-    yield "factor", 2 * x, f"2*{x.name} stands where {x.name} is meant"
-    yield "factor", over(x, 2), f"{x.name}/2 stands where {x.name} is meant"
+def wrong_parameters(held: Iterable[Node], known: Sequence[Node]) -> Iterator[tuple[str, dict[Node, Scalar], str]]:
+    """What may happen to the parameters that are held: (kind of the cause, what replaces what, in words)."""
+    mine = [x for x in known if x in {*held}]
+    for x in mine:
+        yield "missing_term", {x: 0}, f"{x.name} is left out"
+        yield "sign", {x: -x}, f"{x.name} has the wrong sign"
+        yield "factor", {x: 2 * x}, f"2*{x.name} stands where {x.name} is meant"
+        yield "factor", {x: over(x, 2)}, f"{x.name}/2 stands where {x.name} is meant"
+        for y in known:
+            if y is not x:
+                yield "other", {x: y}, f"{y.name} stands where {x.name} is meant"
+                if y in mine and x.name < y.name:
+                    yield "other", {x: y, y: x}, f"{x.name} and {y.name} are exchanged"
 
 
 # -- angles ------------------------------------------------------------------------------------------

@@ -2,9 +2,11 @@
 
 `human_errors.txt` holds mistakes from the literature on misconceptions (the square of a relative velocity without its
 product, Steiner's distance, moment arms, follower loads, rest lengths, absolute for relative damping, gears inverted,
-N = m g on an incline, ...) in every kind of equation; `right_disguises.txt` right ones from papers, notes and programs.
+N = m g on an incline, ...) in every kind of equation; `nearly_right.txt` what is wrong by little, or right in one place
+alone; `right_disguises.txt` right ones from papers, notes and programs.
 
-    python tests/helpers/human_errors.py [first | second | third ...]     # both tables, or of these halves
+    python tests/helpers/human_errors.py                       # all tables
+    python tests/helpers/human_errors.py first third           # those parts of the mistakes
 """
 
 from __future__ import annotations
@@ -89,12 +91,22 @@ def _words(more: list[str]) -> tuple[str, ...]:
 
 def right_answers() -> list[Answer]:
     """Every right one."""
-    return [Answer(model, text, _options(more)) for _, (model, text, *more) in _lines("right_disguises.txt")]
+    return _answers("right_disguises.txt")
+
+
+def nearly_right_answers() -> list[Answer]:
+    """Every one that is wrong by little."""
+    return _answers("nearly_right.txt")
+
+
+def _answers(name: str) -> list[Answer]:
+    return [Answer(model, text, _options(more)) for _, (model, text, *more) in _lines(name)]
 
 
 def main(parts: Sequence[str]) -> None:
     wrong = [each for each in wrong_answers() if not parts or each.part in parts]
-    for title, some in (("wrong", wrong), ("right", [] if parts else right_answers())):
+    more = [] if parts else [("wrong", nearly_right_answers()), ("right", right_answers())]
+    for title, some in (("wrong", wrong), *more):
         table: dict[tuple[str, str], Counter[str]] = defaultdict(Counter)
         for each in some:
             row = table[each.part, each.kind]
@@ -105,7 +117,7 @@ def main(parts: Sequence[str]) -> None:
             except EomgenError as error:
                 found, told = None, error.what
                 row.update({"all": 1, "error": 1})
-            if found is None or found.verdict != title or (title == "wrong" and not each.is_named(found)):
+            if found is None or found.verdict != title or (each.causes and not each.is_named(found)):
                 label = " ".join((found.verdict if found else "error", each.part, each.kind, each.model))
                 print(f"{label}: {each.text}\n    {told}")
         for (_, kind), row in sorted(table.items()):
