@@ -222,3 +222,62 @@ def test_substituted_accelerations_leave_none_behind():
     """No theta'' is left in an exact answer."""
     found = answer('"ax(bob.center)^2 + ay(bob.center)"')
     assert found.exact is not None and "''" not in found.exact
+
+
+EPICYCLIC = """
+eomgen = 1
+name = "planetary gear whose ring is free"
+space = "plane"
+parameters = { rs = 0.1, rp = 0.05, rr = 0.2, Js = 0.02, Jp = 0.001, mp = 0.3, Jr = 0.5, Jc = 0.1, T = 3, L = -2 }
+coordinates = { s = 0, c = 0, p = 0, r = 0 }
+[bodies]
+sun = { mass = 1, inertia = "Js", joint = { kind = "revolute", angle = "s", torque = "T" } }
+carrier = { mass = 1, inertia = "Jc", joint = { kind = "revolute", angle = "c", torque = "L" } }
+ring = { mass = 1, inertia = "Jr", joint = { kind = "revolute", angle = "r" } }
+[bodies.planet]
+mass = "mp"
+inertia = "Jp"
+joint = { kind = "revolute", on = "carrier", at = ["rs + rp", 0], angle = "p" }
+[constraints]
+a = { kind = "rolling", body = "planet", radius = "rp", on = "sun", circle = { at = [0, 0], radius = "rs" } }
+[constraints.b]
+kind = "rolling"
+body = "planet"
+radius = "rp"
+on = "ring"
+circle = { at = [0, 0], radius = "rr", inside = true }
+[outputs]
+sun = "s''"
+ring = "r''"
+force = "reaction_t(a)"
+"""
+
+
+def test_gears_have_formulas_that_a_person_reads():
+    """s' = c' - rp/rs p', r' = c' + rp/rr p': two rates c', p', whose two equations are solved by hand."""
+    found = answers("", EPICYCLIC)
+    state = {
+        "rs": 0.3,
+        "rp": 0.07,
+        "rr": 0.44,
+        "Js": 0.5,
+        "Jp": 0.03,
+        "mp": 0.9,
+        "Jr": 2,
+        "Jc": 0.8,
+        "T": 1.7,
+        "L": -0.6,
+    }
+    rs, rp, rr, Js, Jp, mp, Jr, Jc, T, L = state.values()
+    sun, ring = -rp / rs, rp / rr
+    m11, m12, m22 = Js + Jr + Jp + Jc + mp * (rs + rp) ** 2, Jp + Js * sun + Jr * ring, Jp + Js * sun**2 + Jr * ring**2
+    c, p = (
+        (m22 * (T + L) - m12 * T * sun) / (m11 * m22 - m12**2),
+        (m11 * T * sun - m12 * (T + L)) / (m11 * m22 - m12**2),
+    )
+    by_hand = {"sun": c + sun * p, "ring": c + ring * p}
+    for name, value in by_hand.items():
+        exact = found[name].exact or ""
+        assert 0 < len(exact) < 1000 and parse(exact).evaluate(state) == pytest.approx(value), name
+    force = parse(found["force"].exact or "").evaluate(state)
+    assert abs(force) * rs == pytest.approx(abs(T - Js * by_hand["sun"]))

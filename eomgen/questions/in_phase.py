@@ -22,7 +22,7 @@ from eomgen.mechanics.bodies.loads import start_values, with_unit_quaternions
 from eomgen.mechanics.constraints.freedom import freedoms
 from eomgen.mechanics.constraints.ties import holds_identically
 from eomgen.mechanics.equations.equations_of_motion import EquationsOfMotion
-from eomgen.mechanics.equations.explicit_accelerations import bordered_rows, regular_rows
+from eomgen.mechanics.equations.explicit_accelerations import bordered_rows, by_short_rows, regular_rows
 from eomgen.mechanics.equations.system import System, system_of
 from eomgen.mechanics.equations.wellposed import refuse_massless
 from eomgen.mechanics.initial_state.initial_state import fixed_by_position, start_speeds
@@ -41,9 +41,11 @@ from eomgen.symbolic.numeric.evaluation import FLOAT, evaluate
 from eomgen.symbolic.numeric.sure_numbers import number_of, numbers_of
 from eomgen.symbolic.numeric.tolerances import COMPUTED
 from eomgen.symbolic.numeric.work import Work
+from eomgen.symbolic.print.text import text_size
 from eomgen.symbolic.solve.linear_systems import LinearSystem, general_solution
 
 LONG = 400  # characters from which a formula is no easier to read than it came
+NO_FORMULA = 10 * LONG  # characters that nobody takes for a formula: rows are shortened before they are eliminated
 
 
 @dataclass(frozen=True)
@@ -76,7 +78,12 @@ class PhaseEquations:
     @cached_property
     def unknowns(self) -> dict[Node, Scalar]:
         """Accelerations and multipliers as functions of q, u, t and inputs."""
-        return accelerations_and_multipliers(self.equations)
+        found = accelerations_and_multipliers(self.equations)
+        size = max(map(text_size, found.values()), default=0)
+        if size <= NO_FORMULA or not self.equations.J or self.equations.friction:
+            return found
+        short = by_short_rows(self.equations, self.simple)
+        return found if short is None or max(map(text_size, short.values())) > size else short
 
     @property
     def accelerations(self) -> ScalarRow:

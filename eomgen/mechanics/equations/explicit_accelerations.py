@@ -5,15 +5,19 @@ M a - J^T lam = forcing,   J a = -gamma
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
+from dataclasses import replace
 
 from eomgen.errors import DerivationError
 from eomgen.mechanics.constraints.freedom import redundant_rows
 from eomgen.mechanics.equations.equations_of_motion import EquationsOfMotion
 from eomgen.mechanics.equations.system import System
 from eomgen.mechanics.equations.wellposed import massless_motions
+from eomgen.symbolic.expression.derivative import depends_on
+from eomgen.symbolic.expression.functions import over
 from eomgen.symbolic.expression.graph import Node, Scalar, is_zero
 from eomgen.symbolic.expression.node import ScalarRow
+from eomgen.symbolic.print.text import text_size
 from eomgen.symbolic.solve import cramer
 
 MOST = 6  # unknowns that are written out for a reader
@@ -52,6 +56,45 @@ def regular_rows(system: System) -> list[int]:
     """The closing rows that do not follow from others."""
     dropped = {(row.tie, row.number) for row in redundant_rows(system.ties)}
     return [i for i, row in enumerate(system.ties.closing) if (row.tie, row.number) not in dropped]
+
+
+def by_short_rows(equations: EquationsOfMotion, simple: Callable[[Scalar], Scalar]) -> dict[Node, Scalar] | None:
+    """a and lam by determinants of entries at their simplest, where ties hold fixed ratios of rates; else None.
+
+    A closing row is divided by that entry which leaves it shortest: a gear's row then holds two ratios of radii, and no
+    factor of it comes back squared in every minor.
+    """
+    symbols, kept = equations.symbols, regular_rows(equations.system)
+    if len(symbols.a) + len(kept) > cramer.LARGEST_BLOCK:
+        return None
+    moving = (*symbols.q, *symbols.u, *symbols.inputs.values(), symbols.t)
+    rows, divisors = [], []
+    for row, bias in zip(equations.J, equations.gamma, strict=True):
+        whole = tuple(simple(x) for x in (*row, bias))
+        if any(depends_on(x, moving) for x in whole[:-1]):
+            return None
+        short, divisor = _shortest(whole, simple)
+        rows.append(short)
+        divisors.append(divisor)
+    found = by_determinants(
+        replace(
+            equations,
+            M=tuple(tuple(simple(x) for x in row) for row in equations.M),
+            forcing=tuple(simple(x) for x in equations.forcing),
+            J=tuple(row[:-1] for row in rows),
+            gamma=tuple(row[-1] for row in rows),
+        ),
+        kept,
+    )
+    return found | {x: over(found[x], divisor) for x, divisor in zip(symbols.lam, divisors, strict=True)}
+
+
+def _shortest(row: ScalarRow, simple: Callable[[Scalar], Scalar]) -> tuple[ScalarRow, Scalar]:
+    """(the row over one of its entries, that entry); the row as it is, and 1, where none makes it shorter."""
+    tried: list[tuple[ScalarRow, Scalar]] = [(row, 1)]
+    for x in dict.fromkeys(x for x in row[:-1] if type(x) is Node):
+        tried.append((tuple(simple(over(y, x)) for y in row), x))
+    return min(tried, key=lambda one: sum(map(text_size, one[0])))
 
 
 def short_accelerations(equations: EquationsOfMotion) -> ScalarRow | None:
