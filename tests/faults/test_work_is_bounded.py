@@ -205,7 +205,8 @@ VERBS = [
 def test_every_verb_ends_when_patience_does(words, tmp_path):
     """Exit 3, and a sentence in place of a result."""
     verb, model, *more = words
-    (tmp_path / "motion.csv").write_text("t,theta1,theta2,theta1',theta2',theta1'',theta2''\n0,0,0,0,0,0,0\n")
+    rows = "".join(f"{k},{k},0,1,0,0,0\n" for k in range(5))
+    (tmp_path / "motion.csv").write_text(f"t,theta1,theta2,theta1',theta2',theta1'',theta2''\n{rows}")
     (tmp_path / "robot.urdf").write_text('<robot name="r"><link name="base"/></robot>')
     model, *more = (each.replace("DIR", str(tmp_path)) for each in (model, *more))
     found = CliRunner().invoke(main, [verb, str(MODELS / model), *more, "--patience", "1e-6"])
