@@ -270,8 +270,16 @@ class Generated:
         try:
             error = single_error(single.run(texts, program, stem, told.role), single_vectors(program, told.vectors))
         except (RunFailed, ToolMissing) as failure:
-            return unchecked(what, failure.what, how)
+            refused = isinstance(failure, RunFailed) and self._runs(target, emitted)
+            return checked(what, failure.what, how) if refused else unchecked(what, failure.what, how)
         return checked(what, f"{error:.2g} tolerances away" if error > 1 else "", how)
+
+    def _runs(self, target: str, emitted: Emitted) -> bool:
+        """Whether the same function in doubles does: then what is refused is the text, and nothing is missing."""
+        try:
+            return self._written(target, emitted).code() is not None
+        except (RunFailed, ToolMissing):
+            return False
 
     @property
     def _matrix_entries(self) -> dict[str, Scalar]:

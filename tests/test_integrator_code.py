@@ -118,10 +118,11 @@ def test_single_precision_keeps_what_it_says(name, tmp_path):
 
 
 @needs_compiler
-def test_what_single_precision_cannot_do_is_seen(monkeypatch):
-    """A constant that is wrong by 1e-4 is outside of the measured tolerances."""
+@pytest.mark.parametrize("wrong", ["2.0002f*", "2.0ff*"])
+def test_what_single_precision_cannot_do_is_seen(wrong, monkeypatch):
+    """A constant that is wrong by 1e-4 is outside of the measured tolerances; what does not compile is wrong, too."""
     right = SingleWords.text
-    monkeypatch.setattr(SingleWords, "text", lambda self, text: right(self, text).replace("2.0f*", "2.0002f*"))
+    monkeypatch.setattr(SingleWords, "text", lambda self, text: right(self, text).replace("2.0f*", wrong))
     certificate = eomgen.generate(MODELS / "double_pendulum.toml", name="it", float32=True).certify()
     assert certificate.ok is False
 
