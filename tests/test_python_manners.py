@@ -134,7 +134,8 @@ def test_the_help_of_a_part_names_its_fields_and_not_their_rules():
     import pydoc
 
     text = pydoc.plain(pydoc.render_doc(eomgen.joints.Revolute))
-    assert "Revolute(*, on=None, at=None, point=None, turned=None, symbol=None, angle, axis=None" in text
+    head = "Revolute(*, on=None, at=None, point=None, turned=None, symbol=None, angle, axis=None"
+    assert head in " ".join(text.replace("|", " ").split()).replace("( ", "(")  # Python 3.13 breaks long signatures
     assert "Annotated" not in text[:1200] and "angle: of the child against the parent" in text
 
 

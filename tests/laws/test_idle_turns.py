@@ -7,6 +7,7 @@ import pytest
 
 import eomgen
 from eomgen.errors import ModelError
+from eomgen.mechanics.equations.wellposed import massless_motions
 
 HEAD = 'eomgen = 1\nname = "unseen"\nspace = "space"\n'
 ANGLES = '[coordinates]\na = "pi/2"\nb = 0\nc = 0\n', 'orientation = "xyz", angles = ["a", "b", "c"]'
@@ -143,3 +144,19 @@ def test_two_coordinates_of_one_angle_are_refused():
     head = 'eomgen = 1\nspace = "plane"\n[coordinates]\na = 0.1\nb = 0.2\n'
     with pytest.raises(ModelError, match="'a', 'b' can move together without moving a mass"):
         eomgen.derive(eomgen.loads(head + bar + turned)).rhs("numpy")
+
+
+@pytest.mark.parametrize("length", ["1e-200", "1", "1e200", "1e300"])
+def test_a_length_of_any_size_is_no_idle_motion(length):
+    """Two masses on arms of that length: M is as regular as with arms of 1 m, though no double holds its entries."""
+    arm = 'shape = {{ kind = "particle", mass = 1 }}\njoint = {{ kind = "placed", at = ["{x}", "{y}"] }}\n'
+    first, second = ("R*cos(a)", "R*sin(a)"), ("R*cos(a) + R*cos(a + b)", "R*sin(a) + R*sin(a + b)")
+    bodies = "".join(f"[bodies.p{k}]\n" + arm.format(x=x, y=y) for k, (x, y) in enumerate((first, second)))
+    text = (
+        f'eomgen = 1\nname = "arms"\nspace = "plane"\nparameters.R = {length}\ncoordinates = {{ a = 0.3, b = 0.4 }}\n'
+    )
+    equations = eomgen.derive(eomgen.loads(text + bodies))
+    assert massless_motions(equations.graph) == ()
+    with pytest.raises(ModelError, match="'b'"):  # one mass, two angles: one of them moves nothing
+        one = bodies.split("[bodies.p1]")[0].replace("R*cos(a)", "R*cos(a + b)").replace("R*sin(a)", "R*sin(a + b)")
+        eomgen.simulate(eomgen.loads(text + one), time=0.1)

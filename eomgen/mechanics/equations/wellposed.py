@@ -110,14 +110,19 @@ def _without_energy(equations: EquationsOfMotion, state: State) -> dict[Node, fl
     """Speeds with M u = 0 and J u = 0, the largest 1; None where there are none."""
     u = equations.symbols.u
     entries = evaluate([x for row in (*equations.M, *equations.J) for x in row], state, fifty_digits())
-    rows = np.array(entries, dtype=float).reshape(-1, len(u))
+    rows = np.array(entries, dtype=object).reshape(-1, len(u))
     sizes = np.diag(rows[: len(u)])
-    scale = 1 / np.sqrt(np.where(sizes > SQUARED_AT_50 * max(sizes), sizes, 1.0))
-    M, J = scale[:, None] * rows[: len(u)] * scale, rows[len(u) :] * scale
-    _, values, directions = np.linalg.svd(np.vstack([M, of_one_length(J)]))
+    counts = sizes > SQUARED_AT_50 * max(sizes)
+    scale = np.array([1 / x**0.5 if counted else 1 for x, counted in zip(sizes, counts, strict=True)])
+    rows = rows * scale  # in numbers of any size: M of a length of 1e300 m is no double
+    rows[: len(u)] *= scale[:, None]
+    longest = np.array([max(map(abs, row)) or 1 for row in rows])
+    rows[len(u) :] /= longest[len(u) :, None]
+    rows = rows.astype(float)
+    _, values, directions = np.linalg.svd(np.vstack([rows[: len(u)], of_one_length(rows[len(u) :])]))
     if values[-1] > SUMMED * values[0]:
         return None
-    least = scale * directions[-1]
+    least = scale.astype(float) * directions[-1]
     return dict(zip(u, least / np.max(np.abs(least)), strict=True))
 
 
