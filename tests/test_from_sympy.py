@@ -15,6 +15,8 @@ import eomgen
 from eomgen.errors import DerivationError, UsageError
 from tests.helpers.sympy_systems import SYSTEMS, accelerations_by_sympy
 
+pytestmark = pytest.mark.slow
+
 MODELS = Path(__file__).parent.parent / "models"
 
 CLOSES = {"l1": 2.0, "l2": 1.0, "l3": 2.1, "l4": 1.9}, {"q1": 1.1, "q2": -0.613, "q3": -2.222}  # of the four-bar

@@ -20,6 +20,8 @@ from eomgen.symbolic.exact.equality import equal_at_random_states
 from eomgen.symbolic.expression.derivative import substituted
 from tests.helpers.rx90 import PUBLISHED, rx90
 
+pytestmark = pytest.mark.slow
+
 MODELS = Path(__file__).parent.parent / "models"
 FOUR_BAR = """
 eomgen = 1

@@ -21,6 +21,8 @@ from eomgen.judge.handwriting import transcript
 from eomgen.judge.judge import Judge
 from eomgen.symbolic.print.text import to_text
 
+pytestmark = pytest.mark.slow
+
 SAMPLE = ("simple_pendulum", "cart_pole", "elastic_pendulum", "seeds/ch22_p3", "furuta_pendulum")
 NAMES = "m g l theta theta1 theta2 m1 m2 x k l0 r pi t omega k_max M".split()
 

@@ -31,6 +31,8 @@ from eomgen.sweeps.sweep import sweep_at
 from eomgen.symbolic.numeric import work
 from eomgen.symbolic.numeric.work import check_patience
 
+pytestmark = pytest.mark.slow
+
 ROOT = Path(__file__).parents[1]
 MODELS = ROOT / "models"
 SPRING = """

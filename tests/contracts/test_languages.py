@@ -24,6 +24,8 @@ from eomgen.codegen.targets.javascript import JAVASCRIPT
 from eomgen.codegen.targets.numpy import PYTHON
 from eomgen.codegen.vectors import vectors
 
+pytestmark = pytest.mark.slow
+
 MODELS = Path(__file__).parents[2] / "models"
 CUT = replace(JAVASCRIPT, longest=30)  # into parts, also what is short
 

@@ -13,6 +13,8 @@ from eomgen.proof.at_a_state import read_back
 from eomgen.symbolic.exact.equality import equal_at_random_states
 from eomgen.symbolic.print.text import to_text
 
+pytestmark = pytest.mark.slow
+
 ARM = """
 eomgen = 1
 name = "Rod on a crank"

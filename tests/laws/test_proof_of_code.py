@@ -16,6 +16,8 @@ from eomgen.cli import main
 from eomgen.codegen import build
 from eomgen.codegen.targets import ALL
 
+pytestmark = pytest.mark.slow
+
 MODELS = Path(__file__).parent.parent.parent / "models"
 ROLES = ("rhs", "reactions", "outputs", "matrices", "jacobian", "inverse", "regressor")
 needs_cc = pytest.mark.skipif(build.compiler() is None, reason="no C compiler")

@@ -16,6 +16,8 @@ from eomgen.symbolic.expression.functions import function
 from eomgen.symbolic.expression.traversal import order
 from eomgen.verbs.derive import derive_document
 
+pytestmark = pytest.mark.slow
+
 MODELS = Path(__file__).parents[2] / "models"
 PRINTED = "what is printed, read back, holds along the motion"
 CONSTANT = "first integrals as they are printed stay constant along the motion"

@@ -12,6 +12,8 @@ import pytest
 import eomgen
 from eomgen.sensitivities.sensitivity import slope_asked
 
+pytestmark = pytest.mark.slow
+
 MODELS = Path(__file__).parents[2] / "models"
 DIGITS = 50
 HANGING = {"theta1": 0.1, "theta2": 0.1}
