@@ -11,7 +11,7 @@ from eomgen.codegen.lowered import CHANGED, INDICES, INT, PLACES, READ, REAL, RO
 from eomgen.codegen.lowering import Lowered, lowered
 from eomgen.codegen.program import Program
 from eomgen.codegen.targets.base import RHS, Called, Description, FileContent, Functions, Role, Target, files_of_each
-from eomgen.codegen.targets.python_files import module_files
+from eomgen.codegen.targets.python_files import executed, module_files
 
 PYTHON = Language(
     reserved=frozenset(keyword.kwlist) | frozenset(keyword.softkwlist),
@@ -173,8 +173,7 @@ def _of_arrays(kernel: str) -> str:
 
 def numpy_functions(program: Program) -> Functions:
     """The program's text, made functions."""
-    space: dict[str, Any] = {}
-    exec(compile(python_text(program, "eomgen"), "<eomgen program>", "exec"), space)  # our own text, from the graph
+    space = executed(python_text(program, "eomgen"), "<eomgen program>")
     import numpy as np
 
     constants, evaluate, many = space["constants"], space["evaluate"], space["evaluate_many"]
@@ -197,9 +196,7 @@ def _files(stem: str, program: Program, told: Description) -> dict[str, str]:
 
 def run(texts: Mapping[str, FileContent], program: Program, stem: str, role: Role) -> Called:
     """NAME_rhs of the file, executed."""
-    space: dict[str, Any] = {}
-    exec(compile(str(texts[f"{role.main(stem)}.py"]), role.main(stem), "exec"), space)  # our own text, from the graph
-    function = space[role.main(stem)]
+    function = executed(str(texts[f"{role.main(stem)}.py"]), role.main(stem))[role.main(stem)]
 
     def called(
         t: float, x: Sequence[float], a: Sequence[float], p: Sequence[float], inputs: Sequence[float] | None
