@@ -10,7 +10,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from eomgen.mechanics.balance.friction import rubs
+from eomgen.mechanics.balance.friction import has_friction
 from eomgen.mechanics.equations.equations_of_motion import EquationsOfMotion
 from eomgen.proof import identities
 from eomgen.proof.check import Certificate
@@ -53,7 +53,7 @@ def certify(
     if equations.system.elimination is not None:
         checks.append(trials.eliminated_rows())
     checks.append(trials.free_bodies())
-    if rubs(equations.system):
+    if has_friction(equations.system):
         checks.append(trials.friction())
     checks += [
         *trials.tensors(),

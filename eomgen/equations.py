@@ -304,7 +304,7 @@ class Equations(Result):
 
     @property
     def _letters(self) -> dict[str, Scalar]:
-        """The letters of printed reactions, with what the balance of all bodies gives; {} where something rubs."""
+        """The letters of printed reactions, with what the balance of all bodies gives; {} where there is friction."""
         if self.graph.friction:
             return {}
         letters = letters_of(self.system)

@@ -120,10 +120,10 @@ class Generated:
     def notes(self) -> tuple[str, ...]:
         """What is not in the code, and why."""
         left = (f"the output {name}: {why}" for name, why in self.equations.asked_outputs.left.items())
-        rubs = ["matrices: friction hangs on the reactions"] if self.equations.graph.friction else []
+        unfinished = ["matrices: friction hangs on the reactions"] if self.equations.graph.friction else []
         open_ties = "what puts the ties back as they open by the errors of many steps (--baumgarte lets them pull)"
         drifts = self.integrator and any(not row.identical for row in self.equations.graph.system.ties.rows)
-        return (*(note for note in (self.note, open_ties * drifts) if note), *left, *rubs)
+        return (*(note for note in (self.note, open_ties * drifts) if note), *left, *unfinished)
 
     @cached_property
     def outputs(self) -> Emitted | None:

@@ -45,7 +45,7 @@ def derive(
     Args:
         method: by which way they are derived, one of METHODS: energies, wrenches along the motions that are free, or
             these with every body cut free first.
-        contacts: how the contacts are that can end, rub or stick, by tie or body on a path, what is not named closed;
+        contacts: how the contacts are that can end, slide or stick, by tie or body on a path, what is not named closed;
             None: as they are at the start. What had to be assumed of them is among the equations' `assumptions`.
         parameters, start: values that replace the model's, each as `model_at` takes it.
     Raises:

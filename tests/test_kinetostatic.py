@@ -122,10 +122,10 @@ def reactions_along_motion(derived: Equations) -> dict[Node, Scalar]:
     values = dict(
         zip(named.symbols, substituted([x for x in derived.reactions.values if x is not None], motion), strict=True)
     )
-    for rub, frictions in zip(named.rubs, named.frictions, strict=True):
-        along = derived.reactions.components[rub.component].friction
-        for friction, rubs in zip(frictions, along, strict=True):
-            values[friction] = rubs.factor * values[named.symbols[rub.component]]
+    for contact, frictions in zip(named.contacts, named.frictions, strict=True):
+        along = derived.reactions.components[contact.component].friction
+        for friction, share in zip(frictions, along, strict=True):
+            values[friction] = share.factor * values[named.symbols[contact.component]]
     return values
 
 
@@ -175,8 +175,8 @@ def test_printed_reactions_are_those_of_the_balance_by_every_method(name, method
     motion, known = along_motion(derived), reactions_along_motion(derived)
     own = set(letters(derived).symbols)
     shown = [f for f in formulas(in_time(derived), "reactions") if f.sides[0] in own]  # the others are definitions
-    rubbing = {letters(derived).symbols[rub.component] for rub in letters(derived).rubs}
-    assert {f.sides[0] for f in shown} == own - rubbing
+    with_friction = {letters(derived).symbols[contact.component] for contact in letters(derived).contacts}
+    assert {f.sides[0] for f in shown} == own - with_friction
     pairs = [
         (substituted((whole(in_time(derived), x),), motion)[0], known[f.sides[0]]) for f in shown for x in f.sides[1:]
     ]

@@ -73,7 +73,7 @@ def test_numbers_go_before_normal_equations():
     assert equal_at_random_states([(solution.constants[0] + c * solution.constants[1], b[0])]).equal
 
 
-def test_a_normal_reaction_that_rubs_is_tested_by_its_push_alone():
+def test_a_normal_reaction_with_friction_is_tested_by_its_push_alone():
     """(n + mu t) N = b with n = (-sin, cos), t = -(cos, sin): n . (n + mu t) = 1, and N = n . b."""
     g = Graph()
     theta, mu, b = g.symbol("theta"), g.symbol("mu"), [g.symbol("b1"), g.symbol("b2")]

@@ -212,8 +212,8 @@ def test_friction_stands_beside_the_normal_reaction():
     sense = np.where(run.t < stop, 1.0, -1.0)
     away = np.abs(run.t - stop) > 1e-6
     assert np.abs(run["reaction_t(plane)"])[away] == pytest.approx(0.1 * N * np.abs(sense[away]))
-    rubbing = run["reaction_t(plane)"] * run["x'"]
-    assert np.ptp(np.sign(rubbing[away & (np.abs(run["x'"]) > 1e-6)])) == 0  # always against the sliding
+    along = run["reaction_t(plane)"] * run["x'"]
+    assert np.ptp(np.sign(along[away & (np.abs(run["x'"]) > 1e-6)])) == 0  # always against the sliding
 
 
 def test_a_slack_wire_has_no_tension():

@@ -121,7 +121,9 @@ def _terms(letters: Lettered, equation: BodyEquation) -> list[tuple[Node, Scalar
     """(symbol, coefficient) of every reaction in one equation, friction by a symbol of its own."""
     balance = letters.balance
     link, d = balance.system.motion.index[equation.body], equation.direction
-    frictions = {rub.component: symbols for rub, symbols in zip(letters.rubs, letters.frictions, strict=True)}
+    frictions = {
+        contact.component: symbols for contact, symbols in zip(letters.contacts, letters.frictions, strict=True)
+    }
     found: list[tuple[Node, Scalar]] = []
     for j in equation.coefficients:
         component = balance.components[j]
@@ -129,9 +131,9 @@ def _terms(letters: Lettered, equation: BodyEquation) -> list[tuple[Node, Scalar
         if not is_zero(own):
             found.append((letters.symbols[j], own))
         for along, symbol in zip(component.friction, frictions.get(j, ()), strict=True):
-            rubbing = sum((e.six[d] for e in along.effects if e.link == link), start=0)
-            if not is_zero(rubbing):
-                found.append((symbol, rubbing))
+            braking = sum((e.six[d] for e in along.effects if e.link == link), start=0)
+            if not is_zero(braking):
+                found.append((symbol, braking))
     return found
 
 

@@ -1,4 +1,4 @@
-"""Contacts that rub -> their step, and their friction in the equations of motion.
+"""Contacts with friction -> their step, and their friction in the equations of motion.
 
 F = -mu |N| sign(v),   M a + c = Q + sum F_r dv_r/du,   N from the balance of the bodies
 """
@@ -11,7 +11,7 @@ from eomgen.documents.reaction_names import Lettered, lettered
 from eomgen.documents.reaction_values import Readings, readings_of
 from eomgen.documents.reading import TRIED, Reader, conditions_in, decided, length_in_print, readable_value
 from eomgen.documents.statements import Formula, Omitted, Step, prose
-from eomgen.mechanics.balance.friction import Rub
+from eomgen.mechanics.balance.friction import FrictionContact
 from eomgen.mechanics.equations.equations_of_motion import EquationsOfMotion
 from eomgen.mechanics.equations.system import System
 from eomgen.records import dataclass
@@ -36,7 +36,7 @@ WORDS = (
 
 @dataclass(frozen=True)
 class FrictionTerms:
-    """What rubbing contacts add to a derivation.
+    """What contacts with friction add to a derivation.
 
     Args:
         forces: generalized force of all friction, written with the normal reactions' symbols, nu.
@@ -61,38 +61,38 @@ def friction_of(equations: EquationsOfMotion, reader: Reader) -> FrictionTerms:
     shown = {symbol: function(x.op, readable_value(reader, x.args[0])) for x, symbol in senses.items()}
     definitions = [(symbol, book_form(x, Work.ENTRY, readings.system.scope.positive)) for symbol, x in shown.items()]
     statements = [*map(Formula, definitions)]
-    for rub, frictions in zip(letters.rubs, letters.frictions, strict=True):
-        normal = letters.symbols[rub.component]
-        if rub.normals:
-            shown_force, formula = _of_round(reader, letters, rub, senses)
+    for contact, frictions in zip(letters.contacts, letters.frictions, strict=True):
+        normal = letters.symbols[contact.component]
+        if contact.normals:
+            shown_force, formula = _of_round(reader, letters, contact, senses)
             definitions += [] if isinstance(shown_force, Omitted) else [(normal, shown_force)]
             statements.append(formula)
         else:
-            value = _normal(readings, rub.component, equations, senses)
+            value = _normal(readings, contact.component, equations, senses)
             definitions.append((normal, value))
-            statements += [Formula((normal, value)), *_along(reader, letters, rub, frictions, senses)]
-        row = rub.along if rub.normals else substituted(rub.force, senses)
+            statements += [Formula((normal, value)), *_along(reader, letters, contact, frictions, senses)]
+        row = contact.along if contact.normals else substituted(contact.force, senses)
         forces = [total + share * normal for total, share in zip(forces, row, strict=True)]
     step = Step("friction", "Friction", (prose(WORDS), *statements))
     return FrictionTerms(tuple(reader.short_with_symbols(forces)), tuple(definitions), step, _solved(reader, equations))
 
 
 def _of_round(
-    reader: Reader, letters: Lettered, rub: Rub, senses: Mapping[Node, Node]
+    reader: Reader, letters: Lettered, contact: FrictionContact, senses: Mapping[Node, Node]
 ) -> tuple[Scalar | Omitted, Formula]:
-    """(the friction of what holds on all sides, that as a formula: F = factor sqrt(N_1^2 + N_2^2))."""
-    factor, force = substituted((rub.factor, letters.balance.given[rub.component]), senses)
-    size = sqrt(sum((letters.symbols[j] * letters.symbols[j] for j in rub.normals), start=0))
+    """(the friction of bilateral contacts, that as a formula: F = factor sqrt(N_1^2 + N_2^2))."""
+    factor, force = substituted((contact.factor, letters.balance.given[contact.component]), senses)
+    size = sqrt(sum((letters.symbols[j] * letters.symbols[j] for j in contact.normals), start=0))
     shown = reader.shown(force)
-    return shown, Formula((letters.symbols[rub.component], readable_value(reader, factor) * size, shown))
+    return shown, Formula((letters.symbols[contact.component], readable_value(reader, factor) * size, shown))
 
 
 def _along(
-    reader: Reader, letters: Lettered, rub: Rub, frictions: Sequence[Node], senses: Mapping[Node, Node]
+    reader: Reader, letters: Lettered, contact: FrictionContact, frictions: Sequence[Node], senses: Mapping[Node, Node]
 ) -> list[Formula]:
-    """F = factor N along each direction in which a contact rubs."""
-    factors = substituted([x.factor for x in letters.reactions.components[rub.component].friction], senses)
-    normal = letters.symbols[rub.component]
+    """F = factor N along each direction in which a contact slides."""
+    factors = substituted([x.factor for x in letters.reactions.components[contact.component].friction], senses)
+    normal = letters.symbols[contact.component]
     return [
         Formula((friction, readable_value(reader, factor) * normal))
         for friction, factor in zip(frictions, factors, strict=True)
@@ -136,12 +136,12 @@ def _solved(reader: Reader, equations: EquationsOfMotion) -> tuple[Step, ...]:
 def _senses(letters: Lettered, system: System) -> dict[Node, Node]:
     """A symbol for each sign of a sliding velocity that is more than one rate, on a surface for its magnitude."""
     found: dict[Node, Node] = {}
-    for rub in letters.rubs:
-        speed = next((row.sliding for row in system.ties.rows if row.tie == rub.name and row.shares), None)
-        for node in order((rub.factor, *rub.force)):
+    for contact in letters.contacts:
+        speed = next((row.sliding for row in system.ties.rows if row.tie == contact.name and row.shares), None)
+        for node in order((contact.factor, *contact.force)):
             sense = node.op == "sign" and node.args[0] not in system.symbols.u
             if node not in found and (sense or (node is speed and node.op == "sqrt")):
-                name = f"{'s' if sense else 'v'}_{rub.name}"
+                name = f"{'s' if sense else 'v'}_{contact.name}"
                 while name in system.scope.names or name in letters.names:
                     name += "_r"
                 found[node] = system.scope.graph.symbol(name)

@@ -8,7 +8,7 @@ from collections.abc import Container, Mapping, Sequence
 from eomgen.documents.statements import Meaning, Table
 from eomgen.mechanics.balance.balance import Balance
 from eomgen.mechanics.balance.components import EACH_AXIS, Component
-from eomgen.mechanics.balance.friction import Rub, rubbing_contacts
+from eomgen.mechanics.balance.friction import FrictionContact, friction_contacts
 from eomgen.mechanics.balance.named_reactions import NamedReaction, unit_of
 from eomgen.mechanics.constraints.ties import Row
 from eomgen.mechanics.reactions.reactions import Reactions
@@ -35,14 +35,14 @@ class Lettered:
     Args:
         reactions: solved.
         symbols: one for each component, in order.
-        rubs: the contacts that rub.
-        frictions: a symbol for the friction of each, along each direction in which it rubs.
+        contacts: those with friction.
+        frictions: a symbol for the friction of each, along each direction in which it slides.
         declared: how they are set in LaTeX, of joints and ties that say so, by name.
     """
 
     reactions: Reactions
     symbols: tuple[Node, ...]
-    rubs: tuple[Rub, ...]
+    contacts: tuple[FrictionContact, ...]
     frictions: tuple[tuple[Node, ...], ...]
     declared: Mapping[str, Symbol]
 
@@ -57,13 +57,13 @@ class Lettered:
     def table(self, shown: Container[object] | None = None) -> Table:
         """What the symbols stand for, all or those that are shown, in the order of the components."""
         rows = []
-        named = {rub.component: symbols for rub, symbols in zip(self.rubs, self.frictions, strict=True)}
+        named = {contact.component: symbols for contact, symbols in zip(self.contacts, self.frictions, strict=True)}
         for j, (component, symbol) in enumerate(zip(self.balance.components, self.symbols, strict=True)):
             if shown is None or symbol in shown:
                 rows.append(Meaning(symbol, meaning(self.balance, component), unit_of(component)))
-            for rubs, friction in zip(component.friction, named.get(j, ()), strict=True):
+            for share, friction in zip(component.friction, named.get(j, ()), strict=True):
                 if shown is None or friction in shown:
-                    rows.append(Meaning(friction, _friction(self.balance, component, rubs.label), "N"))
+                    rows.append(Meaning(friction, _friction(self.balance, component, share.label), "N"))
         return Table(HEAD, tuple(rows))
 
     def of_row(self, row: Row) -> Scalar | None:
@@ -78,7 +78,7 @@ def lettered(reactions: Reactions, taken: Container[str]) -> Lettered:
     """A symbol for every reaction, none of them a name of the model."""
     balance = reactions.balance
     graph = balance.system.scope.graph
-    rubs = tuple(rubbing_contacts(balance.system, reactions.components))
+    contacts = tuple(friction_contacts(balance.system, reactions.components))
     used: set[str] = set()
     declared: dict[str, Symbol] = {}
 
@@ -94,12 +94,12 @@ def lettered(reactions: Reactions, taken: Container[str]) -> Lettered:
         symbol(c.label, _owner(balance, c), more := _more(balance, c), _declared(balance, c, c.label, more))
         for c in reactions.components
     )
-    frictions = [(rub.name, reactions.components[rub.component]) for rub in rubs]
+    frictions = [(contact.name, reactions.components[contact.component]) for contact in contacts]
     named = tuple(
         tuple(symbol(x.label, name, (), _declared(balance, c, x.label, ())) for x in c.friction)
         for name, c in frictions
     )
-    return Lettered(reactions, symbols, rubs, named, declared)
+    return Lettered(reactions, symbols, contacts, named, declared)
 
 
 def reaction_name(label: str, owner: str, *more: str) -> str:
@@ -197,7 +197,9 @@ def meaning(balance: Balance, component: Component) -> str:
     if kind == "couple":
         return f"couple {on}, {_sense(balance, component)}"
     if kind in ("t", "s"):
-        return _friction(balance, component, kind) + (", without sliding" if component.rubs is None else "")
+        return _friction(balance, component, kind) + (
+            ", without sliding" if component.bilateral_friction is None else ""
+        )
     if kind == "n":
         return f"normal force {on}{_direction(balance, component)}"
     return f"wrench {on}" if kind == "wrench" else f"reaction {on}"

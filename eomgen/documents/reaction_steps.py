@@ -79,9 +79,9 @@ def _formulas(readings: Readings, letters: Lettered) -> tuple[list[Formula], int
     """(the formulas of as many reactions as a reader can take, how many more there are)."""
     kept: list[Formula] = []
     length, left_out = 0, 0
-    rubbing = {rub.component for rub in letters.rubs}  # these stand in the step of friction
+    with_friction = {contact.component for contact in letters.contacts}  # these stand in the step of friction
     for j, symbol in enumerate(letters.symbols):
-        if j in rubbing or not letters.reactions.solution.determined(j):
+        if j in with_friction or not letters.reactions.solution.determined(j):
             continue
         sides = _sides(readings, j) if readings.reader.full or length < PAGE else []
         if sides:
@@ -120,9 +120,9 @@ def along_the_motion(equations: EquationsOfMotion, reader: Reader, letters: Lett
     known, u = rates, tuple(rates)
     squares = [(u * u, book_form(x * x, Work.ENTRY, positive)) for u, x in rates.items()]
     formulas: list[Statement] = []
-    rubbing = {rub.component for rub in letters.rubs}  # these stand in the step of friction
+    with_friction = {contact.component for contact in letters.contacts}  # these stand in the step of friction
     for j, symbol in enumerate(letters.symbols):
-        if j in rubbing or not letters.reactions.solution.determined(j):
+        if j in with_friction or not letters.reactions.solution.determined(j):
             continue
         values = [x for way in readings.own_ways if depends_on(x := way.value(j), u)]
         found = readings.replaced(values, lambda x: substituted(substituted((x,), accelerations), known)[0])

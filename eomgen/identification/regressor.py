@@ -18,7 +18,7 @@ from typing import Any
 
 from eomgen.errors import DerivationError
 from eomgen.identification.base_parameters import BaseParameters, base_of
-from eomgen.mechanics.balance.friction import rubs
+from eomgen.mechanics.balance.friction import has_friction
 from eomgen.mechanics.bodies.armature import given_inertia, joint_row
 from eomgen.mechanics.bodies.inertia import mass_properties
 from eomgen.mechanics.equations.system import System
@@ -119,7 +119,7 @@ def regressor(model: ModelOrPath) -> Regressor:
 
 def regressor_of(system: System) -> Regressor:
     """The same of a system."""
-    if rubs(system):
+    if has_friction(system):
         raise DerivationError(
             "Coulomb friction of a contact is not linear in the parameters: its normal force depends on them",
             mend="say it by a force with a parameter of its own",

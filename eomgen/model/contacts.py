@@ -1,4 +1,4 @@
-"""Model -> its contacts: what can end, or rubs."""
+"""Model -> its contacts: what can end, or has friction."""
 
 from __future__ import annotations
 
@@ -23,7 +23,7 @@ class Contact:
         unilateral: it can end.
         friction: its law, or None.
         surface: it slides on a surface in space, in any direction: what slides has a speed, and no sense.
-        round: it holds on all sides of a line in space: N has two components, and no sign.
+        round: a bilateral contact on a line in space: N has two components, and no sign.
     """
 
     name: str
@@ -51,7 +51,7 @@ class Contact:
 
 
 def contacts_of(model: Model) -> tuple[Contact, ...]:
-    """Every tie that can end or rubs, and every body that rubs on its path."""
+    """Every tie that can end or has friction, and every body with friction on its path."""
     laws = ((name, getattr(body.joint, "friction", None)) for name, body in model.bodies.items())
     return (*_ties(model), *(_on_path(model, name, law) for name, law in laws if law is not None))
 

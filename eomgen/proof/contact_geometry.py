@@ -9,7 +9,7 @@ The surfaces are taken as they are declared (`Meeting`), the places from the pos
     wheel on a ball      the same, of the tyre's section about the place of its centre line nearest to A
     point on a line      P, and its foot on the line
 
-What such a contact does it does there: a unit lam pushes with 1 N along the normal, what holds or rubs across it with
+What such a contact does it does there: a unit lam pushes with 1 N along the normal, what holds or brakes across it with
 1 N across it, both at P and opposite on both bodies. That the rows' wrenches are such is looked at too.
 """
 

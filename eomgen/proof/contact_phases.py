@@ -1,6 +1,6 @@
 """The phases of a run -> checks: what its contacts do within each, and that nothing but their impulses lies between.
 
-    closed, can end or rubs    push N >= 0             open     gap >= 0
+    closed, can end or slide  push N >= 0             open     gap >= 0
     sticks                     |F| <= mu |N|           slides   sense v >= 0
     from phase to phase        dP_k = sum_b m dv . dv/du_k + I dw . dw/du_k + armature ds' ds'/du_k
                                dP in span(ties) + cone(contacts that touch and are at rest after),   J u+ + sigma >= 0

@@ -142,7 +142,7 @@ class ReadBack:
 
     @cached_property
     def _forces(self) -> dict[str, Scalar]:
-        """Along each coordinate, where none follows others and nothing rubs."""
+        """Along each coordinate, where none follows others and there is no friction."""
         names = (u.name.removesuffix("'") for u in self.equations.symbols.u)
         whole = self.equations.system.free is None and not self.equations.friction
         return dict(zip(names, self.equations.Q, strict=True)) if whole else {}

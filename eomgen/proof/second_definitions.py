@@ -185,7 +185,7 @@ class NearbyStates:
         if not system.scope.model.coordinates[coordinate].driven:
             raise NoValue("a tie drives it")
         if equations.friction:
-            raise NoValue("something rubs")
+            raise NoValue("there is friction")
         free = with_drive_let_go(system, coordinate)
         known = self.state.values | self.state.unknowns
         own = {**system.scope.names, **{lam.name: lam for lam in system.symbols.lam}}
@@ -199,7 +199,7 @@ class NearbyStates:
         """lam of a tie of one row, by the balance of the free bodies on which all ties push."""
         equations = self.state.equations
         if equations.friction:
-            raise NoValue("something rubs")
+            raise NoValue("there is friction")
         found = multipliers_demanded(equations.system, self.state.values | self.state.unknowns)
         if (tie, 1) not in found:
             raise NoValue("it shares its force with other ties")

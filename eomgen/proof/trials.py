@@ -12,7 +12,7 @@ from random import Random
 from typing import TYPE_CHECKING, Any
 
 from eomgen.errors import DerivationError
-from eomgen.mechanics.balance.friction import frictions, push_sizes, rubbing_contacts
+from eomgen.mechanics.balance.friction import friction_contacts, frictions, push_sizes
 from eomgen.mechanics.bodies.contact_modes import CLOSED
 from eomgen.mechanics.bodies.inertia import mass_properties
 from eomgen.mechanics.bodies.kinematics import spin_between
@@ -228,9 +228,9 @@ class Trials:
         return self._at_states(name, "differences at 50 digits", check)
 
     def friction(self) -> Check:
-        """Whatever rubs is braked: factor * v < 0 for a contact that pushes, v its sliding velocity.
+        """Friction brakes: factor * v < 0 for a contact that pushes, v its sliding velocity.
 
-        What holds on all sides rubs with F = factor sqrt(N_1^2 + N_2^2), N_1 and N_2 those of the bodies' balance.
+        That of a bilateral contact is F = factor sqrt(N_1^2 + N_2^2), N_1 and N_2 those of the bodies' balance.
         """
         laws = _laws_of_round(self.equations.system) if push_sizes(self.equations.system) else []
 
@@ -378,9 +378,9 @@ def _columns(equations: EquationsOfMotion) -> Iterable[Sequence[Scalar]]:
 
 
 def _laws_of_round(system: System) -> list[tuple[str, tuple[Scalar, ...]]]:
-    """(contact, (F, factor, N_1, N_2)) of everything that rubs and holds on all sides."""
+    """(contact, (F, factor, N_1, N_2)) of every bilateral contact with friction."""
     reactions = reactions_of(system)
-    rounds = [rub for rub in rubbing_contacts(system, reactions.components) if rub.normals]
+    rounds = [contact for contact in friction_contacts(system, reactions.components) if contact.normals]
     return [(r.name, (reactions.value(r.component), r.factor, *map(reactions.value, r.normals))) for r in rounds]
 
 

@@ -255,14 +255,14 @@ class _Solver:
         if failure and any(node.op == "sign" for node in order((scalar,))):
             return replace(answer, value=None, message=f"no number: at the start {failure}")
         without = answer.value is None and answer.message == NO_VALUE.format("at the start")
-        if without and self._rubs_at_rest:
-            resting = self._rubs_at_rest
+        if without and self._friction_at_rest:
+            resting = self._friction_at_rest
             what = f"on the surface of {resting} nothing slides yet at the start, and friction has no direction there"
             return replace(answer, message=f"{what}; ask it at an instant after: `at`")
         return answer
 
     @cached_property
-    def _rubs_at_rest(self) -> str:
+    def _friction_at_rest(self) -> str:
         """The contacts on surfaces that begin to slide from rest, by their names."""
         phase = self.phase
         values = {**known_parameters(phase.system.scope), **self.motions[False].numbers}

@@ -1,6 +1,6 @@
 """Model, condition -> StateAtInstant: the state at which a motion first meets a condition, exactly where it can be.
 
-A motion may pass through several phases: contacts end, rub, stick, a path goes over from one piece to the next. Each
+A motion may pass through several phases: contacts end, slide, stick, a path goes over from one piece to the next. Each
 phase is followed in numbers; the instants between are then sought in closed form, and taken where both agree.
 """
 

@@ -34,7 +34,7 @@ class Configuration:
 
 
 def by_the_law(model: Model, configuration: Configuration) -> Configuration:
-    """The configuration where what slides on a surface rubs along v/|v|, which has no value where v is 0."""
+    """The configuration where friction on a surface is along v/|v|, which has no value where v is 0."""
     surfaces = {contact.name for contact in contacts_of(model) if contact.surface}
     modes = {
         name: replace(mode, sense=None) if name in surfaces and mode.sense else mode

@@ -100,7 +100,7 @@ def _sliding(
     pieces: Mapping[str, int],
     apart: frozenset[str],
 ) -> dict[str, int]:
-    """The sense of sliding of every contact that rubs by Coulomb's law; 0 where it does not slide."""
+    """The sense of sliding of every contact with Coulomb friction; 0 where it does not slide."""
     if all(contact.mu is None for contact in contacts):
         return {}
     closed = Configuration(Table({c.name: OPEN if c.name in apart else ContactMode() for c in contacts}), Table(pieces))

@@ -3,7 +3,7 @@
 Each function is positive while the configuration holds:
 
     closed, and can end:   N                 sticks:   mu |N| - |F|, F what holds it
-    rubs:                  push N            open:     the gap, of a string the integral of its rate
+    slides:                push N            open:     the gap, of a string the integral of its rate
     slides:                sense v           on a piece of a path:   the way to each of its ends
 """
 
@@ -189,7 +189,7 @@ class ContactEvents:
         return forces[0] if len(forces) == 1 else _resultant(forces)
 
     def _normals(self, contact: Contact) -> list[tuple[Scalar, str]]:
-        """N of a support, sqrt(N_1^2 + N_2^2) of what holds on all sides, the tensions of a string.
+        """N of a support, sqrt(N_1^2 + N_2^2) of bilateral contacts, the tensions of a string.
 
         Each as (value, name of its column).
         """
@@ -224,7 +224,7 @@ def stopped_below(contact: Contact) -> Fraction | int:
 
 
 def sliding_velocity(system: System, contact: Contact) -> Scalar:
-    """Of a closed contact that rubs, along its tangent."""
+    """Of a closed contact with friction, along its tangent."""
     if contact.of_joint:
         return system.motion.link(contact.name).s_rate[0]
     return next(r.sliding for r in system.ties.rows if r.tie == contact.name and r.tangent)

@@ -54,7 +54,7 @@ def one_phase(declared: System, equations: EquationsOfMotion, p: np.ndarray, tar
 
 @dataclass(frozen=True)
 class Slides:
-    """The contacts of a system that rub by Coulomb's law, as they slide.
+    """The contacts of a system that have Coulomb friction, as they slide.
 
     Args:
         p: the parameters' values.
@@ -128,8 +128,8 @@ class PhaseModels:
         """The sliding velocities of a configuration, for which no force needs to be known."""
         if configuration not in self._slides:
             model = on_pieces(self.model, configuration.pieces)
-            rubbing = [c for c in contacts_of(model) if c.mu is not None and configuration.modes[c.name].closed]
-            self._slides[configuration] = Slides(self._system(model, configuration), tuple(rubbing), self.p)
+            with_friction = [c for c in contacts_of(model) if c.mu is not None and configuration.modes[c.name].closed]
+            self._slides[configuration] = Slides(self._system(model, configuration), tuple(with_friction), self.p)
         return self._slides[configuration]
 
     @cached_property

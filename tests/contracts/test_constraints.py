@@ -355,8 +355,8 @@ def test_a_contact_of_two_bodies_pushes_both_at_one_place(kind, space, fields):
         pushed = [w for push in row.pushes if (w := body_wrench(system.motion, push)) is not None]
         assert equal(total(system, pushed), (0,) * 6)
         if kind == "rolling":
-            rubbed = [w for push in row.tangent for w in [body_wrench(system.motion, push)] if w is not None]
-            assert equal(total(system, rubbed), (0,) * 6)
+            friction = [w for push in row.tangent for w in [body_wrench(system.motion, push)] if w is not None]
+            assert equal(total(system, friction), (0,) * 6)
 
 
 def total(system: System, wrenches) -> tuple[Scalar, ...]:

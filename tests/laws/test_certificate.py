@@ -217,7 +217,7 @@ def pushing(law, value, sliding, mode):
 
 
 def other_way(system, found):
-    return [replace(rub, along=tuple(-x for x in rub.along)) for rub in rubbing_contacts(system, found)]
+    return [replace(contact, along=tuple(-x for x in contact.along)) for contact in friction_contacts(system, found)]
 
 
 def without_parent(axes, link, force, couple):
@@ -228,11 +228,11 @@ def to_the_other_side(axes, i, place):
     return times(-1, arm(axes, i, place))
 
 
-friction_factor, rubbing_contacts = contacts.friction_factor, friction.rubbing_contacts
+friction_factor, friction_contacts = contacts.friction_factor, friction.friction_contacts
 joint_effects, arm = effects.effects_at_joint, effects.Axes.arm
 REACTION_ERRORS = [
     ("ch16_p6", ties, "friction_factor", pushing),
-    ("ch16_p6", friction, "rubbing_contacts", other_way),
+    ("ch16_p6", friction, "friction_contacts", other_way),
     ("double_pendulum", components, "effects_at_joint", without_parent),
     ("arm3", components, "effects_at_joint", without_parent),
     ("double_pendulum", effects.Axes, "arm", to_the_other_side),
@@ -278,7 +278,7 @@ inertia = "m*l^2"
 points = { P = ["-l", 0], Q = ["l", 0] }
 line = ["P", "Q"]
 """
-RUBBING = {
+WITH_FRICTION = {
     "a bar on a floor": """
 [coordinates]
 x = { start = 0.3, speed = 1 }
@@ -314,10 +314,10 @@ friction = { viscous = "mu" }
 }
 
 
-@pytest.mark.parametrize("name", RUBBING)
-def test_the_certificate_holds_where_a_closing_tie_rubs(name):
+@pytest.mark.parametrize("name", WITH_FRICTION)
+def test_the_certificate_holds_where_a_closing_tie_has_friction(name):
     """N is its multiplier, solved together with the accelerations; friction is in Q, the balance and the energy."""
-    certificate = eomgen.derive(eomgen.loads(ROUGH + RUBBING[name])).certify()
+    certificate = eomgen.derive(eomgen.loads(ROUGH + WITH_FRICTION[name])).certify()
     assert certificate.ok, str(certificate)
     told = {check.name for check in certificate.checks}
     assert {"friction takes power from what slides", "every body is in balance with its reactions"} <= told

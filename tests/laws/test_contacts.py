@@ -1,4 +1,4 @@
-"""Contacts that end, rub and stick: each law of the textbook, through the phases of a simulation."""
+"""Contacts that end, slide and stick: each law of the textbook, through the phases of a simulation."""
 
 from __future__ import annotations
 

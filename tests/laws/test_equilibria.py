@@ -519,7 +519,7 @@ th = { value = "th", at = "equilibrium" }
         (
             BOX.replace("y = 0", "y = 0\nx = 0\nth = 0") + WEIGHT + '[constraints.f]\nkind = "support"\n'
             'point = "b.center"\nnormal = [0, 1]\nfriction = 0.3\n',
-            "'f' rubs",
+            "'f' has friction",
         ),
         (
             BOX.replace("y = 0", 'y = 0\nx = { motion = "2*t" }').replace('angle = "th"', 'angle = "0"') + WEIGHT,

@@ -1,4 +1,4 @@
-"""Systems of the plane that move freely, rub, land and swing, beside laws written by hand and solved by scipy."""
+"""Systems of the plane that move freely, slide, land and swing, beside laws written by hand and solved by scipy."""
 
 from __future__ import annotations
 

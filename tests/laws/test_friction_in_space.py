@@ -1,4 +1,4 @@
-"""Friction of what holds on all sides of a line in space, |N| = sqrt(N_1^2 + N_2^2), against textbooks."""
+"""Friction of bilateral contacts of a line in space, |N| = sqrt(N_1^2 + N_2^2), against textbooks."""
 
 from __future__ import annotations
 
@@ -67,7 +67,7 @@ def bead(kind: str, law: str) -> eomgen.Model:
 
 
 @pytest.mark.parametrize("kind", BEADS)
-def test_a_bead_rubs_by_the_resultant_of_its_two_normal_forces(kind):
+def test_the_friction_of_a_bead_is_by_the_resultant_of_its_two_normal_forces(kind):
     """On a rod that turns in a horizontal plane N = m sqrt(g^2 + (2 W r')^2), r'' = W^2 r - mu N/m."""
     m, mu, W, r, v = 0.5, 0.3, 3, 0.4, 0.2
     N = m * math.hypot(G, 2 * W * v)

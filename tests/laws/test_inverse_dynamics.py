@@ -254,7 +254,7 @@ def test_the_work_of_a_drive_in_a_loop_is_the_energy_that_it_brings(text, driven
 
 # -- what cannot be answered ----------------------------------------------------------------------
 
-RUBBING = """
+WITH_FRICTION = """
 eomgen = 1
 space = "plane"
 [coordinates]
@@ -282,9 +282,9 @@ acceleration = [0, -9.81]
         (FOUR_BAR, ["alhpa"], "there is no coordinate, speed, input or hinged body 'alhpa'"),
         ((MODELS / "cart_pole.toml").read_text(), ["x"], "1 would be moved by nothing"),
         ((MODELS / "quadrotor.toml").read_text(), ["f1", "f2", "f3", "f4"], "2 would be moved by nothing"),
-        (RUBBING, [], "Coulomb friction"),
+        (WITH_FRICTION, [], "Coulomb friction"),
         (
-            RUBBING.replace("{ start = 0, speed = 1 }", '{ motion = "t" }').replace("friction = 0.3", ""),
+            WITH_FRICTION.replace("{ start = 0, speed = 1 }", '{ motion = "t" }').replace("friction = 0.3", ""),
             [],
             "nothing is free to move",
         ),

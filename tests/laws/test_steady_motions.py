@@ -153,7 +153,7 @@ about = "start"
 """
 
 
-def test_a_ball_that_spins_on_a_rubbing_table_has_small_motions_about_axes_that_stand_still():
+def test_a_ball_that_spins_on_a_rough_table_has_small_motions_about_axes_that_stand_still():
     """I_1 m s^2 + (I_1 c - i I_3 w m + R^2 c m) s - i w c (I_3 + R^2 m) = 0, c = mu m g, by hand in complex numbers."""
     m, R, c, w, I_1, I_3 = 0.05, 0.03, 0.2 * 0.05 * 9.81, 40, 1.7e-5, 1.9e-5
     by_hand = np.roots([I_1 * m, I_1 * c - 1j * I_3 * w * m + R * R * c * m, -1j * w * c * (I_3 + R * R * m)])

@@ -80,7 +80,7 @@ def test_friction_of_a_support_is_told_along_its_normal_turned_clockwise(speed):
     assert answers(text)["F"] == pytest.approx(-np.sign(speed) * 0.3 * 2 * G * cos(0.4))
 
 
-def test_a_slider_rubs_along_the_line_of_a_body_that_turns():
+def test_a_slider_has_friction_along_the_line_of_a_body_that_turns():
     """A collar on a bar that turns with w, no weight:  r'' = r w^2 - mu |2 w r'| sign(r')."""
     w, r, v, mu, A = 3.0, 0.8, 1.5, 0.2, 0.4
     direction, across = np.array([cos(A), sin(A)]), np.array([-sin(A), cos(A)])

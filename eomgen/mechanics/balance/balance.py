@@ -59,7 +59,7 @@ class Balance:
     """All equations of all bodies.
 
     Args:
-        sizes: |N| of the contacts that hold on all sides and rub, by their names.
+        sizes: |N| of the bilateral contacts with friction, by their names.
     """
 
     system: System
@@ -70,7 +70,11 @@ class Balance:
     @cached_property
     def given(self) -> dict[int, Scalar]:
         """The components that do not follow from the equations: friction by |N| = sqrt(N_1^2 + N_2^2)."""
-        return {j: c.rubs * self.sizes[c.owner] for j, c in enumerate(self.components) if c.rubs is not None}
+        return {
+            j: c.bilateral_friction * self.sizes[c.owner]
+            for j, c in enumerate(self.components)
+            if c.bilateral_friction is not None
+        }
 
     @cached_property
     def unknowns(self) -> tuple[Node, ...]:
@@ -88,7 +92,7 @@ def balance_of(system: System, sizes: Mapping[str, Scalar] | None = None) -> Bal
     """The equations of every body; those that say 0 = 0 are left out.
 
     Args:
-        sizes: |N| of the contacts that hold on all sides and rub.
+        sizes: |N| of the bilateral contacts with friction.
     Raises:
         DerivationError: a force, an energy or a tie that acts at no place, named.
     """
@@ -173,7 +177,7 @@ def _moved_inside(what: str, where: str) -> DerivationError:
 
 def _coefficient(component: Component, link: int, direction: int) -> Scalar:
     """Of the component, its friction included, in one equation of one body."""
-    effects = (*component.effects, *component.rubbing)
+    effects = (*component.effects, *component.friction_effects)
     return sum((effect.six[direction] for effect in effects if effect.link == link), start=0)
 
 

@@ -68,7 +68,7 @@ def solution_of_balance(
         """Whether it is such a parameter, or a sum or root of terms of one sign."""
         return bool(sign_of_terms(a, steady))
 
-    last = [j for j, c in enumerate(balance.components) if c.rubbing]
+    last = [j for j, c in enumerate(balance.components) if c.friction_effects]
     values = values_at_a_state(balance.system, entries)
     return general_solution(
         LinearSystem(rows, needed, len(balance.names), values),
@@ -108,12 +108,12 @@ def combined_reaction(balance: Balance, solution: Solution, combination: Combina
 
 
 def _pushes(balance: Balance, equation: BodyEquation) -> dict[int, Scalar]:
-    """The coefficients of the components that rub as they would be without friction."""
+    """The coefficients of the components with friction as they would be without friction."""
     link = balance.system.motion.index[equation.body]
-    rubbing = [j for j in equation.coefficients if balance.components[j].rubbing]
+    with_friction = [j for j in equation.coefficients if balance.components[j].friction_effects]
     return {
         j: sum((e.six[equation.direction] for e in balance.components[j].effects if e.link == link), start=0)
-        for j in rubbing
+        for j in with_friction
     }
 
 

@@ -28,7 +28,7 @@ EACH_AXIS: tuple[Vector, Vector, Vector] = ((1, 0, 0), (0, 1, 0), (0, 0, 1))
 
 
 @dataclass(frozen=True)
-class Rubbing:
+class FrictionShare:
     """Friction of a contact along one direction.
 
     Args:
@@ -52,11 +52,11 @@ class Component:
         label: "x", "y", "z", "n", "t", "couple", "couple x", "tension", "drive", or "" for a row of no place.
         number: its row in the tie, or its place among the joint's components, from 1.
         effects: of a unit of it, on the child or the first-named body first.
-        friction: along each direction in which its contact rubs.
+        friction: along each direction in which its contact slides.
         side: the body on which it is the force of a hinge of several, the coordinate of a drive, the member of a
             truss, or "".
-        rubs: of the friction of a contact that holds on all sides, which is a component of its own: what a unit of
-            |N| = sqrt(N_1^2 + N_2^2) rubs with; None of all else.
+        bilateral_friction: of the friction of a bilateral contact, which is a component of its own: its factor for a
+            unit of |N| = sqrt(N_1^2 + N_2^2); None of all else.
     """
 
     owner: str
@@ -64,14 +64,19 @@ class Component:
     label: str
     number: int
     effects: tuple[Effect, ...]
-    friction: tuple[Rubbing, ...] = ()
+    friction: tuple[FrictionShare, ...] = ()
     side: str = ""
-    rubs: Scalar | None = None
+    bilateral_friction: Scalar | None = None
 
     @cached_property
-    def rubbing(self) -> tuple[Effect, ...]:
+    def friction_effects(self) -> tuple[Effect, ...]:
         """Its friction for a unit of it, on the same bodies."""
         return tuple(effect.times(along.factor) for along in self.friction for effect in along.effects)
+
+    @property
+    def frictional(self) -> bool:
+        """Whether it is friction, or there is friction by it."""
+        return bool(self.friction) or self.bilateral_friction is not None
 
     @property
     def name(self) -> str:
@@ -105,10 +110,10 @@ def _joint_components(system: System, axes: Axes) -> list[Component]:
         along = () if factor is None else tuple(effects_at_joint(axes, link, *scaled_axes(axes, link.name, 0, 1)))
         for number, (label, force, couple) in enumerate(pushes, start=1):
             effects = tuple(effects_at_joint(axes, link, force, couple))
-            friction = (Rubbing("t", factor, along),) if label == "n" and factor is not None else ()
+            friction = (FrictionShare("t", factor, along),) if label == "n" and factor is not None else ()
             found.append(Component(link.name, "joint", label, number, effects, friction))
         if factor is not None and not axes.plane:
-            found.append(Component(link.name, "joint", "t", len(pushes) + 1, along, rubs=factor))
+            found.append(Component(link.name, "joint", "t", len(pushes) + 1, along, bilateral_friction=factor))
         for k in range(len(link.s)):
             if (driver := driven.get((link.name, k))) is not None:
                 effects = tuple(effects_at_joint(axes, link, *scaled_axes(axes, link.name, k, 1)))
@@ -206,23 +211,25 @@ def _normals(axes: Axes, link: BodyLink, forces: list[Vector]) -> list[tuple[str
 
 
 def joint_friction(system: System, link: BodyLink) -> Scalar | None:
-    """What a unit of the normal reaction of a path rubs with along the path; None without friction, and elsewhere."""
+    """The friction of a path along it for a unit of its normal reaction; None without friction, and elsewhere."""
     pieces = getattr(link.joint, "pieces", ())
     value, mode = system.scope.value, system.modes.get(link.name, CLOSED)
     factors = [friction_factor(piece.friction, value, link.s_rate[0], mode) for piece in pieces]
     if all(factor is None for factor in factors):
         return None
-    rubbed: Scalar = link.joint.of_its_piece(link.s[0], value, [0 if factor is None else factor for factor in factors])
-    return rubbed
+    friction: Scalar = link.joint.of_its_piece(
+        link.s[0], value, [0 if factor is None else factor for factor in factors]
+    )
+    return friction
 
 
-def rubbing_of(system: System, component: Component) -> tuple[Scalar, Scalar]:
-    """Of a component that rubs: (friction along the contact for a unit of it, the sliding velocity dual to that)."""
+def sliding_friction(system: System, component: Component) -> tuple[Scalar, Scalar]:
+    """Of a component with friction: (its friction along the contact for a unit of it, the sliding velocity)."""
     if component.kind == "joint":
         link = system.motion.link(component.owner)
         factor, sliding = joint_friction(system, link), link.s_rate[0]
     else:
-        number = component.number - 1 if component.rubs is not None else component.number
+        number = component.number - 1 if component.bilateral_friction is not None else component.number
         row = next(r for r in system.ties.rows if (r.tie, r.number) == (component.owner, number))
         factor, sliding = row.friction, row.sliding
     assert factor is not None, "what has an effect of friction has its factor"
@@ -241,28 +248,28 @@ def _tie_components(system: System, axes: Axes) -> list[Component]:
         found.append(_of_tie(system, row, effects, () if row.round else _friction(axes, row)))
         if row.round and row.friction is not None:
             along = tuple(e for push in row.tangent for e in effects_of_load(axes, push))
-            found.append(Component(row.tie, "tie", "t", row.number + 1, along, rubs=row.friction))
+            found.append(Component(row.tie, "tie", "t", row.number + 1, along, bilateral_friction=row.friction))
     return found
 
 
 def normals_of_round(components: Sequence[Component], friction: Component) -> tuple[int, ...]:
-    """Of the friction of a contact that holds on all sides: which components its normal force has."""
+    """Of the friction of a bilateral contact: which components its normal force has."""
     mine = (friction.kind, friction.owner)
     return tuple(j for j, c in enumerate(components) if (c.kind, c.owner) == mine and c.label.startswith("n "))
 
 
-def _friction(axes: Axes, row: Row) -> tuple[Rubbing, ...]:
+def _friction(axes: Axes, row: Row) -> tuple[FrictionShare, ...]:
     """The friction of a row along its tangent, on a surface along both."""
     if row.friction is None:
         return ()
     ways = zip("ts", row.shares or (1,), (row.tangent, row.cross_tangent), strict=False)
     return tuple(
-        Rubbing(label, row.friction * share, tuple(e for push in pushes for e in effects_of_load(axes, push)))
+        FrictionShare(label, row.friction * share, tuple(e for push in pushes for e in effects_of_load(axes, push)))
         for label, share, pushes in ways
     )
 
 
-def _of_tie(system: System, row: Row, effects: tuple[Effect, ...], friction: tuple[Rubbing, ...]) -> Component:
+def _of_tie(system: System, row: Row, effects: tuple[Effect, ...], friction: tuple[FrictionShare, ...]) -> Component:
     """The component; of a hinge of several bodies, the force on the one that the row adds.
 
     Where the first-named point is the ground's, it is the force on the body.

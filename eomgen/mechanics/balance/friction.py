@@ -3,7 +3,7 @@
     M a + c = Q + J^T lam + sum f_r |N_r|,   J a + gamma = 0,   f_r = factor_r dv_r/du
 
 N_r of a closing row is its multiplier; of a row or joint that only reacts it follows from the balance of the bodies,
-N_r = n_r + m_r a. A contact that holds on all sides of a line has |N_r| = sqrt(N_1^2 + N_2^2), in which the equations
+N_r = n_r + m_r a. A bilateral contact on a line has |N_r| = sqrt(N_1^2 + N_2^2), in which the equations
 are not linear (see `round_contacts`). What comes out is friction as a generalized force of q, u and t.
 """
 
@@ -16,7 +16,7 @@ from functools import cached_property
 from eomgen.errors import DerivationError
 from eomgen.mechanics.balance.balance import Balance, balance_of
 from eomgen.mechanics.balance.balance_solution import combined_reaction, solution_of_balance, values_at_a_state
-from eomgen.mechanics.balance.components import Component, joint_friction, normals_of_round, rubbing_of
+from eomgen.mechanics.balance.components import Component, joint_friction, normals_of_round, sliding_friction
 from eomgen.mechanics.bodies.round_contacts import LEAST, sizes
 from eomgen.mechanics.constraints.ties import holds_identically
 from eomgen.mechanics.equations.equations_of_motion import EquationsOfMotion
@@ -33,16 +33,16 @@ from eomgen.symbolic.solve.linear_systems import LinearSystem, unique_solution
 
 
 @dataclass(frozen=True)
-class Rub:
-    """One rubbing contact.
+class FrictionContact:
+    """A contact with friction.
 
     Args:
         name: the tie, or the body on a path.
-        component: index of its normal reaction among the components of the reactions; of a contact that holds on all
-            sides that of its friction.
+        component: index of its normal reaction among the components of the reactions; of a
+            bilateral contact that of its friction.
         along: generalized force for a unit of friction, dv/du.
         factor: the friction along the contact's tangent for a unit of N, or of |N|, for instance -mu sign(v).
-        normals: of a contact that holds on all sides the indices of its normal reactions.
+        normals: of a bilateral contact the indices of its normal reactions.
     """
 
     name: str
@@ -67,17 +67,17 @@ def equations_of_motion(system: System) -> EquationsOfMotion:
 
 
 def with_friction(equations: EquationsOfMotion) -> EquationsOfMotion:
-    """The equations of motion, friction in Q and forcing, and the accelerations explicit; the same where nothing rubs.
+    """The equations of motion, friction in Q and forcing, and the accelerations explicit; the same without friction.
 
     Raises:
-        DerivationError: the normal reaction of a contact that rubs is indeterminate.
+        DerivationError: the normal reaction of a contact with friction is indeterminate.
     """
-    if not rubs(equations.system):
+    if not has_friction(equations.system):
         return equations
-    rubbing = _Rubbing(equations)
-    a, forces = rubbing.accelerations, rubbing.normals
+    solved = _WithFriction(equations)
+    a, forces = solved.accelerations, solved.normals
     friction = tuple(
-        sum((rub.force[k] * N for rub, N in zip(rubbing.found, forces, strict=True)), start=0)
+        sum((contact.force[k] * N for contact, N in zip(solved.found, forces, strict=True)), start=0)
         for k in range(len(equations.M))
     )
     return replace(
@@ -90,16 +90,16 @@ def with_friction(equations: EquationsOfMotion) -> EquationsOfMotion:
 
 
 def push_sizes(system: System) -> dict[str, Scalar]:
-    """|N| of every contact that rubs and holds on all sides, as a function of q, u and t; {} where there is none.
+    """|N| of every bilateral contact with friction, as a function of q, u and t; {} where there is none.
 
     Raises:
         DerivationError: as `with_friction`.
     """
     if not round_symbols(system):
         return {}
-    rubbing = _Rubbing(recursive.assembled_by_recursion(system))
-    pairs = zip(rubbing.found, rubbing.normals, strict=True)
-    return {rub.name: N for rub, N in pairs if rub.normals}
+    solved = _WithFriction(recursive.assembled_by_recursion(system))
+    pairs = zip(solved.found, solved.normals, strict=True)
+    return {contact.name: N for contact, N in pairs if contact.normals}
 
 
 def with_rest(system: System, scalars: Sequence[Scalar]) -> ScalarRow:
@@ -109,34 +109,34 @@ def with_rest(system: System, scalars: Sequence[Scalar]) -> ScalarRow:
     return substituted(tuple(scalars), {v: function("max", v, LEAST) for v in speeds}) if speeds else tuple(scalars)
 
 
-def rubs(system: System) -> bool:
-    """Whether anything rubs."""
+def has_friction(system: System) -> bool:
+    """Whether any contact has friction."""
     return bool(frictions(system))
 
 
 def frictions(system: System) -> list[tuple[str, Scalar, Scalar]]:
-    """(contact, what a unit of N rubs with, the sliding velocity) of everything that rubs."""
+    """(contact, the friction of a unit of N, the sliding velocity) of every contact with friction."""
     found = [(row.tie, row.friction, row.sliding) for row in system.ties.rows]
     for link in system.motion.links:
         found.append((link.name, joint_friction(system, link), link.s_rate[0] if link.s_rate else 0))
     return [(name, factor, sliding) for name, factor, sliding in found if factor is not None]
 
 
-def rubbing_contacts(system: System, components: Sequence[Component]) -> list[Rub]:
-    """Every contact that rubs, in the order of the components."""
+def friction_contacts(system: System, components: Sequence[Component]) -> list[FrictionContact]:
+    """Every contact with friction, in the order of the components."""
     u = system.symbols.u
     found = []
     for j, component in enumerate(components):
-        if not component.rubbing and component.rubs is None:
+        if not component.frictional:
             continue
-        factor, sliding = rubbing_of(system, component)
-        normals = () if component.rubs is None else normals_of_round(components, component)
-        found.append(Rub(component.owner, j, gradient(sliding, u), factor, normals))
+        factor, sliding = sliding_friction(system, component)
+        normals = () if component.bilateral_friction is None else normals_of_round(components, component)
+        found.append(FrictionContact(component.owner, j, gradient(sliding, u), factor, normals))
     return found
 
 
 def round_symbols(system: System) -> dict[str, Node]:
-    """A symbol for |N| of every contact that rubs and holds on all sides, by its name."""
+    """A symbol for |N| of every bilateral contact with friction, by its name."""
     on_lines = [row.tie for row in system.ties.rows if row.round and row.friction is not None]
     if system.scope.model.space == "space":
         on_lines += [link.name for link in system.motion.links if joint_friction(system, link) is not None]
@@ -144,8 +144,8 @@ def round_symbols(system: System) -> dict[str, Node]:
 
 
 @dataclass(frozen=True)
-class _Rubbing:
-    """The equations of motion with friction; first with |N| of what holds on all sides left open."""
+class _WithFriction:
+    """The equations of motion with friction; first with |N| of bilateral contacts left open."""
 
     equations: EquationsOfMotion
 
@@ -156,17 +156,19 @@ class _Rubbing:
 
     @property
     def normals(self) -> ScalarRow:
-        """N of every rub, or |N|."""
+        """N of every contact with friction, or |N|."""
         single = iter(substituted(self._values[len(self._values) - len(self._single) :], self._sizes))
-        return tuple(self._sizes[self._symbols[rub.name]] if rub.normals else next(single) for rub in self.found)
+        return tuple(
+            self._sizes[self._symbols[contact.name]] if contact.normals else next(single) for contact in self.found
+        )
 
     @cached_property
-    def found(self) -> list[Rub]:
-        return rubbing_contacts(self.equations.system, self._balance.components)
+    def found(self) -> list[FrictionContact]:
+        return friction_contacts(self.equations.system, self._balance.components)
 
     @property
-    def _single(self) -> list[Rub]:
-        return [rub for rub in self.found if not rub.normals]
+    def _single(self) -> list[FrictionContact]:
+        return [contact for contact in self.found if not contact.normals]
 
     @cached_property
     def _symbols(self) -> dict[str, Node]:
@@ -182,12 +184,12 @@ class _Rubbing:
 
     @cached_property
     def _sizes(self) -> dict[Node, Scalar]:
-        """|N| of what holds on all sides, by its symbol."""
+        """|N| of bilateral contacts, by its symbol."""
         known = dict(zip(self.equations.symbols.a, self._values, strict=False))
         pairs = {
-            self._symbols[rub.name]: tuple(self._component(rub.name, j, known) for j in rub.normals)
-            for rub in self.found
-            if rub.normals
+            self._symbols[contact.name]: tuple(self._component(contact.name, j, known) for j in contact.normals)
+            for contact in self.found
+            if contact.normals
         }
         entries = [N for pair in pairs.values() for N in pair]
         values = values_at_a_state(self.equations.system, substituted(entries, dict.fromkeys(pairs, 0)))
@@ -209,24 +211,24 @@ class _Rubbing:
 
     @cached_property
     def _values(self) -> ScalarRow:
-        """a, lam of the rows that do not follow from others, N of every rub that has one.
+        """a, lam of the rows that do not follow from others, N of every contact with friction that has one.
 
         Raises:
             DerivationError: the normal reaction of a contact is indeterminate.
         """
         rows, right = bordered_rows(self.equations, self._kept)
         n, first = len(self.equations.M), len(right)
-        for rub in self.found:
-            if rub.normals:
-                size = self._symbols[rub.name]
-                right[:n] = [b + force * size for b, force in zip(right[:n], rub.force, strict=True)]
-        for k, rub in enumerate(self._single):
-            multiplier = self._multiplier(rub.component, rub.name)
+        for contact in self.found:
+            if contact.normals:
+                size = self._symbols[contact.name]
+                right[:n] = [b + force * size for b, force in zip(right[:n], contact.force, strict=True)]
+        for k, contact in enumerate(self._single):
+            multiplier = self._multiplier(contact.component, contact.name)
             normal = first + k if multiplier is None else n + multiplier
-            for row, force in zip(rows[:n], rub.force, strict=True):
+            for row, force in zip(rows[:n], contact.force, strict=True):
                 row[normal] = row.get(normal, 0) - force
             same: tuple[dict[int, Scalar], Scalar] = ({normal: -1}, 0)
-            known, value = self._linear(rub.component) if multiplier is None else same
+            known, value = self._linear(contact.component) if multiplier is None else same
             rows.append({first + k: 1} | known)
             right.append(value)
         return tuple(_solved(self.equations.system, rows, right))
@@ -253,7 +255,7 @@ def _multiplier(system: System, component: Component, name: str, kept: Sequence[
     if not rows:
         return None
     if rows[0] not in kept:
-        raise DerivationError(f"the normal reaction of '{name}', which rubs, is indeterminate")
+        raise DerivationError(f"the normal reaction of '{name}', which has friction, is indeterminate")
     return kept.index(rows[0])
 
 

@@ -21,7 +21,7 @@ from eomgen.symbolic.numeric.work import Work
 def along_ground(balance: Balance, rows: list[SparseRow], needed: list[Scalar]) -> tuple[list[SparseRow], list[Scalar]]:
     """(coefficients, what they have to make up), force equations turned where that makes them shorter."""
     rows, needed = list(rows), list(needed)
-    if balance.system.scope.model.space == "plane" or any(c.rubbing or c.rubs is not None for c in balance.components):
+    if balance.system.scope.model.space == "plane" or any(c.frictional for c in balance.components):
         return rows, needed
     for i, link in enumerate(balance.system.motion.links):
         if not _held_by_ties_alone(balance, i):

@@ -1,7 +1,7 @@
 """Reactions -> what an output asks of them by name, every one: reaction_x(B), reaction_n(wall), tension(rope, 2).
 
 In the plane these are the components themselves; in space, and at hinges of several bodies, sums of them in the
-ground's axes. Beside each contact that rubs stands its friction along the contact's tangent, reaction_t(wall), on a
+ground's axes. Beside each contact with friction stands its friction along the contact's tangent, reaction_t(wall), on a
 surface along both tangents.
 """
 
@@ -76,8 +76,8 @@ def _of_owner(balance: Balance, owner: str) -> Iterable[NamedReaction]:
             yield from _vector(balance, owner, "", "couple_", COUPLE, along)
     for j, c in apart:
         yield NamedReaction(_name(balance, c), owner, unit_of(c), {j: 1})
-        for rubs in c.friction:
-            yield NamedReaction(f"reaction_{rubs.label}({owner})", owner, FORCE, {j: rubs.factor})
+        for share in c.friction:
+            yield NamedReaction(f"reaction_{share.label}({owner})", owner, FORCE, {j: share.factor})
     for j, c in mine:
         if c.kind == "drive" and j == min(drives := _drives(balance, j, c)):  # once, at the first of its joints
             yield NamedReaction(c.name, owner, unit_of(c), drives)
@@ -91,7 +91,7 @@ def _vector(
     part: WrenchPart = (lambda e: e.couple) if unit == COUPLE else (lambda e: e.force)
     mine = [(j, c) for j, c in enumerate(balance.components) if c.owner == owner]
     on = motion.index[side] if side else next(c for _, c in mine if c.kind != "drive").effects[0].link
-    units = {j: _turned(balance, on, _sum(part, on, (*c.effects, *c.rubbing))) for j, c in mine}
+    units = {j: _turned(balance, on, _sum(part, on, (*c.effects, *c.friction_effects))) for j, c in mine}
     efforts = efforts_of(balance.system, owner) if owner in motion.index else []
     given = _turned(balance, on, _sum(part, on, efforts))
     place = f"{owner}.{side}" if side else owner

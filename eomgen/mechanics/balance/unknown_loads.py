@@ -53,15 +53,15 @@ def still(system: System) -> dict[Node, Scalar]:
     return dict.fromkeys((*system.symbols.u, *system.symbols.a), 0)
 
 
-def refuse_rubbing(balance: Balance) -> None:
+def refuse_friction(balance: Balance) -> None:
     """At rest friction may be anything up to its limit: then no force follows from the balance.
 
     Raises:
         DerivationError: the contact is named.
     """
     for component in balance.components:
-        if component.rubbing or component.rubs is not None:
-            what = f"'{component.owner}' rubs: at rest its friction has a range, and so have the unknowns"
+        if component.frictional:
+            what = f"'{component.owner}' has friction: at rest it has a range, and so have the unknowns"
             raise DerivationError(what, f"constraints.{component.owner}.friction", "leave the friction out")
 
 

@@ -1,4 +1,4 @@
-"""Contacts: ties and paths that can end, rub or stick. A mode says how each of them is in one phase of the motion.
+"""Contacts: ties and paths that can end, slide or stick. A mode says how each of them is in one phase of the motion.
 
 Coulomb:  friction = -mu |N| sign(v) along the contact, N the contact's own reaction, v its sliding velocity;
 viscous:  -c |N| v.  While a contact sticks, its sliding velocity is held at 0 by a row of its own.
@@ -44,8 +44,10 @@ def rows_in_mode(constraint: Any, rows: tuple[TieRow, ...], mode: ContactMode) -
     law = getattr(constraint, "friction", None)
     if law is None or mode.sense != 0 or law.coulomb is None:
         return rows
-    rubbing = [row for row in rows if row.tangent]
-    pairs = ((name, row, push) for row in rubbing for name, push in (("t", row.tangent), ("s", row.cross_tangent)))
+    with_friction = [row for row in rows if row.tangent]
+    pairs = (
+        (name, row, push) for row in with_friction for name, push in (("t", row.tangent), ("s", row.cross_tangent))
+    )
     held = (TieRow(push, None, component=name, material=row.material) for name, row, push in pairs if push)
     return (*rows, *held)
 
@@ -53,7 +55,7 @@ def rows_in_mode(constraint: Any, rows: tuple[TieRow, ...], mode: ContactMode) -
 def friction_factor(
     law: Resistance | None, value: Callable[[Any], Scalar], sliding: Scalar, mode: ContactMode
 ) -> Scalar | None:
-    """What a unit of N rubs with along the tangent; None without friction, or while it sticks."""
+    """The friction of a unit of N along the tangent; None without friction, or while it sticks."""
     if law is None:
         return None
     if law.coulomb is None:

@@ -53,14 +53,14 @@ class Row:
             coordinate; both only carry a reaction. "closing": it restricts the speeds, by a multiplier.
         component: "x", "y", "z", "n", "t", "couple", "tension", or "".
         pushes: the forces and couples behind `wrenches`, as the tie gave them.
-        tangent: of a contact that can rub, the forces and couples for a unit of friction along it.
+        tangent: of a contact that has friction, the forces and couples for a unit of friction along it.
         sliding: the sliding velocity dual to it [m/s]; on a surface, with Coulomb's friction, its magnitude.
-        friction: None, or what a unit of lam rubs with along `tangent`, for instance -mu sign(v).
+        friction: None, or the friction of a unit of lam along `tangent`, for instance -mu sign(v).
         eliminates: the dependent coordinate that an "eliminated" row determines, or "".
         part: what of the tie it belongs to, by name: the member of a truss; "" elsewhere.
         cross_tangent, across: of a contact on a surface the second direction in which it can slide, and that velocity.
         shares: of `friction` along both, v/|v| of Coulomb's, v of viscous friction; () where there is one direction.
-        round: of a contact that holds on all sides of a line: its friction is for a unit of |N|, of which this row's
+        round: of a bilateral contact on a line: its friction is for a unit of |N|, of which this row's
             multiplier is one component and those of the rows before are the others.
     """
 
@@ -131,7 +131,7 @@ def ties_of(
 
     Args:
         used: {(tie, number): coordinate} of the rows through which dependent coordinates were eliminated.
-        modes: how contacts are that can end, rub or stick.
+        modes: how contacts are that can end, slide or stick.
     Raises:
         NotYet: a kind whose rows this version does not build.
     """
@@ -145,7 +145,7 @@ def ties_of(
             label = (name, number)
             row = _row(motion, name, number, tie_row, used=label in (used or {}))
             row = replace(row, eliminates=(used or {}).get(label, ""))
-            rows.append(_rubbing(scene, constraint, row, mode))
+            rows.append(_with_friction(scene, constraint, row, mode))
     stuck = [link for link in motion.links if link.name in (modes or {}) and (modes or {})[link.name].sense == 0]
     rows += [_row(motion, link.name, 1, _held_on_path(motion, link), used=False) for link in stuck]
     return Ties(motion, tuple(rows))
@@ -213,7 +213,7 @@ def _dual(motion: Motion, row: TieRow, pushes: tuple[Push, ...]) -> Scalar:
     return _power(motion, _wrenches(motion, pushes), 0 if row.material else _slide(motion, pushes))
 
 
-def _rubbing(scene: SystemScene, constraint: Any, row: Row, mode: ContactMode) -> Row:
+def _with_friction(scene: SystemScene, constraint: Any, row: Row, mode: ContactMode) -> Row:
     """The row with its friction, where it has any."""
     law = getattr(constraint, "friction", None)
     if law is None or not row.tangent:
@@ -227,7 +227,7 @@ def _rubbing(scene: SystemScene, constraint: Any, row: Row, mode: ContactMode) -
 
 
 def _on_surface(row: Row, *, viscous: bool, still: bool) -> Row:
-    """A contact on a surface, with v = (v_1, v_2) along its tangents: it rubs along v / |v|, and slides with |v|.
+    """A contact on a surface that slides with v = (v_1, v_2) along its tangents, its friction along v / |v|.
 
     Of viscous friction, which is along v itself, the unit is v, and v . v / 2 has the derivatives dual to it. In a
     phase that may begin at rest, where v has no direction, |v| is sqrt(v . v + STILL^2).

@@ -25,7 +25,7 @@ class EquationsOfMotion:
         phi: gaps, k (None for a row that has none).
         T, V: kinetic and potential energy [J].
         accelerations: a as explicit expressions where the formulation gives them (articulated body), else None.
-        friction: the part of Q that rubbing contacts make, nu; () where nothing rubs.
+        friction: the part of Q that contacts with friction make, nu; () where there is no friction.
     """
 
     system: System

@@ -28,7 +28,7 @@ class System:
 
     Args:
         motion, loads, ties: over the independent speeds alone.
-        modes: how the contacts are that can end, rub or stick, by tie.
+        modes: how the contacts are that can end, slide or stick, by tie.
         elimination: how the dependent coordinates follow; None where there are none.
         free: the same system with every rate a speed, dependent coordinates free and all ties closing; None where it
             is the same.
@@ -79,7 +79,7 @@ def system_of(model: Model, modes: ContactModes | None = None, *, with_laws: boo
     """Motion, loads and ties of a model, dependent coordinates eliminated.
 
     Args:
-        modes: how contacts are that can end, rub or stick, by tie.
+        modes: how contacts are that can end, slide or stick, by tie.
         with_laws: for print: long rates and accelerations of driven coordinates are names (`Scope.laws`).
     Raises:
         NotYet: a kind of joint, force or constraint that this version does not derive.

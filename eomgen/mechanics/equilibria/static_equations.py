@@ -239,7 +239,7 @@ def _refuse_dry_friction(system: System) -> None:
     """
     rough = rough_contacts(system.scope.model)
     if rough:
-        what = f"'{rough[0].name}' rubs: by dry friction it rests in a range of places, not in single ones"
+        what = f"'{rough[0].name}' has friction: it rests in a range of places, not in single ones"
         raise DerivationError(
             what, rough[0].declared_at, "leave the friction out, or ask at an instant which force it takes"
         )

@@ -65,7 +65,7 @@ class Constant:
 def stay_constant(equations: EquationsOfMotion, functions: Sequence[Scalar]) -> tuple[bool, ...]:
     """Of each function of q, u and t whether it stays constant along every motion.
 
-    Where ties close or bodies rub none is said to be, nor where the prime field cannot tell.
+    Where ties close or there is friction none is said to be, nor where the prime field cannot tell.
     """
     if equations.J or equations.friction or not equations.M:
         return (False,) * len(functions)

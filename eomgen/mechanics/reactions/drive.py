@@ -4,7 +4,7 @@ With the coordinate k freed, the equations of motion say what force along it kee
 
     F_k = (M a + c - Q - J^T lam - sum f_r N_r)_k,   all of them at the given motion
 
-N_r are the normal reactions of what rubs, f_r the generalized force of its friction for a unit of it.
+N_r are the normal reactions of contacts with friction, f_r the generalized force of its friction for a unit of it.
 """
 
 from __future__ import annotations
@@ -59,7 +59,7 @@ def with_drive_let_go(system: System, coordinate: str) -> System:
 
 
 def _friction(system: System, free: System, k: int) -> Scalar:
-    """What rubs along the k-th speed of the freed system, by the normal reactions of the motion as it is given."""
+    """The friction along the k-th speed of the freed system, by the normal reactions of the motion as it is given."""
     u = free.symbols.u[k]
     shares = {name: _carried(factor * derivative(sliding, u), system) for name, factor, sliding in frictions(free)}
     shares = {name: share for name, share in shares.items() if not is_zero(share)}

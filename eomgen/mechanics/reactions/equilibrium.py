@@ -90,8 +90,8 @@ class _Wrenches:
     def of_components(self) -> tuple[np.ndarray, np.ndarray]:
         """(resultant of a unit of each component, components x 6; sum of the sizes of what makes it up, likewise)."""
         components = self.balance.components
-        owners = [j for j, c in enumerate(components) for _ in (*c.effects, *c.rubbing)]
-        effects = [e for c in components for e in (*c.effects, *c.rubbing)]
+        owners = [j for j, c in enumerate(components) for _ in (*c.effects, *c.friction_effects)]
+        effects = [e for c in components for e in (*c.effects, *c.friction_effects)]
         total, size = (np.zeros((len(components), 6)) for _ in range(2))
         for j, wrench, arm in zip(owners, self.of_effects(effects), self._arms(effects), strict=True):
             total[j] += wrench

@@ -16,7 +16,7 @@ from dataclasses import replace
 import numpy as np
 
 from eomgen.errors import DerivationError, UsageError
-from eomgen.mechanics.balance.friction import rubs
+from eomgen.mechanics.balance.friction import has_friction
 from eomgen.mechanics.bodies.armature import armature_bias, armature_mass, joint_row
 from eomgen.mechanics.bodies.recursion import applied_wrenches, bias_forces
 from eomgen.mechanics.bodies.tree import branches_of
@@ -87,7 +87,7 @@ def inverse_of(system: System, actuated: Sequence[str] = ()) -> Inverse:
         UsageError: an unknown name; too few or too many actuators.
         DerivationError: Coulomb friction; an input that does not act linearly.
     """
-    if rubs(system):
+    if has_friction(system):
         raise DerivationError(
             "inverse dynamics with Coulomb friction, which depends on the reactions, is not derived",
             mend="give the coordinates their `motion`, and ask for drive(...)",

@@ -17,7 +17,7 @@ from eomgen.mechanics.balance.components import Component
 from eomgen.mechanics.balance.friction import push_sizes, round_symbols
 from eomgen.mechanics.balance.named_reactions import named_reactions
 from eomgen.mechanics.balance.unit_wrenches import Effect, efforts_of
-from eomgen.mechanics.balance.unknown_loads import is_balanced, refuse_rubbing, still, unbalanced
+from eomgen.mechanics.balance.unknown_loads import is_balanced, refuse_friction, still, unbalanced
 from eomgen.mechanics.bodies.kinematics import Motion
 from eomgen.mechanics.equations.system import System
 from eomgen.mechanics.initial_state.values_at_rest import values_where_at_rest
@@ -146,7 +146,7 @@ class Reactions:
     def normal(self, owner: str) -> Scalar:
         """The normal reaction, positive along the tie's normal; friction is not in it.
 
-        Of what holds on all sides of a line in space sqrt(N_1^2 + N_2^2).
+        Of a bilateral contact on a line in space sqrt(N_1^2 + N_2^2).
         """
         if self.is_open(owner):
             return 0
@@ -158,7 +158,7 @@ class Reactions:
         return self._labelled(owner, "n", "normal reaction")
 
     def friction(self, owner: str, along: str = "t") -> Scalar:
-        """The force along the contact, positive along the normal turned clockwise: it rubs, or keeps from sliding.
+        """Friction, sliding or sticking: the force along the contact, positive along the normal turned clockwise.
 
         In space it has two components, along "t" and "s".
         """
@@ -253,7 +253,7 @@ class Reactions:
     def _on(self, component: Component, on: int, what: str) -> Vector:
         """What a unit of the component does to one body; to the ground (-1) the opposite of what it does to all."""
         total = ZERO
-        for effect in (*component.effects, *component.rubbing):
+        for effect in (*component.effects, *component.friction_effects):
             if effect.link == on or on < 0:
                 total = plus(total, getattr(effect, what))
         return total if on >= 0 else times(-1, total)
@@ -317,7 +317,7 @@ def _found(system: System, at: Mapping[Node, Scalar], short: bool, work: int) ->
 
 
 def _with_sizes(system: System, at: Mapping[Node, Scalar], sizes: Mapping[str, Scalar], work: int) -> Solution:
-    """The reactions at a configuration, |N| of what rubs on all sides put in at last: multiplied out it is long."""
+    """The reactions at a configuration, |N| of bilateral contacts put in at last: multiplied out it is long."""
     symbols = round_symbols(system)
     solution = solution_of_balance(balance_of(system, symbols), at, work=work)
     names, values = list(solution.constants), tuple(solution.constants.values())
@@ -331,7 +331,7 @@ def _at_rest(balance: Balance, at: Mapping[Node, Scalar], work: int) -> Reaction
     Raises:
         DerivationError: the loads are not in balance there, whatever the unknowns are.
     """
-    refuse_rubbing(balance)
+    refuse_friction(balance)
     state = {**at, **still(balance.system)}
     solution = solution_of_balance(balance, state, work=work)
     if not is_balanced(balance, solution):

@@ -41,9 +41,9 @@ MOST_BODIES = 12  # of a system in which sides are added up: a chain of n has n^
 
 
 def reactions_by_sides(balance: Balance) -> dict[int, Scalar]:
-    """The components, by their number, that one side of their joint or tie gives; none where something rubs."""
+    """The components, by their number, that one side of their joint or tie gives; none where there is friction."""
     links = balance.system.motion.links
-    if len(links) > MOST_BODIES or balance.unknowns or any(c.rubbing or c.rubs is not None for c in balance.components):
+    if len(links) > MOST_BODIES or balance.unknowns or any(c.frictional for c in balance.components):
         return {}
     sides = _Sides(balance)
     cuts: dict[tuple[str, str], list[int]] = {}

@@ -1,8 +1,8 @@
 """Model -> how its contacts are at the start, by numbers of the start alone; nothing is simulated.
 
-A contact that can end is open where its gap is positive there. What rubs and holds both ways pushes along its normal or
-against it, by the sign of N there: N with friction for that sign. Where a number is missing, or the start does not
-hold, a contact is taken as closed, pushing along its normal, and that is said.
+A contact that can end is open where its gap is positive there. A bilateral contact with friction pushes along its
+normal or against it, by the sign of N there: N with friction for that sign. Where a number is missing, or the start
+does not hold, a contact is taken as closed, pushing along its normal, and that is said.
 """
 
 from __future__ import annotations

@@ -78,7 +78,7 @@ class MemberLoads:
         system, axes = self._system, Axes(self._system.motion)
         link = system.motion.index[self.body]
         for j, component in enumerate(self.reactions.components):
-            for effect in (*component.effects, *component.rubbing):
+            for effect in (*component.effects, *component.friction_effects):
                 if effect.link == link:
                     effect = replace(effect, place=self._place_of(effect, component.owner))
                     yield effect.times(self.reactions.value(j))

@@ -21,9 +21,9 @@ class TieRow:
             "tension", "wrench" (of an equation between points); "" for an equation of coordinates.
         material: the row sees the velocities of the bodies' material points, not of points that wander in them
             (rolling contacts, strings that leave a pulley).
-        tangent: of a contact that can rub, the forces for a unit of friction; their dual is the sliding velocity.
+        tangent: of a contact that has friction, the forces for a unit of friction; their dual is the sliding velocity.
         cross_tangent: of a contact on a surface the same along the second direction, across the first.
-        round: of a contact that holds on all sides of a line: N has this row's component and those of the rows before.
+        round: of a bilateral contact on a line: N has this row's component and those of the rows before.
         part: what of the tie the row belongs to, by name: the member of a truss; "" elsewhere.
     """
 

@@ -47,7 +47,7 @@ class Support(Constraint):
         position = scene.position(place)
         origin = vector_of(map(scene.start, position)) if self.at is None else scene.ground_place(self.at)
         along: tuple[Vector, ...] = ((n[1], -n[0], 0),) if scene.plane else laid_in(scene, n)
-        rubs = [(PointForce(place, t),) for t in along]
+        tangents = [(PointForce(place, t),) for t in along]
         gap = dot(n, minus(position, origin))
-        row = TieRow((PointForce(place, n),), gap, component="n", tangent=rubs[0])
-        return (row if scene.plane else replace(row, cross_tangent=rubs[1]),)
+        row = TieRow((PointForce(place, n),), gap, component="n", tangent=tangents[0])
+        return (row if scene.plane else replace(row, cross_tangent=tangents[1]),)

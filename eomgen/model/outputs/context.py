@@ -134,14 +134,14 @@ class Trial(Protocol):
         """What the free bodies, each by Newton and Euler, ask for along a driven coordinate when nothing drives it.
 
         Raises:
-            NoValue: a tie drives it; something rubs.
+            NoValue: a tie drives it; there is friction.
         """
 
     def held(self, tie: str) -> Any:
         """The multiplier of a tie of one row with which all ties hold the free bodies, each by Newton and Euler.
 
         Raises:
-            NoValue: it shares its force with others; something rubs.
+            NoValue: it shares its force with others; there is friction.
         """
 
     def faster(self, speed: str, by: int) -> Trial:
