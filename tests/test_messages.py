@@ -101,3 +101,13 @@ def test_the_line_that_is_shown_has_words():
     """A file that begins with empty lines: the first line with something in it is marked."""
     (problem,) = problems('\n# a remark\n\nspace = "plane"\n')
     assert problem.where.endswith(":4:1") and 'space = "plane"' in problem.excerpt
+
+
+def test_a_strange_key_is_meant_by_the_only_one_that_is_missing():
+    """One error, and what the value says is read: {needed} - {given} = {points}, {given} - {known} = {between}."""
+    damper = '\n[forces.drag]\nkind = "damper"\nbetween = ["boom.end", "ground"]\ndamping = 3\n'
+    with pytest.raises(eomgen.ModelError) as caught:
+        eomgen.loads(CRANE + damper)
+    told = str(caught.value)
+    assert "write 'points': it is needed here" in told and "has no 'points'" not in told
+    assert "declare it in [points]: ground = [...]" in told and told.count("mend:") == 2

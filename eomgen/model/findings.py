@@ -115,15 +115,28 @@ def whereabouts(path: DocumentPath, what: str = "") -> str:
 
 
 def unknown_keys(
-    raw: Mapping[str, Any], known: Iterable[str], path: DocumentPath, found: list[Finding], what: str
+    raw: Mapping[str, Any],
+    known: Iterable[str],
+    path: DocumentPath,
+    found: list[Finding],
+    what: str,
+    *,
+    needed: Iterable[str] = (),
 ) -> dict[str, str]:
-    """Every key of a table that nobody reads is a finding; {what one may have meant that is not there: the key}."""
+    """Every key of a table that nobody reads is a finding; {what one may have meant that is not there: the key}.
+
+    Where a single key is strange, and a single one of those that are needed is missing, the one was meant by the other.
+    """
     strange = [key for key in raw if key not in known]
+    missing = [key for key in needed if key not in raw]
+    only = missing[0] if len(strange) == len(missing) == 1 else ""
     read: dict[str, str] = {}
     listed = ", ".join(f"'{name}'" for name in known)
     for k, key in enumerate(strange):
         mend = (nearest(str(key), known) or f"known here: {listed}") if k < MOST_OFFERS else ""
         guess = meant(str(key), known)[:1] if k < MOST_OFFERS else ()
+        if only and not guess:
+            mend, guess = f"write '{only}': it is needed here ({mend})", (only,)
         instead = guess[0] if guess and guess[0] not in (*raw, *read) else ""
         read |= {instead: key} if instead else {}
         told = f"unknown key '{key}' in {what}"

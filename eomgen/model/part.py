@@ -192,7 +192,8 @@ def read_part(
         rest = {key: value for key, value in raw.items() if key not in keys}
         values[inline.name] = inline.rule.read(rest, path, found, beside=keys)
     else:
-        instead = unknown_keys(raw, keys, path, found, whereabouts(path, title_of(cls)))
+        needed = [slot.key for slot in own if slot.required]
+        instead = unknown_keys(raw, keys, path, found, whereabouts(path, title_of(cls)), needed=needed)
         raw = {**raw, **{key: raw[given] for key, given in instead.items()}}
     for slot in own:
         if slot.key in instead:

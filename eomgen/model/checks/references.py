@@ -31,7 +31,8 @@ def missing_point(catalog: Catalog, point: str) -> tuple[str, str, int, int] | N
             return f"'{point}' is a body, not a point", f"one of its points: {offered}", 0, len(point)
         of_bodies = [p for p in catalog.point_names() if p.endswith("." + point)]
         mend = f"did you mean '{of_bodies[0]}'?" if of_bodies else nearest(point, catalog.point_names())
-        return f"unknown point of the ground: '{point}'", mend or "declare it in [points]", 0, len(point)
+        declared = f"declare it in [points]: {point} = [...]" if point.isidentifier() else "declare it in [points]"
+        return f"unknown point of the ground: '{point}'", mend or declared, 0, len(point)
     if owner in catalog.table("trusses"):
         nodes = (catalog.table("trusses")[owner] and catalog.table("trusses")[owner].nodes) or {}
         if name in nodes:
