@@ -3,12 +3,14 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
+from dataclasses import replace
 from random import Random
 from typing import Any
 
 from eomgen.errors import DerivationError
 from eomgen.mechanics.balance.balance import Balance, BodyEquation
 from eomgen.mechanics.balance.ground_balance import along_ground
+from eomgen.mechanics.balance.unit_wrenches import Effect
 from eomgen.mechanics.balance.unknown_loads import with_unknowns
 from eomgen.mechanics.constraints.closure import generic_state
 from eomgen.mechanics.constraints.freedom import rank_of_ties
@@ -107,14 +109,34 @@ def combined_reaction(balance: Balance, solution: Solution, combination: Combina
     return total
 
 
+def friction_as_load(balance: Balance, normals: Mapping[int, Node]) -> Balance:
+    """The same balance, the friction of each contact a load factor * N of a symbol for its normal reaction.
+
+    Args:
+        normals: the symbols, by the components that have friction.
+    """
+    equations = []
+    for equation in balance.equations:
+        i, d = balance.system.motion.index[equation.body], equation.direction
+        pushes, applied = dict(equation.coefficients), equation.applied
+        for j, N in normals.items():
+            pushes[j] = _along(balance.components[j].effects, i, d)
+            applied = applied + _along(balance.components[j].friction_effects, i, d) * N
+        coefficients = {j: x for j, x in pushes.items() if not is_zero(x)}
+        equations.append(replace(equation, coefficients=coefficients, applied=applied))
+    components = tuple(replace(c, friction=()) if j in normals else c for j, c in enumerate(balance.components))
+    return replace(balance, components=components, equations=tuple(equations))
+
+
+def _along(effects: Sequence[Effect], link: int, direction: int) -> Scalar:
+    return sum((e.six[direction] for e in effects if e.link == link), start=0)
+
+
 def _pushes(balance: Balance, equation: BodyEquation) -> dict[int, Scalar]:
     """The coefficients of the components with friction as they would be without friction."""
     link = balance.system.motion.index[equation.body]
     with_friction = [j for j in equation.coefficients if balance.components[j].friction_effects]
-    return {
-        j: sum((e.six[equation.direction] for e in balance.components[j].effects if e.link == link), start=0)
-        for j in with_friction
-    }
+    return {j: _along(balance.components[j].effects, link, equation.direction) for j in with_friction}
 
 
 def _steady_parameters(system: System) -> frozenset[Node]:

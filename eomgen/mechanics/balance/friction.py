@@ -2,9 +2,10 @@
 
     M a + c = Q + J^T lam + sum f_r |N_r|,   J a + gamma = 0,   f_r = factor_r dv_r/du
 
-N_r of a closing row is its multiplier; of a row or joint that only reacts it follows from the balance of the bodies,
-N_r = n_r + m_r a. A bilateral contact on a line has |N_r| = sqrt(N_1^2 + N_2^2), in which the equations
-are not linear (see `round_contacts`). What comes out is friction as a generalized force of q, u and t.
+N_r of a closing row is its multiplier; of a row or joint that only reacts it follows from the balance of the bodies
+across what the coordinates allow, friction a load of it: N_r = n_r + m_r a + sum k_rs N_s. A bilateral contact on a
+line has |N_r| = sqrt(N_1^2 + N_2^2), in which the equations are not linear (see `round_contacts`). What comes out is
+friction as a generalized force of q, u and t.
 """
 
 from __future__ import annotations
@@ -15,7 +16,12 @@ from functools import cached_property
 
 from eomgen.errors import DerivationError
 from eomgen.mechanics.balance.balance import Balance, balance_of
-from eomgen.mechanics.balance.balance_solution import combined_reaction, solution_of_balance, values_at_a_state
+from eomgen.mechanics.balance.balance_solution import (
+    combined_reaction,
+    friction_as_load,
+    solution_of_balance,
+    values_at_a_state,
+)
 from eomgen.mechanics.balance.components import Component, joint_friction, normals_of_round, sliding_friction
 from eomgen.mechanics.bodies.round_contacts import LEAST, sizes
 from eomgen.mechanics.constraints.ties import holds_identically
@@ -175,17 +181,26 @@ class _WithFriction:
         return round_symbols(self.equations.system)
 
     @cached_property
+    def _normals(self) -> dict[int, Node]:
+        """A symbol for N of every contact with friction that has one, by its component."""
+        graph = self.equations.system.scope.graph
+        return {each.component: graph.symbol(f"N({each.name}, {each.component})") for each in self._single}
+
+    @cached_property
     def _balance(self) -> Balance:
         return balance_of(self.equations.system, self._symbols)
 
     @cached_property
     def _solution(self) -> Solution:
-        return solution_of_balance(self._balance, {})
+        """Friction is a load in it: a row along the motion, in which alone it stands, would only say M a again."""
+        return solution_of_balance(friction_as_load(self._balance, self._normals), {})
 
     @cached_property
     def _sizes(self) -> dict[Node, Scalar]:
         """|N| of bilateral contacts, by its symbol."""
-        known = dict(zip(self.equations.symbols.a, self._values, strict=False))
+        known = dict(zip(self.equations.symbols.a, self._values, strict=False)) | dict(
+            zip(self._normals.values(), self._values[len(self._values) - len(self._single) :], strict=True)
+        )
         pairs = {
             self._symbols[contact.name]: tuple(self._component(contact.name, j, known) for j in contact.normals)
             for contact in self.found
@@ -228,8 +243,8 @@ class _WithFriction:
             for row, force in zip(rows[:n], contact.force, strict=True):
                 row[normal] = row.get(normal, 0) - force
             same: tuple[dict[int, Scalar], Scalar] = ({normal: -1}, 0)
-            known, value = self._linear(contact.component) if multiplier is None else same
-            rows.append({first + k: 1} | known)
+            known, value = self._linear(contact.component, first) if multiplier is None else same
+            rows.append(known | {first + k: 1 + known.get(first + k, 0)})
             right.append(value)
         return tuple(_solved(self.equations.system, rows, right))
 
@@ -237,11 +252,14 @@ class _WithFriction:
         """Component j, linear in the accelerations."""
         return combined_reaction(self._balance, self._solution, {j: 1}, self._balance.components[j].name)
 
-    def _linear(self, j: int) -> tuple[dict[int, Scalar], Scalar]:
-        """(-m, n) of N = n + m a: the coefficients of the accelerations in N - m a = n, and its right side."""
-        a, value = self.equations.symbols.a, self._by_balance(j)
-        slopes = gradient(value, a)
-        return {j: -slope for j, slope in enumerate(slopes)}, substituted((value,), dict.fromkeys(a, 0))[0]
+    def _linear(self, j: int, first: int) -> tuple[dict[int, Scalar], Scalar]:
+        """(-m, -k; n) of N_j = n + m a + k N: coefficients of the unknowns, N from `first` on, and the right side."""
+        names = (*self.equations.symbols.a, *self._normals.values())
+        places = (*range(len(self.equations.symbols.a)), *range(first, first + len(self._normals)))
+        value = self._by_balance(j)
+        slopes = gradient(value, names)
+        known = {place: -slope for place, slope in zip(places, slopes, strict=True)}
+        return known, substituted((value,), dict.fromkeys(names, 0))[0]
 
 
 def _multiplier(system: System, component: Component, name: str, kept: Sequence[int]) -> int | None:
