@@ -6,6 +6,7 @@ import math
 
 import numpy as np
 import pytest
+from scipy.integrate import solve_ivp
 
 import eomgen
 from eomgen.codegen.rhs import parameter_vector
@@ -297,6 +298,41 @@ def test_a_sled_slides_on_a_slope_as_on_level_ground(beta, normal):
     result = run(text.replace("COSINE", f"{cosine!r}").replace("SINE", f"{sine!r}"), 1)
     assert result.reactions["reaction_n(floor)"] == pytest.approx(10 * G * cosine, rel=1e-9)
     assert result["x"][-1] == pytest.approx(5 - G * (sine + 0.3 * cosine) * cosine / 2, rel=1e-9)
+
+
+def test_a_stick_on_two_fingers_that_come_together_slides_on_one_then_on_the_other():
+    """m x'' = mu (N_1 - N_2), N_1 + N_2 = m g, about the centre; it sticks to the nearer one until N_1 = N_2."""
+    text = """
+    parameters = { m = 1, g = 9.81, mu = 0.3, v = 0.02 }
+    coordinates = { x = 0, left = { motion = "-0.4 + v*t" }, right = { motion = "0.3 - v*t" } }
+    bodies.stick.shape = { kind = "rectangle", mass = "m", width = 1.2, height = 0.001 }
+    bodies.stick.points = { a = [-0.6, 0], b = [0.6, 0] }
+    bodies.stick.line = ["a", "b"]
+    bodies.stick.joint = { kind = "placed", at = ["x", 0] }
+    """
+    for name in ("left", "right"):
+        text += f"""
+    bodies.{name}.joint = {{ kind = "prismatic", axis = [1, 0], displacement = "{name}" }}
+    constraints.on_{name} = {{ kind = "slider", point = "{name}.origin", on = "stick", friction = "mu" }}
+    """
+    result = run(text, 3.0)
+
+    def stops(t: float, y: np.ndarray) -> float:
+        return float(y[1] + 0.02)
+
+    stops.terminal = True
+    slid = solve_ivp(  # (N_1 - N_2)/m g = -(0.1 + 2 x)/(0.7 - 2 v t)
+        lambda t, y: [y[1], -0.3 * G * (0.1 + 2 * y[0]) / (0.7 - 0.04 * t)],
+        (0, 1),
+        [0, 0],
+        events=stops,
+        rtol=1e-11,
+        atol=1e-13,
+    )
+    t, x = slid.t[-1], slid.y[0, -1]
+    assert ends(result)[:2] == ["the slider 'on_right' sticks", "the slider 'on_right' begins to slide"]
+    assert [each.end for each in result.phases[:2]] == pytest.approx([t, t + (x + 0.05) / 0.02], rel=1e-8)
+    assert result.reactions["reaction_n(on_left)"][0] == pytest.approx(-G * 0.3 / 0.7)
 
 
 def test_the_stop_is_found_to_the_order_of_the_tolerance():

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from itertools import pairwise
 
 import numpy as np
 import pytest
@@ -88,6 +89,37 @@ def test_places_of_rest_are_so_many_in_every_unit_of_length(force, places, l):
     """F(x/l) = 0 at x = l s: as many s for every l, and where a force only gets small there is none."""
     found = found_in(model_of(SLIDER.replace("VALUE", force), k=2, l=l))
     assert sorted(number(e, "x") / float(l) for e in found.found) == pytest.approx(places, abs=1e-9)
+
+
+NET = """
+[points]
+A = [0, 0]
+B = ["5*l", 0]
+[coordinates]
+x1 = { near = "l" }
+y1 = {}
+x2 = { near = "2*l" }
+y2 = {}
+x3 = { near = "4*l" }
+y3 = {}
+"""
+
+
+def test_many_coordinates_rest_in_the_same_places_in_every_unit_of_length():
+    """Three weights on four springs, F/k a function of r/l alone: the same places, r/l, are found for every l."""
+    text, ends = NET, ("A", "p1.center", "p2.center", "p3.center", "B")
+    for n in (1, 2, 3):
+        text += f'[bodies.p{n}]\nshape = {{ kind = "particle", mass = {n} }}\n'
+        text += f'joint = {{ kind = "placed", at = ["x{n}", "y{n}"] }}\n'
+    for n, pair in enumerate(pairwise(ends)):
+        text += f'[forces.s{n}]\nkind = "spring"\npoints = {list(pair)}\nstiffness = "k/l"\nlength = "0.9*l"\n'
+    places = []
+    for l in ("1", "1e-4", "1e4"):
+        found = found_in(model_of(text + WEIGHT, k=150, g=9.81, l=l)).found
+        places.append([[x / float(l) for x in each.numbers.values()] for each in found])
+    assert len(places[0]) > 1
+    assert np.array(places[1]) == pytest.approx(np.array(places[0]), abs=1e-9)
+    assert np.array(places[2]) == pytest.approx(np.array(places[0]), abs=1e-9)
 
 
 def test_a_pendulum_rests_below_and_above():

@@ -1,7 +1,11 @@
-"""System, values by name -> where places of rest are sought first: as asked, else `near`, else the start."""
+"""System, values by name -> where places of rest are sought first: as asked, else `near`, else the start.
+
+And in what unit lengths are measured while they are sought: one of the model's own size.
+"""
 
 from __future__ import annotations
 
+import math
 from collections.abc import Mapping, Sequence
 from functools import cached_property
 from typing import Any
@@ -9,13 +13,14 @@ from typing import Any
 import numpy as np
 
 from eomgen.errors import UsageError
+from eomgen.mechanics.bodies.kinematics import Motion
 from eomgen.mechanics.bodies.loads import start_value
 from eomgen.mechanics.equations.system import System
 from eomgen.model.values import first_guesses, start_values
 from eomgen.records import dataclass
 from eomgen.symbolic.expression.graph import Node, Scalar
 from eomgen.symbolic.expression.rational import Fraction
-from eomgen.symbolic.numeric.evaluation import evaluate, fifty_digits
+from eomgen.symbolic.numeric.evaluation import FLOAT, NoValue, evaluate, fifty_digits
 
 
 @dataclass(frozen=True)
@@ -65,3 +70,19 @@ class Guess:
             if part.near is not None:
                 found[name] = float(evaluate((scope.value(part.near),), self.values, fifty_digits())[0])
         return found
+
+
+def unit_of_length(motion: Motion, state: Mapping[Node, float]) -> Fraction:
+    """A length of the model's own size [m]: the largest distance of two of its points along an axis, to one digit.
+
+    1 where there are no two such points.
+    """
+    scope, symbols = motion.scope, motion.scope.symbols
+    places = [motion.position((body, r)) for body, points in motion.points.items() for r in points.values()]
+    places += [scope.vector(r) for r in scope.model.points.values()]
+    try:
+        x = evaluate([x for p in places for x in p], dict.fromkeys((*symbols.q, symbols.t), 0.0) | {**state}, FLOAT)
+    except NoValue:
+        return Fraction(1)
+    largest = float(np.max(np.ptp(np.array(x, dtype=float).reshape(-1, 3), axis=0), initial=0.0)) if places else 0.0
+    return Fraction(f"{largest:.0e}" if 0 < largest < math.inf else 1)

@@ -4,11 +4,13 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping, Sequence
+from dataclasses import replace
 from functools import cached_property
 from typing import Any
 
 import numpy as np
 
+from eomgen.mechanics.equilibria.guesses import unit_of_length
 from eomgen.mechanics.equilibria.static_equations import StaticEquations
 from eomgen.records import dataclass
 from eomgen.symbolic.exact.normal_form import readable
@@ -90,19 +92,46 @@ class _Search:
         reduced = self._reduced
         if reduced is not None and len(statics.q) <= MOST_ISOLATED and can_isolate(reduced):
             return self._isolated(reduced)
-        few = MOST_PLACES if len(order(statics.equations)) < LONG else MOST_OF_LONG
-        most = few if not statics.norms else MOST_OF_FAMILIES
+        found = self._measured._from_guesses()
+        return replace(found, found=tuple(z * self._units for z in found.found))
+
+    def _from_guesses(self) -> Places:
+        few = MOST_PLACES if len(order(self.statics.equations)) < LONG else MOST_OF_LONG
+        most = few if not self.statics.norms else MOST_OF_FAMILIES
         found = self._descent.roots_near(self._with_multipliers(self._scattered()), most)
         found = [z for z in found if self._is_held(z)]
         return self._sorted(found, complete=False, where="from many guesses")
 
     def one(self) -> np.ndarray | None:
         """The place that is reached from the guess, else the nearest of those reached from places about it."""
-        for guesses in (self.guess[None, :], self._scattered()):
-            found = self._descent.roots_near(self._with_multipliers(guesses), 1)
+        measured = self._measured
+        for guesses in (measured.guess[None, :], measured._scattered()):
+            found = measured._descent.roots_near(measured._with_multipliers(guesses), 1)
             if found:
-                return found[0]
+                return found[0] * self._units
         return None
+
+    # -- lengths of the model's own size -----------------------------------------------------------
+
+    @cached_property
+    def _unit(self) -> dict[Node, Scalar]:
+        """In which coordinates that are no angles are measured while many guesses are tried."""
+        statics, scope = self.statics, self.statics.system.scope
+        state = self.floats | dict(zip(statics.q, map(float, self.guess), strict=True))
+        unit = unit_of_length(statics.system.motion, state)
+        plain = self._angles.union(*scope.quaternions)
+        return {} if unit == 1 else {q: unit for q in statics.q if q not in plain}
+
+    @cached_property
+    def _units(self) -> np.ndarray:
+        return np.array([float(self._unit.get(x, 1)) for x in self.statics.unknowns])
+
+    @cached_property
+    def _measured(self) -> _Search:
+        """The same in these units, in which a step of 1 is one of the model's own size, be it of mm or of km."""
+        if not self._unit:
+            return self
+        return _Search(self.statics.measured(self._unit), self.values, self.guess / self._units[: len(self.guess)])
 
     @cached_property
     def _descent(self) -> Descent:

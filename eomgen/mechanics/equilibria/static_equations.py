@@ -140,6 +140,13 @@ class StaticEquations:
             J=tuple(tuple(row[k] for k in kept) for row in rows),
         )
 
+    def measured(self, unit: State) -> StaticEquations:
+        """The same where each of these coordinates stands for itself over its unit."""
+        at = {q: q * x for q, x in unit.items()}
+        Q, unbalanced, phi, beside = (substituted(x, at) for x in (self.Q, self.unbalanced, self.phi, self.beside))
+        rows = tuple(substituted(row, at) for row in self.J)
+        return replace(self, Q=Q, unbalanced=unbalanced, phi=phi, beside=beside, J=rows)
+
     def slopes(self, rows: Sequence[ScalarRow], q: np.ndarray, values: Mapping[Node, float]) -> np.ndarray:
         """Entries as numbers at a place."""
         state = {**values, **dict(zip(self.q, map(float, q), strict=True))}
