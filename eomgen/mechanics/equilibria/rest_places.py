@@ -16,6 +16,7 @@ from eomgen.records import dataclass
 from eomgen.symbolic.exact.normal_form import readable
 from eomgen.symbolic.expression.derivative import depends_on, jacobian, substituted
 from eomgen.symbolic.expression.graph import Node, Scalar, is_zero
+from eomgen.symbolic.expression.rational import Fraction
 from eomgen.symbolic.expression.traversal import order
 from eomgen.symbolic.numeric.batch_evaluation import Layers
 from eomgen.symbolic.numeric.dense import rank
@@ -108,13 +109,13 @@ class _Search:
         for guesses in (measured.guess[None, :], measured._scattered()):
             found = measured._descent.roots_near(measured._with_multipliers(guesses), 1)
             if found:
-                return found[0] * self._units
+                return np.asarray(found[0] * self._units)
         return None
 
     # -- lengths of the model's own size -----------------------------------------------------------
 
     @cached_property
-    def _unit(self) -> dict[Node, Scalar]:
+    def _unit(self) -> dict[Node, Fraction]:
         """In which coordinates that are no angles are measured while many guesses are tried."""
         statics, scope = self.statics, self.statics.system.scope
         state = self.floats | dict(zip(statics.q, map(float, self.guess), strict=True))
