@@ -3,24 +3,37 @@
 from __future__ import annotations
 
 import os
+from collections.abc import Iterator
 from pathlib import Path
+from typing import NoReturn
 
 import pytest
+from quick_set import is_slow
 
 os.environ.setdefault("EOMGEN_PATIENCE", "none")  # no test hangs on how busy the machine is
 os.environ.setdefault("EOMGEN_FRESH", "1")  # tests patch laws: nothing is told again that was derived without them
 
 ZERO = b"\0after"
 
-SLOW = ("\npytestmark = pytest.mark.slow\n", "\npytestmark = [pytest.mark.slow,")
-
 
 def pytest_ignore_collect(collection_path: Path, config: pytest.Config) -> bool | None:
     """Whether a file of slow tests can be passed over: most of the quick set's time would be their collection."""
     if config.getoption("markexpr") != "not slow" or collection_path.suffix != ".py":
         return None
-    text = collection_path.read_text(encoding="utf-8")
-    return True if any(mark in text for mark in SLOW) else None
+    return True if is_slow(collection_path.read_text(encoding="utf-8")) else None
+
+
+@pytest.hookimpl(hookwrapper=True, tryfirst=True)
+def pytest_runtest_protocol(item: pytest.Item) -> Iterator[None]:
+    """A quick test compiles nothing, in its fixtures neither: what goes to a compiler, or to its cache, is slow."""
+    with pytest.MonkeyPatch.context() as patch:
+        if item.get_closest_marker("slow") is None:
+            patch.setattr("eomgen.codegen.build._kept", _compiled_in_a_quick_test)
+        yield
+
+
+def _compiled_in_a_quick_test(*_: object) -> NoReturn:
+    pytest.fail("a quick test compiles nothing: mark it slow, or ask for numpy", pytrace=False)
 
 
 @pytest.fixture(autouse=True)

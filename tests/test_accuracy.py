@@ -30,6 +30,7 @@ def closed(t: np.ndarray) -> np.ndarray:
     return 2 * np.arcsin(k * ellipj(math.sqrt(9.81) * t + ellipk(k * k), k * k)[0])
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("method", ["DOP853", "Radau"])
 @pytest.mark.parametrize("tolerance", [1e-6, 1e-9])
 def test_the_estimate_is_the_error_against_the_closed_motion(tolerance, method):
@@ -42,6 +43,7 @@ def test_the_estimate_is_the_error_against_the_closed_motion(tolerance, method):
     assert run.accuracy.digits == math.floor(-math.log10(run.accuracy.error)) and run.accuracy.until is None
 
 
+@pytest.mark.slow
 def test_in_chaos_the_digits_run_out_later_at_finer_tolerances():
     """A double pendulum loses them at one pace: nine digits more last some ten seconds longer."""
     simulate = eomgen.simulator(MODELS / "double_pendulum.toml", rtol=1e-6, atol=1e-6)
@@ -54,6 +56,7 @@ def test_in_chaos_the_digits_run_out_later_at_finer_tolerances():
     assert np.max(apart[run.t < run.accuracy.until / 2]) < 0.1
 
 
+@pytest.mark.slow
 def test_the_energy_is_kept_for_a_thousand_swings():
     """DOP853 alone loses it at a steady pace; kept where the swing is fast, the swings keep their time."""
     free, kept = (
@@ -64,6 +67,7 @@ def test_the_energy_is_kept_for_a_thousand_swings():
     assert kept.drift < 1e-2 * free.drift and errors[1] < errors[0] / 20
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("target", ["c", "numpy"])
 def test_the_energy_of_a_linkage_is_kept_beside_its_ties(target):
     run = eomgen.simulate(MODELS / "four_bar.toml", time=5, rtol=1e-6, atol=1e-6, stabilization="energy", target=target)

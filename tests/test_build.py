@@ -30,6 +30,7 @@ def own_cache(tmp_path, monkeypatch):
     return tmp_path / "cache" / "eomgen"
 
 
+@pytest.mark.slow
 @needs_cc
 def test_a_program_is_compiled_once(own_cache, monkeypatch):
     """The same text is found in the cache; another text is compiled."""
@@ -39,6 +40,7 @@ def test_a_program_is_compiled_once(own_cache, monkeypatch):
     assert [path.suffix for path in own_cache.iterdir()] == [".so"]
 
 
+@pytest.mark.slow
 @needs_cc
 def test_registers_of_this_machine_change_no_bit():
     """Each operation is rounded as by a compiler that knows none of them: no product is fused with a sum."""
@@ -73,6 +75,7 @@ def cached(own_cache, monkeypatch):
     return path
 
 
+@pytest.mark.slow
 @needs_cc
 @pytest.mark.parametrize("size", [0, 4, 4096])
 def test_a_damaged_library_is_made_anew(own_cache, monkeypatch, size):
@@ -84,6 +87,7 @@ def test_a_damaged_library_is_made_anew(own_cache, monkeypatch, size):
     assert path.stat().st_size == len(whole) > 4096
 
 
+@pytest.mark.slow
 @needs_cc
 @pytest.mark.parametrize("what", ["may be written", "belongs to another", "is another program"])
 @needs_sh
@@ -106,6 +110,7 @@ def test_what_others_have_put_into_the_cache_is_not_loaded(own_cache, monkeypatc
     assert len(ran) == 1 and not path.stat().st_mode & 0o022
 
 
+@pytest.mark.slow
 @needs_cc
 @needs_sh
 def test_a_cache_that_others_may_write_is_closed_and_one_of_another_is_not_used(own_cache, monkeypatch):
@@ -117,6 +122,7 @@ def test_a_cache_that_others_may_write_is_closed_and_one_of_another_is_not_used(
     assert kept.cache_place() != own_cache
 
 
+@pytest.mark.slow
 @needs_cc
 @pytest.mark.parametrize(
     ("command", "said"), [('cc "', "No closing quotation"), ("{}/junk", "makes no library"), ("{}/dies", "failed")]
@@ -135,6 +141,7 @@ def test_a_compiler_that_does_not_work_is_one_line(own_cache, tmp_path, monkeypa
     assert not own_cache.exists() or list(own_cache.iterdir()) == []
 
 
+@pytest.mark.slow
 @needs_cc
 def test_a_cache_that_cannot_be_written_is_done_without(tmp_path, monkeypatch):
     """A file in the folder's place: the library goes to a folder of this process."""
@@ -143,6 +150,7 @@ def test_a_cache_that_cannot_be_written_is_done_without(tmp_path, monkeypatch):
     assert compiled(right_hand_side(pendulum()), "c")(0, [0.0, 1.0], [1, 1, 1])[0] == 1
 
 
+@pytest.mark.slow
 @needs_cc
 def test_several_at_once_compile_into_one_cache(own_cache):
     """Renaming is atomic: everyone gets a whole library."""
@@ -156,6 +164,7 @@ def test_several_at_once_compile_into_one_cache(own_cache):
     assert len(results) == 4 and len(list(own_cache.iterdir())) == 1
 
 
+@pytest.mark.slow
 def test_without_a_compiler_numpy_is_taken_and_said_once(monkeypatch, capsys):
     """No compiler: one line on stderr in a process; an explicit "c" is an error with its mend."""
     monkeypatch.setattr(build.shutil, "which", lambda name: None)
@@ -169,6 +178,7 @@ def test_without_a_compiler_numpy_is_taken_and_said_once(monkeypatch, capsys):
         compiled(program, "c")
 
 
+@pytest.mark.slow
 @needs_cc
 @needs_sh
 def test_the_environment_chooses_the_compiler(tmp_path, monkeypatch, own_cache):

@@ -16,7 +16,7 @@ from eomgen.symbolic.expression.graph import Graph
 
 MODELS = Path(__file__).parent.parent / "models"
 
-pytestmark = pytest.mark.skipif(compiler() is None, reason="no C compiler")
+pytestmark = [pytest.mark.slow, pytest.mark.skipif(compiler() is None, reason="no C compiler")]
 
 
 def rates(name: str):

@@ -42,6 +42,7 @@ def law_of_gains(gains) -> str:
     return "0" + "".join(f" - ({k:.12g})*{name}" for k, name in zip(gains, ("x", "theta", "x'", "theta'"), strict=True))
 
 
+@pytest.mark.slow
 def test_a_law_of_the_state_is_part_of_the_equations(pole, gains):
     """A_closed = A - B K; the pole stands; the run is proven, reactions and outputs follow the law."""
     law = law_of_gains(gains)
@@ -54,6 +55,7 @@ def test_a_law_of_the_state_is_part_of_the_equations(pole, gains):
     assert run["hinge_x"][0] == pytest.approx(eomgen.solve(with_inputs(pole, {"F": law}))["hinge_x"].value)
 
 
+@pytest.mark.slow
 def test_a_python_function_gives_what_the_expression_gives(pole, gains):
     """The same motion, reactions and outputs, and that it is slow and unproven is said."""
     known = eomgen.simulate(pole, time=2, samples=21, inputs={"F": law_of_gains(gains)})
@@ -65,6 +67,7 @@ def test_a_python_function_gives_what_the_expression_gives(pole, gains):
     assert proof.ok and [check.status for check in proof.checks if "follows" in check.name] == ["unchecked"]
 
 
+@pytest.mark.slow
 def test_what_is_sampled_and_held_is_the_discrete_system():
     """x_(k+1) = A_d x_k + B_d u_k, u_k = -K x_k, A_d, B_d by the matrix exponential; two controllers, two periods."""
     model, h, K = eomgen.loads(SLIDE), 0.05, np.array([7.0, 3.0])
@@ -89,6 +92,7 @@ def test_what_is_sampled_and_held_is_the_discrete_system():
     assert run.ask("max(x)").value == pytest.approx(0.3, abs=1e-9)
 
 
+@pytest.mark.slow
 def test_a_controller_that_samples_faster_comes_nearer_to_the_law():
     """The difference to the continuous law falls as the period does."""
     model, law = eomgen.loads(SLIDE), "-7*x - 3*x'"
@@ -100,6 +104,7 @@ def test_a_controller_that_samples_faster_comes_nearer_to_the_law():
     assert errors[0] / errors[1] == pytest.approx(2, rel=0.15) and errors[1] / errors[2] == pytest.approx(2, rel=0.15)
 
 
+@pytest.mark.slow
 def test_an_arm_under_proportional_and_differential_control_reaches_its_place():
     """tau = Kp (q_d - q) - Kd q' + G leaves nothing at rest; without the weight's share q_d - q = -G/Kp."""
     arm = eomgen.load(MODELS / "arm3.toml")
@@ -131,6 +136,7 @@ def test_what_is_no_controller_is_refused(inputs, message):
         eomgen.simulate(eomgen.loads(SLIDE), time=1, inputs=inputs)
 
 
+@pytest.mark.slow
 def test_contacts_end_under_a_controller_and_a_function_is_refused_by_name():
     """Held at 0 the ladder leaves the wall when it does without one; a Python function of a model with contacts: no."""
     text = (MODELS / "sliding_ladder.toml").read_text(encoding="utf-8")

@@ -169,6 +169,7 @@ def test_a_dimension_reads_back_as_the_unit_that_it_is_told_as(powers):
     assert dimension_of_unit(unit) == dimension and unit.factor == 1
 
 
+@pytest.mark.slow
 def test_a_name_among_thousands_is_looked_up_as_fast_as_among_few():
     """Else models of n parameters with units are checked in n^2: 50 000 of them were not in five minutes."""
 

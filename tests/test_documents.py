@@ -41,7 +41,7 @@ def number_of(exact: str, values: Mapping[str, Fraction]) -> float | None:
 
 
 CASES = [
-    ("solve", "seeds/ch10_p1"),
+    pytest.param("solve", "seeds/ch10_p1", marks=pytest.mark.slow),
     ("reactions", "three_hinged_arch"),
     ("statics", "gerber_beam"),
     ("statics", "simple_pendulum"),

@@ -20,8 +20,6 @@ from eomgen.symbolic.exact.equality import equal_at_random_states
 from eomgen.symbolic.expression.derivative import substituted
 from tests.helpers.rx90 import PUBLISHED, rx90
 
-pytestmark = pytest.mark.slow
-
 MODELS = Path(__file__).parent.parent / "models"
 FOUR_BAR = """
 eomgen = 1
@@ -126,6 +124,7 @@ def look_at(name: str) -> Any:
     return found
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("name", QUICK)
 def test_regressor_times_parameters_is_the_force_and_its_base_has_the_rank_of_samples(name):
     """Y pi + y0 = M a + c - Q without inputs, exactly; as many groups as Y has independent columns."""
@@ -144,6 +143,7 @@ def test_every_model_has_its_regressor_and_its_rank(name):
     look_at(name)
 
 
+@pytest.mark.slow
 def test_base_parameters_of_the_rx90_are_the_published_ones():
     """40 groups with their formulas in D3 and RL4, after Khalil and Dombre."""
     base = eomgen.regressor(eomgen.loads(rx90())).base
@@ -157,6 +157,7 @@ def test_base_parameters_of_the_rx90_are_the_published_ones():
     assert set(base.without_effect) >= {"m(C1)", "m(C2)", "mz(C2)", "Ixx(C1)"}
 
 
+@pytest.mark.slow
 def test_the_puma_560_has_36_base_parameters_and_four_rotors_of_its_own():
     """36 after Mayeda and Khalil; the rotors of the first two axes are in Izz(link1) and Izz(link2)."""
     base = eomgen.regressor(MODELS / "puma560.toml").base
@@ -195,6 +196,7 @@ def data_of(model: Any, time: float, samples: int) -> dict[str, np.ndarray]:
     }
 
 
+@pytest.mark.slow
 def test_a_closed_loop_with_friction_is_identified_from_its_motion():
     """Base parameters are K pi of the model that moved; the bodies found have positive density; friction is found."""
     true = eomgen.loads(FOUR_BAR)
@@ -217,6 +219,7 @@ def _values(found: Regressor) -> Any:
     return _own_values(found).values()
 
 
+@pytest.mark.slow
 def test_identify_reads_a_csv_and_refuses_what_tells_nothing(tmp_path):
     """Text and JSON of the verb; a motion that excites nothing, a missing column."""
     data = data_of(eomgen.loads(FOUR_BAR), 4, 200)

@@ -43,6 +43,7 @@ def table(path: Path, *words: str) -> tuple[list[str], np.ndarray]:
     return head, np.array(rows, dtype=float)
 
 
+@pytest.mark.slow
 @needs_compiler
 @pytest.mark.parametrize("name", ["double_pendulum", "tumbling_body", "four_bar", "arm3", "car_axis"])
 def test_it_moves_as_simulate_does(name, tmp_path):
@@ -53,6 +54,7 @@ def test_it_moves_as_simulate_does(name, tmp_path):
     assert rows == pytest.approx(expected, abs=2e-7 * (1 + np.max(np.abs(expected))))
 
 
+@pytest.mark.slow
 @needs_compiler
 def test_values_and_starts_are_given_by_name(tmp_path):
     made = program(tmp_path, "double_pendulum")
@@ -66,6 +68,7 @@ def test_values_and_starts_are_given_by_name(tmp_path):
         assert found.returncode == 2 and message in found.stderr
 
 
+@pytest.mark.slow
 @needs_compiler
 def test_two_runs_at_once_do_not_know_of_one_another(tmp_path):
     """Interleaved step by step they give what each gives alone; nothing is allocated."""
@@ -98,6 +101,7 @@ def test_two_runs_at_once_do_not_know_of_one_another(tmp_path):
     assert ends([one, other]) == [*ends([one]), *ends([other])]
 
 
+@pytest.mark.slow
 @needs_compiler
 @pytest.mark.parametrize("name", ["double_pendulum", "tumbling_body", "four_bar"])
 def test_single_precision_keeps_what_it_says(name, tmp_path):
@@ -117,6 +121,7 @@ def test_single_precision_keeps_what_it_says(name, tmp_path):
     assert eomgen.generate(MODELS / f"{name}.toml", name=name, float32=True).certify().ok
 
 
+@pytest.mark.slow
 @needs_compiler
 @pytest.mark.parametrize("wrong", ["2.0002f*", "2.0ff*"])
 def test_what_single_precision_cannot_do_is_seen(wrong, monkeypatch):
@@ -127,6 +132,7 @@ def test_what_single_precision_cannot_do_is_seen(wrong, monkeypatch):
     assert certificate.ok is False
 
 
+@pytest.mark.slow
 @needs_compiler
 def test_names_of_single_precision_are_harmless():
     """A parameter sinf beside the function."""
@@ -159,6 +165,7 @@ def test_what_has_none_is_refused_by_name(name, how, message):
         eomgen.generate(MODELS / f"{name}.toml", **how)
 
 
+@pytest.mark.slow
 def test_the_command_writes_them(tmp_path):
     words = ["codegen", str(MODELS / "double_pendulum.toml"), "--integrator", "--float32", "-o", str(tmp_path)]
     found = CliRunner().invoke(main, words)

@@ -21,8 +21,6 @@ from eomgen.judge.handwriting import transcript
 from eomgen.judge.judge import Judge
 from eomgen.symbolic.print.text import to_text
 
-pytestmark = pytest.mark.slow
-
 SAMPLE = ("simple_pendulum", "cart_pole", "elastic_pendulum", "seeds/ch22_p3", "furuta_pendulum")
 NAMES = "m g l theta theta1 theta2 m1 m2 x k l0 r pi t omega k_max M".split()
 
@@ -74,6 +72,7 @@ def test_what_cannot_be_read_is_told_with_its_place(written, what, column):
     assert what in error.value.what and error.value.column == column
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("name", SAMPLE)
 def test_what_is_right_in_a_disguise_is_right(name):
     """Multiplied, divided, moved, renamed, turned, in LaTeX, combined, solved: all accepted."""
@@ -84,6 +83,7 @@ def test_what_is_right_in_a_disguise_is_right(name):
     assert [(x.what, x.text) for x in cases if not judge.verdict(x.text)] == []
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("name", SAMPLE)
 def test_what_is_wrong_is_wrong_and_mostly_named(name):
     """Never accepted; at least 90 % of the mistakes named, those of kinds that were held out among them."""
@@ -95,6 +95,7 @@ def test_what_is_wrong_is_wrong_and_mostly_named(name):
     assert sum(named(x, each) for x, each in zip(cases, found, strict=True)) >= 0.9 * len(cases)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     ("model", "equation", "cause", "word"),
     [
@@ -124,6 +125,7 @@ def test_a_mistake_has_its_name(model, equation, cause, word):
     assert (found.verdict, kinds(found)) == ("wrong", [cause]) and word in found.causes[0].text
 
 
+@pytest.mark.slow
 def test_independent_mistakes_are_found_together():
     """The weight without its sign and the drive doubled, in one equation."""
     found = verdict("elastic_pendulum", "m*r'' - m*r*theta'^2 + m*g*cos(theta) + 2*k*(r - l0) = 0")
@@ -133,6 +135,7 @@ def test_independent_mistakes_are_found_together():
     assert "as if all of it were at its end" in found.causes[0].text and "is missing" in found.causes[1].text
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     ("model", "equation", "up_to"),
     [
@@ -155,6 +158,7 @@ def test_a_right_equation_says_up_to_what(model, equation, up_to):
     assert found.verdict == "right" and up_to in found.up_to
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     "name", ["cart_pole", "half_car", "chaplygin_sleigh", "seeds/ch22_p1", "four_cranks", "atwood"]
 )
@@ -170,12 +174,14 @@ def test_what_derive_prints_is_right(name):
             assert judge.verdict(text).verdict == "right", text
 
 
+@pytest.mark.slow
 def test_no_equation_of_motion_is_what_always_holds():
     """0 = 0 and sin^2 + cos^2 = 1 say nothing of the motion."""
     for text in ("theta'' = theta''", "theta''*(sin(theta)^2 + cos(theta)^2) = theta''"):
         assert verdict("simple_pendulum", text).verdict == "wrong"
 
 
+@pytest.mark.slow
 def test_roots_are_compared_with_50_digits_up_to_their_rounding():
     """1/eps^2 and roots: V multiplied out is V, and with another root it is not."""
     V = sympy.expand(eomgen.derive(MODELS / "car_axis.toml").V)
@@ -183,6 +189,7 @@ def test_roots_are_compared_with_50_digits_up_to_their_rounding():
     assert verdict("car_axis", f"V = {V} + x_l/1000000").verdict == "wrong"
 
 
+@pytest.mark.slow
 def test_redundant_ties_make_nothing_right():
     """Where six rows tie five coordinates, apart from the ties everything follows from everything."""
     right = "e''*l^2*m/3 + g*l*m*cos(e)/2 - l*lam(R, 2)*cos(e) = -l*lam(R, 1)*sin(e)"
@@ -200,6 +207,7 @@ def test_the_size_of_a_unit_makes_nothing_right(mass):
     assert found == ["wrong", "right", "right", "wrong"]
 
 
+@pytest.mark.slow
 def test_own_names_mean_what_the_file_says():
     """Under its own name a coordinate is not turned round: the sign of a weight would be right upside down."""
     assert verdict("simple_pendulum", "l*theta'' = g*sin(theta)").verdict == "wrong"
@@ -218,6 +226,7 @@ def test_a_value_of_one_hides_no_missing_factor():
     assert verdict("simple_pendulum", "T = 0.5*theta'^2").verdict == "wrong"
 
 
+@pytest.mark.slow
 def test_sympy_equations_are_read():
     """d2/dt2 theta(t) is theta''."""
     t, g, length = sympy.symbols("t g l")
@@ -242,6 +251,7 @@ def run(*words: str, text: str = ""):
 PENDULUM = str(MODELS / "simple_pendulum.toml")
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     ("words", "code"),
     [
@@ -259,6 +269,7 @@ def test_the_exit_code_is_the_answer(words, code):
     assert run("verify", PENDULUM, "--no-certify", *words).exit_code == code
 
 
+@pytest.mark.slow
 def test_a_folder_of_answers_is_judged_line_by_line(tmp_path):
     (tmp_path / "ann.txt").write_text("# hers\nT = m*l^2*theta'^2/2\n\n")
     (tmp_path / "bob.tex").write_text("T = m l \\dot\\theta^2/2\nT = (\n")
@@ -268,6 +279,7 @@ def test_a_folder_of_answers_is_judged_line_by_line(tmp_path):
     assert result.exit_code == 5 and "column" in found[2]["error"]
 
 
+@pytest.mark.slow
 def test_a_hint_tells_no_more_than_it_should():
     """1 where to look, 2 at what, 3 the cause; the JSON of a hint keeps the rest to itself."""
     words = ("verify", PENDULUM, "--no-certify", "T = m*l^2*theta'^2", "--json", "--hint")
@@ -290,6 +302,7 @@ def test_another_kind_is_refused():
 # -- what people write, and get wrong ---------------------------------------------------------------
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     ("written", "text"),
     [
@@ -308,6 +321,7 @@ def test_papers_and_programs_are_read(written, text):
     assert transcript(written, vocabulary(names, ["T", "x"], {})).text == text
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     ("model", "equation", "more", "word"),
     [
@@ -331,6 +345,7 @@ def test_what_holds_only_here_and_there_is_wrong(model, equation, more, word):
     assert found.verdict == "wrong" and word in found.causes[0].text
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     ("model", "equation", "up_to"),
     [
@@ -350,6 +365,7 @@ def test_what_holds_in_its_own_domain_is_right(model, equation, up_to):
     assert found.verdict == "right" and up_to in found.up_to
 
 
+@pytest.mark.slow
 def test_mistakes_from_the_literature_are_wrong_and_mostly_named():
     """In equations of motion and in answers: wrong, but for angles that are told to be another axis's; 3 in 4 named."""
     some = random.Random(2).sample(wrong_answers(), 40)
@@ -358,12 +374,14 @@ def test_mistakes_from_the_literature_are_wrong_and_mostly_named():
     assert sum(x.is_named(each) for x, each in found) >= 0.8 * len(some)
 
 
+@pytest.mark.slow
 def test_what_is_wrong_by_little_is_wrong():
     """By a thousandth, in motion alone, with other values than those of the file: no tolerance hides it."""
     some = random.Random(4).sample(nearly_right_answers(), 20)
     assert [x.text for x in some if x.verdict().verdict != "wrong"] == []
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     ("model", "equation", "kind", "told"),
     [
@@ -388,6 +406,7 @@ def test_the_derivation_is_replayed_with_one_thing_wrong(model, equation, kind, 
     assert (not kind or cause.kind == kind) and told in cause.text
 
 
+@pytest.mark.slow
 def test_what_is_driven_is_known_as_a_function_of_time():
     """x = r cos(w t) where theta = w t is given and x hangs on it; speeds by momenta alone; a path's first piece."""
     assert verdict("scotch_yoke", "x = r*cos(w*t)") and not verdict("scotch_yoke", "x = r*sin(w*t)")
@@ -398,6 +417,7 @@ def test_what_is_driven_is_known_as_a_function_of_time():
     assert "first piece of the path" in verdict("loop_the_loop", "s'' = g*sin(alpha)").up_to
 
 
+@pytest.mark.slow
 def test_right_equations_of_papers_are_right():
     some = random.Random(3).sample(right_answers(), 25)
     assert [x.text for x in some if not x.verdict()] == []

@@ -3,11 +3,16 @@
 from __future__ import annotations
 
 import ast
+import re
+from collections.abc import Iterator
 from pathlib import Path
 
 import pytest
+from quick_set import is_slow
 
-PACKAGE = Path(__file__).parent.parent / "eomgen"
+TESTS = Path(__file__).parent
+PACKAGE = TESTS.parent / "eomgen"
+IMPORTED = re.compile(r"^(?:from|import) eomgen\.(\w+)", re.M)
 CHAIN = (
     ("version", "records"),
     ("errors",),
@@ -71,11 +76,19 @@ def module_names(package: Path) -> dict[str, Path]:
     return names
 
 
+def statements(tree: ast.AST) -> Iterator[ast.stmt]:
+    """All statements of a tree, those inside others too; expressions are not entered."""
+    for part in ("body", "orelse", "finalbody", "handlers", "cases"):
+        for node in getattr(tree, part, ()):
+            yield node
+            yield from statements(node)
+
+
 def imported(name: str, path: Path, modules: dict[str, Path]) -> set[str]:
     """The package's modules that a module imports, at its top, inside functions, or for type checking only."""
     found = set()
     base = name if path.name == "__init__.py" else name.rpartition(".")[0]
-    for node in ast.walk(ast.parse(path.read_text())):
+    for node in statements(ast.parse(path.read_text())):
         if isinstance(node, ast.Import):
             found |= {alias.name for alias in node.names if alias.name in modules}
         elif isinstance(node, ast.ImportFrom):
@@ -237,3 +250,11 @@ def test_every_public_name_is_where_the_package_says():
     import eomgen
 
     assert all(getattr(eomgen, name) is not None for name in eomgen.__all__)
+
+
+def test_every_room_has_quick_tests():
+    """Each folder of the package is imported by a test that the quick set runs."""
+    texts = (path.read_text(encoding="utf-8") for path in TESTS.rglob("test_*.py"))
+    asked = {room for text in texts if not is_slow(text) for room in IMPORTED.findall(text)}
+    rooms = {path.parent.name for path in PACKAGE.glob("*/__init__.py")}
+    assert rooms - asked == set()

@@ -43,6 +43,7 @@ def test_every_visible_mark_of_a_formula_counts_one(tex: str, marks: int):
     assert length_of_latex(tex) == marks
 
 
+@pytest.mark.slow
 def test_the_script_tells_the_length_of_each_formula():
     """benchmarks/formula_length.py FORMULA ..., or a formula a line on its input."""
     formulas = [r"M\ddot{X} = 0", r"\frac{a}{b}"]

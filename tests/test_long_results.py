@@ -26,6 +26,7 @@ def chain(n):
     return eomgen.loads(text + "".join(bodies))
 
 
+@pytest.mark.slow
 def test_inertia_of_many_bodies_is_a_number_where_its_formula_is_beyond_reading():
     """One 3 x 3 tensor of five bodies at the start; of its entries none is written with millions of characters."""
     found = eomgen.inertia(chain(5)).results

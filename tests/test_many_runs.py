@@ -22,6 +22,7 @@ def alone(name: str, i: int, time: float, given: dict, samples: int) -> eomgen.T
     return eomgen.simulate(MODELS / f"{name}.toml", time=time, samples=instants, **own)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("target", [None, "numpy"])
 @pytest.mark.parametrize(
     ("name", "given"),
@@ -49,6 +50,7 @@ def test_each_run_is_what_simulate_gives(name, given, target):
         assert runs.x[i] == pytest.approx(other.x, abs=1e-7 * (1 + np.max(np.abs(other.x))))
 
 
+@pytest.mark.slow
 @needs_compiler
 def test_what_a_run_gives_does_not_depend_on_its_neighbours_nor_on_threads():
     """Bit for bit: among nine others in one thread, in two, backwards, and alone."""
@@ -65,6 +67,7 @@ def test_what_a_run_gives_does_not_depend_on_its_neighbours_nor_on_threads():
     assert np.max(whole.drift) < 1e-8
 
 
+@pytest.mark.slow
 @needs_compiler
 def test_a_run_that_fails_is_recorded_and_the_rest_go_on():
     """x' = sqrt(a - t) has no value after t = a."""
@@ -85,6 +88,7 @@ def test_a_run_that_fails_is_recorded_and_the_rest_go_on():
     assert runs["x"][0] == pytest.approx((3**1.5 - (3 - runs.t) ** 1.5) * 2 / 3, abs=1e-8)
 
 
+@pytest.mark.slow
 @needs_compiler
 def test_what_is_stiff_leaves_its_lane():
     """x'' + d x' + d x = 0 with d from 1 to 1e5, by the closed solution."""
@@ -105,6 +109,7 @@ def test_what_is_stiff_leaves_its_lane():
         assert row == pytest.approx(exact, abs=1e-6)
 
 
+@pytest.mark.slow
 @needs_compiler
 @pytest.mark.parametrize("name", ["double_pendulum", "arm3", "tippe_top", "car_axis", "half_car"])
 def test_a_program_in_lanes_is_the_program(name):
@@ -118,6 +123,7 @@ def test_a_program_in_lanes_is_the_program(name):
         assert function.many(t, x, p) == pytest.approx(expected, rel=1e-9, abs=1e-9 * np.max(np.abs(expected)))
 
 
+@pytest.mark.slow
 @needs_compiler
 def test_functions_of_vectors_are_those_of_the_library():
     """Every function of the grammar, sines of large and of negative arguments too."""
@@ -151,6 +157,7 @@ def test_what_makes_no_sense_is_refused():
             eomgen.simulate_many(model, time=1, **asked)
 
 
+@pytest.mark.slow
 def test_runs_as_tables():
     runs = eomgen.simulate_many(MODELS / "double_pendulum.toml", time=1, samples=3, parameters={"l1": [1.0, 2.0]})
     frame = runs.to_pandas()

@@ -12,6 +12,7 @@ import eomgen
 MODELS = Path(__file__).parent.parent / "models"
 
 
+@pytest.mark.slow
 def test_quantities_of_pint_are_values():
     """80 cm, 2 lb, 30 deg and 20 rpm of pint's own are what they are in SI; a wrong one is refused."""
     pint = pytest.importorskip("pint")
@@ -29,6 +30,7 @@ def test_quantities_of_pint_are_values():
         eomgen.derive(model, parameters={"l": 2 * ureg.second})
 
 
+@pytest.mark.slow
 def test_a_run_goes_to_pandas_and_xarray_as_it_is():
     """The same columns by the same names, over t, and how it went."""
     pytest.importorskip("pandas")

@@ -252,6 +252,7 @@ def chain(graph: Graph, n: int, absolute: bool = True) -> tuple[Node, list[Node]
     return T, q, u
 
 
+@pytest.mark.slow
 def test_the_energy_of_a_long_chain_stays_small(graph):
     """T of 20 links has 210 terms m_ij cos(q_i - q_j) q_i' q_j'; 8 relative links have theirs."""
     T, _, _ = chain(graph, 20)

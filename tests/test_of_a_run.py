@@ -18,6 +18,8 @@ from eomgen.errors import UsageError
 from eomgen.model.table import Table
 from eomgen.symbolic.numeric.chebyshev import ChebyshevPieces, resolved_curve
 
+pytestmark = pytest.mark.slow
+
 MODELS = Path(__file__).parents[1] / "models"
 
 OSCILLATOR = """

@@ -46,6 +46,7 @@ def rates_elsewhere(path, pickled):
     return rates(pickle.loads(pickled)), own
 
 
+@pytest.mark.slow
 def test_samples_go_with_the_equations_into_a_spawned_process():
     """Between 0 and 3 s the cart follows its own samples: x'(1.5) = -4.5 for x(1) = 4, -78.75 for x(1) = 70."""
     import sys
@@ -67,6 +68,7 @@ def test_a_pickled_graph_holds_each_expression_once_again():
     assert cos(x_) * cos(x_) + sqrt(1 + cos(x_)) is y_
 
 
+@pytest.mark.slow
 def test_a_deep_expression_is_pickled_without_recursion():
     """sqrt(1 + x sqrt(1 + x ...)), ten thousand deep."""
     graph = Graph()

@@ -55,6 +55,7 @@ def test_matrices_are_multiplied_out_where_a_person_reads_them():
     assert (M.subs(table) - wanted).expand().is_zero_matrix
 
 
+@pytest.mark.slow
 def test_inputs_are_replaced_by_expressions_numbers_and_samples():
     """A driven beam alone: J alpha'' = tau."""
     bar = 'eomgen = 1\nspace = "plane"\n[coordinates]\nq = 0\n[inputs]\ntau = 0\n[bodies.bar]\nmass = 1\ninertia = 2\n'

@@ -71,6 +71,7 @@ def dynamics(model: Any, q: dict[str, float], u: dict[str, float]) -> tuple[np.n
     return found[: n * n].reshape(n, n), found[n * n : n * n + n] - found[n * n + n :]
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("seed", range(4))
 def test_mass_matrix_and_bias_of_a_urdf_are_those_of_its_words(seed, tmp_path):
     """M and c - Q of the imported model are those by poses, complex steps and sums over the links."""
@@ -239,6 +240,7 @@ TIED = """<mujoco><compiler angle="radian"/><default><default class="leg"><joint
 </mujoco>"""
 
 
+@pytest.mark.slow
 @needs(".mujoco", what="mujoco")
 def test_ties_of_bodies_without_places_and_straight_tendons_mean_what_mujoco_computes(tmp_path):
     """Points that ties alone ask for are those of their bodies, pivots beside them; T and Q with tendons between two
@@ -263,6 +265,7 @@ def test_ties_of_bodies_without_places_and_straight_tendons_mean_what_mujoco_com
     assert {each.what: each.where for each in found.left_out}["tendons through places"] == ("bent",)
 
 
+@pytest.mark.slow
 @needs(".mujoco", what="mujoco")
 def test_mjcf_means_what_mujoco_computes(tmp_path):
     """M, all forces at random states and controls, and the rows of ties, against MuJoCo; several joints in a body, off
@@ -310,6 +313,7 @@ def test_mjcf_without_mujoco_names_the_wheel(tmp_path, monkeypatch):
         robot(tmp_path, MJCF, "xml")
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(("seed", "in_model"), [(0, True), (1, False), (2, False)])
 def test_sdf_and_urdf_of_one_robot_have_one_mass_matrix_and_one_bias(seed, in_model, tmp_path):
     """Poses in the model's axes, joints off the child's origin in axes of their own: M and c - Q are the URDF's."""

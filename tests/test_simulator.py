@@ -57,6 +57,7 @@ def model(name: str) -> eomgen.Model:
     return eomgen.loads(name) if "\n" in name else eomgen.load(MODELS / f"{name}.toml")
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     ("name", "parameters", "start"),
     [
@@ -80,6 +81,7 @@ def test_it_gives_what_simulate_gives(name, parameters, start):
         assert own.message == other.message and not own.reactions
 
 
+@pytest.mark.slow
 def test_equations_are_derived_once_for_all_parameters_of_a_model_without_ties(monkeypatch):
     derived = []
     derive = eomgen.pipeline.derive
@@ -89,6 +91,7 @@ def test_equations_are_derived_once_for_all_parameters_of_a_model_without_ties(m
     assert len(derived) == 1 and not np.allclose(ends[0], ends[1]) and not np.allclose(ends[1], ends[2])
 
 
+@pytest.mark.slow
 def test_a_parameter_that_has_no_value_is_given_at_the_call():
     text = (MODELS / "double_pendulum.toml").read_text().replace("value = 9.81, ", "")
     run = eomgen.simulator(eomgen.loads(text))
@@ -97,6 +100,7 @@ def test_a_parameter_that_has_no_value_is_given_at_the_call():
     assert run(0.1, parameters={"g": 9.81}).ok
 
 
+@pytest.mark.slow
 def test_reactions_are_columns_where_they_are_asked_for():
     run, whole = (
         eomgen.simulator(model("double_pendulum")),

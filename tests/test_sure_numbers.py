@@ -20,6 +20,7 @@ GRAPH = Graph()
 X, Y = GRAPH.symbol("x"), GRAPH.symbol("y")
 
 
+@pytest.mark.slow
 def test_the_force_on_a_slider_at_nice_angles_is_mass_times_acceleration():
     """F = m (r w^2 cos a + r^2 w^2 cos 2a/R + r^4 w^2 sin^2 a cos^2 a/R^3), R = sqrt(L^2 - r^2 sin^2 a).
 

@@ -31,8 +31,6 @@ from eomgen.sweeps.sweep import sweep_at
 from eomgen.symbolic.numeric import work
 from eomgen.symbolic.numeric.work import check_patience
 
-pytestmark = pytest.mark.slow
-
 ROOT = Path(__file__).parents[1]
 MODELS = ROOT / "models"
 SPRING = """
@@ -116,6 +114,7 @@ def test_draws_have_their_distribution(text, law, kind):
         assert test.statistic < 2e-3
 
 
+@pytest.mark.slow
 def test_values_are_typed_in_the_units_of_the_file_and_in_python_in_si(spring, tmp_path):
     """--over x=5:15:3 of a start in cm; "0.2 m" brings its unit; over={"x": [0.05]} is SI."""
     done = CliRunner().invoke(
@@ -151,6 +150,7 @@ def test_values_are_typed_in_the_units_of_the_file_and_in_python_in_si(spring, t
 # -- what is asked ---------------------------------------------------------------------------------------------
 
 
+@pytest.mark.slow
 def test_what_is_asked_is_what_the_verbs_give(spring):
     """Frequency, period, places of rest and reactions of each run: closed forms, and eomgen.simulate at its values."""
     found = eomgen.sweep(
@@ -181,6 +181,7 @@ def test_what_is_asked_is_what_the_verbs_give(spring):
     assert found.to_pandas().loc[2, "k"] == 50
 
 
+@pytest.mark.slow
 def test_critical_values_are_where_the_sign_changes(spring):
     """cos(sqrt(k/m) T) = 0: every place where the mass ends in the middle, for each m."""
     found = eomgen.sweep(spring, over={"k": "10:90:30", "m": [1, 2]}, critical="last(x)", time=1)
@@ -192,6 +193,7 @@ def test_critical_values_are_where_the_sign_changes(spring):
     assert {row["message"] for row in jump.critical} == {"it jumps there"}
 
 
+@pytest.mark.slow
 def test_a_run_that_fails_is_a_row_with_its_message(spring):
     """A negative mass is no model; a run that ends early has its status; the others have their values."""
     found = eomgen.sweep(spring, over={"m": [-1, 1, 2]}, ask="last(x)", time=1)
@@ -251,6 +253,7 @@ def test_a_sweep_that_is_killed_goes_on_and_has_each_run_once(spring, tmp_path, 
     same_rows(folder, spring)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(("status", "code"), [("interrupted", 130), ("out of patience", 3)])
 def test_a_run_that_is_cut_ends_the_sweep_and_is_no_row(status, code, spring, tmp_path, monkeypatch):
     """What was done is kept, and says so; the same command makes the run that was cut, with the bits of the others."""
@@ -274,6 +277,7 @@ def test_a_run_that_is_cut_ends_the_sweep_and_is_no_row(status, code, spring, tm
     assert [float(row["last(x)"]) for row in table_at(tmp_path / "out")] == calm["last(x)"].tolist()
 
 
+@pytest.mark.slow
 def test_patience_is_for_each_step_of_a_sweep(spring, tmp_path, monkeypatch):
     """Many runs take longer than one may; one that takes longer ends the sweep, with those before it kept."""
     folder, whole = tmp_path / "out", SweepKernel.rows
@@ -308,6 +312,7 @@ def test_workers_that_are_killed_are_replaced(spring, tmp_path):
     same_rows(folder, spring)
 
 
+@pytest.mark.slow
 def test_a_run_that_kills_its_worker_is_a_row(spring, monkeypatch):
     """The pool breaks at one run, whichever chunk holds it: that run fails with a message, all others are done."""
 
@@ -329,6 +334,7 @@ def test_a_run_that_kills_its_worker_is_a_row(spring, monkeypatch):
     assert "died 3 times" in found["message"][13] and found["k"][13] == pytest.approx(10 + 13 * 80 / 39)
 
 
+@pytest.mark.slow
 def test_any_executor_with_submit_gives_the_same_bits(spring):
     """Threads, a pool of processes of the user, futures that only say `done`: what one process gives."""
 
@@ -379,6 +385,7 @@ def test_loky_gives_the_same_bits(spring):
 # -- files -----------------------------------------------------------------------------------------------------
 
 
+@pytest.mark.slow
 def test_a_folder_resumes_its_own_plan_alone_and_replays_bit_for_bit(spring, tmp_path):
     folder = str(tmp_path / "out")
     words = ["sweep", spring, "--over", "k=10:90:4", "--ask", "last(x)", "--time", "2", "-o", folder]
@@ -409,6 +416,7 @@ def test_a_folder_resumes_its_own_plan_alone_and_replays_bit_for_bit(spring, tmp
     assert valued.exit_code == 2 and "--replay takes no --time, --set" in valued.output
 
 
+@pytest.mark.slow
 def test_names_that_sqlite_takes_for_one_are_two_columns(spring, tmp_path):
     """m and M; what is asked under the name of what is set."""
     found = eomgen.sweep(spring, over={"m": [1, 2], "M": [3.0]}, ask=["m", "k"], time=0.1, out=tmp_path / "out")
@@ -443,6 +451,7 @@ def test_what_makes_no_sense_is_refused_before_any_run(spring, words, message):
     assert done.exit_code == 2 and message in done.output, done.output
 
 
+@pytest.mark.slow
 def test_pictures_and_proof(spring, tmp_path):
     """Lines, a heat map and a scatter matrix; the proof is that of the first run, and that it has the same bits."""
     for over, view in ((["k=10:90:4"], "lines"), (["k=10:90:4", "m=1,2"], "heat")):

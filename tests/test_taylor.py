@@ -13,7 +13,7 @@ from eomgen.codegen.build import compiler
 
 MODELS = Path(__file__).parent.parent / "models"
 
-pytestmark = pytest.mark.skipif(compiler() is None, reason="no C compiler")
+pytestmark = [pytest.mark.slow, pytest.mark.skipif(compiler() is None, reason="no C compiler")]
 
 FUNCTIONS = """
 eomgen = 1

@@ -222,6 +222,7 @@ def test_a_long_sum_is_cut():
     assert max(len(t) for t in [*texts, *(t for _, t in definitions)]) <= 400
 
 
+@pytest.mark.slow
 def test_a_deep_expression_needs_no_depth_of_the_interpreter():
     """sin(1 + sin(1 + ...)) 5000 deep is printed by a loop."""
     graph = Graph()

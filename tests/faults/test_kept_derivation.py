@@ -48,6 +48,7 @@ def entries(place: Path) -> list[Path]:
     return sorted(place.glob("*.json")) if place.is_dir() else []
 
 
+@pytest.mark.slow
 def test_a_derivation_is_told_again_as_it_was(place, told):
     """Byte by byte, what is said beside it too; each form and option by itself."""
     for options in ((), ("--json",), ("--method", "projection"), ("--units",), ("--set", "m=5")):

@@ -248,6 +248,7 @@ def soon(monkeypatch) -> int:
     return 400
 
 
+@pytest.mark.slow
 def test_a_stiff_run_says_so_after_a_count_of_steps(soon):
     """x'' = -1e8 x - 1e6 x': stability holds steps near 6e-6 s. Radau takes longer ones."""
     found = eomgen.simulate(eomgen.loads(STIFF), time=10, target="numpy", method="DOP853")

@@ -282,6 +282,7 @@ def test_a_spring_between_points_that_are_one_is_refused():
         eomgen.derive(eomgen.loads(text))
 
 
+@pytest.mark.slow
 def test_texts_of_a_model_stay_texts_in_emitted_code(tmp_path):
     """Names and remarks that would close a comment or a string run nothing, in Python and in C."""
     model = tmp_path / "evil.toml"

@@ -110,6 +110,7 @@ def test_modes_that_are_given_are_taken():
     assert len(eomgen.derive(ball(), contacts={}).graph.J) == 1
 
 
+@pytest.mark.slow
 def test_derive_runs_no_simulation_and_no_compiler(monkeypatch):
     """Of every model with contacts: no program is made, no phase is looked at."""
 

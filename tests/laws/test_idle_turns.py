@@ -125,6 +125,7 @@ joint = { kind = "spherical", on = "cart", orientation = "xyz", angles = ["a", "
 """
 
 
+@pytest.mark.slow
 def test_a_coordinate_keeps_its_start_speed_beside_speeds_of_other_rates():
     """v = 2 x' = 4 by the speed of x; w2 and w3, which share b' and c' with w1, begin as they say: at 0."""
     run = eomgen.simulate(eomgen.loads(HEAD + PARTLY), time=1e-3)

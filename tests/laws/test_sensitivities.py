@@ -12,8 +12,6 @@ import pytest
 import eomgen
 from eomgen.sensitivities.sensitivity import slope_asked
 
-pytestmark = pytest.mark.slow
-
 MODELS = Path(__file__).parents[2] / "models"
 DIGITS = 50
 HANGING = {"theta1": 0.1, "theta2": 0.1}
@@ -81,6 +79,7 @@ def test_a_damped_frequency_changes_as_its_closed_form_does():
         assert slope == pytest.approx(second(lambda x, name=name: w(**{**p, name: x}), p[name]), rel=1e-12)
 
 
+@pytest.mark.slow
 def test_frequencies_of_the_double_pendulum_by_fifty_digits():
     """det(K - w^2 M) = 0 of two rods, solved by hand."""
     p = {"m1": 1.0, "m2": 1.0, "l1": 1.0, "l2": 0.5, "g": 9.81}
@@ -97,6 +96,7 @@ def test_frequencies_of_the_double_pendulum_by_fifty_digits():
     assert found.matrix == pytest.approx(np.array(right), rel=1e-12, abs=1e-12)
 
 
+@pytest.mark.slow
 def test_a_swinging_block_along_its_way():
     """x = x_0 + (s - x_0) cos(w t) with x_0 = m g/k: dx/dk, dx/dm, dx/ds at every instant."""
     model = eomgen.loads(UNDAMPED)
@@ -114,6 +114,7 @@ def test_a_swinging_block_along_its_way():
     assert found.run.slopes["x", "L"] == pytest.approx(found.run.slopes["x", "x"] / 4, rel=1e-12, abs=1e-12)
 
 
+@pytest.mark.slow
 def test_a_right_hand_side_has_its_slopes_in_closed_form():
     """theta'' = -g sin(theta)/l: its derivatives are those that a person writes."""
     found = eomgen.sensitivity(MODELS / "simple_pendulum.toml", "rhs", ("l", "g"))
@@ -124,6 +125,7 @@ def test_a_right_hand_side_has_its_slopes_in_closed_form():
 # -- laws ----------------------------------------------------------------------------------------------------
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     ("name", "of", "to"),
     [
@@ -161,6 +163,7 @@ def test_derivatives_along_a_run_are_those_of_neighbouring_runs(name, to, time):
     assert certificate.ok, str(certificate)
 
 
+@pytest.mark.slow
 def test_the_flow_keeps_phase_space():
     """Liouville: det d(theta, p)/d(theta_0, p_0) = 1, p = M(theta) u, of the double pendulum."""
     model = eomgen.load(MODELS / "double_pendulum.toml")
@@ -175,6 +178,7 @@ def test_the_flow_keeps_phase_space():
 VALUES = {name: value for name, value in (("m1", 1), ("m2", 1), ("l1", 1), ("l2", 0.5), ("g", 9.81))}
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("by", [1.001, -1.0])
 def test_a_wrong_derivative_is_seen(by):
     """A thousandth more, or another sign, fails; where it is zero there is nothing to see."""
@@ -193,6 +197,7 @@ def test_units_are_those_of_the_file():
     assert found["x at equilibrium", "g"].number.endswith("m/(m/s²)")
 
 
+@pytest.mark.slow
 def test_scaling_of_units_scales_derivatives():
     """Buckingham: y(s p) = s^n y(p) gives sum of n_p p dy/dp = n y: w of the double pendulum has no mass in it."""
     found = eomgen.sensitivity(MODELS / "double_pendulum.toml", "frequency(1)")
@@ -227,6 +232,7 @@ def test_two_equal_frequencies_have_no_derivative():
     assert "several motions" in (found["frequency(1)", "k"].message or "")
 
 
+@pytest.mark.slow
 def test_a_sweep_asks_for_derivatives():
     """ "d(frequency(1))/d(k)" and "d(last(x))/d(k)" at every run: dw/dk = w/2k, and that of a single call."""
     assert slope_asked("d(last(x))/d(k)") == ("last(x)", "k") and slope_asked("x/k") is None
