@@ -3,7 +3,7 @@
 from collections.abc import Iterator, Mapping
 from typing import Any
 
-from eomgen.model.fields import Leaf
+from eomgen.model.fields import Leaf, read_items
 from eomgen.model.findings import Decimal, Finding, shown
 from eomgen.model.positions import DocumentPath
 from eomgen.model.table import Table
@@ -31,8 +31,7 @@ class ListRule:
             count = f"at most {self.most}" if self.most is not None and len(raw) > self.most > self.least else count
             found.append(Finding(path, f"{count} entries are needed here, not {len(raw)}"))
             return None
-        items = [self.item.read(x, (*path, i), found) for i, x in enumerate(raw)]
-        return None if None in items else tuple(items)
+        return read_items(self.item, raw, path, found)
 
     def leaves(self, value: Any, path: DocumentPath, part: Any) -> Iterator[Leaf]:
         for i, x in enumerate(value):

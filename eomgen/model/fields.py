@@ -5,7 +5,7 @@ these rules alone come the reading of texts and numbers (`read`), the walk that 
 (`leaves`) and the JSON Schema (`schema`). Nothing is computed here.
 """
 
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Callable, Iterable, Iterator, Mapping
 from typing import Any, Generic, TypeVar
 
 from eomgen.errors import ExpressionError
@@ -39,8 +39,30 @@ class Leaf:
     part: Any = None
 
 
+class WholeRule:
+    """A rule whose value has no parts of its own."""
+
+    def leaves(self, value: Any, path: DocumentPath, part: Any) -> Iterator[Leaf]:
+        yield Leaf(path, self, value, part)
+
+
+def read_text(parse: Callable[[], Parsed], raw: Any, path: DocumentPath, found: list[Finding]) -> Parsed | None:
+    """What a grammar makes of a text; what is wrong with it is found at its column."""
+    try:
+        return parse()
+    except ExpressionError as error:
+        found.append(Finding(path, error.what, error.mend, error.column, error.length, raw=raw))
+        return None
+
+
+def read_items(rule: Any, raw: Iterable[Any], path: DocumentPath, found: list[Finding]) -> tuple[Any, ...] | None:
+    """Every item by one rule; None where one of them is wrong."""
+    items = [rule.read(x, (*path, i), found) for i, x in enumerate(raw)]
+    return None if None in items else tuple(items)
+
+
 @dataclass(frozen=True)
-class FormulaRule:
+class FormulaRule(WholeRule):
     """A number or the text of an expression.
 
     Args:
@@ -86,9 +108,6 @@ class FormulaRule:
             found.append(mixed(value, unit, (*path, "value")))
         return in_si(value, unit)
 
-    def leaves(self, value: Any, path: DocumentPath, part: Any) -> Iterator[Leaf]:
-        yield Leaf(path, self, value, part)
-
     def schema(self, definitions: dict[str, Any]) -> dict[str, Any]:
         return {"$ref": "#/$defs/quantity"}
 
@@ -120,24 +139,17 @@ def _expression(raw: Any, path: DocumentPath, found: list[Finding], references: 
     if isinstance(raw, bool) or not isinstance(raw, (float, str, *EXACT, Expression)):
         found.append(Finding(path, f"a number or an expression is needed here, not {shown(raw)}"))
         return None
-    try:
-        return as_expression(raw, references=references)
-    except ExpressionError as error:
-        found.append(Finding(path, error.what, error.mend, error.column, error.length, raw=raw))
-        return None
+    return read_text(lambda: as_expression(raw, references=references), raw, path, found)
 
 
 @dataclass(frozen=True)
-class OutputRule:
+class OutputRule(WholeRule):
     """An expression that may call functions of the motion: `speed(bar.end)`."""
 
     scope: str = EVERYTHING
 
     def read(self, raw: Any, path: DocumentPath, found: list[Finding]) -> Expression | None:
         return _expression(raw, path, found, references=True)
-
-    def leaves(self, value: Any, path: DocumentPath, part: Any) -> Iterator[Leaf]:
-        yield Leaf(path, self, value, part)
 
     def schema(self, definitions: dict[str, Any]) -> dict[str, Any]:
         return {"$ref": "#/$defs/expression"}
@@ -158,7 +170,7 @@ class WrittenEquation:
 
 
 @dataclass(frozen=True)
-class EquationRule:
+class EquationRule(WholeRule):
     """An equation between expressions that may call functions of the motion: `theta = pi/2`."""
 
     scope: str = EVERYTHING
@@ -169,15 +181,11 @@ class EquationRule:
         if not isinstance(raw, str) or isinstance(raw, Decimal):
             found.append(Finding(path, f"an equation is needed here, not {shown(raw)}", 'like "theta = pi/2"'))
             return None
-        try:
-            (left, one), (right, other) = parse_typed_equation(raw)
-            return WrittenEquation(left, right, raw, (one, other))
-        except ExpressionError as error:
-            found.append(Finding(path, error.what, error.mend, error.column, error.length, raw=raw))
+        sides = read_text(lambda: parse_typed_equation(raw), raw, path, found)
+        if sides is None:
             return None
-
-    def leaves(self, value: Any, path: DocumentPath, part: Any) -> Iterator[Leaf]:
-        yield Leaf(path, self, value, part)
+        (left, one), (right, other) = sides
+        return WrittenEquation(left, right, raw, (one, other))
 
     def schema(self, definitions: dict[str, Any]) -> dict[str, Any]:
         return {"type": "string", "description": "an equation, like theta = pi/2"}
@@ -229,8 +237,7 @@ class VectorRule:
             what = f"a list of components{also} is needed here, not {shown(raw)}"
             found.append(Finding(path, what, 'write one for each axis: [1, 0], [0, "-g"]'))
             return None
-        items = [self.item.read(x, (*path, i), found) for i, x in enumerate(raw)]
-        return None if None in items else tuple(items)
+        return read_items(self.item, raw, path, found)
 
     def leaves(self, value: Any, path: DocumentPath, part: Any) -> Iterator[Leaf]:
         yield Leaf(path, self, value, part)
@@ -260,8 +267,7 @@ class AxialRule:
         if not isinstance(raw, (list, tuple)):
             value = self.item.read(raw, path, found)
             return None if value is None else (value,)
-        items = [self.item.read(x, (*path, i), found) for i, x in enumerate(raw)]
-        return None if None in items else tuple(items)
+        return read_items(self.item, raw, path, found)
 
     def leaves(self, value: Any, path: DocumentPath, part: Any) -> Iterator[Leaf]:
         yield Leaf(path, self, value, part)
@@ -275,7 +281,7 @@ class AxialRule:
 
 
 @dataclass(frozen=True)
-class NameRule:
+class NameRule(WholeRule):
     """The name of something declared elsewhere.
 
     Args:
@@ -289,24 +295,16 @@ class NameRule:
         if isinstance(raw, str) and not isinstance(raw, Decimal) and raw:
             return str(raw)
         mend = 'give it a name in [points], like P = [0, 3], and write "P"' if isinstance(raw, list) else ""
-        found.append(
-            Finding(
-                path,
-                f"the name of {article(self.of)} is needed here, not {shown(raw)}",
-                mend if self.of == "point" else "",
-            )
-        )
+        what = f"the name of {article(self.of)} is needed here, not {shown(raw)}"
+        found.append(Finding(path, what, mend if self.of == "point" else ""))
         return None
-
-    def leaves(self, value: Any, path: DocumentPath, part: Any) -> Iterator[Leaf]:
-        yield Leaf(path, self, value, part)
 
     def schema(self, definitions: dict[str, Any]) -> dict[str, Any]:
         return {"type": "string", "description": f"the name of {article(self.of)}"}
 
 
 @dataclass(frozen=True)
-class TextRule:
+class TextRule(WholeRule):
     """Words for people, or one of a few words (`options`)."""
 
     options: tuple[str, ...] = ()
@@ -323,15 +321,12 @@ class TextRule:
             return None
         return str(raw)
 
-    def leaves(self, value: Any, path: DocumentPath, part: Any) -> Iterator[Leaf]:
-        yield Leaf(path, self, value, part)
-
     def schema(self, definitions: dict[str, Any]) -> dict[str, Any]:
         return {"enum": list(self.options)} if self.options else {"type": "string"}
 
 
 @dataclass(frozen=True)
-class EventRule:
+class EventRule(WholeRule):
     """Which of several events: a number from 1 on, or "every"."""
 
     def read(self, raw: Any, path: DocumentPath, found: list[Finding]) -> int | str | None:
@@ -343,15 +338,12 @@ class EventRule:
         found.append(Finding(path, f"the number of an event is needed here, not {shown(raw)}", f'like 2, or "{EVERY}"'))
         return None
 
-    def leaves(self, value: Any, path: DocumentPath, part: Any) -> Iterator[Leaf]:
-        yield Leaf(path, self, value, part)
-
     def schema(self, definitions: dict[str, Any]) -> dict[str, Any]:
         return {"anyOf": [{"type": "integer", "minimum": 1}, {"const": EVERY}]}
 
 
 @dataclass(frozen=True)
-class FlagRule:
+class FlagRule(WholeRule):
     """true or false."""
 
     def read(self, raw: Any, path: DocumentPath, found: list[Finding]) -> bool | None:
@@ -360,15 +352,12 @@ class FlagRule:
         found.append(Finding(path, f"true or false is needed here, not {shown(raw)}"))
         return None
 
-    def leaves(self, value: Any, path: DocumentPath, part: Any) -> Iterator[Leaf]:
-        yield Leaf(path, self, value, part)
-
     def schema(self, definitions: dict[str, Any]) -> dict[str, Any]:
         return {"type": "boolean"}
 
 
 @dataclass(frozen=True)
-class ParsedTextRule(Generic[Parsed]):
+class ParsedTextRule(WholeRule, Generic[Parsed]):
     """A text that has a grammar of its own: a unit, a symbol in LaTeX.
 
     Args:
@@ -391,14 +380,7 @@ class ParsedTextRule(Generic[Parsed]):
         if not isinstance(raw, str) or isinstance(raw, Decimal):
             found.append(Finding(path, f"{self.needed} is needed here, not {shown(raw)}", self.like))
             return None
-        try:
-            return self.parse(raw)
-        except ExpressionError as error:
-            found.append(Finding(path, error.what, error.mend, error.column, error.length, raw=raw))
-            return None
-
-    def leaves(self, value: Any, path: DocumentPath, part: Any) -> Iterator[Leaf]:
-        yield Leaf(path, self, value, part)
+        return read_text(lambda: self.parse(raw), raw, path, found)
 
     def schema(self, definitions: dict[str, Any]) -> dict[str, Any]:
         return {"type": "string", "description": f"{self.needed}, {self.like}", **dict(self.limits)}
