@@ -6,7 +6,7 @@ doubles; every other function is evaluated as it is defined, with 50 digits. Not
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping
 from dataclasses import replace
 from functools import cached_property
 from typing import Any
@@ -25,16 +25,21 @@ from eomgen.mechanics.instant.outputs import Quantities
 from eomgen.mechanics.reactions.reactions import reactions_of
 from eomgen.model.outputs import FUNCTIONS
 from eomgen.model.outputs.base import BALANCE
+from eomgen.proof.in_numbers import with_inputs
 from eomgen.proof.printed import least_multipliers
+from eomgen.proof.states import TrialState
+from eomgen.proof.trials import Trials
 from eomgen.records import dataclass
 from eomgen.simulation.reaction_columns import ReactionColumns
 from eomgen.symbolic.expression.derivative import depends_on
 from eomgen.symbolic.expression.expressions import Call, Expression, parse
 from eomgen.symbolic.expression.graph import Node, Scalar
+from eomgen.symbolic.expression.node import State
 from eomgen.symbolic.expression.rational import Fraction
 from eomgen.symbolic.numeric.evaluation import NoValue, evaluate, fifty_digits
 from eomgen.symbolic.numeric.tolerances import COMPUTED, ROUNDING, SAME_PLACE, SOLVED
 
+MOST = 3  # states at which all formulas are compared
 AWAY = 10  # times what nearby states make of it, by which a number may be off
 
 
@@ -53,13 +58,11 @@ class NumericState:
     numbers: Mapping[Node, float]
 
     @cached_property
-    def values(self) -> dict[Node, Any]:
+    def values(self) -> State:
         """t, q, u, parameters and inputs with 50 digits."""
-        digits, inputs = fifty_digits(), self.equations.symbols.inputs
-        known = dict(zip(self.parameters, evaluate(tuple(self.parameters.values()), {}, digits), strict=True))
-        known |= {node: precise(float(x)) for node, x in self.numbers.items()}
-        own = evaluate(tuple(self.equations.inputs[name] for name in inputs), known, digits)
-        return known | dict(zip(inputs.values(), own, strict=True))
+        values = evaluate(tuple(self.parameters.values()), {}, fifty_digits())
+        known = dict(zip(self.parameters, values, strict=True))
+        return with_inputs(self.equations.system, known | {x: precise(float(v)) for x, v in self.numbers.items()})
 
     @cached_property
     def unknowns(self) -> dict[Node, Any]:
@@ -137,6 +140,35 @@ class NumericState:
         moved = ({node: x + sign * turns[node] for node, x in self.numbers.items()} for sign in (1, -1))
         first, last = (replace(self, numbers=numbers) for numbers in moved)
         return first, last
+
+
+def moving_states(equations: EquationsOfMotion) -> Iterator[NumericState]:
+    """The first state of each supply where the motion has accelerations."""
+    count = 0
+    for _, supply in Trials(equations).states.supplies:
+        for place in supply:
+            state = _in_numbers(equations, place)
+            try:
+                state.unknowns.keys()
+            except (NoValue, ZeroDivisionError, DerivationError):
+                continue
+            yield state
+            count += 1
+            break
+        if count == MOST:
+            return
+
+
+def place_of(state: NumericState) -> str:
+    """Its first coordinates, in words."""
+    moving = [f"{node.name} = {x:.6g}" for node, x in state.numbers.items()]
+    return ", ".join(moving[1:4])
+
+
+def _in_numbers(equations: EquationsOfMotion, place: TrialState) -> NumericState:
+    symbols, values = equations.symbols, place.state
+    parameters = {node: Fraction(float(values[node])) for node in symbols.parameters.values()}
+    return NumericState(equations, parameters, {x: float(values[x]) for x in (symbols.t, *symbols.q, *symbols.u)})
 
 
 def read_back(system: System, text: str) -> Scalar:

@@ -2,10 +2,13 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Callable, Iterable, Iterator
+from dataclasses import field
 from typing import Any, Literal
 
+from eomgen.errors import EomgenError
 from eomgen.records import dataclass
+from eomgen.symbolic.numeric.evaluation import NoValue
 
 Status = Literal["holds", "fails", "unchecked"]
 MARKS: dict[Status, str] = {"holds": "ok  ", "fails": "FAIL", "unchecked": "?   "}
@@ -43,6 +46,19 @@ def checked(name: str, wrong: str, how: str) -> Check:
 def unchecked(name: str, why: str, how: str) -> Check:
     """A check for which there is no state, no value or no time."""
     return Check(name, "unchecked", how, why)
+
+
+def attempted(name: str, how: str, wrong: Callable[[], str]) -> Check:
+    """A check of what may have no value: then it could not be made."""
+    try:
+        return checked(name, wrong(), how)
+    except (NoValue, ZeroDivisionError) as error:
+        return unchecked(name, str(error) or "no value", how)
+
+
+def first_wrong(found: Iterable[str]) -> str:
+    """The first thing that is wrong, or ""."""
+    return next(filter(None, found), "")
 
 
 @dataclass(frozen=True)
@@ -89,3 +105,43 @@ class Certificate:
         """For `--json`."""
         rows = [{"name": c.name, "status": c.status, "ok": c.ok, "how": c.how, "detail": c.detail} for c in self.checks]
         return {"ok": self.ok, "checks": rows}
+
+
+@dataclass
+class Tally:
+    """What was compared so far, and with what outcome.
+
+    Args:
+        name, how: of the check.
+        held: how many hold.
+        wrong: what differs, in words.
+        left: {what could not be compared: why}.
+    """
+
+    name: str
+    how: str
+    held: int = 0
+    wrong: list[str] = field(default_factory=list)
+    left: dict[str, str] = field(default_factory=dict)
+
+    def add(self, what: str, compared: Callable[[], str]) -> None:
+        """One comparison: what differs in words, or ""; what has no value or is not derived is left."""
+        try:
+            found = compared()
+        except (NoValue, ZeroDivisionError) as error:
+            self.left[what] = str(error) or "no value"
+        except EomgenError as error:  # the edge of a proof: whatever refuses is said to be unchecked
+            self.left[what] = error.what
+        else:
+            self.held += not found
+            self.wrong += [f"{what}: {found}"] if found else []
+
+    def checks(self) -> Iterator[Check]:
+        """Of what was compared, then of what could not be."""
+        if self.wrong:
+            yield checked(self.name, "; ".join(self.wrong[:3]), self.how)
+        elif self.held:
+            yield Check(self.name, "holds", self.how, f"of {self.held}")
+        for why in dict.fromkeys(self.left.values()):
+            names = ", ".join(what for what, reason in self.left.items() if reason == why)
+            yield unchecked(self.name, f"{names}: {why}", self.how)

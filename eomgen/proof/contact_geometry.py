@@ -30,24 +30,20 @@ from eomgen.model.constraints.meeting import (
     TouchingPoint,
 )
 from eomgen.model.forces.load import Push
+from eomgen.proof.in_numbers import InNumbers, direction_at
 from eomgen.proof.states import refuse_open
 from eomgen.records import dataclass
-from eomgen.symbolic.expression.graph import Scalar
 from eomgen.symbolic.expression.node import State
 from eomgen.symbolic.expression.spatial import (
     ZERO,
     Numbers,
-    apply,
     cross,
     dot,
-    matrix_of,
     minus,
     plus,
     times,
-    transposed,
     vector_of,
 )
-from eomgen.symbolic.numeric.evaluation import NoValue, evaluate, fifty_digits
 from eomgen.symbolic.numeric.tolerances import COMPUTED
 
 Y, Z = (0, 1, 0), (0, 0, 1)
@@ -100,11 +96,9 @@ def apart(system: System, state: State) -> str:
 
 
 @dataclass(frozen=True)
-class _Contact:
+class _Contact(InNumbers):
     """One contact at one state, in numbers."""
 
-    system: System
-    state: State
     name: str
     meeting: Meeting
 
@@ -115,7 +109,7 @@ class _Contact:
         size = 1 + max(map(abs, touch.first))
         if max(map(abs, distance)) > COMPUTED * size:
             return "its two points of contact are apart"
-        slip = minus(self._velocity(self._body, touch.first), self._velocity(self.meeting.surface.on, touch.first))
+        slip = minus(self.velocity(self._body, touch.first), self.velocity(self.meeting.surface.on, touch.first))
         held = (slip,) if self.meeting.sticks else tuple(times(dot(slip, e), e) for e in touch.held)
         if self._rigid and any(abs(x) > COMPUTED * (1 + size) for part in held for x in part):
             return "its two points of contact part or slip"
@@ -135,15 +129,15 @@ class _Contact:
         """Whether pushes do not come to a unit force at the contact on its body, and its opposite on the other."""
         found: dict[str, tuple[Numbers, Numbers]] = {}
         for push in pushes:
-            wrench = body_wrench(self.system.motion, push)
+            wrench = body_wrench(self.motion, push)
             if wrench is not None:
                 body, W = wrench
                 f, tau = found.get(body, (ZERO, ZERO))
-                found[body] = plus(f, self._vector(W.f)), plus(tau, self._vector(W.tau))
+                found[body] = plus(f, self.vector(W.f)), plus(tau, self.vector(W.tau))
         forces = []
         for body, (own_force, own_couple) in found.items():
-            f, tau = (self._carried(body, x, direction=True) for x in (own_force, own_couple))
-            about_contact: Numbers = minus(tau, cross(minus(touch.first, self._carried(body, ZERO)), f))
+            f, tau = (self.carried(body, x, direction=True) for x in (own_force, own_couple))
+            about_contact: Numbers = minus(tau, cross(minus(touch.first, self.carried(body, ZERO)), f))
             if max(map(abs, about_contact)) > COMPUTED * (1 + max(map(abs, touch.first))):
                 return True
             forces.append(f if body == self._body else times(-1, f))
@@ -162,13 +156,7 @@ class _Contact:
 
     @cached_property
     def _scene(self) -> SystemScene:
-        return SystemScene(self.system.motion, f"constraints.{self.name}")
-
-    def _numbers(self, scalars: Sequence[Scalar]) -> list[Any]:
-        return evaluate(tuple(scalars), self.state, fifty_digits())
-
-    def _vector(self, vector: Sequence[Scalar]) -> Numbers:
-        return vector_of(self._numbers(vector))
+        return SystemScene(self.motion, f"constraints.{self.name}")
 
     @property
     def _body(self) -> str | None:
@@ -181,30 +169,7 @@ class _Contact:
         what, surface = self.meeting.what, self.meeting.surface
         own = self._scene.place(what.point)[1] if isinstance(what, TouchingPoint) else ZERO
         seats = [own] if isinstance(surface, (BodyLine, Groove)) else [own, self._anchor]
-        return not any(self.system.motion.moves(tuple(seat)) for seat in seats)
-
-    def _pose(self, body: str | None) -> list[Any] | None:
-        if body is None:
-            return None
-        link = self.system.motion.link(body)
-        return self._numbers([*(x for row in link.pose.R for x in row), *link.pose.p, *link.twist.w, *link.twist.v])
-
-    def _carried(self, body: str | None, place: Numbers, *, direction: bool = False) -> Numbers:
-        """A place or direction of a body, ground axes."""
-        pose = self._pose(body)
-        if pose is None:
-            return place
-        turned = apply(matrix_of((pose[0:3], pose[3:6], pose[6:9])), place)
-        return turned if direction else plus(vector_of(pose[9:12]), turned)
-
-    def _velocity(self, body: str | None, P: Numbers) -> Numbers:
-        """Of the material point of a body at P, ground axes: R (v + w x R^T (P - p))."""
-        pose = self._pose(body)
-        if pose is None:
-            return ZERO
-        R, p = matrix_of((pose[0:3], pose[3:6], pose[6:9])), vector_of(pose[9:12])
-        arm = apply(transposed(R), minus(P, p))
-        return apply(R, plus(vector_of(pose[15:18]), cross(vector_of(pose[12:15]), arm)))
+        return not any(self.motion.moves(tuple(seat)) for seat in seats)
 
     @cached_property
     def _anchor(self) -> Numbers:
@@ -224,7 +189,7 @@ class _Contact:
         """The point, or the centre of what is round, ground axes."""
         what, scene = self.meeting.what, self._scene
         place = scene.place(what.point) if isinstance(what, TouchingPoint) else scene.own_place(what.body, what.center)
-        return self._carried(place[0], self._vector(place[1]))
+        return self.carried(place[0], self.vector(place[1]))
 
     @cached_property
     def _form(self) -> _Form:
@@ -237,33 +202,33 @@ class _Contact:
         if radius is None and axis is None and semiaxes is None:
             semiaxes = getattr(shape, "semiaxes", None)
         if semiaxes is not None:
-            return _Form(0, semiaxes=self._vector(scene.vector(semiaxes)))
+            return _Form(0, semiaxes=self.vector(scene.vector(semiaxes)))
         if radius is None and self._space and shape is not None and shape.is_tyre:
             radius, tube = shape.major, shape.minor if tube is None else tube
             axis = Z if axis is None else axis
         R = scene.radius(what.body) if radius is None else scene.value(radius)
-        R, section = self._numbers([R, 0 if tube is None else scene.value(tube)])
+        R, section = self.at([R, 0 if tube is None else scene.value(tube)])
         if axis is None:
             return _Form(R)
         own = axis if axis is Z else scene.vector(axis)
-        return _Form(R, section, _unit(self._carried(what.body, self._vector(own), direction=True)))
+        return _Form(R, section, direction_at(self.carried(what.body, self.vector(own), direction=True)))
 
     @property
     def _touch(self) -> Touch:
         surface, C = self.meeting.surface, self._center
         if isinstance(surface, Groove):
-            normal = Z if surface.normal is None else self._vector(self._scene.vector(surface.normal))
-            edge = self._carried(surface.on, self._vector(self._scene.vector(surface.along)), direction=True)
-            return Touch(C, C, (_unit(cross(normal, edge)),))
+            normal = Z if surface.normal is None else self.vector(self._scene.vector(surface.normal))
+            edge = self.carried(surface.on, self.vector(self._scene.vector(surface.along)), direction=True)
+            return Touch(C, C, (direction_at(cross(normal, edge)),))
         if isinstance(surface, BodyLine):
-            a, b = (self._carried(surface.on, self._vector(r)) for _, r in self._scene.line(surface.on))
-            along = _unit(minus(b, a))
+            a, b = (self.carried(surface.on, self.vector(r)) for _, r in self._scene.line(surface.on))
+            along = direction_at(minus(b, a))
             foot = plus(a, times(dot(along, minus(C, a)), along))
             return Touch(C, foot, tuple(_across(along)) if self._space else (_turned(along),))
-        A = self._carried(surface.on, self._vector(self._anchor))
+        A = self.carried(surface.on, self.vector(self._anchor))
         if isinstance(surface, FlatSurface):
-            normal = self._vector(self._scene.vector(surface.normal))
-            n = _unit(self._carried(surface.on, normal, direction=True))
+            normal = self.vector(self._scene.vector(surface.normal))
+            n = direction_at(self.carried(surface.on, normal, direction=True))
             P = self._lowest(C, n)
             return Touch(P, minus(P, times(dot(n, minus(P, A)), n)), (n,))
         return self._on_round(surface, C, A)
@@ -273,39 +238,32 @@ class _Contact:
         form, side = self._form, -1 if surface.inside else 1
         if form.axis is not None:
             h = minus(minus(C, A), times(dot(minus(C, A), form.axis), form.axis))
-            C = minus(C, times(side * form.radius, _unit(h)))
+            C = minus(C, times(side * form.radius, direction_at(h)))
         if surface.axis is not None:
-            axis = self._vector(self._scene.vector(surface.axis))
-            a = _unit(self._carried(surface.on, axis, direction=True))
+            axis = self.vector(self._scene.vector(surface.axis))
+            a = direction_at(self.carried(surface.on, axis, direction=True))
             A = plus(A, times(dot(minus(C, A), a), a))
-        out = _unit(minus(C, A))
+        out = direction_at(minus(C, A))
         r = self._scene.radius(str(surface.on)) if surface.radius is None else self._scene.value(surface.radius)
         section = form.radius if form.axis is None else form.tube
-        first, second = minus(C, times(side * section, out)), plus(A, times(self._numbers([r])[0], out))
+        first, second = minus(C, times(side * section, out)), plus(A, times(self.one(r), out))
         return Touch(first, second, (times(side, out),))
 
     def _lowest(self, C: Numbers, n: Numbers) -> Numbers:
         """The point of a round body that is farthest along -n."""
         form, body = self._form, getattr(self.meeting.what, "body", None)
         if form.semiaxes is not None:
-            axes = [self._carried(body, e, direction=True) for e in ((1, 0, 0), Y, Z)]
-            x = _unit(vector_of(-s * dot(n, e) for s, e in zip(form.semiaxes, axes, strict=True)))
+            axes = [self.carried(body, e, direction=True) for e in ((1, 0, 0), Y, Z)]
+            x = direction_at(vector_of(-s * dot(n, e) for s, e in zip(form.semiaxes, axes, strict=True)))
             for s, k, e in zip(form.semiaxes, x, axes, strict=True):
                 C = plus(C, times(s * k, e))
             return C
-        d = n if form.axis is None else _unit(minus(n, times(dot(form.axis, n), form.axis)))
+        d = n if form.axis is None else direction_at(minus(n, times(dot(form.axis, n), form.axis)))
         return minus(minus(C, times(form.radius, d)), times(form.tube, n))
 
     @property
     def _space(self) -> bool:
         return self.system.scope.model.space == "space"
-
-
-def _unit(a: Numbers) -> Numbers:
-    size = fifty_digits().functions["sqrt"](dot(a, a))
-    if size == 0:
-        raise NoValue("a direction of length 0")
-    return times(1 / size, a)
 
 
 def _turned(a: Numbers) -> Numbers:
@@ -315,6 +273,6 @@ def _turned(a: Numbers) -> Numbers:
 def _across(a: Numbers) -> Iterator[Numbers]:
     """Two unit vectors across a unit vector."""
     k = min(range(3), key=lambda i: abs(a[i]))
-    first = _unit(cross(a, vector_of(int(i == k) for i in range(3))))
+    first = direction_at(cross(a, vector_of(int(i == k) for i in range(3))))
     yield first
     yield cross(a, first)

@@ -26,9 +26,8 @@ from eomgen.mechanics.constraints.closure import of_50_digits
 from eomgen.mechanics.constraints.ties import Row, rows_of_tie
 from eomgen.mechanics.equations.system import System
 from eomgen.model.contacts import Contact
-from eomgen.proof.check import Check
+from eomgen.proof.check import Check, Tally
 from eomgen.proof.joint_places import misplaced
-from eomgen.proof.tally import Tally
 from eomgen.records import dataclass
 from eomgen.simulation.contact_events import sliding_velocity
 from eomgen.simulation.phase_model import PhaseModel, Values, slack_name

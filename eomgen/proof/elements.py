@@ -9,17 +9,16 @@ own lengths, rates, stretches and loads are what is proven.
 
 from __future__ import annotations
 
-from collections.abc import Sequence
 from functools import cached_property
 from typing import Any
 
-from eomgen.mechanics.bodies.kinematics import BodyLink, Motion, velocity_of
+from eomgen.mechanics.bodies.kinematics import BodyLink, velocity_of
 from eomgen.mechanics.bodies.loads import Applied, JointEffort, SystemScene
 from eomgen.mechanics.equations.system import System
 from eomgen.model.forces.element import Element
-from eomgen.proof.pushes import Pushes, add_push, direction_at, pushed_otherwise, pushes_of
+from eomgen.proof.in_numbers import InNumbers, Pushes, add_push, direction_at, pushed_otherwise, pushes_of
 from eomgen.records import dataclass
-from eomgen.symbolic.expression.graph import Scalar, is_zero
+from eomgen.symbolic.expression.graph import is_zero
 from eomgen.symbolic.expression.node import State
 from eomgen.symbolic.expression.spatial import (
     ZERO,
@@ -34,7 +33,6 @@ from eomgen.symbolic.expression.spatial import (
     product,
     times,
     transposed,
-    vector_of,
 )
 from eomgen.symbolic.numeric.evaluation import NoValue, evaluate, fifty_digits
 from eomgen.symbolic.numeric.tolerances import ZERO_AT_50
@@ -126,11 +124,9 @@ def _by_whole_turns(angle: Any, other: Any) -> Any:
 
 
 @dataclass(frozen=True)
-class _Acting:
+class _Acting(InNumbers):
     """One element at one state."""
 
-    system: System
-    state: State
     applied: Applied
     element: Element
 
@@ -144,19 +140,9 @@ class _Acting:
             return _energy(self.at((self.applied.potential,))[0], energy)
         return ""
 
-    def at(self, scalars: Sequence[Scalar]) -> list[Any]:
-        return evaluate(tuple(scalars), self.state, fifty_digits())
-
-    @property
-    def motion(self) -> Motion:
-        return self.system.motion
-
     @cached_property
     def scene(self) -> SystemScene:
         return SystemScene(self.motion, f"forces.{self.applied.name}")
-
-    def vector(self, v: Sequence[Scalar]) -> Numbers:
-        return vector_of(self.at(v))
 
     # -- geometry --------------------------------------------------------------------------------------------
 

@@ -10,15 +10,16 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import field, replace
-from typing import Any
 
 import numpy as np
 
 from eomgen.mechanics.constraints.closure import of_50_digits as precise
 from eomgen.mechanics.equations.equations_of_motion import EquationsOfMotion
 from eomgen.proof.check import Check, checked, unchecked
+from eomgen.proof.in_numbers import with_inputs
 from eomgen.records import dataclass
 from eomgen.symbolic.expression.graph import Node, Scalar
+from eomgen.symbolic.expression.node import State
 from eomgen.symbolic.expression.traversal import order
 from eomgen.symbolic.numeric.dense import of_one_length
 from eomgen.symbolic.numeric.evaluation import NoValue, evaluate, fifty_digits, floats_of
@@ -54,16 +55,14 @@ class PhaseMotion:
 
     equations: EquationsOfMotion
 
-    def values(self, at: TriedState) -> dict[Node, Any]:
+    def values(self, at: TriedState) -> State:
         """Every symbol but a and lam at a state, with 50 digits; the inputs as the model says, or as they are given."""
         symbols = self.equations.symbols
         nodes = (symbols.t, *symbols.q, *symbols.u, *symbols.parameters.values())
         numbers = (at.t, *at.x, *at.p)
         found = {node: precise(float(value)) for node, value in zip(nodes, numbers, strict=True)}
-        own = [name for name in symbols.inputs if name not in at.inputs]
-        values = evaluate(tuple(self.equations.inputs[name] for name in own), found, fifty_digits())
         given = {symbols.inputs[name]: precise(float(x)) for name, x in at.inputs.items()}
-        return found | given | {symbols.inputs[name]: x for name, x in zip(own, values, strict=True)}
+        return with_inputs(self.equations.system, found | given)
 
     @property
     def scalars(self) -> tuple[Scalar, ...]:

@@ -26,11 +26,11 @@ from eomgen.mechanics.bodies.loads import body_wrench, weights
 from eomgen.mechanics.equations.system import System
 from eomgen.mechanics.equations.work import joint_forces, placeless_forces
 from eomgen.mechanics.formulations.lagrange import free_rates
+from eomgen.proof.in_numbers import InNumbers, Way, way_through
 from eomgen.records import dataclass
 from eomgen.symbolic.expression.derivative import gradient, pullback, symbols_of
 from eomgen.symbolic.expression.graph import Scalar
 from eomgen.symbolic.expression.node import State
-from eomgen.symbolic.expression.rational import Fraction
 from eomgen.symbolic.expression.spatial import (
     ZERO,
     Matrix,
@@ -50,7 +50,6 @@ from eomgen.symbolic.numeric.evaluation import NoValue, evaluate, fifty_digits
 from eomgen.symbolic.numeric.tolerances import COMPUTED, RANK
 
 PARTS = 18  # numbers of a joint: E^T, r, r', s
-STEP = Fraction(1, 10**15)  # of differences: with 50 digits their error is below 1e-28
 
 
 @dataclass(frozen=True)
@@ -136,34 +135,20 @@ def _demand(system: System, state: State) -> Demand:
 
 
 @dataclass(frozen=True)
-class _Bodies:
+class _Bodies(InNumbers):
     """The free bodies of a system at a state."""
-
-    system: System
-    state: State
 
     @property
     def links(self) -> tuple[BodyLink, ...]:
         return self.system.motion.links
 
-    def at(self, scalars: Sequence[Scalar]) -> list[Any]:
-        return evaluate(tuple(scalars), self.state, fifty_digits())
-
     def along_motion(self, scalars: Sequence[Scalar]) -> tuple[list[Any], list[Any]]:
         """(values, rates along the motion with the accelerations of the state), these by differences."""
-        late, early = (evaluate(scalars, place, fifty_digits()) for place in self._beside)
-        width = 2 * fifty_digits().number(STEP)
-        return self.at(scalars), [(x - y) / width for x, y in zip(late, early, strict=True)]
+        return self.at(scalars), self._way.rates(scalars)
 
     @cached_property
-    def _beside(self) -> tuple[State, State]:
-        """The states a step later and earlier."""
-        symbols, state = self.system.scope.symbols, self.state
-        path = dict(zip(symbols.q, self.at(self.system.scope.rates), strict=True))
-        path |= {u: state[a] for u, a in zip(symbols.u, symbols.a, strict=True)} | {symbols.t: 1}
-        h = fifty_digits().number(STEP)
-        later, earlier = ({x: state[x] + sign * h * rate for x, rate in path.items()} for sign in (1, -1))
-        return state | later, state | earlier
+    def _way(self) -> Way:
+        return way_through(self.system, self.state)
 
     @cached_property
     def _joints(self) -> list[tuple[Scalar, ...]]:

@@ -23,6 +23,7 @@ from eomgen.mechanics.instant.kinematic_state import KinematicState
 from eomgen.mechanics.instant.mechanism import FIXED
 from eomgen.mechanics.instant.outputs import Quantities
 from eomgen.proof.check import Check, checked, unchecked
+from eomgen.proof.in_numbers import SECOND_STEP, Way, way_through, with_inputs
 from eomgen.proof.nearby import Nearby
 from eomgen.proof.states import closed_state
 from eomgen.records import dataclass
@@ -49,7 +50,6 @@ from eomgen.symbolic.numeric.dense import rank
 from eomgen.symbolic.numeric.evaluation import NoValue, evaluate, fifty_digits
 from eomgen.symbolic.numeric.tolerances import COMPUTED, DIFFERENCE_AT_50, LARGEST_AT_50
 
-STEP = fifty_digits().number(1) / 10**12  # [s] of first and second differences: both are sure to 20 digits
 DIFFERENCES = "differences at 50 digits"
 MOST_TRIPLES = 60  # of bodies whose three centres are looked at
 
@@ -148,24 +148,14 @@ class _Proof:
         return bool(self.state.accelerated)
 
     @cached_property
-    def way(self) -> tuple[Mapping[Node, Any], ...]:
-        """The values h earlier, now, and h later."""
-        system, values = self.state.system, dict(self.values)
-        symbols, scope, h = system.symbols, system.scope, STEP
-        for a in symbols.a:
-            values.setdefault(a, 0)
-        first = evaluate(scope.rates, values, fifty_digits())
-        second = evaluate(scope.with_accelerations(scope.rates), values, fifty_digits())
+    def way(self) -> Way:
+        """The motion through the state, to second order."""
+        system = self.state.system
+        found = way_through(system, {**dict.fromkeys(system.symbols.a, 0), **self.values}, SECOND_STEP, order=2)
+        _, first, second = found.along(system.symbols.q)
         if any(abs(x) > LARGEST_AT_50 for x in (*first, *second)):
             raise NoValue("too fast for differences")
-
-        def later(t: Any) -> dict[Node, Any]:
-            places = zip(symbols.q, first, second, strict=True)
-            speeds = {u: values[u] + t * values[a] for u, a in zip(symbols.u, symbols.a, strict=True)}
-            moved = {q: values[q] + t * v + t * t / 2 * a for q, v, a in places}
-            return {**values, **speeds, **moved, symbols.t: values[symbols.t] + t}
-
-        return later(-h), values, later(h)
+        return found
 
     def along(self, scalars: Sequence[Scalar]) -> tuple[list[Any], list[Any], list[Any]]:
         """(scalars, their first and second rates) by differences.
@@ -173,11 +163,9 @@ class _Proof:
         Raises:
             NoValue: they are so large that no digits are left for differences.
         """
-        early, now, late = (evaluate(tuple(scalars), each, fifty_digits()) for each in self.way)
+        now, first, second = self.way.along(scalars)
         if any(abs(x) > LARGEST_AT_50 for x in now):
             raise NoValue("too far from the origin for differences")
-        first = [(b - a) / (2 * STEP) for a, b in zip(early, late, strict=True)]
-        second = [(a - 2 * x + b) / STEP**2 for a, x, b in zip(early, now, late, strict=True)]
         return now, first, second
 
     def wrong_freedoms(self) -> str | None:
@@ -191,10 +179,10 @@ class _Proof:
         return ""
 
     def here(self, scalars: Sequence[Scalar]) -> Numbers:
-        return vector_of(evaluate(tuple(scalars), self.way[1], fifty_digits()))
+        return vector_of(evaluate(tuple(scalars), self.way.now, fifty_digits()))
 
     def one(self, x: Scalar) -> Any:
-        return evaluate((x,), self.way[1], fifty_digits())[0]
+        return evaluate((x,), self.way.now, fifty_digits())[0]
 
     @cached_property
     def bodies(self) -> dict[str, Seen]:
@@ -250,7 +238,7 @@ class _Proof:
         names = self.state.system.scope.names
         for text in self.state.given:
             sides = [side.evaluate(names, quantities.value) for side in parse_equation(text)]
-            left, right = evaluate(sides, self.way[1], fifty_digits())
+            left, right = evaluate(sides, self.way.now, fifty_digits())
             if abs(left - right) > self.tolerance * (abs(left) + abs(right) + self.size[0]):
                 return f"{text}: {float(left):.10g} and {float(right):.10g}"
         return ""
@@ -376,9 +364,7 @@ class _Proof:
         system, equations = self.state.system, self.state.equations
         if equations is None or not self.accelerated:
             return None
-        known = dict(self.way[1])
-        inputs = {node: system.inputs[name] for name, node in system.symbols.inputs.items() if node not in known}
-        known |= dict(zip(inputs, evaluate(tuple(inputs.values()), known, fifty_digits()), strict=True))
+        known = with_inputs(system, self.way.now)
         free = Nearby(equations, (), known, system.symbols.q, system.symbols.u).going(known)
         for u, a in zip(system.symbols.u, system.symbols.a, strict=True):
             if self.differs((known[a],), (free.a[u],), 2, self.tolerance):
@@ -429,9 +415,9 @@ def _freedoms_left(system: System, values: Mapping[Node, Any]) -> int:
         going = evaluate((*scope.rates, *rates), {**still, u: digits.number(1)}, digits)
         along = [x - y for x, y in zip(going, drift, strict=True)]
         step = dict(zip(symbols.q, along, strict=False))
-        aside = ({**still, **{q: still[q] + h * x for q, x in step.items()}} for h in (STEP, -STEP))
+        aside = ({**still, **{q: still[q] + h * x for q, x in step.items()}} for h in (SECOND_STEP, -SECOND_STEP))
         late, early = (evaluate(gaps, place, digits) for place in aside)
-        opened = [(x - y) / (2 * STEP) for x, y in zip(late, early, strict=True)]
+        opened = [(x - y) / (2 * SECOND_STEP) for x, y in zip(late, early, strict=True)]
         columns.append([*opened, *along[len(symbols.q) :]])
     slopes = np.array(columns, dtype=float).T
     return len(symbols.u) - rank(np.where(abs(slopes) > DIFFERENCE_AT_50, slopes, 0.0))

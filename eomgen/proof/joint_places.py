@@ -10,9 +10,10 @@ from __future__ import annotations
 from collections.abc import Sequence
 from typing import Any
 
-from eomgen.mechanics.bodies.kinematics import BodyLink, Motion, ground_place
+from eomgen.mechanics.bodies.kinematics import BodyLink, ground_place
 from eomgen.mechanics.equations.system import System
 from eomgen.model.joints.moves import Move, QuaternionTurn, SlideAlong, TurnAbout, WayAlongPieces
+from eomgen.proof.in_numbers import InNumbers, direction_at
 from eomgen.records import dataclass
 from eomgen.symbolic.expression.graph import Scalar
 from eomgen.symbolic.expression.node import State
@@ -36,7 +37,7 @@ def misplaced(system: System, state: State) -> str:
     stands = [_stand(own) for own in bodies]
     for link, here in zip(links, stands, strict=True):
         above = stands[link.parent] if link.parent >= 0 else _Stand(ZERO, *IDENTITY, 0)
-        if wrong := _Seated(system.motion, state, link).wrong(above, here):
+        if wrong := _Seated(system, state, link).wrong(above, here):
             return f"'{link.name}' {wrong}"
     return ""
 
@@ -69,21 +70,19 @@ def _stand(own: Sequence[Any]) -> _Stand:
 
 
 @dataclass(frozen=True)
-class _Seated:
+class _Seated(InNumbers):
     """One body at one state."""
 
-    motion: Motion
-    state: State
     link: BodyLink
 
     def wrong(self, above: _Stand, here: _Stand) -> str:
         joint = self.link.joint
         moves = () if joint is None else (*(TurnAbout(t.axis, t.angle) for t in joint.turned or ()), *joint.moves())
-        place, e = self._seat, (self._one(1), ZERO)
+        place, e = self._seat, (self.one(1), ZERO)
         for move in moves:
             way, turn = self._moved(move)
             place, e = plus(place, _turned(e, way)), _after(e, turn)
-        place = minus(place, _turned(e, self._vector(self._own_point)))
+        place = minus(place, _turned(e, self.vector(self._own_point)))
         stated: Numbers = above.from_above(minus(here.p, above.p))
         if _apart(stated, place):
             return "is not where its joint says"
@@ -103,8 +102,8 @@ class _Seated:
         if joint is None:
             return ZERO
         if joint.on is not None and "." in joint.on:
-            return self._vector(self.motion.place(joint.on)[1])
-        return self._vector(ground_place(self.motion.scope, joint.at)) if joint.seated else ZERO
+            return self.vector(self.motion.place(joint.on)[1])
+        return self.vector(ground_place(self.motion.scope, joint.at)) if joint.seated else ZERO
 
     @property
     def _own_point(self) -> Sequence[Scalar]:
@@ -114,14 +113,14 @@ class _Seated:
 
     def _moved(self, move: Move) -> tuple[Numbers, Quaternion]:
         """(how far, how it turns)"""
-        still = (self._one(1), ZERO)
+        still = (self.one(1), ZERO)
         if isinstance(move, SlideAlong):
             return times(self._typed(move.way), self._unit(move.axis)), still
         if isinstance(move, TurnAbout):
             half, functions = self._typed(move.angle) / 2, fifty_digits().functions
             return ZERO, (functions["cos"](half), times(functions["sin"](half), self._unit(move.axis)))
         if isinstance(move, QuaternionTurn):
-            e0, e1, e2, e3 = self._values([self.motion.scope.names[name] for name in move.quaternion])
+            e0, e1, e2, e3 = self.at([self.motion.scope.names[name] for name in move.quaternion])
             return ZERO, (e0, (e1, e2, e3))
         return self._walked(move), still
 
@@ -144,26 +143,15 @@ class _Seated:
 
     # -- numbers ---------------------------------------------------------------------------------------------
 
-    def _values(self, scalars: Sequence[Scalar]) -> list[Any]:
-        return evaluate(tuple(scalars), self.state, fifty_digits())
-
-    def _one(self, x: Scalar) -> Any:
-        return self._values((x,))[0]
-
     def _typed(self, expression: Any) -> Any:
         """What is declared; nothing is 0."""
-        return self._one(0 if expression is None else self.motion.scope.value(expression))
-
-    def _vector(self, v: Sequence[Scalar]) -> Numbers:
-        return vector_of(self._values(v))
+        return self.one(0 if expression is None else self.motion.scope.value(expression))
 
     def _unit(self, axis: Any) -> Numbers:
         """A declared direction, of length 1; None: z."""
         entries = (0, 0, 1) if axis is None else axis
-        given = [self._one(x) if isinstance(x, int) else self._typed(x) for x in entries]
-        n = vector_of((*given, *[self._one(0)] * (3 - len(given))))
-        square: Any = dot(n, n)
-        return times(1 / fifty_digits().functions["sqrt"](square), n)
+        given = [x if isinstance(x, int) else self.motion.scope.value(x) for x in entries]
+        return direction_at(self.vector((*given, *[0] * (3 - len(given)))))
 
 
 def _after(first: Quaternion, second: Quaternion) -> Quaternion:

@@ -28,7 +28,7 @@ from eomgen.mechanics.initial_state.values_at_rest import values_of_parameters
 from eomgen.model.composite import PlacedPiece, pose_of
 from eomgen.model.shapes import MassProperties, Shape
 from eomgen.model.shapes.base import Cell
-from eomgen.proof.check import Check, checked, unchecked
+from eomgen.proof.check import Check, attempted, checked, first_wrong, unchecked
 from eomgen.records import dataclass
 from eomgen.symbolic.expression.expressions import Expression
 from eomgen.symbolic.expression.graph import Node, Scalar
@@ -75,19 +75,18 @@ def mass_checks(motion: Motion, stated: Sequence[Stated], numbers: Mapping[Node,
     yield from proof.shapes(bodies)
     composite = [body for body in bodies if motion.scope.model.bodies[body].parts is not None]
     if composite:
-        wrong = next(filter(None, map(proof.wrong_parts, composite)), "")
-        yield checked("the parts of every body add up", wrong, QUADRATURE)
+        yield checked("the parts of every body add up", first_wrong(map(proof.wrong_parts, composite)), QUADRATURE)
     name = "masses, centres, moments and products of inertia are those of the bodies' points"
-    try:
-        wrong = next((f"{name} of {each.of or 'all'}{why}" for each in stated for name, why in proof.wrong(each)), "")
-    except NoValue as error:
-        yield unchecked(name, str(error), QUADRATURE)
-        return
-    yield checked(name, wrong, QUADRATURE)
+    found = attempted(
+        name,
+        QUADRATURE,
+        lambda: first_wrong(f"{x} of {each.of or 'all'}{why}" for each in stated for x, why in proof.wrong(each)),
+    )
+    yield found
     principal = [each for each in stated if each.axes is not None]
-    if principal:
-        wrong = next(filter(None, map(proof.wrong_axes, principal)), "")
-        yield checked("principal axes are right-handed and make the tensor diagonal", wrong, "floating point")
+    if principal and found.ok is not None:
+        name = "principal axes are right-handed and make the tensor diagonal"
+        yield checked(name, first_wrong(map(proof.wrong_axes, principal)), "floating point")
 
 
 def tried(scope: Scope) -> dict[Node, float]:

@@ -14,10 +14,10 @@ import numpy as np
 
 from eomgen.mechanics.small_motions.modes import Modes
 from eomgen.mechanics.small_motions.polynomial import Polynomial
-from eomgen.proof.check import Check, checked, unchecked
+from eomgen.proof.check import Check, attempted, checked
 from eomgen.records import dataclass
 from eomgen.symbolic.expression.graph import Node
-from eomgen.symbolic.numeric.evaluation import NoValue, evaluate, fifty_digits
+from eomgen.symbolic.numeric.evaluation import evaluate, fifty_digits
 from eomgen.symbolic.numeric.tolerances import CARRIED, DIFFERENCE_AT_50, SAME_PLACE, SLOW
 
 SAMPLES = (
@@ -196,17 +196,15 @@ class _Proof:
     def conditions(self) -> Check:
         """All are positive where nothing grows, and one is not where something does."""
         name = "the conditions of stability hold where nothing grows, and only there"
-        digits, trial = fifty_digits(), self.modes.small.reference.trial
-        try:
-            values = evaluate(self.modes.conditions.expressions, trial, digits)
-        except (NoValue, ZeroDivisionError):
-            return unchecked(name, "they have no value", FLOATS)
-        wrong = ""
-        if min(values) > 0 and self.growth > SAME_PLACE:
-            wrong = "all hold, and an eigenvalue grows"
-        if min(values) < 0 and self.growth < -SAME_PLACE:
-            wrong = "one does not hold, and all eigenvalues fade"
-        return checked(name, wrong, FLOATS)
+        return attempted(name, FLOATS, lambda: self._wrong_conditions)
+
+    @property
+    def _wrong_conditions(self) -> str:
+        least = min(evaluate(self.modes.conditions.expressions, self.modes.small.reference.trial, fifty_digits()))
+        if least > 0 and self.growth > SAME_PLACE:
+            return "all hold, and an eigenvalue grows"
+        fading = least < 0 and self.growth < -SAME_PLACE
+        return "one does not hold, and all eigenvalues fade" if fading else ""
 
     # -- inputs ----------------------------------------------------------------------------------------------
 

@@ -21,6 +21,7 @@ from eomgen.mechanics.equations.equations_of_motion import EquationsOfMotion
 from eomgen.mechanics.instant.outputs import Quantities
 from eomgen.model.outputs import FUNCTIONS
 from eomgen.model.outputs.base import BALANCE
+from eomgen.proof.in_numbers import way_through
 from eomgen.proof.states import refuse_open
 from eomgen.records import dataclass
 from eomgen.symbolic.expression.derivative import gradient
@@ -34,7 +35,6 @@ from eomgen.symbolic.numeric.tolerances import COMPUTED
 
 SPINS = ("omega_x", "omega_y", "omega_z")
 LONGEST = 20_000  # characters of one formula that is read back
-STEP = fifty_digits().number(1) / 10**15  # of a central difference, whose error is its square
 
 
 @dataclass(frozen=True)
@@ -160,19 +160,11 @@ class ReadBack:
     def drifting(self, state: State) -> str:
         """Which constant does not stay at a state of the motion; "" where all do."""
         refuse_open(self.equations.system, state)
-        scalars = [x for _, x in self.constants]
-        late, early = (evaluate(scalars, self._later(state, sign * STEP), fifty_digits()) for sign in (1, -1))
-        for (text, _), x, y in zip(self.constants, late, early, strict=True):
-            if abs(x - y) > 2 * STEP * COMPUTED * (1 + abs(x)):
-                return f"{text} changes by {float((x - y) / (2 * STEP)):.3g} in a second"
+        worths, rates, _ = way_through(self.equations.system, state).along([x for _, x in self.constants])
+        for (text, _), worth, rate in zip(self.constants, worths, rates, strict=True):
+            if abs(rate) > COMPUTED * (1 + abs(worth)):
+                return f"{text} changes by {float(rate):.3g} in a second"
         return ""
-
-    def _later(self, state: State, h: Any) -> dict[Node, Any]:
-        symbols = self.equations.symbols
-        rates = evaluate(self.equations.system.scope.rates, state, fifty_digits())
-        path = dict(zip(symbols.q, rates, strict=True)) | {symbols.t: 1}
-        path |= {u: state[a] for u, a in zip(symbols.u, symbols.a, strict=True)}
-        return {**state, **{x: state[x] + h * rate for x, rate in path.items()}}
 
 
 def least_multipliers(equations: EquationsOfMotion, state: State) -> dict[Node, Any]:

@@ -8,10 +8,8 @@ from functools import partial
 from eomgen.codegen.reactions import determinate
 from eomgen.mechanics.equations.equations_of_motion import EquationsOfMotion
 from eomgen.mechanics.reactions.reactions import reactions_of
-from eomgen.proof.at_a_state import NumericState, off_by, read_back
-from eomgen.proof.check import Check
-from eomgen.proof.moving_states import moving_states, place_of
-from eomgen.proof.tally import Tally
+from eomgen.proof.at_a_state import NumericState, moving_states, off_by, place_of, read_back
+from eomgen.proof.check import Check, Tally
 from eomgen.symbolic.numeric.evaluation import NoValue
 from eomgen.symbolic.numeric.tolerances import COMPUTED
 

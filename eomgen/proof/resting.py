@@ -18,8 +18,9 @@ from eomgen.mechanics.equilibria.search import Equilibrium
 from eomgen.mechanics.equilibria.static_equations import StaticEquations
 from eomgen.mechanics.initial_state.values_at_rest import values_of_parameters
 from eomgen.mechanics.small_motions.first_order import FirstOrder
-from eomgen.proof.check import Check, checked, unchecked
+from eomgen.proof.check import Check, attempted, checked, first_wrong, unchecked
 from eomgen.proof.free_bodies import demand_of
+from eomgen.proof.in_numbers import STEP, with_inputs
 from eomgen.proof.nearby import Nearby
 from eomgen.records import dataclass
 from eomgen.symbolic.expression.derivative import jacobian
@@ -28,7 +29,6 @@ from eomgen.symbolic.numeric.evaluation import NoValue, evaluate, fifty_digits
 from eomgen.symbolic.numeric.tolerances import COMPUTED, DIFFERENCE_STEP, SAME_PLACE, SHARE, ZERO_AT_50
 
 MOST = 12  # places that are looked at
-STEP = fifty_digits().number(1) / 10**15  # of a central difference
 BY_MOTION = "50 digits"
 NOTHING_ACCELERATED = "nothing is accelerated at the places of rest"
 
@@ -36,11 +36,7 @@ NOTHING_ACCELERATED = "nothing is accelerated at the places of rest"
 def balance_check(places: Sequence[Equilibrium]) -> Check:
     """Q + J^T lam = 0 and phi = 0, put back into the equations of statics."""
     name = "the forces balance and the ties close at every place of rest"
-    try:
-        wrong = next(filter(None, (_at(k, _unbalanced(place)) for k, place in enumerate(places, start=1))), "")
-    except (NoValue, ZeroDivisionError) as error:
-        return unchecked(name, str(error) or "no value", BY_MOTION)
-    return checked(name, wrong, BY_MOTION)
+    return attempted(name, BY_MOTION, lambda: _first_at(places, _unbalanced))
 
 
 def _unbalanced(place: Equilibrium) -> str:
@@ -66,11 +62,7 @@ def _usual(statics: StaticEquations, known: Mapping[Node, Any]) -> list[Any]:
 def pushes_check(places: Sequence[Equilibrium]) -> Check:
     """What the free bodies ask for at rest, their weights, loads and ties' pushes summed body by body: nothing."""
     name = "the multipliers at every place of rest hold the free bodies"
-    try:
-        wrong = next(filter(None, (_at(k, _pushed(place)) for k, place in enumerate(places[:MOST], start=1))), "")
-    except (NoValue, ZeroDivisionError) as error:
-        return unchecked(name, str(error) or "no value", BY_MOTION)
-    return checked(name, wrong, BY_MOTION)
+    return attempted(name, BY_MOTION, lambda: _first_at(places[:MOST], _pushed))
 
 
 def _pushed(place: Equilibrium) -> str:
@@ -84,10 +76,8 @@ def _pushed(place: Equilibrium) -> str:
     held = {q: value for q, value in statics.given.items() if q in symbols.q}
     known |= dict(zip(held, evaluate(tuple(held.values()), known, digits), strict=True))
     known |= _places(place, statics.unknowns, known)
-    inputs = {node: free.inputs[name] for name, node in symbols.inputs.items()}
-    known |= dict(zip(inputs, evaluate(tuple(inputs.values()), known, digits), strict=True))
     most = max(_usual(statics, known), default=0)
-    for u, x in zip(symbols.u, demand_of(free, known).forces, strict=True):
+    for u, x in zip(symbols.u, demand_of(free, with_inputs(free, known)).forces, strict=True):
         if abs(x) > COMPUTED * most + ZERO_AT_50:
             return f"{float(x):.3g} is left along {u.name}"
     return ""
@@ -125,6 +115,10 @@ def _of_all(name: str, proofs: Sequence[_Proof], wrong: Callable[[_Proof], str],
     return unchecked(name, open_, how) if open_ else checked(name, "", how)
 
 
+def _first_at(places: Sequence[Equilibrium], wrong: Callable[[Equilibrium], str]) -> str:
+    return first_wrong(_at(k, wrong(place)) for k, place in enumerate(places, start=1))
+
+
 def _at(k: int, wrong: str) -> str:
     return wrong and f"place {k}: {wrong}"
 
@@ -149,8 +143,7 @@ class _Proof:
         known: dict[Node, Any] = values_of_parameters(system.scope, Random(3))
         known |= {x: digits.number(0) for x in (symbols.t, *symbols.u)}
         known |= _places(self.place, symbols.q, known)
-        inputs = {node: system.inputs[name] for name, node in symbols.inputs.items()}
-        return known | dict(zip(inputs, evaluate(tuple(inputs.values()), known, digits), strict=True))
+        return with_inputs(system, known)
 
     @cached_property
     def nearby(self) -> Nearby:

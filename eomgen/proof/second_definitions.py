@@ -8,7 +8,7 @@ Poses and masses alone are evaluated, at the state and a moment before and after
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 from dataclasses import replace
 from functools import cached_property
 from typing import Any
@@ -22,8 +22,7 @@ from eomgen.model.forces.load import GeneralizedForce, PointForce
 from eomgen.model.outputs import FUNCTIONS
 from eomgen.proof.at_a_state import NumericState, differing
 from eomgen.proof.free_bodies import demand_of, multipliers_demanded
-from eomgen.proof.instant import STEP
-from eomgen.proof.pushes import Pushes, add_push, pushes_of
+from eomgen.proof.in_numbers import SECOND_STEP, Pushes, Way, add_push, pushes_of, way_through
 from eomgen.records import dataclass
 from eomgen.symbolic.expression.derivative import symbols_of
 from eomgen.symbolic.expression.expressions import Call
@@ -62,22 +61,13 @@ class NearbyStates:
 
     @property
     def step(self) -> Any:
-        return STEP
+        return SECOND_STEP
 
     @cached_property
-    def _way(self) -> tuple[Mapping[Node, Any], ...]:
-        """The values h earlier, now, and h later."""
-        symbols, scope = self.state.equations.symbols, self.state.equations.system.scope
-        values, digits = dict(self.state.values), fifty_digits()
-        values |= dict.fromkeys(symbols.a, digits.number(0)) | (self._accelerations or {})
-        first = evaluate(scope.rates, values, digits)
-        second = evaluate(scope.with_accelerations(scope.rates), values, digits)
-
-        def later(h: Any) -> dict[Node, Any]:
-            moved = {q: values[q] + h * v + h * h / 2 * a for q, v, a in zip(symbols.q, first, second, strict=True)}
-            return {**values, **moved, symbols.t: values[symbols.t] + h}
-
-        return later(-STEP), values, later(STEP)
+    def _way(self) -> Way:
+        system, zero = self.state.equations.system, fifty_digits().number(0)
+        known = {**self.state.values, **dict.fromkeys(system.symbols.a, zero), **(self._accelerations or {})}
+        return way_through(system, known, SECOND_STEP, order=2)
 
     @cached_property
     def _accelerations(self) -> dict[Node, Any] | None:
@@ -89,16 +79,12 @@ class NearbyStates:
 
     def along(self, scalars: Sequence[Scalar]) -> tuple[list[Any], list[Any], list[Any]]:
         """What functions of q and t are worth, and their first and second rates."""
-        early, now, late = (evaluate(tuple(scalars), each, fifty_digits()) for each in self._way)
-        first = [(b - a) / (2 * STEP) for a, b in zip(early, late, strict=True)]
-        if self._accelerations is None:
-            return now, first, [math.nan] * len(now)
-        second = [(a - 2 * x + b) / STEP**2 for a, x, b in zip(early, now, late, strict=True)]
-        return now, first, second
+        now, first, second = self._way.along(scalars)
+        return now, first, second if self._accelerations is not None else [math.nan] * len(now)
 
     def around(self, place: Vector) -> tuple[Numbers, Numbers, Numbers]:
         """A place a moment before, now, and a moment later."""
-        early, now, late = (vector_of(evaluate(place, each, fifty_digits())) for each in self._way)
+        early, now, late = (vector_of(evaluate(place, each, fifty_digits())) for each in self._way.states)
         return early, now, late
 
     def particles(self, body: str, *, still: bool = False) -> list[tuple[Any, Numbers, Numbers]]:
@@ -136,7 +122,7 @@ class NearbyStates:
     def worked(self, body: str | None = None) -> Any:
         """Of every body F . v + tau . w, and s' times the effort of every joint."""
         system = self.state.equations.system
-        loads, known = system.loads, dict(self._way[1])
+        loads, known = system.loads, dict(self._way.now)
         if any(isinstance(load, GeneralizedForce) for force in loads.applied for load in force.loads):
             raise NoValue("something acts at no place")
         placed = [load for force in loads.applied for load in force.loads]
@@ -145,7 +131,7 @@ class NearbyStates:
         energies = tuple(f.potential for f in loads.applied if f.placeless and f.potential is not None and body is None)
         if system.symbols.t in symbols_of(energies):
             raise NoValue("a potential depends on time")
-        total = 0 * STEP - sum(self.along(energies)[1])
+        total = 0 * SECOND_STEP - sum(self.along(energies)[1])
         pushes = pushes_of(system.motion, known, (*placed, *weights(loads)))
         for effort in loads.efforts if body is not None else ():
             self._add_effort(pushes, effort)

@@ -27,6 +27,7 @@ from eomgen.mechanics.small_motions.spin_axes import NAME
 from eomgen.model.joints.orientation import rotation_of
 from eomgen.model.quaternions import quaternions_of
 from eomgen.proof.check import Check, checked, unchecked
+from eomgen.proof.in_numbers import STEP
 from eomgen.proof.modes import mode_checks
 from eomgen.proof.nearby import Going, Nearby, State
 from eomgen.records import dataclass
@@ -42,7 +43,6 @@ from eomgen.symbolic.numeric.tolerances import (
     ZERO_AT_50,
 )
 
-STEP = fifty_digits().number(1) / 10**15  # of a central difference, whose error is its square
 DIRECTIONS = 3  # random ones: a wrong entry is seen by each of them
 BY_DIFFERENCES = "differences at 50 digits"
 

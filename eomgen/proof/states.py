@@ -15,6 +15,7 @@ from eomgen.mechanics.constraints.closure import closed, generic_state, movable,
 from eomgen.mechanics.equations.system import System
 from eomgen.mechanics.initial_state.initial_state import start_state
 from eomgen.model.values import exact_parameters
+from eomgen.proof.in_numbers import with_inputs
 from eomgen.proof.pieces import Switch, switches_of
 from eomgen.records import dataclass
 from eomgen.symbolic.expression.graph import Scalar
@@ -184,8 +185,7 @@ def _own_state(system: System, rng: Random) -> State | None:
         state = closed(system.ties, state, movable(system.ties)) or state
     elif not system.scope.quaternions:
         state = in_doubles(state)
-    own = evaluate(tuple(system.inputs[name] for name in symbols.inputs), state, fifty_digits())
-    return state | dict(zip(symbols.inputs.values(), own, strict=True))
+    return with_inputs(system, state)
 
 
 def _set_moving(system: System, state: State, rng: Random) -> State:

@@ -9,7 +9,7 @@ string stays as long as it is, - sum d . (v_2 - v_1) = 0 of the material that it
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator
 from functools import cached_property
 from itertools import pairwise
 from typing import Any
@@ -17,13 +17,12 @@ from typing import Any
 from eomgen.mechanics.bodies.loads import SystemScene
 from eomgen.mechanics.equations.system import System
 from eomgen.model.constraints.meeting import Thread
-from eomgen.proof.pushes import Pushes, add_push, direction_at, pushed_otherwise, pushes_of
+from eomgen.proof.in_numbers import InNumbers, Pushes, add_push, direction_at, pushed_otherwise, pushes_of
 from eomgen.proof.states import refuse_open
 from eomgen.records import dataclass
-from eomgen.symbolic.expression.graph import Scalar
 from eomgen.symbolic.expression.node import State
-from eomgen.symbolic.expression.spatial import ZERO, Numbers, Vector, apply, cross, dot, minus, plus, times, vector_of
-from eomgen.symbolic.numeric.evaluation import NoValue, evaluate, fifty_digits
+from eomgen.symbolic.expression.spatial import Numbers, Vector, cross, dot, minus, plus, times, vector_of
+from eomgen.symbolic.numeric.evaluation import NoValue, fifty_digits
 from eomgen.symbolic.numeric.tolerances import COMPUTED, ZERO_AT_50
 
 
@@ -63,9 +62,7 @@ class _Stop:
 
 
 @dataclass(frozen=True)
-class _Strung:
-    system: System
-    state: State
+class _Strung(InNumbers):
     name: str
     thread: Thread
 
@@ -80,11 +77,11 @@ class _Strung:
                 add_push(due, first.body, cross(first.touched(d), d), d)
                 add_push(due, second.body, cross(second.touched(d), times(-1, d)), times(-1, d))
             size = 1 + max(abs(x) for first, *_ in rope for x in first.center)
-            stated = pushes_of(self.system.motion, self.state, row.pushes)
+            stated = pushes_of(self.motion, self.state, row.pushes)
             if body := pushed_otherwise(stated, due, size):
                 return f"pulls '{body}' otherwise than it runs"
             given_out: Any = sum((self._lengthening(*strand) for strand in rope), start=0)
-            if self._rigid and row.pushes and abs(given_out + self._values((row.velocity,))[0]) > ZERO_AT_50 * size:
+            if self._rigid and row.pushes and abs(given_out + self.one(row.velocity)) > ZERO_AT_50 * size:
                 return "does not stay as long as it is"
         return self._wrong_length
 
@@ -93,7 +90,7 @@ class _Strung:
         """Of what says how long it is."""
         if self.thread.length is None:
             return ""
-        (declared,) = self._values((self._scene.value(self.thread.length),))
+        declared = self.one(self._scene.value(self.thread.length))
         first, second = (stop.center for stop in self._stops)
         apart: Numbers = minus(second, first)
         square: Any = dot(apart, apart)
@@ -137,56 +134,42 @@ class _Strung:
     def _typed(self, way: Any) -> Numbers:
         """A direction that is given, of length 1."""
         named = {"up": (0, 1, 0), "down": (0, -1, 0), "left": (-1, 0, 0), "right": (1, 0, 0)}
-        return self._vector(named[way]) if isinstance(way, str) else direction_at(self._vector(self._scene.vector(way)))
+        return self.vector(named[way]) if isinstance(way, str) else direction_at(self.vector(self._scene.vector(way)))
 
     def _lengthening(self, first: _Stop, second: _Stop, d: Numbers) -> Any:
         """d . (v_2 - v_1) of what it touches."""
-        return dot(d, minus(self._velocity(second, d), self._velocity(first, d)))
-
-    def _velocity(self, stop: _Stop, d: Numbers) -> Numbers:
-        """Of the material that the strand touches: v + w x r, ground axes."""
-        if stop.body is None:
-            return ZERO
-        link = self.system.motion.link(stop.body)
-        w, v = (self._vector(apply(link.pose.R, x)) for x in (link.twist.w, link.twist.v))
-        return plus(v, cross(w, minus(stop.touched(d), self._vector(link.pose.p))))
+        return dot(d, minus(*(self.velocity(stop.body, stop.touched(d)) for stop in (second, first))))
 
     # -- as it is declared -----------------------------------------------------------------------------------
 
     @cached_property
     def _scene(self) -> SystemScene:
-        return SystemScene(self.system.motion, f"constraints.{self.name}")
+        return SystemScene(self.motion, f"constraints.{self.name}")
 
     @cached_property
     def _stops(self) -> list[_Stop]:
         return list(self._declared())
 
     def _declared(self) -> Iterator[_Stop]:
-        scene, z = self._scene, self._vector((0, 0, 1))
+        scene, z = self._scene, self.vector((0, 0, 1))
         for item in self.thread.stops:
             if isinstance(item, str):
                 body, _ = place = scene.place(item)
                 r = scene.position(place)
-                yield _Stop(body, r, self._vector(r), 0, z, True)
+                yield _Stop(body, r, self.vector(r), 0, z, True)
                 continue
             fixed = item.body is None
             r = scene.ground_place(item.at) if fixed else scene.position(scene.own_place(item.body, None))
             radius = scene.radius(item.body) if item.radius is None else scene.value(item.radius)
-            axis = z if item.axis is None else direction_at(self._vector(scene.vector(item.axis)))
+            axis = z if item.axis is None else direction_at(self.vector(scene.vector(item.axis)))
             if not (fixed or scene.plane):
-                axis = vector_of(dot(self._vector(row), axis) for row in scene.orientation(item.body))
-            (a,) = self._values((radius,))
-            yield _Stop(item.body, r, self._vector(r), -a if item.turn == "ccw" else a, axis, bool(item.slip))
+                axis = vector_of(dot(self.vector(row), axis) for row in scene.orientation(item.body))
+            a = self.one(radius)
+            yield _Stop(item.body, r, self.vector(r), -a if item.turn == "ccw" else a, axis, bool(item.slip))
 
     @property
     def _rigid(self) -> bool:
         """Whether it is led over places that are fixed in their bodies."""
         named = [self._scene.place(item) for item in self.thread.stops if isinstance(item, str)]
         named += [self._scene.own_place(x.body, None) for x in self.thread.stops if not isinstance(x, str) and x.body]
-        return not any(self.system.motion.moves(place) for _, place in named)
-
-    def _values(self, scalars: Sequence[Scalar]) -> list[Any]:
-        return evaluate(tuple(scalars), self.state, fifty_digits())
-
-    def _vector(self, v: Sequence[Scalar]) -> Numbers:
-        return vector_of(self._values(v))
+        return not any(self.motion.moves(place) for _, place in named)

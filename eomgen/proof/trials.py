@@ -25,6 +25,7 @@ from eomgen.proof.check import Check, checked, unchecked
 from eomgen.proof.contact_geometry import apart, meetings_of
 from eomgen.proof.elements import elements_of, undeclared
 from eomgen.proof.free_bodies import demand_of
+from eomgen.proof.in_numbers import STEP, way_through
 from eomgen.proof.joint_places import misplaced
 from eomgen.proof.kept_ties import open_at_start, rows_that_stay
 from eomgen.proof.printed import Printed, ReadBack
@@ -148,8 +149,7 @@ class Trials:
         def check(state: State) -> str:
             fastest = max((abs(x) for x in evaluate(moving, state, digits)), default=0)
             h = 1 / (digits.number(10**15) * (1 + fastest))  # what moves fast is compared over as short a way
-            late, early = (evaluate(poses, _moved(self.equations.system, state, sign * h), digits) for sign in (1, -1))
-            all_rates = [(a - b) / (2 * h) for a, b in zip(late, early, strict=True)]
+            all_rates = way_through(self.equations.system, state, h).rates(poses)
             now, motions = evaluate(poses, state, digits), evaluate(twists, state, digits)
             for k, link in enumerate(links):
                 rates, here, twist = all_rates[12 * k :], now[12 * k :], motions[6 * k : 6 * k + 6]
@@ -182,7 +182,7 @@ class Trials:
     def given_motions(self) -> Check:
         """q' and q'' of driven coordinates against the functions of t that are given, by central differences."""
         t, digits = self.equations.symbols.t, fifty_digits()
-        h = digits.number(1) / 10**15
+        h = STEP
 
         def slope(f: Scalar, state: State) -> Any:
             early, now, late = (evaluate((f,), {**state, t: state[t] + by}, digits)[0] for by in (-h, 0 * h, h))
@@ -362,14 +362,6 @@ def _refuse_noise(scalars: Sequence[Scalar], state: State) -> None:
     size = max(map(abs, here), default=0)
     if any(abs(x - y) > ZERO_AT_50 + COMPUTED * size for x, y in zip(here, there, strict=True)):
         raise NoValue("rounding decides")
-
-
-def _moved(system: System, state: State, h: Any) -> State:
-    """The state h later, to first order."""
-    symbols = system.scope.symbols
-    rates = evaluate(system.scope.rates, state, fifty_digits())
-    later = {q: state[q] + h * rate for q, rate in zip(symbols.q, rates, strict=True)}
-    return state | later | {symbols.t: state[symbols.t] + h}
 
 
 def _columns(equations: EquationsOfMotion) -> Iterable[Sequence[Scalar]]:

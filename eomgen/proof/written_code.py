@@ -17,7 +17,7 @@ from eomgen.mechanics.equations.accelerations import accelerations_at
 from eomgen.mechanics.equations.system import System
 from eomgen.proof import emitted_code
 from eomgen.proof.check import Check, unchecked
-from eomgen.proof.emitted_code import Code, PhaseMotion, TriedState
+from eomgen.proof.emitted_code import Code, PhaseMotion, RunNumbers, TriedState
 from eomgen.records import dataclass
 from eomgen.symbolic.expression.graph import Node, Scalar
 from eomgen.symbolic.expression.node import ScalarRow
@@ -137,10 +137,7 @@ class Judged:
         still, size, entries = dict.fromkeys(e.symbols.inputs, 0.0), len(e.symbols.u), tuple(self.values.values())
 
         def wrong(instant: TriedState) -> str | None:
-            free = self.motion.numbers(instant)
-            a = instant.a
-            if len(free.J):
-                a = a - np.linalg.lstsq(free.J, free.J @ a + free.gamma, rcond=COMPUTED)[0]
+            a = self._allowed(instant)
             found, unmoved = code(replace(instant, a=a)), replace(instant, inputs=still)
             values = {**self.motion.values(unmoved), **dict(zip(e.symbols.a, map(float, a), strict=True))}
             right = np.array([float(x) for x in evaluate((*entries, *pi), values, fifty_digits())])
@@ -148,13 +145,16 @@ class Judged:
             if not apart <= COMPUTED:
                 return f"an entry is off by {apart:.1e} at t = {instant.t:.6g} s"
             Y, y0 = found[: size * len(pi)].reshape(size, -1), found[size * len(pi) :][:size]
-            left = self.motion.numbers(unmoved).left_of_forces(a, Y @ right[len(entries) :] + y0)
-            return (
-                "" if left <= COMPUTED else f"M a + c = Q is left with {left:.1e} of its terms at t = {instant.t:.6g} s"
-            )
+            return _left(self.motion.numbers(unmoved), instant.t, a, Y @ right[len(entries) :] + y0)
 
         how = "symbols with 50 digits; Y pi + y0 put into the equations"
         return emitted_code.at_states(name, how, at, wrong, cost=len(order(self.motion.scalars)))
+
+    def _allowed(self, at: TriedState) -> np.ndarray:
+        """The accelerations of a state, the nearest that J a + gamma = 0 allows."""
+        free = self.motion.numbers(at)
+        away = np.linalg.lstsq(free.J, free.J @ at.a + free.gamma, rcond=COMPUTED)[0] if len(free.J) else 0.0
+        return np.asarray(at.a - away)
 
     def _accelerations(self, at: TriedState) -> Mapping[Node, float]:
         """a by dense linear algebra.
@@ -172,25 +172,22 @@ class Judged:
         columns = {actuator: acting(system, actuator) for actuator in self.actuators if actuator not in system.inputs}
 
         def wrong(instant: TriedState) -> str | None:
-            free = self.motion.numbers(instant)
-            a = instant.a
-            if len(free.J):
-                a = a - np.linalg.lstsq(free.J, free.J @ a + free.gamma, rcond=COMPUTED)[0]
+            a = self._allowed(instant)
             tau = dict(zip(self.actuators, code(replace(instant, a=a)).tolist(), strict=True))
             moved = replace(instant, inputs={**instant.inputs, **{n: x for n, x in tau.items() if n in system.inputs}})
             numbers, values = self.motion.numbers(moved), self.motion.values(moved)
             push = np.zeros(len(a))
             for actuator, column in columns.items():
                 push += tau[actuator] * np.array([float(x) for x in evaluate(column, values, fifty_digits())])
-            left = numbers.left_of_forces(a, push)
-            return (
-                f"M a + c = Q is left with {left:.1e} of its terms at t = {instant.t:.6g} s"
-                if not left <= COMPUTED
-                else ""
-            )
+            return _left(numbers, instant.t, a, push)
 
         how = "its forces put into the equations with 50 digits"
         return emitted_code.at_states(name, how, at, wrong, cost=len(order(self.motion.scalars)))
+
+
+def _left(numbers: RunNumbers, t: float, a: np.ndarray, push: np.ndarray) -> str:
+    left = numbers.left_of_forces(a, push)
+    return "" if left <= COMPUTED else f"M a + c = Q is left with {left:.1e} of its terms at t = {t:.6g} s"
 
 
 def acting(system: System, name: str) -> tuple[Scalar, ...]:

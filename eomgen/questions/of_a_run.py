@@ -22,8 +22,7 @@ from eomgen.model.parts import Model, Output
 from eomgen.model.replaced import Taken, equation_typed
 from eomgen.model.table import Table
 from eomgen.model.values import numeric_parameters
-from eomgen.proof.check import Check
-from eomgen.proof.tally import Tally
+from eomgen.proof.check import Check, Tally
 from eomgen.records import dataclass
 from eomgen.simulation.dense_motion import DenseMotion, dense_motion
 from eomgen.simulation.motion import Plan

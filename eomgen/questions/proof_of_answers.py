@@ -26,12 +26,10 @@ from eomgen.model.fields import AtRest
 from eomgen.model.outputs import FUNCTIONS
 from eomgen.model.outputs.base import SMALL_MOTIONS
 from eomgen.model.parts import Model, Output
-from eomgen.proof.at_a_state import NumericState, differing, off_by, read_back
-from eomgen.proof.check import Certificate, Check
+from eomgen.proof.at_a_state import NumericState, differing, moving_states, off_by, place_of, read_back
+from eomgen.proof.check import Certificate, Check, Tally
 from eomgen.proof.emitted_code import PhaseMotion, TriedState
-from eomgen.proof.moving_states import moving_states, place_of
 from eomgen.proof.second_definitions import second_definition
-from eomgen.proof.tally import Tally
 from eomgen.questions.at_instant import StateAtInstant
 from eomgen.questions.in_phase import PhaseEquations
 from eomgen.questions.motion_from_start import MotionFromStart

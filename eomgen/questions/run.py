@@ -19,8 +19,7 @@ from eomgen.model.fields import WrittenEquation
 from eomgen.proof import motion
 from eomgen.proof.check import Certificate, Check, unchecked
 from eomgen.proof.contact_phases import bodies_stand_as_told, changes_follow_impulses, contacts_do_as_told
-from eomgen.proof.run_outputs import output_columns_hold
-from eomgen.proof.run_reactions import reaction_columns_hold
+from eomgen.proof.run_columns import output_columns_hold, reaction_columns_hold
 from eomgen.questions.of_a_run import WholeRun
 from eomgen.records import dataclass, with_fields
 from eomgen.simulation.accuracy import Accuracy, accuracy_of, finer

@@ -1,0 +1,164 @@
+"""System, state -> scalars, vectors, forces on bodies and rates in numbers: 50 digits, ground axes, differences.
+
+q(t +- h) = q +- h q' + h^2 q''/2,   u +- h u',   t +- h;     x' = (x+ - x-)/2h,   x'' = (x+ - 2 x + x-)/h^2
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Sequence
+from typing import Any
+
+from eomgen.mechanics.bodies.kinematics import Motion
+from eomgen.mechanics.bodies.loads import in_ground_axes
+from eomgen.mechanics.equations.system import System
+from eomgen.model.forces.load import Couple, PointForce
+from eomgen.records import dataclass
+from eomgen.symbolic.expression.graph import Scalar
+from eomgen.symbolic.expression.node import State
+from eomgen.symbolic.expression.spatial import (
+    ZERO,
+    Numbers,
+    apply,
+    cross,
+    dot,
+    matrix_of,
+    minus,
+    plus,
+    times,
+    transposed,
+    vector_of,
+)
+from eomgen.symbolic.numeric.evaluation import NoValue, evaluate, fifty_digits
+from eomgen.symbolic.numeric.tolerances import ZERO_AT_50
+
+STEP = fifty_digits().number(1) / 10**15  # of a central difference, whose error is its square
+SECOND_STEP = fifty_digits().number(1) / 10**12  # [s] of first and second differences: both are sure to 20 digits
+
+
+def direction_at(v: Numbers) -> Numbers:
+    """v over its length.
+
+    Raises:
+        NoValue: it has none.
+    """
+    size = fifty_digits().functions["sqrt"](dot(v, v))
+    if size == 0:
+        raise NoValue("a direction of length 0")
+    return times(1 / size, v)
+
+
+def with_inputs(system: System, known: State) -> State:
+    """A state with those of the model's inputs that it does not give."""
+    own = {node: system.inputs[name] for name, node in system.symbols.inputs.items() if node not in known}
+    return {**known, **dict(zip(own, evaluate(tuple(own.values()), known, fifty_digits()), strict=True))}
+
+
+@dataclass(frozen=True)
+class InNumbers:
+    """A system at a state; what stands in it has a value, or NoValue is raised."""
+
+    system: System
+    state: State
+
+    @property
+    def motion(self) -> Motion:
+        return self.system.motion
+
+    def at(self, scalars: Sequence[Scalar]) -> list[Any]:
+        return evaluate(tuple(scalars), self.state, fifty_digits())
+
+    def one(self, x: Scalar) -> Any:
+        return self.at((x,))[0]
+
+    def vector(self, v: Sequence[Scalar]) -> Numbers:
+        return vector_of(self.at(v))
+
+    def carried(self, body: str | None, place: Numbers, *, direction: bool = False) -> Numbers:
+        """A place or direction of a body; the ground's is itself."""
+        if body is None:
+            return place
+        pose = self.motion.link(body).pose
+        own = self.at([*(x for row in pose.R for x in row), *pose.p])
+        turned = apply(matrix_of((own[0:3], own[3:6], own[6:9])), place)
+        return turned if direction else plus(vector_of(own[9:12]), turned)
+
+    def velocity(self, body: str | None, P: Numbers) -> Numbers:
+        """Of the material point of a body at P: R (v + w x R^T (P - p))."""
+        if body is None:
+            return ZERO
+        link = self.motion.link(body)
+        own = self.at([*(x for row in link.pose.R for x in row), *link.pose.p, *link.twist.w, *link.twist.v])
+        R, p, w, v = matrix_of((own[0:3], own[3:6], own[6:9])), *(vector_of(own[k : k + 3]) for k in (9, 12, 15))
+        return apply(R, plus(v, cross(w, apply(transposed(R), minus(P, p)))))
+
+
+Pushes = dict[str, tuple[Numbers, Numbers]]
+"""Of each body (moment about the ground's origin, force), ground axes."""
+
+
+def pushes_of(motion: Motion, state: State, loads: Iterable[Any]) -> Pushes:
+    """By what loads and rows say; what acts at no place is none."""
+    found: Pushes = {}
+    for load in loads:
+        if isinstance(load, PointForce):
+            scalars = (*motion.position(load.place), *in_ground_axes(motion, load.force, load.axes))
+            values = evaluate(scalars, state, fifty_digits())
+            add_push(found, load.place[0], cross(vector_of(values[:3]), vector_of(values[3:])), vector_of(values[3:]))
+        elif isinstance(load, Couple):
+            couple = evaluate(in_ground_axes(motion, load.couple, load.axes), state, fifty_digits())
+            add_push(found, load.body, vector_of(couple), ZERO)
+    return found
+
+
+def add_push(pushes: Pushes, body: str | None, moment: Numbers, force: Numbers) -> None:
+    """One more push; the ground bears all."""
+    if body is not None:
+        tau, f = pushes.get(body, (ZERO, ZERO))
+        pushes[body] = plus(tau, moment), plus(f, force)
+
+
+def pushed_otherwise(found: Pushes, due: Pushes, size: Any) -> str:
+    """The first body that is pushed otherwise than is due, where forces times arms are of some size; ""."""
+    nothing = (ZERO, ZERO)
+    for body in dict.fromkeys((*found, *due)):
+        pairs = zip(found.get(body, nothing), due.get(body, nothing), strict=True)
+        apart: list[Any] = [x - y for a, b in pairs for x, y in zip(a, b, strict=True)]
+        if any(abs(x) > ZERO_AT_50 * size for x in apart):
+            return body
+    return ""
+
+
+@dataclass(frozen=True)
+class Way:
+    """The states of a motion a step h before an instant, at it, and a step after."""
+
+    states: tuple[State, State, State]
+    h: Any
+
+    @property
+    def now(self) -> State:
+        return self.states[1]
+
+    def along(self, scalars: Sequence[Scalar]) -> tuple[list[Any], list[Any], list[Any]]:
+        """(values, rates, second rates), these of a way to second order."""
+        early, now, late = (evaluate(tuple(scalars), state, fifty_digits()) for state in self.states)
+        second = [(a - 2 * x + b) / self.h**2 for a, x, b in zip(early, now, late, strict=True)]
+        return now, [(b - a) / (2 * self.h) for a, b in zip(early, late, strict=True)], second
+
+    def rates(self, scalars: Sequence[Scalar]) -> list[Any]:
+        early, late = (evaluate(tuple(scalars), state, fifty_digits()) for state in self.states[::2])
+        return [(b - a) / (2 * self.h) for a, b in zip(early, late, strict=True)]
+
+
+def way_through(system: System, state: State, h: Any = STEP, *, order: int = 1) -> Way:
+    """The motion through a state with the accelerations that stand in it, to first or second order in q."""
+    symbols, scope = system.symbols, system.scope
+    first = evaluate(scope.rates, state, fifty_digits())
+    second = evaluate(scope.with_accelerations(scope.rates), state, fifty_digits()) if order == 2 else [0] * len(first)
+
+    def later(t: Any) -> State:
+        moved = {q: state[q] + t * v + t * t / 2 * a for q, v, a in zip(symbols.q, first, second, strict=True)}
+        moved |= {u: state[u] + t * state[a] for u, a in zip(symbols.u, symbols.a, strict=True) if a in state}
+        return {**state, **moved, symbols.t: state[symbols.t] + t}
+
+    return Way((later(-h), state, later(h)), h)
