@@ -36,15 +36,15 @@ Batch = Callable[[], np.ndarray]
 def batch_of(name: str, program: Program, t: np.ndarray, X: np.ndarray, p: np.ndarray) -> Batch:
     """All states at once, in the language's own way; what is compiled is compiled here."""
     if name == "jax":
-        space = executed(jax.jax_text(program, "m"), "m_jax")
+        space = executed(jax.FORM.text(program, "m"), "m_jax")
         many = space["jax"].jit(space["jax"].vmap(space["m_rhs"], (None, 0, None)))
         return lambda: np.asarray(many(0.0, X, p))
     if name == "casadi":
-        mapped = executed(casadi.casadi_text(program, "m"), "m_casadi")["own"].map(len(X))
+        mapped = executed(casadi.FORM.text(program, "m"), "m_casadi")["own"].map(len(X))
         turned = np.ascontiguousarray(X.T)
         return lambda: np.asarray(mapped(0.0, turned, p)).T
     if name == "numba":
-        space = executed(numba.numba_text(program, "m") + _LOOP, "m_numba")
+        space = executed(numba.FORM.text(program, "m") + _LOOP, "m_numba")
         return lambda: space["_loop"](X, p, len(program.outputs))
     rhs = compiled(program, name)
     return lambda: rhs.many(t, X, p)

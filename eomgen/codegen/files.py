@@ -8,7 +8,8 @@ from collections.abc import Sequence
 from eomgen.codegen.names import identifier
 from eomgen.codegen.program import Program
 from eomgen.codegen.rhs import target_named
-from eomgen.codegen.targets.base import RHS, Description, Emitted, FileContent, Target, header
+from eomgen.codegen.targets.base import RHS, Description, Emitted, FileContent, Target
+from eomgen.codegen.targets.form import header
 from eomgen.version import SCHEMA_VERSION
 
 

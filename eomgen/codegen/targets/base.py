@@ -183,17 +183,6 @@ class Target:
         return self.roles is None or role.name in self.roles
 
 
-def files_of_each(
-    one: Callable[[str, Program, Description], Mapping[str, FileContent]],
-) -> Callable[[str, Sequence[Emitted]], dict[str, FileContent]]:
-    """The files of a target whose functions lie each in files of its own, by those of one: (stem, program, told)."""
-
-    def files(stem: str, emitted: Sequence[Emitted]) -> dict[str, FileContent]:
-        return {path: text for program, told in emitted for path, text in one(stem, program, told).items()}
-
-    return files
-
-
 Many = Callable[[np.ndarray, np.ndarray, np.ndarray, "np.ndarray | None"], np.ndarray]
 """(t n, x n x states with a beside it, p, inputs None or n x inputs) -> n x outputs."""
 
@@ -221,61 +210,3 @@ def called_by(many: Many) -> Called:
         return found
 
     return called
-
-
-def vector_lines(
-    vectors: Sequence[TestVector],
-    call: str,
-    listed: Callable[[Sequence[float]], str],
-    number: Callable[[float], str],
-    inputs: tuple[str, str],
-) -> list[str]:
-    """A line of a test for each vector.
-
-    Args:
-        call: with {t}, {x}, {a}, {p}, {inputs}, {result} and {tolerance}.
-        listed: the text of an array.
-        number: of a double, of nan too.
-        inputs: what stands for none, and how an array stands for those that are given, with {}.
-    """
-    return [
-        call.format(
-            t=number(v.t),
-            x=listed(v.x),
-            a=listed(v.a),
-            p=listed(v.p),
-            inputs=inputs[0] if v.inputs is None else inputs[1].format(listed(v.inputs)),
-            result=listed(v.result),
-            tolerance=number(v.tolerance),
-        )
-        for v in vectors
-    ]
-
-
-def header(program: Program, description: Description) -> list[str]:
-    """Title, origin, and the order of x, p, inputs and named outputs, a line each."""
-    symbols, result = program.symbols, description.role.result
-    lines = [f"{description.title}: {description.role.about}", ""]
-    lines += [description.origin, ""]
-    groups = {
-        "x": program.states,
-        "a": program.accelerations,
-        "p": symbols.parameters.values(),
-        "inputs": symbols.inputs.values(),
-    }
-    for array, members in groups.items():
-        for place, x in enumerate(members):
-            remark = description.remarks.get(x.name, "")
-            lines.append(f"    {array}[{place}]  {x.name}{'  ' + remark if remark else ''}")
-    for place, name in enumerate(description.outputs):
-        lines.append(f"    {result}[{place}]  {name}  {description.remarks.get(name, '')}".rstrip())
-    first = 0
-    told = description.columns or ((),) * len(description.blocks)
-    for (name, rows, columns), meant in zip(description.blocks, told, strict=True):
-        last = first + rows * columns - 1
-        lines.append(f"    {result}[{first}..{last}]  {name}, {rows} x {columns}, row after row")
-        lines += [f"        column {k} of {name}  {column}" for k, column in enumerate(meant, 1)]
-        first = last + 1
-    if not description.outputs and not description.blocks:
-        lines.append(f"    {result}  {len(program.outputs)} values, in the order of x")
-    return [" ".join(line.split("\n")) for line in lines]

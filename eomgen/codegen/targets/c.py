@@ -14,22 +14,20 @@ from typing import Any
 
 from eomgen.codegen.build import function_of, library, of_this_machine
 from eomgen.codegen.lowered import CHANGED, INDICES, INT, PLACES, READ, REAL, ROOM, Language, one_line
-from eomgen.codegen.lowering import Lowered, lowered
+from eomgen.codegen.lowering import Lowered
 from eomgen.codegen.program import Program
 from eomgen.codegen.targets.base import (
     RHS,
     Called,
-    Description,
+    Emitted,
     FileContent,
     Functions,
     Role,
     Single,
     Target,
-    files_of_each,
-    header,
 )
 from eomgen.codegen.targets.c_loading import functions_of
-from eomgen.codegen.targets.c_self_test import self_test
+from eomgen.codegen.targets.form import Form, header
 from eomgen.codegen.targets.in_single import FUNCTIONS, QUOTED, SUFFIXED, SingleWords
 
 
@@ -97,18 +95,17 @@ C = Language(
 )
 
 
-def arguments(program: Program, many: bool = False) -> str:
-    """t, x, a where it is one, p: of one instant, or arrays over many."""
-    arrays = ["x", "a", "p"] if program.accelerations else ["x", "p"]
-    return ", ".join(["const double *t" if many else "double t", *(f"const double *{name}" for name in arrays)])
+_MODULE = """\
+#include <math.h>
+#include <stddef.h>
 
+{functions}
 
-_CALLERS = """\
 void {main}({one}, const double *inputs, double *{result})
 {{
     double c[{size}];
     {others}_constants(p, c);
-    {others}_evaluate(t, x{a}, p, c, inputs, {result});
+    {others}_evaluate(t, x{then_a}, p, c, inputs, {result});
 }}
 
 void {others}_many(size_t n, {many}, const double *inputs, double *{result})
@@ -116,17 +113,27 @@ void {others}_many(size_t n, {many}, const double *inputs, double *{result})
     double c[{size}];
     {others}_constants(p, c);
     for (size_t i = 0; i < n; i++)
-        {others}_evaluate(t[i], x + i*{states}{each}, p, c, inputs ? inputs + i*{inputs} : NULL,
+        {others}_evaluate(t[i], x + i*{states}{a_there}, p, c, inputs ? inputs + i*{inputs} : NULL,
             {result} + i*{outputs});
 }}
 """
 
-_DECLARATIONS = """\
+_DECLARED = """\
+{head}#ifndef {MAIN}_H
+#define {MAIN}_H
+
+#include <stddef.h>
+
+#ifdef __cplusplus
+extern "C" {{
+#endif
+
 #define {upper}_STATES {states}
 #define {upper}_PARAMETERS {parameters}
 #define {upper}_INPUTS {inputs}
 #define {upper}_CONSTANTS {constants}
-{outputs_defined}
+#define {upper}_OUTPUTS {outputs}
+
 /* {result} at (t, x, p); inputs NULL: the model's own. */
 void {main}({one}, const double *inputs, double *{result});
 
@@ -134,45 +141,77 @@ void {main}({one}, const double *inputs, double *{result});
 void {others}_constants(const double *p, double *c);
 void {others}_evaluate({one}, const double *c, const double *inputs, double *{result});
 
-/* n instants at once: t n, x n x states, {a_given}inputs NULL or n x inputs, {result} n x {rows}. */
+/* n instants at once: t n, x n x states, {a_given}inputs NULL or n x inputs, {result} n x outputs. */
 void {others}_many(size_t n, {many}, const double *inputs, double *{result});
+
+#ifdef __cplusplus
+}}
+#endif
+
+#endif
 """
 
+SELF_TEST = """\
+#include <stdio.h>
 
-def _words(made: Lowered, stem: str, role: Role) -> dict[str, object]:
-    """What stands in the templates."""
-    program, others = made.program, role.others(stem)
-    given, outputs = len(program.accelerations), len(program.outputs)
-    return {
-        "main": role.main(stem),
-        "others": others,
-        "upper": others.upper(),
-        "result": role.result,
-        "one": arguments(program),
-        "many": arguments(program, many=True),
-        "a": ", a" if given else "",
-        "each": f", a + i*{given}" if given else "",
-        "a_given": "a n x speeds, " if given else "",
-        "states": len(program.states),
-        "parameters": len(program.symbols.parameters),
-        "inputs": len(program.symbols.inputs),
-        "outputs": outputs,
-        "constants": made.constants,
-        "size": max(made.constants, 1),
-        "outputs_defined": "" if role is RHS else f"#define {others.upper()}_OUTPUTS {outputs}\n",
-        "rows": "states" if role is RHS else "outputs",
-    }
+static const struct {{
+    double t, x[{states_room}], {a_array}p[{parameters_room}];
+    int given;
+    double inputs[{inputs_room}], {result}[{outputs_room}], tolerance;
+}} vectors[] = {{
+{lines}
+}};
+
+int main(void)
+{{
+    int wrong = 0;
+    for (size_t i = 0; i < sizeof vectors/sizeof *vectors; i++) {{
+        double {result}[{outputs_room}], largest = 1;
+        {tested}(vectors[i].t, vectors[i].x, {a_of}vectors[i].p, vectors[i].given ? vectors[i].inputs : NULL, {result});
+        for (int j = 0; j < {outputs}; j++)
+            if (fabs(vectors[i].{result}[j]) > largest) largest = fabs(vectors[i].{result}[j]);
+        for (int j = 0; j < {outputs}; j++)
+            if (isnan(vectors[i].{result}[j]) ? !isnan({result}[j])
+                : !(fabs({result}[j] - vectors[i].{result}[j]) <= vectors[i].tolerance*largest)) {{
+                fprintf(stderr, "vector %d: {result}[%d] is %.17g, not %.17g\\n", (int)i, j, \
+{result}[j], vectors[i].{result}[j]);
+                wrong = 1;
+            }}
+    }}
+    return wrong;
+}}
+"""
+
+_X, _A, _P = (f"const double *{name}" for name in "xap")
+FORM = Form(
+    C,
+    _MODULE,
+    "{main}.c",
+    top='{head}#include "{main}.h"\n\n{text}\n',
+    told=lambda line: f" * {comment(line)}".rstrip(),
+    prefix="{others}_",
+    given={
+        "one": (f"double t, {_X}, {_A}, {_P}", f"double t, {_X}, {_P}"),
+        "many": (f"const double *t, {_X}, {_A}, {_P}", f"const double *t, {_X}, {_P}"),
+        "then_a": (", a", ""),
+        "a_there": (", a + i*{accelerations}", ""),
+        "a_given": ("a n x speeds, ", ""),
+        "a_array": ("a[{accelerations}], ", ""),
+        "a_of": ("vectors[i].a, ", ""),
+        "tested": ("{main}",) * 2,
+    },
+    test=f"#ifdef EOMGEN_SELFTEST\n{SELF_TEST}#endif\n",
+    vector="    {{{t}, {x}, {a}{p}, {inputs}, {result}, {tolerance}}},",
+    listed=("{", "}"),
+    empty="{0}",
+    nan="NAN",
+    acting=("0, {0}", "1, {}"),
+)
 
 
 def c_text(program: Program, stem: str, role: Role = RHS, remarks: Mapping[str, str] | None = None) -> str:
-    """The functions of a program: NAME_constants, NAME_evaluate, NAME_rhs and NAME_many, or what its role says.
-
-    Args:
-        program: what is computed.
-        stem: NAME, an identifier.
-        remarks: of an argument's name: its unit and what it is, for the comments.
-    """
-    return _text(_lowered(program, stem, role, remarks), stem, role)
+    """The functions of a program: NAME_constants, NAME_evaluate, NAME_rhs and NAME_many, or what its role says."""
+    return FORM.text(program, stem, role, remarks)
 
 
 def constants_of(text: str) -> int:
@@ -182,63 +221,45 @@ def constants_of(text: str) -> int:
     return int(found[1])
 
 
-def _lowered(program: Program, stem: str, role: Role, remarks: Mapping[str, str] | None = None) -> Lowered:
-    return lowered(program, C, role.result, f"{role.others(stem)}_", remarks)
-
-
-def _text(made: Lowered, stem: str, role: Role) -> str:
-    first, *functions = made.texts(C)
-    return "\n\n".join(
-        [f"#include <math.h>\n#include <stddef.h>\n\n{first}", *functions, _CALLERS.format(**_words(made, stem, role))]
-    )
-
-
 def c_functions(program: Program) -> Functions:
     """The program compiled (or found in the cache) and callable."""
-    made = _lowered(program, "eomgen", RHS)
-    return functions_of(library(_text(made, "eomgen", RHS), by=of_this_machine()), program, "eomgen", made.constants)
+    made, words = FORM.lowered(program, "eomgen", RHS)
+    return functions_of(library(FORM.written(made, words), by=of_this_machine()), program, "eomgen", made.constants)
 
 
 def c_together(programs: Sequence[Program]) -> tuple[Functions, ...]:
     """Several programs, compiled as one text."""
-    made = [_lowered(program, f"eomgen{i}", RHS) for i, program in enumerate(programs)]
-    text = "\n".join(_apart(each, f"eomgen{i}", RHS) for i, each in enumerate(made))
-    compiled = library(text, by=of_this_machine())
+    made = [FORM.lowered(program, f"eomgen{i}", RHS) for i, program in enumerate(programs)]
+    compiled = library("\n".join(_apart(*each) for each in made), by=of_this_machine())
     return tuple(
-        functions_of(compiled, program, f"eomgen{i}", each.constants)
-        for i, (program, each) in enumerate(zip(programs, made, strict=True))
+        functions_of(compiled, program, words["stem"], each.constants)
+        for program, (each, words) in zip(programs, made, strict=True)
     )
 
 
 def apart(program: Program, stem: str, role: Role) -> str:
     """The functions of a program, to stand in one text with those of others."""
-    return _apart(_lowered(program, stem, role), stem, role)
+    return _apart(*FORM.lowered(program, stem, role))
 
 
-def _apart(made: Lowered, stem: str, role: Role) -> str:
+def _apart(made: Lowered, words: Mapping[str, Any]) -> str:
     """The functions of a program, what is hidden in them under names of its own."""
     hidden = [C.called(op, ["0"] * 3).partition("(")[0] for op in sorted(made.ops & C.defined.keys())]
     hidden += [*(table.name for table in made.tables), *(function.name for function in made.kernels)]
-    before, after = (
-        (f"#define {name} {role.others(stem)}_hidden_{name}" for name in hidden),
-        (f"#undef {name}" for name in hidden),
-    )
-    return "\n".join((*before, _text(made, stem, role), *after))
+    before = (f"#define {name} {words['others']}_hidden_{name}" for name in hidden)
+    return "\n".join((*before, FORM.written(made, words), *(f"#undef {name}" for name in hidden)))
 
 
-def _files(stem: str, program: Program, description: Description) -> dict[str, str]:
+def _files(stem: str, emitted: Sequence[Emitted]) -> dict[str, FileContent]:
     """NAME_rhs.c and NAME_rhs.h; the former with a self-test: `cc -DEOMGEN_SELFTEST NAME_rhs.c -lm && ./a.out`."""
-    role, made = description.role, _lowered(program, stem, description.role, description.remarks)
-    name = role.main(stem)
-    guard = f"{name.upper()}_H"
-    head = "\n".join(["/*", *(f" * {comment(line)}".rstrip() for line in header(program, description)), " */", ""])
-    declared = (
-        f"{head}#ifndef {guard}\n#define {guard}\n\n#include <stddef.h>\n\n"
-        '#ifdef __cplusplus\nextern "C" {\n#endif\n\n'
-        f"{_DECLARATIONS.format(**_words(made, stem, role))}\n#ifdef __cplusplus\n}}\n#endif\n\n#endif\n"
-    )
-    defined = f'{head}#include "{name}.h"\n\n{_text(made, stem, role)}'
-    return {f"{name}.c": f"{defined}\n{self_test(program, name, description.vectors, role)}", f"{name}.h": declared}
+    files: dict[str, FileContent] = {}
+    for program, told in emitted:
+        made, words = FORM.lowered(program, stem, told.role, told.remarks)
+        words |= {"head": f"/*\n{FORM.head(header(program, told))}\n */\n"}
+        text = FORM.top.format(**words, text=FORM.written(made, words))
+        tested = FORM.tested(program, stem, told) if told.vectors else ""
+        files |= {f"{words['main']}.c": text + tested, f"{words['main']}.h": _DECLARED.format(**words)}
+    return files
 
 
 def run(
@@ -277,6 +298,6 @@ SINGLE = SingleWords(
     r"\.[ch]$",
 )
 TARGET = Target(
-    "c", "C99, no dependencies", c_text, files_of_each(_files), USE, c_functions, run,
+    "c", "C99, no dependencies", FORM.text, _files, USE, c_functions, run,
     single=Single(SINGLE.files, partial(run, real=ctypes.c_float)),
 )  # fmt: skip

@@ -2,16 +2,11 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
 from dataclasses import replace
 
-from eomgen.codegen.lowering import lowered
-from eomgen.codegen.program import Program
 from eomgen.codegen.targets import branch_free
-from eomgen.codegen.targets.base import RHS, Role
-from eomgen.codegen.targets.library_call import sizes
 from eomgen.codegen.targets.numpy import PYTHON
-from eomgen.codegen.targets.python_files import python_target
+from eomgen.codegen.targets.python_files import python_form, python_target
 
 UNARY = "sin cos asin acos atan sinh cosh tanh exp log sqrt".split()
 _ARRAYS = """
@@ -100,18 +95,12 @@ def {main}(t, x, {a}p, inputs=None):
 '''
 
 
-def casadi_text(program: Program, stem: str, role: Role = RHS, remarks: Mapping[str, str] | None = None) -> str:
-    """The module of a program."""
-    made, given = lowered(program, CASADI, role.result, remarks=remarks), len(program.accelerations)
-    return _TEXT.format(
-        **sizes(program, role, stem),
-        arrays=_ARRAYS if made.ops & branch_free.SOLVERS.keys() else "",
-        functions="\n\n".join(made.texts(CASADI)),
-        a="a, " if given else "",
-        a_name='"a", ' if given else "",
-        a_made=f'a = ca.SX.sym("a", {given})\n    ' if given else "",
-    )
-
-
+FORM = python_form(
+    CASADI,
+    "{others}_casadi",
+    _TEXT,
+    {"a_name": ('"a", ', ""), "a_made": ('a = ca.SX.sym("a", {accelerations})\n    ', "")},
+    marked={"arrays": ("_factors(", _ARRAYS)},
+)
 USE = ("from {stem}_casadi import rhs, slopes", "python -m pytest")
-TARGET = python_target("casadi", "SX functions of CasADi with their jacobians", casadi_text, USE)
+TARGET = python_target("casadi", "SX functions of CasADi with their jacobians", FORM, USE)

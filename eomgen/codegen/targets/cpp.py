@@ -6,24 +6,17 @@ With it comes a test over the test vectors, a plain main.
 from __future__ import annotations
 
 import json
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
+from dataclasses import replace
 
 from eomgen.codegen.build import Compiler
 from eomgen.codegen.expressions import ATOM, PRODUCT, SUM, RankedText, ranked_number
 from eomgen.codegen.lowered import CHANGED, INDICES, INT, PLACES, READ, REAL, ROOM, Language
-from eomgen.codegen.lowering import lowered
-from eomgen.codegen.program import Program
-from eomgen.codegen.targets.base import (
-    RHS,
-    Description,
-    Role,
-    files_of_each,
-    header,
-)
-from eomgen.codegen.targets.c import C, comment
-from eomgen.codegen.targets.c_self_test import self_test
+from eomgen.codegen.lowering import Lowered
+from eomgen.codegen.targets.c import FORM as C_FORM
+from eomgen.codegen.targets.c import SELF_TEST, C, comment
 from eomgen.codegen.targets.in_single import QUOTED, SUFFIXED, SingleWords
-from eomgen.codegen.targets.library_call import compiled_target, sizes
+from eomgen.codegen.targets.library_call import compiled_target
 from eomgen.symbolic.expression.graph import Number
 
 
@@ -108,9 +101,13 @@ _CLASS = """\
 
 template <class Real>
 struct {main} {{
+    static constexpr std::size_t states_size = {states};
+    static constexpr std::size_t parameters_size = {parameters};
+    static constexpr std::size_t inputs_size = {inputs};
+    static constexpr std::size_t constants_size = {constants};
 {names}
 
-{inner}
+{functions}
 
     // {result} has {outputs} places; inputs nullptr: the model's own
     static void {role}(Real t, const Real *x, {a_declared}const Real *p, const Real *inputs, Real *{result})
@@ -122,7 +119,8 @@ struct {main} {{
 }};
 """
 
-_ENTRY = """
+_ENTRY = """\
+{text}
 #include <cstddef>
 extern "C" __attribute__((visibility("default")))
 void {entry}(std::size_t n, const double *t, const double *x, const double *p, const double *inputs, double *out)
@@ -130,69 +128,51 @@ void {entry}(std::size_t n, const double *t, const double *x, const double *p, c
     double c[{size}];
     {main}<double>::constants(p, c);
     for (std::size_t i = 0; i < n; i++)
-        {main}<double>::evaluate(t[i], x + i*{moving}, {a}p, c, inputs ? inputs + i*{inputs} : nullptr,
+        {main}<double>::evaluate(t[i], x + i*{moving}, {a_there}p, c, inputs ? inputs + i*{inputs} : nullptr,
             out + i*{outputs});
 }}
 """
 
 
-def cpp_text(program: Program, stem: str, role: Role = RHS, remarks: Mapping[str, str] | None = None) -> str:
-    """The struct of a program."""
-    made, given = lowered(program, CPP, role.result, remarks=remarks), bool(program.accelerations)
-    symbols, inner = program.symbols, "\n\n".join(made.texts(CPP))
-    listed = {"x_names": [x.name for x in program.states], "p_names": symbols.parameters, "input_names": symbols.inputs}
-    counts = {"states": len(program.states), "parameters": len(symbols.parameters), "inputs": len(symbols.inputs)}
-    lines = [
-        f"    static constexpr std::size_t {k}_size = {n};" for k, n in {**counts, "constants": made.constants}.items()
-    ]
-    lines += [_names(key, list(names)) for key, names in listed.items() if names]
-    return _CLASS.format(
-        **sizes(program, role, stem) | {"inputs": "inputs"},
-        names="\n".join(lines),
-        inner="\n".join(f"    {line}".rstrip() for line in inner.split("\n")),
-        size=max(made.constants, 1),
-        a_declared="const Real *a, " if given else "",
-        a="a, " if given else "",
-    )
+def _inner(made: Lowered) -> dict[str, str]:
+    """The functions as members."""
+    lines = "\n\n".join(made.texts(CPP)).split("\n")
+    return {"functions": "\n".join(f"    {line}".rstrip() for line in lines)}
 
 
-def _names(key: str, names: Sequence[str]) -> str:
-    return f"    static constexpr const char *{key}[] = {{{', '.join(map(_quoted, names))}}};"
+def _named(key: str, names: Sequence[str]) -> list[str]:
+    """Names in quotes, where there are any; C++ knows no array without entries."""
+    listed = ", ".join(json.dumps(name, ensure_ascii=False).replace("??", "?\\?") for name in names)
+    return [f"    static constexpr const char *{key}[] = {{{listed}}};"] * bool(names)
 
 
-def _quoted(name: str) -> str:
-    """A text in quotes; letters that are not of ASCII by their numbers."""
-    return json.dumps(name, ensure_ascii=False).replace("??", "?\\?")
-
-
-def _files(stem: str, program: Program, told: Description) -> dict[str, str]:
-    """NAME_rhs.hpp and NAME_rhs_test.cpp."""
-    main = told.role.main(stem)
-    head, guard = "\n".join(f"// {comment(line)}".rstrip() for line in header(program, told)), f"{main.upper()}_HPP"
-    text = cpp_text(program, stem, told.role, told.remarks)
-    test = self_test(program, f"{main}<double>::{told.role.name}", told.vectors, told.role, guard="")
-    return {
-        f"{main}.hpp": f"{head}\n#ifndef {guard}\n#define {guard}\n\n{text}\n#endif\n",
-        f"{main}_test.cpp": f'// Held against its test vectors: exit 0 where all agree\n#include "{main}.hpp"\n{test}',
-    }
-
-
-def _many_text(text: str, program: Program, stem: str, role: Role) -> str:
-    """The header with a function that Python calls."""
-    constants = max(int(text.partition("constants_size = ")[2].partition(";")[0]), 1)
-    a = f"x + i*{len(program.moving)} + {len(program.states)}, " if program.accelerations else ""
-    return text + _ENTRY.format(**sizes(program, role, stem), size=constants, a=a)
-
-
+FORM = replace(
+    C_FORM,
+    language=CPP,
+    module=_CLASS,
+    path="{main}.hpp",
+    test_path="{main}_test.cpp",
+    top="{head}\n#ifndef {MAIN}_HPP\n#define {MAIN}_HPP\n\n{text}\n#endif\n",
+    told=None,
+    prefix="",
+    given={
+        **C_FORM.given,
+        "a_declared": ("const Real *a, ", ""),
+        "a_there": ("x + i*{moving} + {states}, ", ""),
+        "tested": ("{main}<double>::{role}",) * 2,
+    },
+    body=_inner,
+    named=_named,
+    test=f'// Held against its test vectors: exit 0 where all agree\n#include "{{main}}.hpp"\n{SELF_TEST}',
+)
 USE = ('#include "{stem}_rhs.hpp"', "g++ -std=c++17 -Wall -Wextra -pedantic {stem}_rhs_test.cpp -o test && ./test")
 TARGET = compiled_target(
     "cpp",
     "C++17 header, templates over the scalar",
-    cpp_text,
-    files_of_each(_files),
+    FORM,
     USE,
-    source="{main}.hpp",
-    called=_many_text,
+    entry=_ENTRY,
+    size=r"Real c\[(\d+)\]",
     by=COMPILER,
     single=SingleWords(((r"\bdouble\b", "float"), SUFFIXED), rf"//[^\n]*|{QUOTED}", r"_test\.cpp$"),
 )

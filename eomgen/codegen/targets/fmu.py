@@ -31,9 +31,9 @@ from eomgen.codegen.targets.base import (
     Functions,
     Role,
     Target,
-    header,
 )
 from eomgen.codegen.targets.c import apart, c_functions, c_text, constants_of
+from eomgen.codegen.targets.form import header
 from eomgen.errors import RunFailed, ToolMissing
 from eomgen.symbolic.numeric.tolerances import BEST, RUN
 

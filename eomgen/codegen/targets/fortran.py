@@ -6,26 +6,17 @@ With it comes a program that holds it against the test vectors.
 from __future__ import annotations
 
 import re
-from collections.abc import Iterable, Mapping, Sequence
-from dataclasses import field, replace
+from collections.abc import Iterable, Sequence
+from dataclasses import replace
 from typing import Any
 
 from eomgen.codegen.build import Compiler
 from eomgen.codegen.expressions import ATOM, PRODUCT, SUM, RankedText, ranked_number
 from eomgen.codegen.lowered import CHANGED, GIVEN, INDICES, INT, PLACES, READ, REAL, ROOM, Language, Table
-from eomgen.codegen.lowering import lowered
-from eomgen.codegen.program import Program
-from eomgen.codegen.targets.base import (
-    RHS,
-    Description,
-    Role,
-    files_of_each,
-    header,
-    vector_lines,
-)
+from eomgen.codegen.lowering import Lowered
+from eomgen.codegen.targets.form import CHECK, Form
 from eomgen.codegen.targets.in_single import SingleWords
-from eomgen.codegen.targets.library_call import compiled_target, sizes
-from eomgen.records import dataclass
+from eomgen.codegen.targets.library_call import compiled_target
 from eomgen.symbolic.expression.graph import Number
 
 WIDTH = 120  # of a line; the standard has 132
@@ -171,7 +162,8 @@ contains
 end module {main}
 """
 
-_ENTRY = """
+_ENTRY = """\
+{text}
 subroutine {entry}(n, t, x, p, inputs, out) bind(c)
     use, intrinsic :: iso_c_binding
     use {main}
@@ -186,16 +178,17 @@ subroutine {entry}(n, t, x, p, inputs, out) bind(c)
     if (c_associated(inputs)) then
         call c_f_pointer(inputs, given, [int({inputs}, c_size_t), n])
         do i = 1, n
-            call evaluate(t(i), {x}, p, c, given(:, i), out(:, i))
+            call evaluate(t(i), {x_and_a}, p, c, given(:, i), out(:, i))
         end do
     else
         do i = 1, n
-            call evaluate(t(i), {x}, p, c, {result}=out(:, i))
+            call evaluate(t(i), {x_and_a}, p, c, {result}=out(:, i))
         end do
     end if
 end subroutine
 """
 
+_COUNTED = "    integer :: vector = 0"
 _TEST = """\
 ! Held against its test vectors: stops where they do not agree
 program {main}_test
@@ -205,12 +198,12 @@ program {main}_test
     implicit none
     real(dp), parameter :: none(0) = [real(dp) ::]
     real(dp) :: nan
-    integer :: vector = 0
-{long}    nan = ieee_value(1.0_dp, ieee_quiet_nan)
+{counted}
+    nan = ieee_value(1.0_dp, ieee_quiet_nan)
 {lines}
 contains
     subroutine check(t, x, {a}p, inputs, right, tolerance)
-        real(dp), intent(in) :: t, x(:), {a_declared}p(:), inputs(:), right(:), tolerance
+        real(dp), intent(in) :: t, x(:), {a_list}p(:), inputs(:), right(:), tolerance
         real(dp) :: found({outputs}), largest
         integer :: k
         found = 0
@@ -235,31 +228,16 @@ end program {main}_test
 """
 
 
-def fortran_text(program: Program, stem: str, role: Role = RHS, remarks: Mapping[str, str] | None = None) -> str:
-    """The module of a program."""
-    made, given, symbols = (
-        lowered(program, FORTRAN, role.result, remarks=remarks),
-        bool(program.accelerations),
-        program.symbols,
-    )
+def _body(made: Lowered) -> dict[str, str]:
+    """The tables, and the functions inside the module."""
     tables = [line for table in made.tables for line in _held(table)]
     defined = [FORTRAN.defined[op] for op in sorted(made.ops & FORTRAN.defined.keys())]
     defined += [_STEP] if made.ops & {"less", "less_equal"} else []
-    functions = [*defined, *("\n".join(FORTRAN.defines(f)) for f in (*made.kernels, *made.bodies))]
-    body = "\n\n".join(functions)
-    nan = "ieee_value" in body
-    listed = {"x_names": [x.name for x in program.states], "p_names": symbols.parameters, "input_names": symbols.inputs}
-    text = _MODULE.format(
-        **sizes(program, role, stem),
-        size=max(made.constants, 1),
-        a="a, " if given else "",
-        a_declared=f"a({len(program.accelerations)}), " if given else "",
-        ieee="    use, intrinsic :: ieee_arithmetic, only: ieee_value, ieee_quiet_nan\n" if nan else "",
-        names="\n".join(f"    {line}" for key, names in listed.items() if names for line in _names(key, list(names))),
-        tables="".join(f"    {line}\n" for line in tables),
-        functions="\n".join(f"    {line}".rstrip() for line in body.split("\n")),
-    )
-    return "\n".join(_short(text.split("\n")))
+    body = "\n\n".join([*defined, *("\n".join(FORTRAN.defines(f)) for f in (*made.kernels, *made.bodies))])
+    return {
+        "tables": "".join(f"    {line}\n" for line in tables),
+        "functions": "\n".join(f"    {line}".rstrip() for line in body.split("\n")),
+    }
 
 
 def _held(table: Table) -> list[str]:
@@ -278,19 +256,39 @@ def _pieces(values: Sequence[Any]) -> list[Sequence[Any]]:
     return [values[i : i + LONGEST_LIST] for i in range(0, len(values), LONGEST_LIST)]
 
 
-def _names(key: str, names: Sequence[str]) -> list[str]:
+def _named(key: str, names: Sequence[str]) -> list[str]:
     """Names as a constant; many of pieces."""
+    if not names:
+        return []
     width, parts = max(len(name.encode()) for name in names), _pieces(names)
     told = [", ".join('"' + name.replace('"', '""') + '"' for name in part) for part in parts]
     kind, held = f"character({width}), parameter", [f"{key}_{k}" for k in range(len(parts))]
     if len(parts) == 1:
-        return [f"{kind}, public :: {key}({len(names)}) = [character({width}) :: {told[0]}]"]
+        return [f"    {kind}, public :: {key}({len(names)}) = [character({width}) :: {told[0]}]"]
     pieces = zip(held, parts, told, strict=True)
-    lines = [f"{kind} :: {name}({len(part)}) = [character({width}) :: {text}]" for name, part, text in pieces]
-    return [*lines, f"{kind}, public :: {key}({len(names)}) = [{', '.join(held)}]"]
+    lines = [f"    {kind} :: {name}({len(part)}) = [character({width}) :: {text}]" for name, part, text in pieces]
+    return [*lines, f"    {kind}, public :: {key}({len(names)}) = [{', '.join(held)}]"]
 
 
-def _short(lines: Iterable[str]) -> Iterable[str]:
+def _short(text: str) -> str:
+    """Lists too long for a statement put into arrays before it, and long lines continued."""
+    lines: list[str] = []
+    declared: list[str] = []
+    for line in text.split("\n"):
+        for listed in re.findall(r"\[[^][]*\]", line) if line.startswith("    call check(") else ():
+            values = listed[1:-1].split(", ")
+            if len(values) > LONGEST_LIST:
+                name = f"long_{len(declared)}"
+                declared.append(f"    real(dp) :: {name}({len(values)})")
+                firsts = range(1, len(values) + 1, LONGEST_LIST)
+                parts = zip(firsts, _pieces(values), strict=True)
+                lines += [f"    {name}({k}:{k + len(part) - 1}) = [{', '.join(part)}]" for k, part in parts]
+                line = line.replace(listed, name, 1)
+        lines.append(line)
+    return "\n".join(_shorter(lines)).replace(_COUNTED, "\n".join([_COUNTED, *declared]), 1)
+
+
+def _shorter(lines: Iterable[str]) -> Iterable[str]:
     """Long lines continued; a remark that is too long is cut to its words."""
     for line in lines:
         while len(line.encode()) > WIDTH and not line.lstrip().startswith("!"):
@@ -307,80 +305,36 @@ def _short(lines: Iterable[str]) -> Iterable[str]:
         yield line
 
 
-def _files(stem: str, program: Program, told: Description) -> dict[str, str]:
-    """NAME_rhs.f90 and NAME_rhs_test.f90."""
-    main, given = told.role.main(stem), bool(program.accelerations)
-    head = "\n".join(f"! {FORTRAN.harmless(line)}".rstrip() for line in header(program, told))
-    a = "{a}, " if given else ""
-    call = f"    call check({{t}}, {{x}}, {a}{{p}}, {{inputs}}, {{result}}, {{tolerance}})"
-    long = _LongLists()
-    lines = [
-        line
-        for vector in told.vectors
-        for (said,) in [vector_lines([vector], call, long.listed, _number, ("none", "{}"))]
-        for line in (*long.filled(), said)
-    ]
-    test = _TEST.format(
-        **sizes(program, told.role, stem),
-        long="".join(f"    real(dp) :: {name}({size})\n" for name, size in long.sizes.items()),
-        lines="\n".join(lines),
-        a="a, " if given else "",
-        a_declared="a(:), " if given else "",
-    )
-    files = {f"{main}.f90": f"{head}\n{fortran_text(program, stem, told.role, told.remarks)}"}
-    return files | ({f"{main}_test.f90": "\n".join(_short(test.split("\n")))} if told.vectors else {})
-
-
-def _number(value: float) -> str:
-    return "nan" if value != value else f"{value!r}_dp"
-
-
-def _listed(values: Sequence[float]) -> str:
-    return f"[{', '.join(map(_number, values))}]" if values else "none"
-
-
-@dataclass
-class _LongLists:
-    """Lists that are too long for the statement in which they stand: arrays that are filled before it."""
-
-    sizes: dict[str, int] = field(default_factory=dict)
-    lines: list[str] = field(default_factory=list)
-
-    def listed(self, values: Sequence[float]) -> str:
-        """A list, or the name of its array."""
-        if len(values) <= LONGEST_LIST:
-            return _listed(values)
-        name, first = f"long_{len(values)}_{len(self.lines)}", 1
-        self.sizes[name] = len(values)
-        for part in _pieces(values):
-            self.lines.append(f"    {name}({first}:{first + len(part) - 1}) = {_listed(part)}")
-            first += len(part)
-        return name
-
-    def filled(self) -> list[str]:
-        """The lines that fill the arrays of one vector."""
-        lines, self.lines[:] = [*self.lines], []
-        return lines
-
-
-def _many_text(text: str, program: Program, stem: str, role: Role) -> str:
-    """The module with a subroutine that Python calls."""
-    size = re.search(r"real\(dp\) :: c\((\d+)\)", text)
-    assert size is not None
-    n = len(program.states)
-    x = f"x(:{n}, i), x({n + 1}:, i)" if program.accelerations else "x(:, i)"
-    return text + _ENTRY.format(**sizes(program, role, stem), size=size[1], x=x)
-
-
+FORM = Form(
+    FORTRAN,
+    _MODULE,
+    "{main}.f90",
+    "{main}_test.f90",
+    given={
+        "a_declared": ("a({accelerations}), ", ""),
+        "a_list": ("a(:), ", ""),
+        "x_and_a": ("x(:{states}, i), x({states} + 1:, i)", "x(:, i)"),
+    },
+    marked={"ieee": ("ieee_value", "    use, intrinsic :: ieee_arithmetic, only: ieee_value, ieee_quiet_nan\n")},
+    body=_body,
+    named=_named,
+    fixed={"counted": _COUNTED},
+    test=_TEST,
+    vector=f"    call {CHECK}",
+    empty="none",
+    nan="nan",
+    acting=("none", "{}"),
+    real=lambda value: f"{value!r}_dp",
+    finished=_short,
+)
 USE = ("use {stem}_rhs, only: rhs", "gfortran -std=f2008 -Wall {stem}_rhs.f90 {stem}_rhs_test.f90 -o test && ./test")
 TARGET = compiled_target(
     "fortran",
     "a Fortran 2008 module",
-    fortran_text,
-    files_of_each(_files),
+    FORM,
     USE,
-    source="{main}.f90",
-    called=_many_text,
+    entry=_ENTRY,
+    size=r"real\(dp\) :: c\((\d+)\)",
     by=COMPILER,
     single=SingleWords(
         ((r"=> real64\b", "=> real32"), (r"\bc_double\b", "c_float")), r'![^\n]*|"(?:[^"]|"")*"', r"\.f90$"

@@ -8,10 +8,8 @@ from __future__ import annotations
 from dataclasses import replace
 
 from eomgen.codegen.lowered import CHANGED, INDICES, INT, PLACES, READ, REAL, ROOM, Language
-from eomgen.codegen.lowering import lowered
 from eomgen.codegen.program import Program
-from eomgen.codegen.targets.base import RHS, Description, FileContent, Role
-from eomgen.codegen.targets.node import node_target
+from eomgen.codegen.targets.node import node_form, node_target
 
 _OUT = "function {name}({arguments}, {out} = new Float64Array({size})) {{"
 JAVASCRIPT = Language(
@@ -55,42 +53,23 @@ JAVASCRIPT = Language(
     longest=2000,  # V8 leaves longer functions unoptimized
 )
 
-_CALLER = """\
-/** {result}: {count} numbers; inputs null: the model's own. */
+_MODULE = """\
+{functions}
+
+/** {result}: {outputs} numbers; inputs null: the model's own. */
 export function {role}(t, x, {a}p, inputs = null) {{
     return evaluate(t, x, {a}p, constants(p), inputs);
 }}
 """
-
-
-def javascript_text(program: Program, stem: str = "", role: Role = RHS) -> str:
-    """A module that exports the role's function, `constants(p)` and `evaluate(t, x, p, c, inputs)`.
-
-    A module has its own names, so the stem is not in them.
-    """
-    a = "a, " if program.accelerations else ""
-    caller = _CALLER.format(result=role.result, role=role.name, a=a, count=len(program.outputs))
-    return f"{_functions(program, JAVASCRIPT, role)}\n\n{caller}"
+FORM = node_form(JAVASCRIPT, _MODULE)
 
 
 def javascript_expression(program: Program) -> str:
     """An object of the functions `constants` and `evaluate`, for scripts that are no modules."""
-    text = _functions(program, replace(JAVASCRIPT, out=(_OUT, JAVASCRIPT.out[1])), RHS)
-    return f"(() => {{\n{text}\nreturn {{ constants, evaluate }};\n}})()"
+    inside = replace(JAVASCRIPT, out=(_OUT, JAVASCRIPT.out[1]))
+    whole = "(() => {{\n{functions}\nreturn {{ constants, evaluate }};\n}})()"
+    return replace(FORM, language=inside, module=whole).text(program)
 
 
-def _functions(program: Program, language: Language, role: Role) -> str:
-    return "\n\n".join(lowered(program, language, role.result).texts(language))
-
-
-def _written(stem: str, program: Program, told: Description) -> dict[str, FileContent]:
-    return {f"{told.role.main(stem)}.mjs": javascript_text(program, stem, told.role)}
-
-
-TARGET = node_target(
-    "javascript",
-    "an ECMAScript module, for browsers and node",
-    javascript_text,
-    _written,
-    ('import {{ rhs }} from "./{stem}_rhs.mjs";', "node --test"),
-)
+USE = ('import {{ rhs }} from "./{stem}_rhs.mjs";', "node --test")
+TARGET = node_target("javascript", "an ECMAScript module, for browsers and node", FORM, USE)

@@ -2,16 +2,12 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
 from dataclasses import replace
 
-from eomgen.codegen.lowering import lowered
-from eomgen.codegen.program import Program
 from eomgen.codegen.targets import branch_free
-from eomgen.codegen.targets.base import RHS, Role
 from eomgen.codegen.targets.in_single import SingleWords
 from eomgen.codegen.targets.numpy import PYTHON
-from eomgen.codegen.targets.python_files import python_target
+from eomgen.codegen.targets.python_files import python_form, python_target
 
 UNARY = {
     **{op: f"jnp.{op}" for op in "sin cos sinh cosh tanh exp log abs sign".split()},
@@ -89,25 +85,17 @@ def {main}(t, x, {a}p, inputs=None):
     return evaluate(t, x, {a}p, constants(p), inputs)
 
 
-{jacobian} = jax.jit(jax.jacfwd({main}, argnums=1))  # d {result}/d x
+{main}_by_x = jax.jit(jax.jacfwd({main}, argnums=1))  # d {result}/d x
 '''
 
 
-def jax_text(program: Program, stem: str, role: Role = RHS, remarks: Mapping[str, str] | None = None) -> str:
-    """The module of a program."""
-    given, made = bool(program.accelerations), lowered(program, JAX, role.result, remarks=remarks)
-    return _TEXT.format(
-        arrays=_ARRAYS if made.ops & branch_free.SOLVERS.keys() else "",
-        functions="\n\n".join(made.texts(JAX)),
-        main=role.main(stem),
-        jacobian=f"{role.main(stem)}_by_x",
-        result=role.result,
-        outputs=len(program.outputs),
-        a="a, " if given else "",
-        a_array="jnp.asarray(a, dtype=float), " if given else "",
-    )
-
-
+FORM = python_form(
+    JAX,
+    "{others}_jax",
+    _TEXT,
+    {"a_array": ("jnp.asarray(a, dtype=float), ", "")},
+    marked={"arrays": ("_factors(", _ARRAYS)},
+)
 USE = ("from {stem}_jax import {stem}_rhs", "python -m pytest")
 SINGLE = SingleWords(
     (
@@ -118,4 +106,4 @@ SINGLE = SingleWords(
     r'"""\w+ \w+.*?"""|#[^\n]*',
     r"(^|/)(?!test_)\w+_jax\.py$|README\.md$",
 )
-TARGET = python_target("jax", "Python with JAX, in doubles: jit, vmap, grad", jax_text, USE, SINGLE)
+TARGET = python_target("jax", "Python with JAX, in doubles: jit, vmap, grad", FORM, USE, SINGLE)

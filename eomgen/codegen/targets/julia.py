@@ -7,22 +7,12 @@ and nobody has run it; its head says so.
 from __future__ import annotations
 
 import json
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 
 from eomgen.codegen.lowered import CHANGED, INDICES, INT, PLACES, READ, REAL, ROOM, Language
-from eomgen.codegen.lowering import lowered
 from eomgen.codegen.program import Program
-from eomgen.codegen.targets.base import (
-    RHS,
-    Description,
-    Functions,
-    Role,
-    Target,
-    files_of_each,
-    header,
-    vector_lines,
-)
-from eomgen.codegen.targets.library_call import sizes
+from eomgen.codegen.targets.base import Functions, Target
+from eomgen.codegen.targets.form import Form
 from eomgen.errors import ToolMissing
 
 NOT_RUN = "Not run where it was made: no Julia was there."
@@ -117,44 +107,22 @@ end
 """
 
 
-def julia_text(program: Program, stem: str, role: Role = RHS, remarks: Mapping[str, str] | None = None) -> str:
-    """The module of a program."""
-    made, symbols = lowered(program, JULIA, role.result, remarks=remarks), program.symbols
-    listed = {"x_names": [x.name for x in program.states], "p_names": symbols.parameters, "input_names": symbols.inputs}
-    return _MODULE.format(
-        **sizes(program, role, stem),
-        not_run=NOT_RUN,
-        names="\n".join(f"const {key} = String[{', '.join(map(_quoted, names))}]" for key, names in listed.items()),
-        functions="\n\n".join(made.texts(JULIA)),
-        a="a, " if program.accelerations else "",
-    )
+def _named(key: str, names: Sequence[str]) -> list[str]:
+    quoted = (json.dumps(name, ensure_ascii=False).replace("$", "\\$") for name in names)
+    return [f"const {key} = String[{', '.join(quoted)}]"]
 
 
-def _quoted(name: str) -> str:
-    return json.dumps(name, ensure_ascii=False).replace("$", "\\$")
-
-
-def _files(stem: str, program: Program, told: Description) -> dict[str, str]:
-    """NAME_rhs.jl and NAME_rhs_test.jl."""
-    main, a = told.role.main(stem), "{a}, " if program.accelerations else ""
-    head = "\n".join(f"# {JULIA.harmless(line)}".rstrip() for line in header(program, told))
-    call = f"    check({{t}}, {{x}}, {a}{{p}}, {{inputs}}, {{result}}, {{tolerance}})"
-    lines = vector_lines(told.vectors, call, _listed, _number, ("Float64[]", "{}"))
-    words = sizes(program, told.role, stem) | {
-        "not_run": NOT_RUN,
-        "a": a.replace("{a}", "a"),
-        "lines": "\n".join(lines),
-    }
-    files = {f"{main}.jl": f"{head}\n{julia_text(program, stem, told.role, told.remarks)}"}
-    return files | ({f"{main}_test.jl": _TEST.format(**words)} if told.vectors else {})
-
-
-def _number(value: float) -> str:
-    return "NaN" if value != value else repr(value)
-
-
-def _listed(values: Sequence[float]) -> str:
-    return f"Float64[{', '.join(map(_number, values))}]"
+FORM = Form(
+    JULIA,
+    _MODULE,
+    "{main}.jl",
+    "{main}_test.jl",
+    fixed={"not_run": NOT_RUN},
+    named=_named,
+    test=_TEST,
+    listed=("Float64[", "]"),
+    acting=("Float64[]", "{}"),
+)
 
 
 def functions(program: Program) -> Functions:
@@ -169,4 +137,4 @@ def functions(program: Program) -> Functions:
 
 
 USE = (NOT_RUN, 'include("{stem}_rhs.jl"); using .{stem}_rhs', "julia {stem}_rhs_test.jl")
-TARGET = Target("julia", "a Julia module (not run here)", julia_text, files_of_each(_files), USE, functions)
+TARGET = Target("julia", "a Julia module (not run here)", FORM.text, FORM.files, USE, functions)

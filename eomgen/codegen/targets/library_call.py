@@ -8,7 +8,9 @@ x has a after it in each row, where a is an argument; inputs NULL: the model's o
 from __future__ import annotations
 
 import ctypes
+import re
 from collections.abc import Callable, Mapping, Sequence
+from functools import partial
 from typing import Any
 
 import numpy as np
@@ -28,6 +30,7 @@ from eomgen.codegen.targets.base import (
     called_by,
     functions_by,
 )
+from eomgen.codegen.targets.form import Form
 from eomgen.codegen.targets.in_single import SingleWords
 
 ENTRY = "eomgen_many"
@@ -57,56 +60,32 @@ def many_of(text: str, program: Program, by: Compiler, *, quickly: bool = False,
 
 
 def compiled_target(
-    name: str,
-    language: str,
-    text: Callable[[Program, str, Role], str],
-    files: Callable[[str, Sequence[Emitted]], dict[str, FileContent]],
-    use: tuple[str, ...],
-    *,
-    source: str,
-    called: Callable[[str, Program, str, Role], str],
-    by: Compiler,
-    single: SingleWords,
-) -> Target:
+    name: str, language: str, form: Form, use: tuple[str, ...], *, entry: str, size: str, by: Compiler,
+    single: SingleWords, files: Callable[[str, Sequence[Emitted]], dict[str, FileContent]] | None = None,
+) -> Target:  # fmt: skip
     """A language whose texts become libraries.
 
     Args:
-        text, files, use: as of Target.
-        source: the path of a function's text among its files, with {main}, {stem} and {role}.
-        called: (text, program, stem, role) -> it with the function above.
+        use, files: as of Target; without files those of the form.
+        entry: a {text} with the function above, by the words of the form.
+        size: how many constants the text says that there are, a pattern.
         by: what compiles it.
         single: its words in single precision.
     """
 
+    def many(text: str, program: Program, stem: str, role: Role, **how: Any) -> Many:
+        found = re.search(size, text)
+        assert found is not None
+        words = form.words(program, stem, role) | {"entry": ENTRY, "size": found[1], "text": text}
+        whole, real = entry.format(**words), how.get("real", np.float64)
+        return many_of(whole if real is np.float64 else single.text(whole), program, by, **how)
+
     def load(program: Program) -> Functions:
-        whole = called(text(program, "eomgen", RHS), program, "eomgen", RHS)
-        return functions_by(many_of(whole, program, by))
+        return functions_by(many(form.text(program, "eomgen"), program, "eomgen", RHS))
 
-    def run(texts: Mapping[str, FileContent], program: Program, stem: str, role: Role) -> Called:
-        path = source.format(main=role.main(stem), stem=stem, role=role.name)
-        return called_by(many_of(called(str(texts[path]), program, stem, role), program, by, quickly=True))
+    def run(texts: Mapping[str, FileContent], program: Program, stem: str, role: Role, **how: Any) -> Called:
+        text = str(texts[form.path_of(program, stem, role)])
+        return called_by(many(text, program, stem, role, quickly=True, **how))
 
-    def run_single(texts: Mapping[str, FileContent], program: Program, stem: str, role: Role) -> Called:
-        path = source.format(main=role.main(stem), stem=stem, role=role.name)
-        whole = single.text(called(str(texts[path]), program, stem, role))
-        return called_by(many_of(whole, program, by, quickly=True, real=np.float32))
-
-    return Target(name, language, text, files, use, load, run, single=Single(single.files, run_single))
-
-
-def sizes(program: Program, role: Role, stem: str) -> dict[str, object]:
-    """What stands in templates: names, and how many there are of each."""
-    given = len(program.accelerations)
-    return {
-        "main": role.main(stem),
-        "stem": stem,
-        "role": role.name,
-        "result": role.result,
-        "states": len(program.states),
-        "accelerations": given,
-        "moving": len(program.moving),
-        "parameters": len(program.symbols.parameters),
-        "inputs": len(program.symbols.inputs),
-        "outputs": len(program.outputs),
-        "entry": ENTRY,
-    }
+    in_single = Single(single.files, partial(run, real=np.float32))
+    return Target(name, language, form.text, files or form.files, use, load, run, single=in_single)

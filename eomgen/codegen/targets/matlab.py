@@ -8,29 +8,15 @@ from __future__ import annotations
 import shutil
 import tempfile
 import weakref
-from collections.abc import Mapping, Sequence
+from collections.abc import Mapping
 from pathlib import Path
 
 from eomgen.codegen.lowered import CHANGED, INDICES, INT, PLACES, READ, REAL, ROOM, Language
-from eomgen.codegen.lowering import lowered
+from eomgen.codegen.lowering import Lowered
 from eomgen.codegen.program import Program
-from eomgen.codegen.targets.base import (
-    RHS,
-    Called,
-    Description,
-    FileContent,
-    Functions,
-    Many,
-    Role,
-    Target,
-    called_by,
-    files_of_each,
-    functions_by,
-    header,
-    vector_lines,
-)
+from eomgen.codegen.targets.base import Called, FileContent, Functions, Many, Role, Target, called_by, functions_by
 from eomgen.codegen.targets.beside import many_beside
-from eomgen.codegen.targets.library_call import sizes
+from eomgen.codegen.targets.form import CHECK, Form
 from eomgen.errors import ToolMissing
 
 
@@ -105,6 +91,7 @@ MATLAB = Language(
 
 _MAIN = """\
 function {result} = {main}(t, x, {a}p, inputs)
+%{MAIN}
 {head}
     if nargin < {count}
         inputs = [];
@@ -158,39 +145,23 @@ end
 """
 
 
-def matlab_text(program: Program, stem: str, role: Role = RHS, remarks: Mapping[str, str] | None = None) -> str:
-    """The function file of a program."""
-    return _text(program, stem, role, remarks or {}, [f"% {role.about}"])
+def _body(made: Lowered) -> dict[str, str]:
+    """The functions, step_to of both comparisons once."""
+    return {"functions": "\n\n".join(dict.fromkeys("\n\n".join(made.texts(MATLAB)).split("\n\n")))}
 
 
-def _text(program: Program, stem: str, role: Role, remarks: Mapping[str, str], head: Sequence[str]) -> str:
-    made, given = lowered(program, MATLAB, role.result, remarks=remarks), bool(program.accelerations)
-    texts = list(dict.fromkeys("\n\n".join(made.texts(MATLAB)).split("\n\n")))  # step_to of both comparisons once
-    return _MAIN.format(
-        **sizes(program, role, stem), head="\n".join(head), a="a, " if given else "", count=5 if given else 4,
-        functions="\n\n".join(texts),
-    )  # fmt: skip
-
-
-def _files(stem: str, program: Program, told: Description) -> dict[str, str]:
-    """NAME_rhs.m and NAME_rhs_test.m."""
-    main, given = told.role.main(stem), bool(program.accelerations)
-    head = [f"% {MATLAB.harmless(line)}".rstrip() for line in header(program, told)]
-    files = {f"{main}.m": _text(program, stem, told.role, told.remarks, [f"%{main.upper()}", *head])}
-    if not told.vectors:
-        return files
-    a = "{a}, " if given else ""
-    call = f"    check({{t}}, {{x}}, {a}{{p}}, {{inputs}}, {{result}}, {{tolerance}});"
-    lines = vector_lines(told.vectors, call, _listed, _number, ("[]", "{}"))
-    return files | {f"{main}_test.m": _TEST.format(main=main, lines="\n".join(lines), a="a, " if given else "")}
-
-
-def _number(value: float) -> str:
-    return "NaN" if value != value else repr(value)
-
-
-def _listed(values: Sequence[float]) -> str:
-    return f"[{', '.join(map(_number, values))}]" if values else "zeros(1, 0)"
+FORM = Form(
+    MATLAB,
+    _MAIN,
+    "{main}.m",
+    "{main}_test.m",
+    "{text}",
+    given={"count": ("5", "4")},
+    body=_body,
+    test=_TEST,
+    vector=f"    {CHECK};",
+    empty="zeros(1, 0)",
+)
 
 
 def octave() -> str | None:
@@ -213,7 +184,7 @@ def _many(text: str, main: str, program: Program) -> Many:
 
 def functions(program: Program) -> Functions:
     """The program run by Octave."""
-    return functions_by(_many(matlab_text(program, "eomgen"), "eomgen_rhs", program))
+    return functions_by(_many(FORM.text(program, "eomgen"), "eomgen_rhs", program))
 
 
 def run(texts: Mapping[str, FileContent], program: Program, stem: str, role: Role) -> Called:
@@ -223,6 +194,4 @@ def run(texts: Mapping[str, FileContent], program: Program, stem: str, role: Rol
 
 
 USE = ("[t, x] = ode45(@(t, x) {stem}_rhs(t, x, p), [0 10], x0);", "octave --eval {stem}_rhs_test")
-TARGET = Target(
-    "matlab", "function files of MATLAB and Octave", matlab_text, files_of_each(_files), USE, functions, run
-)
+TARGET = Target("matlab", "function files of MATLAB and Octave", FORM.text, FORM.files, USE, functions, run)

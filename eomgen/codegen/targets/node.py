@@ -9,13 +9,13 @@ import base64
 import json
 import shutil
 from collections.abc import Callable, Mapping, Sequence
+from typing import Any
 
-from eomgen.codegen.lowered import one_line
+from eomgen.codegen.lowered import Language, one_line
 from eomgen.codegen.program import Program
 from eomgen.codegen.targets.base import (
     RHS,
     Called,
-    Description,
     Emitted,
     FileContent,
     Functions,
@@ -25,9 +25,9 @@ from eomgen.codegen.targets.base import (
     Target,
     called_by,
     functions_by,
-    header,
 )
 from eomgen.codegen.targets.beside import doubles, many_beside
+from eomgen.codegen.targets.form import Form
 from eomgen.errors import ToolMissing
 
 _TEST = """\
@@ -40,8 +40,8 @@ import {{ {role} }} from "./{main}.mjs";
 const told = JSON.parse(readFileSync(new URL("test_vectors.json", import.meta.url), "utf8"));
 
 test("{main} gives the values of its test vectors", () => {{
-    for (const [place, v] of told{where}.vectors.entries()) {{
-        const found = {role}(v.t, v.x, {a}v.p, v.inputs);
+    for (const [place, v] of told{of_role}.vectors.entries()) {{
+        const found = {role}(v.t, v.x, {a_of_v}v.p, v.inputs);
         assert.equal(found.length, v.{result}.length);
         const largest = Math.max(1, ...v.{result}.map(Math.abs));
         v.{result}.forEach((right, k) => assert.ok(
@@ -98,64 +98,58 @@ def many_of_module(text: str, program: Program) -> Many:
     return many_beside("node", [node, "-e", _SERVER], program, doubles([len(coded) // 8]) + coded)
 
 
+def node_form(language: Language, module: str, **words: Any) -> Form:
+    """The form of an ECMAScript module: STEM_ROLE.mjs, and its test, which `node --test` finds."""
+    return Form(
+        language,
+        module,
+        "{main}.mjs",
+        "{main}.test.mjs",
+        "{head}\n\nexport const names = {{\n{names}\n}};\n\n{text}",
+        told=lambda line: f"// {one_line(line)}".rstrip(),
+        given={"a_of_v": ("v.a, ", "")},
+        keys=("x", "p", "inputs"),
+        named=lambda key, names: [f"    {key}: {json.dumps(names)},"],
+        test=_TEST,
+        **words,
+    )
+
+
+Beside = Callable[[str, Program, Role, "Mapping[str, str] | None"], dict[str, FileContent]]
+"""(stem, program, role, remarks) -> files beside a module."""
+
+
 def node_target(
     name: str,
     language: str,
-    text: Callable[..., str],
-    written: Callable[[str, Program, Description], dict[str, FileContent]],
+    form: Form,
     use: tuple[str, ...],
-    alone: Callable[[Mapping[str, FileContent], str], str] | None = None,
+    *,
+    text: Callable[..., str] | None = None,
+    beside: Beside = lambda *_: {},
+    alone: Callable[[Mapping[str, FileContent], str], str] = lambda files, main: str(files[f"{main}.mjs"]),
     single: Callable[[Mapping[str, FileContent]], dict[str, FileContent]] | None = None,
 ) -> Target:
-    """A language whose files are ECMAScript modules: STEM_ROLE.mjs, what it needs beside it, and its test.
+    """A language whose files are ECMAScript modules.
 
     Args:
-        text: of a program in the language.
-        written: (stem, program, what is told of it) -> {path: content}, STEM_ROLE.mjs the first of them.
         use: how it is imported, and what runs its tests.
-        alone: (files, STEM_ROLE) -> the module as it needs no file beside it; None where it never does.
+        text: of a program in the language, where that is not the module.
+        beside: what the module needs beside it.
+        alone: (files, STEM_ROLE) -> the module as it needs no file beside it.
         single: the files in doubles -> in single precision, where there are such.
     """
 
-    def module(files: Mapping[str, FileContent], main: str) -> str:
-        return alone(files, main) if alone else str(files[f"{main}.mjs"])
-
     def files(stem: str, emitted: Sequence[Emitted]) -> dict[str, FileContent]:
-        return {
-            path: content
-            for program, told in emitted
-            for path, content in _module_files(written(stem, program, told), stem, program, told).items()
-        }
+        further = (beside(stem, program, told.role, told.remarks) for program, told in emitted)
+        return form.files(stem, emitted) | {path: content for each in further for path, content in each.items()}
 
     def functions(program: Program) -> Functions:
-        made = written("eomgen", program, Description("", "", {}))
-        return functions_by(many_of_module(module(made, RHS.main("eomgen")), program))
+        main = RHS.main("eomgen")
+        made = {f"{main}.mjs": form.text(program, "eomgen"), **beside("eomgen", program, RHS, None)}
+        return functions_by(many_of_module(alone(made, main), program))
 
     def run(texts: Mapping[str, FileContent], program: Program, stem: str, role: Role) -> Called:
-        return called_by(many_of_module(module(texts, role.main(stem)), program))
+        return called_by(many_of_module(alone(texts, role.main(stem)), program))
 
-    return Target(name, language, text, files, use, functions, run, single=single and Single(single, run))
-
-
-def _module_files(
-    made: dict[str, FileContent], stem: str, program: Program, told: Description
-) -> dict[str, FileContent]:
-    """The module with its head, what stands beside it, and its test, which `node --test` finds."""
-    role, main = told.role, told.role.main(stem)
-    head = "\n".join(f"// {one_line(line)}".rstrip() for line in header(program, told))
-    listed = {
-        "x": [x.name for x in program.states],
-        "p": list(program.symbols.parameters),
-        "inputs": list(program.symbols.inputs),
-    }
-    loaded = str(made[f"{main}.mjs"])
-    named = "\n".join(f"    {key}: {json.dumps(names)}," for key, names in listed.items())
-    text = f"{head}\n\nexport const names = {{\n{named}\n}};\n\n{loaded}"
-    tested = _TEST.format(
-        main=main,
-        role=role.name,
-        result=role.result,
-        where="" if role is RHS else f".{role.name}",
-        a="v.a, " if program.accelerations else "",
-    )
-    return made | {f"{main}.mjs": text, f"{main}.test.mjs": tested}
+    return Target(name, language, text or form.text, files, use, functions, run, single=single and Single(single, run))

@@ -2,15 +2,11 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
 from dataclasses import replace
 
 from eomgen.codegen.lowered import CHANGED, INDICES, PLACES, READ, ROOM
-from eomgen.codegen.lowering import lowered
-from eomgen.codegen.program import Program
-from eomgen.codegen.targets.base import RHS, Role
 from eomgen.codegen.targets.numpy import PYTHON
-from eomgen.codegen.targets.python_files import python_target
+from eomgen.codegen.targets.python_files import python_form, python_target
 
 _DEFINED = {
     "abs": ("value", "math.fabs(value)"),
@@ -62,18 +58,12 @@ def {main}(t, x, {a}p, inputs=None):
 '''
 
 
-def numba_text(program: Program, stem: str, role: Role = RHS, remarks: Mapping[str, str] | None = None) -> str:
-    """The module of a program."""
-    given = bool(program.accelerations)
-    return _TEXT.format(
-        functions="\n".join(lowered(program, NUMBA, role.result, remarks=remarks).texts(NUMBA)),
-        main=role.main(stem),
-        result=role.result,
-        outputs=len(program.outputs),
-        a="a, " if given else "",
-        a_array="np.asarray(a, dtype=np.float64), " if given else "",
-    )
-
-
+FORM = python_form(
+    NUMBA,
+    "{others}_numba",
+    _TEXT,
+    {"a_array": ("np.asarray(a, dtype=np.float64), ", "")},
+    body=lambda made: {"functions": "\n".join(made.texts(NUMBA))},
+)
 USE = ("from {stem}_numba import {stem}_rhs", "python -m pytest")
-TARGET = python_target("numba", "Python compiled by numba", numba_text, USE)
+TARGET = python_target("numba", "Python compiled by numba", FORM, USE)

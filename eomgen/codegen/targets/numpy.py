@@ -4,14 +4,14 @@ from __future__ import annotations
 
 import keyword
 import textwrap
-from collections.abc import Mapping, Sequence
+from collections.abc import Mapping
 from typing import Any
 
 from eomgen.codegen.lowered import CHANGED, INDICES, INT, PLACES, READ, REAL, ROOM, Language
-from eomgen.codegen.lowering import Lowered, lowered
+from eomgen.codegen.lowering import Lowered
 from eomgen.codegen.program import Program
-from eomgen.codegen.targets.base import RHS, Called, Description, FileContent, Functions, Role, Target, files_of_each
-from eomgen.codegen.targets.python_files import executed, module_files
+from eomgen.codegen.targets.base import Called, FileContent, Functions, Role, Target
+from eomgen.codegen.targets.python_files import called_each, executed, python_form
 
 PYTHON = Language(
     reserved=frozenset(keyword.kwlist) | frozenset(keyword.softkwlist),
@@ -80,7 +80,17 @@ def _each(solve):
 
 '''
 
-_CALLS = '''
+_MODULE = '''\
+import math
+
+import numpy as np
+
+{kernels}{each}
+def _written({names_of_ops}):
+    """The functions in the arithmetic of the functions given."""
+
+{functions}
+
 _constants, _evaluate = _written({scalars})
 _constants_of_arrays, _evaluate_arrays = _written({arrays})
 
@@ -128,52 +138,43 @@ np.empty((len(t), 0))
 '''
 
 
-def python_text(program: Program, stem: str, role: Role = RHS) -> str:
-    """A module with NAME_rhs(t, x, p, inputs=None) and NAME_many, or what the role says."""
-    made, given, states = lowered(program, PYTHON, role.result), len(program.accelerations), len(program.states)
-    calls = _CALLS.format(
-        main=role.main(stem),
-        others=role.others(stem),
-        result=role.result,
-        scalars=", ".join([*(SCALARS[op] for op in _ops(made)), *made.called]),
-        arrays=", ".join([*(ARRAYS[op] for op in _ops(made)), *map(_of_arrays, made.called)]),
-        outputs=len(program.outputs),
-        states=states,
-        states_of_x=f"x[{states}:], " if given else "",
-        rows_of_x=f"x.T[{states}:], " if given else "",
-        a="a, " if given else "",
-        all_x="[*x, *a]" if given else "x",
-        a_size=f"a n x {given}, " if given else "",
-        beside="np.hstack([x, a])" if given else "x",
-        parameters=len(program.symbols.parameters),
-        inputs=len(program.symbols.inputs),
-    )
+def _body(made: Lowered) -> dict[str, str]:
+    """The functions by the arithmetic that they are given, and the two arithmetics."""
+    ops = sorted(made.ops & SCALARS.keys())
     kernels = [*map(PYTHON.holds, made.tables), *("\n\n" + "\n".join(PYTHON.defines(f)) for f in made.kernels)]
     bodies = "\n\n".join("\n".join(PYTHON.defines(f)) for f in made.bodies)
-    return "\n".join(
-        [
-            "import math\n\nimport numpy as np\n",
-            *kernels,
-            _EACH if any(name.startswith("solve") for name in made.called) else "\n",
-            f"def _written({', '.join([*_ops(made), *made.called])}):",
-            '    """The functions in the arithmetic of the functions given."""\n',
-            textwrap.indent(f"{bodies}\n\nreturn constants, evaluate\n", "    "),
-            calls,
-        ]
-    )
-
-
-def _ops(made: Lowered) -> list[str]:
-    return sorted(made.ops & SCALARS.keys())
+    return {
+        "kernels": "".join(f"{each}\n" for each in kernels),
+        "each": _EACH if any(name.startswith("solve") for name in made.called) else "\n",
+        "names_of_ops": ", ".join([*ops, *made.called]),
+        "functions": textwrap.indent(f"{bodies}\n\nreturn constants, evaluate\n", "    "),
+        "scalars": ", ".join([*(SCALARS[op] for op in ops), *made.called]),
+        "arrays": ", ".join([*(ARRAYS[op] for op in ops), *map(_of_arrays, made.called)]),
+    }
 
 
 def _of_arrays(kernel: str) -> str:
     return f"_each({kernel})" if kernel.startswith("solve") else f"np.vectorize({kernel}, otypes=[float])"
 
 
+FORM = python_form(
+    PYTHON,
+    "{main}",
+    _MODULE,
+    {
+        "states_of_x": ("x[{states}:], ", ""),
+        "rows_of_x": ("x.T[{states}:], ", ""),
+        "all_x": ("[*x, *a]", "x"),
+        "a_size": ("a n x {accelerations}, ", ""),
+        "beside": ("np.hstack([x, a])", "x"),
+    },
+    body=_body,
+)
+
+
 def numpy_functions(program: Program) -> Functions:
     """The program's text, made functions."""
-    space = executed(python_text(program, "eomgen"), "<eomgen program>")
+    space = executed(FORM.text(program, "eomgen"), "<eomgen program>")
     import numpy as np
 
     constants, evaluate, many = space["constants"], space["evaluate"], space["evaluate_many"]
@@ -189,23 +190,10 @@ def numpy_functions(program: Program) -> Functions:
     return Functions(constants_of, one, many)
 
 
-def _files(stem: str, program: Program, told: Description) -> dict[str, str]:
-    """NAME_rhs.py, a module of its own: it needs numpy and nothing of ours; and its test."""
-    return module_files(python_text(program, stem, told.role), told.role.main(stem), stem, program, told)
-
-
 def run(texts: Mapping[str, FileContent], program: Program, stem: str, role: Role) -> Called:
     """NAME_rhs of the file, executed."""
-    function = executed(str(texts[f"{role.main(stem)}.py"]), role.main(stem))[role.main(stem)]
-
-    def called(
-        t: float, x: Sequence[float], a: Sequence[float], p: Sequence[float], inputs: Sequence[float] | None
-    ) -> Sequence[float]:
-        found: Sequence[float] = function(t, x, a, p, inputs) if program.accelerations else function(t, x, p, inputs)
-        return found
-
-    return called
+    return called_each(str(texts[FORM.path_of(program, stem, role)]), program, role.main(stem), "numpy")
 
 
 USE = ("from {stem}_rhs import {stem}_rhs", "python -m pytest")
-TARGET = Target("numpy", "Python with numpy", python_text, files_of_each(_files), USE, numpy_functions, run)
+TARGET = Target("numpy", "Python with numpy", FORM.text, FORM.files, USE, numpy_functions, run)

@@ -2,25 +2,15 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Mapping
 from typing import Any
 
 import numpy as np
 
+from eomgen.codegen.lowered import Language
 from eomgen.codegen.program import Program
-from eomgen.codegen.targets.base import (
-    RHS,
-    Called,
-    Description,
-    Emitted,
-    FileContent,
-    Functions,
-    Role,
-    Single,
-    Target,
-    functions_by,
-    header,
-)
+from eomgen.codegen.targets.base import Called, FileContent, Functions, Role, Single, Target, functions_by
+from eomgen.codegen.targets.form import Form
 from eomgen.codegen.targets.in_single import SingleWords
 from eomgen.errors import ToolMissing
 
@@ -36,8 +26,8 @@ from {module} import {main}
 
 def test_{main}_gives_the_values_of_its_test_vectors():
     told = json.loads((pathlib.Path(__file__).parent / "test_vectors.json").read_text(encoding="utf-8"))
-    for v in told{where}["vectors"]:
-        found = np.asarray({main}(v["t"], v["x"], {a}v["p"], v["inputs"]), dtype=float).ravel()
+    for v in told{of_role}["vectors"]:
+        found = np.asarray({main}(v["t"], v["x"], {a_of_v}v["p"], v["inputs"]), dtype=float).ravel()
         right = np.array(v["{result}"], dtype=float)  # null: not a number
         assert found.shape == right.shape
         known = right == right
@@ -47,60 +37,43 @@ def test_{main}_gives_the_values_of_its_test_vectors():
 '''
 
 
+def python_form(
+    language: Language, named: str, module: str, given: Mapping[str, tuple[str, str]], **words: Any
+) -> Form:
+    """The form of a language that is Python: NAMED.py, a module, and its test."""
+    return Form(
+        language,
+        module,
+        f"{named}.py",
+        f"test_{named}.py",
+        '"""{head}\n"""\n\n{text}',
+        told=lambda line: line.replace("\\", "/").replace('"""', "'''"),
+        given={**given, "a_of_v": ('v["a"], ', "")},
+        test=_TEST.replace("{module}", named),
+        **words,
+    )
+
+
 def python_target(
-    name: str, language: str, text: Callable[..., str], use: tuple[str, ...], single: SingleWords | None = None
+    name: str, language: str, form: Form, use: tuple[str, ...], single: SingleWords | None = None
 ) -> Target:
     """A language that is a Python package: STEM_NAME.py of the right-hand side, STEM_ROLE_NAME.py, and their tests.
 
     Args:
         name: of the package, too.
         language: in words.
-        text: the module of a program.
         use: how it is imported, and what runs its tests.
         single: its words in single precision, where there are such.
     """
 
-    def module(stem: str, role: Role) -> str:
-        return f"{role.others(stem)}_{name}"
-
-    def files(stem: str, emitted: Sequence[Emitted]) -> dict[str, FileContent]:
-        return {
-            path: content
-            for program, told in emitted
-            for path, content in module_files(
-                text(program, stem, told.role, told.remarks), module(stem, told.role), stem, program, told
-            ).items()
-        }
-
     def functions(program: Program) -> Functions:
-        return functions_each(executed(text(program, "eomgen"), f"eomgen_{name}", name)["eomgen_rhs"], program)
+        return functions_each(executed(form.text(program, "eomgen"), f"eomgen_{name}", name)["eomgen_rhs"], program)
 
     def run(texts: Mapping[str, FileContent], program: Program, stem: str, role: Role) -> Called:
-        return called_each(texts, module(stem, role), program, stem, role, name)
+        return called_each(str(texts[form.path_of(program, stem, role)]), program, role.main(stem), name)
 
-    return Target(
-        name,
-        language,
-        text,
-        files,
-        use,
-        functions,
-        run,
-        single=Single(single.files, run) if single is not None else None,
-    )
-
-
-def module_files(text: str, module: str, stem: str, program: Program, told: Description) -> dict[str, str]:
-    """The module and its test: MODULE.py, test_MODULE.py."""
-    head = "\n".join(header(program, told)).replace("\\", "/").replace('"""', "'''")
-    test = _TEST.format(
-        module=module,
-        main=told.role.main(stem),
-        where="" if told.role is RHS else f'["{told.role.name}"]',
-        a='v["a"], ' if program.accelerations else "",
-        result=told.role.result,
-    )
-    return {f"{module}.py": f'"""{head}\n"""\n\n{text}'} | ({f"test_{module}.py": test} if told.vectors else {})
+    in_single = Single(single.files, run) if single else None
+    return Target(name, language, form.text, form.files, use, functions, run, single=in_single)
 
 
 def executed(text: str, name: str, package: str = "") -> dict[str, Any]:
@@ -133,11 +106,9 @@ def functions_each(function: Callable[..., Any], program: Program) -> Functions:
     return functions_by(many)
 
 
-def called_each(
-    texts: Mapping[str, FileContent], module: str, program: Program, stem: str, role: Role, package: str
-) -> Called:
+def called_each(text: str, program: Program, main: str, package: str) -> Called:
     """The same of the file that others get, at one state."""
-    function = executed(str(texts[f"{module}.py"]), module, package)[role.main(stem)]
+    function = executed(text, main, package)[main]
 
     def called(t: float, x: Any, a: Any, p: Any, inputs: Any) -> Any:
         given = (np.array(x, dtype=float), np.array(a, dtype=float))[: 1 + bool(program.accelerations)]

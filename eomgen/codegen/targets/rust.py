@@ -6,23 +6,14 @@ It needs no other crate: sine and the like are those of the C library. With it c
 from __future__ import annotations
 
 import json
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 
 from eomgen.codegen.build import Compiler
 from eomgen.codegen.lowered import CHANGED, INDICES, INT, PLACES, READ, REAL, ROOM, Language
-from eomgen.codegen.lowering import lowered
-from eomgen.codegen.program import Program
-from eomgen.codegen.targets.base import (
-    RHS,
-    Description,
-    Emitted,
-    FileContent,
-    Role,
-    header,
-    vector_lines,
-)
+from eomgen.codegen.targets.base import Emitted, FileContent
+from eomgen.codegen.targets.form import Form
 from eomgen.codegen.targets.in_single import QUOTED, SingleWords
-from eomgen.codegen.targets.library_call import compiled_target, sizes
+from eomgen.codegen.targets.library_call import compiled_target
 
 LONGEST_CONST = 1000  # names: a larger constant would be copied where it is used
 UNARY = "sin cos asin acos atan sinh cosh tanh exp log sqrt".split()
@@ -157,16 +148,28 @@ _MATH = _MATH.replace("@FOREIGN@", "\n".join(f"        pub fn {op}(a: f64) -> f6
     ),
 )
 
-_CALLER = """\
+_MODULE = """\
+{allowed}
+{uses}{names}
+
+{functions}
+
 /// {result} of {outputs} places; `inputs` none: the model's own.
 pub fn {role}(t: f64, x: &[f64], {a_declared}p: &[f64], inputs: Option<&[f64]>, {result}: &mut [f64]) {{
-    let c = &mut [0.0; {size}];
+    let c = &mut [0.0; {constants}];
     constants(p, c);
     evaluate(t, x, {a}p, c, inputs.unwrap_or(&[]), {result});
 }}
 """
 
-_ENTRY = """
+_ENTRY = """\
+mod math {{
+{math}
+}}
+mod {role} {{
+{text}
+}}
+
 #[no_mangle]
 pub unsafe extern "C" fn {entry}(
     n: usize, t: *const f64, x: *const f64, p: *const f64, inputs: *const f64, out: *mut f64,
@@ -179,7 +182,7 @@ pub unsafe extern "C" fn {entry}(
         let x = from_raw_parts(x.add(i*{moving}), {moving});
         let given = if inputs.is_null() {{ &[] }} else {{ from_raw_parts(inputs.add(i*{inputs}), {inputs}) }};
         let out = from_raw_parts_mut(out.add(i*{outputs}), {outputs});
-        {role}::evaluate(t[i], {x}, p, c, given, out);
+        {role}::evaluate(t[i], {x_and_a}, p, c, given, out);
     }}
 }}
 """
@@ -217,74 +220,44 @@ fn {role}_gives_the_values_of_its_test_vectors() {{
 """
 
 
-def rust_text(program: Program, stem: str = "", role: Role = RHS, remarks: Mapping[str, str] | None = None) -> str:
-    """The module of a program, which uses `crate::math`."""
-    made, given = lowered(program, RUST, role.result, remarks=remarks), bool(program.accelerations)
-    text, symbols = "\n\n".join(made.texts(RUST)), program.symbols
-    listed = {"STATES": [x.name for x in program.states], "PARAMETERS": symbols.parameters, "INPUTS": symbols.inputs}
-    names = "\n".join(_names(key, list(n)) for key, n in listed.items())
-    caller = _CALLER.format(
-        **sizes(program, role, stem),
-        size=made.constants,
-        a_declared="a: &[f64], " if given else "",
-        a="a, " if given else "",
-    )
-    uses = "use crate::math;\n\n" if "math::" in text else ""
-    return f"{ALLOWED}\n{uses}{names}\n\n{text}\n\n{caller}".replace("fn constants", "pub fn constants", 1).replace(
-        "pub pub", "pub"
-    )
-
-
-def _names(key: str, names: Sequence[str]) -> str:
+def _named(key: str, names: Sequence[str]) -> list[str]:
     kind, quoted = "const" if len(names) <= LONGEST_CONST else "static", ", ".join(map(_quoted, names))
-    return f"pub {kind} {key}: [&str; {len(names)}] = [{quoted}];"
+    return [f"pub {kind} {key}: [&str; {len(names)}] = [{quoted}];"]
 
 
 def _quoted(name: str) -> str:
     return json.dumps(name, ensure_ascii=False)
 
 
+FORM = Form(
+    RUST,
+    _MODULE,
+    "{stem}_rhs/src/{role}.rs",
+    given={"a_declared": ("a: &[f64], ", ""), "x_and_a": ("&x[..{states}], &x[{states}..]", "x")},
+    fixed={"allowed": ALLOWED, "math": _MATH},
+    marked={"uses": ("math::", "use crate::math;\n\n")},
+    keys=("STATES", "PARAMETERS", "INPUTS"),
+    named=_named,
+    test=_CASE,
+    vector="    {role}({t}, {x}, {a}{p}, {inputs}, out);\n    agree(out, {result}, {tolerance});",
+    listed=("&[", "]"),
+    nan="f64::NAN",
+    acting=("None", "Some({})"),
+)
+
+
 def rust_files(stem: str, emitted: Sequence[Emitted]) -> dict[str, FileContent]:
     """The crate: Cargo.toml, lib.rs, math.rs, a module a function, and the test."""
-    folder, roles = f"{stem}_rhs", [told.role.name for _, told in emitted]
-    about = emitted[0][1].origin
-    library = f"// {RUST.harmless(about)}\n#![no_std]\n\nmod math;\n" + "".join(f"pub mod {name};\n" for name in roles)
-    tests = _CHECK + "".join(_case(stem, *each) for each in emitted if each[1].vectors)
+    folder, about = f"{stem}_rhs", RUST.harmless(emitted[0][1].origin)
+    modules = "".join(f"pub mod {told.role.name};\n" for _, told in emitted)
     return {
-        f"{folder}/Cargo.toml": _CARGO.format(stem=stem, about=_quoted(RUST.harmless(about))),
-        f"{folder}/src/lib.rs": library,
+        f"{folder}/Cargo.toml": _CARGO.format(stem=stem, about=_quoted(about)),
+        f"{folder}/src/lib.rs": f"// {about}\n#![no_std]\n\nmod math;\n{modules}",
         f"{folder}/src/math.rs": _MATH,
-        **{f"{folder}/src/{told.role.name}.rs": _module(stem, program, told) for program, told in emitted},
-        f"{folder}/tests/vectors.rs": tests,
+        **FORM.files(stem, emitted),
+        f"{folder}/tests/vectors.rs": _CHECK
+        + "".join(FORM.tested(program, stem, told) for program, told in emitted if told.vectors),
     }
-
-
-def _module(stem: str, program: Program, told: Description) -> str:
-    head = "\n".join(f"// {RUST.harmless(line)}".rstrip() for line in header(program, told))
-    return f"{head}\n{rust_text(program, stem, told.role, told.remarks)}"
-
-
-def _number(value: float) -> str:
-    return "f64::NAN" if value != value else repr(value)
-
-
-def _listed(values: Sequence[float]) -> str:
-    return f"&[{', '.join(map(_number, values))}]"
-
-
-def _case(stem: str, program: Program, told: Description) -> str:
-    a = "{a}, " if program.accelerations else ""
-    call = f"    {told.role.name}({{t}}, {{x}}, {a}{{p}}, {{inputs}}, out);\n    agree(out, {{result}}, {{tolerance}});"
-    lines = vector_lines(told.vectors, call, _listed, _number, ("None", "Some({})"))
-    return _CASE.format(**sizes(program, told.role, stem), lines="\n".join(lines))
-
-
-def _many_text(text: str, program: Program, _: str, role: Role) -> str:
-    """One text of the modules with a function that Python calls."""
-    size = text.partition("let c = &mut [0.0; ")[2].partition("]")[0]
-    given, n = program.accelerations, len(program.states)
-    entry = _ENTRY.format(**sizes(program, role, ""), size=size, x=f"&x[..{n}], &x[{n}..]" if given else "x")
-    return f"mod math {{\n{_MATH}\n}}\nmod {role.name} {{\n{text}\n}}\n{entry}"
 
 
 _OF_C = "|".join((*UNARY, "atan2", "pow"))
@@ -292,12 +265,12 @@ USE = ("use {stem}_rhs::rhs::rhs;", "cd {stem}_rhs && cargo test && cargo clippy
 TARGET = compiled_target(
     "rust",
     "a Rust crate without std and without dependencies",
-    rust_text,
-    rust_files,
+    FORM,
     USE,
-    source="{stem}_rhs/src/{role}.rs",
-    called=_many_text,
+    entry=_ENTRY,
+    size=r"let c = &mut \[0\.0; (\d+)\]",
     by=COMPILER,
+    files=rust_files,
     single=SingleWords(
         (
             (r"(?<!\w)f64\b|(?<=\d_)f64\b", "f32"),

@@ -6,15 +6,20 @@ It imports nothing. Its numbers lie in one block of the memory: x, a, p, c, inpu
 from __future__ import annotations
 
 import base64
+import re
 from collections.abc import Mapping
+from dataclasses import replace
 from itertools import accumulate
+from typing import Any
 
 from eomgen.codegen.build import Compiler, binary
+from eomgen.codegen.lowering import Lowered
 from eomgen.codegen.program import Program
-from eomgen.codegen.targets.base import RHS, Description, FileContent, Role
-from eomgen.codegen.targets.c import SINGLE, c_text, constants_of
+from eomgen.codegen.targets.base import FileContent, Role
+from eomgen.codegen.targets.c import FORM as C_FORM
+from eomgen.codegen.targets.c import SINGLE, C
 from eomgen.codegen.targets.in_single import QUOTED, SingleWords
-from eomgen.codegen.targets.node import node_target
+from eomgen.codegen.targets.node import node_form, node_target
 
 FLAGS = ("--target=wasm32-wasi", "-mexec-model=reactor", "-std=c99", "-s")
 COMPILER = Compiler(
@@ -30,7 +35,7 @@ COMPILER = Compiler(
 
 _ENTRY = """
 /* The numbers: {places}. */
-static double block[{size}];
+static double block[{block_size}];
 
 __attribute__((export_name("block"))) double *{others}_block(void);
 double *{others}_block(void)
@@ -41,43 +46,42 @@ double *{others}_block(void)
 __attribute__((export_name("constants"))) void {others}_constants_here(void);
 void {others}_constants_here(void)
 {{
-    {others}_constants(block + {p}, block + {c});
+    {others}_constants(block + {at_p}, block + {at_c});
 }}
 
 __attribute__((export_name("evaluate"))) void {others}_evaluate_here(double t, int given);
 void {others}_evaluate_here(double t, int given)
 {{
-    {others}_evaluate(t, block + {x}, {a_block}block + {p}, block + {c}, given ? block + {inputs} : NULL,
-        block + {out});
+    {others}_evaluate(t, block + {at_x}, {a_block}block + {at_p}, block + {at_c}, given ? block + {at_inputs} : NULL,
+        block + {at_out});
 }}
 """
 
-_READ = "const bytes = await read(new URL({path}, import.meta.url));"
 _LOADER = """\
 async function read(url) {{
     if (url.protocol !== "file:") return (await fetch(url)).arrayBuffer();
     return (await import("node:fs/promises")).readFile(url);
 }}
 
-{read}
+const bytes = await read(new URL("./{main}.wasm", import.meta.url));
 const {{ exports }} = (await WebAssembly.instantiate(bytes, {{}})).instance;
 exports._initialize();
-const block = new Float64Array(exports.memory.buffer, exports.block(), {size});
+const block = new Float64Array(exports.memory.buffer, exports.block(), {block_size});
 
 export function constants(p, c = new Float64Array({constants})) {{
-    block.set(p, {p});
+    block.set(p, {at_p});
     exports.constants();
-    c.set(block.subarray({c}, {c} + {constants}));
+    c.set(block.subarray({at_c}, {at_c} + {constants}));
     return c;
 }}
 
 export function evaluate(t, x, {a}p, c, inputs, {result} = new Float64Array({outputs})) {{
-    block.set(x, {x});
-{a_set}    block.set(p, {p});
-    block.set(c, {c});
-    if (inputs !== null) block.set(inputs, {inputs});
+    block.set(x, {at_x});
+{a_set}    block.set(p, {at_p});
+    block.set(c, {at_c});
+    if (inputs !== null) block.set(inputs, {at_inputs});
     exports.evaluate(t, inputs !== null);
-    {result}.set(block.subarray({out}, {out} + {outputs}));
+    {result}.set(block.subarray({at_out}, {at_out} + {outputs}));
     return {result};
 }}
 
@@ -88,45 +92,30 @@ export function {role}(t, x, {a}p, inputs = null) {{
 """
 
 
-def wasm_text(program: Program, stem: str, role: Role = RHS, remarks: Mapping[str, str] | None = None) -> str:
-    """The C that is compiled."""
-    text = c_text(program, stem, role, remarks)
-    return text + _ENTRY.format(**_words(program, stem, role, constants_of(text)))
-
-
-def _words(program: Program, stem: str, role: Role, constants: int) -> dict[str, object]:
-    """What stands in the templates, the places in the block among them."""
-    sizes = {
-        "x": len(program.states),
-        "a": len(program.accelerations),
-        "p": len(program.symbols.parameters),
-        "c": constants,
-        "inputs": len(program.symbols.inputs),
-        "out": len(program.outputs),
-    }
+def _body(made: Lowered) -> dict[str, Any]:
+    """The C, and the places in the block."""
+    program, symbols = made.program, made.program.symbols
+    arrays = (program.states, program.accelerations, symbols.parameters, range(made.constants), symbols.inputs)
+    sizes = dict(zip(("x", "a", "p", "c", "inputs", "out"), map(len, (*arrays, program.outputs)), strict=True))
     at = dict(zip(sizes, accumulate(sizes.values(), initial=0), strict=False))
-    given = "a, " if program.accelerations else ""
     return {
-        **at,
+        **{f"at_{name}": place for name, place in at.items()},
+        "functions": "\n\n".join(made.texts(C)),
         "places": ", ".join(f"{name} from {place}" for name, place in at.items() if sizes[name]),
-        "size": sum(sizes.values()),
-        "constants": constants,
-        "outputs": len(program.outputs),
-        "others": role.others(stem),
-        "role": role.name,
-        "result": role.result,
-        "a": given,
-        "a_block": f"block + {at['a']}, " if given else "",
-        "a_set": f"    block.set(a, {at['a']});\n" if given else "",
+        "block_size": sum(sizes.values()),
+        "a_block": f"block + {at['a']}, " if sizes["a"] else "",
+        "a_set": f"    block.set(a, {at['a']});\n" if sizes["a"] else "",
     }
 
 
-def _written(stem: str, program: Program, told: Description) -> dict[str, FileContent]:
-    """NAME_rhs.mjs, NAME_rhs.wasm, and the C that this was made of."""
-    main, text = told.role.main(stem), wasm_text(program, stem, told.role, told.remarks)
-    read = _READ.format(path=f'"./{main}.wasm"')
-    loader = _LOADER.format(read=read, **_words(program, stem, told.role, constants_of(text)))
-    return {f"{main}.mjs": loader, f"{main}.wasm": binary(text, COMPILER), f"{main}.c": text}
+FORM = node_form(C, _LOADER, body=_body)
+IN_C = replace(C_FORM, module=C_FORM.module + _ENTRY, body=_body)
+
+
+def _beside(stem: str, program: Program, role: Role, remarks: Mapping[str, str] | None) -> dict[str, FileContent]:
+    """NAME_rhs.wasm, and the C that this was made of."""
+    text = IN_C.text(program, stem, role, remarks)
+    return {f"{role.main(stem)}.wasm": binary(text, COMPILER), f"{role.main(stem)}.c": text}
 
 
 def _alone(texts: Mapping[str, FileContent], main: str) -> str:
@@ -134,7 +123,7 @@ def _alone(texts: Mapping[str, FileContent], main: str) -> str:
     content = texts[f"{main}.wasm"]
     assert isinstance(content, bytes)
     inside = f'const bytes = Buffer.from("{base64.b64encode(content).decode()}", "base64");'
-    return str(texts[f"{main}.mjs"]).replace(_READ.format(path=f'"./{main}.wasm"'), inside)
+    return re.sub(r"const bytes = await read\(.*", lambda _: inside, str(texts[f"{main}.mjs"]))
 
 
 USE = (
@@ -152,6 +141,5 @@ def _single(files: Mapping[str, FileContent]) -> dict[str, FileContent]:
 
 
 _LOADED = SingleWords(((r"\bFloat64Array\b", "Float32Array"),), rf"//[^\n]*|{QUOTED}", r"\.mjs$")
-TARGET = node_target(
-    "wasm", "WebAssembly, made of the C, and its ECMAScript module", wasm_text, _written, USE, _alone, _single
-)
+ABOUT = "WebAssembly, made of the C, and its ECMAScript module"
+TARGET = node_target("wasm", ABOUT, FORM, USE, text=IN_C.text, beside=_beside, alone=_alone, single=_single)

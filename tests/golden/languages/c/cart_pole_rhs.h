@@ -27,6 +27,7 @@ extern "C" {
 #define CART_POLE_PARAMETERS 4
 #define CART_POLE_INPUTS 1
 #define CART_POLE_CONSTANTS 4
+#define CART_POLE_OUTPUTS 4
 
 /* dx at (t, x, p); inputs NULL: the model's own. */
 void cart_pole_rhs(double t, const double *x, const double *p, const double *inputs, double *dx);
@@ -35,7 +36,7 @@ void cart_pole_rhs(double t, const double *x, const double *p, const double *inp
 void cart_pole_constants(const double *p, double *c);
 void cart_pole_evaluate(double t, const double *x, const double *p, const double *c, const double *inputs, double *dx);
 
-/* n instants at once: t n, x n x states, inputs NULL or n x inputs, dx n x states. */
+/* n instants at once: t n, x n x states, inputs NULL or n x inputs, dx n x outputs. */
 void cart_pole_many(size_t n, const double *t, const double *x, const double *p, const double *inputs, double *dx);
 
 #ifdef __cplusplus
