@@ -27,7 +27,7 @@ from eomgen.codegen.targets.base import (
     Target,
 )
 from eomgen.codegen.targets.c_loading import functions_of
-from eomgen.codegen.targets.form import Form, header
+from eomgen.codegen.targets.form import FileForm, header
 from eomgen.codegen.targets.in_single import FUNCTIONS, QUOTED, SUFFIXED, SingleWords
 
 
@@ -183,7 +183,7 @@ int main(void)
 """
 
 _X, _A, _P = (f"const double *{name}" for name in "xap")
-FORM = Form(
+FORM = FileForm(
     C,
     _MODULE,
     "{main}.c",

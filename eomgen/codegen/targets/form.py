@@ -1,4 +1,4 @@
-"""Language, Form -> the files of a program: templates over one set of words, which all languages share.
+"""Language, FileForm -> the files of a program: templates over one set of words, which all languages share.
 
 The words: main, stem, role, result, others; MAIN and upper, main and others in capitals; states, accelerations,
 moving, parameters, inputs, outputs, how many there are of each, and as states_room in an array that is not empty; a,
@@ -19,7 +19,7 @@ from eomgen.codegen.program import Program
 from eomgen.codegen.targets.base import RHS, Description, Emitted, FileContent, Role, TestVector
 from eomgen.records import dataclass
 
-Names = Callable[[str, Sequence[str]], Sequence[str]]
+NameLines = Callable[[str, Sequence[str]], Sequence[str]]
 """(key, names) -> the lines that hold them."""
 
 
@@ -27,7 +27,7 @@ CHECK = "check({t}, {x}, {a}{p}, {inputs}, {result}, {tolerance})"
 
 
 @dataclass(frozen=True)
-class Form:
+class FileForm:
     """The table of a language's files.
 
     Args:
@@ -62,7 +62,7 @@ class Form:
     marked: Mapping[str, tuple[str, str]] = field(default_factory=dict)
     body: Callable[[Lowered], Mapping[str, str]] | None = None
     keys: tuple[str, str, str] = ("x_names", "p_names", "input_names")
-    named: Names | None = None
+    named: NameLines | None = None
     test: str = ""
     vector: str = f"    {CHECK}"
     listed: tuple[str, str] = ("[", "]")

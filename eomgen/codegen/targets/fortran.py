@@ -14,7 +14,7 @@ from eomgen.codegen.build import Compiler
 from eomgen.codegen.expressions import ATOM, PRODUCT, SUM, RankedText, ranked_number
 from eomgen.codegen.lowered import CHANGED, GIVEN, INDICES, INT, PLACES, READ, REAL, ROOM, Language, Table
 from eomgen.codegen.lowering import Lowered
-from eomgen.codegen.targets.form import CHECK, Form
+from eomgen.codegen.targets.form import CHECK, FileForm
 from eomgen.codegen.targets.in_single import SingleWords
 from eomgen.codegen.targets.library_call import compiled_target
 from eomgen.symbolic.expression.graph import Number
@@ -305,7 +305,7 @@ def _shorter(lines: Iterable[str]) -> Iterable[str]:
         yield line
 
 
-FORM = Form(
+FORM = FileForm(
     FORTRAN,
     _MODULE,
     "{main}.f90",

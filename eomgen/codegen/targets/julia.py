@@ -12,7 +12,7 @@ from collections.abc import Sequence
 from eomgen.codegen.lowered import CHANGED, INDICES, INT, PLACES, READ, REAL, ROOM, Language
 from eomgen.codegen.program import Program
 from eomgen.codegen.targets.base import Functions, Target
-from eomgen.codegen.targets.form import Form
+from eomgen.codegen.targets.form import FileForm
 from eomgen.errors import ToolMissing
 
 NOT_RUN = "Not run where it was made: no Julia was there."
@@ -112,7 +112,7 @@ def _named(key: str, names: Sequence[str]) -> list[str]:
     return [f"const {key} = String[{', '.join(quoted)}]"]
 
 
-FORM = Form(
+FORM = FileForm(
     JULIA,
     _MODULE,
     "{main}.jl",

@@ -30,7 +30,7 @@ from eomgen.codegen.targets.base import (
     called_by,
     functions_by,
 )
-from eomgen.codegen.targets.form import Form
+from eomgen.codegen.targets.form import FileForm
 from eomgen.codegen.targets.in_single import SingleWords
 
 ENTRY = "eomgen_many"
@@ -60,7 +60,7 @@ def many_of(text: str, program: Program, by: Compiler, *, quickly: bool = False,
 
 
 def compiled_target(
-    name: str, language: str, form: Form, use: tuple[str, ...], *, entry: str, size: str, by: Compiler,
+    name: str, language: str, form: FileForm, use: tuple[str, ...], *, entry: str, size: str, by: Compiler,
     single: SingleWords, files: Callable[[str, Sequence[Emitted]], dict[str, FileContent]] | None = None,
 ) -> Target:  # fmt: skip
     """A language whose texts become libraries.

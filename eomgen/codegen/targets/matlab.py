@@ -16,7 +16,7 @@ from eomgen.codegen.lowering import Lowered
 from eomgen.codegen.program import Program
 from eomgen.codegen.targets.base import Called, FileContent, Functions, Many, Role, Target, called_by, functions_by
 from eomgen.codegen.targets.beside import many_beside
-from eomgen.codegen.targets.form import CHECK, Form
+from eomgen.codegen.targets.form import CHECK, FileForm
 from eomgen.errors import ToolMissing
 
 
@@ -150,7 +150,7 @@ def _body(made: Lowered) -> dict[str, str]:
     return {"functions": "\n\n".join(dict.fromkeys("\n\n".join(made.texts(MATLAB)).split("\n\n")))}
 
 
-FORM = Form(
+FORM = FileForm(
     MATLAB,
     _MAIN,
     "{main}.m",

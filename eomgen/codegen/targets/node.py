@@ -27,7 +27,7 @@ from eomgen.codegen.targets.base import (
     functions_by,
 )
 from eomgen.codegen.targets.beside import doubles, many_beside
-from eomgen.codegen.targets.form import Form
+from eomgen.codegen.targets.form import FileForm
 from eomgen.errors import ToolMissing
 
 _TEST = """\
@@ -98,9 +98,9 @@ def many_of_module(text: str, program: Program) -> Many:
     return many_beside("node", [node, "-e", _SERVER], program, doubles([len(coded) // 8]) + coded)
 
 
-def node_form(language: Language, module: str, **words: Any) -> Form:
+def node_form(language: Language, module: str, **words: Any) -> FileForm:
     """The form of an ECMAScript module: STEM_ROLE.mjs, and its test, which `node --test` finds."""
-    return Form(
+    return FileForm(
         language,
         module,
         "{main}.mjs",
@@ -115,18 +115,18 @@ def node_form(language: Language, module: str, **words: Any) -> Form:
     )
 
 
-Beside = Callable[[str, Program, Role, "Mapping[str, str] | None"], dict[str, FileContent]]
+FilesBeside = Callable[[str, Program, Role, "Mapping[str, str] | None"], dict[str, FileContent]]
 """(stem, program, role, remarks) -> files beside a module."""
 
 
 def node_target(
     name: str,
     language: str,
-    form: Form,
+    form: FileForm,
     use: tuple[str, ...],
     *,
     text: Callable[..., str] | None = None,
-    beside: Beside = lambda *_: {},
+    beside: FilesBeside = lambda *_: {},
     alone: Callable[[Mapping[str, FileContent], str], str] = lambda files, main: str(files[f"{main}.mjs"]),
     single: Callable[[Mapping[str, FileContent]], dict[str, FileContent]] | None = None,
 ) -> Target:

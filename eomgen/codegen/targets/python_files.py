@@ -10,7 +10,7 @@ import numpy as np
 from eomgen.codegen.lowered import Language
 from eomgen.codegen.program import Program
 from eomgen.codegen.targets.base import Called, FileContent, Functions, Role, Single, Target, functions_by
-from eomgen.codegen.targets.form import Form
+from eomgen.codegen.targets.form import FileForm
 from eomgen.codegen.targets.in_single import SingleWords
 from eomgen.errors import ToolMissing
 
@@ -39,9 +39,9 @@ def test_{main}_gives_the_values_of_its_test_vectors():
 
 def python_form(
     language: Language, named: str, module: str, given: Mapping[str, tuple[str, str]], **words: Any
-) -> Form:
+) -> FileForm:
     """The form of a language that is Python: NAMED.py, a module, and its test."""
-    return Form(
+    return FileForm(
         language,
         module,
         f"{named}.py",
@@ -55,7 +55,7 @@ def python_form(
 
 
 def python_target(
-    name: str, language: str, form: Form, use: tuple[str, ...], single: SingleWords | None = None
+    name: str, language: str, form: FileForm, use: tuple[str, ...], single: SingleWords | None = None
 ) -> Target:
     """A language that is a Python package: STEM_NAME.py of the right-hand side, STEM_ROLE_NAME.py, and their tests.
 

@@ -11,7 +11,7 @@ from collections.abc import Sequence
 from eomgen.codegen.build import Compiler
 from eomgen.codegen.lowered import CHANGED, INDICES, INT, PLACES, READ, REAL, ROOM, Language
 from eomgen.codegen.targets.base import Emitted, FileContent
-from eomgen.codegen.targets.form import Form
+from eomgen.codegen.targets.form import FileForm
 from eomgen.codegen.targets.in_single import QUOTED, SingleWords
 from eomgen.codegen.targets.library_call import compiled_target
 
@@ -229,7 +229,7 @@ def _quoted(name: str) -> str:
     return json.dumps(name, ensure_ascii=False)
 
 
-FORM = Form(
+FORM = FileForm(
     RUST,
     _MODULE,
     "{stem}_rhs/src/{role}.rs",
