@@ -86,7 +86,7 @@ _HOMES = {
     "page.contents": ("Report",),
     "page.play": ("Played", "play"),
     "pipeline": ("derive", "inverse_dynamics", "simulate", "simulate_many", "simulator"),
-    "questions.many_runs": ("Runs",),
+    "questions.runs": ("Runs",),
     "sensitivities.sensitivity": ("Sensitivity", "sensitivity"),
     "sweeps.sweep": ("Sweep", "sweep"),
     "questions.simulator": ("Simulator",),

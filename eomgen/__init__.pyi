@@ -62,7 +62,7 @@ from eomgen.proof.check import Certificate as Certificate
 from eomgen.proof.check import Check as Check
 from eomgen.questions.answers import Answer as Answer
 from eomgen.questions.answers import solve as solve
-from eomgen.questions.many_runs import Runs as Runs
+from eomgen.questions.runs import Runs as Runs
 from eomgen.questions.simulator import Simulator as Simulator
 from eomgen.questions.velocities import kinematics as kinematics
 from eomgen.robots.importing import import_robot as import_robot

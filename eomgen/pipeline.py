@@ -25,7 +25,7 @@ from eomgen.symbolic.numeric.work import doing
 
 if TYPE_CHECKING:  # what moves is loaded where something moves
     from eomgen.model.parts import Model
-    from eomgen.questions.many_runs import Runs
+    from eomgen.questions.runs import Runs
     from eomgen.questions.simulator import Simulator
     from eomgen.simulation.result import Trajectory
 
@@ -114,7 +114,8 @@ def simulate_many(
 ) -> Runs:
     """Many motions of one model, derived and compiled once; a run that fails is recorded, and the rest go on.
 
-    A model without ties and contacts is stepped in the lanes of vectors, each with its own steps; others one by one.
+    A model without ties and contacts is stepped in the lanes of vectors, each with its own steps; one with ties by
+    marches in C, a run after the other; where contacts change, and where a step needs a look, one by one.
 
     Args:
         time: how long [s].

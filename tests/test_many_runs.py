@@ -10,7 +10,8 @@ import pytest
 import eomgen
 from eomgen.codegen.build import compiler
 from eomgen.codegen.rhs import compiled
-from eomgen.errors import UsageError
+from eomgen.errors import DerivationError, UsageError
+from eomgen.questions import many_runs
 
 MODELS = Path(__file__).parent.parent / "models"
 needs_compiler = pytest.mark.skipif(compiler() is None, reason="no C compiler")
@@ -35,6 +36,10 @@ def alone(name: str, i: int, time: float, given: dict, samples: int) -> eomgen.T
         ("tumbling_body", {"start": {"w1": np.linspace(0, 1, 3)}}),
         ("chain20", {"start": {"q1": np.linspace(0, 1, 3)}}),
         ("four_bar", {"parameters": {"g": np.array([1.0, 9.81])}}),
+        ("four_bar", {"parameters": {"b": np.linspace(0.9, 1.1, 9)}, "start": {"alpha": np.linspace(0.8, 1.2, 9)}}),
+        ("spatial_slider_crank", {"parameters": {"g": np.linspace(1, 9.81, 3)}}),
+        ("balancing_robot", {"parameters": {"g": np.linspace(9, 10, 5)}}),
+        ("cardan_shaft", {"parameters": {"J": np.linspace(0.02, 0.03, 3)}}),
         ("sliding_ladder", {"start": {"theta": np.array([0.5, 0.6])}}),
     ],
 )
@@ -89,6 +94,43 @@ def test_a_run_that_fails_is_recorded_and_the_rest_go_on():
 
 
 @pytest.mark.slow
+@needs_compiler
+@pytest.mark.parametrize("threads", [1, 2])
+def test_runs_with_ties_are_marched_and_those_that_cannot_start_are_told(threads, monkeypatch):
+    """Four-bars with couplers of 0.9 to 5 m: what closes is stepped in C, the rest is refused as `simulate` does."""
+    alone = []
+    one_by_one = many_runs._one_by_one
+    monkeypatch.setattr(
+        many_runs, "_one_by_one", lambda plan, which, n: alone.extend(which) or one_by_one(plan, which, n)
+    )
+    lengths = np.array([0.9, 5.0, 1.0, 1.1, 0.1, 1.05])
+    asked = {"time": 0.5, "samples": 6, "threads": threads}
+    runs = eomgen.simulate_many(MODELS / "four_bar.toml", parameters={"b": lengths}, **asked)
+    assert alone == [1, 4] and (runs.status == "refused").tolist() == [False, True, False, False, True, False]
+    with pytest.raises(DerivationError) as refused:
+        eomgen.simulate(MODELS / "four_bar.toml", time=0.5, parameters={"b": 5.0})
+    assert (
+        runs.message[1] == str(refused.value) and np.isnan(runs.x[1]).all() and np.isfinite(runs.x[[0, 2, 3, 5]]).all()
+    )
+
+
+@needs_compiler
+def test_a_run_through_a_change_point_leaves_its_march():
+    """A parallelogram of four equal links passes its change point; lanes beside it do not."""
+    given = {"parameters": {"b": np.array([1.0, 1.1, 1.2])}}
+    model = eomgen.loads((MODELS / "four_bar.toml").read_text().replace("value = 0.4", "value = 0.8"))
+    runs = eomgen.simulate_many(model, time=1.0, samples=11, **given)
+    for i, b in enumerate(given["parameters"]["b"]):
+        try:
+            other = eomgen.simulate(model, time=1.0, samples=runs.t.tolist(), parameters={"b": float(b)})
+        except DerivationError as error:
+            assert runs.message[i] == str(error)
+            continue
+        assert (runs.status[i], runs.message[i]) == (other.status, other.message)
+        if other.status == "finished":
+            assert runs.x[i] == pytest.approx(other.x, abs=1e-7)
+
+
 @needs_compiler
 def test_what_is_stiff_leaves_its_lane():
     """x'' + d x' + d x = 0 with d from 1 to 1e5, by the closed solution."""

@@ -6,7 +6,9 @@ import ctypes
 import functools
 import threading
 from collections.abc import Callable, Mapping, Sequence
-from concurrent.futures import ThreadPoolExecutor
+from concurrent.futures import ThreadPoolExecutor, wait
+from functools import partial
+from itertools import pairwise
 from typing import Any
 
 import numpy as np
@@ -160,20 +162,8 @@ class Batch:
             np.full(runs, asked.span[0]),
             np.zeros(runs, dtype=np.uintp),
         )
-        stop = threading.Event()
-        edges = np.linspace(0, runs, max(1, min(threads, -(-runs // self.lanes))) + 1).astype(int)
-        pieces = list(zip(edges[:-1].tolist(), edges[1:].tolist(), strict=True))
-        with ThreadPoolExecutor(len(pieces)) as pool:
-            begun = [pool.submit(self._piece, x0, p, asked, found, piece, stop) for piece in pieces]
-            try:
-                while not all(each.done() for each in begun):
-                    check()
-                    _wait(begun)
-            except BaseException:
-                stop.set()
-                raise
-            for each in begun:
-                each.result()
+        pieces = pieces_of(runs, min(threads, -(-runs // self.lanes)))
+        in_threads([partial(self._piece, x0, p, asked, found, piece) for piece in pieces], check)
         return found
 
     def _piece(
@@ -202,10 +192,26 @@ class Batch:
             pass
 
 
-def _wait(begun: Sequence[Any]) -> None:
-    from concurrent.futures import wait
+def pieces_of(count: int, parts: int) -> list[tuple[int, int]]:
+    """(first, the one after the last) of so many parts, of one length as nearly as can be."""
+    edges = np.linspace(0, count, max(1, parts) + 1).astype(int).tolist()
+    return list(pairwise(edges))
 
-    wait(begun, timeout=0.05)
+
+def in_threads(work: Sequence[Callable[[threading.Event], None]], check: Callable[[], None]) -> None:
+    """Each piece of work in a thread of its own; what `check` raises, called now and then, sets their event."""
+    stop = threading.Event()
+    with ThreadPoolExecutor(len(work)) as pool:
+        begun = [pool.submit(each, stop) for each in work]
+        try:
+            while not all(each.done() for each in begun):
+                check()
+                wait(begun, timeout=0.05)
+        except BaseException:
+            stop.set()
+            raise
+        for each in begun:
+            each.result()
 
 
 def _aligned(count: int) -> np.ndarray:

@@ -90,6 +90,8 @@ class RightHandSide:
             raise UsageError(f"p is {' x '.join(map(str, p.shape))}, not {len(x)} x {len(self.parameters)}")
         if self.target == "c":
             return self._in_lanes(t, x, p, given)
+        if self.target == "numpy":
+            return self._functions.many(t, x, p, given)
         rows = ((t[i : i + 1], x[i : i + 1], p[i], None if given is None else given[i : i + 1]) for i in range(len(x)))
         return np.vstack([np.empty((0, len(self.program.outputs))), *(self._functions.many(*row) for row in rows)])
 

@@ -1,7 +1,8 @@
-"""Simulator, values of many runs -> Runs: in the lanes of vectors where the model allows it, else one after another.
+"""Simulator, values of many runs -> Runs: in lanes of vectors or in marches where the model allows it, else one by one.
 
 Lanes take what has no ties, no contacts that change and no quaternion's tie: a motion x' = f(t, x, p) whose start
-follows from numbers. What is stiff leaves its lane and is run alone, by Radau.
+follows from numbers. Marches take what has ties that hold throughout. A run that is stiff, comes near a singular
+position, or has equations or a start of its own is run alone.
 """
 
 from __future__ import annotations
@@ -9,8 +10,7 @@ from __future__ import annotations
 import contextvars
 from collections.abc import Callable, Mapping, Sequence
 from concurrent.futures import ThreadPoolExecutor
-from dataclasses import field, replace
-from functools import cached_property
+from dataclasses import replace
 from typing import Any
 
 import numpy as np
@@ -26,85 +26,24 @@ from eomgen.model.parts import Model, Parameter
 from eomgen.model.ranges import TypedNumbers, are_several, typed_values
 from eomgen.model.replaced import with_inputs, with_values
 from eomgen.model.table import Table
-from eomgen.proof.check import Certificate
-from eomgen.questions.simulator import SAMPLES, Simulator
-from eomgen.records import dataclass
+from eomgen.questions.runs import Runs
+from eomgen.questions.simulator import SAMPLES, Base, Simulator
+from eomgen.records import dataclass, with_fields
+from eomgen.simulation.compiled_runs import marched
 from eomgen.simulation.compiled_steps import BATCHED
-from eomgen.simulation.configuration import has_phases
+from eomgen.simulation.configuration import Configuration, has_phases
 from eomgen.simulation.integrate import drift_of, instants_of, refuse_bad_run
-from eomgen.simulation.integrator import ended_words
+from eomgen.simulation.integrator import ended_words, reached_words
+from eomgen.simulation.many_starts import ManyStarts
 from eomgen.simulation.phase_model import PhaseModel
 from eomgen.simulation.phase_models import one_phase
 from eomgen.simulation.solvers import AUTO, TAYLOR, breakpoints_of
 from eomgen.symbolic.expression.expressions import Expression
+from eomgen.symbolic.numeric.tolerances import COMPUTED
 from eomgen.symbolic.numeric.work import check_patience, doing
 
 OfRuns = Mapping[str, Any]
 """Values by name: arrays, one number a run, or what all runs share."""
-
-
-@dataclass(frozen=True, eq=False, repr=False)
-class Runs:
-    """Many motions of one model.
-
-    Args:
-        t: the instants, k [s].
-        x: states (q, u), runs x k x states; nan all along in a run that failed.
-        names: of the coordinates and speeds.
-        status: "finished", or why a run failed; message: the same as a sentence.
-        steps: taken by each.
-        given: the values of each run, by name, of those that are not the same in all.
-        proof: -> the certificate of the equations.
-        drifts: (t, x) -> of each run how far its energy went; None where it need not stay.
-    """
-
-    t: np.ndarray
-    x: np.ndarray
-    names: tuple[str, ...]
-    status: np.ndarray
-    message: np.ndarray
-    steps: np.ndarray
-    given: Mapping[str, np.ndarray]
-    proof: Callable[[], Certificate] = field(repr=False)
-    drifts: Callable[[np.ndarray, np.ndarray], np.ndarray] | None = field(default=None, repr=False)
-
-    def __len__(self) -> int:
-        return len(self.x)
-
-    def __getitem__(self, name: str) -> np.ndarray:
-        """A coordinate or speed, runs x instants."""
-        if name not in self.names:
-            raise KeyError(f"no column '{name}'; there are {', '.join(self.names)}")
-        return np.asarray(self.x[:, :, self.names.index(name)])
-
-    @cached_property
-    def drift(self) -> np.ndarray | None:
-        """Of each run the largest |E - E(0)| over the energy that moves; None where it need not stay."""
-        return None if self.drifts is None else self.drifts(self.t, self.x)
-
-    def certify(self) -> Certificate:
-        """The proof of the equations that all runs share."""
-        return self.proof()
-
-    def to_pandas(self) -> Any:
-        """All runs as one DataFrame over (run, t) (needs pandas)."""
-        import pandas
-
-        index = pandas.MultiIndex.from_product([range(len(self)), self.t], names=["run", "t"])
-        return pandas.DataFrame(self.x.reshape(-1, len(self.names)), index=index, columns=list(self.names))
-
-    def to_xarray(self) -> Any:
-        """A Dataset over (run, time) (needs xarray)."""
-        import xarray
-
-        columns = {name: (("run", "time"), self[name]) for name in self.names}
-        of_runs = {"status": self.status, "message": self.message, "steps": self.steps, **self.given}
-        told = {name: ("run", np.asarray(values)) for name, values in of_runs.items()}
-        return xarray.Dataset({**columns, **told}, coords={"run": np.arange(len(self)), "time": self.t})
-
-    def __repr__(self) -> str:
-        failed = int(np.sum(self.status != "finished"))
-        return f"<{len(self)} runs of {', '.join(self.names)}: {len(self.t)} instants, {failed} failed>"
 
 
 @dataclass(frozen=True)
@@ -155,8 +94,8 @@ def many_runs(
     if threads < 1:
         raise UsageError(f"{threads} threads make no sense", mend="give 1 or more")
     plan = _planned(simulator, time, parameters or {}, start or {}, inputs or {}, samples)
-    found = _in_lanes(plan, threads)
-    names, status, message, x, steps = found if found is not None else _one_by_one(plan, range(plan.runs), threads)
+    found = _in_lanes(plan, threads) or _in_marches(plan, threads) or _one_by_one(plan, range(plan.runs), threads)
+    names, status, message, x, steps = found
     x[status != "finished"] = np.nan
     equations, phase = _known(plan.simulator)
     given = {**plan.parameters, **plan.start}
@@ -261,6 +200,50 @@ def _in_lanes(plan: _Plan, threads: int) -> Told | None:
         _, status[again], message[again], found.x[again], found.steps[again] = told
     names = phase.coordinates + phase.shown
     return names, status.astype(str), message, found.x, found.steps.astype(int)
+
+
+# -- in marches ----------------------------------------------------------------------------------------
+
+
+def _in_marches(plan: _Plan, threads: int) -> Told | None:
+    """All runs in marches, those that need a look one by one; None where the model or the method does not allow it."""
+    simulator, how = plan.simulator, plan.simulator.how
+    allowed = how.method in (AUTO, "DOP853") and how.stabilization in ("projection", "none") and how.every is None
+    if not allowed or has_phases(plan.model) or simulator.target == "numpy" or not (base := _base(plan)):
+        return None
+    phase, p = base.models.of(Configuration()), _parameters(plan)
+    columns = [*phase.coordinates, *phase.speeds]
+    names = phase.coordinates + phase.shown
+    if phase.functions.rhs.target != "c" or not {*names} <= {*columns} or not len(phase.speeds):
+        return None
+    x0, places, known = ManyStarts(phase).at(p, plan.start)
+    known &= base.derived.holds(p, places) & base.derived.is_regular(p, x0)
+    known &= np.max(np.abs(x0), axis=1) < COMPUTED / np.finfo(float).eps
+    which, step = np.flatnonzero(known), with_fields(how.of_one_step(), breakpoints=breakpoints_of(plan.model))
+    found = None
+    if len(which):
+        starts = x0[which], p[which]
+        found = marched(phase, starts, step, plan.instants, plan.time, threads=threads, check=check_patience)
+    if found is None:
+        return None
+    x, steps = np.full((plan.runs, len(plan.instants), len(names)), np.nan), np.zeros(plan.runs, dtype=int)
+    x[which], steps[which] = found.x[:, :, [columns.index(name) for name in names]], found.steps
+    status, message = np.full(plan.runs, "finished", object), np.full(plan.runs, reached_words(plan.time), object)
+    again = np.setdiff1d(np.arange(plan.runs), which[found.is_done])
+    if len(again):
+        told = _one_by_one(plan, again.tolist(), threads)
+        _, status[again], message[again], x[again], steps[again] = told
+    return names, status.astype(str), message, x, steps
+
+
+def _base(plan: _Plan) -> Base | None:
+    """The equations of the first run; None where they cannot be derived, or do not hold at other starts."""
+    try:
+        plan.simulator.prepared(*plan.of(0))
+    except EomgenError:
+        return None
+    base = next(iter(plan.simulator.bases), None)
+    return None if base is None or (base.follows_start and plan.start) else base
 
 
 def _messages(found: FoundRuns) -> np.ndarray:

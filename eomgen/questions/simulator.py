@@ -7,27 +7,33 @@ from collections.abc import Callable, Mapping, Sequence
 from dataclasses import field, replace
 from functools import cached_property
 
+import numpy as np
+
 from eomgen.codegen.rhs import parameter_vector
 from eomgen.equations import Equations
-from eomgen.errors import ExpressionError, UsageError
+from eomgen.errors import DerivationError, ExpressionError, UsageError
 from eomgen.model.fields import WrittenEquation
 from eomgen.model.findings import nearest
 from eomgen.model.outputs import FUNCTIONS
 from eomgen.model.outputs.base import BALANCE
+from eomgen.model.part import altered
 from eomgen.model.parts import Model
-from eomgen.model.replaced import Values, with_values
+from eomgen.model.replaced import Valued, Values, with_values
 from eomgen.proof.kept_ties import rows_that_stay
 from eomgen.questions.of_a_run import asked_of
 from eomgen.questions.run import phase_models, run
 from eomgen.records import dataclass
 from eomgen.simulation.configuration import has_phases
+from eomgen.simulation.derived_at import DerivedAt
 from eomgen.simulation.integrator import Stepping
 from eomgen.simulation.output_columns import formulas_of
+from eomgen.simulation.phase_change import at_start
 from eomgen.simulation.phase_models import PhaseModels
 from eomgen.simulation.result import Trajectory
 from eomgen.symbolic.expression.expressions import Expression, single_call
 
 SAMPLES = 101
+MOST_BASES = 4  # derivations that are looked at whether they hold at other values
 MOST_KEPT = 16  # models whose ties or contacts were derived at other values of the parameters
 REACTIONS, OUTPUTS = "reactions", "outputs"
 
@@ -36,8 +42,8 @@ REACTIONS, OUTPUTS = "reactions", "outputs"
 class Simulator:
     """simulator(time=10) -> Trajectory, again and again.
 
-    A model without ties is derived once for all values of its parameters. Which ties depend on one another, and which
-    contacts are closed at the start, depends on the values: with other ones such a model is derived anew.
+    A model is derived once for all values of its parameters at which the same comes of it (see `DerivedAt`): which ties
+    depend on one another may depend on the values, and then it is derived anew.
 
     Args:
         model: whose values hold where none are given.
@@ -45,6 +51,7 @@ class Simulator:
         how: the integrator's way; its tolerances are those of the run.
         target: of the emitted code.
         known: what was derived, by the values that it depends on.
+        bases: what was derived, and may hold at other values.
     """
 
     model: Model
@@ -52,6 +59,7 @@ class Simulator:
     how: Stepping = Stepping()
     target: str | None = None
     known: OrderedDict[object, tuple[Equations, PhaseModels]] = field(default_factory=OrderedDict, repr=False)
+    bases: list[Base] = field(default_factory=list, repr=False)
 
     def __call__(
         self,
@@ -77,8 +85,8 @@ class Simulator:
             UsageError: what is asked makes no sense.
         """
         valued = with_values(self.model, parameters, start)
-        equations, models = self._at(valued.model if self.keeps_start else with_values(self.model, parameters).model)
-        own = {name: valued.model.parameters[name].value for name in parameters or {}}
+        equations, models = self._at(valued)
+        own = {} if equations.model.parameters == valued.model.parameters else values_of(valued.model)
         asked = (columns,) if isinstance(columns, str) else tuple(columns)
         formulas = _formulas(valued.model, asked)
         reactions = any(name not in formulas for name in asked if name != OUTPUTS)
@@ -96,29 +104,57 @@ class Simulator:
         )
         return found if not reactions or REACTIONS in asked else _with_columns(found, asked, formulas)
 
-    def _at(self, model: Model) -> tuple[Equations, PhaseModels]:
+    def prepared(self, parameters: Values, start: Values) -> None:
+        """Derives and compiles what a run from these values takes."""
+        self._at(with_values(self.model, parameters, start))
+
+    def _at(self, valued: Valued) -> tuple[Equations, PhaseModels]:
         """The equations, and their phases, at the values of a model."""
-        return self._own if model is self.model else self._found(model)
+        if valued.model is self.model:
+            return self._own
+        if self.keeps_start:
+            return self._found(valued)
+        return self._found(replace(valued, model=altered(self.model, parameters=valued.model.parameters)))
 
     @cached_property
     def _own(self) -> tuple[Equations, PhaseModels]:
         """Those at the model's own values."""
-        return self._found(self.model)
+        return self._found(Valued(self.model))
 
-    def _found(self, model: Model) -> tuple[Equations, PhaseModels]:
-        known, key = self.known, (model.parameters, model.coordinates, model.speeds)
+    def _found(self, valued: Valued) -> tuple[Equations, PhaseModels]:
+        model, known = valued.model, self.known
+        key = (model.parameters, model.coordinates, model.speeds)
         if key not in known:
-            anew = self.is_tied or self.keeps_start
-            equations = self.derive(model) if anew else self.equations
-            p = parameter_vector(model)
-            if known and not anew:
-                models = next(iter(known.values()))[1].at(p)
-            else:
-                models = phase_models(equations, p, self.how, self.target)
-            known[key] = equations, models
+            known[key] = self._shared(valued) or self._derived(model)
             if len(known) > MOST_KEPT:
                 known.popitem(last=False)
         return known[key]
+
+    def _shared(self, valued: Valued) -> tuple[Equations, PhaseModels] | None:
+        """Equations that were derived at other values, where these are the same; None where there are none."""
+        p = parameter_vector(valued.model)
+        for base in self.bases:
+            models = base.models.at(p)
+            if base.holds(models, valued):
+                return base.equations, models
+        return None
+
+    def _derived(self, model: Model) -> tuple[Equations, PhaseModels]:
+        """The equations of a model, derived at its values."""
+        anew = self.is_tied or self.keeps_start
+        equations = self.derive(model) if anew else self.equations
+        models = phase_models(equations, parameter_vector(model), self.how, self.target)
+        if len(self.bases) < MOST_BASES:
+            self.bases.append(Base(equations, models, self.keeps_start and self._follows_start))
+        return equations, models
+
+    @cached_property
+    def _follows_start(self) -> bool:
+        """Whether what starts somewhere else has other equations."""
+        elements = (force.element for force in self.model.forces.values())
+        if any(each.slack == "start" for each in elements if each is not None):
+            return True
+        return bool(rows_that_stay(self.equations.graph.system))
 
     @cached_property
     def equations(self) -> Equations:
@@ -133,10 +169,51 @@ class Simulator:
     @cached_property
     def keeps_start(self) -> bool:
         """Whether what is derived depends on where the motion starts: contacts, ties and springs that keep a length."""
-        elements = (force.element for force in self.model.forces.values())
-        if has_phases(self.model) or any(each.slack == "start" for each in elements if each is not None):
+        return has_phases(self.model) or self._follows_start
+
+
+@dataclass(frozen=True)
+class Base:
+    """Equations and phases as they were derived at values of a model.
+
+    Args:
+        follows_start: whether what starts somewhere else has other equations.
+    """
+
+    equations: Equations
+    models: PhaseModels
+    follows_start: bool
+
+    def holds(self, models: PhaseModels, valued: Valued) -> bool:
+        """Whether they are those of other values; `models` are these phases at such."""
+        system, own = self.equations.graph.system, self.equations.model
+        model, p = valued.model, models.p[None, :]
+        given = () if self.follows_start else {name.rstrip("'") for name in valued.start}
+        tables = ((model.coordinates, own.coordinates), (model.speeds, own.speeds))
+        if any(part != there[name] for here, there in tables for name, part in here.items() if name not in given):
+            return False
+        derived = self.derived
+        places = derived.declared.many(0.0, np.zeros((1, len(system.symbols.q) + len(system.symbols.u))), p)
+        for k, q in enumerate(system.symbols.q):
+            places[0, k] = valued.start.get(q.name, places[0, k])
+        if not derived.holds(p, places)[0]:
+            return False
+        if not derived.asks(p)[0]:
             return True
-        return bool(rows_that_stay(self.equations.graph.system))
+        try:
+            here = at_start(models, 0.0, values_of(model), valued.start)
+        except DerivationError:
+            return False
+        return bool(derived.is_regular(p, models.of(here.configuration).state(here.values)[None, :])[0])
+
+    @cached_property
+    def derived(self) -> DerivedAt:
+        return DerivedAt(self.equations.graph.system, self.models.p, has_phases(self.equations.model))
+
+
+def values_of(model: Model) -> dict[str, Expression]:
+    """The values of all parameters that have one, in place of those of a model that was derived."""
+    return {name: part.value for name, part in model.parameters.items() if part.value is not None}
 
 
 def _formulas(model: Model, asked: tuple[str, ...]) -> dict[str, Expression]:

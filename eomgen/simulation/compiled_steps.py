@@ -58,6 +58,8 @@ _CONSTANTS = {
     "EDGE": event_location.EDGE,
     "TOUCHES": ITERATED,
     "STEEP": constraint_rank.STEEP,
+    "ARMED": constraint_rank.ARMED,
+    "MOST_AT_ONCE": MOST_AT_ONCE,
     "SLOPE_STEP": DIFFERENCE_STEP,
     "REGULAR_PIVOT": PIVOT,
     "HELD_SHORT": HELD_SHORT,
@@ -130,21 +132,22 @@ class _March(ctypes.Structure):
 
 
 @functools.cache
-def _library() -> tuple[Any, Any, Any, Any]:
-    """(begin, march, dense, look) of march.c, compiled."""
+def library_of_march() -> tuple[Any, Any, Any, Any, Any]:
+    """(begin, march, dense, look, runs) of march.c, compiled."""
     defined = [f"#define {name} {value!r}" for name, value in _CONSTANTS.items()]
     here = resources.files("eomgen.simulation")
     texts = [resources.files("eomgen.codegen") / "dop853.c", here / "march.c", here / "radau.c"]
     text = "\n".join([*defined, *(text.read_text(encoding="utf-8") for text in texts)])
     made = library(text, by=of_this_machine())
-    begin, march, dense, look = (
-        function_of(made, name) for name in ("march_begin", "march", "march_dense", "march_look")
+    begin, march, dense, look, runs = (
+        function_of(made, name) for name in ("march_begin", "march", "march_dense", "march_look", "march_runs")
     )
     begin.argtypes, begin.restype = [_AT], None
     march.argtypes, march.restype = [_AT, _AT], ctypes.c_int
     dense.argtypes, dense.restype = [_AT], None
     look.argtypes, look.restype = [_AT, _SIZE, _AT, _AT], None
-    return begin, march, dense, look
+    runs.argtypes, runs.restype = [_AT, _AT, _SIZE], ctypes.c_int
+    return begin, march, dense, look, runs
 
 
 @functools.lru_cache(maxsize=256)
@@ -208,9 +211,10 @@ class CompiledSteps:
         watched: Watched,
         slope: LateSlope,
     ) -> None:
-        self._begin, self._march, self._dense, self._look = _library()
+        self._begin, self._march, self._dense, self._look, _ = library_of_march()
         n = len(x0)
         self._fun, at = f, f.address
+        self.placed: list[tuple[int, Address]] = [(_March.rate.offset, at)]
         self._kept: list[Any] = [f]
         sizes = {"x": n, "x_old": n, "f": n, "F": 7 * n, "K": 16 * n, "room": 3 * n}
         sizes |= {"track_t": MOST_AT_ONCE, "track_x": MOST_AT_ONCE * n, "pivots": 2 * n}
@@ -220,7 +224,9 @@ class CompiledSteps:
         ends = list(accumulate(sizes.values()))
         numbers = np.zeros(ends[-1])
         first = self._put(numbers)
-        m = self._m = _March(n=n, rate=_at(at), t=span[0], t_old=span[0], end=span[1], rtol=how.rtol, atol=how.atol)
+        m = self._m = self.struct = _March(
+            n=n, rate=_at(at), t=span[0], t_old=span[0], end=span[1], rtol=how.rtol, atol=how.atol
+        )
         parts = {}
         for (name, size), end in zip(sizes.items(), ends, strict=True):
             setattr(m, name, first + 8 * (end - size))
@@ -294,6 +300,7 @@ class CompiledSteps:
             found = address(p)
             self._kept.append(found)
             place = getattr(m, name)
+            self.placed.append((getattr(_March, name).offset, found))
             if isinstance(place, _Rows):
                 place.f = _at(found)
             else:

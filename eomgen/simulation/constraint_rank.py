@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections import deque
 from collections.abc import Callable, Sequence
+from dataclasses import replace
 from typing import Any
 
 import numpy as np
@@ -38,6 +39,10 @@ class ConstraintRank:
     ties: tuple[str, ...]
     rank: int
     dependent: tuple[tuple[tuple[str, ...], str], ...] = ()
+
+    def at(self, p: np.ndarray) -> ConstraintRank:
+        """The same at other values of the parameters."""
+        return replace(self, rows=measured_at(self.rows, p))
 
     def __call__(self, t: np.ndarray, x: np.ndarray) -> np.ndarray:
         """The singular value of J that vanishes where the rank falls, each row against its greatest length, n x 1."""
@@ -91,6 +96,12 @@ PLACE = "a dead centre or a change point"
 Measure = Callable[[np.ndarray, np.ndarray], np.ndarray]
 
 
+def measured_at(measure: Measure, p: np.ndarray) -> Measure:
+    """What is measured, at other values of the parameters."""
+    assert isinstance(measure, Measured | ConstraintRank), "made by `measure`, or of such"
+    return measure.at(p)
+
+
 @dataclass
 class Nearness:
     """How far a motion is from a singular position: 1 at its farthest so far, 0 there.
@@ -108,6 +119,11 @@ class Nearness:
     what: tuple[str, ...] = ()
     lengths: np.ndarray | float = 0.0
     largest: np.ndarray | float = 0.0
+
+    def begun(self, p: np.ndarray) -> Nearness:
+        """The same at other values of the parameters, nothing measured yet."""
+        determinants = None if self.determinants is None else measured_at(self.determinants, p)
+        return Nearness(determinants, None if self.rows is None else self.rows.at(p), self.what)
 
     def __call__(self, t: np.ndarray, x: np.ndarray) -> np.ndarray:
         """The nearness at n states."""
@@ -205,13 +221,25 @@ class Undetermined:
 
     Args:
         determinants: (t n, x n x states) -> n x k.
-        what: (t n, x n x states) -> of each determinant, what is not determined where it vanishes there.
+        words: of each determinant, what is not determined where it vanishes; () of rows, which say it at states.
         place: what such a position is called.
+        is_watched: whether the nearness of a run looks at them too.
     """
 
     determinants: Measure
-    what: Callable[[np.ndarray, np.ndarray], Sequence[str]]
+    words: tuple[str, ...]
     place: str = PLACE
+    is_watched: bool = False
+
+    def at(self, p: np.ndarray) -> Undetermined:
+        """The same at other values of the parameters."""
+        return replace(self, determinants=measured_at(self.determinants, p))
+
+    def what(self, t: np.ndarray, x: np.ndarray) -> Sequence[str]:
+        """Of each determinant, what is not determined where it vanishes, by the states of a run."""
+        if isinstance(self.determinants, ConstraintRank):
+            return (self.determinants.words(t, x),)
+        return self.words
 
 
 def undetermined_of(equations: EquationsOfMotion, p: np.ndarray, declared: System) -> tuple[Undetermined, ...]:
@@ -219,16 +247,16 @@ def undetermined_of(equations: EquationsOfMotion, p: np.ndarray, declared: Syste
 
     system = equations.system
 
-    def of(parts: Sequence[Any], place: str) -> list[Undetermined]:
+    def of(parts: Sequence[Any], place: str, *, is_watched: bool = False) -> list[Undetermined]:
         words = tuple(map(str, parts))
         determinants = tuple(part.determinant for part in parts)
-        return [Undetermined(measure(system, determinants, p), lambda t, x: words, place)] if parts else []
+        return [Undetermined(measure(system, determinants, p), words, place, is_watched)] if parts else []
 
-    found = of(singular_blocks(system.elimination, system.scope), PLACE)
+    found = of(singular_blocks(system.elimination, system.scope), PLACE, is_watched=True)
     found += of(system.declared, "declare other speeds")
     found += of(locks_of(system.motion), "gimbal lock: choose another `orientation`, or a quaternion")
     rows = independence_of(equations, p, declared)
-    return (*found, *([] if rows is None else [Undetermined(rows, lambda t, x: [rows.words(t, x)])]))
+    return (*found, *([] if rows is None else [Undetermined(rows, (), is_watched=True)]))
 
 
 def nearness_of(equations: EquationsOfMotion, p: np.ndarray, declared: System) -> Nearness | None:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Sequence
-from dataclasses import field
+from dataclasses import field, replace
 from functools import cached_property
 from typing import Any
 
@@ -40,6 +40,10 @@ class Measured:
         if len(x) == 1 and np.ndim(t):
             return self._one(t[0], x[0])[None, :]
         return self.function.many(t, x, self.p)
+
+    def at(self, p: np.ndarray) -> Measured:
+        """The same at other values of the parameters."""
+        return replace(self, p=p)
 
     @cached_property
     def _one(self) -> RateFunction:

@@ -8,9 +8,10 @@ Source: Moreau, Unilateral contact and dry friction in finite freedom dynamics (
 
 from __future__ import annotations
 
-from collections.abc import Sequence
-from functools import cached_property
+from collections.abc import Callable, Sequence
+from dataclasses import field
 from itertools import combinations
+from typing import Any
 
 import numpy as np
 
@@ -35,11 +36,13 @@ class WithoutContacts:
         system: it; the coordinates are those of every phase.
         contacts: the names of the ties taken away.
         p: the parameters' values.
+        made: what was made of it, whatever these are.
     """
 
     system: System
     contacts: tuple[str, ...]
     p: np.ndarray
+    made: dict[str, Any] = field(default_factory=dict, repr=False, compare=False)
 
     def gaps(self, t: float, values: Values) -> dict[str, tuple[float, float]]:
         """(gap, its rate) of every contact that can end; positive where it is open, and opening."""
@@ -71,28 +74,42 @@ class WithoutContacts:
         symbols = self.system.symbols
         return np.array([values.get(node.name, 0.0) for node in (*symbols.q, *symbols.u)])
 
-    @cached_property
+    def _once(self, key: str, make: Callable[[], Any]) -> Any:
+        if key not in self.made:
+            self.made[key] = make()
+        return self.made[key]
+
+    @property
     def _rows(self) -> dict[str, tuple[Row, ...]]:
         """The rows of every contact that can end, the one that can end first."""
-        return {name: rows_of_tie(self.system.motion, name) for name in self.contacts}
+        found: dict[str, tuple[Row, ...]] = self._once(
+            "rows", lambda: {name: rows_of_tie(self.system.motion, name) for name in self.contacts}
+        )
+        return found
 
-    @cached_property
+    @property
     def _gaps(self) -> RightHandSide:
+        return self._function("gaps", self._open)
+
+    @property
+    def _rates(self) -> RightHandSide:
+        return self._function("rates", lambda: self.system.scope.rates)
+
+    @property
+    def _matrices(self) -> RightHandSide:
+        return self._function("matrices", self._entries)
+
+    def _open(self) -> tuple[Scalar, ...]:
         asked: list[Scalar] = []
         for first, *_ in self._rows.values():
             asked += [first.velocity] if first.gap is None else [first.gap, first.velocity]
-        return self._compiled(tuple(asked))
+        return tuple(asked)
 
-    @cached_property
-    def _rates(self) -> RightHandSide:
-        return self._compiled(self.system.scope.rates)
-
-    @cached_property
-    def _matrices(self) -> RightHandSide:
+    def _entries(self) -> tuple[Scalar, ...]:
         """M, the rows (J, sigma) of the ties that stay, and those of the contacts."""
         M = tuple(x for row in recursive.assembled_by_recursion(self.system).M for x in row)
         rows = (*self.system.ties.closing, *(row for own in self._rows.values() for row in own))
-        return self._compiled((*M, *self._with_bias([row.velocity for row in rows])))
+        return (*M, *self._with_bias([row.velocity for row in rows]))
 
     def _with_bias(self, velocities: Sequence[Scalar]) -> list[Scalar]:
         """(J, sigma) of each row, J u + sigma its velocity."""
@@ -101,8 +118,11 @@ class WithoutContacts:
         sigma = substituted(tuple(velocities), {node: 0 for node in u})
         return [x for row, bias in zip(J, sigma, strict=True) for x in (*row, bias)]
 
-    def _compiled(self, scalars: tuple[Scalar, ...]) -> RightHandSide:
-        return compiled(program_of(scalars, self.system.symbols, inputs=self.system.inputs), "numpy")
+    def _function(self, key: str, scalars: Callable[[], tuple[Scalar, ...]]) -> RightHandSide:
+        found: RightHandSide = self._once(
+            key, lambda: compiled(program_of(scalars(), self.system.symbols, inputs=self.system.inputs), "numpy")
+        )
+        return found
 
 
 def _plastic(M: np.ndarray, held: np.ndarray, contacts: Sequence[np.ndarray], u: np.ndarray) -> np.ndarray:

@@ -256,7 +256,7 @@ def march(
         return Run(np.array([start]), x0[None, :], start, x0, "not finite", _no_value(start), 0, 1)
     if end == start or x0.size == 0:
         times = instants if instants is not None and end > start else np.unique([start, end])
-        return Run(times, np.tile(x0, (len(times), 1)), end, x0, "finished", _reached(end), 0, 1)
+        return Run(times, np.tile(x0, (len(times), 1)), end, x0, "finished", reached_words(end), 0, 1)
     asked = 1 if instants is None or (instants.size and instants[0] == start) else 0
     rows = _Rows(
         instants,
@@ -294,7 +294,7 @@ def march(
         status, message, steps, crossing = "interrupted", f"Interrupted at t = {t:.6g} s.", rows.track.steps, None
     if status != "finished":
         rows.close(t, x)
-    message = " ".join(part for part in (message or _reached(end), instead, solver.words, hold.remark) if part)
+    message = " ".join(part for part in (message or reached_words(end), instead, solver.words, hold.remark) if part)
     times, states = np.concatenate(rows.t), np.concatenate(rows.x)
     return Run(times, states, t, x, status, message, steps, solver.nfev, crossing, (rows.track,))
 
@@ -407,14 +407,14 @@ def _no_value(t: float) -> str:
     return f"Stopped at t = {t:.6g} s: the accelerations have no finite value there."
 
 
-def _reached(end: float) -> str:
+def reached_words(end: float) -> str:
     return f"Reached t = {end:.6g} s."
 
 
 def ended_words(status: str, t: float, steps: int) -> str:
     """How a run ended, as a sentence."""
     if status == "finished":
-        return _reached(t)
+        return reached_words(t)
     if status == "not finite":
         return _no_value(t)
     if status == "step too small":

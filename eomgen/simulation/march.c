@@ -630,6 +630,25 @@ static double nearness(struct march *m, double t, const double *x, int *grew)
     return least;
 }
 
+/* the same by looks into the last step: at none is it near, nor does it change so fast from one to the next */
+static int stays_far(struct march *m)
+{
+    double sizes[PARTS + 1], least = INFINITY, steepest = 0;
+    for (int grew = 1, pass = 0; grew && pass < 2; pass++) { /* once more against what has grown */
+        grew = 0;
+        for (int i = 0; i <= PARTS; i++) {
+            double t = i == PARTS ? m->t : m->t_old + i*((m->t - m->t_old)/PARTS);
+            between(m, t, m->room + m->n);
+            sizes[i] = nearness(m, t, m->room + m->n, &grew);
+        }
+    }
+    for (int i = 0; i <= PARTS; i++) {
+        least = fmin(least, sizes[i]);
+        steepest = i && fabs(sizes[i] - sizes[i - 1]) > steepest ? fabs(sizes[i] - sizes[i - 1]) : steepest;
+    }
+    return least > fmax(m->near, steepest);
+}
+
 /* whether the last step cannot have come near a singular position, as `RankLookout`; only then its memory
    of slopes is changed. What was measured before is measured anew against what has grown: else it would seem to stay */
 static int is_far(struct march *m)
@@ -642,7 +661,8 @@ static int is_far(struct march *m)
     size_t n = m->n_slopes < 4 ? m->n_slopes + 1 : 4;
     for (size_t i = n == m->n_slopes ? 1 : 0; i < m->n_slopes; i++)
         steepest = fmax(steepest, m->slopes[i]);
-    if (!m->is_armed || n < 4 || !(fmin(m->before, here) > m->near + STEEP*steepest*(m->t - m->t_old)))
+    int is_calm = n == 4 && fmin(m->before, here) > m->near + STEEP*steepest*(m->t - m->t_old);
+    if (!m->is_armed || !(is_calm || stays_far(m)))
         return 0;
     if (m->n_slopes == 4)
         memmove(m->slopes, m->slopes + 1, 3*sizeof *m->slopes);
@@ -708,4 +728,76 @@ int march(struct march *m, size_t *most)
         }
     }
     return GOES_ON;
+}
+
+/* -- many runs ---------------------------------------------------------------------------------------------------- */
+
+struct runs { /* one after the other in one march, each from its own start and with its own parameters */
+    size_t next, last, is_begun, functions, parameters, most_steps, most_seen, begins; /* begins: rows at the start */
+    double start;
+    const double *x0, *p; /* runs x n, runs x parameters */
+    double *x;            /* runs x (begins + n_instants) x n */
+    int *is_done;         /* whether a run came to its end without a question */
+    size_t *steps;
+    struct rate **rates; /* all functions of the march, and what makes their constants */
+    void (**constants)(const double *p, double *c);
+    const double *stops;
+    size_t n_stops;
+};
+
+/* whether the next run begins as others do: on its ties, with a finite rate, far from singular positions */
+static int begun(struct march *m, struct runs *r)
+{
+    size_t n = m->n, rows = r->begins + m->n_instants;
+    const double *p = r->p + r->next*r->parameters;
+    for (size_t i = 0; i < r->functions; i++) {
+        r->rates[i]->p = p;
+        r->constants[i](p, (double *)r->rates[i]->c);
+    }
+    m->t = m->t_old = r->start, m->stops = r->stops, m->n_stops = r->n_stops;
+    m->next = m->tracked = m->is_dense = m->dense_of = m->has_series = m->n_slopes = 0;
+    m->is_implicit = m->stiff_seen = m->easy_seen = m->implicit_steps = 0, m->most_seen = r->most_seen;
+    m->rows = r->x + (r->next*rows + r->begins)*n;
+    memcpy(m->x, r->x0 + r->next*n, n*sizeof *m->x);
+    if (held(m, m->t, m->x, m->atol) == STAYS_OPEN)
+        return 0;
+    memcpy(m->x_old, m->x, n*sizeof *m->x);
+    if (r->begins)
+        memcpy(m->rows - n, m->x, n*sizeof *m->x);
+    march_begin(m);
+    EACH if (!isfinite(m->f[k])) return 0;
+    if (m->is_near_watched) {
+        int grew = 0;
+        for (size_t i = 0; i < m->n_rows; i++)
+            m->lengths[i] = 0;
+        for (size_t i = 0; i <= m->n_determinants; i++)
+            m->sizes[i] = 0;
+        m->before = nearness(m, m->t, m->x, &grew);
+        m->is_armed = m->before > ARMED*m->near;
+        return (int)m->is_armed;
+    }
+    return 1;
+}
+
+/* Runs from `next` on, for about so many steps; whether some are left. One that needs a look is not done, and left. */
+int march_runs(struct march *m, struct runs *r, size_t budget)
+{
+    while (r->next < r->last && budget > 0) {
+        size_t *steps = r->steps + r->next, most = MOST_AT_ONCE;
+        int found = LOOK;
+        if (r->is_begun || begun(m, r)) {
+            *steps = r->is_begun ? *steps : 0;
+            r->is_begun = 1;
+            most = most < r->most_steps - *steps ? most : r->most_steps - *steps;
+            found = march(m, &most);
+            *steps += most;
+            if (found == GOES_ON && *steps < r->most_steps) {
+                budget -= most < budget ? most : budget;
+                continue;
+            }
+            budget -= most < budget ? most : budget;
+        }
+        r->is_done[r->next++] = found == REACHED, r->is_begun = 0;
+    }
+    return r->next < r->last;
 }

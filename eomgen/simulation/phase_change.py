@@ -8,6 +8,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import replace
+from typing import Any
 
 import numpy as np
 
@@ -85,7 +86,7 @@ MOST_STARTS = 16  # that are kept
 
 
 def at_start(
-    models: PhaseModels, t: float, parameters: Mapping[str, float] | None, start: Mapping[str, float] | None
+    models: PhaseModels, t: float, parameters: Mapping[str, Any] | None, start: Mapping[str, float] | None
 ) -> PhaseStart:
     """The state at the start; a contact that can end may be open there. It is found once for the same values.
 
@@ -102,7 +103,7 @@ def at_start(
 
 
 def _at_start(
-    models: PhaseModels, t: float, parameters: Mapping[str, float] | None, start: Mapping[str, float] | None
+    models: PhaseModels, t: float, parameters: Mapping[str, Any] | None, start: Mapping[str, float] | None
 ) -> PhaseStart:
     pieces = {body: 0 for body in paths_of(models.model)}
     (begun, values), away = _closed_or_open(models, t, pieces, parameters, start)
@@ -117,7 +118,7 @@ def _closed_or_open(
     models: PhaseModels,
     t: float,
     pieces: Mapping[str, int],
-    parameters: Mapping[str, float] | None,
+    parameters: Mapping[str, Any] | None,
     start: Mapping[str, float] | None,
 ) -> tuple[tuple[Start, dict[str, float]], tuple[str, ...]]:
     """((the start, coordinates and rates there), the contacts open there): none, where the values allow it."""

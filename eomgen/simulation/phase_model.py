@@ -146,9 +146,7 @@ class PhaseModel:
 
     @property
     def conservative(self) -> bool:
-        if "conservative" not in self.known:
-            self.known["conservative"] = is_conservative(self.equations)
-        return bool(self.known["conservative"])
+        return bool(self._known("conservative", lambda: is_conservative(self.equations)))
 
     @cached_property
     def declared_equations(self) -> EquationsOfMotion:
@@ -162,7 +160,9 @@ class PhaseModel:
         """The speeds that a user sees."""
         return tuple(u.name for u in self.declared.symbols.u)
 
-    def begun(self, t: float, parameters: Values | None, start: Values | None) -> tuple[Start, dict[str, float]]:
+    def begun(
+        self, t: float, parameters: Mapping[str, Any] | None, start: Values | None
+    ) -> tuple[Start, dict[str, float]]:
         """(the start at which all ties hold, coordinates, rates and speeds by name).
 
         Raises:
@@ -214,10 +214,17 @@ class PhaseModel:
         energy = float(self.energies(np.array([t]), x[None, :]).sum())
         return EnergyLevel(self.functions.energies, self.p, places, size, energy)
 
+    def _known(self, key: str, make: Callable[[], Any]) -> Any:
+        """What is made once of the equations, for all values of the parameters."""
+        if key not in self.known:
+            self.known[key] = make()
+        return self.known[key]
+
     @cached_property
     def projection(self) -> Projection | None:
         """Onto the ties that hold; None where none closes."""
-        return projection_of(self.system, self.p, self.target)
+        found = self._known("projection", lambda: projection_of(self.system, self.p, self.target))
+        return None if found is None else replace(found, p=self.p)
 
     @property
     def nearness(self) -> Nearness | None:
@@ -226,7 +233,8 @@ class PhaseModel:
 
     @cached_property
     def _nearness(self) -> Nearness | None:
-        found = nearness_of(self.equations, self.p, self.declared)
+        known = self._known("nearness", lambda: nearness_of(self.equations, self.p, self.declared))
+        found: Nearness | None = None if known is None else known.begun(self.p)
         if found is None or not self.loose:
             return found
         (determinants, rows), inner = (found.determinants, found.rows), self.functions.inner
@@ -239,12 +247,16 @@ class PhaseModel:
     @cached_property
     def undetermined(self) -> tuple[Undetermined, ...]:
         """What of the motion is not determined at singular positions."""
-        return undetermined_of(self.equations, self.p, self.declared)
+        known = self._known("undetermined", lambda: undetermined_of(self.equations, self.p, self.declared))
+        return tuple(each.at(self.p) for each in known)
 
     @cached_property
     def slope(self) -> ExactSlope | None:
         """d(x')/dx; None where it is found by differences."""
-        return None if self.loose or self.fed is not None else slope_of(self.equations, self.p, self.target)
+        if self.loose or self.fed is not None:
+            return None
+        found = self._known("slope", lambda: slope_of(self.equations, self.p, self.target))
+        return None if found is None else replace(found, p=self.p)
 
     @cached_property
     def edges(self) -> tuple[Edge, ...]:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Hashable, Mapping
+from dataclasses import replace
 from functools import cached_property
 from typing import Any
 
@@ -64,6 +65,12 @@ class Slides:
     contacts: tuple[Contact, ...]
     p: np.ndarray
 
+    def with_parameters(self, p: np.ndarray) -> Slides:
+        """The same at other values of the parameters."""
+        found = replace(self, p=p)
+        vars(found)["_velocities"] = self._velocities
+        return found
+
     def at(self, t: float, values: Values) -> dict[str, float]:
         """The sliding velocity of each contact."""
         x = np.array([values.get(node.name, 0.0) for node in (*self.system.symbols.q, *self.system.symbols.u)])
@@ -85,6 +92,7 @@ class PhaseModels:
         target: of the emitted code.
         rates: alpha and beta of Baumgarte's rows; None: they do not pull.
         derived: the equations of the one phase of a model that has no other, where they are known.
+        origin: the same at other values of the parameters, whose phases these are, and what changes these values.
     """
 
     def __init__(
@@ -94,23 +102,23 @@ class PhaseModels:
         target: str | None,
         rates: PullBack | None = None,
         derived: EquationsOfMotion | None = None,
+        origin: tuple[PhaseModels, Fed | None] | None = None,
     ) -> None:
         self.model, self.p, self.target, self.rates = model, p, target, rates
         self._derived = None if has_phases(model) else derived
+        self._origin = origin
         self._made: dict[Configuration, PhaseModel] = {}
         self._last: tuple[Configuration, PhaseModel] | None = None
         self.starts: dict[Hashable, Any] = {}  # of motions, by what they were found from
         self._slides: dict[Configuration, Slides] = {}
 
     def at(self, p: np.ndarray, fed: Fed | None = None) -> PhaseModels:
-        """The same at other values of the parameters, where no tie asks for these: what is compiled is not again.
+        """The same at other values of the parameters, at which the same is derived: no phase is made twice.
 
         Args:
-            fed: as of PhaseModel, of the phases that are made already.
+            fed: as of PhaseModel.
         """
-        found = PhaseModels(self.model, p, self.target, self.rates, self._derived)
-        found._made = {configuration: phase.at(p, fed) for configuration, phase in self._made.items()}
-        return found
+        return PhaseModels(self.model, p, self.target, self.rates, self._derived, (self, fed))
 
     def of(self, configuration: Configuration) -> PhaseModel:
         """The phase of a configuration.
@@ -120,12 +128,15 @@ class PhaseModels:
         """
         if self._last is None or self._last[0] is not configuration:
             if configuration not in self._made:
-                self._made[configuration] = self._phase(configuration)
+                made = self._phase(configuration) if self._origin is None else self._origin[0].of(configuration)
+                self._made[configuration] = made if self._origin is None else made.at(self.p, self._origin[1])
             self._last = configuration, self._made[configuration]
         return self._last[1]
 
     def slides(self, configuration: Configuration) -> Slides:
         """The sliding velocities of a configuration, for which no force needs to be known."""
+        if configuration not in self._slides and self._origin is not None:
+            self._slides[configuration] = self._origin[0].slides(configuration).with_parameters(self.p)
         if configuration not in self._slides:
             model = on_pieces(self.model, configuration.pieces)
             with_friction = [c for c in contacts_of(model) if c.mu is not None and configuration.modes[c.name].closed]
@@ -144,6 +155,8 @@ class PhaseModels:
         Raises:
             DerivationError: as `of`.
         """
+        if self._origin is not None:
+            return replace(self._origin[0].without_contacts, p=self.p)
         return WithoutContacts(_opened(self.model, dict.fromkeys(self.ends, OPEN)), self.ends, self.p)
 
     @cached_property

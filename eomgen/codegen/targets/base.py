@@ -18,11 +18,13 @@ class Address:
     Args:
         evaluate: of the function (t, x, p, c, inputs, dx).
         p, c: of its parameters and of what they determine.
+        constants: of the function (p, c) that makes the latter.
     """
 
     evaluate: int
     p: int
     c: int
+    constants: int
     kept: Any
 
 

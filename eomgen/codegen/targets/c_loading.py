@@ -69,6 +69,7 @@ def functions_of(library: ctypes.CDLL, program: Program, stem: str, constants: i
         return dx
 
     def address(known: _Constants) -> Address:
-        return Address(ctypes.cast(evaluate, _ADDRESS).value or 0, known.p_at, known.c_at, (library, known))
+        entry, making = (ctypes.cast(function, _ADDRESS).value or 0 for function in (evaluate, make))
+        return Address(entry, known.p_at, known.c_at, making, (library, known))
 
     return Functions(constants_of, one, all_of, None if given else address)

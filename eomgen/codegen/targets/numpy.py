@@ -130,7 +130,7 @@ def evaluate(t, x, p, c, inputs):
 def evaluate_many(t, x, p, inputs):
     """{result} at n states."""
     with np.errstate(all="ignore"):
-        p = [np.float64(value) for value in p]
+        p = list(np.transpose(p))
         rows = None if inputs is None else np.asarray(inputs, dtype=float).T
         {result} = _evaluate_arrays(t, x.T, {rows_of_x}p, _constants_of_arrays(p), rows)
         return np.stack([np.broadcast_to(value, t.shape) for value in {result}], axis=-1) if {result} else \

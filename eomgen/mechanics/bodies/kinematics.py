@@ -22,7 +22,7 @@ from eomgen.model.joints.base import Z, oriented
 from eomgen.records import dataclass
 from eomgen.symbolic.expression.derivative import jacobian, symbols_of
 from eomgen.symbolic.expression.functions import cos, sin
-from eomgen.symbolic.expression.graph import Scalar, collected
+from eomgen.symbolic.expression.graph import Node, Scalar, collected
 from eomgen.symbolic.expression.spatial import (
     ZERO,
     Matrix,
@@ -94,6 +94,11 @@ class Motion:
 
     def link(self, body: str) -> BodyLink:
         return self.links[self.index[body]]
+
+    @cached_property
+    def decided(self) -> dict[Node, None]:
+        """The scalars whose numbers at the start have decided what loads and ties are (`SystemScene.worth`)."""
+        return {}
 
     @cached_property
     def points(self) -> dict[str, dict[str, Vector]]:

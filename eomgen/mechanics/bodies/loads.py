@@ -264,6 +264,8 @@ class SystemScene:
     def worth(self, scalar: Scalar) -> float | None:
         """The number that the scalar is at the start with the model's values (None: some are missing)."""
         scope = self.motion.scope
+        if type(scalar) is Node:
+            self.motion.decided[scalar] = None
         known = exact_parameters(scope.model)
         values = {node: known[name] for name, node in scope.symbols.parameters.items() if name in known}
         at_start = self.start(scalar)
