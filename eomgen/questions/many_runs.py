@@ -27,7 +27,7 @@ from eomgen.model.ranges import TypedNumbers, are_several, typed_values
 from eomgen.model.replaced import with_inputs, with_values
 from eomgen.model.table import Table
 from eomgen.questions.runs import Runs
-from eomgen.questions.simulator import SAMPLES, Base, Simulator
+from eomgen.questions.simulator import SAMPLES, KnownEquations, Simulator
 from eomgen.records import dataclass, with_fields
 from eomgen.simulation.compiled_runs import marched
 from eomgen.simulation.compiled_steps import BATCHED
@@ -236,7 +236,7 @@ def _in_marches(plan: _Plan, threads: int) -> Told | None:
     return names, status.astype(str), message, x, steps
 
 
-def _base(plan: _Plan) -> Base | None:
+def _base(plan: _Plan) -> KnownEquations | None:
     """The equations of the first run; None where they cannot be derived, or do not hold at other starts."""
     try:
         plan.simulator.prepared(*plan.of(0))

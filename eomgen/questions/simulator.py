@@ -59,7 +59,7 @@ class Simulator:
     how: Stepping = Stepping()
     target: str | None = None
     known: OrderedDict[object, tuple[Equations, PhaseModels]] = field(default_factory=OrderedDict, repr=False)
-    bases: list[Base] = field(default_factory=list, repr=False)
+    bases: list[KnownEquations] = field(default_factory=list, repr=False)
 
     def __call__(
         self,
@@ -86,7 +86,7 @@ class Simulator:
         """
         valued = with_values(self.model, parameters, start)
         equations, models = self._at(valued)
-        own = {} if equations.model.parameters == valued.model.parameters else values_of(valued.model)
+        own = {} if equations.model.parameters == valued.model.parameters else given_parameters(valued.model)
         asked = (columns,) if isinstance(columns, str) else tuple(columns)
         formulas = _formulas(valued.model, asked)
         reactions = any(name not in formulas for name in asked if name != OUTPUTS)
@@ -145,7 +145,7 @@ class Simulator:
         equations = self.derive(model) if anew else self.equations
         models = phase_models(equations, parameter_vector(model), self.how, self.target)
         if len(self.bases) < MOST_BASES:
-            self.bases.append(Base(equations, models, self.keeps_start and self._follows_start))
+            self.bases.append(KnownEquations(equations, models, self.keeps_start and self._follows_start))
         return equations, models
 
     @cached_property
@@ -173,7 +173,7 @@ class Simulator:
 
 
 @dataclass(frozen=True)
-class Base:
+class KnownEquations:
     """Equations and phases as they were derived at values of a model.
 
     Args:
@@ -201,7 +201,7 @@ class Base:
         if not derived.asks(p)[0]:
             return True
         try:
-            here = at_start(models, 0.0, values_of(model), valued.start)
+            here = at_start(models, 0.0, given_parameters(model), valued.start)
         except DerivationError:
             return False
         return bool(derived.is_regular(p, models.of(here.configuration).state(here.values)[None, :])[0])
@@ -211,7 +211,7 @@ class Base:
         return DerivedAt(self.equations.graph.system, self.models.p, has_phases(self.equations.model))
 
 
-def values_of(model: Model) -> dict[str, Expression]:
+def given_parameters(model: Model) -> dict[str, Expression]:
     """The values of all parameters that have one, in place of those of a model that was derived."""
     return {name: part.value for name, part in model.parameters.items() if part.value is not None}
 

@@ -19,7 +19,7 @@ from eomgen.simulation.compiled_steps import CompiledSteps, library_of_march
 from eomgen.simulation.constraint_rank import RankLookout
 from eomgen.simulation.integrator import Stepping
 from eomgen.simulation.phase_model import PhaseModel
-from eomgen.simulation.singular import zeros_of
+from eomgen.simulation.singular import vanishing_after
 from eomgen.simulation.singular_crossing import NEARNESS
 from eomgen.simulation.solvers import SEEN
 
@@ -123,5 +123,5 @@ def _determined(phase: PhaseModel, x: np.ndarray, p: np.ndarray, instants: np.nd
         for i, states in enumerate(x):
             with np.errstate(all="ignore"):
                 values = np.nan_to_num(what.at(p[i]).determinants(instants, states)).reshape(len(instants), -1)
-            found[i] &= not any(zeros_of(column) for column in values.T)
+            found[i] &= not any(vanishing_after(column) for column in values.T)
     return found

@@ -37,7 +37,9 @@ def ended_where_singular(run: Run, what: Undetermined, again: Again, *, rtol: fl
     largest = np.max(np.abs(values), axis=0)
     values = values / np.where(largest > 0, largest, 1.0)
     allowed = max(RUNS_AGREE, STEPS * rtol)
-    zeros = sorted((i, k) for k in range(values.shape[1]) for i in zeros_of(values[:, k]) if not _carried(run, i))
+    zeros = sorted(
+        (i, k) for k in range(values.shape[1]) for i in vanishing_after(values[:, k]) if not _carried(run, i)
+    )
     for i, number in zeros:
         if not _passed(run, i, again, allowed):
             return _cut(run, i, _instant(run.t, values[:, number], i), what, number)
@@ -50,7 +52,7 @@ def ended_where_singular(run: Run, what: Undetermined, again: Again, *, rtol: fl
     return _cut(run, len(run.t) - 1, run.end, what, k)
 
 
-def zeros_of(values: np.ndarray) -> list[int]:
+def vanishing_after(values: np.ndarray) -> list[int]:
     """The instants after which a determinant has another sign, or before which it comes near to zero and turns back."""
     signs, size = np.sign(values), np.abs(values)
     flips = np.flatnonzero(signs[:-1] * signs[1:] <= 0)
