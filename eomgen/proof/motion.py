@@ -210,7 +210,7 @@ def _work(leg: Leg, wanted: float) -> tuple[np.ndarray, float]:
 
 
 def _ties(legs: Sequence[Leg], promise: Promise) -> Check | None:
-    """|phi| and |J u + sigma| <= 10 atol at every state: it is put back onto the ties.
+    """|phi| and |J u + sigma| <= 10 (atol + rounding of the largest entry) at every state, which is put back onto them.
 
     Where it is not, 10 (rtol |q| + atol) steps and 10 (rtol |u| + atol) steps.
     """
@@ -226,7 +226,7 @@ def _ties(legs: Sequence[Leg], promise: Promise) -> Check | None:
         ):
             if not scalars:
                 continue
-            limit = promise.open(float(np.max(np.abs(part), initial=0.0)))
+            limit = promise.open(float(np.max(np.abs(leg.x if promise.projected else part), initial=0.0)))
             found = np.max(np.abs(_function(leg, scalars)), axis=1)
             judged, k = judged + len(scalars), int(np.argmax(found))
             if not found[k] <= limit and not promise.projected:

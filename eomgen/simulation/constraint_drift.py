@@ -99,7 +99,7 @@ class Projection:
 
     def is_open(self, t: float, x: np.ndarray, allowed: float) -> bool:
         """Whether a tie is open by more than is allowed, and by more than rounding."""
-        return not self._gap(t, x, slice(None)) <= max(allowed, _rounding(x))
+        return not self._gap(t, x, slice(None)) <= max(allowed, rounding_of(x))
 
     def closed(self, t: float, x: np.ndarray, allowed: float) -> tuple[np.ndarray, float]:
         """(the nearest state in which the ties hold, by how much they are open there all the same).
@@ -109,7 +109,7 @@ class Projection:
                 position, where what is left is divided by what vanishes there.
         """
         found = on_spheres(x, self.spheres)
-        enough = max(FAR * allowed, _rounding(x)) if allowed > 0 else 0.0
+        enough = max(FAR * allowed, rounding_of(x)) if allowed > 0 else 0.0
         for rows in (self.positions, self.speeds):
             if rows is not None:
                 closing = Newton(enough, steps=STEPS, stalls=math.inf, share=1.0, least=rows.change)
@@ -241,7 +241,8 @@ def _identity(n: int) -> tuple[tuple[int, ...], ...]:
     return tuple(tuple(int(i == j) for j in range(n)) for i in range(n))
 
 
-def _rounding(x: np.ndarray) -> float:
+def rounding_of(x: np.ndarray) -> float:
+    """By how much ties are open at a state whose digits end: that of a satellite holds to 1e-7 m."""
     return ROUNDING * max(1.0, float(np.abs(x).max(initial=0.0)))
 
 
@@ -279,7 +280,7 @@ class EnergyLevel:
         return found
 
 
-LOST = 100.0  # absolute tolerances of a step by which a tie that cannot be closed may be open without a word
+LOST = 100.0  # absolute tolerances of a step by which a tie may stay open without a word, and by rounding
 
 
 @dataclass
@@ -292,7 +293,7 @@ class DriftCorrection:
         atol: the absolute tolerance of a step.
         every: put back at each so many steps, needed or not; None: where a tie is open by more than atol.
         steps: taken so far.
-        lost: the first instant at which a tie stayed open by more than LOST tolerances, and by how much.
+        lost: the first instant at which a tie stayed open by more than LOST tolerances and rounding, and by how much.
         level: the energy that is kept; None where it is only watched.
     """
 
@@ -321,7 +322,7 @@ class DriftCorrection:
         if self.projection is None or not (forced or self.projection.is_open(t, x, self.atol)):
             return on_spheres(x, self.spheres) if self.spheres else x
         found, left = self.projection.closed(t, x, self.atol)
-        if not left <= LOST * self.atol and self.lost is None:
+        if not left <= max(LOST * self.atol, rounding_of(found)) and self.lost is None:
             self.lost = t, left
         return found
 

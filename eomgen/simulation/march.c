@@ -319,7 +319,9 @@ static int on_ties(const struct march *m, double t, double *x, double allowed)
                 put_back(m, &m->places, t, x, enough);
             if (m->rates.k)
                 put_back(m, &m->rates, t, x, enough);
-            return largest_gap(m, t, x, 0, m->n_gaps, m->work) <= LOST*m->atol ? MOVED : STAYS_OPEN;
+            rounding = rounding_of(m, x);
+            most = LOST*m->atol > rounding ? LOST*m->atol : rounding;
+            return largest_gap(m, t, x, 0, m->n_gaps, m->work) <= most ? MOVED : STAYS_OPEN;
         }
     }
     on_spheres(m, x);

@@ -7,6 +7,7 @@ import os
 from dataclasses import replace
 from pathlib import Path
 
+import numpy as np
 import pytest
 from click.testing import CliRunner
 from forked import needs_sh
@@ -188,3 +189,41 @@ def test_rows_that_pull_are_proven_with_their_power():
     """Baumgarte's rows take power lam . (J u + sigma) where ties are open; the equations themselves hold as derived."""
     certificate = run_of("bricard", stabilization="baumgarte").certify()
     assert certificate.ok, str(certificate)
+
+
+TETHER = """
+eomgen = 1
+space = "plane"
+parameters = { GM = 3.986004418e14, m1 = 500, m2 = 100, L = 20000, r0 = 6.8e6, w = "sqrt(GM/r0)/r0" }
+points.O = [0, 0]
+constraints.tether = { kind = "link", points = ["a.center", "b.center"], length = "L" }
+[coordinates]
+x1 = { start = "r0" }
+y1 = { start = 0, speed = "w*r0" }
+x2 = { start = "r0 + L*cos(0.3)", speed = "-w*L*sin(0.3)" }
+y2 = { start = "L*sin(0.3)", speed = "w*(r0 + L*cos(0.3))" }
+"""
+
+
+@pytest.mark.parametrize("target", ["numpy", pytest.param("c", marks=needs_cc)])
+def test_a_tie_between_places_far_away_is_kept_as_far_as_their_digits_go(target):
+    """Satellites on a tether of 20 km: places of 7e6 m have 1e-9 m, and T = m1 m2/(m1 + m2) (n (g_2 - g_1) + w^2 L)."""
+    text = TETHER
+    for body, m, n in (("a", "m1", 1), ("b", "m2", 2)):
+        text += f"""
+    [bodies.{body}]
+    shape = {{ kind = "particle", mass = "{m}" }}
+    joint = {{ kind = "placed", at = ["x{n}", "y{n}"] }}
+    [forces.on_{body}]
+    kind = "between"
+    points = ["O", "{body}.center"]
+    pull = "GM*{m}/r^2"
+    """
+    run = eomgen.simulate(eomgen.loads(text), time=3000, target=target)
+    assert run.ok and "could not be closed" not in run.message and run.certify().ok, run.message
+    p1, p2, v1, v2 = (np.array([run[f"{c}{n}{dot}"][-1] for c in "xy"]) for dot in ("", "'") for n in (1, 2))
+    g1, g2 = (-3.986004418e14 * p / np.hypot(*p) ** 3 for p in (p1, p2))
+    n = (p2 - p1) / 20000
+    assert np.hypot(*(p2 - p1)) == pytest.approx(20000, abs=1e-6)
+    tension = 500 * 100 / 600 * (n @ (g2 - g1) + (v2 - v1) @ (v2 - v1) / 20000)
+    assert run["tension(tether)"][-1] == pytest.approx(tension, rel=1e-7)
