@@ -16,13 +16,15 @@ from eomgen.cli_options import (
     FORMAT,
     JSON,
     MODEL,
+    OF_PLOT,
+    OF_TABLE,
     OUTPUT,
     PLOT,
     TIME,
     folder,
     form_asked,
     refuse_beside,
-    refuse_idle_view,
+    refuse_idle,
     with_form,
     with_picture,
     with_values,
@@ -210,6 +212,8 @@ def derive_command(*, fresh: bool, **options: Any) -> int:
 
     What was derived and proven before is told again, if its equations, derived anew, are the same.
     """
+    told = options["diff"] is None, "is of one model, and --diff tells what differs between two"
+    refuse_idle(units=told, full=told)
     if fresh or options["model"] == "-" or options["diff"] is not None or not options["certify"]:
         return _write(_derived, **options)
     return _kept_derivation(**options)
@@ -354,6 +358,7 @@ def linearize_command(view: str, over: str | None, **options: Any) -> int:
     from eomgen.documents.linearize.result import linearize
     from eomgen.model.ranges import range_of
 
+    refuse_idle(view=(options["plot"] is not None, OF_PLOT))
     if (over is not None) != (view == "locus"):
         raise click.UsageError('--view locus and --over "k=1:10:50" go together')
 
@@ -485,7 +490,8 @@ def simulate_command(
 
     if baumgarte and stabilize != "baumgarte":
         raise click.UsageError(f"--baumgarte goes with --stabilize baumgarte, not {stabilize}")
-    refuse_idle_view(options["plot"])
+    in_table = output is not None and not output.lower().endswith(".npz")
+    refuse_idle(view=(options["plot"] is not None, OF_PLOT), units=(in_table, OF_TABLE))
     if project_every and stabilize != "projection":
         raise click.UsageError(f"--project-every goes with --stabilize projection, not {stabilize}")
     rates = baumgarte or RATES
@@ -541,8 +547,14 @@ def sweep_command(where: str, wants_json: bool, output: str | None, strict: bool
     from eomgen.sweeps.plan import Stepped
     from eomgen.verbs.sweep import SweepAsked, replay_document, sweep_document
 
-    refuse_idle_view(options["plot"])
-    form = form_asked(wants_json, None)
+    form, drawn = form_asked(wants_json, None), bool(options["random"])
+    refuse_idle(
+        view=(options["plot"] is not None, OF_PLOT),
+        units=(output is not None, OF_TABLE),
+        design=(drawn, "says how --random is drawn: give both"),
+        seed=(drawn, "says what --random draws: give both"),
+        samples=(options["replay"] is not None, "is of --replay"),
+    )
     replay, samples = options.pop("replay"), options.pop("samples")
     shown = {name: options.pop(name) for name in ("plot", "view", "units", "certify")}
     if replay is not None:
@@ -603,6 +615,13 @@ def animate_command(model: str, wants_json: bool, format_: str | None, output: s
     from eomgen.verbs.animate import Showing, animate_document, refuse_ending
 
     refuse_ending(output)
+    ending, swings = Path(output).suffix.lower(), options["modes"] is not None or options["virtual"] is not None
+    motion = (not swings, "is of the motion in time, which --modes and --virtual do not show")
+    refuse_idle(
+        **{name: motion for name in ("time", "speed", "trail", "forces")},
+        fps=(ending in (".gif", ".mp4"), "is of a .gif and an .mp4"),
+        frames=(ending == ".png", "says how many frames a strip has: give -o FILE.png"),
+    )
     strict = options.pop("strict")
     shown = {name: options.pop(name) for name in ("fps", "speed", "trail", "forces", "frames")}
     options["showing"] = Showing(**shown)
@@ -664,6 +683,7 @@ def codegen_command(
     from eomgen.verbs.codegen import languages
 
     if wants_list:
+        refuse_beside("--list", ("wants_list", "wants_json", "strict"))
         return deliver(languages(), form_asked(wants_json, None))
     if model is None or output is None:
         raise click.UsageError(f"Missing {'argument MODEL' if model is None else 'option -o DIR'}.")

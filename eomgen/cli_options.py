@@ -2,9 +2,7 @@
 
 from __future__ import annotations
 
-import math
 from collections.abc import Callable
-from contextlib import suppress
 from pathlib import Path
 
 import click
@@ -17,6 +15,8 @@ FORMATS = {"": "text", ".txt": "text", ".tex": "latex", ".md": "markdown", ".jso
 """ending of a file -> the form of what is written into it"""
 
 PICTURES = (".png", ".svg", ".pdf")
+OF_PLOT = "says what --plot draws: give both"
+OF_TABLE = "says how the heads of a .csv are written: give -o too"
 SOURCES = (".c", ".h", ".py", ".cpp", ".hpp", ".rs", ".f90", ".js", ".mjs", ".m", ".jl", ".zip", ".fmu")
 """endings of files that `codegen` makes, or might"""
 
@@ -62,34 +62,34 @@ def refuse_beside(option: str, heeded: tuple[str, ...]) -> None:
         raise click.UsageError(f"{option} takes no {', '.join(idle)}: leave that out")
 
 
-def seconds(typed: object) -> float:
+def time_typed(typed: object) -> float:
     """A time: seconds, or a number with its unit, "500 ms".
 
     Raises:
         BadParameter: it is none.
     """
-    from eomgen.errors import ExpressionError
-    from eomgen.symbolic.expression.typed import parse_typed
-    from eomgen.symbolic.expression.units import parse_unit
+    from eomgen.errors import UsageError
+    from eomgen.symbolic.expression.typed import seconds
 
-    text = str(typed)
-    with suppress(ValueError):
-        return float(text)
-    with suppress(ExpressionError):
-        number, unit = parse_typed(text)
-        if unit is not None and number.names <= {"pi"} and not number.calls and unit.fits(parse_unit("s")):
-            return float(number.evaluate({"pi": math.pi})) * unit.size
-    raise click.BadParameter(f"{text!r} is no time; write 5, or '5 s'")
+    try:
+        return seconds(typed)
+    except UsageError as error:
+        raise click.BadParameter(f"{error.what}; {error.mend}") from None
 
 
-def refuse_idle_view(plot: str | None) -> None:
-    """Refuses --view where nothing is drawn.
+def refuse_idle(**heeded: tuple[bool, str]) -> None:
+    """Refuses what was typed and would change nothing.
 
+    Args:
+        heeded: of an option, by the name of its argument: whether it changes something, and what it is for.
     Raises:
-        UsageError: it was typed.
+        UsageError: such a one was typed.
     """
-    if plot is None and click.get_current_context().get_parameter_source("view") is ParameterSource.COMMANDLINE:
-        raise click.UsageError("--view says what --plot draws: give both")
+    context, by_hand = click.get_current_context(), ParameterSource.COMMANDLINE
+    for parameter in context.command.params:
+        changes, purpose = heeded.get(parameter.name or "", (True, ""))
+        if not changes and context.get_parameter_source(parameter.name or "") is by_hand:
+            raise click.UsageError(f"{max(parameter.opts, key=len)} {purpose}")
 
 
 MODEL = click.argument("model", type=click.Path(exists=True, dir_okay=False, allow_dash=True))
@@ -104,7 +104,7 @@ FORMAT = click.option(
 PLOT = click.option("--plot", type=click.Path(dir_okay=False), callback=picture, help="Draw it as .png, .svg or .pdf.")
 CERTIFY = click.option("--no-certify", "certify", is_flag=True, flag_value=False, default=True, help="Make no proof.")
 TIME = click.option(
-    "--time", type=seconds, default=10.0, metavar="TIME", show_default=True, help='How long: 5 is in s, or "500 ms".'
+    "--time", type=time_typed, default=10.0, metavar="TIME", show_default=True, help='How long: 5 is in s, or "500 ms".'
 )
 FOLLOW = click.option(
     "--follow",

@@ -19,6 +19,7 @@ from eomgen.model.fields import WrittenEquation
 from eomgen.model.reader import ModelOrPath, model_at
 from eomgen.model.replaced import Values, with_inputs
 from eomgen.model.unknowns import refuse_motion
+from eomgen.symbolic.expression.typed import Typed
 from eomgen.symbolic.numeric.gc_pause import growing
 from eomgen.symbolic.numeric.tolerances import RUN
 from eomgen.symbolic.numeric.work import doing
@@ -101,11 +102,11 @@ def simulator(
 def simulate_many(
     model: ModelOrPath,
     *,
-    time: float,
+    time: Typed,
     parameters: Mapping[str, Any] | None = None,
     start: Mapping[str, Any] | None = None,
     inputs: Mapping[str, Any] | None = None,
-    samples: int | Sequence[float] = 101,
+    samples: int | Sequence[Typed] = 101,
     rtol: float = RUN,
     atol: float = RUN,
     method: str = "auto",
@@ -118,7 +119,7 @@ def simulate_many(
     marches in C, a run after the other; where contacts change, and where a step needs a look, one by one.
 
     Args:
-        time: how long [s].
+        time: how long, as of `simulate`.
         parameters, start, inputs: arrays, one number a run in SI, or what all runs share, as `simulate` takes it.
         samples, rtol, atol, method, target: as of `simulate`.
         threads: among which the runs are divided.
@@ -133,14 +134,14 @@ def simulate_many(
 def simulate(
     model: ModelOrPath,
     *,
-    time: float,
+    time: Typed,
     parameters: Values | None = None,
     start: Values | None = None,
     inputs: Mapping[str, Any] | None = None,
     rtol: float = RUN,
     atol: float = RUN,
     target: str | None = None,
-    samples: int | Sequence[float] | None = None,
+    samples: int | Sequence[Typed] | None = None,
     method: str = "auto",
     stabilization: str = "projection",
     until: WrittenEquation | str | None = None,
@@ -148,14 +149,14 @@ def simulate(
     """The motion from the start values of the model.
 
     Args:
-        time: how long [s].
+        time: how long: 5 s, "500 ms", (500, "ms") or a quantity of pint.
         parameters, start: values that replace the model's, each as `model_at` takes it.
         inputs: values that replace the model's: numbers, expressions of t, `eomgen.samples(times, values)`; feedback by
             an expression of the state ("-k*x - c*x'"), by {"value": law, "every": 0.01}, sampled and held, or by a
             Python function of (t, x), x = (q, u), which scipy steps.
         rtol, atol: tolerances of the integration; ties are kept closed to a tenth of atol.
         target: of the emitted code: "numpy", "c", or None for the fastest there is.
-        samples: how many instants are given, or the instants themselves.
+        samples: how many instants are given, or the instants themselves, in SI or with a unit.
         method: "auto" is DOP853, and Radau where a motion is stiff; DOP853, RK45, RK23; Radau, BDF, LSODA; "taylor"
             goes by power series of the equations, which kinks do not have.
         stabilization: what keeps ties closed: "projection", "baumgarte" or "none"; "energy" keeps the energy too.

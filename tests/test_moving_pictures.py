@@ -4,6 +4,8 @@ from __future__ import annotations
 
 import html
 import io
+import json
+import math
 import subprocess
 from pathlib import Path
 
@@ -42,8 +44,44 @@ def test_frames_stand_as_far_apart_as_speed_over_rate():
     assert np.allclose(frame_times(1.0, 10, 2), [0, 0.2, 0.4, 0.6, 0.8, 1.0])
     with pytest.raises(eomgen.UsageError, match="frames are more than"):
         frame_times(1e6, 25, 1)
-    with pytest.raises(eomgen.UsageError, match="positive"):
-        frame_times(1.0, 0, 1)
+    for fps, speed in ((0, 1), (math.nan, 1), (math.inf, 1), ("25", 1), (25, 0), (25, math.inf), (25, None)):
+        with pytest.raises(eomgen.UsageError, match=r"make no moving picture|makes no sense"):
+            frame_times(1.0, fps, speed)
+    with pytest.raises(eomgen.UsageError, match="before a second frame comes"):
+        frame_times(0.02, 25, 1)
+
+
+@pytest.mark.parametrize("fps", (7, 25, 30, 40, 50))
+def test_a_gif_of_any_rate_takes_as_long_as_its_motion(run, fps):
+    """The sum of n delays is n/fps to a hundredth of a second, though a GIF counts in these."""
+    data = moving_picture.gif([movie_of(run, frame_times(1.0, fps, 1))], fps)
+    with Image.open(io.BytesIO(data)) as picture:
+        delays = []
+        for frame in range(picture.n_frames):
+            picture.seek(frame)
+            delays.append(picture.info["duration"])
+    assert sum(delays) == pytest.approx(1000 * len(delays) / fps, abs=5)
+
+
+def test_a_motion_in_which_nothing_moves_is_said(tmp_path):
+    """x(t) = x(0): in a file of any kind, on the command line and in Python; not of what swings."""
+    still = tmp_path / "still.toml"
+    still.write_text((MODELS / "simple_pendulum.toml").read_text().replace("start = 1.0", "start = 0"))
+    for model, ending in ((still, "gif"), (still, "png"), (still, "html"), (MODELS / "simple_pendulum.toml", "png")):
+        words = ["animate", str(model), "-o", str(tmp_path / f"m.{ending}"), "--time", "0.2"]
+        done = CliRunner().invoke(main, words)
+        assert (done.exit_code, "nothing moves" in done.stderr) == (0, model is still), done.output
+    with pytest.warns(RuntimeWarning, match="nothing moves"):
+        eomgen.simulate(still, time=0.2).animate(tmp_path / "m.png")
+
+
+def test_a_strip_has_as_many_frames_as_are_asked_from_the_start_to_the_end(tmp_path):
+    """n frames at k T/(n - 1)."""
+    for frames in (1, 4, 9):
+        words = ["animate", str(PENDULUM), "-o", str(tmp_path / "m.png"), "--time", "0.2", "--frames", str(frames)]
+        assert json.loads(CliRunner().invoke(main, [*words, "--json"]).stdout)["frames"] == frames
+    assert CliRunner().invoke(main, [*words[:-1], "1000"]).exit_code == 2
+    assert CliRunner().invoke(main, ["animate", str(PENDULUM), "-o", "m.png", "--modes", "2"]).exit_code == 2
 
 
 def test_a_trail_is_the_way_of_its_point(run):
@@ -155,7 +193,7 @@ def test_a_gif_has_a_picture_for_each_frame_and_one_palette(run):
 def test_modes_of_particles_move_and_come_back():
     """Of the picture's extent the largest deflection is SWING; after a period a mode is where it began."""
     model = eomgen.load(MODELS / "two_mass_oscillator.toml")
-    movies = mode_movies(linearize(model).modes, 2, 25)
+    movies = mode_movies(linearize(model).modes, 2, 50)
     assert len(movies) == 2
     for movie in movies:
         paths = [s.path.reshape(len(movie.times), -1) for s in movie.drawing.strokes if s.role == "body"]
@@ -170,9 +208,7 @@ def test_modes_of_particles_move_and_come_back():
 def test_the_verb_writes_what_its_ending_says(model, ending, tmp_path):
     """In the plane and in space; only what was written is said."""
     target = tmp_path / f"motion.{ending}"
-    done = CliRunner().invoke(
-        main, ["animate", str(MODELS / f"{model}.toml"), "-o", str(target), "--time", "0.2", "--frames", "3"]
-    )
+    done = CliRunner().invoke(main, ["animate", str(MODELS / f"{model}.toml"), "-o", str(target), "--time", "0.2"])
     assert done.exit_code == 0, done.output
     with Image.open(target) as picture:
         assert getattr(picture, "n_frames", 1) == (6 if ending == "gif" else 1)

@@ -193,6 +193,27 @@ def test_critical_values_are_where_the_sign_changes(spring):
     assert {row["message"] for row in jump.critical} == {"it jumps there"}
 
 
+def test_a_zero_at_an_end_of_a_range_is_critical_and_a_zero_everywhere_is_not(spring):
+    """f(k) = k - a for a at the first, an inner and the last value; f = 0."""
+    for a in (10, 20, 30):
+        found = eomgen.sweep(spring, over={"k": [10, 20, 30]}, critical=f"k - {a}", time=1)
+        assert [row["value"] for row in found.critical] == [a] and not found.remarks
+    flat = eomgen.sweep(spring, over={"k": [10, 20, 30]}, critical="0*k", time=1)
+    assert not flat.critical and "is 0 in all runs" in flat.remarks[0]
+
+
+def test_what_nothing_in_a_sweep_changes_is_said(spring):
+    """df/dk = 0 of what is asked, of what is to be critical; and what has one sign has no critical value."""
+    found = eomgen.sweep(spring, over={"k": [10, 20, 30]}, ask=("m", "k"), critical="m - 5", time=1)
+    told = (found["m"][0], found["m - 5"][0])
+    assert found.remarks == (
+        f"'m' is {told[0]:g} in all runs: nothing that is set changes it",
+        f"'m - 5' changes its sign nowhere along k: 'm - 5' is {told[1]:g} in all runs: nothing that is set changes it",
+    )
+    (one,) = eomgen.sweep(spring, over={"k": [10, 20]}, critical="k + 1", time=1).remarks
+    assert one == "'k + 1' changes its sign nowhere along k: it goes from 11 to 21"
+
+
 @pytest.mark.slow
 def test_a_run_that_fails_is_a_row_with_its_message(spring):
     """A negative mass is no model; a run that ends early has its status; the others have their values."""

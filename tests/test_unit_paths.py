@@ -76,21 +76,22 @@ TAKEN = {
         "theta'=-15 rpm:90": ("theta'", [-90, 90], "deg/s", "-90 deg/s to 90 deg/s"),
         "theta=0:pi": None,
     },
+    "--time": {"0.2": 0.2, "200 ms": 0.2, "1/5": 0.2, "5 m": None, "soon": None},
 }
 """of each option: what is typed, and under which name, as which value and in which unit it is taken, how that is said;
-None: refused"""
+a number: in s, with nothing said; None: refused"""
 TYPED = OPTIONS | {"over": "--over", "random": "--random", "ask": "--ask", "critical": "--critical"}
-TYPED |= {"sliders": "--slider"}
+TYPED |= {"sliders": "--slider", "time": "--time"}
 BESIDE = {
-    "animate": ["-o", "OUT.gif", "--time", "0.2"],
+    "animate": ["-o", "OUT.gif", "--fps", "10"],
     "codegen": ["-o", "OUT"],
     "export": ["-o", "OUT.urdf"],
     "identify": ["--data", "OUT.csv"],
-    "play": ["-o", "OUT.html", "--time", "0.2"],
-    "report": ["-o", "OUT.html", "--time", "0.2", "--without", "figure,plots,motion,downloads"],
-    "simulate": ["--time", "0.2", "--target", "numpy"],
-    "sweep": ["--over", "g=9,10", "--ask", "max(theta)", "--time", "0.2"],
-    ("linearize", "--over"): ["--view", "locus"],
+    "play": ["-o", "OUT.html"],
+    "report": ["-o", "OUT.html", "--without", "figure,plots,motion,downloads"],
+    "simulate": ["--target", "numpy"],
+    "sweep": ["--over", "g=9,10", "--ask", "max(theta)"],
+    ("linearize", "--over"): ["--view", "locus", "--plot", "OUT.svg"],
     "verify": ["T = m*l^2*theta'^2/6"],
 }
 """what else a verb needs, or one of its options"""
@@ -108,8 +109,10 @@ def paths() -> list[tuple[str, str]]:
     ]
 
 
-def said(taken: tuple) -> str:
+def said(taken: tuple | float) -> str:
     """What was taken, in words."""
+    if isinstance(taken, float):
+        return f"{taken:g} s"
     return f"{taken[0]} = {taken[3]}" if len(taken) > 3 else f"{taken[0]} = {taken[1]:.10g} {taken[2]}"
 
 
@@ -140,7 +143,17 @@ def pendulum(tmp_path: Path) -> Path:
 def test_what_is_typed_is_in_the_unit_of_the_file_or_in_its_own_and_what_was_taken_is_said(verb, option, pendulum):
     """45 of an angle in deg is 45 deg; 0.8 m of a length in cm is 80 cm; on stderr and in `taken`."""
     for typed, expected in TAKEN[option].items():
-        words = [verb, str(pendulum), *BESIDE.get(verb, []), *BESIDE.get((verb, option), []), option, typed, "--json"]
+        takes_time = any("--time" in parameter.opts for parameter in main.commands[verb].params)
+        words = [
+            verb,
+            str(pendulum),
+            *(["--time", "0.2"] if takes_time else []),
+            *BESIDE.get(verb, []),
+            *BESIDE.get((verb, option), []),
+            option,
+            typed,
+            "--json",
+        ]
         words = [word.replace("OUT", str(pendulum.parent / "out")) for word in words]
         words += ["--no-certify"] if any("--no-certify" in p.opts for p in main.commands[verb].params) else []
         result = CliRunner().invoke(main, words)
@@ -148,6 +161,11 @@ def test_what_is_typed_is_in_the_unit_of_the_file_or_in_its_own_and_what_was_tak
             assert result.exit_code == 2, typed
             continue
         assert result.exit_code == 0, result.output
+        if isinstance(expected, float):
+            told = json.loads(result.stdout)
+            ended = next((told[key] for key in ("time", "end") if key in told), None)
+            assert ended in (None, expected) or ended["t"] == expected
+            continue
         name, value, unit, *_ = expected
         told = json.loads(result.stdout)["taken"][name]
         assert told["value"] == pytest.approx(value, rel=1e-12)
@@ -310,14 +328,36 @@ def test_an_instant_that_is_asked_of_many_runs_is_in_the_unit_of_the_file(pendul
     assert told["table"][asked] == pytest.approx(list(right), rel=1e-14) and abs(right[0]) > 1
 
 
-def test_a_time_has_its_unit_or_is_in_seconds(pendulum):
-    """--time "500 ms" is 0.5 s; a length is none."""
-    words = ["simulate", str(pendulum), "--target", "numpy", "--no-certify", "--json", "--time"]
-    found = CliRunner().invoke(main, [*words, "500 ms"])
-    assert json.loads(found.stdout)["time"] == 0.5
-    assert CliRunner().invoke(main, [*words, "5 m"]).exit_code == 2
-    with pytest.raises(UsageError, match="no number"):
-        eomgen.simulate(pendulum, time="500 ms")
+@pytest.mark.parametrize("typed", [0.5, "500 ms", (500, "ms"), "1/2", OfPint(0.5, {"[time]": 1.0})])
+def test_a_time_has_its_unit_or_is_in_seconds(typed, pendulum):
+    """Half a second however it is said, of a run, its instants, many runs, a sweep, slopes, pages, a controller."""
+    swinging = PENDULUM.replace("[bodies.bob]", '[inputs]\nM = { value = 0, unit = "N*m" }\n[bodies.bob]')
+    driven = eomgen.loads(swinging.replace('"theta - pi/2" }', '"theta - pi/2", torque = "M" }'))
+    run = eomgen.simulate(pendulum, time=typed, target="numpy", samples=[0, typed])
+    assert list(run.t) == [0, 0.5] == list(eomgen.simulator(pendulum, target="numpy")(typed, samples=2).t)
+    assert list(eomgen.simulate_many(pendulum, time=typed, samples=2, target="numpy").t) == [0, 0.5]
+    assert eomgen.sweep(pendulum, over={"m": 1}, ask="max(theta)", time=typed).plan.how.time == 0.5
+    assert eomgen.sensitivity(pendulum, "theta", "l", time=typed, samples=[0, typed]).run.t[-1] == 0.5
+    assert eomgen.play(pendulum, time=typed).played.run.t[-1] == 0.5
+    assert eomgen.report(pendulum, time=typed, without=("figure", "plots", "motion", "downloads")).time == 0.5
+    held = eomgen.simulate(driven, time=1, samples=3, target="numpy", inputs={"M": {"value": "t", "every": typed}})
+    assert held.x[2] != pytest.approx(held.x[1]) and [phase.end for phase in held.phases] == [0.5, 1]
+
+
+@pytest.mark.parametrize("typed", ["5 m", "soon", None, True, math.nan, math.inf, (1, "kg"), [1, 2], "2*l", b"1"])
+def test_what_is_no_time_is_refused_wherever_one_is_asked(typed, pendulum):
+    """The same sentence in Python as on the command line."""
+    for asked in (
+        lambda: eomgen.simulate(pendulum, time=typed),
+        lambda: eomgen.simulator(pendulum)(typed),
+        lambda: eomgen.simulate_many(pendulum, time=typed),
+        lambda: eomgen.sweep(pendulum, over={"m": 1}, ask="theta", time=typed),
+        lambda: eomgen.play(pendulum, time=typed),
+        lambda: eomgen.report(pendulum, time=typed),
+        lambda: eomgen.simulate(pendulum, time=1, samples=[0, typed]),
+    ):
+        with pytest.raises(UsageError, match="is no time"):
+            asked()
 
 
 if __name__ == "__main__":

@@ -2,8 +2,10 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Mapping, Sequence
 from dataclasses import replace
+from numbers import Real
 from typing import Any
 
 import numpy as np
@@ -26,6 +28,7 @@ from eomgen.simulation.result import Trajectory
 from eomgen.symbolic.numeric.tolerances import COMPUTED, WIDE_STEP
 
 MOST_FRAMES = 5000
+FPS = (1, 1000)  # the fewest and most frames in a second
 FINE = 8  # places of a trail in a frame
 PERIOD = 2.0  # of a mode as it is shown, and how long it is [s]
 
@@ -49,20 +52,40 @@ class Movie:
     title: str = ""
     timed: bool = True
 
+    @property
+    def stands_still(self) -> bool:
+        """Whether all frames show the same."""
+        ways = (np.ptp(stroke.path, axis=0) for stroke in self.drawing.strokes if len(stroke.path) > 1)
+        return not any(np.nanmax(way, initial=0.0) > COMPUTED * self.drawing.sizes.extent for way in ways)
+
 
 def frame_times(end: float, fps: float, speed: float) -> np.ndarray:
     """The instants of the frames of a motion from 0: speed / fps apart [s].
 
     Raises:
-        UsageError: a rate or speed that is not positive, too many frames.
+        UsageError: a rate or speed that no picture has, too many frames, no second one.
     """
-    if not (fps > 0 and speed > 0 and end >= 0):
-        raise UsageError("frames per second and speed are positive numbers")
-    count = int(np.floor(end * fps / speed * (1 + COMPUTED))) + 1
+    refuse_rates(fps, speed)
+    count = np.floor(end * fps / speed * (1 + COMPUTED)) + 1
     if count > MOST_FRAMES:
-        what = f"{count} frames are more than {MOST_FRAMES}"
+        what = f"{count:g} frames are more than {MOST_FRAMES}"
         raise UsageError(what, mend="take a shorter --time, fewer frames with --fps, or a larger --speed")
+    if count < 2:
+        what = f"{end:g} s are over before a second frame comes, {speed / fps:g} s of the motion after the first"
+        raise UsageError(what, mend="take a longer --time, more frames with --fps, or a smaller --speed")
     return np.arange(count) * speed / fps
+
+
+def refuse_rates(fps: float, speed: float = 1.0) -> None:
+    """Refuses frames a second, and a speed, that no moving picture has.
+
+    Raises:
+        UsageError: they are no numbers, or too small or large.
+    """
+    if not (isinstance(fps, Real) and FPS[0] <= fps <= FPS[1]):
+        raise UsageError(f"{fps} frames a second make no moving picture", mend=f"from {FPS[0]} to {FPS[1]}")
+    if not (isinstance(speed, Real) and 0 < speed < math.inf):
+        raise UsageError(f"a speed of {speed} makes no sense", mend="give a positive number: 1 is as fast as it moves")
 
 
 def movie_of(run: Trajectory, times: np.ndarray, *, trail: Sequence[str] = (), forces: bool = False) -> Movie:
@@ -103,8 +126,11 @@ def _movie(numbers: SceneNumbers, times: np.ndarray, trails: Mapping[str, np.nda
     return Movie((plane_drawing if plane else space_drawing)(numbers), times, plane, trails, title)
 
 
-def mode_movies(modes: Modes, count: int, fps: float) -> list[Movie]:
+def mode_movies(modes: Modes, count: int, frames: int) -> list[Movie]:
     """The slowest modes about their reference, each over one period, all shown equally fast.
+
+    Args:
+        frames: of each.
 
     Raises:
         UsageError: there is none; parameters without values.
@@ -115,7 +141,7 @@ def mode_movies(modes: Modes, count: int, fps: float) -> list[Movie]:
     shown = [mode for mode in modes.spectrum.modes if mode.frequency][:count]
     if not shown:
         raise UsageError("the model has no mode that swings")
-    return [_mode_movie(modes, mode, k, int(PERIOD * fps)) for k, mode in enumerate(shown, start=1)]
+    return [_mode_movie(modes, mode, k, frames) for k, mode in enumerate(shown, start=1)]
 
 
 def _mode_movie(modes: Modes, mode: Mode, number: int, count: int) -> Movie:
@@ -148,8 +174,8 @@ def swing(scene: Scene, at: DrawnState, swung: np.ndarray) -> float:
     return swing_of(numbers, WIDE_STEP)
 
 
-def virtual_movie(found: VirtualDisplacement, fps: float) -> Movie:
+def virtual_movie(found: VirtualDisplacement, frames: int) -> Movie:
     """A virtual displacement to and fro, once."""
-    times = PERIOD * np.arange(int(PERIOD * fps)) / int(PERIOD * fps)
+    times = PERIOD * np.arange(frames) / frames
     numbers = found.along(2 * np.pi * times / PERIOD)
     return replace(_movie(numbers, times, {}, f"{found.reaction.name} released"), timed=False)

@@ -3,15 +3,19 @@
 from __future__ import annotations
 
 import io
+import itertools
 import math
 import shutil
 import subprocess
 import sys
+import tempfile
 from collections.abc import Callable, Iterator, Sequence
+from pathlib import Path
 from typing import Any
 
 import numpy as np
 
+from eomgen import files
 from eomgen.documents.figures import STYLE
 from eomgen.documents.motion_frames import FINE, Movie
 from eomgen.documents.scene_drawing import artist_of, limits
@@ -137,8 +141,9 @@ def gif(movies: Sequence[Movie], fps: float, progress: Progress | None = None) -
     palette = _palette(drawn)
     frames = [image.quantize(palette=palette, dither=0) for image in drawn]
     page = io.BytesIO()
-    delay = max(20, 10 * round(100 / fps))
-    frames[0].save(page, format="GIF", save_all=True, append_images=frames[1:], duration=delay, loop=0, optimize=False)
+    ends = [10 * round(100 * k / fps) for k in range(len(frames) + 1)]  # a GIF counts in hundredths of a second
+    delays = [end - start for start, end in itertools.pairwise(ends)]
+    frames[0].save(page, format="GIF", save_all=True, append_images=frames[1:], duration=delays, loop=0, optimize=False)
     return page.getvalue()
 
 
@@ -158,8 +163,8 @@ def _palette(drawn: Sequence[Any]) -> Any:
     return found
 
 
-def mp4(movies: Sequence[Movie], fps: float, path: str, progress: Progress | None = None) -> None:
-    """An MP4 (H.264), written by ffmpeg.
+def mp4(movies: Sequence[Movie], fps: float, progress: Progress | None = None) -> bytes:
+    """An MP4 (H.264), made by ffmpeg.
 
     Raises:
         ToolMissing: there is no ffmpeg on this machine.
@@ -170,11 +175,15 @@ def mp4(movies: Sequence[Movie], fps: float, path: str, progress: Progress | Non
     first = next(frames)
     width, height = first.size
     wanted = [command, "-y", "-loglevel", "error", "-f", "rawvideo", "-pix_fmt", "rgb24", "-s", f"{width}x{height}"]
-    wanted += ["-r", f"{fps:g}", "-i", "-", "-an", "-vcodec", "libx264", "-pix_fmt", "yuv420p", "-f", "mp4", path]
-    with subprocess.Popen(wanted, stdin=subprocess.PIPE, stderr=subprocess.PIPE) as running:
-        _, said = running.communicate(b"".join([first.tobytes(), *(image.tobytes() for image in frames)]))
-    if running.returncode:
-        raise RunFailed(f"ffmpeg failed: {said.decode(errors='replace').strip().splitlines()[-1:]}")
+    wanted += ["-r", f"{fps:g}", "-i", "-", "-an", "-vcodec", "libx264", "-pix_fmt", "yuv420p", "-f", "mp4"]
+    with files.beside(Path(tempfile.gettempdir())) as place:
+        made = [*wanted, str(place / "movie.mp4")]
+        with subprocess.Popen(made, stdin=subprocess.PIPE, stderr=subprocess.PIPE) as running:
+            _, said = running.communicate(b"".join([first.tobytes(), *(image.tobytes() for image in frames)]))
+        if running.returncode:
+            lines = said.decode(errors="replace").strip().splitlines()
+            raise RunFailed(f"ffmpeg failed: {lines[-1] if lines else f'exit code {running.returncode}'}")
+        return (place / "movie.mp4").read_bytes()
 
 
 def ffmpeg() -> str:
@@ -193,27 +202,26 @@ def ffmpeg() -> str:
     return str(get_ffmpeg_exe())
 
 
-def strip(movie: Movie, count: int) -> bytes:
-    """Frames of a movie side by side, with their times, as a PNG."""
+def strip(movie: Movie) -> bytes:
+    """The frames of a movie side by side, with their times, as a PNG."""
     from matplotlib import rc_context
     from matplotlib.backends.backend_agg import FigureCanvasAgg
     from matplotlib.figure import Figure
 
-    shown = sorted({round(k * (len(movie.times) - 1) / max(1, count - 1)) for k in range(count)})
-    columns = min(6, len(shown))
-    rows = math.ceil(len(shown) / columns)
+    columns = min(6, len(movie.times))
+    rows = math.ceil(len(movie.times) / columns)
     height = STRIP * _tallness(movie) + 0.3
     page = io.BytesIO()
     with rc_context(STYLE):
         figure = Figure(figsize=(STRIP * columns, height * rows), dpi=150)
         FigureCanvasAgg(figure)
-        for k, frame in enumerate(shown):
-            row, column = divmod(k, columns)
+        for frame, t in enumerate(movie.times):
+            row, column = divmod(frame, columns)
             box = (column / columns, 1 - (row + 1) / rows, 1 / columns, 0.9 / rows)
             stage = Stage(figure.add_axes(box), movie)
             stage.show(frame)
             if movie.timed:
-                stage.panel.set_title(f"t = {movie.times[frame]:.3g} s", fontsize=9)
+                stage.panel.set_title(f"t = {t:.3g} s", fontsize=9)
         figure.savefig(page, format="png")
     return page.getvalue()
 

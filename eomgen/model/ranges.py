@@ -14,9 +14,10 @@ from eomgen.model.arithmetic import value_of
 from eomgen.model.findings import nearest
 from eomgen.model.parts import Model
 from eomgen.model.replaced import Taken, taken_of
-from eomgen.model.typed import Typed, Typing
+from eomgen.model.typed import Typing
 from eomgen.model.values import exact_parameters
 from eomgen.records import dataclass
+from eomgen.symbolic.expression.typed import Typed
 from eomgen.symbolic.expression.units import Unit
 
 LIKE = '"k=100:1000:10", "log:k=1:100:50" or "k=0.5,1,2"'

@@ -16,11 +16,11 @@ from eomgen.model.part import altered
 from eomgen.model.parts import Model
 from eomgen.model.samples import TimeLawRule
 from eomgen.model.table import Table
-from eomgen.model.typed import Settled, Typed, Typing, shown
+from eomgen.model.typed import Settled, Typing, shown
 from eomgen.model.values import exact_parameters
 from eomgen.records import dataclass
 from eomgen.symbolic.expression.expressions import Expression
-from eomgen.symbolic.expression.typed import parse_typed_equation
+from eomgen.symbolic.expression.typed import Typed, parse_typed_equation
 from eomgen.symbolic.expression.units import parse_unit
 
 Values = Mapping[str, Typed]

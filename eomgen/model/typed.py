@@ -19,12 +19,9 @@ from eomgen.model.fields import WrittenEquation
 from eomgen.model.findings import nearest
 from eomgen.records import dataclass
 from eomgen.symbolic.expression.dimensions import Dimension, Walk, dimension_of_unit, quoted, told
-from eomgen.symbolic.expression.expressions import Expression, as_expression, parse
-from eomgen.symbolic.expression.typed import parse_typed, unit_for_name
-from eomgen.symbolic.expression.units import Unit, parse_unit
-
-Typed = Any
-"""A number, a text, (number, unit), a quantity of pint."""
+from eomgen.symbolic.expression.expressions import Expression, parse
+from eomgen.symbolic.expression.typed import Typed, is_plain, read_typed, unit_for_name
+from eomgen.symbolic.expression.units import Unit
 
 
 @dataclass(frozen=True)
@@ -66,7 +63,7 @@ class Typing:
         Raises:
             ExpressionError: it is none, or its unit does not fit.
         """
-        expression, unit = _read(typed)
+        expression, unit = read_typed(typed)
         return self._settled(parse(name), expression, unit, shown(typed))
 
     def equation(self, typed: WrittenEquation) -> tuple[WrittenEquation, tuple[Settled, ...]]:
@@ -80,7 +77,7 @@ class Typing:
             return replace(typed, units=None), ()
         for k, (side, unit) in enumerate(zip((typed.left, typed.right), typed.units, strict=True)):
             other = (typed.right, typed.left)[k]
-            if unit is None and (not _is_plain(side) or side.literal == 0 or _is_plain(other)):
+            if unit is None and (not is_plain(side) or side.literal == 0 or is_plain(other)):
                 continue
             settled = self._settled(other, side, unit, side.text if unit is None else f"{side.text} {unit}")
             sides[k] = settled.value
@@ -91,7 +88,7 @@ class Typing:
 
     def _settled(self, of: Expression, value: Expression, unit: Unit | None, typed: str) -> Settled:
         """A value of something, in SI."""
-        own, needed, plain = self._declared(of), self._needed(of), _is_plain(value)
+        own, needed, plain = self._declared(of), self._needed(of), is_plain(value)
         if unit is None and self.declared and plain:
             unit = self._unit_of_plain(of, value, own)
         if unit is not None:
@@ -147,38 +144,11 @@ def typing_of(model: Any) -> tuple[Typing, Typing]:
     return Typing(model, declared=False), Typing(model, declared=True)
 
 
-def _read(typed: Typed) -> tuple[Expression, Unit | None]:
-    """(what was typed, its own unit or None)."""
-    if isinstance(typed, str):
-        return parse_typed(typed)
-    if isinstance(typed, tuple) and len(typed) == 2 and isinstance(typed[1], str):
-        return as_expression(_plain(typed[0])), parse_unit(typed[1])
-    if hasattr(typed, "to_base_units") and hasattr(typed, "dimensionality"):
-        base = typed.to_base_units()
-        if not base.dimensionality.keys() <= _OF_PINT.keys():
-            raise ExpressionError(f"'{typed}' is in units that mechanics does not have", mend="use m, kg, s, rad")
-        powers = (f"{_OF_PINT[kind]}^{int(power)}" for kind, power in base.dimensionality.items())
-        return as_expression(_plain(base.magnitude)), parse_unit("*".join(powers) or "1")
-    return as_expression(_plain(typed)), None
-
-
-_OF_PINT = {"[length]": "m", "[mass]": "kg", "[time]": "s"}
-
-
 def _refuse_unfit(of: Expression, unit: Unit, own: Unit | None, needed: Dimension) -> None:
     known = not needed.unknowns
     if (own is not None and not unit.fits(own)) or (known and dimension_of_unit(unit) != needed):
         right = own.text if own is not None else str(needed) if needed else "radians or a pure number"
         raise ExpressionError(f"the unit '{unit.text}' does not fit: '{of.text}' is in {right}")
-
-
-def _is_plain(value: Expression) -> bool:
-    return value.names <= {"pi"} and not value.calls
-
-
-def _plain(value: Any) -> Any:
-    """A number of an array as Python's own."""
-    return value.item() if hasattr(value, "item") else value
 
 
 def shown(typed: Typed) -> str:

@@ -22,6 +22,7 @@ from eomgen.page.player_page import player_page
 from eomgen.proof.check import Certificate, Check, checked, unchecked
 from eomgen.questions.run import run
 from eomgen.records import dataclass
+from eomgen.symbolic.expression.typed import Typed, seconds
 from eomgen.symbolic.numeric.work import doing
 
 SAMPLES = 401  # of a run in a page
@@ -92,7 +93,7 @@ def play(
     model: ModelOrPath,
     path: str | Path | None = None,
     *,
-    time: float = 10.0,
+    time: Typed = 10.0,
     sliders: Sequence[str] = (),
     parameters: Values | None = None,
     start: Values | None = None,
@@ -104,7 +105,7 @@ def play(
 
     Args:
         path: where the page is written; None: nowhere.
-        time: how long the motion is [s].
+        time: how long the motion is: 5 s or "500 ms".
         sliders: what can be moved, each "NAME" or "NAME=FROM:TO", numbers in SI or with a unit; () for everything.
         parameters, start: values that replace the model's, each as `model_at` takes it.
         trail: a point that leaves a trail from the start.
@@ -116,7 +117,7 @@ def play(
     model = model_at(model, parameters, start)
     ranges, _ = slider_ranges(model, sliders, declared=False)
     options = PlayerOptions(ranges, True, trail, forces, speed)
-    found = played(model, time, options)
+    found = played(model, seconds(time), options)
     if path is not None:
         found.write(path)
     return found

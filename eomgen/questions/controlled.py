@@ -36,6 +36,7 @@ from eomgen.simulation.phase_run import PhaseRun
 from eomgen.simulation.result import Trajectory
 from eomgen.simulation.solvers import breakpoints_of
 from eomgen.symbolic.expression.expressions import Expression, as_expression
+from eomgen.symbolic.expression.typed import Typed, seconds
 from eomgen.symbolic.numeric.tolerances import SOLVED
 
 ControlLaw = Callable[[float, np.ndarray], float]
@@ -70,7 +71,7 @@ class Controller:
 
 
 def controllers_of(model: Model, inputs: Mapping[str, Any]) -> dict[str, Controller]:
-    """Those among the inputs: functions, and tables {"value": law, "every": seconds}.
+    """Those among the inputs: functions, and tables {"value": law, "every": time}.
 
     Raises:
         UsageError: no input of that name; a table with other keys; a time that makes no sense; a function of other
@@ -89,8 +90,8 @@ def controllers_of(model: Model, inputs: Mapping[str, Any]) -> dict[str, Control
             continue
         if set(value) != {"value", "every"}:
             raise UsageError(f"input '{name}' is no controller", mend='write {"value": "-k*x", "every": 0.01}')
-        every, law = float(value["every"]), value["value"]
-        if not 0 < every < math.inf:
+        every, law = seconds(value["every"]), value["value"]
+        if not every > 0:
             raise UsageError(f"input '{name}': every {every:g} s makes no sense", mend="give a time above 0")
         if callable(law):
             _refuse_other_arguments(name, law)
@@ -162,8 +163,8 @@ def controlled_run(
     equations: Equations,
     controllers: Mapping[str, Controller],
     *,
-    time: float,
-    samples: int | Sequence[float],
+    time: Typed,
+    samples: int | Sequence[Typed],
     how: Stepping,
     target: str | None = None,
 ) -> Trajectory:
@@ -173,6 +174,7 @@ def controlled_run(
         NotYet: a Python function sets an input, and contacts change.
     """
     model = equations.model
+    time = seconds(time)
     refuse_bad_run(0.0, time, how)
     functions = [name for name, each in controllers.items() if each.every is None]
     if functions and has_phases(model):
@@ -186,7 +188,7 @@ def controlled_run(
     phases = list(_phases(_control(models, here, controllers), models, here, plan))
     values = dict(zip(model.parameters, models.p.tolist(), strict=True))
     whole = WholeRun(model, [run for run, _, _ in phases], plan, values, [end for _, end, _ in phases])
-    found = finished_run(equations, phases[-1][2], whole, how, samples if instants is None else instants.tolist())
+    found = finished_run(equations, phases[-1][2], whole, how, instants)
     told = f"{', '.join(functions)} set by Python functions: stepped by scipy, one call of Python an evaluation."
     return replace(found, remark=" ".join(filter(None, [told if functions else "", found.remark])))
 

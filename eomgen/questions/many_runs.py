@@ -39,6 +39,7 @@ from eomgen.simulation.phase_model import PhaseModel
 from eomgen.simulation.phase_models import one_phase
 from eomgen.simulation.solvers import AUTO, TAYLOR, breakpoints_of
 from eomgen.symbolic.expression.expressions import Expression
+from eomgen.symbolic.expression.typed import Typed, seconds
 from eomgen.symbolic.numeric.tolerances import COMPUTED
 from eomgen.symbolic.numeric.work import check_patience, doing
 
@@ -77,7 +78,7 @@ class _Plan:
 def many_runs(
     simulator: Simulator,
     *,
-    time: float,
+    time: Typed,
     parameters: OfRuns | None = None,
     start: OfRuns | None = None,
     inputs: OfRuns | None = None,
@@ -90,6 +91,7 @@ def many_runs(
         UsageError: a name that there is not, arrays of several lengths, values that are no finite numbers.
     """
     how = simulator.how
+    time = seconds(time)
     refuse_bad_run(0.0, time, how)
     if threads < 1:
         raise UsageError(f"{threads} threads make no sense", mend="give 1 or more")
@@ -121,7 +123,6 @@ def _planned(
     with_values(model, first["parameters"], first["start"])  # refuses what there is not
     model, of_inputs = _inputs_as_parameters(model, arrays["inputs"])
     instants = instants_of(samples, 0.0, time)
-    assert instants is not None
     changed = replace(simulator, model=model, known=type(simulator.known)())
     own = changed if shared[0] or shared[1] or inputs else simulator
     runs = next(iter(sizes.values()), 1)

@@ -33,6 +33,7 @@ from eomgen.simulation.phase_models import PhaseModels
 from eomgen.simulation.phase_run import PhaseRun, condition_of
 from eomgen.simulation.result import Phase, Trajectory
 from eomgen.symbolic.expression.expressions import Expression
+from eomgen.symbolic.expression.typed import Typed
 from eomgen.symbolic.numeric.tolerances import COMPUTED
 from eomgen.symbolic.numeric.work import PatienceEnded, doing, keep_what_there_is
 
@@ -111,7 +112,7 @@ def run(
     parameters: Mapping[str, Any] | None = None,
     start: Mapping[str, float] | None = None,
     target: str | None = None,
-    samples: int | Sequence[float] | None = None,
+    samples: int | Sequence[Typed] | None = None,
     how: Stepping | None = None,
     until: WrittenEquation | str | None = None,
     models: PhaseModels | None = None,
@@ -141,10 +142,11 @@ def run(
     models = models or phase_models(equations, parameter_vector(model, parameters), how, target)
     here = at_start(models, 0.0, parameters, start)
     _refuse_fork_at_rest(models, here)
+    instants = instants_of(samples, 0.0, time)
     plan = Plan(
         time,
         with_fields(how.of_one_step(), breakpoints=models.breakpoints, keeps=True),
-        instants_of(samples, 0.0, time),
+        instants,
         None if condition is None else lambda phase: condition(phase.system),
     )
     runs = _followed(through(models, here, plan))
@@ -171,7 +173,7 @@ def run(
         models,
         whole,
         how,
-        samples,
+        None if isinstance(samples, (int, np.integer)) else instants,
         until=words,
         reactions=reactions,
         outputs=outputs,
@@ -184,14 +186,18 @@ def finished_run(
     models: PhaseModels,
     whole: WholeRun,
     how: Stepping,
-    samples: int | Sequence[float],
+    instants: np.ndarray | None,
     *,
     until: str | None = None,
     reactions: bool = True,
     outputs: Mapping[str, Expression] | None = None,
     estimate: Callable[[Trajectory], Accuracy | None] | None = None,
 ) -> Trajectory:
-    """The phases of a run as one trajectory, with its columns and its proof; the arguments as of `run`."""
+    """The phases of a run as one trajectory, with its columns and its proof.
+
+    Args:
+        instants: as of `thinned`; the others as of `run`.
+    """
     model, runs = equations.model, whole.runs
     found = _told(joined(models, runs), until)
     found = with_reactions(found, runs) if reactions else found
@@ -204,7 +210,7 @@ def finished_run(
         "proof": RunProof(equations, models.p, how, models, whole),
         "estimate": estimate,
     }
-    return thinned(found, samples, **more)
+    return thinned(found, instants, **more)
 
 
 def phase_models(equations: Equations, p: np.ndarray, how: Stepping, target: str | None) -> PhaseModels:

@@ -31,6 +31,7 @@ from eomgen.simulation.phase_change import at_start
 from eomgen.simulation.phase_models import PhaseModels
 from eomgen.simulation.result import Trajectory
 from eomgen.symbolic.expression.expressions import Expression, single_call
+from eomgen.symbolic.expression.typed import Typed, seconds
 
 SAMPLES = 101
 MOST_BASES = 4  # derivations that are looked at whether they hold at other values
@@ -63,10 +64,10 @@ class Simulator:
 
     def __call__(
         self,
-        time: float = 10.0,
+        time: Typed = 10.0,
         parameters: Values | None = None,
         start: Values | None = None,
-        samples: int | Sequence[float] = SAMPLES,
+        samples: int | Sequence[Typed] = SAMPLES,
         columns: Sequence[str] = (),
         *,
         until: WrittenEquation | str | None = None,
@@ -74,9 +75,9 @@ class Simulator:
         """The motion from the start values of the model.
 
         Args:
-            time: how long [s].
+            time: how long, as `eomgen.simulate` takes it.
             parameters, start: values that replace the model's, as `eomgen.simulate` takes them.
-            samples: how many instants are given, or the instants themselves.
+            samples: how many instants are given, or the instants themselves, in SI or with a unit.
             columns: what is wanted beside the states: names of reactions, "reactions" for all, names of outputs or
                 formulas like them, "outputs" for all of the model.
             until: an equation: the end, where it first holds.
@@ -92,7 +93,7 @@ class Simulator:
         reactions = any(name not in formulas for name in asked if name != OUTPUTS)
         found = run(
             equations,
-            time=time,
+            time=seconds(time),
             parameters=own,
             start=valued.start,
             samples=samples,

@@ -41,12 +41,14 @@ from eomgen.records import dataclass
 from eomgen.sensitivities.along_a_run import ChangingRun, changing_run
 from eomgen.sensitivities.at_a_state import ChangingState
 from eomgen.sensitivities.differences import checks_of
+from eomgen.simulation.integrate import instants_of
 from eomgen.symbolic.exact.book_form import book_form
 from eomgen.symbolic.exact.normal_form import legible
 from eomgen.symbolic.expression.derivative import substituted, tangent
 from eomgen.symbolic.expression.expressions import Call, Expression, single_call
 from eomgen.symbolic.expression.graph import Node, Scalar
 from eomgen.symbolic.expression.rational import Fraction
+from eomgen.symbolic.expression.typed import Typed, seconds
 from eomgen.symbolic.expression.units import Unit, parse_unit
 from eomgen.symbolic.numeric.evaluation import evaluate, fifty_digits
 from eomgen.symbolic.numeric.work import Work, doing
@@ -165,8 +167,8 @@ def sensitivity(
     of: Sequence[str] | str = (),
     to: Sequence[str] | str = (),
     *,
-    time: float | None = None,
-    samples: int | Sequence[float] = SAMPLES,
+    time: Typed | None = None,
+    samples: int | Sequence[Typed] = SAMPLES,
     parameters: Values | None = None,
     start: Values | None = None,
 ) -> Sensitivity:
@@ -178,9 +180,9 @@ def sensitivity(
             coordinate at rest. (): the model's outputs. The start moves along, as its expressions and the ties say.
         to: parameters, those that depend on one following it; coordinates and speeds, for where they start; (): all
             parameters.
-        time: how long a motion is followed [s]; then `of` are functions of the state along it, "state" for all
-            coordinates and speeds (()), and the derivatives are those at its end.
-        samples: of the run, how many, or at which instants.
+        time: how long a motion is followed, 5 s or "500 ms"; then `of` are functions of the state along it, "state" for
+            all coordinates and speeds (()), and the derivatives are those at its end.
+        samples: of the run, how many, or at which instants, in SI or with a unit.
         parameters, start: values that replace the model's, each as `model_at` takes it.
     Raises:
         UsageError: a name that the model does not have.
@@ -193,7 +195,7 @@ def sensitivity(
     wanted = (of,) if isinstance(of, str) else tuple(of)
     asking.refuse_unknown(names)
     if time is not None:
-        return asking.along(wanted or (STATE,), names, time, samples)
+        return asking.along(wanted or (STATE,), names, seconds(time), samples)
     return asking.now(tuple(asking.formulas(wanted or tuple(model.outputs) or (RHS,))), names)
 
 
@@ -402,14 +404,14 @@ class _Asking:
     # -- along a run -----------------------------------------------------------------------------------------
 
     def along(
-        self, of: tuple[str, ...], to: tuple[str, ...], time: float, samples: int | Sequence[float]
+        self, of: tuple[str, ...], to: tuple[str, ...], time: float, samples: int | Sequence[Typed]
     ) -> Sensitivity:
         """Along a motion, and at its end."""
         if not time > 0:
             raise UsageError(f"the time {time:g} s makes no sense", mend="give one above 0")
         texts = tuple(self.formulas(of))
         formulas = {text: asked_of(self.model, text).value for text in texts}
-        instants = np.linspace(0.0, time, samples) if isinstance(samples, int) else np.array([*samples], dtype=float)
+        instants = instants_of(samples, 0.0, time)
         symbols = self.phase.system.symbols
         x = (*symbols.q, *symbols.u)
         begun: dict[str, Any] = {name: self._start(name)[1] for name in to}

@@ -12,6 +12,7 @@ import numpy as np
 
 from eomgen.codegen.rhs import RightHandSide
 from eomgen.errors import UsageError
+from eomgen.model.ranges import are_several, typed_values
 from eomgen.simulation.constraint_drift import Projection
 from eomgen.simulation.constraint_rank import Nearness
 from eomgen.simulation.event_location import Events
@@ -19,6 +20,7 @@ from eomgen.simulation.integrator import MOST_STEPS, STABILIZATIONS, Run, Steppi
 from eomgen.simulation.result import Kept, Phase, Trajectory
 from eomgen.simulation.singular_crossing import Flow, march_across
 from eomgen.simulation.solvers import HEYOKA, METHODS, Slope
+from eomgen.symbolic.expression.typed import Typed, seconds
 from eomgen.symbolic.numeric.tolerances import RUN, SOLVED
 
 SAMPLES = 1001
@@ -76,7 +78,7 @@ def integrate(
     x0, p = _vector("x0", rhs.x0 if x0 is None else x0), _vector("p", rhs.p0 if p is None else p)
     how = Stepping(method, rtol, atol, most_steps, stabilization, every, breakpoints=breakpoints)
     refuse_bad_run(start, end, how)
-    instants = instants_of(samples, start, end)
+    instants = None if samples is None else instants_of(samples, start, end)
 
     rhs(start, x0, p, () if inputs is None else inputs(start))  # refuses what is too short or too long
     f = rhs.at(p) if inputs is None else lambda t, x: rhs(t, x, p, inputs(t))
@@ -134,22 +136,23 @@ def _rows(values: Any, t: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
     return np.broadcast_to(T, t.shape), np.broadcast_to(V, t.shape)
 
 
-def instants_of(samples: int | Sequence[float] | None, start: float, end: float) -> np.ndarray | None:
-    """The instants asked for: so many, evenly spaced; the instants themselves; None as it is.
+def instants_of(samples: int | Sequence[Typed], start: float, end: float) -> np.ndarray:
+    """The instants asked for: so many, evenly spaced; or the instants themselves, in SI or with a unit.
 
     Raises:
         UsageError: fewer than two, or not in order between start and end.
     """
-    if samples is None:
-        return None
     if isinstance(samples, (int, np.integer)):
         if samples < 2:
             raise UsageError(f"{samples} samples: at least the start and the end are needed")
         if samples > MOST_SAMPLES:
             raise UsageError(f"{samples} samples: at most {MOST_SAMPLES} are given", mend="ask for fewer")
         return _evenly(start, end, int(samples))
-    times = np.asarray(samples, dtype=float)
-    if times.ndim != 1 or np.any(np.diff(times) <= 0) or len(times) == 0 or times[0] < start or times[-1] > end:
+    if not are_several(samples):
+        raise UsageError(f"{samples!r} samples make no sense", mend="say how many, or give the instants in a list")
+    plain = isinstance(samples, np.ndarray) and samples.dtype.kind in "fiu"
+    times = np.asarray(samples, dtype=float) if plain else np.array([*map(seconds, typed_values(samples))])
+    if len(times) == 0 or np.any(np.diff(times) <= 0) or not (times[0] >= start and times[-1] <= end):
         raise UsageError(f"samples must be instants between {start:g} s and {end:g} s, in order")
     return times
 
@@ -176,12 +179,10 @@ def refuse_bad_run(start: float, end: float, how: Stepping) -> None:
     Raises:
         UsageError: the time, a tolerance, the method, or how ties are kept closed.
     """
-    if not isinstance(end, Real):
-        raise UsageError(f"the time {end!r} is no number", mend="give it in seconds: time=10")
     if not (math.isfinite(start) and math.isfinite(end) and end >= start):
         raise UsageError(f"the time from {start:g} s to {end:g} s makes no sense", mend="give an end after the start")
-    if not (how.rtol > 0 and how.atol > 0 and math.isfinite(how.rtol) and math.isfinite(how.atol)):
-        raise UsageError(f"tolerances must be positive, not rtol = {how.rtol:g}, atol = {how.atol:g}")
+    if not all(isinstance(x, Real) and 0 < x < math.inf for x in (how.rtol, how.atol)):
+        raise UsageError(f"tolerances must be positive numbers, not rtol = {how.rtol}, atol = {how.atol}")
     if how.method not in (*METHODS, HEYOKA):
         raise UsageError(f"unknown method '{how.method}'", mend=f"methods are {', '.join((*METHODS, HEYOKA))}")
     if how.stabilization not in STABILIZATIONS:

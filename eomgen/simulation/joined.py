@@ -120,10 +120,12 @@ def with_outputs(full: Trajectory, runs: Sequence[PhaseRun], formulas: Mapping[s
     return replace(full, outputs=given, remark=" ".join(filter(None, (full.remark, *told))))
 
 
-def thinned(full: Trajectory, samples: int | Sequence[float] | None, **more: Any) -> Trajectory:
-    """The motion with one row an instant, at the instants asked for; one that ended early keeps its last row.
+def thinned(full: Trajectory, instants: np.ndarray | None, **more: Any) -> Trajectory:
+    """The motion with one row an instant; one that ended early keeps its last row.
 
-    Of the trajectory `more` is replaced.
+    Args:
+        instants: no others have a row; None: those at which phases change have one too.
+        more: what is replaced in the trajectory.
 
     Where one phase ends and another begins the row is the state after; both are in the phases, `last` and `first`.
     """
@@ -131,8 +133,8 @@ def thinned(full: Trajectory, samples: int | Sequence[float] | None, **more: Any
         return replace(full, **more)
     kept = np.ones(len(full.t), dtype=bool)
     kept[:-1] = full.t[1:] > full.t[:-1]
-    if samples is not None and not isinstance(samples, (int, np.integer)):
-        kept &= np.isin(full.t, np.asarray(samples))
+    if instants is not None:
+        kept &= np.isin(full.t, instants)
         kept[-1] |= full.status != "finished"
     before = np.concatenate([[0], np.cumsum(kept)]).tolist()
     columns = cache(full.columns)

@@ -39,9 +39,9 @@ def condition_of(model: Model, until: WrittenEquation | str) -> SystemCondition:
     Raises:
         UsageError: it is no equation, or names what the model does not have.
     """
-    text = until if isinstance(until, str) else until.text
+    text = until.text if isinstance(until, WrittenEquation) else until
     try:
-        equation = equation_typed(model, until)[0] if isinstance(until, str) else until
+        equation = until if isinstance(until, WrittenEquation) else equation_typed(model, until)[0]
         dataclasses.replace(model, outputs=Table({"until": Output(value=parse("t"), at=equation)}))
     except ExpressionError as error:
         raise UsageError(f"until '{text}': {error.what}", mend=error.mend or 'write "theta = pi/2"') from error

@@ -1,4 +1,7 @@
-"""Rows of a sweep -> critical values: where what is asked changes its sign along the first of its ranges."""
+"""Rows of a sweep -> critical values: where what is asked changes its sign along the first of its ranges.
+
+And what was asked in vain.
+"""
 
 from __future__ import annotations
 
@@ -41,13 +44,32 @@ def _brackets(plan: SweepPlan, ledger: SweepLedger) -> Iterator[Bracket]:
         place = row[0] % many
         one, value = before.get(place), row[k]
         before[place] = row
+        names = plan.columns[4 : 4 + len(design.names)]
+        staying = {other: x for other, x in zip(names, row[4:], strict=False) if other != name}
         if one is None or one[k] is None or value is None or row[0] - one[0] != many:
             continue
-        if one[k] * value < 0 or value == 0:
-            names = plan.columns[4 : 4 + len(design.names)]
-            staying = {other: x for other, x in zip(names, row[4:], strict=False) if other != name}
-            if value == 0 or one[k] != 0:
+        if one[k] * value < 0 or (value == 0) != (one[k] == 0):
+            if one[k]:
                 yield row[0], staying, name, (one[4], row[4]), (one[k], value), plan.critical
+            elif one[0] < many:  # 0 where the range begins
+                yield one[0], staying, name, (one[4], one[4]), (0.0, 0.0), plan.critical
+
+
+def remarks_of(plan: SweepPlan, ledger: SweepLedger) -> tuple[str, ...]:
+    """What is asked in vain: what is the same in all runs, and what changes its sign nowhere."""
+    remarks = []
+    for column, name in enumerate(plan.columns[-len(plan.asked) :], len(plan.columns) - len(plan.asked)):
+        count, low, _, high = ledger.summary(column)
+        if count < 2 or low is None or high is None:
+            continue
+        same = high - low <= plan.how.rtol * max(abs(low), abs(high))
+        told = f"'{name}' is {high:.9g} in all runs: nothing that is set changes it"
+        if plan.asked[column - len(plan.columns)] == plan.critical and not ledger.critical():
+            told = told if same else f"it goes from {low:.9g} to {high:.9g}"
+            remarks.append(f"'{plan.critical}' changes its sign nowhere along {next(iter(plan.over))}: {told}")
+        elif same:
+            remarks.append(told)
+    return tuple(remarks)
 
 
 def bisected(

@@ -26,13 +26,14 @@ from eomgen.sensitivities.sensitivity import unit_of_slope
 from eomgen.simulation.integrate import refuse_bad_run
 from eomgen.simulation.integrator import Stepping
 from eomgen.simulation.result import Trajectory
-from eomgen.sweeps.critical import critical_values
+from eomgen.sweeps.critical import critical_values, remarks_of
 from eomgen.sweeps.design import refuse_bad_design, spread_of
 from eomgen.sweeps.kernel import SampleRow, SweepKernel, payload_of
 from eomgen.sweeps.ledger import SweepLedger, ledger_at
 from eomgen.sweeps.plan import FIXED, Stepped, SweepPlan, plan_of, texts
 from eomgen.sweeps.progress import progress_of
 from eomgen.sweeps.workers import UNKNOWN_WORKERS, Chunk, Pool, rows_by, rows_here
+from eomgen.symbolic.expression.typed import Typed, seconds
 from eomgen.symbolic.numeric.tolerances import RUN
 from eomgen.symbolic.numeric.work import another_stretch
 
@@ -79,6 +80,11 @@ class Sweep:
         """The critical values: what stays, the name, its value, what is left there, a message."""
         names = ("at", "name", "value", "left", "message")
         return [dict(zip(names, (json.loads(row[1]), *row[2:]), strict=True)) for row in self.ledger.critical()]
+
+    @property
+    def remarks(self) -> tuple[str, ...]:
+        """What was asked in vain."""
+        return remarks_of(self.plan, self.ledger)
 
     @property
     def failed(self) -> int:
@@ -168,7 +174,7 @@ def sweep(
     seed: int = 0,
     ask: Sequence[str] | str = (),
     critical: str = "",
-    time: float = 10.0,
+    time: Typed = 10.0,
     workers: int = 1,
     executor: Any = None,
     out: str | Path | None = None,
@@ -208,7 +214,7 @@ def sweep(
         seed=seed,
         ask=texts(ask),
         critical=critical,
-        how=Stepped(time, rtol, atol, method),
+        how=Stepped(seconds(time), rtol, atol, method),
     )
     return swept(plan, workers=workers, executor=executor, out=out)
 
@@ -269,7 +275,7 @@ def planned(model: Model, *, runs: int | None, **fields: Any) -> SweepPlan:
     if not plan.asked:
         raise UsageError("nothing is asked of the runs", mend='--ask "max(theta)"')
     how = fields["how"]
-    if not (how.time > 0 and math.isfinite(how.time)):
+    if not how.time > 0:
         raise UsageError(f"the time {how.time:g} s makes no sense", mend="give one above 0")
     refuse_bad_run(0.0, how.time, Stepping(how.method, how.rtol, how.atol))
     for text in plan.asked:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import html
+import warnings
 from collections.abc import Sequence
 from dataclasses import replace
 from pathlib import Path
@@ -11,7 +12,16 @@ import numpy as np
 
 from eomgen import files, pipeline
 from eomgen.documents.document import Document, plain_document
-from eomgen.documents.motion_frames import FINE, Movie, frame_times, mode_movies, movie_of, virtual_movie
+from eomgen.documents.motion_frames import (
+    FINE,
+    PERIOD,
+    Movie,
+    frame_times,
+    mode_movies,
+    movie_of,
+    refuse_rates,
+    virtual_movie,
+)
 from eomgen.documents.moving_picture import Progress, gif, mp4, on_stderr, strip
 from eomgen.documents.statements import prose
 from eomgen.documents.statics.equilibrium_result import has_freedoms
@@ -35,6 +45,10 @@ from eomgen.symbolic.numeric.tolerances import COMPUTED
 from eomgen.verbs.outcome import with_start_told
 
 ENDINGS = (".gif", ".mp4", ".png", ".html")
+STILL = (".png", ".html")  # of which --fps says nothing
+GIF_FPS = 50  # faster frames are shown at 10 a second by some
+MOST_IN_STRIP = 60
+NOTHING_MOVES = "nothing moves: all frames show the same"
 
 
 @dataclass(frozen=True)
@@ -66,6 +80,34 @@ class Showing:
     forces: bool = False
     frames: int = 6
 
+    def times(self, end: float, output: str) -> np.ndarray:
+        """The instants that a file shows of a motion from 0: of a strip and of a page so many, evenly spaced.
+
+        Raises:
+            UsageError: a number, a rate or a speed that no picture has; of a .gif, more than it can show.
+        """
+        self._refuse(output)
+        if _ending(output) in STILL:
+            return np.linspace(0.0, end, self.frames)
+        return frame_times(end, self.fps, self.speed)
+
+    def of_a_swing(self, output: str) -> int:
+        """How many frames a period has.
+
+        Raises:
+            UsageError: as of `times`.
+        """
+        self._refuse(output)
+        return self.frames if _ending(output) in STILL else int(PERIOD * self.fps)
+
+    def _refuse(self, output: str) -> None:
+        refuse_rates(self.fps, self.speed)
+        if _ending(output) == ".gif" and self.fps > GIF_FPS:
+            what = f"a .gif shows at most {GIF_FPS} frames a second, not {self.fps:g}"
+            raise UsageError(what, mend=f"take --fps {GIF_FPS}, or write an .mp4")
+        if not 1 <= self.frames <= MOST_IN_STRIP:
+            raise UsageError(f"a strip of {self.frames} frames", mend=f"from 1 to {MOST_IN_STRIP}")
+
 
 def animate_document(
     model: Model,
@@ -83,21 +125,22 @@ def animate_document(
             raise UsageError("--modes and --virtual are two pictures", mend="leave one of them out")
         return _virtual_document(model, virtual, output, showing)
     if modes is not None:
-        if Path(output).suffix.lower() == ".html":
-            raise UsageError("small motions have no page", mend="write a .gif")
-        movies = _modes(model, modes, showing)
+        movies = _modes(model, modes, output, showing)
         summary = f"{len(movies)} mode{'s' * (len(movies) > 1)}"
     else:
         if not time > 0:
             raise UsageError(f"a motion of {time:g} s has nothing to show", mend="give a --time above 0")
-        times = frame_times(time, showing.fps, showing.speed)
-        run = _run(model, times)
-        if Path(output).suffix.lower() == ".html":
-            files.write(output, player(run, showing))
-            return _told(model, run.summary(), len(times), output, showing, run)
+        if _ending(output) == ".html" and len(showing.trail) > 1:
+            raise UsageError("a page begins with one trail", mend="give one --trail; others are chosen in the page")
+        times = showing.times(time, output)
+        samples = FINE * max(len(times) - 1, 1) + 1
+        run = simulated(pipeline.derive(model), time=time, samples=samples, how=Stepping())
         movies, summary = [_shown(run, times, showing)], run.summary()
-    write_movies(movies, output, showing, on_stderr)
-    return _told(model, summary, len(movies[0].times), output, showing, run)
+    if _ending(output) == ".html" and run is not None:
+        files.write(output, player(run, showing))
+    else:
+        write_movies(movies, output, showing, on_stderr)
+    return _told(model, summary, movies, output, showing, run)
 
 
 def _virtual_document(model: Model, reaction: str, output: str, showing: Showing) -> Document:
@@ -110,7 +153,7 @@ def _virtual_document(model: Model, reaction: str, output: str, showing: Showing
     said = prose(summary if stands else f"{summary}; freedoms besides it stand still")
     symbol = found.structure.system.symbols.graph.symbol(name)
     steps = virtual_work_step(found.reaction, symbol).statements if stands else ()
-    return plain_document(model, lambda: payload, said, *steps, prose(f"{count} frames: {output}"))
+    return plain_document(model, lambda: payload, said, *steps, prose(_written(output, count)))
 
 
 def virtual_displacement(
@@ -150,8 +193,8 @@ def _displacement_page(found: VirtualDisplacement) -> str:
 
 def _write_displacement(found: VirtualDisplacement, output: str, showing: Showing, progress: Progress | None) -> int:
     """The file, and how many frames there are in a swing."""
-    movie = virtual_movie(found, showing.fps)
-    if Path(output).suffix.lower() == ".html":
+    movie = virtual_movie(found, showing.of_a_swing(output))
+    if _ending(output) == ".html":
         files.write(output, _displacement_page(found))
     else:
         write_movies([movie], output, showing, progress)
@@ -173,12 +216,16 @@ def released(model: Model, reaction: str) -> tuple[VirtualDisplacement, bool]:
     return VirtualDisplacement(structure, released_in(structure, reaction)), stands
 
 
-def _told(model: Model, summary: str, count: int, output: str, showing: Showing, run: Trajectory | None) -> Document:
+def _told(
+    model: Model, summary: str, movies: Sequence[Movie], output: str, showing: Showing, run: Trajectory | None
+) -> Document:
     """What was written; a run that did not reach its end fails, though what there is of it is shown."""
     failed = "" if run is None or run.ok else run.message
+    count, still = len(movies[0].times), all(movie.stands_still for movie in movies)
+    notes = (NOTHING_MOVES,) if count > 1 and still else ()
     payload = {"name": model.name, "files": [output], "frames": count, "fps": showing.fps, "speed": showing.speed}
-    told = (prose(f"{model.name}: {summary}"), prose(f"{count} frames: {output}"))
-    document = plain_document(model, lambda: payload, *told, failed=failed)
+    told = (prose(f"{model.name}: {summary}"), prose(_written(output, count)))
+    document = plain_document(model, lambda: payload, *told, failed=failed, notes=notes)
     document = document if run is None else with_start_told(document, model)
     return replace(document, interrupted=run is not None and run.status == "interrupted")
 
@@ -200,14 +247,16 @@ def animate(
         ToolMissing: .mp4 without ffmpeg.
     """
     showing = Showing(fps, speed, (trail,) if isinstance(trail, str) else tuple(trail), forces, frames)
-    times = frame_times(float(run.t[-1]), fps, speed)
     if path is None:
         return PlayerFrame(player(run, showing))
     refuse_ending(str(path))
-    if Path(path).suffix.lower() == ".html":
+    movie = _shown(run, showing.times(float(run.t[-1]), str(path)), showing)
+    if len(movie.times) > 1 and movie.stands_still:
+        warnings.warn(NOTHING_MOVES, RuntimeWarning, stacklevel=2)
+    if _ending(str(path)) == ".html":
         files.write(path, player(run, showing))
-        return None
-    write_movies([_shown(run, times, showing)], str(path), showing, None)
+    else:
+        write_movies([movie], str(path), showing, None)
     return None
 
 
@@ -226,14 +275,17 @@ def refuse_ending(path: str) -> None:
     Raises:
         UsageError: the name has another ending.
     """
-    if Path(path).suffix.lower() not in ENDINGS:
+    if _ending(path) not in ENDINGS:
         raise UsageError(f"no moving picture can be written as '{path}'", mend=f"endings are {', '.join(ENDINGS)}")
 
 
-def _run(model: Model, times: np.ndarray) -> Trajectory:
-    equations = pipeline.derive(model)
-    end = float(times[-1]) or 1.0
-    return simulated(equations, time=end, samples=FINE * max(len(times) - 1, 1) + 1, how=Stepping())
+def _written(output: str, count: int) -> str:
+    """What was written; a page has no frames."""
+    return output if _ending(output) == ".html" else f"{count} frame{'s' * (count > 1)}: {output}"
+
+
+def _ending(path: str) -> str:
+    return Path(path).suffix.lower()
 
 
 def _shown(run: Trajectory, times: np.ndarray, showing: Showing) -> Movie:
@@ -242,18 +294,27 @@ def _shown(run: Trajectory, times: np.ndarray, showing: Showing) -> Movie:
     return movie_of(run, here, trail=showing.trail, forces=showing.forces)
 
 
-def _modes(model: Model, count: int, showing: Showing) -> list[Movie]:
+def _modes(model: Model, count: int, output: str, showing: Showing) -> list[Movie]:
+    """The slowest small motions, as many as the file shows beside one another.
+
+    Raises:
+        UsageError: it shows fewer.
+    """
     from eomgen.documents.linearize.result import linearize
 
-    return mode_movies(linearize(model).modes, count, showing.fps)
+    if _ending(output) == ".html":
+        raise UsageError("small motions have no page", mend="write a .gif")
+    if _ending(output) == ".png" and count > 1:
+        raise UsageError(f"a strip shows one small motion, not {count}", mend="take --modes 1, or write a .gif")
+    frames = showing.of_a_swing(output)
+    return mode_movies(linearize(model).modes, count, frames)
 
 
 def write_movies(movies: Sequence[Movie], path: str, showing: Showing, progress: Progress | None) -> None:
     """Movies side by side into a file, the ending says of which kind."""
-    ending = Path(path).suffix.lower()
-    if ending == ".mp4":
-        mp4(movies, showing.fps, path, progress)
-    elif ending == ".png":
-        files.write(path, strip(movies[0], showing.frames))
-    else:
-        files.write(path, gif(movies, showing.fps, progress))
+    made = {
+        ".mp4": lambda: mp4(movies, showing.fps, progress),
+        ".png": lambda: strip(movies[0]),
+        ".gif": lambda: gif(movies, showing.fps, progress),
+    }
+    files.write(path, made[_ending(path)]())

@@ -41,6 +41,7 @@ from eomgen.questions.velocities import kinematics
 from eomgen.records import dataclass
 from eomgen.scene.virtual import VirtualDisplacement
 from eomgen.simulation.result import Trajectory
+from eomgen.symbolic.expression.typed import Typed, seconds
 from eomgen.symbolic.numeric.work import doing
 from eomgen.verbs.assignments import nearest_name
 from eomgen.verbs.outcome import with_start_told
@@ -156,7 +157,7 @@ def report(
     model: ModelOrPath,
     path: str | Path | None = None,
     *,
-    time: float = 10.0,
+    time: Typed = 10.0,
     parameters: Values | None = None,
     start: Values | None = None,
     with_: Sequence[str] = (),
@@ -167,7 +168,7 @@ def report(
 
     Args:
         path: the file that is written; None: nothing is.
-        time: how long the motion is followed [s].
+        time: how long the motion is followed: 5 s or "500 ms".
         parameters, start: values that replace the model's, each as `model_at` takes it.
         with_, without: sections besides those that fit the model, or not among them: the keys of `SECTIONS`.
         certify: whether what stands in it is proven.
@@ -179,7 +180,7 @@ def report(
     is_file = not isinstance(model, Model)
     source = bytes_at(str(model)).decode() if is_file else ""
     origin = Path(str(model)).name if is_file else ""
-    subject = Subject(model_at(model, parameters, start), time, certify, origin, source)
+    subject = Subject(model_at(model, parameters, start), seconds(time), certify, origin, source)
     found = report_of(subject, with_, without)
     if form is not None and path is not None:
         files.write_all(Path(path).parent, written_as(found, form, Path(path).name))

@@ -108,6 +108,7 @@ def _told(model: Model, found: Sweep, files: list[str]) -> Document:
     critical = tuple(
         prose(f"  {found.plan.critical} changes its sign at {_critical(row, sizes, heads)}") for row in found.critical
     )
+    without = (f"{failed} of {len(found)} runs have no result: column `message`",)
     names = (PLAN, LEDGER, TABLE, PARQUET, CRITICAL)
     there = (
         [] if found.folder is None else [str(found.folder / name) for name in names if (found.folder / name).exists()]
@@ -121,7 +122,7 @@ def _told(model: Model, found: Sweep, files: list[str]) -> Document:
         *critical,
         *(prose(f"  {line}") for line in told),
         failed="no run came to its end" if failed == len(found) else "",
-        notes=(f"{failed} of {len(found)} runs have no result: column `message`",) if 0 < failed < len(found) else (),
+        notes=(*found.remarks, *(without if 0 < failed < len(found) else ())),
     )
 
 
@@ -151,6 +152,7 @@ def _payload(found: Sweep, files: list[str]) -> dict[str, Any]:
         "columns": list(found.columns),
         "summary": summary,
         "critical": found.critical,
+        "remarks": found.remarks,
         "files": files,
     }
     if len(found) <= MOST_IN_JSON:

@@ -197,7 +197,7 @@ def test_a_fault_at_any_write_of_any_verb_leaves_whole_files(verb, option, tmp_p
     data.write_text(MEASURED)
     model = tmp_path / "pendulum.toml"
     model.write_text(Path(PENDULUM).read_text().replace('"Simple pendulum"', json.dumps(STEERING)))
-    given = dict.fromkeys(("model", "models", "where"), str(model)) | {"--time": "0.05", "--fps": "20"}
+    given = dict.fromkeys(("model", "models", "where"), str(model)) | {"--time": "0.05"}
     given |= {"file": str(robot), "--data": str(data), "equations": "theta'' = -g/l*sin(theta)", "--target": "numpy"}
     given |= {"--ask": "theta", "--random": "l=uniform(1, 2)", "--frames": "1"}
     if option == "--output":
