@@ -83,20 +83,25 @@ def demand_of(system: System, state: State) -> Demand:
     return Demand(forces, [max(found.sizes, default=0)] * len(u), found.rates)
 
 
-def multipliers_demanded(system: System, state: State) -> dict[tuple[str, int], float]:
+def multipliers_demanded(system: System, state: State, friction: Sequence[Any] = ()) -> dict[tuple[str, int], float]:
     """lam of every closing and eliminated row, by (tie, number), for which the free bodies ask for nothing more.
 
     Their demand is linear in lam: it is taken without any, and with each alone. Rows that share a force are left out.
 
+    Args:
+        friction: that of the contacts along the speeds; () where there is none.
     Raises:
-        NoValue: no lam leave nothing.
+        NoValue: no lam leave nothing; friction along speeds of which rows were eliminated.
     """
+    if friction and system.free is not None:
+        raise NoValue("there is friction")
     free = system.free or system
     known = _with_free_motion(system, free, state)
     closing, none = free.ties.closing, dict.fromkeys(free.symbols.lam, fifty_digits().number(0))
     still = _demand(free, known | none)
     alone = [_demand(free, known | none | {lam: fifty_digits().number(1)}).forces for lam in free.symbols.lam]
-    right = np.array([float(x) for x in still.forces])
+    known_forces = friction or [0] * len(still.forces)
+    right = np.array([float(x - f) for x, f in zip(still.forces, known_forces, strict=True)])
     A = np.array([[float(x - y) for x, y in zip(still.forces, one, strict=True)] for one in alone]).T
     _, rows, columns = balanced(A)
     A, right = rows[:, None] * A * columns, rows * right

@@ -183,10 +183,9 @@ class NearbyStates:
 
     def held(self, tie: str) -> Any:
         """lam of a tie of one row, by the balance of the free bodies on which all ties push."""
-        equations = self.state.equations
-        if equations.friction:
-            raise NoValue("there is friction")
-        found = multipliers_demanded(equations.system, self.state.values | self.state.unknowns)
+        equations, known = self.state.equations, self.state.values | self.state.unknowns
+        friction = evaluate(equations.friction or (), known, fifty_digits())
+        found = multipliers_demanded(equations.system, known, friction)
         if (tie, 1) not in found:
             raise NoValue("it shares its force with other ties")
         return found[tie, 1]
