@@ -19,7 +19,7 @@ from eomgen.mechanics.equations.system import System
 from eomgen.model.reader import ModelOrPath
 from eomgen.pipeline import derive
 from eomgen.records import dataclass
-from eomgen.robots.drawn_up import LeftOut
+from eomgen.robots.drawn_up import LeftOut, LegalNames
 from eomgen.symbolic.expression.derivative import depends_on, depends_on_any, gradient, substituted, symbols_of
 from eomgen.symbolic.expression.graph import Scalar
 from eomgen.symbolic.expression.spatial import Pose, minus
@@ -61,14 +61,17 @@ class _Writing:
         self.known: dict[Any, Any] = dict(zip(system.symbols.parameters.values(), map(float, p), strict=True))
         self.known |= {system.symbols.t: 0.0}
         self.left: dict[str, list[str]] = {}
+        self.world = LegalNames({link.name for link in system.motion.links}).new("world")
+        self.joints = LegalNames({q.name for q in system.symbols.q})
 
     def exported(self) -> Exported:
         motion, model = self.system.motion, self.system.scope.model
-        lines = [f"<robot name={quoteattr(visible(model.name))}>", '  <link name="world"/>']
+        lines = [f"<robot name={quoteattr(visible(model.name))}>", f"  <link name={quoteattr(self.world)}/>"]
         for link in motion.links:
             lines += [*self._link(link), *self._joint(link)]
         lines += self._transmissions()
         self._forces()
+        self._values()
         text = "\n".join([*lines, "</robot>", ""])
         return Exported(
             text, tuple(LeftOut(what, tuple(where), "URDF cannot say it") for what, where in self.left.items())
@@ -124,8 +127,8 @@ class _Writing:
         shift = (0, 0, 0) if parent is None else parent.point
         at = self.numbers(minus(place.p, shift), where)
         R_numbers = self.numbers([x for row in place.R for x in row], where)
-        name = own[0].name if len(own) == 1 else f"{link.name}_joint"
-        above = "world" if parent is None else parent.name
+        name = own[0].name if len(own) == 1 else self.joints.new(f"{link.name}_joint")
+        above = self.world if parent is None else parent.name
         return [
             f'  <joint name={quoteattr(name)} type="{shape[0]}"><parent link={quoteattr(above)}/>'
             f'<child link={quoteattr(link.name)}/><origin xyz="{_words(at)}" rpy="{_words(_angles(R_numbers))}"/>'
@@ -187,17 +190,27 @@ class _Writing:
         return ""
 
     def _transmissions(self) -> list[str]:
-        """A motor for each joint that an input drives."""
-        lines = []
+        """A motor for each joint that an input drives; another drive is left out."""
+        lines, scope = [], self.system.scope
         for link in self.system.motion.links:
             efforts = () if link.joint is None else link.joint.efforts()
-            if not any(effort is not None and effort.drive is not None for effort in efforts):
-                continue
+            drives = [scope.value(each.drive) for each in efforts if each is not None and each.drive is not None]
             own = [x for x in self.system.symbols.q if depends_on_any(link.s, (x,))]
-            if len(own) == 1:
+            if len(own) == len(drives) == 1 and drives[0] in self.system.symbols.inputs.values():
                 name = quoteattr(own[0].name)
                 lines.append(f"  <transmission name={name}><joint name={name}/></transmission>")
+            elif drives:
+                self.left.setdefault("drives that are no input alone", []).append(link.name)
         return lines
+
+    def _values(self) -> None:
+        """What of the values that act and start is not said."""
+        model = self.system.scope.model
+        acting = [name for name, part in model.inputs.items() if _is_given(part.value)]
+        starts = [name for name, part in model.coordinates.items() if _is_given(part.start) or _is_given(part.speed)]
+        for what, names in (("values of inputs", acting), ("start values", starts)):
+            if names:
+                self.left.setdefault(what, []).extend(names)
 
     def _forces(self) -> None:
         """What of the forces and ties is not said."""
@@ -216,8 +229,16 @@ def _words(numbers: Sequence[float]) -> str:
     return " ".join(repr(x + 0.0) for x in numbers)
 
 
+def _is_given(value: Any) -> bool:
+    return value is not None and value.text not in ("0", "0.0")
+
+
 def _angles(R: Sequence[float]) -> list[float]:
-    """Roll, pitch and yaw of R = Rz Ry Rx, given by rows."""
-    if abs(R[6]) > 1 - ROUNDING:
-        return [0.0, math.copysign(math.pi / 2, -R[6]), math.atan2(-R[1], R[4])]
-    return [math.atan2(R[7], R[8]), -math.asin(R[6]), math.atan2(R[3], R[0])]
+    """Roll, pitch and yaw of R = Rz Ry Rx, given by rows.
+
+    Near a pitch of 90 degrees roll and yaw turn about one axis: yaw is that of R Rx^T, so it makes up for the roll.
+    """
+    pitch, across = math.atan2(-R[6], math.hypot(R[0], R[3])), math.hypot(R[7], R[8])
+    roll = math.atan2(R[7], R[8]) if across > ROUNDING else 0.0
+    s, c = math.sin(roll), math.cos(roll)
+    return [roll, pitch, math.atan2(s * R[2] - c * R[1], c * R[4] - s * R[5])]

@@ -410,10 +410,21 @@ joint = { kind = "prismatic", axis = [1, 0], displacement = "x", stiffness = 3 }
 mass = 0.5
 inertia = 0.02
 points = { hinge = ["-l/2", 0] }
-joint = { kind = "revolute", on = "cart", at = [0, 0.1], point = "hinge", angle = "pi/6 - q", damping = 0.2 }
+[bodies.rod.joint]
+kind = "revolute"
+on = "cart"
+at = [0, 0.1]
+point = "hinge"
+angle = "pi/6 - q"
+damping = 0.2
+torque = "2*T - 0.1*sign(q')"
+[inputs]
+T = "sin(t)"
 """)
     found = urdf_of(arm)
-    assert {each.what: each.where for each in found.left_out} == {"stiffness": ("cart",), "forces": ("weight",)}
+    listed = {"stiffness": ("cart",), "forces": ("weight",), "values of inputs": ("T",), "start values": ("q",)}
+    assert {each.what: each.where for each in found.left_out} == listed | {"drives that are no input alone": ("rod",)}
+    assert "<transmission" not in found.text
     path = tmp_path / "arm.urdf"
     path.write_text(found.text)
     again, first = eomgen.import_robot(path), eomgen.load(arm)
@@ -421,6 +432,34 @@ joint = { kind = "revolute", on = "cart", at = [0, 0.1], point = "hinge", angle 
     assert np.allclose(dynamics(again, q, u)[0], dynamics(first, q, u)[0], atol=1e-12)
     with pytest.raises(DerivationError, match="hinges, slides and free joints"):
         urdf_of("models/spatial_slider_crank.toml")
+
+
+@pytest.mark.parametrize(("up", "away"), [(1, 0), (1, 3e-12), (-1, 1e-8), (1, 3e-5), (-1, 0.1), (1, -1e-8)])
+def test_frames_of_export_are_those_of_the_model(up, away, tmp_path):
+    """R = Rz(yaw) Ry(pitch) Rx(roll) to 1e-15, near a pitch of 90 degrees too, where roll and yaw are one: M, c - Q."""
+    seat = f'<origin xyz="0.1 0.2 0.3" rpy="0.7 {up * (np.pi / 2 - away)!r} -1.9"/>'
+    first = robot(tmp_path, ARM.replace('<origin xyz="0 0 0.4"/>', seat))
+    (tmp_path / "first.toml").write_text(first.text)
+    (tmp_path / "again.urdf").write_text(urdf_of(tmp_path / "first.toml").text)
+    q, u = {"shoulder": 0.4, "elbow": 1.3}, {"shoulder'": -0.8, "elbow'": 1.1}
+    found, expected = (dynamics(x, q, u) for x in (eomgen.import_robot(tmp_path / "again.urdf"), first.model))
+    assert np.allclose(found[0], expected[0], rtol=0, atol=1e-14) and np.allclose(found[1], expected[1], atol=1e-13)
+
+
+def test_names_of_the_exported_links_and_joints_are_each_their_own(tmp_path):
+    """A body called world beside the world of URDF; a coordinate called as a fixed joint is."""
+    named = (
+        ARM.replace('"tool"', '"elbow"')
+        .replace('"fore"', '"world"')
+        .replace('joint name="elbow"', 'joint name="elbow_joint"')
+    )
+    first = robot(tmp_path, named)
+    (tmp_path / "first.toml").write_text(first.text)
+    (tmp_path / "again.urdf").write_text(urdf_of(tmp_path / "first.toml").text)
+    again = eomgen.import_robot(tmp_path / "again.urdf")
+    assert {"world", "elbow", "upper_arm"} <= set(again.bodies) and set(again.coordinates) == set(
+        first.model.coordinates
+    )
 
 
 def test_coordinates_that_follow_one_another_come_back(tmp_path):
