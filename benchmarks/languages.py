@@ -119,7 +119,7 @@ def main() -> None:
     lines = [
         "# Every language beside C",
         "",
-        f"Python {platform.python_version()}, {platform.machine()}, one core; load {os.getloadavg()[0]:.1f} as it began.",
+        f"Python {platform.python_version()}, {platform.machine()}, one core; load {os.getloadavg()[0]:.1f} at first.",
         "",
     ]
     for model in asked.models:

@@ -24,8 +24,8 @@ from eomgen.robots.drawn_up import (
     signed_sum,
     without_empty,
 )
-from eomgen.robots.mjcf_acting import motors, tendons, ties
-from eomgen.robots.mjcf_reading import BALL, FREE, HINGE, Reading, turned
+from eomgen.robots.mjcf_acting import equalities, motors, tendons
+from eomgen.robots.mjcf_reading import BALL, FREE, HINGE, CompiledRobot, turn_by
 from eomgen.robots.numbers import (
     ZERO,
     decimal_of_double,
@@ -47,7 +47,7 @@ def mjcf(path: Path) -> Imported:
         ToolMissing: MuJoCo is not installed.
         ModelError: MuJoCo cannot read it; it says why.
     """
-    return _tables(Reading(_switched(spec_of(path).compile()), path.stem))
+    return _tables(CompiledRobot(_switched(spec_of(path).compile()), path.stem))
 
 
 def _switched(compiled: Any) -> Any:
@@ -88,7 +88,7 @@ def spec_of(path: Path) -> Any:
     return spec
 
 
-def _tables(r: Reading) -> Imported:
+def _tables(r: CompiledRobot) -> Imported:
     m = r.m
     r.found = {key: {} for key in TABLES}
     r.body = {0: None} | {k: r.bodies.new(m.body(k).name or f"body{k}", "body") for k in range(1, m.nbody)}
@@ -98,7 +98,7 @@ def _tables(r: Reading) -> Imported:
     for k in range(m.nbody):
         _body(r, k)
     tendons(r)
-    ties(r)
+    equalities(r)
     for k, own in r.points.items():  # those of ties too, which come after the bodies
         if name := r.body[k]:
             r.found["bodies"][name]["points"] = {**r.found["bodies"][name].get("points", {}), **own}
@@ -118,7 +118,7 @@ def _tables(r: Reading) -> Imported:
     return Imported({**head, **without_empty({"parameters": parameters, **r.found})}, left_out)
 
 
-def _body(r: Reading, k: int) -> None:
+def _body(r: CompiledRobot, k: int) -> None:
     m = r.m
     if k == 0:
         r.found["points"] = r.points.setdefault(0, {})
@@ -128,7 +128,7 @@ def _body(r: Reading, k: int) -> None:
     body: Entries = {"about": f"body {raw}"} if raw and name != raw else {}
     mass = decimal_of_double(m.body_mass[k])
     if mass:
-        R, _ = turned(m.body_iquat[k])
+        R, _ = turn_by(m.body_iquat[k])
         xx, yy, zz = (decimal_of_double(x) for x in m.body_inertia[k])
         tensor = tensor_of(xx, yy, zz, ZERO, ZERO, ZERO)
         center = decimals(decimal_of_double(x) for x in m.body_ipos[k])
@@ -136,7 +136,7 @@ def _body(r: Reading, k: int) -> None:
     if r.points.get(k):
         body["points"] = dict(r.points[k])
     joints = range(m.body_jntadr[k], m.body_jntadr[k] + m.body_jntnum[k])
-    R, turns = turned(m.body_quat[k])
+    R, turns = turn_by(m.body_quat[k])
     place = decimals(decimal_of_double(x) for x in m.body_pos[k])
     seat = Seat(r.body[int(m.body_parentid[k])], place, R, turns)
     if [m.jnt_type[j] for j in joints] == [FREE]:
@@ -152,7 +152,7 @@ def _body(r: Reading, k: int) -> None:
         _held_up(r, name, k)
 
 
-def _joint(r: Reading, j: int) -> Moved:
+def _joint(r: CompiledRobot, j: int) -> Moved:
     m, q = r.m, r.joint[j]
     pivot = decimals(decimal_of_double(x) for x in m.jnt_pos[j])
     if m.jnt_type[j] == BALL:
@@ -181,7 +181,7 @@ def _joint(r: Reading, j: int) -> Moved:
     return Moved({**keys, **_efforts(r, j, reference)}, pivot if turns else decimals([0, 0, 0]), q)
 
 
-def _efforts(r: Reading, j: int, reference: Decimal) -> Entries:
+def _efforts(r: CompiledRobot, j: int, reference: Decimal) -> Entries:
     """Spring, damper and rotor of a hinge or slide."""
     m, q, d = r.m, r.joint[j], int(r.m.jnt_dofadr[j])
     keys: Entries = {}
@@ -201,7 +201,7 @@ def _efforts(r: Reading, j: int, reference: Decimal) -> Entries:
     return keys
 
 
-def _in_space(r: Reading, j: int) -> None:
+def _in_space(r: CompiledRobot, j: int) -> None:
     """What a free or a ball joint has beside its freedom: dampers; springs, friction and rotors are left out."""
     m, q, d = r.m, r.joint[j], int(r.m.jnt_dofadr[j])
     free = m.jnt_type[j] == FREE
@@ -230,7 +230,7 @@ def _in_space(r: Reading, j: int) -> None:
         r.found["forces"][r.forces.new(f"{q}_damper")] = {**couple, "body": parent, "couple": back}
 
 
-def _held_up(r: Reading, name: str, k: int) -> None:
+def _held_up(r: CompiledRobot, name: str, k: int) -> None:
     """Gravity taken off: a force at the mass centre."""
     factor = -float(r.m.body_gravcomp[k]) * float(r.m.body_mass[k])
     force = [decimal_of_double(factor * x) for x in r.m.opt.gravity]
@@ -241,13 +241,13 @@ def _held_up(r: Reading, name: str, k: int) -> None:
     }
 
 
-def _sites(r: Reading) -> dict[int, str]:
+def _sites(r: CompiledRobot) -> dict[int, str]:
     """Sites as points."""
     m = r.m
     return {s: r.point(int(m.site_bodyid[s]), m.site(s).name or f"site{s}", m.site_pos[s]) for s in range(m.nsite)}
 
 
-def _rest(r: Reading) -> None:
+def _rest(r: CompiledRobot) -> None:
     """What else there is in the file."""
     m = r.m
     touching = [m.geom(g).name or f"geom{g}" for g in range(m.ngeom) if m.geom_contype[g] or m.geom_conaffinity[g]]

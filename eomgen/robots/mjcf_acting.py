@@ -10,7 +10,7 @@ from eomgen.robots.drawn_up import (
     Entries,
     signed_sum,
 )
-from eomgen.robots.mjcf_reading import HINGE, SLIDE, Reading, turned
+from eomgen.robots.mjcf_reading import HINGE, SLIDE, CompiledRobot, turn_by
 from eomgen.robots.numbers import (
     ZERO,
     computed,
@@ -27,7 +27,7 @@ FIXED, AFFINE = 0, 1  # of its laws,
 AT_SITE, SITE = 3, 6  # of what a tendon goes through, of what an equality is of
 
 
-def tendons(r: Reading) -> None:
+def tendons(r: CompiledRobot) -> None:
     """Springs and dampers of tendons."""
     m = r.m
     for t in range(m.ntendon):
@@ -58,7 +58,7 @@ def tendons(r: Reading) -> None:
                 r.push(f"{name}_{q}", q, f"{decimal_text(-factor * damping)}*({rate})")
 
 
-def _ends(r: Reading, t: int) -> list[str]:
+def _ends(r: CompiledRobot, t: int) -> list[str]:
     """The two places of a tendon that is straight between them; [] of another one."""
     at = range(r.m.tendon_adr[t], r.m.tendon_adr[t] + r.m.tendon_num[t])
     straight = len(at) == 2 and all(r.m.wrap_type[k] == AT_SITE for k in at)
@@ -66,7 +66,7 @@ def _ends(r: Reading, t: int) -> list[str]:
 
 
 def _stretched(
-    r: Reading, name: str, ends: list[str], stiff: Decimal, damping: Decimal, rest: tuple[Decimal, Decimal]
+    r: CompiledRobot, name: str, ends: list[str], stiff: Decimal, damping: Decimal, rest: tuple[Decimal, Decimal]
 ) -> None:
     """The spring and the damper of a straight tendon; between two rest lengths it is slack."""
     low, high = rest
@@ -82,7 +82,7 @@ def _stretched(
         r.found["forces"][r.forces.new(f"{name}_damper")] = damper
 
 
-def motors(r: Reading) -> None:
+def motors(r: CompiledRobot) -> None:
     """Motors: an input each, and force = gain w + bias along what it acts on."""
     m = r.m
     for k in range(m.nactuator):
@@ -123,7 +123,7 @@ def motors(r: Reading) -> None:
             r.push(f"{raw}_{q}", q, f"{decimal_text(factor * ratio)}*{grouped}")
 
 
-def _law(r: Reading, k: int, w: str, length: list[tuple[Decimal, str]]) -> str:
+def _law(r: CompiledRobot, k: int, w: str, length: list[tuple[Decimal, str]]) -> str:
     """gear (gain w + bias), both linear in the length gear L and its rate."""
     m = r.m
     rates = [(factor, f"{q}'") for factor, q in length]
@@ -144,13 +144,13 @@ def _law(r: Reading, k: int, w: str, length: list[tuple[Decimal, str]]) -> str:
     return " + ".join(term for term in terms if term != "0").replace("+ -", "- ") or "0"
 
 
-def _thruster(r: Reading, k: int, w: str, site: int) -> None:
+def _thruster(r: CompiledRobot, k: int, w: str, site: int) -> None:
     """A force and a couple in the axes of a site."""
     m, body = r.m, int(r.m.site_bodyid[site])
     if body == 0:
         r.leave("motors on the ground", [w], "they move nothing")
         return
-    R, _ = turned(m.site_quat[site])
+    R, _ = turn_by(m.site_quat[site])
     size = decimal_of_double(m.actuator_gainprm[k][0])
     for kind, part in (("force", slice(0, 3)), ("couple", slice(3, 6))):
         along = apply(R, decimals(decimal_of_double(x) for x in m.actuator_gear[k][part]))
@@ -161,7 +161,7 @@ def _thruster(r: Reading, k: int, w: str, site: int) -> None:
         r.found["forces"][r.forces.new(w)] = {"kind": kind, **where, kind: law, "axes": r.body[body]}
 
 
-def ties(r: Reading) -> None:
+def equalities(r: CompiledRobot) -> None:
     """Ties: of points, of bodies, of coordinates; in MuJoCo they give way, here they hold."""
     m = r.m
     for e in range(m.neq):
@@ -177,7 +177,7 @@ def ties(r: Reading) -> None:
         r.leave("softness of equalities", [raw], "here they hold exactly")
 
 
-def _equality(r: Reading, e: int, raw: str) -> Entries | None:
+def _equality(r: CompiledRobot, e: int, raw: str) -> Entries | None:
     m, kind = r.m, int(r.m.eq_type[e])
     first, second, data = int(m.eq_obj1id[e]), int(m.eq_obj2id[e]), m.eq_data[e]
     if kind in (CONNECT, WELD):
@@ -211,7 +211,7 @@ def _equality(r: Reading, e: int, raw: str) -> Entries | None:
     return {"kind": "equation", "gap": signed_sum(terms, -at - decimal_of_double(data[0]))}
 
 
-def _weld(r: Reading, first: int, second: int, raw: str, data: Any) -> Entries | None:
+def _weld(r: CompiledRobot, first: int, second: int, raw: str, data: Any) -> Entries | None:
     """Two bodies as they stand: where that is not how they are welded, there is no counterpart."""
     mujoco: Any = importlib.import_module("mujoco")
     state = mujoco.MjData(r.m)
@@ -225,7 +225,7 @@ def _weld(r: Reading, first: int, second: int, raw: str, data: Any) -> Entries |
     return {"kind": "clamp", "points": points}
 
 
-def _tendon_name(r: Reading, t: int) -> str:
+def _tendon_name(r: CompiledRobot, t: int) -> str:
     return r.m.tendon(t).name or f"tendon{t}"
 
 

@@ -27,7 +27,7 @@ JOINT_WRAP = 1  # of what a tendon is of
 
 
 @dataclass
-class Reading:
+class CompiledRobot:
     """A compiled model of MuJoCo, and what is made of it."""
 
     m: Any
@@ -69,7 +69,7 @@ class Reading:
         return [(decimal_of_double(m.wrap_prm[i]), self.joint[int(m.wrap_objid[i])]) for i in wraps]
 
 
-def turned(quaternion: Any) -> tuple[Nine, list[Entries]]:
+def turn_by(quaternion: Any) -> tuple[Nine, list[Entries]]:
     """A quaternion as a rotation and as turns of a model file."""
     e = [Decimal(float(x)) for x in quaternion]
     length = sum((x * x for x in e), ZERO).sqrt()

@@ -214,7 +214,7 @@ def c_text(program: Program, stem: str, role: Role = RHS, remarks: Mapping[str, 
     return FORM.text(program, stem, role, remarks)
 
 
-def constants_of(text: str) -> int:
+def constants_in(text: str) -> int:
     """How many constants a function has, as its caller in the text says; 1 of none."""
     found = re.search(r"double c\[(\d+)\];", text)
     assert found is not None

@@ -20,12 +20,12 @@ from eomgen.codegen.targets.library_call import compiled_target
 from eomgen.symbolic.expression.graph import Number
 
 
-def number(a: Number) -> RankedText:
+def _number(a: Number) -> RankedText:
     """A number of the scalar's own kind."""
     text, strength = ranked_number(a)
     if strength == ATOM:
         return f"Real({text})", ATOM
-    return (f"-{number(-a)[0]}", SUM) if a < 0 else ("/".join(f"Real({part})" for part in text.split("/")), PRODUCT)
+    return (f"-{_number(-a)[0]}", SUM) if a < 0 else ("/".join(f"Real({part})" for part in text.split("/")), PRODUCT)
 
 
 CPP = Language(
@@ -81,7 +81,7 @@ CPP = Language(
     remark="// {text}",
     harmless=comment,
     unused=C.unused,
-    number=number,
+    number=_number,
     longest=C.longest,
 )
 COMPILER = Compiler(

@@ -32,7 +32,7 @@ from eomgen.codegen.targets.base import (
     Role,
     Target,
 )
-from eomgen.codegen.targets.c import apart, c_functions, c_text, constants_of
+from eomgen.codegen.targets.c import apart, c_functions, c_text, constants_in
 from eomgen.codegen.targets.form import header
 from eomgen.errors import RunFailed, ToolMissing
 from eomgen.symbolic.numeric.tolerances import BEST, RUN
@@ -110,7 +110,7 @@ def source(stem: str, emitted: Sequence[Emitted]) -> str:
         "PARAMETERS": len(symbols.parameters),
         "INPUTS": len(symbols.inputs),
         "OUTPUTS": sum(len(each.outputs) for each, _ in further),
-        "CONSTANTS": constants_of(parts[0]),
+        "CONSTANTS": constants_in(parts[0]),
         "FIRST_X": _braces(start[0]),
         "FIRST_P": _braces(start[1]),
         "TOLERANCE": repr(RUN),

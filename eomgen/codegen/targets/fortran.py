@@ -23,15 +23,15 @@ WIDTH = 120  # of a line; the standard has 132
 LONGEST_LIST = 500  # values in a statement, which has at most 255 lines
 
 
-def number(a: Number) -> RankedText:
+def _number(a: Number) -> RankedText:
     """A number in double precision."""
     text, strength = ranked_number(a)
     if strength == SUM:
-        return f"-{number(-a)[0]}", SUM
+        return f"-{_number(-a)[0]}", SUM
     return "/".join(f"{part}_dp" for part in text.split("/")), PRODUCT if strength == PRODUCT else ATOM
 
 
-def spelled(name: str) -> str:
+def _spelled(name: str) -> str:
     """Capitals are small letters: what the kernels tell apart by them has another name."""
     return f"big_{name}" if name.isupper() else name
 
@@ -102,7 +102,7 @@ FORTRAN = Language(
     out=("recursive subroutine {name}({arguments}, {out})", "end subroutine {name}"),
     remark="! {text}",
     unused="if (kind({name}) < 0) return  ! {name} does not stand in it",
-    number=number,
+    number=_number,
     longest=2000,
     local={
         REAL: "real(dp) :: {name}",
@@ -118,7 +118,7 @@ FORTRAN = Language(
         f"argument {PLACES}": "integer, intent(inout) :: {name}(0:*)",
         "out": "real(dp), intent(inout) :: {name}(0:*)",
     },
-    spelled=spelled,
+    spelled=_spelled,
     folded=str.lower,
 )
 COMPILER = Compiler(
