@@ -152,3 +152,39 @@ def test_contacts_end_under_a_controller_and_a_function_is_refused_by_name():
     assert min(abs(phase.end - left) for phase in held.phases) < 1e-8
     pushed = eomgen.simulate(model, time=1, samples=5, inputs={"push": {"value": "-5*abs(theta')", "every": 0.25}})
     assert pushed.ok and pushed.certify().ok
+
+
+RUBBING = """
+eomgen = 1
+space = "plane"
+parameters = { m = 2, mu = 0.3, g = 9.81 }
+coordinates = { x = { start = 0, speed = 1 } }
+inputs = { F = 0 }
+bodies.mass = { shape = { kind = "particle", mass = "m" }, joint = { kind = "placed", at = ["x", 0] } }
+constraints.floor = { kind = "support", point = "mass.center", normal = [0, 1], friction = "mu" }
+forces.weight = { kind = "gravity", acceleration = [0, "-g"] }
+forces.push = { kind = "force", point = "mass.center", force = ["F", 0] }
+"""
+
+
+def pushed_by_hand(law, every, time):
+    """x, v after pushes that are held: m a = F - sign(v) mu m g piece by piece, at rest where |F| <= mu m g."""
+    x, v, m, rubs = 0.0, 1.0, 2.0, 0.3 * 2.0 * 9.81
+    for k in range(round(time / every)):
+        F, left = law(k * every), every
+        while left > 1e-14 and (v or abs(F) > rubs):
+            a = (F - np.sign(v or F) * rubs) / m
+            stops = v and a * v < 0 and -v / a < left
+            dt = -v / a if stops else left
+            x, v, left = x + v * dt + a * dt**2 / 2, 0.0 if stops else v + a * dt, left - dt
+    return x, v
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("every", [0.1, 0.25])
+def test_where_a_held_force_jumps_it_is_seen_anew_what_sticks_and_slides(every):
+    """8 sin(3 t), sampled, on a mass that rubs: no phase begins in a grip that its first instant denies."""
+    model = eomgen.loads(RUBBING)
+    run = eomgen.simulate(model, time=2, samples=3, inputs={"F": {"value": "8*sin(3*t)", "every": every}})
+    assert run.x[-1] == pytest.approx(pushed_by_hand(lambda t: 8 * np.sin(3 * t), every, 2), abs=1e-8)
+    assert all(phase.end > phase.start for phase in run.phases) and run.certify().ok

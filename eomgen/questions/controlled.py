@@ -30,7 +30,7 @@ from eomgen.simulation.configuration import has_phases
 from eomgen.simulation.integrate import instants_of, refuse_bad_run
 from eomgen.simulation.integrator import Stepping
 from eomgen.simulation.motion import Plan, through
-from eomgen.simulation.phase_change import PhaseStart, at_start
+from eomgen.simulation.phase_change import PhaseStart, after_jump, at_start
 from eomgen.simulation.phase_models import PhaseModels
 from eomgen.simulation.phase_run import PhaseRun
 from eomgen.simulation.result import Trajectory
@@ -209,6 +209,7 @@ def _phases(
     for start, end, due in _stretches(control.controllers, plan.end):
         p = control.set_(p, start, here.values, due)
         models = models.at(p, fed)
+        here = after_jump(models, here)
         inside = None if plan.instants is None else plan.instants[(plan.instants >= start) & (plan.instants <= end)]
         for run in through(models, here, replace(plan, end=end, instants=inside)):
             yield run, end, models

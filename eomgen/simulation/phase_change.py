@@ -137,6 +137,15 @@ def _closed_or_open(
     return values(away), away
 
 
+def after_jump(models: PhaseModels, here: PhaseStart) -> PhaseStart:
+    """The same state where forces have jumped: how the contacts are from here on."""
+    if not has_phases(models.model):
+        return here
+    pieces = here.configuration.pieces
+    found = _decided(models, here.t, here.values, pieces, before=here.configuration, ended=frozenset())
+    return replace(found, begun=here.begun)
+
+
 def plain(model: Model, pieces: Mapping[str, int], away: Sequence[str]) -> Configuration:
     """Some contacts open, all others closed, sliding without a sense yet."""
     contacts = contacts_of(on_pieces(model, pieces))
