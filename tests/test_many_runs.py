@@ -114,6 +114,7 @@ def test_runs_with_ties_are_marched_and_those_that_cannot_start_are_told(threads
     )
 
 
+@pytest.mark.slow
 @needs_compiler
 def test_a_run_through_a_change_point_leaves_its_march():
     """A parallelogram of four equal links passes its change point; lanes beside it do not."""
@@ -131,6 +132,7 @@ def test_a_run_through_a_change_point_leaves_its_march():
             assert runs.x[i] == pytest.approx(other.x, abs=1e-7)
 
 
+@pytest.mark.slow
 @needs_compiler
 def test_what_is_stiff_leaves_its_lane():
     """x'' + d x' + d x = 0 with d from 1 to 1e5, by the closed solution."""

@@ -72,6 +72,7 @@ def test_what_other_values_do_not_change_is_not_derived_again(name, value, deriv
     assert (count, len(run.bases)) == (1, derived)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     ("name", "parameters", "start"),
     [

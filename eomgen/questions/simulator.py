@@ -87,7 +87,7 @@ class Simulator:
         """
         valued = with_values(self.model, parameters, start)
         equations, models = self._at(valued)
-        own = {} if equations.model.parameters == valued.model.parameters else given_parameters(valued.model)
+        own = {} if equations.model is valued.model else given_parameters(valued.model)
         asked = (columns,) if isinstance(columns, str) else tuple(columns)
         formulas = _formulas(valued.model, asked)
         reactions = any(name not in formulas for name in asked if name != OUTPUTS)

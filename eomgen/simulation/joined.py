@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import replace
 from functools import cache
+from itertools import accumulate
 from typing import Any
 
 import numpy as np
@@ -25,14 +26,8 @@ from eomgen.symbolic.expression.expressions import Expression
 def joined(models: PhaseModels, runs: Sequence[PhaseRun]) -> Trajectory:
     """The motion through all phases, with the beginning and the end of each; a coordinate that one lacks is 0 in it."""
     coordinates, speeds = _union(runs)
-    columns = [phase_run.phase.columns(phase_run.run.t, phase_run.run.x) for phase_run in runs]
-    tables = [
-        np.array([found[name] if name in found else np.zeros(len(t)) for name in (*coordinates, *speeds)])
-        .reshape(-1, len(t))
-        .T
-        for t, found in zip((phase_run.run.t for phase_run in runs), columns, strict=True)
-    ]
-    ends = np.cumsum([0, *(len(phase_run.run.t) for phase_run in runs)])
+    tables = [_table(phase_run, (*coordinates, *speeds)) for phase_run in runs]
+    ends = [0, *accumulate(len(phase_run.run.t) for phase_run in runs)]
     return Trajectory(
         t=np.concatenate([phase_run.run.t for phase_run in runs]),
         x=np.concatenate(tables),
@@ -41,7 +36,7 @@ def joined(models: PhaseModels, runs: Sequence[PhaseRun]) -> Trajectory:
         energies=lambda: np.concatenate([sum(s.phase.energies(s.run.t, s.run.x)) for s in runs]),
         measure=lambda: Kept(_drift(runs), *_open(runs)),
         phases=tuple(
-            Phase(s.here.t, s.run.end, phase_text(models, s), (int(first), int(last)), s.phase, s.tracked)
+            Phase(s.here.t, s.run.end, phase_text(models, s), (first, last), s.phase, s.tracked)
             for s, first, last in zip(runs, ends[:-1], ends[1:], strict=True)
         ),
         status=runs[-1].run.status,
@@ -50,6 +45,16 @@ def joined(models: PhaseModels, runs: Sequence[PhaseRun]) -> Trajectory:
         evaluations=sum(phase_run.run.evaluations for phase_run in runs),
         carried=tuple(span for phase_run in runs for span in phase_run.run.carried),
     )
+
+
+def _table(phase_run: PhaseRun, names: tuple[str, ...]) -> np.ndarray:
+    """States of a phase over the names of all, n x names."""
+    phase, t, x = phase_run.phase, phase_run.run.t, phase_run.run.x
+    if names == (*phase.coordinates, *phase.speeds) and not phase.loose:
+        return x
+    found = phase.columns(t, x)
+    none = np.zeros(len(t))
+    return np.array([found.get(name, none) for name in names]).reshape(-1, len(t)).T
 
 
 def _union(runs: Sequence[PhaseRun]) -> tuple[tuple[str, ...], tuple[str, ...]]:
@@ -136,7 +141,8 @@ def thinned(full: Trajectory, instants: np.ndarray | None, **more: Any) -> Traje
     if instants is not None:
         kept &= np.isin(full.t, instants)
         kept[-1] |= full.status != "finished"
-    before = np.concatenate([[0], np.cumsum(kept)]).tolist()
+    all_kept = bool(kept.all())
+    before = range(len(kept) + 1) if all_kept else [0, *np.cumsum(kept).tolist()]
     columns = cache(full.columns)
 
     def of(phase: Phase) -> Phase:
@@ -150,7 +156,7 @@ def thinned(full: Trajectory, instants: np.ndarray | None, **more: Any) -> Traje
         return found
 
     more["phases"] = tuple(map(of, full.phases))
-    if kept.all():
+    if all_kept:
         whole: Trajectory = with_fields(full, **more)
         return whole
     reactions, outputs = (
