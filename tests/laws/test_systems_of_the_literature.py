@@ -110,6 +110,28 @@ def test_an_overhung_rotor_has_the_four_whirls_of_stodola():
     assert list(answers(SPACE + text).values()) == pytest.approx(sorted(abs(whirls)), rel=1e-10)
 
 
+@pytest.mark.parametrize("damping", [0, 1e-9])
+def test_a_pendulum_absorber_has_the_frequency_of_its_rotor_times_a_number(damping):
+    """Om sqrt((J + m (R + r)^2) R/(r J)) (Den Hartog); a steady motion beside it counts as none, damped or not."""
+    text = f"""
+    parameters = {{ m = 0.3, R = 0.2, r = 0.05, J = 0.4, Om = 100 }}
+    coordinates = {{ psi = {{ start = 0, speed = "Om" }}, th = 0 }}
+    linearize.about = "start"
+    outputs.tuned = "frequency(1)"
+    [bodies.rotor]
+    mass = 5
+    inertia = "J"
+    points = {{ P = ["R", 0] }}
+    joint = {{ kind = "revolute", angle = "psi" }}
+    [bodies.bob]
+    shape = {{ kind = "particle", mass = "m" }}
+    points = {{ hub = ["-r", 0] }}
+    joint = {{ kind = "revolute", on = "rotor.P", point = "hub", angle = "th", damping = {damping!r} }}
+    """
+    tuned = 100 * math.sqrt((0.4 + 0.3 * 0.0625) * 0.2 / (0.05 * 0.4))
+    assert answers(PLANE + text)["tuned"] == pytest.approx(tuned, rel=1e-9)
+
+
 # -- rolling -----------------------------------------------------------------------------------------
 
 

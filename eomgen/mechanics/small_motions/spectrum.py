@@ -129,16 +129,14 @@ def _is_symmetric(A: np.ndarray, sign: int) -> bool:
 def _undamped(small: SmallMotions, rigid: int) -> list[Mode]:
     """K v = w^2 M v."""
     squares, vectors = squares_of(floats(small.numbers.M), floats(small.numbers.K))
-    still = set(np.argsort(abs(squares))[:rigid])
+    still = np.argsort(abs(squares))[:rigid]
+    zeros = [_shape(small, vectors[:, k].astype(complex), 0) for k in still for _ in range(2)]
     modes = []
-    for k, (square, v) in enumerate(zip(squares, vectors.T, strict=True)):
-        rate = math.sqrt(abs(square))
-        if k in still:
-            values, pair = [0j], True
-        else:
-            values, pair = ([complex(0, rate)], True) if square > 0 else ([complex(rate, 0), complex(-rate, 0)], False)
-        modes += [Mode(value, pair, _shape(small, v.astype(complex), value)) for value in values]
-    return modes
+    for k in np.setdiff1d(np.arange(len(squares)), still):
+        square, v, rate = squares[k], vectors[:, k].astype(complex), math.sqrt(abs(squares[k]))
+        values, pair = ([complex(0, rate)], True) if square > 0 else ([complex(rate, 0), complex(-rate, 0)], False)
+        modes += [Mode(value, pair, _shape(small, v, value)) for value in values]
+    return modes + _zero_modes(small, zeros)
 
 
 # -- all others ------------------------------------------------------------------------------------------------
