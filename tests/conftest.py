@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import gc
 import os
 from collections.abc import Iterator
 from pathlib import Path
@@ -10,8 +11,12 @@ from typing import NoReturn
 import pytest
 from quick_set import is_slow
 
+from eomgen.symbolic.numeric.gc_pause import SELDOM
+
 os.environ.setdefault("EOMGEN_PATIENCE", "none")  # no test hangs on how busy the machine is
 os.environ.setdefault("EOMGEN_FRESH", "1")  # tests patch laws: nothing is told again that was derived without them
+
+gc.set_threshold(*SELDOM)  # as every command does
 
 ZERO = b"\0after"
 
@@ -21,6 +26,11 @@ def pytest_ignore_collect(collection_path: Path, config: pytest.Config) -> bool 
     if config.getoption("markexpr") != "not slow" or collection_path.suffix != ".py":
         return None
     return True if is_slow(collection_path.read_text(encoding="utf-8")) else None
+
+
+def pytest_collection_finish() -> None:
+    """What is there before the first test stays: a garbage collection need not look at it again and again."""
+    gc.freeze()
 
 
 @pytest.hookimpl(hookwrapper=True, tryfirst=True)

@@ -10,7 +10,7 @@ from moving import at, equal, rate, state_of, written
 import eomgen
 from eomgen.errors import DerivationError, ModelError
 from eomgen.mechanics.bodies.kinematics import slide_of, velocity_of
-from eomgen.mechanics.bodies.loads import SystemScene
+from eomgen.mechanics.bodies.system_scene import SystemScene
 from eomgen.mechanics.equations.system import System
 from eomgen.mechanics.formulations import recursive
 from eomgen.symbolic.expression.derivative import substituted

@@ -10,7 +10,7 @@ from eomgen.documents.energy_steps import energies_by_parts
 from eomgen.documents.reading import Reader
 from eomgen.documents.setting_steps import listed_symbols
 from eomgen.documents.statements import Formula, Law, Name, Partial, Prose, Statement, Step, prose
-from eomgen.mechanics.bodies.loads import given_start
+from eomgen.mechanics.bodies.system_scene import given_start
 from eomgen.mechanics.equations.equations_of_motion import EquationsOfMotion
 from eomgen.mechanics.equations.explicit_accelerations import short_accelerations
 from eomgen.mechanics.equations.system import System

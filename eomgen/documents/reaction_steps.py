@@ -11,7 +11,7 @@ from eomgen.documents.reading import LONGEST, TRIED, Reader, free_names, length_
 from eomgen.documents.setting_steps import count, listed_symbols
 from eomgen.documents.statements import Code, Formula, Meaning, Name, Omitted, Prose, Statement, Step, Table, prose
 from eomgen.errors import DerivationError
-from eomgen.mechanics.bodies.loads import given_start
+from eomgen.mechanics.bodies.system_scene import given_start
 from eomgen.mechanics.equations.equations_of_motion import EquationsOfMotion
 from eomgen.mechanics.equations.system import System
 from eomgen.mechanics.first_integrals.speeds import rates_of

@@ -319,7 +319,7 @@ def _rational(x: float) -> Any:
 
 def _start(system: System, own: Mapping[Node, float]) -> dict[Node, float]:
     """Where coordinates start, as far as numbers say it."""
-    from eomgen.mechanics.bodies.loads import start_values
+    from eomgen.mechanics.bodies.system_scene import start_values
 
     values = {**dict.fromkeys(system.symbols.parameters.values(), 1.0), **own, system.symbols.t: 0.0}
     found = {}

@@ -19,7 +19,8 @@ from collections.abc import Iterator, Sequence
 from functools import cached_property
 from typing import Any
 
-from eomgen.mechanics.bodies.loads import SystemScene, body_wrench
+from eomgen.mechanics.bodies.loads import body_wrench
+from eomgen.mechanics.bodies.system_scene import SystemScene
 from eomgen.mechanics.equations.system import System
 from eomgen.model.constraints.meeting import (
     BodyLine,

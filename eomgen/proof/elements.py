@@ -13,7 +13,8 @@ from functools import cached_property
 from typing import Any
 
 from eomgen.mechanics.bodies.kinematics import BodyLink, velocity_of
-from eomgen.mechanics.bodies.loads import Applied, JointEffort, SystemScene
+from eomgen.mechanics.bodies.loads import Applied, JointEffort
+from eomgen.mechanics.bodies.system_scene import SystemScene
 from eomgen.mechanics.equations.system import System
 from eomgen.model.forces.element import Element
 from eomgen.proof.in_numbers import InNumbers, Pushes, add_push, direction_at, pushed_otherwise, pushes_of

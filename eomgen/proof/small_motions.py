@@ -12,8 +12,7 @@ how ties are taken out.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Mapping, Sequence
-from functools import cached_property
+from collections.abc import Iterator, Mapping, Sequence
 from itertools import product
 from random import Random
 from typing import Any
@@ -23,16 +22,11 @@ import numpy as np
 from eomgen.mechanics.small_motions.linearization import SmallMotions
 from eomgen.mechanics.small_motions.modes import Modes
 from eomgen.mechanics.small_motions.reduction import LinearEquations
-from eomgen.mechanics.small_motions.spin_axes import NAME
-from eomgen.model.joints.orientation import rotation_of
-from eomgen.model.quaternions import quaternions_of
 from eomgen.proof.check import Check, checked, unchecked
-from eomgen.proof.in_numbers import STEP
 from eomgen.proof.modes import mode_checks
-from eomgen.proof.nearby import Going, Nearby, State
-from eomgen.records import dataclass
+from eomgen.proof.motions_beside import Beside, Differences, DigitColumn
+from eomgen.proof.nearby import State
 from eomgen.symbolic.expression.graph import Node
-from eomgen.symbolic.expression.spatial import Matrix, apply, cross, plus, transposed, vector_of
 from eomgen.symbolic.numeric.evaluation import NoValue, evaluate, fifty_digits
 from eomgen.symbolic.numeric.tolerances import (
     CARRIED,
@@ -45,233 +39,6 @@ from eomgen.symbolic.numeric.tolerances import (
 
 DIRECTIONS = 3  # random ones: a wrong entry is seen by each of them
 BY_DIFFERENCES = "differences at 50 digits"
-
-DigitColumn = Sequence[Any]
-
-
-@dataclass(frozen=True)
-class Beside:
-    """What one motion does against the reference, over h.
-
-    Args:
-        q, q1, q2: of the coordinates that are printed, and their first and second rates.
-        u, a: of the speeds and their rates.
-        w: of the inputs.
-    """
-
-    q: DigitColumn
-    q1: DigitColumn
-    q2: DigitColumn
-    u: DigitColumn
-    a: DigitColumn
-    w: DigitColumn
-
-
-@dataclass(frozen=True)
-class SmallTurn:
-    """What a label of a small turn stands for.
-
-    Args:
-        four: the quaternion.
-        speeds: its angular velocity, body axes.
-        axis: 0, 1 or 2.
-        standing: whether of axes that stand still; else of the body's own.
-    """
-
-    four: tuple[Node, ...]
-    speeds: tuple[Node, ...]
-    axis: int
-    standing: bool
-
-
-@dataclass(frozen=True)
-class Differences:
-    """Motions beside the reference of small motions.
-
-    Args:
-        small: the small motions.
-    """
-
-    small: SmallMotions
-
-    @cached_property
-    def nearby(self) -> Nearby:
-        small, symbols = self.small, self.small.reference.system.symbols
-        turned = {e for turn in self._turns.values() for e in turn.four}
-        q = tuple(x for x in symbols.q if x in small.whole.coordinates or x in turned)
-        first, numbers = small.first, small.reference.numbers
-        named = {label: turn.speeds[turn.axis] for label, turn in self._spins.items()}
-        u = tuple(named.get(x, x) for x in small.whole.speeds)
-        return Nearby(first.equations, first.relations, numbers, q, u)
-
-    @cached_property
-    def origin(self) -> Going:
-        """The reference, its ties closed to 50 digits."""
-        return self.nearby.going(self.nearby.state({}))
-
-    @cached_property
-    def _turns(self) -> dict[Node, SmallTurn]:
-        """What each label of a small turn among the coordinates stands for."""
-        return self._named(self.small.whole.coordinates, "")
-
-    @cached_property
-    def _spins(self) -> dict[Node, SmallTurn]:
-        """The same of the speeds: rates of turns about axes that stand still."""
-        return self._named(self.small.whole.speeds, "'")
-
-    def _named(self, labels: Sequence[Node], prime: str) -> dict[Node, SmallTurn]:
-        system, known = self.small.reference.system, dict[str, SmallTurn]()
-        speeds = {u.name: u for u in system.symbols.u}
-        for four, part in zip(system.scope.quaternions, quaternions_of(system.scope.model), strict=True):
-            own = tuple(speeds[name] for name in part.speeds if name in speeds)
-            for axis, name in enumerate(part.speeds):
-                known[f"{NAME}{name}{prime}"] = SmallTurn(four, own, axis, standing=False)
-                known[f"{NAME}{'xyz'[axis]}_{part.body}{prime}"] = SmallTurn(four, own, axis, standing=True)
-        own_names = {*system.symbols.q, *system.symbols.u}
-        return {label: known[label.name] for label in labels if label not in own_names}
-
-    @cached_property
-    def moved(self) -> tuple[Node, ...]:
-        """Every coordinate that carries the motion, those that are not asked too."""
-        return tuple(x for x in self.small.whole.coordinates if x not in self.small.left_out)
-
-    @property
-    def is_part(self) -> bool:
-        """Whether not all of them were asked."""
-        return len(self.small.numbers.coordinates) < len(self.moved)
-
-    def along(self, step: Mapping[Node, Any], h: Any = STEP) -> Beside:
-        """The central difference in the direction of a step of coordinates, small turns, speeds and inputs."""
-        late, early = (self.nearby.going(self.nearby.state(self._moved(step, sign * h))) for sign in (1, -1))
-        e = self.small.numbers
-        q, q1, q2 = ([(x - y) / (2 * h) for x, y in zip(*each, strict=True)] for each in self._read(late, early))
-        both = [[self._speed(going, node) for node in e.speeds] for going in (late, early)]
-        u, a = ([(x[k] - y[k]) / (2 * h) for x, y in zip(*both, strict=True)] for k in (0, 1))
-        return Beside(q, q1, q2, u, a, [step.get(w, 0) for w in e.inputs])
-
-    def _moved(self, step: Mapping[Node, Any], h: Any) -> dict[Node, Any]:
-        """Independent coordinates, speeds and inputs h further along the step."""
-        here = self.origin.state
-        given = {x: here[x] + h * d for x, d in step.items() if x not in self._turns and x not in self._spins}
-        for four in {turn.four for turn in self._turns.values()}:
-            mine = {label: turn for label, turn in self._turns.items() if turn.four == four}
-            arm, e = (1, *(step.get(label, 0) * h / 2 for label in mine)), [here[e] for e in four]
-            standing = any(turn.standing for turn in mine.values())
-            given |= dict(zip(four, _unit(_product(arm, e) if standing else _product(e, arm)), strict=True))
-        for turn in {turn.four: turn for turn in self._spins.values()}.values():
-            v = vector_of(step.get(label, 0) * h for label, own in self._spins.items() if own.four == turn.four)
-            w = apply(transposed(self._axes(turn)), v)
-            given |= {x: here[x] + d for x, d in zip(turn.speeds, w, strict=True)}
-        return given
-
-    def _axes(self, turn: SmallTurn) -> Matrix:
-        """R of the reference."""
-        return rotation_of("quaternion", tuple(self.origin.state[e] for e in turn.four))
-
-    def _speed(self, going: Going, label: Node) -> tuple[Any, Any]:
-        """A speed and its rate; about axes that stand still R_0 w, and R_0 (w_0 x w + w')."""
-        if label not in self._spins:
-            return going.state[label], going.a[label]
-        turn = self._spins[label]
-        w, rate, before = (vector_of(way[x] for x in turn.speeds) for way in (going.state, going.a, self.origin.state))
-        R = self._axes(turn)
-        return apply(R, w)[turn.axis], apply(R, plus(cross(before, w), rate))[turn.axis]
-
-    def _read(self, late: Going, early: Going) -> Iterator[tuple[DigitColumn, DigitColumn]]:
-        """Of the coordinates that are printed where they are, and their first and second rates."""
-        labels = self.moved if self.is_part else self.small.numbers.coordinates
-        readings = [[self._one(going, label) for label in labels] for going in (late, early)]
-        for order in range(3):
-            yield tuple([each[order] for each in reading] for reading in readings)  # type: ignore[misc]
-
-    def _one(self, going: Going, label: Node) -> tuple[Any, Any, Any]:
-        """A coordinate and its rates; a small turn is 2 vec(e_0* e), about axes that stand still 2 vec(e e_0*), e_0 the
-        quaternion of the reference."""
-        if label not in self._turns:
-            return going.state[label], going.q1[label], going.q2[label]
-        turn = self._turns[label]
-        four = turn.four
-        at = [[way[e] for e in four] for way in (going.state, going.q1, going.q2)]
-        home = [_conjugate([way[e] for e in four]) for way in (self.origin.state, self.origin.q1, self.origin.q2)]
-
-        def part(i: int, j: int) -> Any:
-            return 2 * (_product(at[j], home[i]) if turn.standing else _product(home[i], at[j]))[turn.axis + 1]
-
-        return part(0, 0), part(1, 0) + part(0, 1), part(2, 0) + 2 * part(1, 1) + part(0, 2)
-
-    def whole(self) -> Callable[[complex], np.ndarray]:
-        """The answers of all coordinates to forces along them, by s."""
-        small, n = self.small, len(self.moved)
-        units = [self.along({x: 1}) for x in (*self.moved, *small.whole.speeds)]
-        X, rate = (
-            np.array([[float(x) for x in (*a, *b)] for a, b in pairs]).T
-            for pairs in ([(each.q, each.q1) for each in units], [(each.q1, each.q2) for each in units])
-        )
-        A = np.linalg.solve(X.T, rate.T).T
-        pushed = np.vstack([np.zeros((n, n)), np.linalg.inv(self._masses)])
-
-        def answers(s: complex) -> np.ndarray:
-            found: np.ndarray = np.linalg.solve(s * np.eye(2 * n) - A, pushed.astype(complex))[:n]
-            return found
-
-        return answers
-
-    @property
-    def _masses(self) -> np.ndarray:
-        """The second derivative of T along the rates of the coordinates."""
-        u = self.small.whole.speeds
-        along = [[self.energy_along({x: 1, y: 1} if x is not y else {x: 1})[:2] for y in u] for x in u]
-        square = [[float(one[0]) for one in row] for row in along]
-        n = range(len(u))
-        M = np.array(
-            [[square[i][i] if i == j else (square[i][j] - square[i][i] - square[j][j]) / 2 for j in n] for i in n]
-        )
-        E = np.array([[float(x) for x in along[i][i][1]] for i in n]).T
-        back = np.linalg.inv(E)
-        found: np.ndarray = back.T @ M @ back
-        return found
-
-    def energy_along(self, step: Mapping[Node, Any]) -> tuple[Any, DigitColumn, DigitColumn]:
-        """(second difference of T, the rates of coordinates and the speeds along a step of the speeds)."""
-        T, e = self.small.first.equations.T, self.small.numbers
-        ways = [self._rates(self.nearby.state(self._moved(step, sign))) for sign in (1, -1)]
-        here, late, early = (self.nearby.at((T,), way.state)[0] for way in (self.origin, *ways))
-        labels = self.moved if self.is_part else e.coordinates
-        q1 = [
-            (x - y) / 2 for x, y in zip(*([self._one(way, label)[1] for label in labels] for way in ways), strict=True)
-        ]
-        u = [
-            (x - y) / 2
-            for x, y in zip(*([self._speed(way, node)[0] for node in e.speeds] for way in ways), strict=True)
-        ]
-        return late + early - 2 * here, q1, u
-
-    def _rates(self, state: State) -> Going:
-        """The rates of the coordinates at a state; of accelerations nothing is asked."""
-        symbols, scope = self.nearby.equations.symbols, self.nearby.equations.system.scope
-        q1 = dict(zip(symbols.q, self.nearby.at(scope.rates, state), strict=True))
-        return Going(state, q1, dict.fromkeys(symbols.q, 0), dict.fromkeys(symbols.u, 0))
-
-
-def _product(a: DigitColumn, b: DigitColumn) -> list[Any]:
-    """Of quaternions."""
-    a0, a1, a2, a3 = a
-    b0, b1, b2, b3 = b
-    return [
-        a0 * b0 - a1 * b1 - a2 * b2 - a3 * b3,
-        a0 * b1 + a1 * b0 + a2 * b3 - a3 * b2,
-        a0 * b2 - a1 * b3 + a2 * b0 + a3 * b1,
-        a0 * b3 + a1 * b2 - a2 * b1 + a3 * b0,
-    ]
-
-
-def _conjugate(e: DigitColumn) -> list[Any]:
-    return [e[0], -e[1], -e[2], -e[3]]
-
-
-def _unit(e: DigitColumn) -> list[Any]:
-    size = fifty_digits().functions["sqrt"](sum(x * x for x in e))
-    return [x / size for x in e]
 
 
 # -- the matrices --------------------------------------------------------------------------------------------------

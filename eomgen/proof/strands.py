@@ -14,7 +14,7 @@ from functools import cached_property
 from itertools import pairwise
 from typing import Any
 
-from eomgen.mechanics.bodies.loads import SystemScene
+from eomgen.mechanics.bodies.system_scene import SystemScene
 from eomgen.mechanics.equations.system import System
 from eomgen.model.constraints.meeting import Thread
 from eomgen.proof.in_numbers import InNumbers, Pushes, add_push, direction_at, pushed_otherwise, pushes_of

@@ -18,7 +18,7 @@ from eomgen.mechanics.balance.balance_solution import values_at_a_state
 from eomgen.mechanics.balance.friction import equations_of_motion
 from eomgen.mechanics.balance.unknown_loads import still
 from eomgen.mechanics.bodies.contact_modes import ContactModes
-from eomgen.mechanics.bodies.loads import start_values, with_unit_quaternions
+from eomgen.mechanics.bodies.system_scene import start_values, with_unit_quaternions
 from eomgen.mechanics.constraints.freedom import freedoms
 from eomgen.mechanics.constraints.ties import holds_identically
 from eomgen.mechanics.equations.equations_of_motion import EquationsOfMotion

@@ -30,11 +30,11 @@ from eomgen.questions.runs import Runs
 from eomgen.questions.simulator import SAMPLES, KnownEquations, Simulator
 from eomgen.records import dataclass, with_fields
 from eomgen.simulation.compiled_runs import marched
-from eomgen.simulation.compiled_steps import BATCHED
 from eomgen.simulation.configuration import Configuration, has_phases
 from eomgen.simulation.integrate import drift_of, instants_of, refuse_bad_run
 from eomgen.simulation.integrator import ended_words, reached_words
 from eomgen.simulation.many_starts import ManyStarts
+from eomgen.simulation.march import BATCHED
 from eomgen.simulation.phase_model import PhaseModel
 from eomgen.simulation.phase_models import one_phase
 from eomgen.simulation.solvers import AUTO, TAYLOR, breakpoints_of

@@ -6,7 +6,7 @@ import math
 from collections.abc import Sequence
 
 from eomgen.mechanics.bodies.kinematics import BodyLink
-from eomgen.mechanics.bodies.loads import SystemScene
+from eomgen.mechanics.bodies.system_scene import SystemScene
 from eomgen.mechanics.equations.system import System
 from eomgen.model.driven import driven_coordinates, driving_ties
 from eomgen.scene.bodies import parameters_as_drawn

@@ -7,7 +7,7 @@ from itertools import pairwise
 from typing import Any
 
 from eomgen.mechanics.bodies.kinematics import GROUND, BodyLink, ground_place
-from eomgen.mechanics.bodies.loads import SystemScene
+from eomgen.mechanics.bodies.system_scene import SystemScene
 from eomgen.mechanics.equations.system import System
 from eomgen.mechanics.structures.blocks import members_of
 from eomgen.model.constraints.meeting import (

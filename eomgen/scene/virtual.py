@@ -20,7 +20,7 @@ from eomgen.codegen.program import program_of
 from eomgen.codegen.rhs import compiled
 from eomgen.mechanics.balance.unit_wrenches import Axes, Effect
 from eomgen.mechanics.bodies.kinematics import BodyLink
-from eomgen.mechanics.bodies.loads import SystemScene
+from eomgen.mechanics.bodies.system_scene import SystemScene
 from eomgen.mechanics.equations.system import System
 from eomgen.mechanics.statics.two_ways import StaticReaction
 from eomgen.mechanics.statics.virtual_work import WorkEquation

@@ -15,9 +15,10 @@ import numpy as np
 
 from eomgen.codegen.batching import in_threads, pieces_of
 from eomgen.records import dataclass
-from eomgen.simulation.compiled_steps import CompiledSteps, library_of_march
+from eomgen.simulation.compiled_steps import CompiledSteps
 from eomgen.simulation.constraint_rank import RankLookout
 from eomgen.simulation.integrator import Stepping
+from eomgen.simulation.march import library_of_march
 from eomgen.simulation.phase_model import PhaseModel
 from eomgen.simulation.singular import vanishing_after
 from eomgen.simulation.singular_crossing import NEARNESS

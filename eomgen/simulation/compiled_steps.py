@@ -7,162 +7,37 @@ in a step and no singular position near it. Of the step at which it stops nothin
 from __future__ import annotations
 
 import ctypes
-import functools
 import time
-from collections.abc import Callable
-from importlib import resources
 from itertools import accumulate
 from typing import Any, Protocol
 
 import numpy as np
 from numpy.polynomial.polynomial import polyval
 
-from eomgen.codegen.build import function_of, library, of_this_machine
 from eomgen.codegen.rhs import RightHandSide
 from eomgen.codegen.targets.base import Address
-from eomgen.codegen.targets.c import c_together
 from eomgen.codegen.taylor import order_for
-from eomgen.simulation import constraint_drift, constraint_rank, event_location
+from eomgen.simulation import event_location
 from eomgen.simulation.constraint_drift import DriftCorrection, Rows
 from eomgen.simulation.constraint_rank import RankLookout
 from eomgen.simulation.event_location import EventSearch
+from eomgen.simulation.march import (
+    MOST_AT_ONCE,
+    SIZE,
+    March,
+    MarchRows,
+    compiled_functions,
+    function_at,
+    library_of_march,
+)
 from eomgen.simulation.slopes import ExactSlope
-from eomgen.simulation.solvers import AUTO, FORGOTTEN, HELD_SHORT, SEEN, TAYLOR, LateSlope, stiff_words
-from eomgen.symbolic.numeric.tolerances import DIFFERENCE_STEP, ITERATED, NEARLY_SINGULAR, PIVOT, ROUNDING, SOLVED
+from eomgen.simulation.solvers import AUTO, SEEN, TAYLOR, LateSlope, stiff_words
 
-SAFETY, SMALLEST, LARGEST = 0.9, 0.2, 10.0  # factors between two step sizes, as scipy takes them
 COMPILED = (AUTO, "DOP853", "Radau", TAYLOR)  # the methods that there are in C
-SWEEPS = 30  # of turning pairs of rows; a handful does
-MOST_AT_ONCE, FEW = 1024, 8  # steps in a call; in the first
-NEWTON_STEPS = 6  # of Radau's method, as scipy's
-EASY = HELD_SHORT / 2  # h |lambda| of implicit steps with which DOP853 would go as far
+FEW = 8  # steps in the first call
 A_CALL = 0.03  # [s] of a call: after it Python looks whether somebody has lost patience
 BY_SERIES = 2  # what dense_of tells
 _GOES_ON, _LOOK, _REACHED, _TOO_SMALL, _STIFF = range(5)
-
-_CONSTANTS = {
-    "MOST_SWEEPS": SWEEPS,
-    "SQUARE": ROUNDING,
-    "GAP_ROUNDING": constraint_drift.ROUNDING,
-    "ROW_ROUNDING": ROUNDING,
-    "DAMPING": NEARLY_SINGULAR**2,
-    "PUT_BACK_STEPS": constraint_drift.STEPS,
-    "PUT_BACK_FAR": constraint_drift.FAR,
-    "LOST": constraint_drift.LOST,
-    "SLOW": constraint_drift.SLOW,
-    "LARGEST_GROWTH": LARGEST,
-    "SMALLEST_GROWTH": SMALLEST,
-    "SAFETY": SAFETY,
-    "SAME_INSTANT": SOLVED,
-    "RESOLVED": event_location.RESOLVED,
-    "EDGE": event_location.EDGE,
-    "TOUCHES": ITERATED,
-    "STEEP": constraint_rank.STEEP,
-    "ARMED": constraint_rank.ARMED,
-    "MOST_AT_ONCE": MOST_AT_ONCE,
-    "SLOPE_STEP": DIFFERENCE_STEP,
-    "REGULAR_PIVOT": PIVOT,
-    "HELD_SHORT": HELD_SHORT,
-    "EASY": EASY,
-    "FORGOTTEN": FORGOTTEN,
-    "RADAU_STEPS": NEWTON_STEPS,
-}
-
-BATCHED = {name: _CONSTANTS[name] for name in ("LARGEST_GROWTH", "SMALLEST_GROWTH", "SAFETY", "SAME_INSTANT")}
-BATCHED |= {"HELD_SHORT": HELD_SHORT, "FORGOTTEN": FORGOTTEN, "SEEN": SEEN}  # what batch.c is told
-
-_SIZE, _REAL, _AT = ctypes.c_size_t, ctypes.c_double, ctypes.c_void_p
-
-
-class _Function(ctypes.Structure):
-    _fields_ = tuple((name, _AT) for name in ("f", "p", "c", "inputs"))
-
-
-class _Rows(ctypes.Structure):
-    _fields_ = (("f", _Function), ("k", _SIZE), ("n", _SIZE))
-
-
-def _fields(kind: Any, names: str) -> list[tuple[str, Any]]:
-    return [(name, kind) for name in names.split()]
-
-
-class _March(ctypes.Structure):
-    """`struct march` of march.c, in its order."""
-
-    _fields_ = (
-        ("n", _SIZE),
-        ("rate", _Function),
-        *_fields(_REAL, "t t_old h h_old end rtol atol"),
-        *_fields(_AT, "x x_old f K F room stops"),
-        *_fields(_SIZE, "n_stops evaluations is_dense"),
-        ("instants", _AT),
-        *_fields(_SIZE, "n_instants next"),
-        *_fields(_AT, "rows track_t track_x"),
-        ("tracked", _SIZE),
-        ("spheres", _AT),
-        *_fields(_SIZE, "n_spheres holds"),
-        ("gaps", _Function),
-        *_fields(_SIZE, "n_gaps placed coordinates speeds"),
-        ("places", _Rows),
-        ("rates", _Rows),
-        ("work", _AT),
-        *_fields(_SIZE, "n_events is_blind"),
-        ("events", _Function),
-        *_fields(_AT, "floors either signs largest looks armed"),
-        ("is_near_watched", _SIZE),
-        ("determinants", _Function),
-        ("ties", _Function),
-        *_fields(_SIZE, "n_determinants n_rows n_columns rank"),
-        *_fields(_REAL, "near before"),
-        ("slopes", _REAL * constraint_rank.REMEMBERED),
-        *_fields(_SIZE, "n_slopes is_armed"),
-        *_fields(_AT, "lengths sizes"),
-        *_fields(_SIZE, "is_implicit is_auto dense_of stiff_seen easy_seen most_seen implicit_steps"),
-        ("slope", _Function),
-        *_fields(_SIZE, "has_slope slope_speeds slope_rows has_slope_values is_fresh has_lu"),
-        *_fields(_REAL, "fastest h_older error_old"),
-        *_fields(_AT, "jac real both Z pivots"),
-        ("energies", _Function),
-        ("keeps_energy", _SIZE),
-        *_fields(_REAL, "energy most_kinetic"),
-        ("order", _SIZE),
-        *_fields(_AT, "series along X X_old W"),
-        ("has_series", _SIZE),
-    )
-
-
-@functools.cache
-def library_of_march() -> tuple[Any, Any, Any, Any, Any]:
-    """(begin, march, dense, look, runs) of march.c, compiled."""
-    defined = [f"#define {name} {value!r}" for name, value in _CONSTANTS.items()]
-    here = resources.files("eomgen.simulation")
-    texts = [resources.files("eomgen.codegen") / "dop853.c", here / "march.c", here / "radau.c"]
-    text = "\n".join([*defined, *(text.read_text(encoding="utf-8") for text in texts)])
-    made = library(text, by=of_this_machine())
-    begin, march, dense, look, runs = (
-        function_of(made, name) for name in ("march_begin", "march", "march_dense", "march_look", "march_runs")
-    )
-    begin.argtypes, begin.restype = [_AT], None
-    march.argtypes, march.restype = [_AT, _AT], ctypes.c_int
-    dense.argtypes, dense.restype = [_AT], None
-    look.argtypes, look.restype = [_AT, _SIZE, _AT, _AT], None
-    runs.argtypes, runs.restype = [_AT, _AT, _SIZE], ctypes.c_int
-    return begin, march, dense, look, runs
-
-
-@functools.lru_cache(maxsize=256)
-def _together(functions: tuple[RightHandSide, ...]) -> tuple[Callable[[np.ndarray], Address], ...]:
-    """Functions of the state in C, whatever they run in otherwise: p -> where each lies."""
-    compiled = c_together([function.program for function in functions])
-
-    def of(each: Any) -> Callable[[np.ndarray], Address]:
-        def found(p: np.ndarray) -> Address:
-            address: Address = each.address(each.constants(p))
-            return address
-
-        return found
-
-    return tuple(map(of, compiled))
 
 
 Watched = tuple[DriftCorrection, EventSearch | None, Any]
@@ -214,7 +89,7 @@ class CompiledSteps:
         self._begin, self._march, self._dense, self._look, _ = library_of_march()
         n = len(x0)
         self._fun, at = f, f.address
-        self.placed: list[tuple[int, Address]] = [(_March.rate.offset, at)]
+        self.placed: list[tuple[int, Address]] = [(March.rate.offset, at)]
         self._kept: list[Any] = [f]
         sizes = {"x": n, "x_old": n, "f": n, "F": 7 * n, "K": 16 * n, "room": 3 * n}
         sizes |= {"track_t": MOST_AT_ONCE, "track_x": MOST_AT_ONCE * n, "pivots": 2 * n}
@@ -224,8 +99,8 @@ class CompiledSteps:
         ends = list(accumulate(sizes.values()))
         numbers = np.zeros(ends[-1])
         first = self._put(numbers)
-        m = self._m = self.struct = _March(
-            n=n, rate=_at(at), t=span[0], t_old=span[0], end=span[1], rtol=how.rtol, atol=how.atol
+        m = self._m = self.struct = March(
+            n=n, rate=function_at(at), t=span[0], t_old=span[0], end=span[1], rtol=how.rtol, atol=how.atol
         )
         parts = {}
         for (name, size), end in zip(sizes.items(), ends, strict=True):
@@ -240,7 +115,7 @@ class CompiledSteps:
         self._search: EventSearch | None = None
         self._lookout: RankLookout | None = None
         self._few, self.status, self.t_bound = FEW, "running", span[1]
-        self._most = _SIZE(0)
+        self._most = SIZE(0)
         self._watch(*watched)
         self._slope, m.most_seen = slope, SEEN
         self.stiff_from: float | None = None
@@ -268,7 +143,7 @@ class CompiledSteps:
             for name, rows in (("places", projection.positions), ("rates", projection.speeds)):
                 if rows is not None:
                     functions.append((name, rows.function, projection.p))
-                    setattr(m, name, _Rows(k=rows.k, n=rows.n))
+                    setattr(m, name, MarchRows(k=rows.k, n=rows.n))
         if hold.level is not None:
             level = hold.level
             functions.append(("energies", level.function, level.p))
@@ -295,16 +170,16 @@ class CompiledSteps:
         m.is_blind = blind
         if search is not None and not blind:
             search.seen = self._seen
-        made = _together(tuple(function for _, function, _ in functions)) if functions and not blind else ()
+        made = compiled_functions(tuple(function for _, function, _ in functions)) if functions and not blind else ()
         for (name, _, p), address in zip(functions, made, strict=False):
             found = address(p)
             self._kept.append(found)
             place = getattr(m, name)
-            self.placed.append((getattr(_March, name).offset, found))
-            if isinstance(place, _Rows):
-                place.f = _at(found)
+            self.placed.append((getattr(March, name).offset, found))
+            if isinstance(place, MarchRows):
+                place.f = function_at(found)
             else:
-                setattr(m, name, _at(found))
+                setattr(m, name, function_at(found))
         self._work = self._room(projection)
         self._most_rows = max(m.places.k, m.places.n, m.rates.k, m.rates.n)
         m.work = self._put(np.zeros(self._work))
@@ -347,10 +222,10 @@ class CompiledSteps:
         if not m.jac:
             m.jac, m.real, m.both, m.Z = (self._put(np.zeros(k)) for k in (n * n, n * n, 4 * n * n, 7 * n))
             if isinstance(slope, ExactSlope):
-                (made,) = _together((slope.function,))
+                (made,) = compiled_functions((slope.function,))
                 found = made(slope.p)
                 self._kept.append(found)
-                m.slope, m.has_slope, m.slope_speeds, m.slope_rows = _at(found), 1, slope.n, slope.k
+                m.slope, m.has_slope, m.slope_speeds, m.slope_rows = function_at(found), 1, slope.n, slope.k
                 s = slope.n + slope.k
                 m.work = self._put(np.zeros(max(self._work, len(slope.function.program.outputs) + s * s)))
                 m.pivots = self._put(np.zeros(max(3 * n, s, self._most_rows), dtype=np.int32))
@@ -506,7 +381,3 @@ def _aligned(size: int) -> np.ndarray:
     """So many numbers, in whole lines of the cache: vectors of them lie across none."""
     room = np.zeros(size + 8)
     return room[-(room.__array_interface__["data"][0] // 8) % 8 :][:size]
-
-
-def _at(address: Address) -> _Function:
-    return _Function(f=address.evaluate, p=address.p, c=address.c, inputs=None)

@@ -15,7 +15,7 @@ import numpy as np
 
 from eomgen.codegen.program import program_of
 from eomgen.codegen.rhs import RightHandSide, compiled
-from eomgen.mechanics.bodies.loads import start_values, with_unit_quaternions
+from eomgen.mechanics.bodies.system_scene import start_values, with_unit_quaternions
 from eomgen.mechanics.constraints.elimination import dependent_coordinates
 from eomgen.mechanics.constraints.freedom import rank_of_ties
 from eomgen.mechanics.constraints.ties import rows_of_tie

@@ -17,7 +17,7 @@ import numpy as np
 from eomgen.codegen.program import program_of
 from eomgen.codegen.rhs import RightHandSide, compiled
 from eomgen.codegen.spheres import on_spheres, spheres_of
-from eomgen.mechanics.bodies.loads import start_value
+from eomgen.mechanics.bodies.system_scene import start_value
 from eomgen.mechanics.constraints.closure import CLOSING, gaps_of, norms_of
 from eomgen.mechanics.equations.system import System
 from eomgen.mechanics.initial_state.initial_state import fixed_by_position, start_speeds

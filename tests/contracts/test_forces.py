@@ -11,7 +11,8 @@ from moving import at, equal, state_of, written
 import eomgen
 from eomgen.errors import NotYet
 from eomgen.mechanics.bodies.armature import armature_mass
-from eomgen.mechanics.bodies.loads import Loads, SystemScene, body_wrench, in_ground_axes, joint_wrenches
+from eomgen.mechanics.bodies.loads import Loads, body_wrench, in_ground_axes, joint_wrenches
+from eomgen.mechanics.bodies.system_scene import SystemScene
 from eomgen.mechanics.equations.system import System
 from eomgen.mechanics.equations.work import effort_row, force_row, from_potential, generalized_forces, load_row, summed
 from eomgen.mechanics.formulations import projection

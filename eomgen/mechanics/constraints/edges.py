@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Container
 
 from eomgen.mechanics.bodies.kinematics import Motion
-from eomgen.mechanics.bodies.loads import SystemScene
+from eomgen.mechanics.bodies.system_scene import SystemScene
 from eomgen.model.constraints.row import Edge
 from eomgen.symbolic.expression.graph import Scalar
 from eomgen.symbolic.expression.rational import Fraction

@@ -19,8 +19,8 @@ from typing import Any
 import numpy as np
 
 from eomgen.errors import DerivationError
-from eomgen.mechanics.bodies.loads import SystemScene
 from eomgen.mechanics.bodies.scope import primitive
+from eomgen.mechanics.bodies.system_scene import SystemScene
 from eomgen.mechanics.constraints.closure import generic_state
 from eomgen.mechanics.constraints.ties import Row, Ties, holds_identically
 from eomgen.records import dataclass

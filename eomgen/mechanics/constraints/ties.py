@@ -18,8 +18,9 @@ from typing import Any
 from eomgen.errors import DerivationError, ModelError, NotYet
 from eomgen.mechanics.bodies.contact_modes import CLOSED, ContactMode, ContactModes, friction_factor, rows_in_mode
 from eomgen.mechanics.bodies.kinematics import GROUND, BodyLink, Motion, slide_of
-from eomgen.mechanics.bodies.loads import SystemScene, body_wrench, in_ground_axes, start_values
+from eomgen.mechanics.bodies.loads import body_wrench, in_ground_axes
 from eomgen.mechanics.bodies.simplify import shorter_row
+from eomgen.mechanics.bodies.system_scene import SystemScene, start_values
 from eomgen.model.constraints.row import TieRow
 from eomgen.model.forces.load import PointForce, Push
 from eomgen.model.unbuilt import unbuilt_ties

@@ -13,8 +13,8 @@ from typing import Any
 import numpy as np
 
 from eomgen.errors import DerivationError
-from eomgen.mechanics.bodies.loads import start_value
 from eomgen.mechanics.bodies.places import Located, places_of
+from eomgen.mechanics.bodies.system_scene import start_value
 from eomgen.mechanics.equilibria.static_equations import StaticEquations
 from eomgen.records import dataclass
 from eomgen.symbolic.exact.normal_form import readable_all, simplest

@@ -14,7 +14,7 @@ import numpy as np
 
 from eomgen.errors import UsageError
 from eomgen.mechanics.bodies.kinematics import Motion
-from eomgen.mechanics.bodies.loads import start_value
+from eomgen.mechanics.bodies.system_scene import start_value
 from eomgen.mechanics.equations.system import System
 from eomgen.model.values import first_guesses, start_values
 from eomgen.records import dataclass

@@ -17,8 +17,8 @@ from typing import Any
 import numpy as np
 
 from eomgen.errors import DerivationError
-from eomgen.mechanics.bodies.loads import start_values
 from eomgen.mechanics.bodies.places import Located
+from eomgen.mechanics.bodies.system_scene import start_values
 from eomgen.mechanics.equations.system import System
 from eomgen.mechanics.equilibria.closed_rest import ClosedForms
 from eomgen.mechanics.equilibria.coordinates_at_rest import Chosen, chosen_coordinates, holds_velocities, unheld

@@ -16,7 +16,7 @@ from typing import Any
 import numpy as np
 
 from eomgen.errors import DerivationError
-from eomgen.mechanics.bodies.loads import start_values
+from eomgen.mechanics.bodies.system_scene import start_values
 from eomgen.mechanics.equations.system import System, system_of
 from eomgen.mechanics.equations.work import generalized_forces, powered_forces
 from eomgen.mechanics.first_integrals.closed_instant import position_equations

@@ -5,14 +5,8 @@ from __future__ import annotations
 from eomgen.errors import DerivationError
 from eomgen.mechanics.bodies.inertia import armature_energy, body_energies, kinetic_energy
 from eomgen.mechanics.bodies.kinematics import velocity_of
-from eomgen.mechanics.bodies.loads import (
-    Applied,
-    JointEffort,
-    SystemScene,
-    in_body_axes,
-    in_ground_axes,
-    joint_wrenches,
-)
+from eomgen.mechanics.bodies.loads import Applied, JointEffort, in_body_axes, in_ground_axes, joint_wrenches
+from eomgen.mechanics.bodies.system_scene import SystemScene
 from eomgen.mechanics.equations.system import System
 from eomgen.model.forces.load import Couple, GeneralizedForce, Load, PointForce, UniformField
 from eomgen.symbolic.expression.derivative import depends_on, tangent

@@ -14,7 +14,7 @@ from typing import Any
 
 import numpy as np
 
-from eomgen.mechanics.bodies.loads import SystemScene
+from eomgen.mechanics.bodies.system_scene import SystemScene
 from eomgen.mechanics.constraints.closure import gaps_of, movable
 from eomgen.mechanics.constraints.consistency import is_guess
 from eomgen.mechanics.constraints.elimination import dependent_coordinates

@@ -11,8 +11,8 @@ from typing import Any
 import numpy as np
 
 from eomgen.errors import DerivationError
-from eomgen.mechanics.bodies.loads import start_values, with_unit_quaternions
 from eomgen.mechanics.bodies.scope import Scope
+from eomgen.mechanics.bodies.system_scene import start_values, with_unit_quaternions
 from eomgen.mechanics.constraints.consistency import is_guess
 from eomgen.mechanics.equations.system import System
 from eomgen.mechanics.initial_state.initial_state import fixed_by_position, start_speeds

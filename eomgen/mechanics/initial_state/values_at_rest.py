@@ -7,9 +7,9 @@ from random import Random
 from typing import Any
 
 from eomgen.errors import DerivationError
-from eomgen.mechanics.bodies.loads import start_values, with_unit_quaternions
 from eomgen.mechanics.bodies.places import Located, places_of
 from eomgen.mechanics.bodies.scope import Scope
+from eomgen.mechanics.bodies.system_scene import start_values, with_unit_quaternions
 from eomgen.mechanics.constraints.closure import gaps_of, of_50_digits
 from eomgen.mechanics.equations.system import System
 from eomgen.mechanics.initial_state.initial_state import fixed_by_position, start_state

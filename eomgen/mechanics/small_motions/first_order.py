@@ -10,7 +10,7 @@ from typing import Any
 import numpy as np
 
 from eomgen.mechanics.balance.friction import equations_of_motion
-from eomgen.mechanics.bodies.loads import start_values
+from eomgen.mechanics.bodies.system_scene import start_values
 from eomgen.mechanics.equations.equations_of_motion import EquationsOfMotion
 from eomgen.mechanics.equations.system import System
 from eomgen.mechanics.equations.wellposed import refuse_massless

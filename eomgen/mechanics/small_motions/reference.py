@@ -9,8 +9,8 @@ from random import Random
 from typing import Any
 
 from eomgen.errors import DerivationError
-from eomgen.mechanics.bodies.loads import start_values
 from eomgen.mechanics.bodies.places import Located, places_of
+from eomgen.mechanics.bodies.system_scene import start_values
 from eomgen.mechanics.constraints.ties import Row
 from eomgen.mechanics.equations.equations_of_motion import EquationsOfMotion
 from eomgen.mechanics.equations.system import System

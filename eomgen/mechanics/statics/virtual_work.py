@@ -11,7 +11,7 @@ from collections.abc import Mapping
 
 from eomgen.mechanics.balance.named_reactions import NamedReaction, named_reactions
 from eomgen.mechanics.balance.unit_wrenches import Effect, efforts_of
-from eomgen.mechanics.bodies.loads import SystemScene
+from eomgen.mechanics.bodies.system_scene import SystemScene
 from eomgen.mechanics.structures.blocks import turning_by_one
 from eomgen.mechanics.structures.structure import Structure
 from eomgen.mechanics.structures.velocity_plan import VelocityPlan
