@@ -8,6 +8,7 @@ import random
 import pytest
 import sympy
 from click.testing import CliRunner
+from cpu_limit import cpu_limit
 from hand_equations import MODELS, ByHand, named, right_of, wrong_of
 from human_errors import nearly_right_answers, right_answers, wrong_answers
 
@@ -114,7 +115,7 @@ def test_what_is_wrong_is_wrong_and_mostly_named(name):
         ("simple_pendulum", "T = m*l^2*theta'^2", "factor", "translation of bob"),
         ("simple_pendulum", "V = m*g*l*(1 + cos(theta))", "sign", "weight of bob"),
         ("simple_pendulum", "frequency(1) = sqrt(g/l)/(2*pi)", "unit", "factor 1/(2*pi)"),
-        ("simple_pendulum", "theta = cos(sqrt(g/l)*t)", "other", "do not hold with it"),
+        ("simple_pendulum", "theta = cos(sqrt(g/l)*t)", "other", "small angle"),
         ("double_pendulum", "Q(theta1) = -(m1 + m2)*g*l1*sin(theta1)", "wrong_point", "arm1.end"),
         ("double_pendulum", "R_arm1_y = (m1 + m2)*g", "missing_term", "in motion alone"),
         ("double_pendulum", "omega(arm1) = theta1' + theta2'", "extra_term", "theta2'"),
@@ -313,6 +314,9 @@ def test_another_kind_is_refused():
         ("2k_ta_1 = 3 kN", "2*kt*a1 = 3*(1000)"),
         (r"\frac{d}{dt}\left(m r^2\dot\theta\right) = 0", "rate_of(m*r^(2)*theta') = 0"),
         (r"\[ x(t) = r. \]", "x = r"),
+        (r"x = le^{-kt/m}", "x = l*exp( - k*t/m)"),
+        (r"x = l\cos\sqrt{\frac{k}{m}}\,t", "x = l*cos(sqrt(((k)/(m)))*t)"),
+        (r"\dfrac{\mathrm d}{\mathrm dt}\left(m\dot x\right) = 0", "rate_of(m*x') = 0"),
     ],
 )
 def test_papers_and_programs_are_read(written, text):
@@ -421,3 +425,105 @@ def test_what_is_driven_is_known_as_a_function_of_time():
 def test_right_equations_of_papers_are_right():
     some = random.Random(3).sample(right_answers(), 25)
     assert [x.text for x in some if not x.verdict()] == []
+
+
+# -- other systems ----------------------------------------------------------------------------------
+
+SHAKEN = """
+eomgen = 1
+space = "plane"
+[parameters]
+m = 0.4
+l = 0.7
+r = 0.02
+a = 0.05
+W = 40
+g = 9.81
+[coordinates]
+y = { motion = "a*cos(W*t)" }
+theta = 0.4
+s = { start = 0, speed = 2 }
+[bodies.bob]
+shape = { kind = "particle", mass = "m" }
+joint = { kind = "placed", at = ["l*sin(theta)", "y - l*cos(theta)"] }
+[bodies.roller]
+shape = { kind = "disc", mass = "m", radius = "r" }
+joint = { kind = "placed", at = ["s", "r"], angle = "-s/r" }
+[forces.air]
+kind = "generalized"
+coordinate = "s"
+value = "-m*W*s'"
+[forces.weight]
+kind = "gravity"
+acceleration = [0, "-g"]
+"""
+
+
+@pytest.mark.parametrize(
+    ("equation", "words"),
+    [
+        ("l*theta'' + (g - y'')*sin(theta) = 0", ["y'", "wrong sign"]),
+        ("T = m*(l^2*theta'^2 + y'^2)/2 + 3/4*m*s'^2", ["the product y'*theta'", "missing"]),
+        ("7/5*s'' = -W*s'", ["that of a solid ball", "1/2*m*r^2"]),
+        ("m*s'' = m*W*s'", ["the rotation of roller", "is missing", "air", "wrong sign"]),
+        ("3/2*s'' = -W^2*s'", ["W"]),
+        ("s' = 2*exp(-W*t)", ["the rotation of roller", "is missing"]),
+    ],
+)
+def test_a_mistake_is_told_by_the_names_of_its_author(equation, words):
+    """y'' where y is driven, other shapes, two mistakes of one freedom, a rate as a function of time."""
+    found = eomgen.verify(eomgen.loads(SHAKEN), equation)
+    assert found.verdict == "wrong" and all(word in found.hint() for word in words), found.hint()
+
+
+@pytest.mark.parametrize(
+    "equation",
+    ["s' = 2*e^(-2/3*W*t)", r"l\ddot\varphi = (g + \ddot y)\sin\varphi", "s' = 2 - 2/3*W*s"],
+)
+def test_rates_in_time_and_driven_places_are_judged(equation):
+    """A rate by its integral in time; renamed beside a driven coordinate, where places of rest are of another graph."""
+    assert eomgen.verify(eomgen.loads(SHAKEN), equation)
+
+
+def test_an_equation_of_rest_beside_what_turns_is_decided():
+    """(m + M) g = m l W^2 cos(theta): cos(psi)^2 + sin(psi)^2 does not depend on the driven psi."""
+    model = eomgen.loads(
+        """
+        eomgen = 1
+        space = "space"
+        parameters = { m = 1, l = 0.3, W = 12, g = 9.81 }
+        coordinates = { psi = { rate = "W" }, theta = 0.7 }
+        bodies.ball.shape = { kind = "particle", mass = "m" }
+        bodies.ball.joint.kind = "placed"
+        bodies.ball.joint.at = ["l*sin(theta)*cos(psi)", "l*sin(theta)*sin(psi)", "-l*cos(theta)"]
+        forces.weight = { kind = "gravity", acceleration = [0, 0, "-g"] }
+        """.replace("        ", "")
+    )
+    assert eomgen.verify(model, "cos(theta) = g/(l*W^2)")
+    assert "W stands where W^2 is meant" in eomgen.verify(model, "cos(theta) = g/(l*W)").hint()
+
+
+@pytest.mark.parametrize(
+    ("equation", "words"),
+    [
+        ("x' = -r*sin(theta)*theta' + l*sin(phi)*phi'", ["l*sin(phi)*phi'", "wrong sign"]),
+        ("phi' = -r*theta'/(l*cos(phi))", ["cos(theta)", "left out"]),
+    ],
+)
+def test_rates_that_ties_allow_are_explained_by_their_terms(equation, words):
+    """J u + sigma = 0 of a mechanism in all rates, dependent ones by their names."""
+    found = verdict("slider_crank", equation)
+    assert found.verdict == "wrong" and all(word in found.hint() for word in words), found.hint()
+
+
+def test_thirty_freedoms_are_explained_by_the_row_concerned():
+    """m x5'' + k (x5 - x4) - k (x6 - x5) = 0 in a row of thirty masses, in two seconds of work."""
+    text = ["eomgen = 1", 'space = "plane"', "parameters = { m = 1, k = 100 }"]
+    text += ["[coordinates]", *(f"x{i} = 0" for i in range(1, 31))]
+    for i in range(1, 31):
+        on, way = (f'on = "b{i - 1}", ', f"x{i} - x{i - 1}") if i > 1 else ("", "x1")
+        joint = f'kind = "prismatic", {on}axis = [1, 0], displacement = "{way}", stiffness = "k"'
+        text += [f"[bodies.b{i}]", 'mass = "m"', f"joint = {{ {joint} }}"]
+    with cpu_limit(5):
+        found = eomgen.verify(eomgen.loads("\n".join(text)), "m*x5'' + k*(x5 - x4) - k*(x5 - x6) = 0")
+    assert kinds(found) == ["sign"] and found.causes[0].body == "b6"

@@ -10,6 +10,7 @@ from functools import cached_property
 from eomgen.documents.equation_steps import multiplier_forces
 from eomgen.errors import DerivationError, ExpressionError, MissingValues, ModelError
 from eomgen.judge.contributions import Contributions
+from eomgen.judge.corruptions import Corruptions
 from eomgen.judge.decision import Follows, combination, is_zero_everywhere, linear_row
 from eomgen.judge.reading import MULTIPLIER, HandEquation, Reading, side_value
 from eomgen.mechanics.equations.equations_of_motion import EquationsOfMotion
@@ -30,7 +31,8 @@ from eomgen.records import dataclass
 from eomgen.simulation.configuration import has_phases
 from eomgen.symbolic.expression.derivative import depends_on, substituted
 from eomgen.symbolic.expression.expressions import Call, Expression, Reference, parse
-from eomgen.symbolic.expression.graph import Node, Scalar
+from eomgen.symbolic.expression.functions import inner
+from eomgen.symbolic.expression.graph import Node, Scalar, is_zero
 from eomgen.symbolic.expression.node import ScalarRow
 from eomgen.symbolic.print.text import to_text
 
@@ -76,6 +78,38 @@ class Case:
             return None
         return replace(self, begun=True)
 
+    @cached_property
+    def loosened(self) -> Case | None:
+        """The model with what is driven or dependent as free as the rest, so that its rates stand by their names.
+
+        None where nothing is.
+        """
+        coordinates = self.model.coordinates
+        if not any(q.driven or q.dependent for q in coordinates.values()):
+            return None
+        free = {
+            name: replace(q, motion=None, rate=None, acceleration=None, dependent=False)
+            for name, q in coordinates.items()
+        }
+        with suppress(ModelError):
+            return Case(replace(self.model, coordinates=Table(free), outputs=Table()), self.at_rest)
+        return None
+
+    @property
+    def steady(self) -> frozenset[str]:
+        """The accelerations of driven coordinates that are 0."""
+        names = self.system.scope.names
+        return frozenset(f"{q}''" for q, x in self.model.coordinates.items() if x.driven and is_zero(names[f"{q}''"]))
+
+    @cached_property
+    def tied_rates(self) -> tuple[ScalarRow, ScalarRow]:
+        """J u + sigma and J a + gamma of every tie."""
+        ties, symbols = self.system.ties, self.system.symbols
+        found = []
+        for unknowns, bias in ((symbols.u, ties.sigma), (symbols.a, ties.gamma)):
+            found.append(tuple(inner(J, unknowns) + b for J, b in zip(ties.J, bias, strict=True)))
+        return found[0], found[1]
+
     @property
     def system(self) -> System:
         return self.phase.system
@@ -111,11 +145,31 @@ class Case:
     @property
     def places_of_rest(self) -> tuple[Mapping[Node, Scalar], ...]:
         """Where all coordinates rest, as far as that has a closed form."""
-        return tuple(place.exact for place in self._equilibria if place.is_exact)
+        named = {q.name: q for q in self.system.symbols.q}
+        found = [place.exact for place in self._equilibria if place.is_exact]
+        return tuple({named[q.name]: self.own(x) for q, x in place.items()} for place in found)
+
+    def own(self, x: Scalar) -> Scalar:
+        """A scalar of another system of the model over the symbols of this one."""
+        if type(x) is not Node or x.graph is self.system.scope.graph:
+            return x
+        text = to_text(x)
+        return parse(text, longest=len(text) + 1).evaluate(self.system.scope.names)
 
     @cached_property
     def parts(self) -> Contributions:
         return Contributions(self.system, self.equations)
+
+    @cached_property
+    def _corruptions(self) -> dict[tuple[str, tuple[str, ...]], Corruptions]:
+        return {}
+
+    def corruptions(
+        self, what: str, of: tuple[str, ...] = (), start: Mapping[Node, Scalar] | None = None
+    ) -> Corruptions:
+        """What may be wrong in its equations, energies or forces, found once for all equations that are judged."""
+        found = Corruptions(self.parts, what, of, start or {})
+        return self._corruptions.setdefault((what, of), found)
 
     @cached_property
     def rows(self) -> ScalarRow:
@@ -192,8 +246,7 @@ class Case:
         """The same function of another case, as a function of its state over the symbols of this one."""
 
         def value(of: Case) -> Scalar:
-            text = to_text(of.phase.eliminated(of.called(call)))
-            return parse(text, longest=len(text) + 1).evaluate(self.system.scope.names)
+            return self.own(of.phase.eliminated(of.called(call)))
 
         return value
 

@@ -6,19 +6,19 @@ from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from contextlib import suppress
 from dataclasses import field, replace
 from functools import cached_property
+from itertools import permutations
 
 import numpy as np
 
 from eomgen.errors import DerivationError, ExpressionError
 from eomgen.judge.case import Case
 from eomgen.judge.causes import other_calls
-from eomgen.judge.corruption import Corruption
-from eomgen.judge.corruptions import Corruptions
-from eomgen.judge.decision import is_zero_everywhere
+from eomgen.judge.corruption import PIECES, TERMS, Corruption
+from eomgen.judge.decision import combination, is_zero_everywhere, linear_row
 from eomgen.judge.diagnosis import WHOLE, Explanation, Samples, Search, explained, samples_of
 from eomgen.judge.terms import corrupted_terms, short_text, term_text, terms_of
 from eomgen.records import dataclass
-from eomgen.symbolic.expression.derivative import depends_on, derivative, gradient, substituted
+from eomgen.symbolic.expression.derivative import depends_on, derivative, gradient, substituted, symbols_of
 from eomgen.symbolic.expression.expressions import Call
 from eomgen.symbolic.expression.functions import over
 from eomgen.symbolic.expression.graph import Node, Scalar, is_zero
@@ -37,7 +37,8 @@ class Comparison:
         case: the model.
         scalar: of an equation of motion its left minus its right side; else what the author's value is too much.
         rows: the model's equations of motion; else its value alone.
-        what: "motion"; "energy": what T + V have gained since the start; "T", "V", "Q", or "" of other values.
+        what: "motion"; "ties", of the rates that these allow; "energy", what T + V have gained since the start; "T",
+            "V", "Q", or "" of other values.
         call: what the value is of.
         of: of which body, force or coordinate an energy or a force is asked; () of the whole.
         more: what may be wrong, in place of what is known of such a value.
@@ -55,6 +56,11 @@ class Comparison:
     squared: bool = False
     sizes: Mapping[Node, Scalar] = field(default_factory=dict)
 
+    def with_known(self, known: Mapping[Node, Scalar]) -> Comparison:
+        """The same where nodes have values."""
+        scalar, *rows = substituted((self.scalar, *self.rows), known)
+        return replace(self, scalar=scalar, rows=tuple(rows), sizes={**self.sizes, **known})
+
     @cached_property
     def corruptions(self) -> tuple[Corruption, ...]:
         """What may be wrong, the most believable first."""
@@ -62,7 +68,9 @@ class Comparison:
         if self.more is not None:
             return tuple(self.more())
         structural: list[Corruption] = []
-        if self.what:
+        if self.what == "ties":
+            pass
+        elif self.what:
             structural += self._structural()
             if self.sizes:
                 structural = [replace(x, rows=substituted(x.rows, self.sizes)) for x in structural]
@@ -73,14 +81,24 @@ class Comparison:
             structural.append(Corruption(WHOLE, "factor", self.rows, 1))
         if self._is_long:
             return tuple(structural)
-        rates = frozenset((*system.symbols.u, *system.symbols.a))
-        terms = corrupted_terms(self.rows, system.symbols.parameters.values(), system.scope.positive, rates)
+        concerned, known = self._concerned, system.symbols.parameters.values()
+        held = {*symbols_of((self.scalar, *concerned))}
+        rates = frozenset(x for x in (*system.symbols.u, *system.symbols.a) if x in held)
+        terms = corrupted_terms(concerned, known, system.scope.positive, rates)
         return (*structural, *sorted(terms, key=lambda each: each.rank))
+
+    @property
+    def _concerned(self) -> tuple[Scalar, ...]:
+        """The rows that are looked at term by term: those with accelerations of the author's, others are 0."""
+        mine = [x for x in self.case.system.symbols.a if depends_on(self.scalar, (x,))]
+        if len(self.rows) < 2 or not mine:
+            return self.rows
+        return tuple(row if depends_on(row, mine) else 0 for row in self.rows)
 
     @property
     def _is_equation(self) -> bool:
         """Whether the author may have multiplied it by anything."""
-        return self.what in ("motion", "energy")
+        return self.what in ("motion", "ties", "energy")
 
     @cached_property
     def _is_long(self) -> bool:
@@ -91,7 +109,7 @@ class Comparison:
         """What may be wrong with contributions."""
         speeds = [u.name.removesuffix("'") for u in self.case.system.symbols.u]
         start = self.case.start if self.what == "energy" else {}
-        for each in Corruptions(self.case.parts, self.what, () if self.what == "Q" else self.of, start).all:
+        for each in self.case.corruptions(self.what, () if self.what == "Q" else self.of, start).all:
             if self.what != "Q":
                 yield each
             elif self.of[0] in speeds:
@@ -139,7 +157,7 @@ class Comparison:
     def _samples(self) -> tuple[Samples, bool] | None:
         """States of the comparison, and whether they lie on ties."""
         case = self.case
-        tied = bool(case.closing) and not depends_on(self.scalar, case.system.symbols.lam)
+        tied = self.what != "ties" and bool(case.closing) and not depends_on(self.scalar, case.system.symbols.lam)
         flat = [self.scalar, *self.rows]
         found = samples_of(case.system, flat, on_ties=tied and self.what == "motion")
         return None if found is None else (found, tied)
@@ -157,7 +175,7 @@ class Comparison:
             more = samples.of(self._moving([each.rows[0] for each in self.extra]))
             return (Search(None, -D, np.concatenate([C[:, 0], more]), (*known, *self.extra), 0, E[0]),)
         found = [] if tied else [Search(D, E[k], C[:, k], known, k) for k in range(n)]
-        if n > 1:
+        if n > 1 and self.what == "motion":
             mixed = self._mixed(samples)
             if mixed is not None:
                 whole = np.einsum("kpv,kpv->pv", mixed, E)
@@ -210,16 +228,35 @@ class Comparison:
     def proves(self, explanation: Explanation) -> bool:
         """Whether the explanation makes the author's equation, exactly."""
         case = self.case
+        if not self._is_consistent(explanation):
+            return False
         extra = [share for share in explanation.shares if share.corruption.kind == "extra_term"]
         added = [share.added(case.system.scope.graph.pi) for share in explanation.shares if share not in extra]
         scalar = self.scalar - sum((share.corruption.rows[0] for share in extra), start=0)
         if self.what == "energy":
             return self._is_multiple(scalar, self.rows[0] + sum((x[0] for x in added), start=0))
-        if self.what != "motion":
+        if not self._is_equation:
             total = sum((x[0] for x in added), start=0)
             return bool(is_zero_everywhere(case.system, *self._moving([scalar - total])).holds)
         rows = tuple(row + sum((x[k] for x in added), start=0) for k, row in enumerate(self.rows))
+        if self.what == "ties":
+            moving = (*case.system.symbols.u, *case.system.symbols.a)
+            row, *others = (linear_row(x, moving)[0] for x in (scalar, *rows))
+            return bool(combination(case.system, row, others).holds)
         return bool(case.follows(scalar, rows).holds)
+
+    def _is_consistent(self, explanation: Explanation) -> bool:
+        """Whether nothing is missing twice: a term of its own, or a part of a body's kinetic energy, and all of it."""
+        gone = [share.corruption for share in explanation.shares if share.corruption.open and share.factor == 0]
+        for part, whole in permutations(gone, 2):
+            if part.rank >= PIECES and whole.name.removeprefix("the ") in part.name:
+                return False
+            if part.rank == TERMS and whole.rank < TERMS:
+                positive = self.case.system.scope.positive
+                held = [x for row in whole.rows for x in terms_of(row, positive)]
+                if any(x in held for row in part.rows for x in terms_of(row, positive)):
+                    return False
+        return True
 
     def _is_multiple(self, scalar: Scalar, energy: Scalar) -> bool:
         """Whether an energy is the scalar times a function of the configuration, as their squares of speeds are."""

@@ -17,7 +17,7 @@ from eomgen.judge.contributions import Contribution, Contributions
 from eomgen.judge.corruption import PIECES, PLAIN, SHARED, SHORTER, Corruption
 from eomgen.judge.substitutions import substitutions_in
 from eomgen.judge.wrong_points import changes_of_places
-from eomgen.mechanics.bodies.inertia import HALF
+from eomgen.mechanics.bodies.inertia import HALF, body_energies, mass_properties
 from eomgen.records import dataclass
 from eomgen.symbolic.expression.derivative import depends_on, gradient, substituted, symbols_of
 from eomgen.symbolic.expression.graph import Node, Scalar, is_zero
@@ -82,6 +82,7 @@ class Corruptions:
         for part in self.whole:
             squares = not is_zero(part.T)
             yield Corruption(part.name, "factor", self.rows(part), PLAIN, part.body, part.force, squares=squares)
+        yield from self._about_axes()
         yield from self._together()
         if self.what == "motion":
             yield from self._pieces()
@@ -94,6 +95,26 @@ class Corruptions:
             yield Corruption(
                 change.name, change.kind, rows, change.rank, change.part.body, change.part.force, False, change.text
             )
+
+    def _about_axes(self) -> Iterator[Corruption]:
+        """The rotations of bodies in space about their principal axes, those with equal moments together."""
+        motion, mine = (
+            self.parts.operator.base.motion,
+            {part.body: part for part in self.whole if part.kind == "rotation"},
+        )
+        for energy in body_energies(motion) if mine and motion.scope.model.space == "space" else ():
+            I = mass_properties(motion.scope, energy.body).I
+            moments = [I[k][k] for k in range(3)]
+            if energy.body not in mine or any(not is_zero(I[i][j]) for i in range(3) for j in range(i)):
+                continue
+            for moment in dict.fromkeys(moments):
+                axes = [k for k in range(3) if moments[k] == moment]
+                T = HALF * moment * sum((energy.spin[k] * energy.spin[k] for k in axes), start=0)
+                if len(axes) < 3 and not is_zero(T):
+                    told = " and ".join("xyz"[k] for k in axes)
+                    name = f"the rotation of {energy.body} about its {told}"
+                    row = self.rows(replace(mine[energy.body], T=T))
+                    yield Corruption(name, "factor", row, SHARED, energy.body, squares=True)
 
     # -- contributions together --------------------------------------------------------------------
 
@@ -143,8 +164,9 @@ class Corruptions:
             accelerated, carried, held = operator.inertia(T)
             of = part.name.removeprefix("the ")
             moving = [x + y for x, y in zip(carried, held, strict=True)]
-            for x in a:
-                row = tuple(gradient(value, (x,))[0] * x for value in accelerated)
+            slopes = [gradient(value, a) for value in accelerated]
+            for k, x in enumerate(a):
+                row = tuple(each[k] * x for each in slopes)
                 yield Corruption(f"the term with {x.name} of the {of}", "factor", row, PIECES, part.body)
             first = [gradient(value, u) for value in moving] if len(u) <= MOST_SPEEDS else []
             for i, j in [*combinations(range(len(u)), 2), *((k, k) for k in range(len(u)))] if first else ():

@@ -17,7 +17,7 @@ from random import Random
 
 import numpy as np
 
-from eomgen.judge.corruption import Corruption
+from eomgen.judge.corruption import PLAIN, Corruption
 from eomgen.judge.decision import states_of
 from eomgen.mechanics.equations.system import System
 from eomgen.records import dataclass
@@ -30,14 +30,23 @@ from eomgen.symbolic.numeric.tolerances import CARRIED, COMPUTED, SAME_EIGENVALU
 
 BELIEVED = 12.5  # the cost of one mistake up to which nothing else is looked at
 FAR_FETCHED = 16.0  # the cost of one mistake from which on something else is rather believed
+PLAINEST = 10.0  # the cost of the most believable mistake
 WELL_KNOWN = 4  # the largest numerator and denominator by which somebody takes all of an answer wrongly
 WHOLE = "the whole"  # what is asked, as one contribution
 PLACES, VARIANTS = 5, 8  # configurations, and speeds and accelerations at each
 SIMPLE = 12  # the largest numerator and denominator of a factor that somebody wrote by mistake
+MOST_PLAIN = 40  # contributions beside whose usual factors one more mistake is sought
 PAIRED, TRIPLED = 900, 120  # corruptions of which pairs and triples are sought
 MOST_MISTAKES = 3  # in one explanation
-PROVEN = 12  # explanations that are proven before it is given up
+PROVEN = 24  # explanations that are proven before it is given up
 SQUARED = 3.0  # how much less it is believed that a square has the wrong sign
+MINUS = 5.0  # how much less a sign is believed beside a factor
+USUAL = (  # factors that people write by mistake, and how much less each is believed than a term left out
+    ((Fraction(1),), 0.0),
+    ((Fraction(2), Fraction(1, 2)), 1.5),
+    ((Fraction(3), Fraction(4), Fraction(1, 3), Fraction(1, 4)), 2.5),
+)
+UNUSUAL = 9.0  # of other factors
 MIXED = 6.0  # how much less a combination of equations is believed than one of them
 UNITS = {  # factors of wrong units: as a number, as a scalar of pi, in words
     "pi/180": (np.pi / 180, (Fraction(1, 180), 1)),
@@ -59,7 +68,8 @@ class Share:
 
     Args:
         corruption: what.
-        factor: x, by which the contribution stands in the author's equation (1 is right); of what is there once 1.
+        factor: x, by which the contribution stands in the author's equation (1 is right); of a change how often it is
+            there: once, or as often as the contribution in which it is made.
         unit: the name of the factor of a wrong unit, "".
     """
 
@@ -69,7 +79,7 @@ class Share:
 
     def added(self, graph_pi: Scalar) -> tuple[Scalar, ...]:
         """y C_j, of each row."""
-        y: Scalar = 1 if not self.corruption.open else self.factor - 1
+        y: Scalar = self.factor if not self.corruption.open else self.factor - 1
         if self.unit:
             number, power = UNITS[self.unit][1]
             y = number * (graph_pi if power == 1 else over(1, graph_pi) if power == -1 else 1) - 1
@@ -166,33 +176,59 @@ class Search:
 
     def explanations(self, number: int) -> list[Explanation]:
         """Those of so many corruptions, one to three."""
+        if not len(self.C):
+            return []
         left, A, kept = self.projection
         size = float(np.linalg.norm(left))
         if not np.isfinite(size) or size == 0:
             return []
         chosen = (self._single, self._pairs, self._triples)[number - 1](left, A)
-        return [x for each in chosen if (x := self._explained([kept[i] for i in each])) is not None]
+        found = [self._explained([kept[i] for i in each]) for each in chosen]
+        if number == 2:
+            found += [self._explained([i, j], y) for i, j, y in self._beside_usual(left, A, kept)]
+        return [x for x in found if x is not None]
+
+    def _beside_usual(self, left: np.ndarray, A: np.ndarray, kept: list[int]) -> Iterator[tuple[int, int, float]]:
+        """(i, j, y_i): beside a whole contribution that is missing or turned one more mistake, though both do alike."""
+        plain = [k for k, i in enumerate(kept) if self.corruptions[i].open and self.corruptions[i].rank == PLAIN]
+        for k in plain[:MOST_PLAIN]:
+            i = kept[k]
+            for y in (-1.0, -2.0):
+                beside = left + y * self._length(i, A[k]) * A[k]
+                for (j,) in self._single(beside, A) if np.linalg.norm(beside) > CARRIED * np.linalg.norm(left) else ():
+                    if j != k:
+                        yield i, kept[j], y
+
+    def _length(self, i: int, direction: np.ndarray) -> float:
+        """How long a corruption is along its direction in the projection."""
+        (along,) = self._flat(self.C[i : i + 1])
+        return float(along @ direction)
 
     @cached_property
     def projection(self) -> tuple[np.ndarray, np.ndarray, list[int]]:
         """(E, the C that matter) without their shares along D, each of length 1."""
-        scale = np.linalg.norm(self.E, axis=1)
-        if self.D is not None:
-            scale = np.maximum(scale, COMPUTED)
-            D = self.D / np.maximum(np.linalg.norm(self.D, axis=1, keepdims=True), COMPUTED * COMPUTED)
-        else:
-            scale, D = np.ones_like(scale), np.zeros_like(self.E)
-
-        def flat(X: np.ndarray) -> np.ndarray:
-            X = X / scale[:, None]
-            X = X - np.sum(X * D, axis=-1, keepdims=True) * D
-            return X.reshape(*X.shape[:-2], -1)
-
         with np.errstate(all="ignore"):
-            A, raw = flat(self.C), (self.C / scale[:, None]).reshape(len(self.C), -1)
+            A, raw = self._flat(self.C), (self.C / self._size[:, None]).reshape(len(self.C), -1)
         lengths, sizes = np.linalg.norm(A, axis=1), np.linalg.norm(raw, axis=1)
         kept = [i for i in range(len(A)) if np.isfinite(lengths[i]) and lengths[i] > CARRIED * max(sizes[i], COMPUTED)]
-        return flat(self.E), A[kept] / lengths[kept, None], kept
+        return self._flat(self.E), A[kept] / lengths[kept, None], kept
+
+    @cached_property
+    def _size(self) -> np.ndarray:
+        """Of the equation at each configuration; 1 where the author may not have divided."""
+        if self.D is None:
+            return np.ones(len(self.E))
+        sizes: np.ndarray = np.maximum(np.linalg.norm(self.E, axis=1), COMPUTED)
+        return sizes
+
+    def _flat(self, X: np.ndarray) -> np.ndarray:
+        """Without the share along D at each configuration, in one row."""
+        X = X / self._size[:, None]
+        if self.D is not None:
+            D = self.D / np.maximum(np.linalg.norm(self.D, axis=1, keepdims=True), COMPUTED * COMPUTED)
+            X = X - np.sum(X * D, axis=-1, keepdims=True) * D
+        flat: np.ndarray = X.reshape(*X.shape[:-2], -1)
+        return flat
 
     @property
     def misfit(self) -> float:
@@ -230,10 +266,13 @@ class Search:
             for pair in self._pairs(without, rest[kept] / lengths[kept, None], TRIPLED, 20):
                 yield [i, *(int(kept[k]) + i + 1 for k in pair)]
 
-    def _explained(self, chosen: Sequence[int]) -> Explanation | None:
-        """The explanation of these corruptions, where their factors are simple."""
-        C = self.C[list(chosen)]
-        scale = np.maximum(np.linalg.norm(self.E, axis=1), COMPUTED) if self.D is not None else np.ones(len(self.E))
+    def _explained(self, chosen: Sequence[int], first: float | None = None) -> Explanation | None:
+        """The explanation of these corruptions, where their factors are simple.
+
+        Args:
+            first: y of the first one; None: it is sought.
+        """
+        C, scale = self.C[list(chosen)], self._size
         columns: list[np.ndarray] = [(c / scale[:, None]).ravel() for c in C]
         if self.D is not None:
             for k in range(len(self.D)):
@@ -241,18 +280,18 @@ class Search:
                 column[k] = -self.D[k] / scale[k]
                 columns.append(column.ravel() / max(1.0, float(np.linalg.norm(column))))
         target = -(self.E / scale[:, None]).ravel()
+        if first is not None:
+            target = target - first * columns.pop(0)
         matrix = np.array(columns).T
         lengths: np.ndarray = np.maximum(np.linalg.norm(matrix, axis=0), COMPUTED * COMPUTED)
         y: np.ndarray = np.linalg.lstsq(matrix / lengths, target, rcond=None)[0]
         if np.linalg.norm(matrix / lengths @ y - target) > CARRIED * max(float(np.linalg.norm(target)), COMPUTED):
             return None
-        y = (y / lengths)[: len(chosen)]
-        shares = []
-        for i, factor in zip(chosen, y, strict=True):
-            share = _share(self.corruptions[i], float(factor))
-            if share is None:
-                return None
-            shares.append(share)
+        y = y / lengths if first is None else np.concatenate([[first], y / lengths])
+        y = y[: len(chosen)]
+        shares = _shares([self.corruptions[i] for i in chosen], y.tolist())
+        if shares is None:
+            return None
         if not self._is_there([share.corruption.kind != "extra_term" for share in shares], C, y):
             return None
         if self.resisting is not None:
@@ -290,12 +329,29 @@ class Search:
         return "function", 1.0 if np.mean(sigma) > 0 else 1.3
 
 
-def _share(corruption: Corruption, y: float) -> Share | None:
-    """The corruption with its factor, where that is one that people write."""
+def _shares(corruptions: Sequence[Corruption], factors: Sequence[float]) -> list[Share] | None:
+    """The corruptions with their factors, where these are such as people write; None where one is not."""
+    found: dict[int, Share] = {}
+    for k in sorted(range(len(corruptions)), key=lambda k: not corruptions[k].open):
+        whole = [x.factor for x in found.values() if x.corruption.open and x.corruption.name == corruptions[k].name]
+        share = _share(corruptions[k], factors[k], [1, *whole])
+        if share is None:
+            return None
+        found[k] = share
+    return [found[k] for k in range(len(corruptions))]
+
+
+def _share(corruption: Corruption, y: float, often: Sequence[Fraction | int]) -> Share | None:
+    """The corruption with its factor.
+
+    Args:
+        often: how often a change may be there.
+    """
     if corruption.name == WHOLE and abs(1 + y) < SAME_EIGENVALUE:
         return None  # something else would have to be there in its place
     if not corruption.open:
-        return Share(corruption, Fraction(1)) if abs(y - 1) < SAME_EIGENVALUE else None
+        times = next((x for x in often if x and abs(y - x) < SAME_EIGENVALUE), None)
+        return None if times is None else Share(corruption, Fraction(times))
     for name, (number, _) in UNITS.items():
         if abs(1 + y - number) < SAME_EIGENVALUE * number:
             return Share(corruption, Fraction(1), name)
@@ -314,7 +370,7 @@ def _simple(x: float) -> Fraction | None:
 
 def _cost(share: Share) -> float:
     """How much has to be believed of one mistake."""
-    cost = 10.0 + share.corruption.rank
+    cost = PLAINEST + share.corruption.rank
     if share.unit:
         return cost + 1.5
     if not share.corruption.open:
@@ -323,8 +379,9 @@ def _cost(share: Share) -> float:
     if x == 0:
         return cost
     if x < 0:
-        return cost + (SQUARED if share.corruption.squares else 0.0 if x == -1 else 4.5)
-    return cost + (1.5 if x in (2, Fraction(1, 2)) else 2.5 if x in (3, 4, Fraction(1, 3), Fraction(1, 4)) else 4.5)
+        cost += (SQUARED if share.corruption.squares else 0.0) + (MINUS if x != -1 else 0.0)
+    size = abs(x)
+    return cost + next((more for known, more in USUAL if size in known), UNUSUAL)
 
 
 def explained(searches: Sequence[Search], proves: Callable[[Explanation], bool], number: int) -> list[Explanation]:

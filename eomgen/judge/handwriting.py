@@ -40,10 +40,12 @@ _NUMBER = re.compile(r"(?:\d+(?:\.\d*)?|\.\d+)(?:[eE][+-]?\d+)?")
 _WORD = re.compile(r"[^\W\d_⁰¹²³⁴-⁹₀-₉][^\W⁰¹²³⁴-⁹₀-₉]*(?:\.\w+)*")
 _PIECE = re.compile(r"[^\W\d_⁰¹²³⁴-⁹₀-₉]")
 _DIFFERENTIAL = re.compile(
-    r"\s*(?:\\(?:mathrm|text|operatorname)\s*\{\s*d\s*\}|d)\s*(?:\^\s*\{?\s*(\d)\s*\}?)?\s*(.*)", re.S
+    r"\s*(?:\\(?:mathrm|text|operatorname)\s*(?:\{\s*d\s*\}|d)|d)\s*(?:\^\s*\{?\s*(\d)\s*\}?)?\s*(.*)", re.S
 )
-_BY_TIME = re.compile(r"\s*(?:\\(?:mathrm|text)\s*\{\s*d\s*\}|d)\s*t\s*(?:\^\s*\{?\s*(\d)\s*\}?)?\s*")
+_BY_TIME = re.compile(r"\s*(?:\\(?:mathrm|text)\s*(?:\{\s*d\s*\}|d)|d)\s*t\s*(?:\^\s*\{?\s*(\d)\s*\}?)?\s*")
 _PLAIN_RATE = re.compile(r"d\s*/\s*dt\s*(?=[(\[{])")
+_E_TO_THE = re.compile(r"(?:e|\\(?:mathrm|text|operatorname)\s*\{\s*e\s*\})\s*\^")
+_TIME_BEHIND = re.compile(r"(?:\s|\\[,;:! ])*t(?![A-Za-z'])")
 _WHOLE = re.compile(r"\s*(?:\\(?:left|[bB]igg?l?)\s*)?[(\[{]|\s*\\left\s*\\lbrace")
 _UNIT = re.compile(r"\s*([A-Za-zµ]+)(?![\w(])")
 _INDEX_GROUP = re.compile(r"\{([^{}]*)\}")
@@ -133,6 +135,8 @@ class _Reader:
         c = self.text[self.at]
         if c.isspace() or c == "~":
             self.at += 1
+        elif (power := _E_TO_THE.match(self.text, self.at)) and self.known.known("e") is None:
+            self.exponential(power.end())
         elif c == "\\":
             self.command()
         elif found := _NUMBER.match(self.text, self.at):
@@ -175,6 +179,17 @@ class _Reader:
             self.at += 1  # the end of a sentence
         else:
             raise self.strange(f"unexpected character {c!r}")
+
+    def exponential(self, behind: int) -> None:
+        """e^{-t}, of which the power is the argument."""
+        self.put("exp", "function")
+        self.at = behind
+        if self.text[behind:].lstrip().startswith("("):
+            return
+        self.put("(", "open")
+        text, at = self.group()
+        self.out += self.inner(text, at)
+        self.put(")", "close", self.at - 1)
 
     def at_end(self) -> bool:
         """Whether a sign of punctuation ends all that was written."""
@@ -379,11 +394,12 @@ class _Reader:
                 self.next()
                 continue
             break
+        set_as = self.text.startswith("\\", self.at)
         self.next_value()
-        self.skip_space()
         last = self.out[-1]
-        names = re.compile(r"\s*t(?![A-Za-z])").match(self.text, self.at)
-        if names and last.kind == "name" and not last.text.endswith("'"):  # \sin\omega t
+        names = _TIME_BEHIND.match(self.text, self.at)
+        is_name = last.kind == "name" and not last.text.endswith("'")
+        if names and (is_name or (set_as and last.kind == "close")):  # \sin\omega t, \cos\sqrt{k/m}\,t
             self.put("t", "name")
             self.at = names.end()
 
@@ -522,6 +538,12 @@ class _Reader:
         word, start = unicodedata.normalize("NFC", found.group()), self.at
         bare = word.split(".", maxsplit=1)[0]
         behind = self.text[found.end() :].lstrip()
+        if word.endswith("e") and behind.startswith("^") and not {word, "e"} & self.known.names:
+            for part in self.known.cut(word[:-1]) or ():  # v_0e^{-t}
+                self.put(part, "name", start)
+                self.at = start + len(word) - 1
+            if self.at > start:
+                return
         if word in RATES and (called := called_rate(self.text[start:])):
             self.at = start + called[2]
             self.put(f"{self.known.known(called[0]) or called[0]}{chr(39) * called[1]}", "name", start)

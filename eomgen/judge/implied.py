@@ -21,11 +21,20 @@ from eomgen.errors import DerivationError, EomgenError, ExpressionError
 from eomgen.judge.case import Case
 from eomgen.judge.comparison import Comparison
 from eomgen.judge.corruption import Corruption
-from eomgen.judge.corruptions import Corruptions
 from eomgen.judge.decision import is_zero_everywhere
-from eomgen.judge.diagnosis import BELIEVED, MOST_MISTAKES, Explanation, Search, explained, samples_of
+from eomgen.judge.diagnosis import (
+    BELIEVED,
+    FAR_FETCHED,
+    MOST_MISTAKES,
+    PLAINEST,
+    Explanation,
+    Search,
+    explained,
+    samples_of,
+)
 from eomgen.judge.reading import HandEquation
 from eomgen.judge.replays import replays
+from eomgen.judge.terms import corrupted_terms
 from eomgen.model.fields import AtRest, WrittenEquation
 from eomgen.questions.answers import Answer
 from eomgen.records import dataclass
@@ -138,8 +147,8 @@ Compared = TypeVar("Compared", Implied, Comparison, Implied | Comparison)
 def simplest_explanation(targets: Iterable[Compared]) -> tuple[Compared | None, list[Explanation]]:
     """The comparison that is explained by the fewest mistakes, with its explanations: the first that is believed."""
     known = tuple(targets)
+    best: tuple[Compared | None, list[Explanation]] = None, []
     for number in range(1, MOST_MISTAKES + 1):
-        best: tuple[Compared | None, list[Explanation]] = None, []
         for target in known:
             with suppress(DerivationError):
                 found = target.explained(number)
@@ -147,9 +156,9 @@ def simplest_explanation(targets: Iterable[Compared]) -> tuple[Compared | None, 
                     best = target, found
             if best[1] and best[1][0].cost < number * BELIEVED:
                 break
-        if best[1]:
-            return best
-    return None, []
+        if best[1] and best[1][0].cost < FAR_FETCHED + (number - 1) * PLAINEST:
+            break
+    return best
 
 
 def implied_by_course(case: Case, known: Mapping[Node, Scalar]) -> Implied | None:
@@ -192,7 +201,7 @@ def implied_by_rest(case: Case, written: HandEquation) -> Implied | None:
 
 def _implied(put: PutIn) -> Implied | None:
     """The one equation of the model and its corruptions, with an answer put in."""
-    case, known = put.case, Corruptions(put.case.parts, put.what)
+    case, known = put.case, put.case.corruptions(put.what)
     if put.what == "motion":
         whole = case.rows[put.row]
     else:
@@ -202,7 +211,11 @@ def _implied(put: PutIn) -> Implied | None:
     if is_zero(left) or depends_on(left, moving):
         return None
     found, resisting = list[Corruption](), [put.resisting(whole)]
-    for each in known.all:
+    symbols = case.system.symbols
+    rates = frozenset((*symbols.u, *symbols.a))
+    terms = corrupted_terms((whole,), symbols.parameters.values(), case.system.scope.positive, rates)
+    single = (replace(each, rows=(0,) * put.row + each.rows) for each in terms)
+    for each in (*known.all, *single):
         with suppress(DerivationError):
             row = put.into(each.rows[put.row])
             if not is_zero(row) and not depends_on(row, moving):
@@ -257,7 +270,7 @@ def _of_entry(case: Case, call: Call | None, own: Scalar) -> Iterator[Corruption
             return substituted((derivative(rows[i], along),), {**still, **place})[0]
 
         if is_zero_everywhere(case.system, slope(case.rows) - own).holds:
-            for each in Corruptions(case.parts, "motion").all:
+            for each in case.corruptions("motion").all:
                 with suppress(DerivationError):
                     yield replace(each, rows=(slope(each.rows),))
             return

@@ -11,7 +11,7 @@ from eomgen.errors import DerivationError, EomgenError, ExpressionError, Missing
 from eomgen.judge.asked import asked
 from eomgen.judge.case import Case
 from eomgen.judge.causes import causes_of
-from eomgen.judge.comparison import Comparison, excess
+from eomgen.judge.comparison import excess
 from eomgen.judge.course import course_of
 from eomgen.judge.decision import is_zero_everywhere
 from eomgen.judge.diagnosis import FAR_FETCHED
@@ -19,7 +19,6 @@ from eomgen.judge.implied import Instant, implied_by_course, implied_by_rest, si
 from eomgen.judge.kinds import FUNCTION_KINDS, KINDS, kind_of_equation
 from eomgen.judge.reading import HandEquation
 from eomgen.judge.renaming import Renaming, renamings, turnings
-from eomgen.judge.replays import replays
 from eomgen.judge.rest import is_of_rest
 from eomgen.judge.right import (
     CONSTANT,
@@ -28,26 +27,21 @@ from eomgen.judge.right import (
     Decided,
     on_one_side,
     says_nothing,
-    signs_at_start,
-    sizes_in,
     truth_of,
     with_values_of_file,
 )
+from eomgen.judge.targets import loosened_targets, targets_of
 from eomgen.judge.verdict import RIGHT, UNDECIDED, WRONG, Cause, Verdict
 from eomgen.model.fields import AtRest
 from eomgen.model.reader import ModelOrPath, model_at
 from eomgen.model.replaced import equation_typed
 from eomgen.records import dataclass
 from eomgen.simulation.configuration import paths_of
-from eomgen.symbolic.expression.derivative import depends_on, derivative, substituted
-from eomgen.symbolic.expression.expressions import Reference
-from eomgen.symbolic.expression.functions import over
-from eomgen.symbolic.expression.graph import Node, Scalar, is_zero
+from eomgen.symbolic.expression.derivative import depends_on, substituted
+from eomgen.symbolic.expression.graph import Node, Scalar
 from eomgen.symbolic.numeric.work import doing
 
 Meanings = Mapping[str, Scalar]
-MOST_BODIES = 10  # of a model whose reactions are derived anew
-_WHAT = {"kinetic_energy": "T", "potential_energy": "V", "generalized_force": "Q"}
 
 
 def verify(
@@ -256,12 +250,13 @@ class Judge:
         left = self._without_reactions(written, kind, also)
         if left is not None:
             return left
-        targets = self._targets(written, kind, scalar, also)
+        targets = targets_of(case, written, kind, scalar, also)
+        if not also:
+            targets = loosened_targets(case, written, kind) + targets
         target, explanations = simplest_explanation(targets)
         if not explanations and (begun := case.as_begun) is not None:
             with suppress(EomgenError):
-                so = Judge(begun)
-                also_ = so._targets(written, kind, begun.value(written.difference, also), also)
+                also_ = targets_of(begun, written, kind, begun.value(written.difference, also), also)
                 target, explanations = simplest_explanation(also_)
         turned = None
         if not explanations or len(explanations[0].shares) > 1 or explanations[0].cost >= FAR_FETCHED:
@@ -298,61 +293,6 @@ class Judge:
         told = ", ".join(map(str, left_in))
         cause = Cause("constraint_force", _left_in(told), told, force=told, quantity=told)
         return Verdict(written.given, kind, WRONG, difference=told, causes=(cause,))
-
-    def _targets(self, written: HandEquation, kind: str, scalar: Scalar, also: Meanings | None) -> list[Comparison]:
-        """What an equation is compared with, the most telling first."""
-        case, calls = self.case, set(written.calls)
-        if kind == "motion" or (kind in ("law", "energy") and not calls):
-            if not case.rows or not depends_on(scalar, (*case.system.symbols.u, *case.forced)):
-                return []  # of a place alone any equation without motion is some multiple
-            of_energy = self._energies(scalar) if kind in ("law", "energy") else []
-            of_law = () if depends_on(scalar, case.forced) else self._rates(scalar)
-            sizes = signs_at_start(case, sizes_in(case, written, scalar))
-            rows = substituted(case.rows, sizes)
-            return of_energy + [
-                Comparison(case, each, rows, "motion", sizes=sizes) for each in substituted((*of_law, scalar), sizes)
-            ]
-        if len(calls) != 1:
-            return [Comparison(case, scalar, (0,), "")] if calls else []
-        (call,) = calls
-        symbol = case.system.scope.graph.symbol(f"({call})")
-        left = case.evaluated(written.difference, {**case.system.scope.names, **(also or {})}, lambda _: symbol)
-        slope = derivative(left, symbol)
-        if depends_on(slope, (symbol,)) or is_zero(slope):
-            return []
-        (rest,) = substituted((left,), {symbol: 0})
-        author, true = over(-rest, slope), case.called(call)
-        of = tuple(x.name for x in call.args if isinstance(x, Reference))
-        found = [Comparison(case, author - true, (true,), _WHAT.get(call.name, ""), call, of)]
-        moving = (*case.system.symbols.a, *case.system.symbols.lam)
-        if depends_on(true, moving) and not depends_on(author, moving):
-            so = case.phase.simple(case.phase.eliminated(true))
-            found.append(Comparison(case, author - so, (so,), "", call, of))
-            true = so
-        if kind == "reaction" and len(case.model.bodies) <= MOST_BODIES:
-            found.append(
-                Comparison(case, author - true, (true,), "", more=lambda: replays(case, true, case.called_by(call)))
-            )
-        return found
-
-    def _energies(self, scalar: Scalar) -> list[Comparison]:
-        """The energy theorem, of a law with squares of speeds."""
-        case, u = self.case, self.case.system.symbols.u
-        if depends_on(scalar, case.forced) or not any(depends_on(derivative(scalar, x), (x,)) for x in u):
-            return []
-        return [] if case.gained is None else [Comparison(case, scalar, (case.gained,), "energy")]
-
-    def _rates(self, scalar: Scalar) -> tuple[Scalar, ...]:
-        """The equation of motion that a law follows from: its rate."""
-        if not depends_on(scalar, self.case.system.symbols.u):
-            return ()
-        with suppress(DerivationError):
-            (rate,) = self.case.system.scope.with_accelerations((scalar,))
-            if len(self.case.system.symbols.a) == 1:
-                slope = derivative(rate, self.case.system.symbols.a[0])
-                rate = rate if is_zero(slope) else over(rate, slope)
-            return (rate,)
-        return ()
 
 
 def _left_in(force: str) -> str:

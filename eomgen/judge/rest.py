@@ -12,8 +12,8 @@ from typing import Any
 import numpy as np
 
 from eomgen.judge.case import Case
-from eomgen.judge.decision import states_of
-from eomgen.symbolic.expression.derivative import depends_on, substituted
+from eomgen.judge.decision import is_zero_everywhere, states_of
+from eomgen.symbolic.expression.derivative import depends_on, gradient, substituted
 from eomgen.symbolic.expression.graph import Node, Scalar
 from eomgen.symbolic.numeric.batch_evaluation import ARRAYS
 from eomgen.symbolic.numeric.evaluation import evaluate
@@ -32,8 +32,12 @@ def balance_at_rest(case: Case, scalar: Scalar) -> tuple[Node, Scalar] | None:
     still = dict.fromkeys((*symbols.u, *symbols.a), 0)
     (row,) = substituted(case.rows, still)
     others = [x for x in (symbols.t, *symbols.q) if x not in free]
-    if len(free) != 1 or depends_on(row, others) or depends_on(scalar, others) or not depends_on(scalar, free):
+    if len(free) != 1 or depends_on(scalar, others) or not depends_on(scalar, free):
         return None
+    if depends_on(row, others):  # cos(psi)^2 + sin(psi)^2 does not
+        if not is_zero_everywhere(case.system, *gradient(row, others)).holds:
+            return None
+        (row,) = substituted((row,), dict.fromkeys(others, 0))
     return free[0], row
 
 

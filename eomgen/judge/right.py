@@ -269,6 +269,17 @@ def signs_at_start(case: Case, sizes: Mapping[Node, Scalar]) -> dict[Node, Scala
     return {x: signs[x][0] * inside for x, inside in sizes.items() if len(signs[x]) == 1}
 
 
+def directions_at_start(case: Case, written: HandEquation) -> dict[Node, Scalar]:
+    """sign(x) in the equations of motion, which the author does not write, as it is at the start."""
+    own = {what[0] for side in (written.left, written.right) for kind, what in side.code if kind == "function"}
+    found: dict[Node, Scalar] = {}
+    for x in order(case.rows) if "sign" not in own else ():
+        if x.op == "sign":
+            signs = _signs(case, substituted((x.args[0],), case.start)[0])
+            found |= {x: signs[0]} if len(signs) == 1 else {}
+    return found
+
+
 def _signs(case: Case, inside: Scalar) -> tuple[int, ...]:
     """The sign of x at the start, where coordinates and values decide it; else either."""
     if depends_on(inside, (*case.system.symbols.u, *case.system.symbols.a)):

@@ -11,7 +11,7 @@ from eomgen.records import dataclass
 from eomgen.symbolic.exact.expansion import Expansion
 from eomgen.symbolic.exact.normal_form import TooLarge, legible, readable
 from eomgen.symbolic.exact.writing import Writer
-from eomgen.symbolic.expression.derivative import depends_on, substituted, symbols_of
+from eomgen.symbolic.expression.derivative import depends_on, derivative, substituted, symbols_of
 from eomgen.symbolic.expression.functions import over
 from eomgen.symbolic.expression.graph import Node, Scalar
 from eomgen.symbolic.expression.node import linear_terms
@@ -107,12 +107,20 @@ class _Wrong:
             yield from self.replaced(kind, mapping, what, EXCHANGED)
 
     def parameters(self, known: Sequence[Node]) -> Iterator[Corruption]:
+        held = {*symbols_of((self.term,))}
         for x in known:
-            yield self.changed("factor", self.term * x, f"a factor {x.name} is too many", ODD)
-            yield self.changed("factor", over(self.term, x), f"a factor {x.name} is missing", ODD)
+            k = self.power(x) if x in held else 0
+            for other in dict.fromkeys((k - 1, k + 1, -k)):
+                if other != k:
+                    yield self.changed("factor", self.term * x ** (other - k), wrong_power(x.name, k, other), ODD)
         for kind, mapping, what in wrong_parameters(symbols_of((self.term,)), known):
             if kind == "other":
                 yield from self.replaced(kind, mapping, what, EXCHANGED)
+
+    def power(self, x: Node) -> int:
+        """The power of x in the term; 0 where it is none."""
+        power = legible(over(x * derivative(self.term, x), self.term), Work.FORMULA, frozenset(), LONG)
+        return int(power) if type(power) is not Node and power == int(power) else 0
 
     def rates(self, rates: Iterable[Node]) -> Iterator[Corruption]:
         for u in rates:
@@ -154,6 +162,17 @@ def wrong_parameters(held: Iterable[Node], known: Sequence[Node]) -> Iterator[tu
                     yield "other", {x: y, y: x}, f"{x.name} and {y.name} are exchanged"
 
 
+def wrong_power(name: str, k: int, other: int) -> str:
+    """In words that x^other stands where x^k is meant."""
+    if k == 0 or other == 0:
+        return f"a factor {name} is {'too many' if other - k > 0 else 'missing'}"
+    there, meant = (name if abs(x) == 1 else f"{name}^{abs(x)}" for x in (other, k))
+    if k * other > 0:
+        return f"{there} stands where {meant} is meant"
+    does, should = ("multiplies", "divide") if other > 0 else ("divides", "multiply")
+    return f"{there} {does} where {meant} should {should}"
+
+
 # -- angles ------------------------------------------------------------------------------------------
 
 
@@ -178,10 +197,10 @@ def turned_angles(angle: Node) -> Iterator[tuple[str, dict[Node, Scalar], str]]:
         scaled = factor * angle
         mapping = {sin: graph.call("sin", scaled), cos: graph.call("cos", scaled)}
         yield "unit", mapping, f"{{0}} is taken in {how}"
+    yield "other", {cos: 1}, "cos({0}) is left out"
     yield "other", {sin: angle, cos: 1}, "sin({0}) and cos({0}) are those of a small angle"
     yield "other", {sin: angle}, "sin({0}) is replaced by the angle"
     yield "other", {sin: 0, cos: 1}, "{0} is taken as zero"
-    yield "other", {cos: 1}, "cos({0}) is left out"
     yield "other", {sin: 1}, "sin({0}) is left out"
     terms = linear_terms(angle)
     if len(terms) > 1:

@@ -104,7 +104,7 @@ class Verdict:
 
     def hint(self, level: int = 3) -> str:
         """What helps the author: 1 where to look, 2 at which quantity, 3 the cause."""
-        return " ".join(cause.hint(level) for cause in self.causes)
+        return " ".join(dict.fromkeys(cause.hint(level) for cause in self.causes))
 
     def as_dict(self, hint: int | None = None) -> dict[str, Any]:
         """For machines; with a hint only what that level tells."""

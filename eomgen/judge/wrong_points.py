@@ -6,14 +6,31 @@ from collections.abc import Iterator, Mapping, Sequence
 
 from eomgen.judge.contributions import Contribution, Contributions
 from eomgen.judge.corruption import PLACED, SHARED
+from eomgen.judge.terms import LONG, term_text
 from eomgen.mechanics.bodies.inertia import HALF, BodyEnergy, body_energies, mass_properties
 from eomgen.mechanics.bodies.kinematics import velocity_of
 from eomgen.mechanics.equations.work import load_row
 from eomgen.model.forces.load import BodyPoint, PointForce
 from eomgen.model.shapes.base import MassProperties
 from eomgen.records import dataclass
-from eomgen.symbolic.expression.graph import Scalar, is_zero
+from eomgen.symbolic.exact.normal_form import legible
+from eomgen.symbolic.expression.derivative import symbols_of
+from eomgen.symbolic.expression.expressions import Expression
+from eomgen.symbolic.expression.functions import over
+from eomgen.symbolic.expression.graph import Node, Scalar, is_zero
+from eomgen.symbolic.expression.rational import Fraction
 from eomgen.symbolic.expression.spatial import Vector, cross, dot, minus, vector_of
+from eomgen.symbolic.numeric.work import Work
+
+SHAPES = (  # I / (m r^2)
+    (Fraction(1), "a thin hoop"),
+    (Fraction(1, 2), "a disc"),
+    (Fraction(2, 5), "a solid ball"),
+    (Fraction(2, 3), "a thin shell"),
+    (Fraction(1, 4), "a disc about a diameter"),
+    (Fraction(1, 3), "a rod about its end"),
+    (Fraction(1, 12), "a rod about its middle"),
+)
 
 
 @dataclass(frozen=True)
@@ -57,6 +74,8 @@ class _Places:
 
     def changes(self) -> Iterator[Altered]:
         places = self._others()
+        if not is_zero(self.energy.rotation):
+            yield from self._other_shapes()
         translation = next((part.T for part in self.mine if part.kind == "translation"), None)
         if self.body not in self.parts.operator.base.motion.index:
             translation = None
@@ -84,6 +103,37 @@ class _Places:
 
     def _change(self, name: str, text: str, T: Scalar, V: Scalar = 0, rank: float = PLACED) -> Altered:
         return Altered(name, "wrong_point", text, Contribution("", self.body, T=T, V=V), rank)
+
+    def _other_shapes(self) -> Iterator[Altered]:
+        """The moment of inertia of a body of another shape, in the plane."""
+        own = self._shape()
+        for coefficient, what in SHAPES if own is not None else ():
+            share, length = own  # type: ignore[misc]
+            if coefficient != share:
+                size = f"*{term_text(self.mass.m)}*{term_text(length)}^2"
+                text = (
+                    f"the moment of inertia of {self.body} is taken as that of {what}, {coefficient}{size}, where it is"
+                    f" {share}{size}"
+                )
+                T = (coefficient / share - 1) * self.energy.rotation
+                yield Altered(f"the moment of inertia of {self.body}", "factor", text, self._part(T), PLACED)
+
+    def _shape(self) -> tuple[Fraction, Scalar] | None:
+        """(c, r) of I = c m r^2; None where it is not that."""
+        scope = self.parts.operator.base.scope
+        if scope.model.space != "plane":
+            return None
+        shape = scope.model.bodies[self.body].shape
+        sizes = [scope.value(x) for x in vars(shape).values() if isinstance(x, Expression)] if shape else []
+        inertia = self.mass.I[2][2]
+        for r in (*sizes, *(x for x in symbols_of((inertia,)) if x is not self.mass.m)):
+            ratio = legible(over(inertia, self.mass.m * r * r), Work.FORMULA, scope.positive, LONG)
+            if type(ratio) is not Node and not is_zero(ratio):
+                return Fraction(ratio), r
+        return None
+
+    def _part(self, T: Scalar) -> Contribution:
+        return Contribution("", self.body, T=T)
 
     def _inertia(self, point: str, r: Vector) -> Iterator[Altered]:
         """Steiner's term too often, or not at all."""
