@@ -314,7 +314,7 @@ def test_another_kind_is_refused():
         ("2k_ta_1 = 3 kN", "2*kt*a1 = 3*(1000)"),
         (r"\frac{d}{dt}\left(m r^2\dot\theta\right) = 0", "rate_of(m*r^(2)*theta') = 0"),
         (r"\[ x(t) = r. \]", "x = r"),
-        (r"x = le^{-kt/m}", "x = l*exp( - k*t/m)"),
+        (r"x = le^{-kr/m}", "x = l*exp( - k*r/m)"),
         (r"x = l\cos\sqrt{\frac{k}{m}}\,t", "x = l*cos(sqrt(((k)/(m)))*t)"),
         (r"\dfrac{\mathrm d}{\mathrm dt}\left(m\dot x\right) = 0", "rate_of(m*x') = 0"),
     ],
