@@ -516,6 +516,20 @@ def test_rates_that_ties_allow_are_explained_by_their_terms(equation, words):
     assert found.verdict == "wrong" and all(word in found.hint() for word in words), found.hint()
 
 
+@pytest.mark.parametrize(
+    ("equation", "words"),
+    [
+        ("inertia_point(O) = m*l^2/3 + 2/5*M*R^2", ["Steiner", "ball", "missing"]),
+        ("inertia_point(O) = m*l^2/3 + 2/5*M*R^2 + M*l^2", ["Steiner", "R is left out"]),
+        ("inertia_point(O) = m*l^2/12 + M*R^2/2 + M*(l + R)^2", ["rod", "ball", "that of a disc"]),
+    ],
+)
+def test_a_moment_of_inertia_is_explained_body_by_body(equation, words):
+    """I_O = sum of I_C + m d^2: one of them missing, of another shape, at another distance."""
+    found = verdict("../tests/helpers/hand_models/ball_on_rod", equation)
+    assert found.verdict == "wrong" and all(word in found.hint() for word in words), found.hint()
+
+
 def test_thirty_freedoms_are_explained_by_the_row_concerned():
     """m x5'' + k (x5 - x4) - k (x6 - x5) = 0 in a row of thirty masses, in two seconds of work."""
     text = ["eomgen = 1", 'space = "plane"', "parameters = { m = 1, k = 100 }"]

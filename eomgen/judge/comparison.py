@@ -16,6 +16,8 @@ from eomgen.judge.causes import other_calls
 from eomgen.judge.corruption import PIECES, TERMS, Corruption
 from eomgen.judge.decision import combination, is_zero_everywhere, linear_row
 from eomgen.judge.diagnosis import WHOLE, Explanation, Samples, Search, explained, samples_of
+from eomgen.judge.inertias import Inertias
+from eomgen.judge.kinds import FUNCTION_KINDS
 from eomgen.judge.terms import corrupted_terms, short_text, term_text, terms_of
 from eomgen.records import dataclass
 from eomgen.symbolic.expression.derivative import depends_on, derivative, gradient, substituted, symbols_of
@@ -77,6 +79,8 @@ class Comparison:
         else:
             structural += self._other_arguments()
             structural += self._classes()
+            if self.call is not None and FUNCTION_KINDS.get(self.call.name) == "inertia":
+                structural += Inertias(self.case, self.call).corruptions
         if not self._is_equation:
             structural.append(Corruption(WHOLE, "factor", self.rows, 1))
         if self._is_long:

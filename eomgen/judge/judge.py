@@ -30,7 +30,7 @@ from eomgen.judge.right import (
     truth_of,
     with_values_of_file,
 )
-from eomgen.judge.targets import loosened_targets, targets_of
+from eomgen.judge.targets import Meanings, loosened_targets, targets_of
 from eomgen.judge.verdict import RIGHT, UNDECIDED, WRONG, Cause, Verdict
 from eomgen.model.fields import AtRest
 from eomgen.model.reader import ModelOrPath, model_at
@@ -40,8 +40,6 @@ from eomgen.simulation.configuration import paths_of
 from eomgen.symbolic.expression.derivative import depends_on, substituted
 from eomgen.symbolic.expression.graph import Node, Scalar
 from eomgen.symbolic.numeric.work import doing
-
-Meanings = Mapping[str, Scalar]
 
 
 def verify(

@@ -9,6 +9,7 @@ from eomgen.judge.corruption import PLACED, SHARED
 from eomgen.judge.terms import LONG, term_text
 from eomgen.mechanics.bodies.inertia import HALF, BodyEnergy, body_energies, mass_properties
 from eomgen.mechanics.bodies.kinematics import velocity_of
+from eomgen.mechanics.bodies.scope import Scope
 from eomgen.mechanics.equations.work import load_row
 from eomgen.model.forces.load import BodyPoint, PointForce
 from eomgen.model.shapes.base import MassProperties
@@ -31,6 +32,32 @@ SHAPES = (  # I / (m r^2)
     (Fraction(1, 3), "a rod about its end"),
     (Fraction(1, 12), "a rod about its middle"),
 )
+
+
+def other_shapes(scope: Scope, body: str) -> Iterator[tuple[Fraction, str]]:
+    """How many times the moment of inertia of a body is that of another shape with its mass and size, in the plane."""
+    own = _coefficient(scope, body)
+    for coefficient, what in SHAPES if own is not None else ():
+        share, length = own  # type: ignore[misc]
+        if coefficient != share:
+            mass = mass_properties(scope, body).m
+            taken, true = (term_text(c * mass * length * length) for c in (coefficient, share))
+            text = f"the moment of inertia of {body} is taken as that of {what}, {taken}, where it is {true}"
+            yield coefficient / share, text
+
+
+def _coefficient(scope: Scope, body: str) -> tuple[Fraction, Scalar] | None:
+    """(c, r) of I = c m r^2; None where it is not that."""
+    if scope.model.space != "plane":
+        return None
+    shape, mass = scope.model.bodies[body].shape, mass_properties(scope, body)
+    sizes = [scope.value(x) for x in vars(shape).values() if isinstance(x, Expression)] if shape else []
+    inertia = mass.I[2][2]
+    for r in (*sizes, *(x for x in symbols_of((inertia,)) if x is not mass.m)):
+        ratio = legible(over(inertia, mass.m * r * r), Work.FORMULA, scope.positive, LONG)
+        if type(ratio) is not Node and not is_zero(ratio):
+            return Fraction(ratio), r
+    return None
 
 
 @dataclass(frozen=True)
@@ -105,32 +132,9 @@ class _Places:
         return Altered(name, "wrong_point", text, Contribution("", self.body, T=T, V=V), rank)
 
     def _other_shapes(self) -> Iterator[Altered]:
-        """The moment of inertia of a body of another shape, in the plane."""
-        own = self._shape()
-        for coefficient, what in SHAPES if own is not None else ():
-            share, length = own  # type: ignore[misc]
-            if coefficient != share:
-                size = f"*{term_text(self.mass.m)}*{term_text(length)}^2"
-                text = (
-                    f"the moment of inertia of {self.body} is taken as that of {what}, {coefficient}{size}, where it is"
-                    f" {share}{size}"
-                )
-                T = (coefficient / share - 1) * self.energy.rotation
-                yield Altered(f"the moment of inertia of {self.body}", "factor", text, self._part(T), PLACED)
-
-    def _shape(self) -> tuple[Fraction, Scalar] | None:
-        """(c, r) of I = c m r^2; None where it is not that."""
-        scope = self.parts.operator.base.scope
-        if scope.model.space != "plane":
-            return None
-        shape = scope.model.bodies[self.body].shape
-        sizes = [scope.value(x) for x in vars(shape).values() if isinstance(x, Expression)] if shape else []
-        inertia = self.mass.I[2][2]
-        for r in (*sizes, *(x for x in symbols_of((inertia,)) if x is not self.mass.m)):
-            ratio = legible(over(inertia, self.mass.m * r * r), Work.FORMULA, scope.positive, LONG)
-            if type(ratio) is not Node and not is_zero(ratio):
-                return Fraction(ratio), r
-        return None
+        for ratio, text in other_shapes(self.parts.operator.base.scope, self.body):
+            name = f"the moment of inertia of {self.body}"
+            yield Altered(name, "factor", text, self._part((ratio - 1) * self.energy.rotation), PLACED)
 
     def _part(self, T: Scalar) -> Contribution:
         return Contribution("", self.body, T=T)
