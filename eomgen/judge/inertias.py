@@ -12,7 +12,7 @@ from contextlib import suppress
 from dataclasses import replace
 from functools import cached_property
 
-from eomgen.errors import ExpressionError
+from eomgen.errors import DerivationError, ExpressionError
 from eomgen.judge.case import Case
 from eomgen.judge.corruption import EXCHANGED, PLACED, PLAIN, Corruption
 from eomgen.judge.terms import wrong_parameters
@@ -74,8 +74,9 @@ class Inertias:
         known = tuple(self.case.system.symbols.parameters.values())
         for told, part in parts:
             for kind, mapping, what in wrong_parameters(symbols_of((part,)), known):
-                left = substituted((part,), mapping)[0] - part
-                yield replace(self._changed(told, kind, left, f"in {told} {what}", body), rank=EXCHANGED)
+                with suppress(DerivationError):
+                    by = substituted((part,), mapping)[0] - part
+                    yield replace(self._changed(told, kind, by, f"in {told} {what}", body), rank=EXCHANGED)
         yield from self._about_others(body, whole, own)
 
     def _about_others(self, body: str, whole: Scalar, own: Scalar) -> Iterator[Corruption]:
