@@ -1,6 +1,35 @@
-"""`python -m eomgen`: the command line."""
+"""`python -m eomgen`, or `eomgen`: the command line, in a process of its own."""
+
+from __future__ import annotations
+
+import atexit
+import os
+import sys
+import threading
+from contextlib import suppress
+from typing import Any, NoReturn
 
 from eomgen.cli import main
 
+
+def run() -> NoReturn:
+    """The process is gone with its last word: graphs are not taken apart node by node, which takes a sixth of its time.
+
+    What others asked for at the end of the process is done first; where another thread is at work, all is as usual.
+    """
+    code: Any = 0
+    try:
+        main()
+    except SystemExit as told:
+        code = told.code
+    if threading.active_count() > 1 or not isinstance(code, int):
+        sys.exit(code)
+    atexit._run_exitfuncs()
+    for stream in (sys.stdout, sys.stderr):
+        with suppress(OSError, ValueError, AttributeError):
+            stream.flush()
+    os._exit(code)
+
+
 if __name__ == "__main__":
-    main()
+    run()

@@ -96,6 +96,17 @@ def test_the_end_of_the_process_adds_nothing(words):
     assert done.stderr.count("\n") == (0 if words[0] == "check" else 1)
 
 
+def test_the_process_ends_with_its_code_and_what_others_asked_for_at_its_end():
+    """run() = main(), then what `atexit` holds, and the exit code, whether the verb went well or not."""
+    code = "import atexit, sys; from eomgen.__main__ import run; atexit.register(print, 'last'); run()"
+    for words, expected in ((["schema"], 0), (["check", "nofile"], 2)):
+        done = subprocess.run(
+            [sys.executable, "-c", code, *words], capture_output=True, text=True, cwd=ROOT, check=False
+        )
+        assert done.returncode == expected
+        assert done.stdout.endswith("last\n")
+
+
 @pytest.mark.parametrize("encoding", ["cp1252", "ascii"])
 def test_what_a_stream_cannot_show_is_written_in_ascii(encoding):
     """δθ is dtheta; JSON is the same object everywhere; nothing is lost where letters are there."""
