@@ -12,6 +12,7 @@ from hand_made import equations_of, spring_row, symbols
 from tools import RUN_HERE, each_target, marked
 
 import eomgen
+from eomgen.codegen import kernels
 from eomgen.codegen.kernel_reader import solve_bordered
 from eomgen.codegen.lowering import lowered
 from eomgen.codegen.matrices import program_of_blocks, slopes_of
@@ -139,6 +140,22 @@ def test_nothing_is_lost_along_the_lists(case):
     full = Solve(((1,) * len(f),) * len(f), ((1,) * len(f),) * len(g), (), ())
     known, unknown = solve_bordered(*arguments, solve.tables), solve_bordered(*arguments, full.tables)
     assert known[: len(f)] == pytest.approx(unknown[: len(f)], rel=1e-10, abs=1e-10)
+
+
+@each_case
+def test_nothing_is_read_beside_the_lists(case, monkeypatch):
+    """a(M, J) does not change by a bit where all that the factors leave 0, and all room, holds no number."""
+    made = legs_under_a_plate(**case)
+    solve, x = bordered(made), np.random.default_rng(7).uniform(-0.6, 0.6, size=2 * len(made.M))
+    entries = (*(e for row in solve.matrix for e in row), *(e for row in solve.border for e in row), *solve.right)
+    values = compiled(program_of(entries, made.symbols), "numpy")(0.0, x, [0.9]).tolist()
+    n, k = len(solve.matrix), len(solve.border)
+    M, J, right = values[: n * n], values[n * n : n * (n + k)], values[n * (n + k) :]
+    whole = solve_bordered(M, J, right[:n], right[n:], solve.tables)
+    monkeypatch.setattr(kernels, "room", lambda size: [float("nan")] * size)
+    for numbers, places in zip((M, J), solve.places, strict=True):
+        numbers[:] = [value if at in places else float("nan") for at, value in enumerate(numbers)]
+    assert solve_bordered(M, J, right[:n], right[n:], solve.tables) == whole
 
 
 @pytest.mark.parametrize("seed", range(6))

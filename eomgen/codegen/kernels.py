@@ -72,8 +72,6 @@ def solve_factors(M: Reals, J: Reals, L: Work, weight: Work, mobility: Work, Y: 
     """
     for m in range(K):
         weight[m] = 0.0
-    for i in range(K * K):
-        S[i] = 0.0
     w = chosen(M, J, L, weight)
     order[K + 2] = w
     if w < 0:
@@ -116,8 +114,8 @@ def solve_by(
         for m in range(K):
             gap[m] = g[m]
         if again > 0:
-            subtract(w, M, J, a, lam, left, gap)
-        push(w, J, weight, gap, left)
+            subtract(M, J, a, lam, left, gap)
+        push(J, weight, gap, left)
         for j in range(N):
             forward(w, L, j, left)
         for m in range(K):
@@ -199,23 +197,33 @@ def backward(w: Int, L: Reals, y: Work) -> None:
 
 def chosen(M: Reals, J: Reals, L: Work, weight: Work) -> Int:
     """L and D of M (0), or where M is not relied on without the rows, of M + J^T W J (1); -1 of neither."""
-    for i in range(N * N):
-        L[i] = M[i]
+    laid(M, L)
     done = factored(0, DEGENERATE, L)
     if done == 1:
         return 0
-    for i in range(N * N):
-        L[i] = M[i]
+    for j in range(N):
+        for e in range(FIRST[N + 1 + j], FIRST[N + 1 + j + 1]):
+            L[j * N + PARTNER[e]] = 0.0
+    laid(M, L)
     weigh(M, J, weight)
     for m in range(K):
-        last = START[K + 1 + m + 1]
-        for e in range(START[K + 1 + m], last):
+        last = START[m + 1]
+        for e in range(START[m], last):
             for h in range(e, last):
                 L[REACH[e] * N + REACH[h]] += weight[m] * J[m * N + REACH[e]] * J[m * N + REACH[h]]
     with_ties = factored(1, ROUNDING, L)
     if with_ties == 1:
         return 1
     return -1
+
+
+def laid(M: Reals, L: Work) -> None:
+    """L becomes M, along what may not be zero in the factors of M: nothing else of M is read."""
+    for j in range(N):
+        row = j * N
+        L[row + j] = M[row + j]
+        for e in range(FIRST[j], FIRST[j + 1]):
+            L[row + PARTNER[e]] = M[row + PARTNER[e]]
 
 
 def weigh(M: Reals, J: Reals, weight: Work) -> None:
@@ -229,7 +237,8 @@ def weigh(M: Reals, J: Reals, weight: Work) -> None:
     if not mean[0] > 0:
         mean[0] = 1.0
     for m in range(K):
-        for i in range(N):
+        for e in range(START[m], START[m + 1]):
+            i = REACH[e]
             mass = M[i * N + i]
             if mass > 0:
                 weight[m] += J[m * N + i] * J[m * N + i] / mass
@@ -254,10 +263,16 @@ def invert(size: Work) -> None:
 def flexibility(w: Int, L: Reals, J: Reals, mobility: Work, Y: Work, S: Work) -> None:
     """D^-1, Y = L^-1 J^T and S = Y^T D^-1 Y = J M^-1 J^T (lower triangle)."""
     column = room(K)
-    for i in range(K * N):
-        Y[i] = J[i]
     for m in range(K):
         row = m * N
+        S[m * K + m] = 0.0
+        for e in range(NEXT[w * (K + 1) + m], NEXT[w * (K + 1) + m + 1]):
+            S[LATER[e] * K + m] = 0.0
+        if w == 1:
+            for e in range(START[K + 1 + m], START[K + 1 + m + 1]):
+                Y[row + REACH[e]] = 0.0
+        for e in range(START[m], START[m + 1]):
+            Y[row + REACH[e]] = J[row + REACH[e]]
         for e in range(START[w * (K + 1) + m], START[w * (K + 1) + m + 1]):
             j = REACH[e]
             push = Y[row + j]
@@ -308,6 +323,7 @@ def eliminated(w: Int, S: Work, order: Places) -> Int:
             if share > PIVOT:
                 late[count[1]] = c
                 count[1] += 1
+                cleared(w, c, S, column)
     order[K] = count[0]
     for k in range(count[0], K):
         count[2] = -1
@@ -326,6 +342,18 @@ def eliminated(w: Int, S: Work, order: Places) -> Int:
         struck(S, c, late, count[1], column)
         order[k] = c
     return K
+
+
+def cleared(w: Int, c: Int, S: Work, column: Work) -> None:
+    """Column c of S below the diagonal, 0 beside what is not zero: a row that waits meets all that come after it."""
+    first = NEXT[w * (K + 1) + c]
+    last = NEXT[w * (K + 1) + c + 1]
+    for e in range(first, last):
+        column[e - first] = S[LATER[e] * K + c]
+    for i in range(c + 1, K):
+        S[i * K + c] = 0.0
+    for e in range(first, last):
+        S[LATER[e] * K + c] = column[e - first]
 
 
 def struck(S: Work, c: Int, rest: Places, n: Int, column: Work) -> None:
@@ -382,27 +410,27 @@ def multipliers(w: Int, S: Reals, order: Places, rank: Int, r: Work) -> None:
         r[c] = y[c]
 
 
-def push(w: Int, J: Reals, weight: Reals, gap: Reals, left: Work) -> None:
+def push(J: Reals, weight: Reals, gap: Reals, left: Work) -> None:
     """left += J^T W gap."""
     for m in range(K):
         if weight[m] != 0:
             pull = weight[m] * gap[m]
-            for e in range(START[w * (K + 1) + m], START[w * (K + 1) + m + 1]):
+            for e in range(START[m], START[m + 1]):
                 left[REACH[e]] += J[m * N + REACH[e]] * pull
 
 
-def subtract(w: Int, M: Reals, J: Reals, a: Reals, lam: Reals, left: Work, gap: Work) -> None:
+def subtract(M: Reals, J: Reals, a: Reals, lam: Reals, left: Work, gap: Work) -> None:
     """left -= M a - J^T lam,  gap -= J a."""
     for j in range(N):
         row = j * N
         left[j] -= M[row + j] * a[j]
-        for e in range(FIRST[w * (N + 1) + j], FIRST[w * (N + 1) + j + 1]):
+        for e in range(FIRST[j], FIRST[j + 1]):
             i = PARTNER[e]
             left[i] -= M[row + i] * a[j]
             left[j] -= M[row + i] * a[i]
     for m in range(K):
         row = m * N
-        for e in range(START[w * (K + 1) + m], START[w * (K + 1) + m + 1]):
+        for e in range(START[m], START[m + 1]):
             i = REACH[e]
             left[i] += J[row + i] * lam[m]
             gap[m] -= J[row + i] * a[i]

@@ -172,10 +172,12 @@ def _solved(layout: Layout, writer: ExpressionWriter, number: int) -> list[State
     sizes = {"solve_M": n * n, "solve_J": k * n, f: n, g: k}
     arrays = [name for name, size in sizes.items() if size]
     new = [name for name in arrays if not number or name in (f, g)]
-    lines: list[Statement] = [Array(name, str(sizes[name])) for name in new]
+    own_way = layout.solvers[0] in layout.language.defined
+    read = {} if own_way else dict(zip(("solve_M", "solve_J"), solve.places, strict=True))
+    lines: list[Statement] = [Array(name, str(sizes[name]), ROOM if name in read else CHANGED) for name in new]
     for name in new:
-        held_there = {place: x for place, x in filled[name].items() if type(x) is Node or x != 0}
-        lines += [Put(name, str(place), writer.value(x)) for place, x in held_there.items()]
+        said = {at: x for at, x in filled[name].items() if type(x) is Node or x != 0 or at in read.get(name, ())}
+        lines += [Put(name, str(place), writer.value(x)) for place, x in said.items()]
     lines += _calls(layout, arrays, number, n, k)
     for place, x in enumerate(solve.unknowns):
         text = layout.language.place(*((f, place) if place < n else (g, place - n)))

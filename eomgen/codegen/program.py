@@ -71,6 +71,13 @@ class Solve:
         return self.plain, zeros_with_ties(self.matrix, self.border)
 
     @property
+    def places(self) -> tuple[frozenset[int], frozenset[int]]:
+        """Where the kernels read the matrix, n x n, and the border, k x n: what may not be zero in its factors."""
+        n, own = len(self.matrix), self.plain
+        M = {j * n + i for j, rows in enumerate(own.partners) for i in (j, *rows)}
+        return frozenset(M), frozenset(m * n + i for m, row in enumerate(own.reach) for i in row)
+
+    @property
     def tables(self) -> list[Table]:
         """The same as lists, each with where its parts begin, as codegen/kernels.py reads them."""
         ways = self.zeros
