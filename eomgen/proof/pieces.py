@@ -13,7 +13,7 @@ from typing import Any
 from eomgen.records import dataclass
 from eomgen.symbolic.expression.derivative import gradient, symbols_of
 from eomgen.symbolic.expression.graph import Node, Scalar, linear_terms
-from eomgen.symbolic.expression.node import State
+from eomgen.symbolic.expression.node import State, holds_op
 from eomgen.symbolic.expression.rational import Fraction
 from eomgen.symbolic.expression.splines import sampled_of
 from eomgen.symbolic.expression.traversal import order
@@ -23,6 +23,9 @@ from eomgen.symbolic.numeric.tolerances import CERTAIN_AT_50, COMPUTED
 STEPS = 40  # of Newton's method to a value of a quantity
 SHARES = (Fraction(1, 2), Fraction(1, 8), Fraction(7, 8))  # of a piece, where it is entered
 BEYOND = (Fraction(1, 2), Fraction(1, 20), Fraction(1, 200))  # of the nearest piece's width, outside of all
+
+COMPARING = ("less", "less_equal", "min", "max")
+ABOUT_ZERO = ("abs", "sign")
 
 
 @dataclass(frozen=True)
@@ -78,7 +81,7 @@ class Switch:
 
 def switches_of(scalars: Iterable[Scalar], moving: frozenset[Node]) -> tuple[Switch, ...]:
     """Every switch in the scalars that something that moves can throw."""
-    nodes = order(scalars)
+    nodes = order(x for x in scalars if holds_op(x, *COMPARING, *ABOUT_ZERO, "sampled"))
     active: set[Any] = set(moving)
     for x in nodes:
         if x.op != "symbol" and any(type(a) is Node and a in active for a in x.args):
@@ -100,9 +103,9 @@ def switches_of(scalars: Iterable[Scalar], moving: frozenset[Node]) -> tuple[Swi
 
 def _thrown_by(x: Node) -> Iterator[tuple[dict[Any, Any], Sequence[Scalar]]]:
     """(terms, the values of their sum at which x changes its form)."""
-    if x.op in ("less", "less_equal", "min", "max"):
+    if x.op in COMPARING:
         yield linear_terms(x.args[0] - x.args[1]), (0,)
-    elif x.op in ("abs", "sign"):
+    elif x.op in ABOUT_ZERO:
         yield linear_terms(x.args[0]), (0,)
     elif x.op == "sampled":
         yield linear_terms(x.args[0]), sampled_of(x.args[1]).spline.bounds

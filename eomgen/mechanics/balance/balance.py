@@ -8,7 +8,7 @@ unknowns are the components of all reactions, of joints and of ties; what drives
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import field
 from functools import cached_property
 
@@ -96,17 +96,26 @@ def balance_of(system: System, sizes: Mapping[str, Scalar] | None = None) -> Bal
     Raises:
         DerivationError: a force, an energy or a tie that acts at no place, named.
     """
+    if sizes:
+        return _balance(system, sizes)
+    if balance_of not in system.found:
+        system.found[balance_of] = _balance(system, {})
+    found: Balance = system.found[balance_of]
+    return found
+
+
+def _balance(system: System, sizes: Mapping[str, Scalar]) -> Balance:
     refuse_placeless(system)
     axes = Axes(system.motion)
     components = components_of(system, axes)
-    inertia, applied = _inertia(axes), _applied(system, axes)
+    inertia, applied, on_bodies = _inertia(axes), _applied(system, axes), _coefficients(components)
     equations = []
     for i, link in enumerate(system.motion.links):
         for d in axes.rows:
-            row = {j: value for j, c in enumerate(components) if not is_zero(value := _coefficient(c, i, d))}
+            row = {j: six[d] for j, six in on_bodies.get(i, {}).items() if not is_zero(six[d])}
             if row or not (is_zero(applied[i][d]) and is_zero(inertia[i][d])):
                 equations.append(BodyEquation(link.name, d, row, applied[i][d], inertia[i][d]))
-    return Balance(system, components, tuple(equations), sizes or {})
+    return Balance(system, components, tuple(equations), sizes)
 
 
 def refuse_placeless(system: System) -> None:
@@ -175,10 +184,14 @@ def _moved_inside(what: str, where: str) -> DerivationError:
     )
 
 
-def _coefficient(component: Component, link: int, direction: int) -> Scalar:
-    """Of the component, its friction included, in one equation of one body."""
-    effects = (*component.effects, *component.friction_effects)
-    return sum((effect.six[direction] for effect in effects if effect.link == link), start=0)
+def _coefficients(components: Sequence[Component]) -> dict[int, dict[int, tuple[Scalar, ...]]]:
+    """{body: {component: its force and moment there}}, friction included."""
+    found: dict[int, dict[int, tuple[Scalar, ...]]] = {}
+    for j, component in enumerate(components):
+        for effect in (*component.effects, *component.friction_effects):
+            on_body = found.setdefault(effect.link, {})
+            on_body[j] = tuple(a + b for a, b in zip(on_body.get(j, (0,) * 6), effect.six, strict=True))
+    return found
 
 
 # -- inertia and what is applied -------------------------------------------------------------------

@@ -11,7 +11,7 @@ from typing import Any
 
 from eomgen.records import dataclass
 from eomgen.symbolic.expression.graph import CONSTANTS, Node, Scalar
-from eomgen.symbolic.expression.node import Owner
+from eomgen.symbolic.expression.node import Owner, op_bits
 
 FREE = frozenset(("symbol", "pi", "neg"))
 _INDEX = attrgetter("index")
@@ -32,17 +32,20 @@ class Count:
 
 def order(outputs: Iterable[Scalar], given: Mapping[Node, Any] | frozenset[Node] = frozenset()) -> list[Node]:
     """Every node that the outputs need, arguments before results; what is `given` is not looked into."""
+    return sorted(_needed(outputs, given), key=_INDEX)
+
+
+def _needed(outputs: Iterable[Scalar], given: Mapping[Node, Any] | frozenset[Node] = frozenset()) -> set[Node]:
     seen = {x for x in outputs if type(x) is Node}
-    stack = list(seen)
+    stack = [x for x in seen if x not in given] if given else list(seen)
+    pop, push, add = stack.pop, stack.append, seen.add
     while stack:
-        x = stack.pop()
-        if given and x in given:
-            continue
-        for a in x.args:
+        for a in pop().args:
             if type(a) is Node and a not in seen:
-                seen.add(a)
-                stack.append(a)
-    return sorted(seen, key=_INDEX)
+                add(a)
+                if not given or a not in given:
+                    push(a)
+    return seen
 
 
 def united(outputs: Sequence[Scalar]) -> tuple[Owner, list[Scalar]]:
@@ -58,6 +61,9 @@ def operations(outputs: Iterable[Scalar], parameters: Iterable[Node] = ()) -> Co
     What depends on `parameters` only is hoisted.
     """
     parameters = frozenset(parameters)
+    if not parameters:
+        symbol = op_bits("symbol")
+        return Count(sum(1 for x in _needed(outputs) if x.op not in FREE and x.ops & symbol), 0)
     constant, fixed, moving = 0, 1, 2  # what a node depends on at most: exact constants, parameters, anything
     kind: dict[Node, int] = {}
     counts = [0, 0, 0]

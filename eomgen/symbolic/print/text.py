@@ -20,6 +20,7 @@ Printed = dict[Node, tuple[str, int]]
 SHORTEST_NAMED = 16  # characters: what is shorter is not worth a name
 LONGEST_RESULT = 20_000  # characters of an exact result
 SHORTEST_LIMIT = 60
+_SIGNS = {"neg": 3, "add": 3, "sub": 3, "mul": 5, "div": 7, "pow": 5}
 
 
 def to_text(x: Scalar, names: Mapping[Node, str] | None = None) -> str:
@@ -155,10 +156,10 @@ def _size(node: Node, sizes: Mapping[Node, int]) -> int:
         return len(node.name) if node.op == "symbol" else 2
     if node.op == "sampled":
         return len(sampled_of(node.args[1]).name)
-    inside = sum(sizes[a] if type(a) is Node else number_length(a) for a in node.args)
-    return inside + {"neg": 3, "add": 3, "sub": 3, "mul": 5, "div": 7, "pow": 5}.get(
-        node.op, len(node.op) + 2 * len(node.args)
-    )
+    size = _SIGNS.get(node.op) or len(node.op) + 2 * len(node.args)
+    for a in node.args:
+        size += sizes[a] if type(a) is Node else number_length(a)
+    return size
 
 
 def named_parts(expressions: Sequence[Scalar], limit: int) -> tuple[Node, ...]:
