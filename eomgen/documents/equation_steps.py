@@ -38,7 +38,7 @@ from eomgen.symbolic.print.text import text_size
 SOLVED = 3  # accelerations that are solved for by hand, at most
 SOLVED_LENGTH = 700  # characters of the equations that are solved by hand, at most
 SHORTEST = "In their shortest form, what does not accelerate on the right"
-SIMPLER = (1, 0.5)  # how much shorter constants are to become where they are multiplied out one by one
+SIMPLER = (1, 0.5)  # the share of their operations that constants keep at most where they are multiplied out one by one
 QUOTIENT = 200  # characters of a solved acceleration in one line, numerator over denominator
 
 
@@ -157,8 +157,8 @@ def _shortest_sides(reader: Reader, equations: EquationsOfMotion) -> tuple[Scala
     forms: list[Sequence[Scalar]] = [sides]
     if not sizes:
         return reader.with_symbols(sides)
-    for share in SIMPLER:  # the constants that keep that share of their operations at most
-        forms.append(substituted(sides, {x: simple[x] for x, (was, now) in sizes.items() if now <= share * was}))
+    kept = [tuple(x for x, (was, now) in sizes.items() if now <= share * was) for share in SIMPLER]
+    forms += [substituted(sides, {x: simple[x] for x in some}) for some in dict.fromkeys(kept) if some]
     return reader.with_symbols(min(forms, key=lambda form: operations(form).total))
 
 

@@ -12,8 +12,6 @@ import numpy as np
 from eomgen.certificate import certify
 from eomgen.documents.document import Document, document_of
 from eomgen.documents.figures import Picture
-from eomgen.documents.linearize.picture import modes_picture
-from eomgen.documents.linearize.response_pictures import bode_picture, locus_picture
 from eomgen.documents.linearize.state_space import LETTERS, StateSpace, state_space_of
 from eomgen.documents.linearize.steps import linearization_steps
 from eomgen.documents.quantity import Quantity
@@ -225,6 +223,9 @@ class Linearization(Result):
         Raises:
             RunFailed: parameters have no values; there are no inputs; the equations are only known in numbers.
         """
+        from eomgen.documents.linearize.picture import modes_picture
+        from eomgen.documents.linearize.response_pictures import bode_picture, locus_picture
+
         if self.over is not None:
             return locus_picture(self.small, self.over)
         return bode_picture(self.small) if self.drawn == "bode" else modes_picture(self.modes)

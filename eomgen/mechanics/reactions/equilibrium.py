@@ -98,14 +98,14 @@ class _Wrenches:
             size[j] += abs(wrench) + arm * np.linalg.norm(wrench[:3])
         return total, size
 
-    def of_effects(self, effects: Sequence[Effect]) -> list[np.ndarray]:
-        """Each of them alone."""
+    def of_effects(self, effects: Sequence[Effect]) -> np.ndarray:
+        """Force, and moment about the ground's origin, of each of them alone, effects x 6, in the ground's axes."""
         flat = tuple(x for e in effects for x in (*e.force, *e.couple, *e.arm))
-        values = self.numbers.array(flat).reshape(-1, 3, 3)
-        return [
-            self.about_origin(effect.link, np.concatenate([force, couple + np.cross(arm, force)]))
-            for effect, (force, couple, arm) in zip(effects, values, strict=True)
-        ]
+        force, couple, arm = self.numbers.array(flat).reshape(-1, 3, 3).transpose(1, 0, 2)
+        R = np.array([self._places[e.link][0] for e in effects]).reshape(-1, 3, 3)
+        p = np.array([self._places[e.link][1] for e in effects]).reshape(-1, 3)
+        f, n = (np.einsum("eij,ej->ei", R, x) for x in (force, couple + np.cross(arm, force)))
+        return np.hstack([f, n + np.cross(p, f)])
 
     def _arms(self, effects: Sequence[Effect]) -> list[float]:
         """How far a force may act from the origin: what cancels in its moment was no larger than force times arm."""
@@ -114,12 +114,6 @@ class _Wrenches:
             float(np.linalg.norm(arm) + np.linalg.norm(self._places[effect.link][1]))
             for effect, arm in zip(effects, arms, strict=True)
         ]
-
-    def about_origin(self, link: int, wrench: np.ndarray) -> np.ndarray:
-        """Force and moment about a mass centre, in the axes of the body's equations -> about the ground's origin."""
-        R, p = self._places[link]
-        f, n = R @ wrench[:3], R @ wrench[3:]
-        return np.concatenate([f, n + np.cross(p, f)])
 
     @property
     def rows(self) -> list[int]:
@@ -196,7 +190,7 @@ def _applied(wrenches: _Wrenches) -> np.ndarray:
     for load in (*system.loads.placed, *weights(system.loads)):
         vectors += _about_origin(system, load)
     given = numbers.array(tuple(vectors)).reshape(-1, 6).sum(axis=0)
-    return np.asarray(given + sum(wrenches.of_effects(joint_effects(system)), start=np.zeros(6)))
+    return np.asarray(given + wrenches.of_effects(joint_effects(system)).sum(axis=0))
 
 
 def _about_origin(system: System, load: PointForce | Couple) -> list[Scalar]:
