@@ -107,6 +107,13 @@ def test_the_process_ends_with_its_code_and_what_others_asked_for_at_its_end():
         assert done.stdout.endswith("last\n")
 
 
+def test_who_watches_the_process_has_the_last_word(tmp_path):
+    """`python -m cProfile -o FILE -m eomgen ...` writes its file."""
+    command = [sys.executable, "-m", "cProfile", "-o", str(tmp_path / "p"), "-m", "eomgen", "schema"]
+    assert subprocess.run(command, capture_output=True, cwd=ROOT, check=False).returncode == 0
+    assert (tmp_path / "p").stat().st_size
+
+
 @pytest.mark.parametrize("encoding", ["cp1252", "ascii"])
 def test_what_a_stream_cannot_show_is_written_in_ascii(encoding):
     """δθ is dtheta; JSON is the same object everywhere; nothing is lost where letters are there."""

@@ -62,7 +62,8 @@ class Atoms:
         node = self.nodes.get(atom)
         if node is None or node.op != "symbol":
             return 0
-        return len(node.name) - len(node.name.rstrip("'"))
+        name: str = node.args[0]
+        return len(name) - len(name.rstrip("'"))
 
     def term(self, key: Key, c: Number) -> Scalar:
         """c * monomial * wave as a node."""

@@ -72,6 +72,8 @@ class Writer:
         """sin(theta)*(3*g + 20*R*cos(theta)*theta'^2)"""
         if len(terms) < 2 or any(e < 0 and self.atoms.is_a(a, "sum") for monomial, _ in terms for a, e in monomial):
             return self.sum(terms)
+        if not any(w for _, w in terms):
+            return self._polynomial(terms)
         written = [(c, monomial, _powers(factors)) for c, monomial, factors in self.written(terms)]
         common = reduce(and_, (powers for _, _, powers in written))
         total: Scalar = 0
