@@ -144,7 +144,7 @@ def test_plain_numbers_stay_exact_on_the_graph():
         ("a == b", "'=' has no place here", 2, ""),
         ("1/0", "division by zero", 1, ""),
         ("x + (2 - 2)^-1", "division by zero", 11, ""),
-        ("x\x00", "unexpected character '\\x00'", 1, ""),
+        ("x\x00", "unexpected character '\\x00'", 1, "not seen"),
     ],
 )
 def test_an_error_says_what_where_and_how_to_mend_it(text, what, column, mend):

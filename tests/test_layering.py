@@ -258,3 +258,16 @@ def test_every_room_has_quick_tests():
     asked = {room for text in texts if not is_slow(text) for room in IMPORTED.findall(text)}
     rooms = {path.parent.name for path in PACKAGE.glob("*/__init__.py")}
     assert rooms - asked == set()
+
+
+OF_POSIX = {"resource", "fcntl", "pwd", "grp", "termios", "tty", "pty", "syslog"}
+
+
+def test_no_module_needs_what_only_posix_has():
+    """An import of it stands in a `try`, or where it is used: else Windows cannot read a file, nor find a test."""
+    for root in (PACKAGE, Path(__file__).parent):
+        for path in root.rglob("*.py"):
+            tree = ast.parse(path.read_text(encoding="utf-8"))
+            names = {each.name for part in tree.body if isinstance(part, ast.Import) for each in part.names}
+            names |= {part.module for part in tree.body if isinstance(part, ast.ImportFrom)}
+            assert not names & OF_POSIX, path

@@ -12,6 +12,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 from click.testing import CliRunner
+from forked import needs_sh
 from PIL import Image
 
 import eomgen
@@ -260,6 +261,7 @@ def test_of_a_mechanism_other_freedoms_stand_still_where_a_reaction_is_released(
     assert not stands and v[0] and v[1:] == [0, 0]
 
 
+@needs_sh
 def test_an_mp4_is_what_ffmpeg_makes_of_all_frames(tmp_path, monkeypatch, run):
     """Every frame goes into it, 3 bytes a dot."""
     fake = tmp_path / "ffmpeg"

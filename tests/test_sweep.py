@@ -19,6 +19,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 from click.testing import CliRunner
+from forked import needs_sh
 from scipy import stats
 
 import eomgen
@@ -316,6 +317,7 @@ def test_patience_is_for_each_step_of_a_sweep(spring, tmp_path, monkeypatch):
     assert ended.exit_code == 3 and told is not None and len(table_at(folder)) == int(told[1]) >= 3
 
 
+@needs_sh
 @pytest.mark.slow
 def test_workers_that_are_killed_are_replaced(spring, tmp_path):
     """SIGKILL of the workers of a running sweep: a new pool does what the ledger lacks."""

@@ -1,5 +1,7 @@
 """Text of a model file -> Model, or every problem at once with its place in the text."""
 
+import codecs
+import os
 import re
 import tomllib
 from collections.abc import Mapping
@@ -7,10 +9,11 @@ from dataclasses import replace
 from pathlib import Path as FilePath
 from typing import Any
 
-from eomgen.errors import ModelError, Problem
+from eomgen.errors import ModelError, Problem, UsageError
 from eomgen.files import read, read_stdin
 from eomgen.model.findings import TABLES, Decimal, Finding, shown
 from eomgen.model.making import MOST_FINDINGS, draft_of, findings_of, resolved
+from eomgen.model.not_toml import told_of_toml
 from eomgen.model.parts import Model
 from eomgen.model.positions import DocumentPath, Index, Span, index_of
 from eomgen.model.replaced import Values, with_values
@@ -19,6 +22,7 @@ from eomgen.model.warnings import warnings_of
 LARGEST = 1_000_000  # bytes
 WIDEST = 100  # characters of a source line that an error shows
 VERSION = 1
+UTF_16 = (codecs.BOM_UTF16_LE, codecs.BOM_UTF16_BE)
 ModelOrPath = Model | str | FilePath
 
 
@@ -36,7 +40,10 @@ def bytes_at(path: str | FilePath) -> bytes:
 
     Raises:
         ModelError: it cannot be read.
+        UsageError: no path is given.
     """
+    if not isinstance(path, (str, os.PathLike)):
+        raise UsageError(f"{path!r} is neither a model nor a path to one", mend='give eomgen.load("crane.toml")')
     try:
         return read_stdin(LARGEST) if path == "-" else read(path, LARGEST)
     except OSError as error:
@@ -113,8 +120,9 @@ def _text(data: bytes, name: str) -> str:
     except UnicodeDecodeError as error:
         before = data[: error.start].decode("utf-8-sig", "replace")
         line, column = before.count("\n") + 1, len(before) - before.rfind("\n")
-        what = f"not UTF-8: byte 0x{data[error.start]:02x}"
-        raise ModelError(what, f"{name}:{line}:{column}", "save it as UTF-8") from error
+        what, binary = f"not UTF-8: byte 0x{data[error.start]:02x}", b"\0" in data and not data.startswith(UTF_16)
+        mend = "it is no text: give the model, a file .toml" if binary else "save it as UTF-8"
+        raise ModelError(what, f"{name}:{line}:{column}", mend) from error
 
 
 def _table(text: str, index: Index, name: str) -> tuple[dict[str, Any], list[Problem]]:
@@ -164,41 +172,8 @@ def _not_toml(error: Exception, index: Index, name: str) -> Problem:
         offset = sum(len(line) + 1 for line in lines[: int(place.group(1)) - 1]) + int(place.group(2)) - 1
     else:
         offset = max(0, len(index.text.rstrip()) - 1) if place is not None else 0
-    mend = _toml_mend(what, index.text, offset)
-    if _YAML.match(index.text):
-        what, mend = "this looks like YAML", 'write: name = "crane", and [bodies.boom] for a table'
+    what, mend = told_of_toml(what, index.text, offset)
     return _problem(Finding((), f"not TOML: {what}", mend), Span(offset, offset + 1), index, name)
-
-
-_YAML = re.compile(r"(?:\s|#[^\n]*\n|---)*[A-Za-z_]\w*:(?:\s|$)")
-_WORDS = re.compile(r"\s*(name|about|source|space)\s*=\s*([A-Za-z][\w ]*)$")
-_COMMA = re.compile(r"=\s*([-+]?\d+),(\d+)\b")
-
-
-def _toml_mend(what: str, text: str, offset: int) -> str:
-    before, culprit = text[:offset], text[offset : offset + 1]
-    line = text[before.rfind("\n") + 1 :].split("\n", 1)[0]
-    if found := _COMMA.search(line):
-        return f"write a decimal point: {found[1]}.{found[2]}"
-    if culprit in ("\n", "#") and before.rfind("{") > max(before.rfind("}"), before.rfind("\n[")):
-        return "a table in braces stands in one line; or write it as one with a head, like [bodies.boom.joint]"
-    if culprit == ";" and before.count("[") > before.count("]"):
-        return "a comma stands between two of a list: [1, 0]"
-    if culprit in tuple("“”„‘’"):
-        return 'quotes are straight: "'
-    if words := _WORDS.match(line):
-        return f'a text stands in quotes: {words[1]} = "{words[2].strip()}"'
-    if culprit in ("/", ";"):
-        return "a remark begins with #" if culprit == "/" else "leave it out: a line ends by itself"
-    if line.lstrip().startswith("[["):
-        return "a table has a name and single brackets: [bodies.boom]"
-    if culprit.isalpha() and not culprit.isascii():
-        return f'as a key a name with such letters stands in quotes: "{culprit}" = 1'
-    if "'\\'" in what:
-        return r"in single quotes a backslash is one: symbol = '\theta_A'"
-    if "value" in what.lower():
-        return 'an expression stands in quotes: angle = "theta - pi/2"'
-    return "see https://toml.io" if "digits" not in what and "deep" not in what else "make it smaller"
 
 
 def _version(raw: dict[str, Any]) -> list[Finding]:

@@ -203,8 +203,11 @@ class _Proof:
         return max(speeds, default=0), max(rates, default=0)
 
     def differs(self, stated: Sequence[Any], found: Sequence[Any], order: int, tolerance: float = 0.0) -> bool:
-        """Whether velocities (order 1) or accelerations (2) are not the same."""
-        tolerance = tolerance or DIFFERENCE_AT_50
+        """Whether velocities (order 1) or accelerations (2) are not the same.
+
+        A quaternion of doubles turns as its length allows, which is 1 to their digits only.
+        """
+        tolerance = tolerance or (self.tolerance if self.state.system.scope.quaternions else DIFFERENCE_AT_50)
         size = self.size[order - 1] + max(map(abs, found), default=0)
         floor = DIFFERENCE_AT_50 * max(map(abs, (self.size[0], 1)))
         return any(abs(x - y) > tolerance * size + floor for x, y in zip(stated, found, strict=True))

@@ -23,6 +23,7 @@ import eomgen
 from eomgen.cli import main
 from eomgen.errors import EomgenError
 
+WIDEST = 300
 PAGE = Path(__file__).parents[2] / "docs" / "mistakes.md"
 
 
@@ -89,13 +90,17 @@ def _told(text: str) -> str:
 
 
 def _cell(text: str) -> str:
-    return text.replace("\n", " ").replace("|", "\\|")
+    """In a table: in one line, what is not seen by its code, of a whole file the beginning."""
+    seen = text.replace("\n", " ").replace("|", "\\|")
+    shown = "".join(c if c.isprintable() else ascii(c)[1:-1] for c in seen)
+    return shown if len(shown) < WIDEST else f"{shown[:WIDEST]}..."
 
 
 def page() -> str:
     """The mistakes and what is said of them."""
-    head = "# What is said of fifty mistakes\n\nMade on purpose in the model of a crane (`tests/helpers/newcomer.py`); "
-    head += "written by\n`python tests/faults/test_fifty_mistakes.py`, whose tests make each of them.\n\n"
+    head = "# What is said of a hundred mistakes\n\n"
+    head += "Made on purpose in the model of a crane (`tests/helpers/newcomer.py`); written by\n"
+    head += "`python tests/faults/test_fifty_mistakes.py`, whose tests make each of them.\n\n"
     return head + "| mistake | written | told |\n|---|---|---|\n" + "\n".join(rows()) + "\n"
 
 

@@ -5,8 +5,6 @@ from __future__ import annotations
 import itertools
 import json
 import os
-import pwd
-import resource
 import signal
 import subprocess
 import sys
@@ -24,6 +22,8 @@ from eomgen.kept import _own_folder
 from eomgen.simulation import integrator
 
 pytestmark = [pytest.mark.slow, needs_fork]
+pwd = pytest.importorskip("pwd", reason="users of POSIX")
+resource = pytest.importorskip("resource", reason="limits of POSIX")
 
 ROOT = Path(__file__).parent.parent.parent
 PENDULUM = str(ROOT / "models" / "simple_pendulum.toml")

@@ -7,7 +7,6 @@ import json
 import mmap
 import os
 import pickle
-import resource
 import shutil
 import signal
 import sys
@@ -25,6 +24,7 @@ from eomgen.cli import main
 from eomgen.errors import WriteFailed, visible
 
 pytestmark = [pytest.mark.slow, needs_fork]
+resource = pytest.importorskip("resource", reason="limits of POSIX")
 
 ROOT = Path(__file__).parent.parent.parent
 PENDULUM = str(ROOT / "models" / "simple_pendulum.toml")

@@ -1,4 +1,4 @@
-"""More than fifty mistakes of a newcomer, none of them in the other tables, and the word that mends each."""
+"""More than a hundred mistakes of a newcomer, none of them in the other tables, and the word that mends each."""
 
 from __future__ import annotations
 
@@ -91,6 +91,38 @@ IN_FILES = {
     "a function without its brackets": ("\"phi''\"", '"kinetic_energy"', "kinetic_energy(...)"),
     "a force without a name": ("[forces.weight]", "[forces]", "[forces.NAME]"),
     "a value for a name": ("eomgen = 1", "eomgen: 1", "="),
+    "a minus of a book": ("start = 20", "start = \u221220", "write -"),
+    "a minus of a book in a formula": ("phi - pi/2", "phi \u2212 pi/2", "write -"),
+    "thousands with a point": ("value = 5,", "value = 5.000,0,", "5000.0"),
+    "a blank that is none": ("space = ", "space\u00a0= ", "U+00A0"),
+    "a letter that is not seen": ("\"phi''\"", '"phi\u200b"', "U+200B"),
+    "wide figures": ("\"phi''\"", '"\uff12*phi"', "write 2"),
+    "a control character": ("[outputs]", "\x00[outputs]", "U+0000"),
+    "lines that end in CR alone": (CRANE, CRANE.replace("\n", "\r"), "LF or CRLF"),
+    "another format, JSON": (CRANE, '{"eomgen": 1, "space": "plane"}', "JSON"),
+    "another format, XML": (CRANE, '<robot name="crane"/>', "eomgen import"),
+    "another format, Python": (CRANE, "import eomgen", "Python"),
+    "another format, an archive": (CRANE, "PK\x03\x04", "no text"),
+    "a text that does not end": ('"phi - pi/2"', '"phi - pi/2', "its quote"),
+    "a comma too many": ('displacement = "x", stiffness = "k" }', 'displacement = "x", }', "leave out the comma"),
+    "round brackets of a list": ('[0, "-g"]', '(0, "-g")', "[0, 1]"),
+    "round brackets of a head": ("[outputs]", "(outputs)", "[outputs]"),
+    "brackets of two kinds": ('"phi - pi/2"', '"(phi - pi/2]"', "round parentheses"),
+    "a path of Windows": ("eomgen = 1", 'eomgen = 1\nsource = "C:\\Users\\crane"', "single quotes"),
+    "a line that is no assignment": ("[outputs]", "outputs\n[outputs]", "NAME = VALUE"),
+    "a share in percent": ("\"phi''\"", '"5%*phi"', "/100"),
+    "a factorial": ("\"phi''\"", '"phi!"', "factorial"),
+    "a body that hangs on itself": ('on = "trolley"', 'on = "boom.end"', "hang on the ground"),
+    "bodies in a ring": ('kind = "prismatic", axis', 'kind = "prismatic", on = "boom", axis', "ring"),
+    "parameters in a ring": ('k = { value = 20, unit = "N/m" }', 'k = "c"\nc = "k"', "ring"),
+    "a name for two things": ("m = { value = 2", "phi = { value = 2", "another name"),
+    "time as a parameter": ("k = { value", "t = { value", "reserved"),
+    "a coordinate that is driven twice": ('x = { start = 0, unit = "m" }', 'x = { motion = "t", rate = "1" }', "twice"),
+    "an axis without a length": ("axis = [1, 0]", "axis = [0, 0]", "direction"),
+    "a truth for a number": ("value = 9.81", "value = true", "number"),
+    "a date for a number": ("value = 9.81", "value = 2024-01-01", "number"),
+    "weight for mass": ('m = { value = 2, unit = "kg" }', 'm = { value = 2, unit = "N" }', "kg"),
+    "another file of the model": ("eomgen = 1", 'eomgen = 1\ninclude = "other.toml"', "unknown key"),
 }
 """of the model file"""
 IN_COMMANDS = {
@@ -121,6 +153,18 @@ IN_COMMANDS = {
     "an end without an equation": (["simulate", "MODEL", "--until", "phi"], "="),
     "a method of another program": (["simulate", "MODEL", "--method", "ode45"], "RK45"),
     "a picture into a table": (["simulate", "MODEL", "-o", "run.png"], ".csv"),
+    "a view of no picture, of small motions": (["linearize", "MODEL", "--view", "bode"], "--plot"),
+    "chance where nothing is drawn": (["sweep", "MODEL", "--over", "m=1,2", "--ask", "phi", "--seed", "3"], "--random"),
+    "how nothing is drawn": (["sweep", "MODEL", "--over", "m=1,2", "--ask", "phi", "--design", "lhs"], "--random"),
+    "instants of no replay": (["sweep", "MODEL", "--over", "m=1,2", "--ask", "phi", "--samples", "9"], "--replay"),
+    "heads of no table": (["simulate", "MODEL", "--units"], "-o"),
+    "a strip that moves": (["animate", "MODEL", "-o", "OUT.gif", "--frames", "3"], ".png"),
+    "a rate of a page": (["animate", "MODEL", "-o", "OUT.html", "--fps", "9"], ".gif"),
+    "frames without end": (["animate", "MODEL", "-o", "OUT.gif", "--fps", "inf"], "1000"),
+    "a picture faster than its format": (["animate", "MODEL", "-o", "OUT.gif", "--fps", "60"], "--fps 50"),
+    "a time for small motions": (["animate", "MODEL", "-o", "OUT.gif", "--modes", "1", "--time", "3"], "--modes"),
+    "a model for the list of languages": (["codegen", "MODEL", "--list"], "leave that out"),
+    "units of a difference": (["derive", "MODEL", "--diff", "MODEL", "--units"], "--diff"),
     "a language by its ending": (["codegen", "MODEL", "--target", "py", "-o", "OUT"], "numpy"),
 }
 """of the command line"""
@@ -138,4 +182,11 @@ def of_python() -> dict[str, tuple[Callable[[], object], str]]:
         "a unit that does not fit": (lambda: eomgen.derive(model, parameters={"m": (3, "m")}), "does not fit"),
         "a method by the wrong man": (lambda: eomgen.derive(model, method="newton"), "lagrange"),
         "a time of zero length": (lambda: eomgen.simulate(model, time=-1), "time"),
+        "a time in a unit of mass": (lambda: eomgen.simulate(model, time="5 kg"), "5 s"),
+        "a number of instants that is none": (lambda: eomgen.simulate(model, time=1, samples="3"), "how many"),
+        "a tolerance as a text": (lambda: eomgen.simulate(model, time=1, rtol="1e-9"), "positive"),
+        "an instant as a number": (lambda: eomgen.reactions(model, at=5), "theta = pi/2"),
+        "an end as a number": (lambda: eomgen.simulate(model, time=1, until=5), "theta = pi/2"),
+        "a number for a model": (lambda: eomgen.derive(0), "eomgen.load"),
+        "nothing for a model": (lambda: eomgen.derive(None), "eomgen.load"),
     }

@@ -36,6 +36,19 @@ def spelled(letter: str) -> str:
     return "" if found is None else found[2].lower() if found[1] == "SMALL" else found[2].capitalize()
 
 
+def invisible(character: str) -> str:
+    """The mend of what cannot be told from a blank, or from nothing; "" of what is seen."""
+    if character in ("", "\n", "\t", " ") or (character.isprintable() and not character.isspace()):
+        return ""
+    return f"a character that is not seen stands there, U+{ord(character):04X}: write a plain blank, or nothing"
+
+
+def plainly(character: str) -> str:
+    """The mend of a character that stands for a plain one; "" of others."""
+    plain = unicodedata.normalize("NFKC", character)
+    return f"write {plain}" if plain.isascii() and plain != character and plain.strip() else invisible(character)
+
+
 def two_values(text: str, place: int) -> str:
     """The mend where two values stand side by side, the second at a place; "" for what is no habit."""
     power = _POWER.search(text, 0, place)

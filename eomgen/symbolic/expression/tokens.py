@@ -6,7 +6,7 @@ import re
 
 from eomgen.errors import ExpressionError
 from eomgen.records import dataclass
-from eomgen.symbolic.expression.habits import degrees
+from eomgen.symbolic.expression.habits import degrees, plainly
 from eomgen.symbolic.expression.rational import Fraction, fraction_of
 
 LARGEST_EXPONENT = 300  # of ten, in a decimal: what a double can hold
@@ -42,6 +42,10 @@ _MENDS = {
     "?": CASES,
     "[": "use round parentheses",
     "{": "use round parentheses",
+    "]": "use round parentheses",
+    "}": "use round parentheses",
+    "%": "write /100",
+    "!": "there is no factorial; a product is written out",
 }
 
 
@@ -90,7 +94,7 @@ def _strange(text: str, start: int) -> ExpressionError:
             mend = f"write {what}(...)"
         return ExpressionError(f"'{dotted.group()}' is a point, not a number", dotted.start(), mend, length)
     in_formula = character == "°" and not text[:start].strip().isdigit()
-    mend = degrees(text) if in_formula else _MENDS.get(character, "")
+    mend = degrees(text) if in_formula else _MENDS.get(character) or plainly(character)
     return ExpressionError(f"unexpected character {character!r}", start, mend)
 
 
