@@ -96,9 +96,19 @@ class Readings:
         return self._shortest(short) if short else None
 
     def _shortest(self, values: list[Scalar]) -> Scalar:
-        """The shortest; of those that divide by nothing that may vanish, where there is one."""
+        """The shortest; of those, where there are any, that divide by nothing that may vanish but as the loads do."""
         forms = list(dict.fromkeys(self.forms(values)))
-        return forms[0] if len(forms) == 1 else min(forms, key=lambda x: (divides_by_zero(x), length_of(x)))
+        if len(forms) == 1:
+            return forms[0]
+        divisors = {x: vanishing_divisors(x) for x in forms}
+        own = self._divisors_of_loads if all(divisors.values()) else frozenset()
+        return min(forms, key=lambda x: (not divisors[x] <= own, length_of(x)))
+
+    @cached_property
+    def _divisors_of_loads(self) -> frozenset[Node]:
+        """What the forces on the bodies divide by themselves, as a spring by its length."""
+        loads = [e.needed for e in self.ways[0].balance.equations if holds_op(e.needed, "div")]
+        return frozenset().union(*(vanishing_divisors(x) for x in self.forms(loads)))
 
     def forms(self, values: Sequence[Scalar]) -> list[Scalar]:
         """The values in readable form; without those that divide by zero in one of their cases.
@@ -148,12 +158,19 @@ def _by_sides(sides: Mapping[int, Scalar], combination: Combination) -> Scalar |
     return total
 
 
-def divides_by_zero(x: Scalar) -> bool:
-    """Whether x divides by what vanishes for some angles or at some places: by sin(alpha)."""
+def vanishing_divisors(x: Scalar) -> frozenset[Node]:
+    """The factors that x divides by and that vanish for some angles or at some places: sin(alpha)."""
     if not holds_op(x, "div"):
-        return False
-    divisors = {node.args[1] for node in order((x,)) if node.op == "div"}
-    return any(type(d) is Node and not never_vanishes(d) for d in divisors)
+        return frozenset()
+    pending = [node.args[1] for node in order((x,)) if node.op == "div"]
+    factors = set()
+    while pending:
+        d = pending.pop()
+        if type(d) is Node and d.op == "mul":
+            pending += d.args
+        elif type(d) is Node:
+            factors.add(d)
+    return frozenset(d for d in factors if not never_vanishes(d))
 
 
 def _ways(system: System) -> tuple[Reactions, ...]:

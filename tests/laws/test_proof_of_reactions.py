@@ -77,3 +77,45 @@ def test_the_command_tells_the_proof():
     assert "certificate: holds" in CliRunner().invoke(main, words).stdout
     assert json.loads(CliRunner().invoke(main, [*words, "--json"]).stdout)["certificate"]["ok"] is True
     assert json.loads(CliRunner().invoke(main, [*words, "--json", "--no-certify"]).stdout)["certificate"] is None
+
+
+CRAB = """eomgen = 1
+name = "Crab, hoisting"
+space = "plane"
+[parameters]
+mt = { value = 500, unit = "kg" }
+mp = { value = 2, unit = "t" }
+c = { value = 50, unit = "N*s/m" }
+g = { value = 9.81, unit = "m/s^2" }
+[coordinates]
+x = { start = 2, unit = "m" }
+phi = { start = 0, unit = "deg" }
+s = { motion = "12 - t/2" }
+[points]
+O = [0, 0]
+[bodies.trolley]
+shape = { kind = "particle", mass = "mt" }
+joint = { kind = "prismatic", axis = [1, 0], displacement = "x" }
+[bodies.rope]
+joint = { kind = "revolute", on = "trolley", angle = "phi" }
+[bodies.load]
+shape = { kind = "particle", mass = "mp" }
+joint = { kind = "prismatic", on = "rope", axis = [0, -1], displacement = "s" }
+[forces.weight]
+kind = "gravity"
+acceleration = [0, "-g"]
+[forces.drag]
+kind = "damper"
+points = ["load.origin", "O"]
+damping = "c"
+"""
+
+
+def test_a_reaction_divides_by_nothing_that_its_loads_do_not_divide_by():
+    """Hanging straight N = (mt + mp) g + F cos, not (mt x'' - ...)/tan(phi), which has no value there; F = c |r'|."""
+    found = eomgen.reactions(eomgen.loads(CRAB))
+    r = (4 + 144) ** 0.5
+    push = 50 * (12 * 0.5 / r) * 12 / r  # of the damper that shortens, downwards on the load
+    assert found["reaction_n(trolley)"].value == pytest.approx(2500 * 9.81 + push)
+    checks = {check.name: check.status for check in found.certify().checks}
+    assert checks[START] == checks[BALANCE] == "holds"

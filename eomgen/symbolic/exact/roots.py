@@ -6,7 +6,7 @@ k*(1 - l0/r)*(x2 - x1), and nothing is made rational that was not.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Container, Iterator, Sequence
+from collections.abc import Callable, Container, Iterator, Mapping, Sequence
 
 from eomgen.records import dataclass
 from eomgen.symbolic.exact.expansion import Expansion
@@ -31,6 +31,7 @@ from eomgen.symbolic.expression.node import ROOT_OF_SUM, SUMS, holds_op
 from eomgen.symbolic.expression.rational import Fraction
 from eomgen.symbolic.expression.traversal import order
 from eomgen.symbolic.print.layout import factors, terms
+from eomgen.symbolic.print.length import length_of
 from eomgen.symbolic.print.text import text_size
 
 ADDED = ("add", "sub")
@@ -145,14 +146,25 @@ def readable_over(x: Scalar, roots: Sequence[Node], limit: int) -> Scalar:
         factor, sum_ = _primitive(writer, part)
         key = tuple(sorted(sum_.items()))
         factor_of[key] = terms_plus(factor_of.get(key, {}), factor)
+    apart, together = (_put_together(writer, rest, factor_of, atoms, beside) for beside in (False, True))
+    return apart if length_of(apart) < length_of(together) else together
+
+
+def _put_together(
+    writer: Writer,
+    rest: Terms,
+    factor_of: Mapping[tuple[tuple[Key, Number], ...], Terms],
+    atoms: set[int],
+    beside: bool,
+) -> Scalar:
+    """rest + sum of factor * sum; with `beside`, each factor takes from the rest what goes with its sum."""
+    products: list[Scalar] = []
     for key, factor in factor_of.items():
-        beside = _beside(rest, dict(key), next(iter(factor.values())))
-        rest = terms_plus(rest, terms_times(beside, dict(key)), -1)
-        factor_of[key] = terms_plus(beside, factor)
-    total = writer.sum(rest)
-    for key, factor in factor_of.items():
-        total = total + _taken_out(writer, factor, atoms) * writer.sum(dict(key))
-    return total
+        sum_ = dict(key)
+        more = _beside(rest, sum_, next(iter(factor.values()))) if beside else {}
+        rest = terms_plus(rest, terms_times(more, sum_), -1)
+        products.append(_taken_out(writer, terms_plus(more, factor), atoms) * writer.sum(sum_))
+    return sum(products, start=writer.sum(rest))
 
 
 def _by_powers(terms: Terms, atoms: set[int]) -> list[Terms]:
@@ -196,13 +208,19 @@ def _beside(terms: Terms, sum_: Terms, number: Number) -> Terms:
 
 
 def _ratios(terms: Terms, sum_: Terms) -> Iterator[tuple[Monomial, Number]]:
-    """(monomial, number) that makes one term of the sum one of the terms."""
+    """(monomial, number) that makes one term of the sum one of the terms, and divides by nothing that this does not."""
     for (monomial, w), c in sum_.items():
         inverted, share = inverse(monomial)
         for (other, v), d in terms.items():
             if v == w:
                 quotient, more = monomial_product(other, inverted)
-                yield quotient, tidy(Fraction(d) * share * more / Fraction(c))
+                if _below(quotient) <= _below(other):
+                    yield quotient, tidy(Fraction(d) * share * more / Fraction(c))
+
+
+def _below(monomial: Monomial) -> set[int]:
+    """The atoms that it is divided by."""
+    return {atom for atom, e in monomial if e < 0}
 
 
 def _taken_out(writer: Writer, factor: Terms, roots: set[int]) -> Scalar:
@@ -218,4 +236,4 @@ def _taken_out(writer: Writer, factor: Terms, roots: set[int]) -> Scalar:
 
 
 def _divisors(key: Key) -> int:
-    return sum(e < 0 for _, e in key[0])
+    return len(_below(key[0]))
