@@ -19,6 +19,7 @@ from eomgen.cli_options import (
     OF_PLOT,
     OF_TABLE,
     OUTPUT,
+    PAGE_TIME,
     PLOT,
     TIME,
     folder,
@@ -715,7 +716,7 @@ def codegen_command(
 @MODEL
 @JSON
 @click.option("-o", "--output", required=True, type=click.Path(dir_okay=False), help="The page: a file .html.")
-@TIME
+@PAGE_TIME
 @with_values
 @click.option(
     "--slider",
@@ -752,7 +753,7 @@ def play_command(model: str, wants_json: bool, output: str, strict: bool, **opti
     type=click.Path(dir_okay=False),
     help="The file: .html, .pdf, .tex, .md or .ipynb.",
 )
-@TIME
+@PAGE_TIME
 @with_values
 @click.option("--with", "with_", metavar="LIST", callback=words, help='Sections besides: "linearize,statics".')
 @click.option("--without", metavar="LIST", callback=words, help='Sections that are left out: "motion,downloads".')

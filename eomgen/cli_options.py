@@ -106,6 +106,12 @@ CERTIFY = click.option("--no-certify", "certify", is_flag=True, flag_value=False
 TIME = click.option(
     "--time", type=time_typed, default=10.0, metavar="TIME", show_default=True, help='How long: 5 is in s, or "500 ms".'
 )
+PAGE_TIME = click.option(
+    "--time",
+    type=time_typed,
+    metavar="TIME",
+    help='How long: 5 is in s, or "500 ms".  [default: 10 s, less of what takes too many steps]',
+)
 FOLLOW = click.option(
     "--follow",
     multiple=True,

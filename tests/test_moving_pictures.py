@@ -7,12 +7,14 @@ import io
 import json
 import math
 import subprocess
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
 import pytest
 from click.testing import CliRunner
 from forked import needs_sh
+from matplotlib.figure import Figure
 from PIL import Image
 
 import eomgen
@@ -22,9 +24,15 @@ from eomgen.codegen.rhs import compiled
 from eomgen.documents import moving_picture
 from eomgen.documents.linearize.result import linearize
 from eomgen.documents.motion_frames import FINE, frame_times, mode_movies, movie_of
+from eomgen.documents.space_drawing import SpacePicture, sight
+from eomgen.mechanics.equations.system import system_of
 from eomgen.scene.bodies import parameters_as_drawn
 from eomgen.scene.forms import ArrowForm, CoupleForm
+from eomgen.scene.instant import frames_along
+from eomgen.scene.making import scene_of_system
 from eomgen.scene.phase_frames import phase_frames
+from eomgen.scene.space_strokes import space_drawing
+from eomgen.scene.strokes import SceneNumbers
 from eomgen.scene.virtual import SWING, VirtualDisplacement
 from eomgen.symbolic.numeric.evaluation import FLOAT, evaluate
 from eomgen.verbs.animate import released
@@ -281,3 +289,33 @@ def test_a_run_shows_its_player_in_a_notebook_and_as_a_page(run, tmp_path):
     run.animate(tmp_path / "motion.html")
     page = (tmp_path / "motion.html").read_text(encoding="utf-8")
     assert html.unescape(shown.partition('srcdoc="')[2].removesuffix('"></iframe>')) == page
+
+
+def test_of_a_solid_the_faces_towards_the_eye_are_drawn():
+    """Of a box three of six; what is drawn of it covers what all six cover; a shell, which is open, is drawn whole."""
+    text = """
+    eomgen = 1
+    space = "space"
+    parameters = { m = 1 }
+    coordinates = { q = 0.3 }
+    bodies.b.shape = { kind = "SHAPE }
+    bodies.b.joint = { kind = "revolute", axis = [0, 0, 1], angle = "q" }
+    """
+    shapes = {3: 'box", mass = "m", size = [1, 2, 3]', 20: 'cylindrical_shell", mass = "m", radius = 1, length = 2'}
+    for count, shape in shapes.items():
+        system = system_of(eomgen.loads(text.replace("SHAPE", shape)))
+        scene = scene_of_system(system)
+        x = np.array([[0.3, 0.0]])
+        numbers = SceneNumbers(scene, frames_along(scene, np.zeros(1), x, np.array([1.0])))
+        drawing = space_drawing(numbers)
+        (whole,) = (stroke for stroke in drawing.strokes if stroke.faces and stroke.role == "body")
+        picture = SpacePicture(Figure().subplots(), replace(drawing, strokes=(whole,)))
+        picture.show(0)
+        seen = [path.vertices for path in picture.pieces.get_paths()]
+        assert len(seen) == count
+        across = sight(drawing.sizes.up).T[:, :2]
+        corners = whole.path[0].reshape(-1, 3) @ across
+        drawn = np.concatenate(seen)
+        assert np.allclose(drawn.min(axis=0), corners.min(axis=0)) and np.allclose(
+            drawn.max(axis=0), corners.max(axis=0)
+        )

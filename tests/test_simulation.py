@@ -19,6 +19,7 @@ from eomgen.documents.plots import over_time
 from eomgen.errors import UsageError, WriteFailed
 from eomgen.mechanics.equations.stabilization import stabilized
 from eomgen.mechanics.formulations import recursive
+from eomgen.questions.run import run_of_a_page
 from eomgen.simulation.integrate import METHODS, drift_of, integrate
 from eomgen.simulation.result import Trajectory
 from eomgen.simulation.slopes import slope_of
@@ -166,6 +167,42 @@ def test_a_run_without_end_is_given_up():
     """most_steps bounds the work."""
     result = run(most_steps=3)
     assert result.status == "too many steps" and result.steps == 3 and 0 < result.t[-1] < 3
+
+
+def test_a_start_at_rest_says_that_nothing_moves():
+    """x(t) = x(0) is said of a rest, stable or not; not of what moves, were it little, nor of what moves by a law."""
+    text = """
+    eomgen = 1
+    space = "plane"
+    parameters = {{ m = 1, l = 1, g = 9.81 }}
+    coordinates.q = {coordinate}
+    bodies.bob.shape = {{ kind = "particle", mass = "m" }}
+    bodies.bob.joint = {{ kind = "placed", at = ["l*sin(q)", "l*cos(q)"] }}
+    forces.weight = {{ kind = "gravity", acceleration = [0, "-g"] }}
+    """
+    for coordinate, still in (("0", True), ("1e-9", False), ('{ motion = "1e-6*t" }', False)):
+        run = eomgen.simulate(eomgen.loads(text.format(coordinate=coordinate)), time=1)
+        assert bool(run.still) == still
+    assert "--start q=" in eomgen.simulate(eomgen.loads(text.format(coordinate="0")), time=1).still
+
+
+def test_what_is_too_fast_to_be_looked_at_is_followed_for_a_shorter_time():
+    """A turn takes 1e-6 s: of 10 s a page shows a round part, and says so; a time that is asked for stays."""
+    text = """
+    eomgen = 1
+    space = "plane"
+    parameters = { m = 1, k = 3.948e13 }
+    coordinates = { x = 1 }
+    points = { O = [0, 0] }
+    bodies.b.shape = { kind = "particle", mass = "m" }
+    bodies.b.joint = { kind = "prismatic", axis = [1, 0], displacement = "x" }
+    forces.s = { kind = "spring", points = ["O", "b.origin"], stiffness = "k", length = 0 }
+    """
+    equations = eomgen.derive(eomgen.loads(text))
+    run, words = run_of_a_page(equations, None, 11)
+    assert run.ok and 1e-6 < run.t[-1] < 1 and run.t[-1] == float(f"{run.t[-1]:.0e}") and f"{run.t[-1]:g} s" in words
+    asked, words = run_of_a_page(equations, 2e-6, 11)
+    assert asked.t[-1] == 2e-6 and not words
 
 
 def test_a_run_of_no_time_and_one_of_no_states_are_their_starts():

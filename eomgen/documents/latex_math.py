@@ -17,7 +17,7 @@ from eomgen.symbolic.expression.node import SUMS
 from eomgen.symbolic.expression.rational import Fraction
 from eomgen.symbolic.expression.splines import sampled_of
 from eomgen.symbolic.print.decimals import decimal_of
-from eomgen.symbolic.print.layout import Factor, Product, is_base, is_part_of_turn, is_time
+from eomgen.symbolic.print.layout import Factor, Product, is_base, is_part_of_letter, is_part_of_turn, is_time
 from eomgen.symbolic.print.printed import TRIGONOMETRIC, is_bare_argument, summands
 
 ATOM, TALL, SUM = range(3)  # a symbol or number; what needs parentheses under an exponent; a sum or a product
@@ -112,7 +112,7 @@ class Setter:
     def product(self, product: Product, *, one_fraction: bool = False) -> Set:
         """|coefficient| * numerator / denominator; the number beside it has a fraction of its own, or none."""
         c = max(product.coefficient, -product.coefficient)
-        if not product.denominator and not one_fraction and not is_part_of_turn(product):
+        if not product.denominator and not (one_fraction or is_part_of_turn(product) or is_part_of_letter(product)):
             return self._juxtaposed(c, product.numerator)
         if len(product.numerator) > 1 and is_time(product.numerator[-1][0]):
             before = self.product(Product(c, product.numerator[:-1], product.denominator))

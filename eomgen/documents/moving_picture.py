@@ -21,6 +21,7 @@ from eomgen.documents.motion_frames import FINE, Movie
 from eomgen.documents.scene_drawing import artist_of, limits
 from eomgen.documents.space_drawing import SpacePicture, sight
 from eomgen.errors import RunFailed, ToolMissing
+from eomgen.scene.strokes import corners_of
 
 WIDTH, HIGHEST, DOTS = 4.8, 4.8, 100  # of a moving picture [inches, dots an inch]
 SPARSE = 5  # frames of which one is looked at for the shape of the page
@@ -113,7 +114,7 @@ def images(movies: Sequence[Movie], progress: Progress | None = None) -> Iterato
             for panel, artist in artists:
                 panel.draw_artist(artist)
             size = canvas.get_width_height()
-            yield Image.frombuffer("RGBA", size, bytes(canvas.buffer_rgba()), "raw", "RGBA", 0, 1).convert("RGB")
+            yield Image.frombytes("RGB", size, bytes(canvas.buffer_rgba()), "raw", "RGBX")
             if progress is not None:
                 progress(frame + 1, count)
 
@@ -123,9 +124,9 @@ def _tallness(movie: Movie) -> float:
     if movie.plane:
         low, high = limits(movie.drawing)
     else:
-        cloud = np.vstack([s.path[::SPARSE].reshape(-1, 3) for s in movie.drawing.strokes if s.role != "track"])
-        page = cloud[np.isfinite(cloud).all(axis=1)] @ sight(movie.drawing.sizes.up).T[:, :2]
-        low, high = page.min(axis=0), page.max(axis=0)
+        across = sight(movie.drawing.sizes.up).T[:, :2]
+        found = corners_of((s.path[::SPARSE] @ across for s in movie.drawing.strokes if s.role != "track"), 2)
+        low, high = found or (np.zeros(2), np.ones(2))
     wide, high_ = (float(x) or 1.0 for x in high - low)
     return min(1.4, max(0.35, high_ / wide))
 

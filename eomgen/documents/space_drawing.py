@@ -3,8 +3,9 @@
 from __future__ import annotations
 
 import math
+from abc import ABC, abstractmethod
 from collections.abc import Mapping
-from functools import cache
+from functools import cache, cached_property
 from typing import Any
 
 import numpy as np
@@ -13,7 +14,7 @@ from eomgen.documents.latex_names import Notation
 from eomgen.documents.letters import PlacedName
 from eomgen.documents.scene_drawing import BODY, FILLS, FINE, INK, LINES, MARGIN, NARROWEST, RANKS, SMALLEST, written
 from eomgen.records import dataclass
-from eomgen.scene.strokes import Drawing
+from eomgen.scene.strokes import Drawing, Stroke, corners_of
 
 AZIMUTH, ELEVATION = math.radians(-58), math.radians(22)
 ALONG_X = 0.9  # cosine of what is upright to x: more, and y goes to the right
@@ -54,6 +55,94 @@ class _Facets:
     inks: np.ndarray
 
 
+@dataclass(frozen=True)
+class _Layer(ABC):
+    """Strokes that are put onto the page together.
+
+    Args:
+        inks: of each stroke, as those of facets; of a face in full light.
+        nearer: so much it lies before its place.
+    """
+
+    strokes: tuple[Stroke, ...]
+    inks: np.ndarray
+    nearer: np.ndarray
+
+    @abstractmethod
+    def at(self, frame: int, view: np.ndarray) -> _Facets:
+        """What is seen of them at a frame."""
+
+    @cached_property
+    def counts(self) -> np.ndarray:
+        """How many faces, or points, each stroke has."""
+        return np.array([stroke.path.shape[1] for stroke in self.strokes])
+
+    @cached_property
+    def owner(self) -> np.ndarray:
+        """Of which stroke each face, or point, is."""
+        return np.repeat(np.arange(len(self.strokes)), self.counts)
+
+    def _places(self, frame: int) -> np.ndarray:
+        found: np.ndarray = np.concatenate([stroke.path[frame] for stroke in self.strokes])
+        return found
+
+
+class _Faces(_Layer):
+    def at(self, frame: int, view: np.ndarray) -> _Facets:
+        corners = self._places(frame)
+        middle = corners.mean(axis=1)
+        normal = _normals(corners)
+        seen = np.isfinite(middle).all(axis=1) & (self._towards_the_eye(middle, normal, view[2]) | ~self._solid)
+        of, page = self.owner[seen], corners[seen] @ view.T
+        inks = self.inks[of]
+        inks[:, :3] *= 0.62 + 0.38 * np.round(SHADES * np.abs(normal[seen] @ LIGHT))[:, None] / SHADES
+        return _Facets(page[:, :, 2].mean(axis=1) + self.nearer[of], page[:, :, :2], inks)
+
+    @cached_property
+    def _solid(self) -> np.ndarray:
+        return np.array([stroke.solid for stroke in self.strokes])[self.owner]
+
+    def _towards_the_eye(self, middle: np.ndarray, normal: np.ndarray, eye: np.ndarray) -> np.ndarray:
+        """Whether the side of a face that looks away from the middle of all faces of its stroke looks to the eye."""
+        first = np.concatenate([[0], np.cumsum(self.counts)[:-1]])
+        inside = np.add.reduceat(middle, first) / self.counts[:, None]
+        found: np.ndarray = np.einsum("fi,fi->f", normal, middle - inside[self.owner]) * (normal @ eye) >= 0
+        return found
+
+
+class _Lines(_Layer):
+    def at(self, frame: int, view: np.ndarray) -> _Facets:
+        page = self._places(frame) @ view.T
+        joined = np.stack([page[:-1], page[1:]], axis=1)
+        kept = (self.owner[:-1] == self.owner[1:]) & np.isfinite(joined).all(axis=(1, 2))
+        of, joined = self.owner[:-1][kept], joined[kept]
+        return _Facets(joined[:, :, 2].mean(axis=1) + self.nearer[of], joined[:, :, :2], self.inks[of])
+
+
+@dataclass(frozen=True)
+class _Dots(_Layer):
+    radius: float
+
+    def at(self, frame: int, view: np.ndarray) -> _Facets:
+        page = self._places(frame) @ view.T
+        kept = np.isfinite(page).all(axis=1)
+        of, page = self.owner[kept], page[kept]
+        turn = np.linspace(0, math.tau, 13)[:-1]
+        discs = page[:, None, :2] + self.radius * np.column_stack([np.cos(turn), np.sin(turn)])
+        return _Facets(page[:, 2] + self.nearer[of], discs, self.inks[of])
+
+
+def _normals(corners: np.ndarray) -> np.ndarray:
+    """Of faces f x c x 3, of length 1; of those without an area 0."""
+    found = _cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 1])
+    flat = ~found.any(axis=1)
+    if corners.shape[1] > 3 and flat.any():
+        found[flat] = _cross(corners[flat, 2] - corners[flat, 1], corners[flat, 3] - corners[flat, 2])
+    lengths = np.sqrt(np.einsum("fi,fi->f", found, found))[:, None]
+    found /= np.where(lengths > 0, lengths, 1.0)
+    return found
+
+
 def _sorted_corners(groups: list[np.ndarray], order: np.ndarray) -> Any:
     """The corners of all facets in an order: as one array, those with fewer corners end in the same one often."""
     most = max((group.shape[1] for group in groups), default=2)
@@ -67,10 +156,10 @@ def _sorted_corners(groups: list[np.ndarray], order: np.ndarray) -> Any:
 def page_limits(drawing: Drawing) -> tuple[np.ndarray, np.ndarray]:
     """The corners of the page: all that is drawn over all frames, but for lines that go on."""
     view, unit = sight(drawing.sizes.up), drawing.sizes.unit
-    clouds = [s.path.reshape(-1, 3) for s in drawing.strokes if s.role != "track" or s.faces]
-    cloud = np.vstack([*clouds, drawing.sizes.low[None], drawing.sizes.high[None]])
-    page = cloud[np.isfinite(cloud).all(axis=1)] @ view.T[:, :2]
-    low, high = page.min(axis=0) - MARGIN * unit, page.max(axis=0) + MARGIN * unit
+    paths = [s.path for s in drawing.strokes if s.role != "track" or s.faces]
+    found = corners_of((path @ view.T[:, :2] for path in (*paths, drawing.sizes.low, drawing.sizes.high)), 2)
+    low, high = found or (np.zeros(2), np.ones(2))
+    low, high = low - MARGIN * unit, high + MARGIN * unit
     size, middle = high - low, 0.5 * (low + high)
     size = np.maximum(size, max(NARROWEST * size.max(), SMALLEST * unit))
     return middle - 0.5 * size, middle + 0.5 * size
@@ -93,13 +182,7 @@ class SpacePicture:
 
     def show(self, frame: int) -> None:
         """Everything at one frame, sorted by its distance."""
-        parts: list[_Facets] = []
-        for stroke in self.drawing.strokes:
-            color, width = LINES[stroke.role]
-            if stroke.role in ("body", "inertia") and stroke.of in self.colors:
-                color = self.colors[stroke.of]
-            found = self._faces(stroke, frame, color) if stroke.faces else self._line(stroke, frame, color, width)
-            parts += [found] if found is not None else []
+        parts = [layer.at(frame, self.view) for layer in self.layers]
         order = np.argsort(np.concatenate([[], *(part.depth for part in parts)]), kind="stable")
         inks = np.concatenate([np.zeros((0, 9)), *(part.inks for part in parts)])[order]
         self.pieces.set_verts(_sorted_corners([part.corners for part in parts], order), closed=True)
@@ -107,44 +190,44 @@ class SpacePicture:
         self.pieces.set_edgecolor(inks[:, 4:8])
         self.pieces.set_linewidth(inks[:, 8])
 
-    def _faces(self, stroke: Any, frame: int, color: str) -> _Facets | None:
-        corners = stroke.path[frame]
-        if not np.isfinite(corners).all():
-            return None
-        normal = _cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 1])
-        flat = ~normal.any(axis=1)
-        if corners.shape[1] > 3 and flat.any():
-            normal[flat] = _cross(corners[flat, 2] - corners[flat, 1], corners[flat, 3] - corners[flat, 2])
-        lengths = np.sqrt(np.einsum("fi,fi->f", normal, normal))[:, None]
-        normal = normal / np.where(lengths > 0, lengths, 1.0)
-        page = corners @ self.view.T
-        light = 0.62 + 0.38 * np.round(SHADES * np.abs(normal @ LIGHT)) / SHADES
-        alpha = CLEAR.get(stroke.role, 1.0)
-        base = _rgb(FILLS.get(stroke.role, color) if stroke.of not in self.colors else color)
-        edge = (*_rgb(color), 0.25 if len(corners) > 12 else 0.8 * max(alpha, 0.4))
-        back = -math.inf if stroke.role == "track" else 0.0
-        rest = np.broadcast_to([alpha, *edge, 0.4], (len(page), 6))
-        return _Facets(
-            page[:, :, 2].mean(axis=1) + back, page[:, :, :2], np.column_stack([light[:, None] * base, rest])
-        )
+    def _color(self, stroke: Stroke) -> str:
+        own = self.colors.get(stroke.of) if stroke.role in ("body", "inertia") else None
+        return own or LINES[stroke.role][0]
 
-    def _line(self, stroke: Any, frame: int, color: str, width: float) -> _Facets | None:
-        page = stroke.path[frame] @ self.view.T
-        near = math.inf if stroke.role == "axes" else TOWARDS * self.drawing.sizes.extent
-        ink = (*_rgb(color), 1.0)
-        if stroke.dot:
-            turn = np.linspace(0, math.tau, 13)[:-1]
-            dot = page[0, :2] + 0.55 * self.drawing.sizes.unit * np.column_stack([np.cos(turn), np.sin(turn)])
-            return (
-                _Facets(page[:1, 2] + near, dot[None], np.array([[*ink, *ink, 0.5]]))
-                if np.isfinite(page).all()
-                else None
-            )
-        thin = FINE if stroke.fine else 3.0 if stroke.role == "body" else width
-        joined = np.stack([page[:-1], page[1:]], axis=1)
-        joined = joined[np.isfinite(joined).all(axis=(1, 2))]
-        inks = np.tile([0.0, 0.0, 0.0, 0.0, *ink, thin], (len(joined), 1))
-        return _Facets(joined[:, :, 2].mean(axis=1) + near, joined[:, :, :2], inks)
+    @cached_property
+    def layers(self) -> list[_Layer]:
+        """The strokes, those together that have as many corners a face, or points, in the order of the drawing."""
+        alike: dict[tuple[int, int], list[Stroke]] = {}
+        for stroke in self.drawing.strokes:
+            key = (2, stroke.path.shape[2]) if stroke.faces else (int(stroke.dot), 0)
+            alike.setdefault(key, []).append(stroke)
+        kinds = {2: self._faces, 1: self._dots, 0: self._lines}
+        return [kinds[kind](strokes) for (kind, _), strokes in alike.items()]
+
+    def _faces(self, strokes: list[Stroke]) -> _Faces:
+        inks, back = [], []
+        for stroke in strokes:
+            color, alpha = self._color(stroke), CLEAR.get(stroke.role, 1.0)
+            base = color if stroke.of in self.colors else FILLS.get(stroke.role, color)
+            edge = 0.25 if stroke.path.shape[1] > 12 else 0.8 * max(alpha, 0.4)
+            inks.append([*_rgb(base), alpha, *_rgb(color), edge, 0.4])
+            back.append(-math.inf if stroke.role == "track" else 0.0)
+        return _Faces(tuple(strokes), np.array(inks), np.array(back))
+
+    def _near(self, strokes: list[Stroke]) -> np.ndarray:
+        nearer = TOWARDS * self.drawing.sizes.extent
+        return np.array([math.inf if stroke.role == "axes" else nearer for stroke in strokes])
+
+    def _dots(self, strokes: list[Stroke]) -> _Dots:
+        inks = [[*(ink := (*_rgb(self._color(stroke)), 1.0)), *ink, 0.5] for stroke in strokes]
+        return _Dots(tuple(strokes), np.array(inks), self._near(strokes), 0.55 * self.drawing.sizes.unit)
+
+    def _lines(self, strokes: list[Stroke]) -> _Lines:
+        inks = []
+        for stroke in strokes:
+            thin = FINE if stroke.fine else 3.0 if stroke.role == "body" else LINES[stroke.role][1]
+            inks.append([0.0, 0.0, 0.0, 0.0, *_rgb(self._color(stroke)), 1.0, thin])
+        return _Lines(tuple(strokes), np.array(inks), self._near(strokes))
 
     def names(self, frame: int, notation: Notation) -> list[PlacedName]:
         """The names beside their places on the page, as a notation has them."""

@@ -5,6 +5,7 @@ from __future__ import annotations
 import json
 import re
 from collections.abc import Callable, Sequence
+from html import unescape
 from importlib import resources
 from itertools import chain, zip_longest
 
@@ -33,6 +34,9 @@ DIGITS = 9  # of the numbers of a table that a page offers: as many as a run is 
 _NUMBER = re.compile(r"(-?)(\d+(?:\.\d+)?)(?:e([-+]\d+))?")
 _TEX = r'<annotation encoding="application/x-tex">(.*?)</annotation>'
 _DISPLAY = re.compile(rf'(<math display="block">.*?{_TEX}.*?</math>)', re.DOTALL)
+_DRAWN = re.compile(r"(?<=<figure )([^<]*<svg [^>]*)>((?:(?!</svg>).)*)</svg>", re.DOTALL)
+_COPIED = re.compile(r' data-copy="([^"]+)"')
+LARGE = 6000  # marks of a picture: it is carried packed
 _POWER = re.compile(r"\^\(?(-?\d+)\)?")
 MINUS = "\N{MINUS SIGN}"
 
@@ -42,12 +46,12 @@ def html_page(report: Report) -> str:
     setter = setter_of(report.as_document)
     title = report.head.title
     sections = [element_of(setter, section, report) for section in report.sections]
-    shown, formulas = _set_apart(element("main", *sections))
+    shown, apart = _set_apart(element("main", *sections))
     body = (
         element("header", *_head(report)),
         shown,
         element("footer", element("p", *_made(report))),
-        element("template", packed(json.dumps(formulas).encode()), id="formulas"),
+        element("template", packed(json.dumps(apart).encode()), id="apart"),
         script(f"{in_a_script(own_text('player/columns.mjs'))}\n{own_text('page.js')}"),
     )
     head = (
@@ -61,14 +65,29 @@ def html_page(report: Report) -> str:
     return f"<!doctype html>\n{element('html', element('head', *head), element('body', *body), lang='en')}\n"
 
 
-def _set_apart(shown: Html) -> tuple[Html, list[str]]:
-    """(the same with the LaTeX of formulas that stand alone, the formulas as MathML, in their order).
+def _set_apart(shown: Html) -> tuple[Html, dict[str, list[str]]]:
+    """(the same without what a page carries packed, which takes a fifth of it or less; that, in its order).
 
-    Packed, MathML takes a twentieth; a program of the page puts it in its place, and who runs none reads the LaTeX.
+    Formulas that stand alone, as MathML: who runs no program reads their LaTeX. Large pictures: their words are left.
+    The text that a button copies. A program of the page puts each in its place.
     """
     parts = _DISPLAY.split(shown)
     texts = (element("pre", Html(rf"\[{tex}\]"), class_="tex") for tex in parts[2::3])
-    return Html("".join(chain(*zip_longest(parts[::3], texts, fillvalue="")))), parts[1::3]
+    formulas, pictures, copied = parts[1::3], list[str](), list[str]()
+    shown = Html("".join(chain(*zip_longest(parts[::3], texts, fillvalue=""))))
+
+    def empty(found: re.Match[str]) -> str:
+        if len(found[2]) < LARGE:
+            return found[0]
+        pictures.append(found[2])
+        return f'{found[1]} data-drawn="{len(pictures) - 1}"></svg>'
+
+    def uncopied(found: re.Match[str]) -> str:
+        copied.append(unescape(found[1]))
+        return f' data-copied="{len(copied) - 1}"'
+
+    shown = Html(_COPIED.sub(uncopied, _DRAWN.sub(empty, shown)))
+    return shown, {"formulas": formulas, "pictures": pictures, "copied": copied}
 
 
 def own_text(name: str) -> str:

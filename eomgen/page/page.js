@@ -1,19 +1,22 @@
-// Formulas that stand alone are carried as LaTeX, which is copied, and packed as MathML, which is shown.
+// Formulas that stand alone are carried as LaTeX, which is copied; packed are their MathML, which is shown, the text that
+// their buttons copy, and large pictures.
 "use strict";
+const apart = (async () => JSON.parse(new TextDecoder().decode(await unzipped(document.getElementById("apart").innerHTML))))();
 for (const button of document.querySelectorAll(".formula [data-copy='']")) {
   button.dataset.copy = Array.from(button.closest(".formula").querySelectorAll(".tex"), (tex) => tex.textContent).join("\n");
 }
 (async () => {
-  const formulas = JSON.parse(new TextDecoder().decode(await unzipped(document.getElementById("formulas").innerHTML)));
+  const { formulas, pictures } = await apart;
   document.querySelectorAll(".tex").forEach((tex, k) => { tex.outerHTML = formulas[k]; });
+  for (const picture of document.querySelectorAll("svg[data-drawn]")) picture.innerHTML = pictures[picture.dataset.drawn];
   document.documentElement.dataset.typeset = "yes";
   document.getElementById(location.hash.slice(1))?.scrollIntoView();
 })();
 
 // Formulas are copied as LaTeX, or as text that a model file reads.
-for (const button of document.querySelectorAll("button[data-copy]")) {
+for (const button of document.querySelectorAll("button[data-copy], button[data-copied]")) {
   button.addEventListener("click", async () => {
-    const text = button.dataset.copy;
+    const text = button.dataset.copy ?? (await apart).copied[button.dataset.copied];
     try {
       await navigator.clipboard.writeText(text);
     } catch {  // a page that was opened as a file, in a browser that is strict

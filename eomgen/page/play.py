@@ -20,7 +20,7 @@ from eomgen.model.replaced import Taken, Values
 from eomgen.page.player_data import PlayedRun, PlayerOptions, SliderRange
 from eomgen.page.player_page import player_page
 from eomgen.proof.check import Certificate, Check, checked, unchecked
-from eomgen.questions.run import run
+from eomgen.questions.run import run_of_a_page
 from eomgen.records import dataclass
 from eomgen.symbolic.expression.typed import Typed, seconds
 from eomgen.symbolic.numeric.work import doing
@@ -36,9 +36,11 @@ class Played:
 
     Args:
         played: the run that it begins with, and what is asked.
+        shorter: why it is shorter than others, or "".
     """
 
     played: PlayedRun
+    shorter: str = ""
 
     @cached_property
     def html(self) -> str:
@@ -93,7 +95,7 @@ def play(
     model: ModelOrPath,
     path: str | Path | None = None,
     *,
-    time: Typed = 10.0,
+    time: Typed | None = None,
     sliders: Sequence[str] = (),
     parameters: Values | None = None,
     start: Values | None = None,
@@ -105,7 +107,7 @@ def play(
 
     Args:
         path: where the page is written; None: nowhere.
-        time: how long the motion is: 5 s or "500 ms".
+        time: how long the motion is: 5 s or "500 ms"; None: 10 s, less of what takes too many steps.
         sliders: what can be moved, each "NAME" or "NAME=FROM:TO", numbers in SI or with a unit; () for everything.
         parameters, start: values that replace the model's, each as `model_at` takes it.
         trail: a point that leaves a trail from the start.
@@ -117,21 +119,21 @@ def play(
     model = model_at(model, parameters, start)
     ranges, _ = slider_ranges(model, sliders, declared=False)
     options = PlayerOptions(ranges, True, trail, forces, speed)
-    found = played(model, seconds(time), options)
+    found = played(model, None if time is None else seconds(time), options)
     if path is not None:
         found.write(path)
     return found
 
 
 @doing("the page of the model")
-def played(model: Model, time: float, options: PlayerOptions) -> Played:
+def played(model: Model, time: float | None, options: PlayerOptions) -> Played:
     """The page of a model whose values stand."""
     if not model.coordinates:
         raise UsageError("nothing moves: the model has no coordinates", mend="`statics` and `kinematics` answer it")
     if not (options.speed > 0 and math.isfinite(options.speed)):
         raise UsageError(f"a speed of {options.speed:g} makes no sense", mend="1 is as fast as it moves")
-    found = run(pipeline.derive(model), time=time, samples=SAMPLES)
-    made = Played(PlayedRun(found, options))
+    found, shorter = run_of_a_page(pipeline.derive(model), time, SAMPLES)
+    made = Played(PlayedRun(found, options), shorter)
     points = [point["name"] for point in made.played.drawn[0]["points"]]
     if options.trail and options.trail not in points:
         raise UsageError(f"there is no point '{options.trail}'", mend=f"there are {', '.join(points)}")

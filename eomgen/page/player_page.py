@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import html
 import json
+import re
 from importlib import resources
 from typing import Any, Protocol
 
@@ -18,6 +19,8 @@ from eomgen.simulation.result import Trajectory
 from eomgen.version import __version__
 
 SCRIPTS = ("columns.mjs", "integrator.mjs", "ties.mjs", "motion.mjs", "plane.mjs", "space.mjs", "player.mjs")
+IN_SPACE = "space.mjs"
+_LAID_OUT = re.compile(r"\n +")
 
 _PAGE = """\
 <!doctype html>
@@ -56,7 +59,7 @@ _UNPACKED = """\
         document.getElementById("{identity}").textContent = `No motion in this browser: ${{error.message}}.`;
     }}
 }})();"""
-"""A program as long as the library that it needs: it is unpacked as that is."""
+"""A program among other things of a page: packed, it takes half or less."""
 
 
 @dataclass(frozen=True)
@@ -117,11 +120,12 @@ def player_parts_of(played: Playable, identity: str, *, page: bool = False) -> P
     live = played.live
     needed = () if live is None else live.programs if played.moves else ("begin", "rate", "frame")
     programs = ",\n".join(f"{name}: {javascript_expression(live.programs[name])}" for name in needed) if live else ""
-    text = "\n".join(map(in_a_script, map(_asset, SCRIPTS)))
+    programs = _LAID_OUT.sub("\n", programs)
+    text = "\n".join(in_a_script(_asset(name)) for name in SCRIPTS if library or name != IN_SPACE)
     begin = f'begun(document.getElementById("{identity}"), {told}, {{{programs}}});'
     body = f'<div class="eomgen-player" id="{identity}"></div>'
     whole = f"(() => {{\n{_harmless(text)}\n{begin}\n}})();"
-    if library and not page:
+    if not page:
         whole = _UNPACKED.format(packed=packed(whole.encode()), identity=identity)
     return PlayerParts(_asset("player.css"), body, f"<script>\n{whole}\n</script>")
 

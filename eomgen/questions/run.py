@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import replace
 from typing import Any
@@ -179,6 +180,27 @@ def run(
         outputs=outputs,
         estimate=estimated,
     )
+
+
+PAGE_TIME = 10.0  # s
+PAGE_STEPS = 100_000  # a run of more is too fast to be looked at as a whole
+
+
+def run_of_a_page(equations: Equations, time: float | None, samples: int) -> tuple[Trajectory, str]:
+    """(the motion that a page shows, why it is shorter than others, "" where it is not).
+
+    Args:
+        time: how long [s]; None: PAGE_TIME, or a round time that is over before so many steps are taken.
+    """
+    if time is not None:
+        return run(equations, time=time, samples=samples), ""
+    found = run(equations, time=PAGE_TIME, samples=samples, how=Stepping(most_steps=PAGE_STEPS))
+    if found.status != "too many steps":
+        return found, ""
+    power = 10.0 ** math.floor(math.log10(found.phases[-1].end))
+    time = next(factor * power for factor in (5, 2, 1) if factor * power <= found.phases[-1].end)
+    words = f"Followed for {time:g} s: {PAGE_TIME:g} s would take more than {PAGE_STEPS} steps; --time says otherwise."
+    return run(equations, time=time, samples=samples), words
 
 
 def finished_run(

@@ -23,7 +23,7 @@ from eomgen.scene.strokes import DrawerTable, Drawing, Drawn, Letter, PictureSiz
 from eomgen.scene.symbols import SPACE, TEETH
 
 ROUND, FEWEST = 20, 8  # pieces of a turn, from the largest to the smallest
-SEEN = 0.0012  # of the extent: chords need not be nearer to their arc
+SEEN = 0.0018  # of the extent: chords need not be nearer to their arc
 FAR = 0.5  # part of what is upright along an axis: more, and the top of a picture is at that end of it
 BESIDE = 3  # units of a plane around what is drawn over it, and of the weight's arrow from its corner
 SMALL = 10  # pieces of a turn of a symbol no larger than its unit
@@ -36,9 +36,9 @@ def space_drawing(numbers: SceneNumbers, *, dimensions: bool = False) -> Drawing
     return drawn_with(TABLE, numbers, dimensions=dimensions)
 
 
-def _faces(corners: np.ndarray, mark: Mark, role: str = "") -> Stroke:
+def _faces(corners: np.ndarray, mark: Mark, role: str = "", *, solid: bool = False) -> Stroke:
     """Faces n x f x c x 3 in the ground."""
-    return Stroke(corners, role or mark.role, mark.of, filled=True, faces=True)
+    return Stroke(corners, role or mark.role, mark.of, filled=True, faces=True, solid=solid)
 
 
 # -- shapes ------------------------------------------------------------------------------------------
@@ -70,7 +70,7 @@ def _arc(form: ArcForm, mark: Mark, numbers: SceneNumbers, sizes: PictureSizes) 
 
 def _box(form: BoxForm, mark: Mark, numbers: SceneNumbers, sizes: PictureSizes) -> Drawn:
     own = numbers.vector(form.at)[:, None, :] + numbers.vector(form.size)[:, None, :] * CUBE
-    return [_faces(numbers.placed(own, mark.frame)[:, SIDES], mark)], []
+    return [_faces(numbers.placed(own, mark.frame)[:, SIDES], mark, solid=True)], []
 
 
 def _pieces(radius: np.ndarray, sizes: PictureSizes) -> int:
@@ -89,14 +89,21 @@ def _ellipsoid(form: EllipsoidForm, mark: Mark, numbers: SceneNumbers, sizes: Pi
         [np.outer(np.sin(fall), np.cos(turn)), np.outer(np.sin(fall), np.sin(turn)), np.outer(np.cos(fall), turn**0)], 2
     )
     own = numbers.vector(form.at)[:, None, None, :] + half[:, None, None, :] * ball
-    return [_faces(numbers.placed(_quads(own), mark.frame), mark)], []
+    return [_faces(numbers.placed(_quads(own), mark.frame), mark, solid=True)], []
 
 
 def _revolution(form: RevolutionForm, mark: Mark, numbers: SceneNumbers, sizes: PictureSizes) -> Drawn:
     r = np.column_stack([numbers.value(x) for x, _ in form.profile])
     z = np.column_stack([numbers.value(x) for _, x in form.profile])
     own = numbers.vector(form.at)[:, None, None, :] + _swept(r, z, _pieces(r, sizes))
-    return [_faces(numbers.placed(_quads(own), mark.frame), mark)], []
+    return [_faces(numbers.placed(_quads(own), mark.frame), mark, solid=_convex(r, z))], []
+
+
+def _convex(r: np.ndarray, z: np.ndarray) -> bool:
+    """Whether a profile n x k begins and ends on the axis and turns to one side: it sweeps a convex solid."""
+    across, up = np.diff(r, axis=1), np.diff(z, axis=1)
+    turns = across[:, :-1] * up[:, 1:] - across[:, 1:] * up[:, :-1]
+    return not r[:, [0, -1]].any() and bool((turns >= 0).all() or (turns <= 0).all())
 
 
 def _swept(r: np.ndarray, z: np.ndarray, pieces: int) -> np.ndarray:
@@ -224,28 +231,29 @@ def _symbol(form: forms.SymbolForm, mark: Mark, numbers: SceneNumbers, sizes: Pi
     x, y = _crossing(z)
     found = []
     for role, part in SPACE[form.symbol]:
-        own = sizes.unit * _own(part)
+        faces, solid = _own(part)
+        own = sizes.unit * faces
         path = at[:, None, None, :] + sum(own[..., k : k + 1] * e[:, None, None, :] for k, e in enumerate((x, y, z)))
         if isinstance(part, LineForm):
             found.append(Stroke(path[:, 0], role, mark.of, fine=True))
         else:
-            found.append(_faces(path, mark, role))
+            found.append(_faces(path, mark, role, solid=solid))
     return found, []
 
 
-def _own(part: Any) -> Any:
-    """The faces f x c x 3 of a part of a symbol; of a line 1 x k x 3."""
+def _own(part: Any) -> tuple[np.ndarray, bool]:
+    """(the faces f x c x 3 of a part of a symbol, whether they enclose what is convex); of a line 1 x k x 3."""
     if isinstance(part, LineForm):
-        return np.array([[[float(plain_number(x)) for x in place] for place in part.points]])
+        return np.array([[[float(plain_number(x)) for x in place] for place in part.points]]), False
     if isinstance(part, RevolutionForm):
-        profile = np.array([[float(plain_number(r)), float(plain_number(z))] for r, z in part.profile])
-        pieces = SMALL if profile[:, 0].max() <= 1 else ROUND
-        return _quads(_swept(profile[None, :, 0], profile[None, :, 1], pieces))[0]
+        profile = np.array([[[float(plain_number(r)), float(plain_number(z))] for r, z in part.profile]])
+        pieces = SMALL if profile[..., 0].max() <= 1 else ROUND
+        return _quads(_swept(profile[..., 0], profile[..., 1], pieces))[0], _convex(profile[..., 0], profile[..., 1])
     size = np.array([float(plain_number(x)) for x in part.size])
     if isinstance(part, BoxForm):
-        return (size * CUBE)[np.array(SIDES)]
+        return (size * CUBE)[np.array(SIDES)], True
     fall = np.linspace(0, math.pi, SMALL // 2 + 1)
-    return size[0] * _quads(_swept(np.sin(fall)[None], np.cos(fall)[None], SMALL))[0]
+    return size[0] * _quads(_swept(np.sin(fall)[None], np.cos(fall)[None], SMALL))[0], True
 
 
 # -- arrows and names --------------------------------------------------------------------------------

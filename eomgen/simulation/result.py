@@ -19,6 +19,7 @@ from eomgen.errors import UsageError
 from eomgen.model.own_units import OUTPUT
 from eomgen.records import dataclass
 from eomgen.symbolic.expression.units import Unit
+from eomgen.symbolic.numeric.tolerances import SOLVED
 
 SHOWN = 80  # characters of names on a line
 
@@ -311,6 +312,14 @@ class Trajectory:
             speed = "" if self.gap_rate is None else f", their velocities by {_size(self.gap_rate)}"
             parts.append(f"Ties open by at most {_size(self.gap)}{speed}.")
         return " ".join(parts if self.reactions or self.outputs or not self.remark else [*parts, self.remark])
+
+    @property
+    def still(self) -> str:
+        """That the start is a rest, and what to do, in a sentence; "" where something moves."""
+        if len(self.t) < 2 or not self.coordinates or np.max(np.abs(self.x - self.x[0])) > SOLVED:
+            return ""
+        near = f"--start {self.coordinates[0]}=..."
+        return f"From this start nothing moves: it is a place of rest. Start beside it ({near}), or with a speed."
 
     def __repr__(self) -> str:
         names = ", ".join((*self.coordinates, *self.speeds))

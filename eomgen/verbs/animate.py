@@ -222,11 +222,12 @@ def _told(
     """What was written; a run that did not reach its end fails, though what there is of it is shown."""
     failed = "" if run is None or run.ok else run.message
     count, still = len(movies[0].times), all(movie.stands_still for movie in movies)
-    notes = (NOTHING_MOVES,) if count > 1 and still else ()
+    told_already = run is not None and bool(run.still)
+    notes = (NOTHING_MOVES,) if count > 1 and still and not told_already else ()
     payload = {"name": model.name, "files": [output], "frames": count, "fps": showing.fps, "speed": showing.speed}
     told = (prose(f"{model.name}: {summary}"), prose(_written(output, count)))
     document = plain_document(model, lambda: payload, *told, failed=failed, notes=notes)
-    document = document if run is None else with_start_told(document, model)
+    document = document if run is None else with_start_told(document, model, run)
     return replace(document, interrupted=run is not None and run.status == "interrupted")
 
 

@@ -12,6 +12,7 @@ from eomgen.mechanics.equations.system import system_of
 from eomgen.mechanics.initial_state.initial_state import start_of_motion
 from eomgen.mechanics.statics.contacts_at_start import contacts_at_start
 from eomgen.model.parts import Model
+from eomgen.simulation.result import Trajectory
 
 
 def shown(found: Result, *, plot: str | None = None, certify: bool = True) -> Document:
@@ -23,8 +24,14 @@ def shown(found: Result, *, plot: str | None = None, certify: bool = True) -> Do
     return document if over is None else replace(document, taken=(*document.taken, over.taken))
 
 
-def with_start_told(document: Document, model: Model) -> Document:
-    """The document; where its model could not start as it is written, with a note of what was changed."""
+def with_start_told(document: Document, model: Model, run: Trajectory | None = None) -> Document:
+    """The document with a note of what was changed where its model could not start as it is written.
+
+    Args:
+        run: the motion that it tells of: that nothing moves is a note too.
+    """
+    if run is not None and run.still:
+        document = replace(document, notes=(*document.notes, run.still))
     if not (model.coordinates and model.constraints):
         return document
     try:

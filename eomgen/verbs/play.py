@@ -19,7 +19,7 @@ def play_document(
     model: Model,
     *,
     output: str,
-    time: float,
+    time: float | None,
     sliders: tuple[str, ...],
     trail: str,
     forces: bool,
@@ -39,8 +39,8 @@ def play_document(
 
     run = found.played.run
     document = plain_document(model, payload, Lines((output,)), failed="" if run.ok else run.message)
-    document = replace(document, taken=taken, notes=(found.rests,) if found.rests else ())
-    return with_start_told(document, model).proven(found.certify() if certify else None)
+    document = replace(document, taken=taken, notes=tuple(filter(None, (found.rests, found.shorter))))
+    return with_start_told(document, model, run).proven(found.certify() if certify else None)
 
 
 def refuse_other_endings(output: str) -> None:

@@ -36,7 +36,7 @@ from eomgen.page.player_page import Playable, player_parts_of
 from eomgen.page.released import PlayedDisplacements
 from eomgen.proof.check import Certificate
 from eomgen.questions import answers
-from eomgen.questions.run import run as simulated
+from eomgen.questions.run import PAGE_TIME, run_of_a_page
 from eomgen.questions.velocities import kinematics
 from eomgen.records import dataclass
 from eomgen.scene.virtual import VirtualDisplacement
@@ -65,14 +65,14 @@ class Subject:
     """A model, and what is asked of it; each result is found once.
 
     Args:
-        time: how long the motion is followed [s].
+        time: how long the motion is followed [s]; None: as `run_of_a_page` has it.
         certify: whether results are proven.
         origin: the name of the model's file, "" for none.
         source: its text.
     """
 
     model: Model
-    time: float
+    time: float | None
     certify: bool
     origin: str
     source: str
@@ -124,13 +124,18 @@ class Subject:
         return pipeline.derive(self.model)
 
     @cached_property
-    def run(self) -> Trajectory:
-        """The motion from the start.
+    def followed(self) -> tuple[Trajectory, str]:
+        """(the motion from the start, why it is shorter than others).
 
         Raises:
             MissingValues: parameters without a value.
         """
-        return simulated(self.equations, time=self.time, samples=SAMPLES)
+        return run_of_a_page(self.equations, self.time, SAMPLES)
+
+    @property
+    def run(self) -> Trajectory:
+        """The motion from the start."""
+        return self.followed[0]
 
     @cached_property
     def code(self) -> Generated:
@@ -157,7 +162,7 @@ def report(
     model: ModelOrPath,
     path: str | Path | None = None,
     *,
-    time: Typed = 10.0,
+    time: Typed | None = None,
     parameters: Values | None = None,
     start: Values | None = None,
     with_: Sequence[str] = (),
@@ -168,7 +173,7 @@ def report(
 
     Args:
         path: the file that is written; None: nothing is.
-        time: how long the motion is followed: 5 s or "500 ms".
+        time: how long the motion is followed: 5 s or "500 ms"; None: 10 s, less of what takes too many steps.
         parameters, start: values that replace the model's, each as `model_at` takes it.
         with_, without: sections besides those that fit the model, or not among them: the keys of `SECTIONS`.
         certify: whether what stands in it is proven.
@@ -180,7 +185,7 @@ def report(
     is_file = not isinstance(model, Model)
     source = bytes_at(str(model)).decode() if is_file else ""
     origin = Path(str(model)).name if is_file else ""
-    subject = Subject(model_at(model, parameters, start), seconds(time), certify, origin, source)
+    subject = Subject(model_at(model, parameters, start), None if time is None else seconds(time), certify, origin, source)
     found = report_of(subject, with_, without)
     if form is not None and path is not None:
         files.write_all(Path(path).parent, written_as(found, form, Path(path).name))
@@ -203,7 +208,7 @@ def report_document(
     model: Model,
     *,
     output: str,
-    time: float,
+    time: float | None,
     with_: Sequence[str] = (),
     without: Sequence[str] = (),
     origin: str = "",
@@ -242,17 +247,19 @@ def report_of(subject: Subject, with_: Sequence[str] = (), without: Sequence[str
     made = [_made(subject, key, key in with_) for key in keys]
     sections = tuple(section for section in made if section is not None)
     proofs: dict[str, Certificate | None] = {key: each.certificate for key, each in subject.documents.items()}
-    if "run" in vars(subject):
+    if "followed" in vars(subject):
         proofs["motion"] = subject.run.certify() if subject.certify else None
     if "code" in vars(subject):
         proofs["code"] = subject.code.certify() if subject.certify else None
     model = subject.model
     failures = [document.failed for document in subject.documents.values()]
-    failures += [subject.run.message] if "run" in vars(subject) and not subject.run.ok else []
+    failures += [subject.run.message] if "followed" in vars(subject) and not subject.run.ok else []
     failed = "; ".join(filter(None, failures))
     head = replace(document_of(model, subject.main[1].method, ()), failed=failed)
     values = replaced(subject)
-    return Report(head.proven(joint_proof(proofs)), sections, subject.origin, subject.source, values, subject.time)
+    lasted = float(subject.run.t[-1]) if "followed" in vars(subject) and len(subject.run.t) else PAGE_TIME
+    lasted = subject.time or lasted
+    return Report(head.proven(joint_proof(proofs)), sections, subject.origin, subject.source, values, lasted)
 
 
 def replaced(subject: Subject) -> dict[str, dict[str, str]]:
@@ -338,9 +345,9 @@ def _outputs(subject: Subject) -> ReportSection | None:
 def _plots(subject: Subject) -> ReportSection | None:
     run = subject.run
     drawings = motion_drawings(run, units_of(subject.model, run.coordinates))
-    return ReportSection(
-        "plots", drawings=drawings, remark="" if run.ok else f"The run ended early: {run.message.rstrip('.')}."
-    )
+    ended = "" if run.ok else f"The run ended early: {run.message.rstrip('.')}."
+    words = " ".join(filter(None, (ended, subject.followed[1], run.still)))
+    return ReportSection("plots", drawings=drawings, remark=words)
 
 
 def _figure(subject: Subject) -> ReportSection | None:
@@ -391,7 +398,7 @@ def _downloads(subject: Subject) -> ReportSection | None:
     stem, found = subject.stem, []
     if subject.source:
         found.append(Attachment(f"{stem}.toml", "text/plain", subject.source.encode(), "the model"))
-    if "run" in vars(subject):
+    if "followed" in vars(subject):
         about = "the motion: a header, then a line an instant, in SI, 9 digits of the largest number of each column"
         found.append(Attachment(f"{stem}.csv", "text/csv", subject.run.columns(), about))
     if "equations" in vars(subject) and subject.equations.speeds:

@@ -65,7 +65,8 @@ def simulate_document(
     assembled = f"The start was {run.assembled}." if run.assembled else ""
     cut = {"interrupted": "it was interrupted", "out of patience": "there was no time left"}.get(run.status, "")
     unproven = f"Nothing of it is proven: {cut}." if certify and cut else ""
-    notes = tuple(note for note in (unproven, assembled, run.remark if run.reactions or run.outputs else "") if note)
+    missing = run.remark if run.reactions or run.outputs else ""
+    notes = tuple(note for note in (unproven, assembled, run.still, missing) if note)
     first = _first_instant(equations, run)
     document = plain_document(
         model,

@@ -17,6 +17,7 @@ from eomgen.symbolic.expression.node import SUMS
 from eomgen.symbolic.expression.rational import Fraction
 from eomgen.symbolic.expression.traversal import order
 from eomgen.symbolic.numeric.evaluation import FLOAT, evaluate
+from eomgen.symbolic.print.decimals import decimal_of
 
 SHORT_SUM = 40  # nodes of a sum that is looked through for what moves
 
@@ -247,6 +248,15 @@ def is_part_of_turn(product: Product) -> bool:
     """True for pi/2 and -3/4*pi, which are written as quotients: pi/2, 3*pi/4."""
     lone = len(product.numerator) == 1 and not product.denominator and product.numerator[0][1] == 1
     return lone and product.numerator[0][0].op == "pi" and 1 < product.coefficient.denominator < 100
+
+
+def is_part_of_letter(product: Product) -> bool:
+    """True for F/3 and 2*M/3, which are set as one fraction; of rates and accelerations a number stands before them."""
+    if len(product.numerator) != 1 or product.denominator or type(product.coefficient) is not Fraction:
+        return False
+    ((base, exponent),) = product.numerator
+    plain = base.op == "symbol" and exponent == 1 and "'" not in base.name and not is_time(base)
+    return plain and decimal_of(product.coefficient) is None
 
 
 def is_time(node: Node) -> bool:

@@ -14,7 +14,7 @@ from eomgen.symbolic.expression.graph import Node, Number, Scalar
 from eomgen.symbolic.expression.rational import Fraction
 from eomgen.symbolic.expression.splines import sampled_of
 from eomgen.symbolic.print.decimals import decimal_of
-from eomgen.symbolic.print.layout import Factor, Product, is_base, is_part_of_turn
+from eomgen.symbolic.print.layout import Factor, Product, is_base, is_part_of_letter, is_part_of_turn
 from eomgen.symbolic.print.printed import TRIGONOMETRIC, is_bare_argument, summands
 from eomgen.symbolic.print.symbols import index_latex, symbol_of
 
@@ -131,7 +131,7 @@ def _sum(products: Sequence[Product], known: Mapping[Node, Marks]) -> Marks:
 
 def _product(product: Product, known: Mapping[Node, Marks], *, one_fraction: bool = False) -> Marks:
     c = max(product.coefficient, -product.coefficient)
-    if not product.denominator and not one_fraction and not is_part_of_turn(product):
+    if not product.denominator and not (one_fraction or is_part_of_turn(product) or is_part_of_letter(product)):
         return _side(c, product.numerator, known)
     whole = decimal_of(c) is not None
     above = _side(c if whole else c.numerator, product.numerator, known)
