@@ -23,7 +23,8 @@ from eomgen.scene.strokes import DrawerTable, Drawing, Drawn, Letter, PictureSiz
 from eomgen.scene.symbols import SPACE, TEETH
 
 ROUND, FEWEST = 20, 8  # pieces of a turn, from the largest to the smallest
-SEEN = 0.0018  # of the extent: chords need not be nearer to their arc
+SEEN = 0.0012  # of the extent: chords need not be nearer to their arc
+STANDS_FOR = 2.0  # times that for an ellipsoid that only stands for masses
 FAR = 0.5  # part of what is upright along an axis: more, and the top of a picture is at that end of it
 BESIDE = 3  # units of a plane around what is drawn over it, and of the weight's arrow from its corner
 SMALL = 10  # pieces of a turn of a symbol no larger than its unit
@@ -73,18 +74,23 @@ def _box(form: BoxForm, mark: Mark, numbers: SceneNumbers, sizes: PictureSizes) 
     return [_faces(numbers.placed(own, mark.frame)[:, SIDES], mark, solid=True)], []
 
 
-def _pieces(radius: np.ndarray, sizes: PictureSizes) -> int:
+def _pieces(radius: np.ndarray, sizes: PictureSizes, coarser: float = 1.0) -> int:
     """Of a turn, so many that its chords stay where the arc is seen: r (1 - cos(pi/n)) = SEEN extent."""
     largest = float(np.max(np.abs(radius), where=np.isfinite(radius), initial=0.0))
-    return int(np.clip(math.pi / math.sqrt(2 * SEEN * sizes.extent / largest), FEWEST, ROUND)) if largest else FEWEST
+    return (
+        int(np.clip(math.pi / math.sqrt(2 * SEEN * coarser * sizes.extent / largest), FEWEST, ROUND))
+        if largest
+        else FEWEST
+    )
 
 
 def _ellipsoid(form: EllipsoidForm, mark: Mark, numbers: SceneNumbers, sizes: PictureSizes) -> Drawn:
     half = numbers.vector(form.size)
     least = 0.12 * np.max(np.where(np.isfinite(half), half, 0.0), axis=1, keepdims=True)
     half = np.maximum(half, least)
-    fall = np.linspace(0, math.pi, _pieces(half, sizes) // 2 + 1)
-    turn = np.linspace(0, math.tau, _pieces(half[:, :2], sizes) + 1)
+    coarser = STANDS_FOR if mark.role == "inertia" else 1.0
+    fall = np.linspace(0, math.pi, _pieces(half, sizes, coarser) // 2 + 1)
+    turn = np.linspace(0, math.tau, _pieces(half[:, :2], sizes, coarser) + 1)
     ball = np.stack(
         [np.outer(np.sin(fall), np.cos(turn)), np.outer(np.sin(fall), np.sin(turn)), np.outer(np.cos(fall), turn**0)], 2
     )
