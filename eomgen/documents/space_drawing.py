@@ -100,7 +100,8 @@ class _Faces(_Layer):
 
     @cached_property
     def _solid(self) -> np.ndarray:
-        return np.array([stroke.solid for stroke in self.strokes])[self.owner]
+        found: np.ndarray = np.array([stroke.solid for stroke in self.strokes])[self.owner]
+        return found
 
     def _towards_the_eye(self, middle: np.ndarray, normal: np.ndarray, eye: np.ndarray) -> np.ndarray:
         """Whether the side of a face that looks away from the middle of all faces of its stroke looks to the eye."""

@@ -36,7 +36,7 @@ _TEX = r'<annotation encoding="application/x-tex">(.*?)</annotation>'
 _DISPLAY = re.compile(rf'(<math display="block">.*?{_TEX}.*?</math>)', re.DOTALL)
 _DRAWN = re.compile(r"(?<=<figure )([^<]*<svg [^>]*)>((?:(?!</svg>).)*)</svg>", re.DOTALL)
 _COPIED = re.compile(r' data-copy="([^"]+)"')
-LARGE = 6000  # marks of a picture: it is carried packed
+LARGE = 3000  # marks of a picture: it is carried packed
 _POWER = re.compile(r"\^\(?(-?\d+)\)?")
 MINUS = "\N{MINUS SIGN}"
 

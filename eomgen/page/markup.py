@@ -11,6 +11,7 @@ from eomgen.errors import visible
 
 VOID = frozenset({"br", "img", "input", "link", "meta"})  # elements without an end
 _IMPORT = re.compile(r"^import .*\n", re.MULTILINE)
+_REMARK = re.compile(r"  // .*$", re.MULTILINE)
 _EXPORT = re.compile(r"^export (?=(?:const|class|function) (\w+))", re.MULTILINE)
 
 
@@ -61,8 +62,8 @@ def packed(content: bytes) -> str:
 
 
 def in_a_script(module: str) -> str:
-    """A module as a statement that gives its names to those after it; without comments of a line of their own."""
+    """A module as a statement that gives its names to those after it; without comments."""
     names = ", ".join(_EXPORT.findall(module))
-    text = _EXPORT.sub("", _IMPORT.sub("", module))
+    text = _REMARK.sub("", _EXPORT.sub("", _IMPORT.sub("", module)))
     lines = [line for each in text.splitlines() if (line := each.strip()) and not line.startswith(("//", "/*", "*"))]
     return f"const {{ {names} }} = (() => {{\n{chr(10).join(lines)}\nreturn {{ {names} }};\n}})();"
