@@ -31,6 +31,7 @@ from eomgen.scene.forms import ArrowForm, CoupleForm
 from eomgen.scene.instant import frames_along
 from eomgen.scene.making import scene_of_system
 from eomgen.scene.phase_frames import phase_frames
+from eomgen.scene.scene import scalars_of
 from eomgen.scene.space_strokes import space_drawing
 from eomgen.scene.strokes import SceneNumbers
 from eomgen.scene.virtual import SWING, VirtualDisplacement
@@ -319,3 +320,16 @@ def test_of_a_solid_the_faces_towards_the_eye_are_drawn():
         assert np.allclose(drawn.min(axis=0), corners.min(axis=0)) and np.allclose(
             drawn.max(axis=0), corners.max(axis=0)
         )
+
+
+def test_what_lies_on_the_ground_is_drawn_in_every_phase():
+    """Slope, loop and exit of a wire are each seen all the time: no number of a track is missing, or moves."""
+    run = eomgen.simulate(eomgen.load(MODELS / "loop_the_loop.toml"), time=2, samples=41)
+    assert len(run.phases) == 3
+    numbers = phase_frames(run, run.t)
+    tracks = [mark for mark in numbers.scene.marks if mark.role == "track"]
+    assert [mark.form.kind for mark in tracks] == ["line", "line", "arc"]
+    for mark in tracks:
+        for x in scalars_of(mark.form):
+            column = numbers.value(x)
+            assert np.isfinite(column).all() and (column == column[0]).all()

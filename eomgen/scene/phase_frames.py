@@ -9,6 +9,7 @@ from __future__ import annotations
 from collections import Counter
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import fields, replace
+from fractions import Fraction
 from typing import Any
 
 import numpy as np
@@ -158,9 +159,24 @@ class _Joined:
         for key in dict.fromkeys(key for table in tables for key in table):
             found = [table.get(key) for table in tables]
             some = next(mark for mark in found if mark is not None)
-            flat = iter(self._numbers([None if mark is None else tuple(scalars_of(mark.form)) for mark in found]))
-            slots = {f.name: _filled(getattr(some.form, f.name), flat) for f in fields(some.form)}
-            yield replace(some, form=replace(some.form, **slots))
+            if some.role == "track" and some.frame == 0 and (laid := self._laid(found)):
+                yield from (_with_numbers(some, numbers) for numbers in laid)
+                continue
+            numbers = self._numbers([None if mark is None else tuple(scalars_of(mark.form)) for mark in found])
+            yield _with_numbers(some, numbers)
+
+    def _laid(self, found: Sequence[Mark | None]) -> list[list[Scalar]]:
+        """The numbers of each track that lies still on the ground in one of the pieces; [] where one moves.
+
+        It is there all the time, whether something is on it or not.
+        """
+        places: dict[tuple[float, ...], None] = {}
+        for (numbers, _), mark in zip(self.pieces, found, strict=True):
+            columns = [] if mark is None else [numbers.value(x) for x in scalars_of(mark.form)]
+            if any(not np.array_equal(column, np.broadcast_to(column[:1], column.shape)) for column in columns):
+                return []
+            places |= {tuple(float(f"{column[0]:.12g}") for column in columns): None} if mark is not None else {}
+        return [[Fraction(value) for value in place] for place in places]
 
     def _numbers(self, found: Sequence[Sequence[Scalar] | None]) -> list[Scalar]:
         """The numbers of a thing, from those that each piece has of it."""
@@ -195,6 +211,14 @@ def _by_identity(marks: Sequence[Mark]) -> dict[tuple[Any, ...], Mark]:
         seen[who] += 1
         found[*who, seen[who]] = mark
     return found
+
+
+def _with_numbers(mark: Mark, numbers: Sequence[Scalar]) -> Mark:
+    """A mark with other numbers, in the order of `scalars_of`."""
+    flat = iter(numbers)
+    return replace(
+        mark, form=replace(mark.form, **{f.name: _filled(getattr(mark.form, f.name), flat) for f in fields(mark.form)})
+    )
 
 
 def _filled(value: Any, numbers: Iterator[Scalar]) -> Any:
