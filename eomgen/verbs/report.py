@@ -185,7 +185,8 @@ def report(
     is_file = not isinstance(model, Model)
     source = bytes_at(str(model)).decode() if is_file else ""
     origin = Path(str(model)).name if is_file else ""
-    subject = Subject(model_at(model, parameters, start), None if time is None else seconds(time), certify, origin, source)
+    lasts = None if time is None else seconds(time)
+    subject = Subject(model_at(model, parameters, start), lasts, certify, origin, source)
     found = report_of(subject, with_, without)
     if form is not None and path is not None:
         files.write_all(Path(path).parent, written_as(found, form, Path(path).name))
