@@ -1,0 +1,72 @@
+"""Mistakes in models that the judge had not seen, made without a look at what it knows: how it fares with them.
+
+Beside each model of `fresh_mistakes/` stands a file of lines: the kind of the mistake, or `right`; the equation; of a
+mistake the words of which one of each group (`a,b+c,d`) must be told; options of `verify`. Those of odd numbers were
+looked at when the judge was mended afterwards (2026-11-23), of those of even numbers hardly any.
+
+    python tests/helpers/fresh_mistakes.py                     # of all; or: odd, even
+"""
+
+from __future__ import annotations
+
+import sys
+from collections import Counter
+from collections.abc import Iterator
+from pathlib import Path
+
+import eomgen
+from eomgen.errors import EomgenError
+from eomgen.judge.case import Case
+from eomgen.judge.judge import Judge
+
+HERE = Path(__file__).parent / "fresh_mistakes"
+PARTS = {"odd": (1,), "even": (0,), "all": (0, 1)}
+
+
+def lines(path: Path) -> Iterator[tuple[str, str, list[list[str]], dict[str, str]]]:
+    """(kind, equation, groups of words, options) of each line."""
+    for line in path.read_text().splitlines():
+        kind, text, *rest = (x.strip() for x in line.split(" | "))
+        words = rest.pop(0) if kind != "right" and rest else ""
+        groups = [group.split(",") for group in words.split("+")] if words else []
+        yield kind, text, groups, dict(option.split(":", 1) for option in rest)
+
+
+def told(judge: Judge, text: str, options: dict[str, str]) -> tuple[str, str]:
+    """(verdict, the causes that are named); the verdict is `refused` where there is none."""
+    try:
+        found = judge.verdict(text, **options)
+    except EomgenError as error:
+        return "refused", str(error)
+    named = [cause for cause in found.causes if cause.kind != "other"]
+    return found.verdict, "; ".join(f"[{x.kind}] {x.text} ({x.term})" for x in named)
+
+
+def is_named(causes: str, groups: list[list[str]]) -> bool:
+    """Whether a word of each group is told; `-` stands for what nobody could say."""
+    return causes != "" and groups not in ([], [["-"]]) and all(any(w in causes for w in g) for g in groups)
+
+
+def main(part: str = "all") -> int:
+    count: Counter[str] = Counter()
+    for path in sorted(HERE.glob("*.toml")):
+        if int(path.stem[:2]) % 2 not in PARTS[part]:
+            continue
+        judge = Judge(Case(eomgen.load(path)))
+        for kind, text, groups, options in lines(path.with_suffix(".eq")):
+            verdict, causes = told(judge, text, options)
+            if kind == "right":
+                count["right"] += 1
+                count["accepted"] += verdict == "right"
+            else:
+                count["mistakes"] += 1
+                count["told wrong"] += verdict == "wrong"
+                count["taken for right"] += verdict == "right"
+                count["cause named"] += verdict == "wrong" and is_named(causes, groups)
+            print(f"{verdict:10} {path.stem} [{kind}] {text}\n    {causes}")
+    print(", ".join(f"{name}: {n}" for name, n in count.items()))
+    return 0
+
+
+if __name__ == "__main__":
+    sys.exit(main(*sys.argv[1:2]))

@@ -1,0 +1,17 @@
+spin | T = M*R^2/4*(psi' + phi')^2 + (M*R^2/8 + M*L^2/2)*(theta'^2 + phi'^2*sin(theta)^2) | cos
+steiner | T = M*R^2/4*(psi' + phi'*cos(theta))^2 + M*R^2/8*(theta'^2 + phi'^2*sin(theta)^2) | missing+translation,Steiner,L
+inertia | T = M*R^2/4*(psi' + phi'*cos(theta))^2 + (M*R^2/4 + M*L^2/2)*(theta'^2 + phi'^2*sin(theta)^2) | rotation,inertia
+missing | momentum(psi) = M*R^2/2*psi' | phi'+missing
+axis | momentum(psi) = M*R^2/2*(psi' + phi'*sin(theta)) | other axis,sin
+sign | V = -M*g*L*cos(theta) | sign+weight
+half | V = M*g*L/2*cos(theta) | factor,half+weight
+sign | (M*R^2/4 + M*L^2)*theta'' = (M*L^2 - M*R^2/4)*sin(theta)*cos(theta)*phi'^2 + M*R^2/2*sin(theta)*phi'*psi' + M*g*L*sin(theta) | sign+phi'*psi',psi'*phi'
+missing | (M*R^2/4 + M*L^2)*theta'' = (M*L^2 - M*R^2/4)*sin(theta)*cos(theta)*phi'^2 + M*g*L*sin(theta) | missing+phi'*psi',psi'*phi'
+missing | (M*R^2/4 + M*L^2)*theta'' = -M*R^2/2*sin(theta)*phi'*psi' + M*g*L*sin(theta) | missing+phi'^2
+sign | (M*R^2/4 + M*L^2)*theta'' = (M*L^2 - M*R^2/4)*sin(theta)*cos(theta)*phi'^2 - M*R^2/2*sin(theta)*phi'*psi' - M*g*L*sin(theta) | sign+weight
+two | momentum(phi) = (M*R^2/4 + M*L^2)*sin(theta)*phi' + M*R^2/2*(psi' + phi'*cos(theta)) | -
+right | (R^2/4+L^2)\ddot\theta - (L^2 - R^2/4)\sin\theta\cos\theta\,\dot\phi^2 + \frac{R^2}{2}\dot\phi\dot\psi\sin\theta - gL\sin\theta = 0
+right | \frac{d}{dt}\left(\dot\psi + \dot\phi\cos\theta\right) = 0
+right | momentum(phi) = (M R^2/4 + M L^2) sin(theta)^2 phi' + M R^2/2 (psi' + phi' cos(theta)) cos(theta)
+right | \psi'' + \phi''\cos\theta = \phi'\theta'\sin\theta
+right | V = -2 M g L \sin^2\frac{\theta}{2}

@@ -1,0 +1,23 @@
+missing | y'' = g | missing+rotation
+missing | (J/r^2)*y'' = m*g | missing+translation
+dimension | (m + J/r)*y'' = m*g | r+rotation,dimension
+dimension | (m + J*r^2)*y'' = m*g | r+rotation,dimension
+sign | (m - J/r^2)*y'' = m*g | sign+rotation
+half | (m + J/(2*r^2))*y'' = m*g | factor 1/2+rotation
+tension | tension(thread) = m*g | missing,stood still
+tension | tension(thread) = m*(g + y'') | sign
+tension | tension(thread) = J*y''/r | r
+vel | omega(yoyo) = y'/r | sign
+vel | omega(yoyo) = -y'/(2*r) | 2,diameter,half
+law | y = g*t^2/2 | rotation+missing
+law | y = m*g*t^2/(m + J/r^2) | factor,2,half
+energy | y'^2 = 2*g*y | missing+rotation
+energy | y'^2 = m*g*y/(m + J/r^2) | factor
+instant | y' = sqrt(2*g*h) | missing+rotation | at:y = h
+two | (m - J/r)*y'' = m*g | sign+r
+two | (m + 2*J/r^2)*y'' = -m*g | sign+weight+rotation+factor
+right | \ddot y = \frac{g}{1+\frac{J}{mr^2}}
+right | tension(thread) = \frac{m g J}{J+mr^2}
+right | \dot y^2 = \frac{2 m g r^2 y}{J + m r^2}
+right | \frac12\left(m+\frac{J}{r^2}\right)\dot y^2 - mgy = 0
+right | y = ½ m g r² t²/(J + m r²)

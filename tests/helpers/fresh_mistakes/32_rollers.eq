@@ -1,0 +1,17 @@
+half | (M + 3*m)*x'' + c*x' = F | -
+one | (M + 3/8*m)*x'' + c*x' = F | front,rear
+missing | (M + m/2)*x'' + c*x' = F | rotation
+missing | M*x'' + c*x' = F | -
+hoop | (M + m)*x'' + c*x' = F | rotation
+sign | (M + 3/4*m)*x'' - c*x' = F | sign+damp
+missing | (M + 3/4*m)*x'' = F | damp+missing
+vel | omega(front) = -x'/r | 2,factor
+vel | speed(front.center) = x' | 2,factor
+T | T = M*x'^2/2 + m*x'^2/4 | rotation
+T | T = M*x'^2/2 + m*x'^2 + m*x'^2/8 | translation
+two | (M + m/2)*x'' - c*x' = F | rotation+sign+damp
+two | M*x'' = F | -
+right | \ddot x = \frac{4(F-c\dot x)}{4M+3m}
+right | T = \frac{4M+3m}{8}\dot x^2
+right | \frac{d}{dt}\left[\left(M+\frac{3m}{4}\right)\dot x\right] + c\dot x = F
+right | (M + ¾ m) ẍ + c ẋ − F = 0
