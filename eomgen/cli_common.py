@@ -18,6 +18,7 @@ from typing import TYPE_CHECKING, Any
 import click
 
 from eomgen import files
+from eomgen.cli_options import form_asked
 from eomgen.edge import INTERRUPTED, Placed, failure, guarded, problems_of, say
 from eomgen.errors import EomgenError, UsageError
 from eomgen.records import dataclass
@@ -28,6 +29,7 @@ from eomgen.version import SCHEMA_VERSION
 
 if TYPE_CHECKING:
     from eomgen.documents.document import Document
+    from eomgen.documents.result import Result
     from eomgen.model.parts import Model
 
 ONE_THREAD = ("OPENBLAS_NUM_THREADS", "1")  # numpy's matrices are small here: its threads would wait for one another
@@ -240,3 +242,57 @@ def reading(path: str) -> Iterator[Source]:
     except EomgenError as error:  # the edge: whatever is wrong is told at its place in the file
         problems = tuple(located(problem, data, name) for problem in problems_of(error))
         raise Placed(error.exit_code, problems) from error
+
+
+def _followed(declared: Model, follow: tuple[str, ...]) -> Model:
+    """The model, coordinates and inputs through the samples of files."""
+    from eomgen.verbs.csv_inputs import following
+
+    return following(declared, follow) if follow else declared
+
+
+def write_asked(
+    made: Callable[..., Document],
+    *,
+    model: str,
+    wants_json: bool,
+    output: str | None,
+    format_: str | None,
+    follow: tuple[str, ...] = (),
+    strict: bool = False,
+    **options: Any,
+) -> int:
+    """The document of a verb, in the form that is asked."""
+    form = form_asked(wants_json, format_, output)
+    with reading(model) as source:
+        document = asked_document(made, source, options, follow)
+    return deliver(document, form, output, strict=strict)
+
+
+def asked_document(
+    made: Callable[..., Document],
+    source: Source,
+    options: dict[str, Any],
+    follow: tuple[str, ...] = (),
+    **more: Any,
+) -> Document:
+    """The document of a verb for what was typed, in the units of the file; what was taken, and warnings, are in it."""
+    from eomgen.verbs.assignments import typed
+
+    valued, rest = typed(_followed(source.model, follow), options)
+    document = made(valued.model, **rest, **more)
+    document = replace(document, taken=(*valued.taken, *document.taken))
+    return source.warned(document, valued.model)
+
+
+def write_result(
+    found: Callable[..., Result], *, plot: str | None, certify: bool, at_start: bool = False, **options: Any
+) -> int:
+    """What a verb finds, at the start or elsewhere, drawn and proven where that is asked."""
+    from eomgen.verbs.outcome import shown, with_start_told
+
+    def made(declared: Model, **asked: Any) -> Document:
+        document = shown(found(declared, **asked), plot=plot, certify=certify)
+        return with_start_told(document, declared) if at_start else document
+
+    return write_asked(made, **options)

@@ -41,6 +41,7 @@ CHAIN = (
     ("edge",),
     ("cli_options",),
     ("cli_common",),
+    ("cli_runs",),
     ("cli",),
     ("__main__",),
 )

@@ -1,0 +1,429 @@
+"""The verbs of runs, and of what is written of a model: files, pages, code. No physics."""
+
+from __future__ import annotations
+
+from functools import partial
+from pathlib import Path
+from typing import Any
+
+import click
+
+from eomgen.cli_common import (
+    Verb,
+    asked_document,
+    deliver,
+    reading,
+    write_asked,
+)
+from eomgen.cli_options import (
+    CERTIFY,
+    FOLLOW,
+    FORMAT,
+    JSON,
+    MODEL,
+    OF_PLOT,
+    OF_TABLE,
+    OUTPUT,
+    PAGE_TIME,
+    PLOT,
+    TIME,
+    folder,
+    form_asked,
+    refuse_beside,
+    refuse_idle,
+    with_form,
+    with_values,
+    words,
+)
+from eomgen.symbolic.numeric.tolerances import RUN
+
+VERB = partial(click.command, cls=Verb)
+
+
+@VERB("simulate")
+@MODEL
+@JSON
+@FORMAT
+@click.option("-o", "--output", type=click.Path(dir_okay=False), help="Write the trajectory as .csv or .npz.")
+@PLOT
+@TIME
+@with_values
+@click.option("--rtol", type=float, default=RUN, show_default=True, help="Relative tolerance of the run.")
+@click.option("--atol", type=float, default=RUN, show_default=True, help="Absolute tolerance of the run.")
+@click.option(
+    "--method",
+    default="auto",
+    show_default=True,
+    metavar="NAME",
+    help="auto (DOP853, and Radau where it is stiff), DOP853, taylor (power series), RK45, RK23; "
+    "for stiff systems Radau, BDF, LSODA; heyoka (extra).",
+)
+@click.option("--until", metavar="EQUATION", help='End where it first holds: "theta = pi/2", "reaction_n(A) = 0".')
+@click.option(
+    "--stabilize",
+    type=click.Choice(["projection", "energy", "baumgarte", "none"]),
+    default="projection",
+    show_default=True,
+    help="What keeps ties closed.",
+)
+@click.option(
+    "--project-every",
+    type=click.IntRange(min=1),
+    metavar="STEPS",
+    help="Project at each so many steps.  [default: where a tie opens by atol/10]",
+)
+@click.option(
+    "--baumgarte", nargs=2, type=float, metavar="ALPHA BETA", help="Rates of Baumgarte's rows [1/s].  [default: 10 10]"
+)
+@FOLLOW
+@click.option(
+    "--view",
+    type=click.Choice(["time", "outputs", "phase", "resultants", "polar"]),
+    default="time",
+    show_default=True,
+    help="What --plot draws: all over time, outputs, rates over coordinates, sizes of forces, forces of hinges.",
+)
+@click.option("--units", is_flag=True, help='In the .csv "theta [deg]", as the file declares it, for names and SI.')
+@click.option("--samples", type=click.IntRange(min=2), help="How many instants are given.  [default: 1001]")
+@click.option("--target", metavar="NAME", help="What runs the equations, as of codegen --list.  [default: the fastest]")
+@CERTIFY
+def simulate_command(
+    model: str,
+    wants_json: bool,
+    format_: str | None,
+    output: str | None,
+    method: str,
+    rtol: float,
+    atol: float,
+    stabilize: str,
+    project_every: int | None,
+    baumgarte: tuple[float, float] | None,
+    follow: tuple[str, ...],
+    strict: bool,
+    **options: Any,
+) -> int:
+    """Integrate the motion from the start values.
+
+    It goes on through every change of contact: what opens, closes, slides or sticks. Reactions and outputs are
+    columns. Ties are kept closed, and how well, and how well energy is kept, is said.
+    """
+    from eomgen.simulation.integrator import RATES, Stepping
+    from eomgen.verbs.simulate import simulate_document as simulated
+
+    if baumgarte and stabilize != "baumgarte":
+        raise click.UsageError(f"--baumgarte goes with --stabilize baumgarte, not {stabilize}")
+    in_table = output is not None and not output.lower().endswith(".npz")
+    refuse_idle(view=(options["plot"] is not None, OF_PLOT), units=(in_table, OF_TABLE))
+    if project_every and stabilize != "projection":
+        raise click.UsageError(f"--project-every goes with --stabilize projection, not {stabilize}")
+    rates = baumgarte or RATES
+    options["how"] = Stepping(method, rtol, atol, stabilization=stabilize, every=project_every, rates=rates)
+    with reading(model) as source:
+        document = asked_document(simulated, source, options, follow, output=output)
+    asked = wants_json or format_ is not None
+    return deliver(document, form_asked(wants_json, format_), on_stderr=output is not None and not asked, strict=strict)
+
+
+@VERB("sweep")
+@click.argument("where", metavar="MODEL", type=click.Path(exists=True, allow_dash=True))
+@JSON
+@click.option("-o", "--output", metavar="DIR", type=click.Path(), help="The folder of the sweep; of --replay a .csv.")
+@click.option("--over", multiple=True, metavar="RANGE", help='"k=100:1000:10" (both ends, how many), "log:k=1:9:5".')
+@click.option("--random", multiple=True, metavar="LAW", help='"phi=normal(0, 0.1)", uniform, loguniform, lognormal.')
+@click.option("--runs", type=click.IntRange(min=1), metavar="N", help="How many are drawn.  [default: 1]")
+@click.option(
+    "--design",
+    type=click.Choice(["random", "sobol", "lhs"]),
+    default="random",
+    show_default=True,
+    help="How they are drawn: by chance, quasi-random, or a Latin hypercube.",
+)
+@click.option("--seed", type=click.IntRange(min=0), default=0, show_default=True, help="Of all chance in the sweep.")
+@click.option(
+    "--ask", multiple=True, metavar="EXPR", help='An output, "max(reaction_x(A))", "x at y = 0", "frequency(1)".'
+)
+@click.option("--critical", default="", metavar="EXPR", help="Seek where it changes its sign along the first range.")
+@TIME
+@click.option("--rtol", type=float, default=RUN, show_default=True, help="Relative tolerance of a run.")
+@click.option("--atol", type=float, default=RUN, show_default=True, help="Absolute tolerance of a run.")
+@click.option("--method", default="DOP853", show_default=True, metavar="NAME", help="As of simulate.")
+@click.option("--workers", type=click.IntRange(min=1), default=1, show_default=True, help="Processes here.")
+@with_values
+@click.option(
+    "--replay", type=click.IntRange(min=0), metavar="RUN", help="Make this run of the sweep in DIR once more."
+)
+@click.option("--samples", type=click.IntRange(min=2), help="Of --replay, how many instants.  [default: 1001]")
+@PLOT
+@click.option(
+    "--view", type=click.Choice(["lines", "heat", "scatter"]), help="What --plot draws.  [default: what fits]"
+)
+@click.option("--units", is_flag=True, help='In table.csv "k [N/m]", as the file declares it, for names and SI.')
+@CERTIFY
+def sweep_command(where: str, wants_json: bool, output: str | None, strict: bool, **options: Any) -> int:
+    """Make many runs over parameters, resumably.
+
+    Every parameter and start of --over with every other, and draws of --random at each point; a row for each run in
+    DIR/table.csv, what failed with its message. The same command goes on where it was stopped. `--replay RUN DIR` makes
+    one run once more.
+    """
+    from eomgen.sweeps.plan import Stepped
+    from eomgen.verbs.sweep import SweepAsked, replay_document, sweep_document
+
+    form, drawn = form_asked(wants_json, None), bool(options["random"])
+    refuse_idle(
+        view=(options["plot"] is not None, OF_PLOT),
+        units=(output is not None, OF_TABLE),
+        design=(drawn, "says how --random is drawn: give both"),
+        seed=(drawn, "says what --random draws: give both"),
+        samples=(options["replay"] is not None, "is of --replay"),
+    )
+    replay, samples = options.pop("replay"), options.pop("samples")
+    shown = {name: options.pop(name) for name in ("plot", "view", "units", "certify")}
+    if replay is not None:
+        heeded = ("replay", "where", "output", "samples", "wants_json", "strict", "certify", "patience")
+        refuse_beside("--replay", heeded)
+        return deliver(replay_document(where, replay, output=output, samples=samples), form, strict=strict)
+    if Path(where).is_dir():
+        raise click.UsageError(f"'{where}' is a folder: give a model, or --replay RUN")
+    if output is not None:
+        folder(click.get_current_context(), click.Option(["-o"]), output)
+    how = Stepped(**{name: options.pop(name) for name in ("time", "rtol", "atol", "method")})
+    with reading(where) as source:
+        title = "model" if where == "-" else Path(where).stem
+        asked = SweepAsked(how=how, **options)
+        text = source.data.decode()
+        document = sweep_document(source.model, asked, text=text, title=title, output=output, **shown)
+        document = source.warned(document, source.model)
+    return deliver(document, form, strict=strict)
+
+
+@VERB("identify")
+@with_form
+@click.option(
+    "--data",
+    required=True,
+    type=click.Path(exists=True, dir_okay=False),
+    help="A CSV in SI: t, coordinates, rates (q'), accelerations (q''), inputs.",
+)
+def identify_command(**options: Any) -> int:
+    """Fit masses, inertias, friction to a measured motion.
+
+    The base parameters by least squares, with their formulas and deviations; how well the motion tells them apart; and
+    parameters of bodies of positive density that fit.
+    """
+    from eomgen.verbs.identify import identify_document
+
+    return write_asked(identify_document, **options)
+
+
+@VERB("animate")
+@MODEL
+@JSON
+@FORMAT
+@click.option(
+    "-o", "--output", required=True, type=click.Path(dir_okay=False), help="Write .gif, .mp4, .html, or a strip .png."
+)
+@TIME
+@with_values
+@click.option("--fps", type=float, default=25.0, show_default=True, help="Frames a second.")
+@click.option("--speed", type=float, default=1.0, show_default=True, help="Seconds of the motion in a second.")
+@click.option("--trail", multiple=True, metavar="POINT", help="A point that leaves a trail: arm2.end.")
+@click.option("--forces", is_flag=True, help="Show forces and reactions as arrows.")
+@click.option("--modes", type=click.IntRange(min=1), metavar="N", help="Show the N slowest small motions instead.")
+@click.option("--virtual", metavar="REACTION", help="Show the virtual displacement that gives it: reaction_y(A).")
+@click.option("--frames", type=click.IntRange(min=1), default=6, show_default=True, help="Of a strip.")
+def animate_command(model: str, wants_json: bool, format_: str | None, output: str, **options: Any) -> int:
+    """Show the motion, small motions, or a virtual displacement."""
+    from eomgen.verbs.animate import Showing, animate_document, refuse_ending
+
+    refuse_ending(output)
+    ending, swings = Path(output).suffix.lower(), options["modes"] is not None or options["virtual"] is not None
+    motion = (not swings, "is of the motion in time, which --modes and --virtual do not show")
+    refuse_idle(
+        **{name: motion for name in ("time", "speed", "trail", "forces")},
+        fps=(ending in (".gif", ".mp4"), "is of a .gif and an .mp4"),
+        frames=(ending == ".png", "says how many frames a strip has: give -o FILE.png"),
+    )
+    strict = options.pop("strict")
+    shown = {name: options.pop(name) for name in ("fps", "speed", "trail", "forces", "frames")}
+    options["showing"] = Showing(**shown)
+    with reading(model) as source:
+        document = asked_document(animate_document, source, options, output=output)
+    return deliver(
+        document, form_asked(wants_json, format_), on_stderr=not wants_json and format_ is None, strict=strict
+    )
+
+
+@VERB("codegen")
+@click.argument("model", required=False, type=click.Path(exists=True, dir_okay=False, allow_dash=True))
+@JSON
+@click.option(
+    "--target", "targets", multiple=True, default=("c",), show_default=True, help="Language; several: each in DIR/NAME."
+)
+@click.option("--list", "wants_list", is_flag=True, help="The languages that there are, and no code.")
+@click.option("-o", "--output", metavar="DIR", type=click.Path(file_okay=False), callback=folder, help="Where to.")
+@FOLLOW
+@with_values
+@click.option("--inverse", is_flag=True, help="Inverse dynamics too: the forces that given accelerations take.")
+@click.option("--jacobian", is_flag=True, help="The slopes of the right-hand side in x and inputs too.")
+@click.option("--regressor", is_flag=True, help="Y of tau = Y pi + y0 too, and the columns of the base parameters.")
+@click.option("--actuated", metavar="NAMES", help='Which coordinates, inputs or joints act: "q1,q2".  [default: all]')
+@click.option("--integrator", is_flag=True, help="In C too: an integrator, and a program that writes a motion as CSV.")
+@click.option(
+    "--float32",
+    is_flag=True,
+    help="Single precision; the tolerances of its tests are measured.",
+)
+@CERTIFY
+@click.option(
+    "--baumgarte",
+    nargs=2,
+    type=float,
+    metavar="ALPHA BETA",
+    help="Closing rows that pull back what has opened, with these rates [1/s].",
+)
+def codegen_command(
+    model: str | None,
+    wants_json: bool,
+    targets: tuple[str, ...],
+    wants_list: bool,
+    output: str | None,
+    inverse: bool,
+    integrator: bool,
+    float32: bool,
+    jacobian: bool,
+    regressor: bool,
+    actuated: str | None,
+    follow: tuple[str, ...],
+    baumgarte: tuple[float, float] | None,
+    certify: bool,
+    strict: bool,
+    **options: Any,
+) -> int:
+    """Write equations and reactions as code, with test vectors."""
+    from eomgen.verbs.codegen import codegen_document as generated
+    from eomgen.verbs.codegen import languages
+
+    if wants_list:
+        refuse_beside("--list", ("wants_list", "wants_json", "strict"))
+        return deliver(languages(), form_asked(wants_json, None))
+    if model is None or output is None:
+        raise click.UsageError(f"Missing {'argument MODEL' if model is None else 'option -o DIR'}.")
+    stem = "model" if model == "-" else Path(model).stem
+    names = tuple(name.strip() for name in actuated.split(",")) if actuated else ()
+    with reading(model) as source:
+        document = asked_document(
+            generated,
+            source,
+            options,
+            follow,
+            stem=stem,
+            origin=Path(model).name,
+            targets=tuple(dict.fromkeys(targets)),
+            directory=output,
+            inverse=inverse,
+            integrator=integrator,
+            float32=float32,
+            jacobian=jacobian,
+            regressor=regressor,
+            actuated=names,
+            baumgarte=baumgarte,
+            certify=certify,
+        )
+    return deliver(document, form_asked(wants_json, None), strict=strict)
+
+
+@VERB("play")
+@MODEL
+@JSON
+@click.option("-o", "--output", required=True, type=click.Path(dir_okay=False), help="The page: a file .html.")
+@PAGE_TIME
+@with_values
+@click.option(
+    "--slider",
+    "sliders",
+    multiple=True,
+    metavar="NAME=FROM:TO",
+    help='What can be moved: "m=0.1:5", or a name alone.  [default: everything]',
+)
+@click.option("--trail", default="", metavar="POINT", help="A point that leaves a trail from the start.")
+@click.option("--forces", is_flag=True, help="Show arrows of forces from the start.")
+@click.option("--speed", type=float, default=1.0, show_default=True, help="How fast its time goes.")
+@CERTIFY
+def play_command(model: str, wants_json: bool, output: str, strict: bool, **options: Any) -> int:
+    """Write a page in which the model is alive.
+
+    Sliders for parameters and starts, bodies that one can take by hand, plots, energy; it needs no network. Models
+    whose contacts change play the recorded run.
+    """
+    from eomgen.verbs.play import play_document, refuse_other_endings
+
+    refuse_other_endings(output)
+    with reading(model) as source:
+        document = asked_document(play_document, source, options, output=output)
+    return deliver(document, form_asked(wants_json, None), strict=strict)
+
+
+@VERB("report")
+@MODEL
+@JSON
+@click.option(
+    "-o",
+    "--output",
+    required=True,
+    type=click.Path(dir_okay=False),
+    help="The file: .html, .pdf, .tex, .md or .ipynb.",
+)
+@PAGE_TIME
+@with_values
+@click.option("--with", "with_", metavar="LIST", callback=words, help='Sections besides: "linearize,statics".')
+@click.option("--without", metavar="LIST", callback=words, help='Sections that are left out: "motion,downloads".')
+@CERTIFY
+def report_command(model: str, wants_json: bool, output: str, strict: bool, **options: Any) -> int:
+    """Write a page, paper or notebook of a model.
+
+    Its figure, data, derivation, reactions, answers, proof, plots and motion, as far as they fit the model. Sections:
+    figure data derivation reactions statics kinematics inertia outputs linearize plots motion certificate downloads.
+    """
+    from eomgen.verbs.report import form_of, report_document
+
+    form_of(output)  # refused before any work
+    with reading(model) as source:
+        name = "" if model == "-" else Path(model).name
+        text = source.data.decode()
+        document = asked_document(report_document, source, options, output=output, origin=name, text=text)
+    return deliver(document, form_asked(wants_json, None), strict=strict)
+
+
+@VERB("schema")
+@JSON
+@OUTPUT
+def schema_command(wants_json: bool, output: str | None) -> int:
+    """Write the JSON Schema of a model file, for editors."""
+    from eomgen.verbs.schema import schema_document as written
+
+    form_asked(wants_json, None, output)  # refuses other endings; of .json the text is one already
+    return deliver(written(), form_asked(wants_json, None), output)
+
+
+@VERB("doctor")
+@JSON
+@OUTPUT
+def doctor_command(wants_json: bool, output: str | None) -> int:
+    """Tell what this machine can do."""
+    from eomgen.verbs.doctor import doctor_document as examined
+
+    return deliver(examined(), form_asked(wants_json, None, output), output)
+
+
+RUNS = (
+    simulate_command,
+    sweep_command,
+    identify_command,
+    animate_command,
+    codegen_command,
+    play_command,
+    report_command,
+    schema_command,
+    doctor_command,
+)
