@@ -205,7 +205,7 @@ def test_only_the_result_is_on_stdout():
         (("simulate", PENDULUM, "--set", "m1"), 2, "write --set m=2"),
         (("simulate", PENDULUM, "--set", "m1=two"), 2, "unknown name 'two'"),
         (("simulate", PENDULUM, "--start", "theta3=1"), 2, "did you mean 'theta"),
-        (("simulate", PENDULUM, "--time", "nan"), 2, "makes no sense"),
+        (("simulate", PENDULUM, "--time", "nan"), 2, "is no time"),
         (("simulate", PENDULUM, "--rtol", "-1"), 2, "tolerances"),
         (("simulate", PENDULUM, "-o", "run.xlsx"), 2, "endings are .csv, .npz"),
         (("derive", BOLT_CUTTER), 3, "the unknown 'P' stands in forces.hand_up.force"),

@@ -194,6 +194,7 @@ def test_critical_values_are_where_the_sign_changes(spring):
     assert {row["message"] for row in jump.critical} == {"it jumps there"}
 
 
+@pytest.mark.slow
 def test_a_zero_at_an_end_of_a_range_is_critical_and_a_zero_everywhere_is_not(spring):
     """f(k) = k - a for a at the first, an inner and the last value; f = 0."""
     for a in (10, 20, 30):
@@ -203,6 +204,7 @@ def test_a_zero_at_an_end_of_a_range_is_critical_and_a_zero_everywhere_is_not(sp
     assert not flat.critical and "is 0 in all runs" in flat.remarks[0]
 
 
+@pytest.mark.slow
 def test_what_nothing_in_a_sweep_changes_is_said(spring):
     """df/dk = 0 of what is asked, of what is to be critical; and what has one sign has no critical value."""
     found = eomgen.sweep(spring, over={"k": [10, 20, 30]}, ask=("m", "k"), critical="m - 5", time=1)

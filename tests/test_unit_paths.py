@@ -346,15 +346,15 @@ def test_a_time_has_its_unit_or_is_in_seconds(typed, pendulum):
 
 @pytest.mark.parametrize("typed", ["5 m", "soon", None, True, math.nan, math.inf, (1, "kg"), [1, 2], "2*l", b"1"])
 def test_what_is_no_time_is_refused_wherever_one_is_asked(typed, pendulum):
-    """The same sentence in Python as on the command line."""
+    """The same sentence in Python as on the command line; pages have a time of their own where none is given."""
+    pages = (lambda: eomgen.play(pendulum, time=typed), lambda: eomgen.report(pendulum, time=typed))
     for asked in (
         lambda: eomgen.simulate(pendulum, time=typed),
         lambda: eomgen.simulator(pendulum)(typed),
         lambda: eomgen.simulate_many(pendulum, time=typed),
         lambda: eomgen.sweep(pendulum, over={"m": 1}, ask="theta", time=typed),
-        lambda: eomgen.play(pendulum, time=typed),
-        lambda: eomgen.report(pendulum, time=typed),
         lambda: eomgen.simulate(pendulum, time=1, samples=[0, typed]),
+        *(() if typed is None else pages),
     ):
         with pytest.raises(UsageError, match="is no time"):
             asked()

@@ -9,7 +9,6 @@ from __future__ import annotations
 from collections import Counter
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import fields, replace
-from fractions import Fraction
 from typing import Any
 
 import numpy as np
@@ -25,6 +24,7 @@ from eomgen.scene.scene import ROLES, Mark, Scene, SceneFrame, is_moving, plain_
 from eomgen.scene.strokes import SceneNumbers
 from eomgen.simulation.result import Phase, Trajectory
 from eomgen.symbolic.expression.graph import Node, Scalar
+from eomgen.symbolic.expression.rational import Fraction
 from eomgen.symbolic.expression.spatial import Pose, vector_of
 
 Piece = tuple[SceneNumbers, np.ndarray]
