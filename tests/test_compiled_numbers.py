@@ -21,7 +21,7 @@ pytestmark = pytest.mark.slow
 MODELS = Path(__file__).parent.parent / "models"
 VERBS = (
     ("derive", "double_pendulum.toml"),
-    ("derive", "four_bar.toml", "--format", "json"),
+    ("derive", "seeds/ch18_p2.toml", "--format", "json"),
     ("solve", "seeds/ch22_p1.toml"),
     ("linearize", "double_pendulum.toml"),
     ("kinematics", "slider_crank.toml"),
