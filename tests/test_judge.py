@@ -504,6 +504,7 @@ def test_an_equation_of_rest_beside_what_turns_is_decided():
     assert "W stands where W^2 is meant" in eomgen.verify(model, "cos(theta) = g/(l*W)").hint()
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     ("equation", "words"),
     [
@@ -531,6 +532,7 @@ def test_a_moment_of_inertia_is_explained_body_by_body(equation, words):
     assert found.verdict == "wrong" and all(word in found.hint() for word in words), found.hint()
 
 
+@pytest.mark.slow
 def test_thirty_freedoms_are_explained_by_the_row_concerned():
     """m x5'' + k (x5 - x4) - k (x6 - x5) = 0 in a row of thirty masses, in two seconds of work."""
     text = ["eomgen = 1", 'space = "plane"', "parameters = { m = 1, k = 100 }"]

@@ -117,6 +117,7 @@ def test_a_divisor_of_polynomials_in_many_generators_is_not_sought_for_hours():
     assert (f * x).without_common_divisor(g * x * x)[1] == (f.without_common_divisor(g * x))[1]
 
 
+@pytest.mark.slow
 def test_both_libraries_give_the_same_values(monkeypatch):
     """Signs, numbers and order of factors, of square-free parts and of quotients: equal, not just equivalent."""
     found = []

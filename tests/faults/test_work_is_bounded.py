@@ -60,6 +60,7 @@ def asks_never() -> None:
         sum(range(1000))
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("endless", [asks, asks_never])
 def test_what_takes_too_long_ends_and_says_what_was_done_and_what_was_given_up(endless):
     """Loops that ask end at once; those of a library within a second more."""

@@ -26,6 +26,7 @@ def failing(found) -> set[str]:
     return {check.name for check in found.certify().checks if check.status == "fails"}
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     "name", ["simple_pendulum", pytest.param("slider_crank", marks=pytest.mark.slow), "sliding_ladder", "four_bar"]
 )
