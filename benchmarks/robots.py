@@ -1,7 +1,8 @@
 """Robot files that nobody here wrote, imported, against MuJoCo and Pinocchio: mass matrix, bias and gravity terms.
 
     python benchmarks/robots.py                     # every file in the wheels that are installed
-    python benchmarks/robots.py --only panda -v
+    python benchmarks/robots.py --only panda
+    python benchmarks/robots.py --within FOLDER     # every URDF and MJCF file below a folder: of a wheel unpacked
 
 needs, beside eomgen, an environment with the wheels: pip install mujoco pin example-robot-data dm_control gymnasium.
 A row is a file: its freedoms, the time of the import and of the derivation, and the largest difference of M and of
@@ -213,9 +214,13 @@ def _spec(path: Path) -> Any:
     return spec_of(path)
 
 
-def files(only: str) -> list[Path]:
-    """The robot files of the wheels."""
+def files(only: str, within: str) -> list[Path]:
+    """The robot files of a folder, or of the wheels."""
     found: list[Path] = []
+    if within:
+        texts = [*Path(within).rglob("*.urdf"), *Path(within).rglob("*.xml")]
+        found = [path for path in texts if b"<robot" in (text := path.read_bytes()) or b"<worldbody" in text]
+        return sorted(path for path in found if only in str(path))
     for package, ending in (("dm_control", "xml"), ("gymnasium", "xml"), ("mujoco", "xml")):
         where = importlib.util.find_spec(package)
         if where is not None and where.origin:
@@ -254,6 +259,7 @@ def looked_at(path: Path, rng: Any, floating: bool, certify: bool) -> Row:
 def main() -> int:
     asked = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     asked.add_argument("--only", default="", help="files whose path holds this text")
+    asked.add_argument("--within", default="", help="a folder, instead of the wheels that are installed")
     asked.add_argument("--floating", action="store_true", help="URDF with a free base")
     asked.add_argument("--certify", action="store_true", help="the proof too")
     asked.add_argument("--seed", type=int, default=1)
@@ -261,7 +267,7 @@ def main() -> int:
     warnings.simplefilter("ignore")
     rng, bad = np.random.default_rng(given.seed), 0
     print(f"{'file':34} free import derive  largest difference, over the largest entry")
-    for path in files(given.only):
+    for path in files(given.only, given.within):
         if given.floating and path.suffix != ".urdf":
             continue
         row = looked_at(path, rng, given.floating, given.certify)

@@ -1,7 +1,8 @@
 """Model -> URDF, for what URDF can say: a tree of links on hinges, slides and free joints; the rest is listed.
 
 A link's frame sits where its joint does, in the axes of its body, and its joint's origin is where that frame is when
-every coordinate is 0; so import gives the same equations again.
+every coordinate is 0; so import gives the same equations again. Names and limits that a remark tells, as import writes
+it, are those of the file: "joint a.b, from -1 to 2 rad, at most 5 N*m, at most 3 rad/s".
 """
 
 from __future__ import annotations
@@ -19,13 +20,14 @@ from eomgen.mechanics.equations.system import System
 from eomgen.model.reader import ModelOrPath
 from eomgen.pipeline import derive
 from eomgen.records import dataclass
-from eomgen.robots.drawn_up import LeftOut, LegalNames
+from eomgen.robots.drawn_up import UNLIMITED, LeftOut, LegalNames, remarked
 from eomgen.symbolic.expression.derivative import depends_on, depends_on_any, gradient, substituted, symbols_of
 from eomgen.symbolic.expression.graph import Scalar
 from eomgen.symbolic.expression.spatial import Pose, minus
 from eomgen.symbolic.numeric.evaluation import FLOAT, evaluate
 from eomgen.symbolic.numeric.tolerances import ROUNDING
 
+STANDING = [0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0, 1.0]  # p, R of the ground
 G = 9.81  # of what reads URDF, downward along z [m/s^2]
 
 
@@ -61,14 +63,24 @@ class _Writing:
         self.known: dict[Any, Any] = dict(zip(system.symbols.parameters.values(), map(float, p), strict=True))
         self.known |= {system.symbols.t: 0.0}
         self.left: dict[str, list[str]] = {}
-        self.world = LegalNames({link.name for link in system.motion.links}).new("world")
-        self.joints = LegalNames({q.name for q in system.symbols.q})
+        model = system.scope.model
+        self.remarks = {q: remarked(part.about) for q, part in model.coordinates.items()}
+        self.link_names = _apart({name: remarked(body.about).get("name", name) for name, body in model.bodies.items()})
+        self.joint_names = _apart({q: told.get("name", q) for q, told in self.remarks.items()})
+        self.world = LegalNames(set(self.link_names.values())).new("world")
+        self.joints = LegalNames(set(self.joint_names.values()))
+        self.followed = self._followed()
 
     def exported(self) -> Exported:
         motion, model = self.system.motion, self.system.scope.model
-        lines = [f"<robot name={quoteattr(visible(model.name))}>", f"  <link name={quoteattr(self.world)}/>"]
+        bases = [link for link in motion.links if link.parent == GROUND]
+        joints = {link.name: self._joint(link) for link in motion.links}
+        if len(bases) == 1 and self._stands(bases[0]):
+            joints[bases[0].name] = []  # the base of a URDF is fixed
+        world = [f"  <link name={quoteattr(self.world)}/>"] * any(joints[link.name] for link in bases)
+        lines = [f"<robot name={quoteattr(visible(model.name))}>", *world]
         for link in motion.links:
-            lines += [*self._link(link), *self._joint(link)]
+            lines += [*self._link(link), *joints[link.name]]
         lines += self._transmissions()
         self._forces()
         self._values()
@@ -94,7 +106,7 @@ class _Writing:
         where = f"bodies.{link.name}"
         m, *com = self.numbers((mass.m, *minus(mass.com, link.point)), where)
         tensor = self.numbers([x for row in mass.I for x in row], where)
-        name = f"  <link name={quoteattr(link.name)}"
+        name = f"  <link name={quoteattr(self.link_names[link.name])}"
         if not m and not any(tensor):
             return [f"{name}/>"]
         keys = zip(("ixx", "ixy", "ixz", "iyy", "iyz", "izz"), (0, 1, 2, 4, 5, 8), strict=True)
@@ -109,31 +121,34 @@ class _Writing:
         where = f"bodies.{link.name}.joint"
         motion, symbols = self.system.motion, self.system.symbols
         parent = None if link.parent == GROUND else motion.links[link.parent]
-        still = dict.fromkeys(symbols.q, 0)
-        own = sorted({x for x in symbols_of(link.s) if x in still}, key=lambda x: symbols.q.index(x))
-        shape, inner = self._shape(link, own, where), ""
-        place = link.before
-        if shape[0] not in ("floating", "fixed"):
-            relative = substituted((*(x for row in link.relative.R for x in row), *link.relative.p), still)
+        own = [x for x in symbols.q if x in symbols_of(link.s)]
+        kind, axis = self._shape(link, own, where)
+        place, inner = link.before, ""
+        if kind != "floating":
+            relative = (*(x for row in link.relative.R for x in row), *link.relative.p)
+            relative = substituted(relative, dict.fromkeys(symbols.q, 0))
             R: Any = tuple(tuple(relative[3 * i : 3 * i + 3]) for i in range(3))
             place = place.then(Pose(R, (relative[9], relative[10], relative[11])))
-            inner = f'<axis xyz="{_words(shape[1])}"/>'
-            limit = '<limit effort="0" velocity="0"/>' if shape[0] == "prismatic" else ""
-            inner += limit.replace("/>", ' lower="-1e9" upper="1e9"/>') + self._effort(link) + self._mimic(own[0])
-        elif shape[0] == "fixed":
-            relative = (*(x for row in link.relative.R for x in row), *link.relative.p)
-            R = tuple(tuple(relative[3 * i : 3 * i + 3]) for i in range(3))
-            place = place.then(Pose(R, (relative[9], relative[10], relative[11])))
+        if axis:
+            limits = {key: x for key, x in self.remarks[own[0].name].items() if key != "name"}
+            kind = "revolute" if kind == "continuous" and "upper" in limits else kind
+            inner = f'<axis xyz="{_words(axis)}"/>{_limit(kind, limits)}{self._effort(link)}{self._mimic(own[0].name)}'
         shift = (0, 0, 0) if parent is None else parent.point
         at = self.numbers(minus(place.p, shift), where)
         R_numbers = self.numbers([x for row in place.R for x in row], where)
-        name = own[0].name if len(own) == 1 else self.joints.new(f"{link.name}_joint")
-        above = self.world if parent is None else parent.name
+        name = self.joint_names[own[0].name] if len(own) == 1 else self.joints.new(f"{link.name}_joint")
+        above = self.world if parent is None else self.link_names[parent.name]
         return [
-            f'  <joint name={quoteattr(name)} type="{shape[0]}"><parent link={quoteattr(above)}/>'
-            f'<child link={quoteattr(link.name)}/><origin xyz="{_words(at)}" rpy="{_words(_angles(R_numbers))}"/>'
-            f"{inner}</joint>"
+            f'  <joint name={quoteattr(name)} type="{kind}"><parent link={quoteattr(above)}/>'
+            f"<child link={quoteattr(self.link_names[link.name])}/>"
+            f'<origin xyz="{_words(at)}" rpy="{_words(_angles(R_numbers))}"/>{inner}</joint>'
         ]
+
+    def _stands(self, link: BodyLink) -> bool:
+        """Whether a link of the ground is fixed to it in the ground's own place and axes."""
+        R, p = (place := link.before.then(link.relative)).R, place.p
+        held = not any(symbol not in self.known for symbol in symbols_of((*link.s, *p, *(x for row in R for x in row))))
+        return held and self.numbers((*minus(p, (0, 0, 0)), *(x for row in R for x in row)), link.name) == STANDING
 
     def _shape(self, link: BodyLink, own: list[Any], where: str) -> tuple[str, list[float]]:
         """(type, axis in the child's axes along which the coordinate grows).
@@ -173,35 +188,54 @@ class _Writing:
         (damping,) = self.numbers((self.system.scope.value(effort.damping),), f"bodies.{link.name}.joint")
         return f'<dynamics damping="{damping!r}"/>'
 
-    def _mimic(self, q: Any) -> str:
-        """The tie by which the coordinate follows another one."""
+    def _followed(self) -> dict[str, tuple[str, str]]:
+        """Of a coordinate that a tie makes follow another: (the tie, how it follows).
+
+        Of the two the later follows, or the one that no motor drives.
+        """
+        found: dict[str, tuple[str, str]] = {}
+        driven = {name for name, _ in self._driven()}
         for row in self.system.ties.closing:
             if row.gap is None:
                 continue
             own = [x for x in self.system.symbols.q if depends_on(row.gap, (x,))]
-            if len(own) != 2 or own[1] is not q:
+            slopes = gradient(row.gap, own) if len(own) == 2 else ()
+            if not slopes or any(symbol not in self.known for symbol in symbols_of(slopes)):
                 continue
-            slopes = gradient(row.gap, own)
-            if any(symbol not in self.known for symbol in symbols_of(slopes)):
-                continue
-            b, a, c = self.numbers((*slopes, *substituted((row.gap,), dict.fromkeys(own, 0))), "constraints")
-            self.left.setdefault("", []).append(row.tie)
-            return f'<mimic joint={quoteattr(own[0].name)} multiplier="{-b / a!r}" offset="{-c / a!r}"/>'
-        return ""
+            *factors, c = self.numbers((*slopes, *substituted((row.gap,), dict.fromkeys(own, 0))), "constraints")
+            order = sorted((1, 0), key=lambda k: own[k].name in driven)
+            k = next((k for k in order if factors[k] and own[k].name not in found), None)
+            if k is not None:
+                a, b, other = factors[k], factors[1 - k], quoteattr(self.joint_names[own[1 - k].name])
+                how = f'<mimic joint={other} multiplier="{-b / a!r}" offset="{-c / a!r}"/>'
+                found[own[k].name] = row.tie, how
+        return found
 
-    def _transmissions(self) -> list[str]:
-        """A motor for each joint that an input drives; another drive is left out."""
-        lines, scope = [], self.system.scope
+    def _mimic(self, q: str) -> str:
+        """How a coordinate follows another one."""
+        tie, how = self.followed.get(q, ("", ""))
+        if tie:
+            self.left.setdefault("", []).append(tie)
+        return how
+
+    def _driven(self) -> list[tuple[str, str]]:
+        """(coordinate, body) of each joint that an input alone drives; another drive has the coordinate ""."""
+        found, scope = [], self.system.scope
         for link in self.system.motion.links:
             efforts = () if link.joint is None else link.joint.efforts()
             drives = [scope.value(each.drive) for each in efforts if each is not None and each.drive is not None]
             own = [x for x in self.system.symbols.q if depends_on_any(link.s, (x,))]
-            if len(own) == len(drives) == 1 and drives[0] in self.system.symbols.inputs.values():
-                name = quoteattr(own[0].name)
-                lines.append(f"  <transmission name={name}><joint name={name}/></transmission>")
-            elif drives:
-                self.left.setdefault("drives that are no input alone", []).append(link.name)
-        return lines
+            alone = len(own) == len(drives) == 1 and drives[0] in self.system.symbols.inputs.values()
+            found += [(own[0].name if alone else "", link.name)] * bool(drives)
+        return found
+
+    def _transmissions(self) -> list[str]:
+        """A motor for each joint that an input drives; another drive is left out."""
+        driven = self._driven()
+        if others := [body for q, body in driven if not q]:
+            self.left["drives that are no input alone"] = others
+        names = [quoteattr(self.joint_names[q]) for q, _ in driven if q]
+        return [f"  <transmission name={name}><joint name={name}/></transmission>" for name in names]
 
     def _values(self) -> None:
         """What of the values that act and start is not said."""
@@ -223,6 +257,21 @@ class _Writing:
         for what, names in (("forces", forces), ("constraints", ties)):
             if names:
                 self.left.setdefault(what, []).extend(names)
+
+
+def _apart(wanted: dict[str, str]) -> dict[str, str]:
+    """The names that are wanted, each only where no other thing has or wants it."""
+    taken = [*wanted, *(name for key, name in wanted.items() if name != key)]
+    return {key: name if taken.count(name) == 1 else key for key, name in wanted.items()}
+
+
+def _limit(kind: str, told: dict[str, str]) -> str:
+    """The limits of a joint; a slide or hinge with ends must have all four."""
+    if kind == "continuous" and not told:
+        return ""
+    ends = {} if kind == "continuous" else {"lower": f"-{UNLIMITED}", "upper": UNLIMITED}
+    said = {**ends, "effort": UNLIMITED, "velocity": UNLIMITED, **told}
+    return f"<limit {' '.join(f'{key}={quoteattr(value)}' for key, value in said.items())}/>"
 
 
 def _words(numbers: Sequence[float]) -> str:

@@ -306,6 +306,20 @@ def test_mjcf_means_what_mujoco_computes(tmp_path):
     assert {each.what for each in found.left_out} == {"geoms that touch", "filters of motors", "softness of equalities"}
 
 
+ONES = """<mujoco><worldbody><body><freejoint name="fly"/><geom size="0.1"/>
+<body><joint name="hinge" axis="0 1 0"/><geom size="0.1" pos="1 0 0"/></body></body></worldbody>
+<actuator><position name="servo" joint="hinge" kp="1" kv="1"/></actuator></mujoco>"""
+
+
+@pytest.mark.slow
+@needs(".mujoco", what="mujoco")
+def test_a_damper_and_a_gain_of_one_have_their_units(tmp_path):
+    """-1*x' is a force where -x' would be a velocity, and refused."""
+    model = robot(tmp_path, ONES.replace("<freejoint", '<joint type="free" damping="1"'), "xml").model
+    assert model.forces["fly_drag"].force[0].text == "-1*fly_x'"
+    assert model.bodies["body2"].joint.torque.text == "servo - 1*hinge - 1*hinge'"
+
+
 def test_mjcf_without_mujoco_names_the_wheel(tmp_path, monkeypatch):
     """Exit 4: which tool is missing, and how to get it."""
     monkeypatch.setitem(sys.modules, "mujoco", None)
@@ -460,6 +474,28 @@ def test_names_of_the_exported_links_and_joints_are_each_their_own(tmp_path):
     assert {"world", "elbow", "upper_arm"} <= set(again.bodies) and set(again.coordinates) == set(
         first.model.coordinates
     )
+
+
+FOLLOWING = """<robot name="tie"><link name="base"/>
+<link name="upper arm"><inertial><origin xyz="0 0 0.2"/><mass value="2.5"/>
+  <inertia ixx="0.03" iyy="0.02" izz="0.015" ixy="0" ixz="0" iyz="0"/></inertial></link>
+<link name="hand"><inertial><mass value="1"/>
+  <inertia ixx="1" iyy="1" izz="1" ixy="0" ixz="0" iyz="0"/></inertial></link>
+<joint name="s.0" type="continuous"><parent link="base"/><child link="upper arm"/><axis xyz="0 0 1"/>
+  <mimic joint="s.1" multiplier="2" offset="0.5"/></joint>
+<joint name="s.1" type="revolute"><parent link="upper arm"/><child link="hand"/><origin xyz="0 0 0.4"/>
+  <axis xyz="1 0 0"/><limit lower="-1" upper="1e-1" effort="3.5" velocity="2"/></joint></robot>"""
+
+
+def test_names_limits_motors_and_a_base_that_stands_come_back(tmp_path):
+    """URDF -> TOML -> URDF -> TOML: the same text, its names and limits in remarks, and no world more; of two
+    coordinates in a tie the one without a motor follows, though it comes first."""
+    first = robot(tmp_path, FOLLOWING)
+    (tmp_path / "first.toml").write_text(first.text)
+    (tmp_path / "again.urdf").write_text(urdf_of(tmp_path / "first.toml").text)
+    second = imported(tmp_path / "again.urdf")
+    assert 'about = "joint s.1, from -1 to 1e-1 rad, at most 3.5 N*m, at most 2 rad/s"' in first.text
+    assert second.text.partition("\n")[2] == first.text.partition("\n")[2] and not second.left_out
 
 
 def test_coordinates_that_follow_one_another_come_back(tmp_path):

@@ -16,6 +16,15 @@ from eomgen.symbolic.numeric.work import check_patience
 
 RESERVED = ("t", "pi", "nan", "inf", "infinity", "ground")
 ILLEGAL = re.compile(r"[^A-Za-z0-9_]+")
+UNLIMITED = "1e9"  # what an export writes where a format wants a limit and there is none
+_FIGURE = r"([-+]?[0-9.]+(?:[eE][-+]?[0-9]+)?)"
+REMARKS = {  # what an import tells in a coordinate's or a body's remark, and an export reads there
+    "name": r"^(?:joint|link) (.+?)(?=, from |, at most |$)",
+    "lower": rf"\bfrom {_FIGURE} to \S+ (?:rad|m)\b",
+    "upper": rf"\bfrom \S+ to {_FIGURE} (?:rad|m)\b",
+    "effort": rf"\bat most {_FIGURE} N(?:\*m)?(?=,|$)",
+    "velocity": rf"\bat most {_FIGURE} (?:rad|m)/s",
+}
 Entries = dict[str, Any]
 
 
@@ -130,19 +139,25 @@ def hung(name: str, body: Entries, seat: Seat, joints: Sequence[Moved], names: L
     return found
 
 
+def remarked(about: str | None) -> dict[str, str]:
+    """What an import has told in a remark: another program's name, limits."""
+    found = {key: re.search(pattern, about or "") for key, pattern in REMARKS.items()}
+    return {key: match[1] for key, match in found.items() if match}
+
+
 def in_file(v: Iterable[Any]) -> list[Decimal]:
     """A vector as it stands in a model file."""
     return [computed(x) for x in v]
 
 
-def signed_sum(terms: Iterable[tuple[Decimal, str]], constant: Decimal = ZERO) -> str:
-    """The sum of numbers times names, and a constant, as a person writes it."""
+def signed_sum(terms: Iterable[tuple[Decimal, str]], constant: Decimal = ZERO, *, weighed: bool = False) -> str:
+    """The sum of numbers times names, and a constant, as a person writes it; 1*name where the numbers have a unit."""
     pieces: list[str] = []
     for factor, name in (*terms, (constant, "")):
         if factor == 0 and (name or pieces):
             continue
         size = decimal_text(abs(factor))
-        shown = name if name and abs(factor) == 1 else f"{size}*{name}" if name else size
+        shown = name if name and abs(factor) == 1 and not weighed else f"{size}*{name}" if name else size
         sign = "-" if factor < 0 else "+"
         pieces.append(f"{sign} {shown}" if pieces else f"-{shown}" if sign == "-" else shown)
     return " ".join(pieces) or "0"

@@ -76,4 +76,6 @@ def _tables(path: Path, data: bytes, floating: bool) -> Imported:
         return mjcf(path)
     if root is not None and root[1] == b"sdf":
         return sdf(data, str(path))
+    if root is not None and root[1] == b"mujocoinclude":
+        raise ModelError("a part of an MJCF file", f"{path}:1:1", "import the file with <mujoco> that includes it")
     return urdf(data, str(path), floating=floating)

@@ -219,14 +219,14 @@ def _in_space(r: CompiledRobot, j: int) -> None:
     body, damping = int(m.jnt_bodyid[j]), [decimal_of_double(x) for x in m.dof_damping[dofs]]
     name, parent = r.body[body], r.body[int(m.body_parentid[body])]
     rates = [*(f"{q}_{x}'" for x in "xyz"[: 3 * free]), *(f"{q}_w{x}" for x in "xyz")]
-    against = [signed_sum([(-c, rate)]) for c, rate in zip(damping, rates, strict=True)]
+    against = [signed_sum([(-c, rate)], weighed=True) for c, rate in zip(damping, rates, strict=True)]
     if free:
         drag = {"kind": "force", "point": f"{name}.origin", "force": against[:3]}
         r.found["forces"][r.forces.new(f"{q}_drag")] = drag
     couple = {"kind": "couple", "body": name, "couple": against[-3:], "axes": name}
     r.found["forces"][r.forces.new(f"{q}_damper")] = couple
     if parent is not None:
-        back = [signed_sum([(c, rate)]) for c, rate in zip(damping[-3:], rates[-3:], strict=True)]
+        back = [signed_sum([(c, rate)], weighed=True) for c, rate in zip(damping[-3:], rates[-3:], strict=True)]
         r.found["forces"][r.forces.new(f"{q}_damper")] = {**couple, "body": parent, "couple": back}
 
 

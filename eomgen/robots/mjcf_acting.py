@@ -132,7 +132,8 @@ def _law(r: CompiledRobot, k: int, w: str, length: list[tuple[Decimal, str]]) ->
     def affine(numbers: Any) -> str:
         constant, slope, rate = (decimal_of_double(x) for x in numbers[:3])
         along = [(gear * slope * factor, q) for factor, q in length]
-        return signed_sum([*along, *((gear * rate * factor, q) for factor, q in rates)], gear * constant)
+        along += [(gear * rate * factor, q) for factor, q in rates]
+        return signed_sum(along, gear * constant, weighed=True)
 
     gain = m.actuator_gainprm[k]
     push = signed_sum([(gear * decimal_of_double(gain[0]), w)])
@@ -140,7 +141,7 @@ def _law(r: CompiledRobot, k: int, w: str, length: list[tuple[Decimal, str]]) ->
         push = f"({affine(gain)})*{w}"
     bias = affine(m.actuator_biasprm[k]) if m.actuator_biastype[k] == AFFINE else "0"
     damping = decimal_of_double(m.actuator_damping[k])
-    terms = [push, bias, signed_sum((-gear * damping * f, q) for f, q in rates) if damping else "0"]
+    terms = [push, bias, signed_sum(((-gear * damping * f, q) for f, q in rates), weighed=True) if damping else "0"]
     return " + ".join(term for term in terms if term != "0").replace("+ -", "- ") or "0"
 
 

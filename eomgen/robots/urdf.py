@@ -15,6 +15,7 @@ from eomgen.model.checks.triangle import possible
 from eomgen.model.findings import nearest
 from eomgen.records import dataclass
 from eomgen.robots.drawn_up import (
+    UNLIMITED,
     Entries,
     Imported,
     LeftOut,
@@ -331,11 +332,11 @@ def _limits(raw: str, q: str, joint: XmlElement, unit: str) -> Entries:
     said = [f"joint {raw}"] if q != raw else []
     if (limit := joint.one("limit")) is not None:
         lower, upper, effort, speed = (limit.get(key) for key in ("lower", "upper", "effort", "velocity"))
-        if _need_kind(joint) != "continuous" and (lower or upper):
+        if _need_kind(joint) != "continuous" and (lower or upper) and upper != UNLIMITED:
             said.append(f"from {lower or 0} to {upper or 0} {unit}")
-        if effort:
+        if effort and effort != UNLIMITED:
             said.append(f"at most {effort} {'N*m' if unit == 'rad' else 'N'}")
-        if speed:
+        if speed and speed != UNLIMITED:
             said.append(f"at most {speed} {unit}/s")
     return {"about": ", ".join(said)} if said else {}
 
