@@ -31,6 +31,7 @@ from eomgen.page.columns import packed_columns
 from eomgen.page.contents import SECTIONS
 from eomgen.page.formats import written_as
 from eomgen.page.html import html_page
+from eomgen.page.paper import typst_text
 from eomgen.page.typst_math import UnknownCommand, typst_math
 from eomgen.proof.check import Certificate, Check
 from eomgen.symbolic.print.declared_symbol import COMMANDS
@@ -344,7 +345,8 @@ def test_planted_losses_are_seen():
 
 @has("typst")
 def test_the_paper_has_its_text(pendulum, tmp_path):
-    """A PDF of a few pages, with the same words."""
+    """A PDF of a few pages, with the same words; a sentence stays with the formula that it introduces."""
+    assert '#block(sticky: true)[#"Together:"]\n\n#block(breakable: false)[$' in typst_text(pendulum)
     paper = written_as(pendulum, ".pdf", "r.pdf")["r.pdf"]
     assert paper.startswith(b"%PDF") and paper == written_as(pendulum, ".pdf", "r.pdf")["r.pdf"]
     if shutil.which("pdftotext"):

@@ -15,6 +15,7 @@ from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.figure import Figure
 
 import eomgen
+from eomgen.documents.figures import Picture
 from eomgen.documents.letters import PageBox, room_for
 from eomgen.documents.letters_artist import NamesArtist
 from eomgen.documents.rest_picture import rest_picture
@@ -277,6 +278,30 @@ def test_names_of_a_result_do_not_cover_one_another(verb, name):
     picture = getattr(eomgen, verb)(MODELS / f"{name}.toml").picture
     panels = areas_of(picture.fill, picture.size)
     assert panels[0] and not any(map(covering, panels))
+
+
+def test_no_ellipsoid_of_inertia_hides_what_shows_its_body():
+    """Arms and wheels are drawn without it, a satellite by it; one plane is drawn once, whoever rolls on it."""
+    kinds = {"arm3": set(), "robot_with_trailer": set(), "whipple_bicycle": set(), "satellite_wheels": {"satellite"}}
+    for name, veiled in kinds.items():
+        marks = eomgen.load(MODELS / f"{name}.toml").scene().marks
+        assert {mark.of for mark in marks if mark.role == "inertia"} == veiled
+        tracks = [(mark.form, mark.frame) for mark in marks if mark.role == "track"]
+        assert len(tracks) == len(set(tracks))
+
+
+def test_a_long_name_stays_in_its_picture():
+    """The title of a narrow picture goes on in a second line."""
+    found: list[bool] = []
+    named = Picture((3.4, 4.2), lambda figure: figure.subplots(), "Load over a disc, two loads over a heavy pulley")
+
+    def look(figure):
+        figure.draw_without_rendering()
+        title = figure.texts[0] if figure.texts else figure._suptitle
+        found.append(title.get_window_extent().x1 <= figure.bbox.x1)
+
+    named._drawn(look)
+    assert found == [True]
 
 
 def test_every_symbol_that_can_be_declared_can_be_drawn():

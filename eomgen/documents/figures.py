@@ -74,7 +74,7 @@ class Picture:
             self.fill(figure)
             if self.title:
                 title = visible(self.title).replace("$", r"\$")
-                figure.suptitle(title, fontsize=12, fontweight="bold", x=0.01, ha="left")
+                figure.suptitle(title, fontsize=12, fontweight="bold", x=0.01, ha="left", wrap=True)
             keep(figure)
 
     def _repr_png_(self) -> bytes:

@@ -15,7 +15,7 @@ from eomgen.scene.plane_strokes import plane_drawing
 from eomgen.scene.space_strokes import space_drawing
 from eomgen.scene.strokes import SceneNumbers
 
-WIDTHS, HEIGHT = (3.4, 8.0), 4.2  # [inches]
+WIDTHS, HEIGHT, TITLE = (3.4, 8.0), 4.2, 0.4  # [inches]
 
 
 def rest_picture(model: Model) -> Picture:
@@ -29,9 +29,11 @@ def rest_picture(model: Model) -> Picture:
     drawing = (plane_drawing if scene.plane else space_drawing)(numbers, dimensions=True)
 
     low, high = limits(drawing) if scene.plane else page_limits(drawing)
-    width = min(max(HEIGHT * float(high[0] - low[0]) / float(high[1] - low[1]), WIDTHS[0]), WIDTHS[1])
+    ratio = float(high[0] - low[0]) / float(high[1] - low[1])
+    width = min(max(HEIGHT * ratio, WIDTHS[0]), WIDTHS[1])
+    height = min(HEIGHT, width / ratio + TITLE)
 
     def fill(figure: Any) -> None:
         (draw if scene.plane else draw_space)(figure.subplots(), drawing, notation_of(scene.system.scope.model))
 
-    return Picture((width, HEIGHT), fill, model.name)
+    return Picture((width, height), fill, model.name)

@@ -8,7 +8,7 @@ import subprocess
 import tempfile
 from pathlib import Path
 
-from eomgen.documents.latex import BLOCK, Group, display_blocks, grouped, piece_latex, setter_of, side_latex
+from eomgen.documents.latex import Group, display_blocks, grouped, piece_latex, setter_of, side_latex
 from eomgen.documents.latex_math import Setter
 from eomgen.documents.statements import Cell, Code, Grid, Lines, Piece, Prose
 from eomgen.errors import RunFailed, ToolMissing
@@ -22,6 +22,7 @@ from eomgen.version import __version__
 
 ENGINES = ("lualatex", "pdflatex", "xelatex", "tectonic")
 WHOLE = 576.0  # points of a picture that is as wide as the text
+TOGETHER = 5  # rows of a display that a page's end does not part
 WORDY = 24  # characters from which on a column of a table is as wide as there is room
 INK = (
     "text{font-family:'New Computer Modern';font-size:11px;fill:#444}.axis{stroke:#ddd;fill:none}"
@@ -100,7 +101,10 @@ def _section(setter: Setter, section: ReportSection, certificate: Certificate | 
     lines += [f"#emph({string(section.remark)})"] if section.remark else []
     for step in section.steps:
         lines += [f"#heading(level: 2, {string(step.title)})"] if step.title not in ("", section.title) else []
-        lines += [part for group in grouped(step.statements) for part in _group(setter, group)]
+        groups = grouped(step.statements)
+        for group, after in zip(groups, [*groups[1:], None], strict=True):
+            parts = _group(setter, group)
+            lines += [_kept_with_next(parts[0])] if isinstance(group, Prose) and isinstance(after, list) else parts
     lines += [_drawing(setter, drawing) for drawing in section.drawings]
     return [*lines, _certificate(certificate)] if section.key == "certificate" and certificate is not None else lines
 
@@ -115,10 +119,15 @@ def _group(setter: Setter, group: Group) -> list[str]:
     return [_table(setter, group if isinstance(group, Grid) else group.grid)]
 
 
+def _kept_with_next(sentence: str) -> str:
+    """What introduces a formula stands on its page."""
+    return f"#block(sticky: true)[{sentence}]"
+
+
 def _display(tex: str) -> str:
-    """Formulas that stand alone: on one page, where they are no longer than the rows of one block."""
+    """Formulas that stand alone: on one page, where they have few rows."""
     formula = f"$ {typst_math(tex)} $"
-    return formula if tex.count(r"\\") >= BLOCK else f"#block(breakable: false)[{formula}]"
+    return formula if tex.count(r"\\") >= TOGETHER else f"#block(breakable: false)[{formula}]"
 
 
 def _piece(setter: Setter, piece: Piece) -> str:

@@ -172,6 +172,15 @@ def inertia_mark(mass: MassProperties, frame: int, body: str) -> list[Mark]:
     return [Mark(EllipsoidForm(mass.com, (size[0], size[1], size[2])), frame, "inertia", body)]
 
 
+def without_veils(marks: Sequence[Mark], *, alone: bool) -> list[Mark]:
+    """An ellipsoid of inertia stands for a body that nothing else shows, or about the rods of the only body.
+
+    Moments that a model declares say little of its size: ellipsoids would hide what hangs together.
+    """
+    shown = {mark.of for mark in marks if mark.role == "body" and not (alone and isinstance(mark.form, RodForm))}
+    return [mark for mark in marks if mark.role != "inertia" or mark.of not in shown]
+
+
 def _half_axis(twice: Any, m: Any) -> Any:
     """The half-axis of a body whose integral of x^2 dm is half of `twice`; measured tensors may give less than 0."""
     return sqrt(over(Fraction(5, 2) * function("max", twice, 0), m))

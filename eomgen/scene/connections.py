@@ -170,7 +170,7 @@ def tie_marks(system: System) -> list[Mark]:
             found += _met(system, meeting, rows, name)
         elif not any(row.part for row in rows):
             found += _held(system, rows, name)
-    return found
+    return list({(mark if mark.role != "track" else (mark.form, mark.frame)): mark for mark in found}.values())
 
 
 def _members(system: System) -> list[Mark]:

@@ -12,7 +12,7 @@ from eomgen.model.reader import ModelOrPath, model_at
 from eomgen.model.trusses import is_node
 from eomgen.scene.anchors import drive_marks
 from eomgen.scene.applied import applied_marks, field_marks
-from eomgen.scene.bodies import body_marks, piece_marks, places_of_body
+from eomgen.scene.bodies import body_marks, piece_marks, places_of_body, without_veils
 from eomgen.scene.connections import force_elements, joint_marks, ordered, tie_marks
 from eomgen.scene.forms import AxesForm, LabelForm
 from eomgen.scene.scene import ROLES, Mark, Scene, SceneFrame
@@ -36,6 +36,7 @@ def scene_of_system(system: System, equations: EquationsOfMotion | None = None) 
         frames += pieces
         marks += drawn + joint_marks(system, link, k)
     marks += tie_marks(system) + force_elements(system)
+    marks = without_veils(marks, alone=len(motion.links) == 1)
     marks += [
         *size_marks(system, marks),
         *drive_marks(system),

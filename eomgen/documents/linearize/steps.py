@@ -249,7 +249,7 @@ def _in_numbers(coefficients: np.ndarray) -> Law:
 
 def _latex_number(text: str) -> str:
     mantissa, _, power = text.partition("e")
-    return rf"{mantissa} \cdot 10^{{{power}}}" if power else text
+    return rf"{mantissa} \cdot 10^{{{int(power)}}}" if power else text
 
 
 def _written(polynomial: Polynomial, s: Node) -> Scalar:
