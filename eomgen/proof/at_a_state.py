@@ -28,7 +28,7 @@ from eomgen.model.outputs.base import BALANCE
 from eomgen.proof.in_numbers import with_inputs
 from eomgen.proof.printed import least_multipliers
 from eomgen.proof.states import TrialState
-from eomgen.proof.trials import Trials
+from eomgen.proof.trials import Trials, refuse_noise
 from eomgen.records import dataclass
 from eomgen.simulation.reaction_columns import ReactionColumns
 from eomgen.symbolic.expression.derivative import depends_on
@@ -96,6 +96,14 @@ class NumericState:
         if depends_on(scalar, (*symbols.a, *symbols.lam)):
             known = known | self.unknowns
         return float(evaluate((scalar,), known, fifty_digits())[0])
+
+    def decides(self, scalar: Scalar) -> bool:
+        """Whether the state, and not rounding, says what a function of it is worth: no 0/0."""
+        try:
+            refuse_noise((scalar,), self.values | self.unknowns)
+        except (NoValue, ZeroDivisionError):
+            return False
+        return True
 
     @cached_property
     def reactions(self) -> dict[str, float]:

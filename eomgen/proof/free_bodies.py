@@ -26,7 +26,7 @@ from eomgen.mechanics.bodies.loads import body_wrench, weights
 from eomgen.mechanics.equations.system import System
 from eomgen.mechanics.equations.work import joint_forces, placeless_forces
 from eomgen.mechanics.formulations.lagrange import free_rates
-from eomgen.proof.in_numbers import InNumbers, Way, way_through
+from eomgen.proof.in_numbers import STEP, InNumbers, Way, way_through
 from eomgen.records import dataclass
 from eomgen.symbolic.expression.derivative import gradient, pullback, symbols_of
 from eomgen.symbolic.expression.graph import Scalar
@@ -67,20 +67,24 @@ class Demand:
     rates: dict[tuple[str, int], Any]
 
 
-def demand_of(system: System, state: State) -> Demand:
+def demand_of(system: System, state: State, h: Any = STEP) -> Demand:
     """What the free bodies ask for at a state: values of all symbols, accelerations and multipliers included.
 
+    Args:
+        h: the step of differences [s].
     Raises:
         NoValue: something has no value there.
     """
     if system.free is None:
-        return _demand(system, state)
+        return _demand(system, state, h)
     free, u = system.free, system.scope.symbols.u
-    found = _demand(free, _with_free_motion(system, free, state))
+    found = _demand(free, _with_free_motion(system, free, state, h), h)
     shares = tuple(system.scope.graph.symbol(f"(r{k})") for k in range(len(found.forces)))
     rows = pullback(free_rates(system, free), shares, u)
     forces = evaluate(rows, state | dict(zip(shares, found.forces, strict=True)), fifty_digits())
-    return Demand(forces, [max(found.sizes, default=0)] * len(u), found.rates)
+    slopes = evaluate([x for row in rows for x in gradient(row, shares)], state, fifty_digits())
+    steepest = max(map(abs, slopes), default=0)  # near a dead centre dependent rates are many times those of the speeds
+    return Demand(forces, [max(found.sizes, default=0) * max(1, steepest)] * len(u), found.rates)
 
 
 def multipliers_demanded(system: System, state: State, friction: Sequence[Any] = ()) -> dict[tuple[str, int], float]:
@@ -113,9 +117,9 @@ def multipliers_demanded(system: System, state: State, friction: Sequence[Any] =
     return {(row.tie, row.number): float(x) for row, x, has_one in values if has_one}
 
 
-def _with_free_motion(system: System, free: System, state: State) -> State:
+def _with_free_motion(system: System, free: System, state: State, h: Any = STEP) -> State:
     """The state of the free system: its speeds and accelerations, and a lam of every row that determines a rate."""
-    speeds, a = _Bodies(system, state).along_motion(free_rates(system, free))
+    speeds, a = _Bodies(system, state, h).along_motion(free_rates(system, free))
     symbols = free.scope.symbols
     motion = dict(zip(symbols.u, speeds, strict=True)) | dict(zip(symbols.a, a, strict=True))
     pushing = {(row.tie, row.number) for row in system.ties.rows if row.eliminates}
@@ -124,10 +128,10 @@ def _with_free_motion(system: System, free: System, state: State) -> State:
     return lam | state | motion
 
 
-def _demand(system: System, state: State) -> Demand:
+def _demand(system: System, state: State, h: Any = STEP) -> Demand:
     """The same where every tie that closes has its multiplier."""
     u, closing = system.scope.symbols.u, system.ties.closing
-    bodies = _Bodies(system, state)
+    bodies = _Bodies(system, state, h)
     direct = [x + y for x, y in zip(joint_forces(system.loads), placeless_forces(system.loads), strict=True)]
     rotors = armature_bias(system.motion, len(u))
     forces = bodies.at(tuple(y - x for x, y in zip(direct, rotors, strict=True)))
@@ -141,7 +145,9 @@ def _demand(system: System, state: State) -> Demand:
 
 @dataclass(frozen=True)
 class _Bodies(InNumbers):
-    """The free bodies of a system at a state."""
+    """The free bodies of a system at a state; h is the step of differences."""
+
+    h: Any = STEP
 
     @property
     def links(self) -> tuple[BodyLink, ...]:
@@ -153,7 +159,7 @@ class _Bodies(InNumbers):
 
     @cached_property
     def _way(self) -> Way:
-        return way_through(self.system, self.state)
+        return way_through(self.system, self.state, self.h)
 
     @cached_property
     def _joints(self) -> list[tuple[Scalar, ...]]:

@@ -32,6 +32,7 @@ from eomgen.symbolic.numeric.evaluation import NoValue, evaluate, fifty_digits
 from eomgen.symbolic.numeric.tolerances import ZERO_AT_50
 
 STEP = fifty_digits().number(1) / 10**15  # of a central difference, whose error is its square
+FINER_STEP = STEP / 10**4  # where the way bends sharply
 SECOND_STEP = fifty_digits().number(1) / 10**12  # [s] of first and second differences: both are sure to 20 digits
 
 

@@ -318,9 +318,9 @@ class _Proof:
         """R R^T = 1, det R = 1, R I R^T = diag(I_1, I_2, I_3)."""
         assert stated.axes is not None
         R = np.array(stated.axes)
-        I = _tensor(self.about(stated, self.numbers(stated.point))[:3, :3])
+        I, large = _tensor(self.about(stated, self.numbers(stated.point))[:3, :3]), self._expected(stated)[1]["I"]
         if abs(R @ R.T - np.eye(3)).max() > COMPUTED or np.linalg.det(R) < 0:
             return f"those of {stated.of or 'all'} are not three unit vectors, right-handed"
         moments = self.numbers([stated.values[f"I_{k}"] for k in (1, 2, 3)])
         left = R @ I @ R.T - np.diag(moments)
-        return f"those of {stated.of or 'all'}" if abs(left).max() > COMPUTED * abs(I).max() else ""
+        return f"those of {stated.of or 'all'}" if abs(left).max() > COMPUTED * large else ""

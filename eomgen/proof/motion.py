@@ -227,6 +227,8 @@ def _ties(legs: Sequence[Leg], promise: Promise) -> Check | None:
             if not scalars:
                 continue
             limit = promise.open(float(np.max(np.abs(leg.x if promise.projected else part), initial=0.0)))
+            if not np.isfinite(limit):
+                return unchecked(name, "there are states without a value", how)
             found = np.max(np.abs(_function(leg, scalars)), axis=1)
             judged, k = judged + len(scalars), int(np.argmax(found))
             if not found[k] <= limit and not promise.projected:

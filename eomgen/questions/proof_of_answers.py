@@ -177,9 +177,14 @@ class _Proof:
 
     @cached_property
     def _others(self) -> list[NumericState]:
-        """The start's phase at states that are not the start."""
+        """The start's phase at states that are not the start; none where no motion follows."""
         phase = self.solver.motions[False].phase
-        return list(moving_states(phase.equations))[1:] if phase.system.symbols.u else []
+        if not phase.system.symbols.u:
+            return []
+        try:
+            return list(moving_states(phase.equations))[1:]
+        except (ModelError, DerivationError):  # what moves no mass, or forces that are sought: at rest alone
+            return []
 
     def _against_state(self, output: Output, found: Quantity) -> str:
         if found.value is None:

@@ -13,6 +13,7 @@ from math import isfinite
 
 from eomgen.documents.kinematics.result import Kinematics
 from eomgen.errors import DerivationError, ModelError, UsageError
+from eomgen.mechanics.constraints.elimination import refuse_undetermined
 from eomgen.mechanics.constraints.freedom import counted, freedoms
 from eomgen.mechanics.fields.motion_kind import Kinds
 from eomgen.mechanics.initial_state.initial_state import refuse_lost
@@ -131,6 +132,7 @@ def _on_the_way(model: Model, at: WrittenEquation | None) -> KinematicState:
             mend="give the parameters values",
         )
     moving = {**{symbols.t: 0}, **moving}
+    refuse_undetermined(phase.system.elimination, phase.system.scope, moving, when)
     free = freedoms(phase.system.ties)
     count = counted((phase.system.free or phase.system).ties)
     found = KinematicState(phase.system, moving, {}, free, count, when, exact=whole)

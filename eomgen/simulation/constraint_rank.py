@@ -12,7 +12,7 @@ import numpy as np
 from eomgen.codegen.program import program_of
 from eomgen.codegen.rhs import compiled
 from eomgen.mechanics.bodies.gimbal import locks_of
-from eomgen.mechanics.constraints.elimination import singular_blocks
+from eomgen.mechanics.constraints.elimination import PLACE, singular_blocks
 from eomgen.mechanics.constraints.freedom import rank_of_ties
 from eomgen.mechanics.equations.equations_of_motion import EquationsOfMotion
 from eomgen.mechanics.equations.system import System
@@ -90,8 +90,6 @@ STEEP = 2.0  # times the steepest fall or rise in the steps before: s may not ch
 REMEMBERED = 4  # steps
 ARMED = 1.4  # of what is near
 DEEP = 1e-3  # of an interval: how closely the least nearness in it is sought
-
-PLACE = "a dead centre or a change point"
 
 Measure = Callable[[np.ndarray, np.ndarray], np.ndarray]
 

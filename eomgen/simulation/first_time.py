@@ -15,11 +15,10 @@ import numpy as np
 from eomgen.codegen.program import program_of
 from eomgen.codegen.rhs import compiled
 from eomgen.errors import DerivationError, RunFailed
-from eomgen.mechanics.constraints.elimination import singular_blocks
+from eomgen.mechanics.constraints.elimination import PLACE, singular_blocks
 from eomgen.mechanics.equations.equations_of_motion import EquationsOfMotion
 from eomgen.records import dataclass
 from eomgen.simulation.configuration import Configuration
-from eomgen.simulation.constraint_rank import PLACE
 from eomgen.simulation.event_location import Events
 from eomgen.simulation.integrator import Run, Stepping, march
 from eomgen.simulation.motion import Plan, advance

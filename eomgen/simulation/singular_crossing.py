@@ -18,9 +18,10 @@ from typing import Any
 import numpy as np
 
 from eomgen.codegen.spheres import SpherePlaces
+from eomgen.mechanics.constraints.elimination import PLACE
 from eomgen.records import dataclass
 from eomgen.simulation.constraint_drift import EnergyLevel, Projection
-from eomgen.simulation.constraint_rank import PLACE, Nearness, RankLookout
+from eomgen.simulation.constraint_rank import Nearness, RankLookout
 from eomgen.simulation.event_location import LOOKED_OUT, Crossing, Events, EventSearch
 from eomgen.simulation.integrator import Run, Stepping, march
 from eomgen.simulation.solvers import LateSlope, StateRate

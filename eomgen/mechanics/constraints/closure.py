@@ -7,6 +7,7 @@ makes redundant rows differ by d. So positions are sought to 1e-28.
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
+from contextlib import suppress
 from random import Random
 from typing import Any
 
@@ -46,7 +47,8 @@ def generic_state(
     for spread in (*spreads, *SPREADS):
         found = closed(ties, state | _scattered(ties, q, spread, rng), movable(ties))
         if found is not None:
-            return _moving(ties, _with_laws(ties, found))
+            with suppress(NoValue, ZeroDivisionError):  # a strand into a pulley: nearer then
+                return _moving(ties, _with_laws(ties, found))
     raise _open(ties, exact_parameters(ties.motion.scope.model))
 
 

@@ -8,7 +8,7 @@ centre, a change point) the dependent coordinates do not follow the independent 
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import replace
 from typing import Any
 
@@ -20,7 +20,7 @@ from eomgen.mechanics.bodies.simplify import shorter
 from eomgen.mechanics.constraints.closure import generic_state, scattered_state
 from eomgen.mechanics.constraints.ties import Ties, holds_identically
 from eomgen.records import dataclass
-from eomgen.symbolic.expression.derivative import depends_on
+from eomgen.symbolic.expression.derivative import depends_on, substituted
 from eomgen.symbolic.expression.graph import Node, Scalar, is_zero
 from eomgen.symbolic.expression.traversal import operations, order
 from eomgen.symbolic.numeric.dense import independent
@@ -29,6 +29,7 @@ from eomgen.symbolic.numeric.tolerances import RANK
 from eomgen.symbolic.solve import cramer
 
 Label = tuple[str, int]
+PLACE = "a dead centre or a change point"
 
 
 @dataclass(frozen=True)
@@ -80,6 +81,21 @@ def singular_blocks(elimination: Elimination | None, scope: Scope) -> tuple[Depe
         return any(node.op == "div" and depends_on(node.args[1], moving) for node in nodes)
 
     return () if elimination is None else tuple(filter(divided, elimination.blocks))
+
+
+def refuse_undetermined(elimination: Elimination | None, scope: Scope, place: Mapping[Node, Scalar], when: str) -> None:
+    """Refuse a place at which rates of dependent coordinates are divided by zero.
+
+    Args:
+        place: values of coordinates and t, exact.
+        when: the place, in words.
+    Raises:
+        DerivationError: the ties and coordinates are named.
+    """
+    for block in singular_blocks(elimination, scope):
+        if is_zero(substituted((block.determinant,), place)[0]):
+            mend = "start beside it, or leave out `dependent`: then their rates belong to the state"
+            raise DerivationError(f"{block} {when} ({PLACE})", mend=mend)
 
 
 def elimination_of(ties: Ties) -> Elimination:

@@ -10,6 +10,7 @@ from typing import Any
 import numpy as np
 
 from eomgen.errors import DerivationError
+from eomgen.mechanics.constraints.elimination import refuse_undetermined
 from eomgen.mechanics.small_motions.field import NumberField, Numbers
 from eomgen.mechanics.small_motions.first_order import Choice, FirstOrder
 from eomgen.mechanics.small_motions.forms import carrying, floats, seen_beside_own
@@ -38,7 +39,13 @@ def reduced_equations(
 
 
 def reduced_of(reducing: Reducing, reference: ReferenceMotion) -> LinearEquations:
-    """`reduced_equations`, of what is known of the state."""
+    """`reduced_equations`, of what is known of the state.
+
+    Raises:
+        DerivationError: dependent coordinates are not determined there.
+    """
+    system = reference.system
+    refuse_undetermined(system.elimination, system.scope, reference.exact, "at the place of reference")
     turns = spinning(reference, reducing.choice)
     return over_turns(reducing.field, reducing.first.system, reducing.equations, turns)
 

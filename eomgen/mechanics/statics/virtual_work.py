@@ -8,6 +8,7 @@ With one reaction R released the bodies have one motion. In it all other reactio
 from __future__ import annotations
 
 from collections.abc import Mapping
+from dataclasses import replace
 
 from eomgen.mechanics.balance.named_reactions import NamedReaction, named_reactions
 from eomgen.mechanics.balance.unit_wrenches import Effect, efforts_of
@@ -18,7 +19,7 @@ from eomgen.mechanics.structures.velocity_plan import VelocityPlan
 from eomgen.model.forces.load import Couple, PointForce, SpreadLoad, UniformField
 from eomgen.model.outputs import FUNCTIONS
 from eomgen.records import dataclass
-from eomgen.symbolic.expression.derivative import substituted
+from eomgen.symbolic.expression.derivative import depends_on, substituted
 from eomgen.symbolic.expression.functions import over
 from eomgen.symbolic.expression.graph import Node, Scalar
 from eomgen.symbolic.expression.spatial import times
@@ -115,12 +116,25 @@ def asked_reactions(structure: Structure) -> dict[str, NamedReaction]:
 
 
 def by_virtual_work(structure: Structure, named: NamedReaction) -> WorkEquation | None:
-    """One reaction; None where it is statically indeterminate."""
+    """One reaction; None where it is statically indeterminate.
+
+    A drive of its joint that is sought is what its own virtual work says.
+    """
     at = structure.at
     factors = substituted(tuple(named.combination.values()), at)
     combination = dict(zip(named.combination, factors, strict=True))
     (given,) = substituted((named.given,), at)
-    return _equation(structure, named.name, combination, given)
+    held = {}
+    for unknown in structure.unknowns:
+        if depends_on(given, (unknown,)):
+            sought = unknown_by_virtual_work(structure, unknown)
+            if sought is None:
+                return None
+            held[unknown] = sought.value
+    found = _equation(structure, named.name, combination, given)
+    if found is None or not held:
+        return found
+    return replace(found, value=found.plan.simple(substituted((found.value,), held)[0]))
 
 
 def unknown_by_virtual_work(structure: Structure, unknown: Node) -> WorkEquation | None:
