@@ -94,6 +94,24 @@ def test_a_strip_has_as_many_frames_as_are_asked_from_the_start_to_the_end(tmp_p
     assert CliRunner().invoke(main, ["animate", str(PENDULUM), "-o", "m.png", "--modes", "2"]).exit_code == 2
 
 
+def test_the_times_of_a_flat_strip_are_seen_whole(tmp_path):
+    """What is written over a frame keeps its height however low the frame is: its top row is paper."""
+    from PIL import Image
+
+    place = tmp_path / "m.png"
+    text = """eomgen = 1
+space = "space"
+[coordinates]
+x = { speed = 1 }
+[bodies.puck]
+shape = { kind = "sphere", mass = 1, radius = 0.01 }
+joint = { kind = "prismatic", axis = [1, 0, 0], displacement = "x" }
+"""
+    eomgen.simulate(eomgen.loads(text), time=5).animate(place)
+    page = np.asarray(Image.open(place).convert("L"))
+    assert page.shape[0] < 0.09 * page.shape[1] and page[0].min() == 255 and page[:40].min() < 100
+
+
 def test_a_trail_is_the_way_of_its_point(run):
     """x = l1 cos(a1) + l2 cos(a2), y likewise, with the angles of the run's own rows: by hand."""
     times = frame_times(1.0, 20, 1)

@@ -64,7 +64,7 @@ def test_a_kind_has_a_page_with_its_picture(site):
 
 
 def test_a_page_of_the_gallery_tells_what_eomgen_finds(site):
-    """Its equations as formulas, its answers, its file."""
+    """Its equations as formulas, its answers, its file; the page of all has the picture of each, which leads there."""
     pages = [path for path in site.glob("gallery/**/*.html") if not path.stem.endswith(".motion")]
     found = {path.stem: path.read_text("utf-8") for path in pages}
     assert (site / "gallery" / "double_pendulum.motion.html").exists() and "<iframe" in found["double_pendulum"]
@@ -73,6 +73,15 @@ def test_a_page_of_the_gallery_tells_what_eomgen_finds(site):
     assert all(
         "eomgen new mine --example" in re.sub("<[^>]+>", "", text) for name, text in found.items() if name != "index"
     )
+    cards = re.findall(
+        r'<a [^>]*href="(?:seeds/)?(\w+)\.html"><span[^>]*><img [^>]*src="[^"]*/(\w+)\.svg"', found["index"]
+    )
+    assert all(name == picture for name, picture in cards) and {name for name, _ in cards} == found.keys() - {"index"}
+
+
+def test_a_search_asks_for_no_other_page(site):
+    """A browser lets no page of a file fetch another: what is found is listed by its title."""
+    assert "SHOW_SEARCH_SUMMARY: false" in (site / "_static" / "documentation_options.js").read_text("utf-8")
 
 
 @pytest.mark.parametrize("page", PAGES, ids=lambda page: page.stem)

@@ -158,9 +158,17 @@ def contents(names: list[str]) -> str:
     blocks = ["# Gallery", "Every model that ships, worked out by eomgen itself when this site was built."]
     for folder, title in GROUPS.items():
         here = [name for name in names if str(Path(name).parent.as_posix()).removeprefix(".") == folder]
-        listed = "\n".join(here)
-        blocks += [f"## {title}\n\n```{{toctree}}\n:maxdepth: 1\n\n{listed}\n```"] if here else []
+        listed, cards = "\n".join(here), "\n\n".join(map(card, here))
+        tree = f"```{{toctree}}\n:hidden:\n\n{listed}\n```"
+        blocks += [f"## {title}\n\n{tree}\n\n:::{{container}} shelf\n{cards}\n:::"] if here else []
     return "\n\n".join(blocks) + "\n"
+
+
+def card(name: str) -> str:
+    """The picture of a model, where there is one, and its name, which lead to its page."""
+    title = (PLACE / f"{name}.md").read_text(encoding="utf-8").partition("\n")[0].removeprefix("# ")
+    drawn = f"![]({name}.svg) " if (PLACE / f"{name}.svg").exists() else ""
+    return f"[{drawn}{title}]({name}.md)"
 
 
 def generate(app: Any) -> None:

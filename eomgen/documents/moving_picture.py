@@ -27,7 +27,7 @@ WIDTH, HIGHEST, DOTS = 4.8, 4.8, 100  # of a moving picture [inches, dots an inc
 SPARSE = 5  # frames of which one is looked at for the shape of the page
 COLORS, NEARLY_WHITE = 64, 246  # of a GIF; what is lighter is paper
 TRAILS = ("#c77c11", "#8e44ad", "#2e7d4f", "#b03a2e")
-STRIP = 2.6  # width of a frame in a strip [inches]
+STRIP, TITLE = 2.6, 0.3  # width of a frame in a strip, height of what is written over a frame [inches]
 
 Progress = Callable[[int, int], None]
 
@@ -99,7 +99,7 @@ def images(movies: Sequence[Movie], progress: Progress | None = None) -> Iterato
         canvas: Any = FigureCanvasAgg(figure)
         stages = []
         for k, movie in enumerate(movies):
-            room = 0.9 if movie.title else 1.0
+            room = 1 - TITLE / height if movie.title else 1.0
             stages.append(Stage(figure.add_axes((k / len(movies), 0, 1 / len(movies), room)), movie))
         artists = [(stage.panel, artist) for stage in stages for artist in stage.artists]
         for _, artist in artists:
@@ -211,14 +211,14 @@ def strip(movie: Movie) -> bytes:
 
     columns = min(6, len(movie.times))
     rows = math.ceil(len(movie.times) / columns)
-    height = STRIP * _tallness(movie) + 0.3
+    height = STRIP * _tallness(movie) + TITLE
     page = io.BytesIO()
     with rc_context(STYLE):
         figure = Figure(figsize=(STRIP * columns, height * rows), dpi=150)
         FigureCanvasAgg(figure)
         for frame, t in enumerate(movie.times):
             row, column = divmod(frame, columns)
-            box = (column / columns, 1 - (row + 1) / rows, 1 / columns, 0.9 / rows)
+            box = (column / columns, 1 - (row + 1) / rows, 1 / columns, (1 - TITLE / height) / rows)
             stage = Stage(figure.add_axes(box), movie)
             stage.show(frame)
             if movie.timed:
