@@ -15,6 +15,7 @@ import eomgen
 from eomgen.cli import main
 from eomgen.errors import DerivationError, EomgenError, UsageError
 from eomgen.identification.base_parameters import sampled_rows
+from eomgen.identification.fit import noise_of
 from eomgen.identification.regressor import Regressor, regressor_of
 from eomgen.symbolic.exact.equality import equal_at_random_states
 from eomgen.symbolic.expression.derivative import substituted
@@ -238,6 +239,46 @@ def test_identify_reads_a_csv_and_refuses_what_tells_nothing(tmp_path):
         eomgen.identify(model, still)
     with pytest.raises(UsageError, match="no column 'q2'"):
         eomgen.identify(model, {name: x for name, x in data.items() if name != "q2"})
+
+
+TWO_LINKS = """
+eomgen = 1
+space = "plane"
+parameters = { g = 9.81, l = 0.5 }
+coordinates = { q1 = 0.2, q2 = -0.4 }
+inputs = { T1 = "6*sin(2*t) + 3*sin(5*t)", T2 = "1.5*sin(3*t) + sin(7.3*t)" }
+forces.weight = { kind = "gravity", acceleration = [0, "-g"] }
+[bodies.upper]
+mass = 2
+center = [0.2, 0.02]
+inertia = 0.05
+points = { end = ["l", 0] }
+joint = { kind = "revolute", angle = "q1 - pi/2", torque = "T1", damping = 0.2 }
+[bodies.fore]
+mass = 1
+center = [0.25, 0]
+inertia = 0.03
+joint = { kind = "revolute", on = "upper.end", angle = "q2", torque = "T2", damping = 0.1 }
+"""
+
+
+@pytest.mark.slow
+def test_noise_of_places_moves_parameters_by_about_what_is_told():
+    """Rates of splines through noisy places: the largest parameter is off by far more than its deviation, and by the
+    bias that is told within a factor of 3; without noise, or with measured rates, nothing is."""
+    model = eomgen.loads(TWO_LINKS)
+    data, rng = data_of(model, 5, 500), np.random.default_rng(0)
+    places = {name: data[name] for name in ("t", "q1", "q2", "T1", "T2")}
+    assert not eomgen.identify(model, data).bias and not eomgen.identify(model, places).biased
+    exact = eomgen.identify(model, data).base
+    for sigma in (1e-4, 1e-3):
+        noisy = {q: places[q] + sigma * rng.normal(size=500) for q in ("q1", "q2")}
+        assert noise_of(data["t"], noisy["q1"]) == pytest.approx(sigma, rel=0.3)
+        found = eomgen.identify(model, {**places, **noisy})
+        name = max(exact, key=lambda key: abs(exact[key][0]))
+        off = found.base[name][0] - exact[name][0]
+        assert name in found.biased and abs(off) > 3 * found.base[name][1]
+        assert 1 / 3 < found.bias[name] / off < 3
 
 
 def test_friction_of_a_contact_has_no_regressor():

@@ -19,6 +19,7 @@ REAL, INT = "Real", "Int"
 READ, CHANGED, INDICES, PLACES = "Reals", "Work", "Ints", "Places"  # arrays: the last two of indices, read and changed
 ROOM = "Room"  # an array of numbers that are written before they are read
 GIVEN = "Given"  # an array that is read, which the caller may leave out: the inputs
+KINDS = ("", REAL, INT, READ, CHANGED, INDICES, PLACES, GIVEN)
 
 
 @dataclass(frozen=True)
@@ -177,21 +178,21 @@ class Language:
     functions: Mapping[str, str]
     defined: Mapping[str, str]
     words: Mapping[str, str]
-    kinds: Mapping[str, str]
-    at: str
     let: str
-    put: str
-    call: str
-    back: str
     arrays: Mapping[str, str]
     tables: Mapping[str, str]
-    listed: tuple[str, str]
     loop: tuple[str, str]
     down: tuple[str, str]
-    branch: tuple[str, str, str]
     function: tuple[str, str]
     out: tuple[str, str]
-    remark: str
+    kinds: Mapping[str, str] = field(default_factory=lambda: dict.fromkeys(KINDS, "{name}"))
+    at: str = "{array}[{index}]"
+    put: str = "{place} = {value};"
+    call: str = "{function}({arguments});"
+    back: str = "return {value};"
+    listed: tuple[str, str] = ("[", "]")
+    branch: tuple[str, str, str] = ("if ({condition}) {{", "} else {", "}")
+    remark: str = "// {text}"
     unused: str = ""
     hidden: str = ""
     number: Callable[[Number], RankedText] = ranked_number

@@ -4,11 +4,18 @@
 
 The base parameters are fitted first: they are all that the data tell. Of the parameters of the bodies those are given
 that fit as well and that bodies of positive density can have, near the model's where the data do not tell.
+
+Rates and accelerations that were not measured are those of a spline, which makes a little noise of the places a great
+one. Least squares takes W as exact, so that noise in it makes the parameters wrong however many samples there are, and
+their standard deviations do not say so. How far is measured: as much noise again is put on, which tells its squares in
+W^T W; without them the normal equations give other parameters.
+Source: Fuller, Measurement Error Models, 1987, section 2.2 (the moments of the errors are drawn here).
 """
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import field
 from typing import Any
 
 import numpy as np
@@ -25,6 +32,7 @@ from eomgen.model.reader import ModelOrPath, model_at
 from eomgen.pipeline import derive
 from eomgen.records import dataclass
 from eomgen.symbolic.expression.derivative import substituted
+from eomgen.symbolic.expression.symbols import Symbols
 from eomgen.symbolic.numeric.evaluation import FLOAT, evaluate
 from eomgen.symbolic.numeric.tolerances import LEAST_DENSITY, RANK_NEARBY, TOWARD_THE_MODEL
 
@@ -44,6 +52,8 @@ class Identified:
         samples: how many instants there are.
         residual: root mean square of what is left of the forces [N or N m].
         consistent_residual: the same with `values`.
+        bias: of each base parameter how far noise has moved it, about, by the rates of what was measured; nothing where
+            all rates were.
     """
 
     regressor: Regressor
@@ -53,6 +63,12 @@ class Identified:
     samples: int
     residual: float
     consistent_residual: float
+    bias: Mapping[str, float] = field(default_factory=dict)
+
+    @property
+    def biased(self) -> tuple[str, ...]:
+        """The base parameters that noise has moved by more than their standard deviation."""
+        return tuple(name for name, shift in self.bias.items() if abs(shift) > self.base[name][1])
 
     def __repr__(self) -> str:
         return f"<{len(self.base)} base parameters from {self.samples} samples: residual {self.residual:.3g}>"
@@ -66,6 +82,13 @@ class Stacked:
     b: np.ndarray
 
 
+Stacking = Callable[[Data], Stacked]
+NEIGHBOURS = (-3, -2, -1, 1, 2, 3)
+LEAST_SAMPLES = 20  # of which the noise can be told
+DRAWS = 4  # of noise: n samples each
+NORMAL_MEDIAN = 1.4826  # standard deviation over the median of |x|
+
+
 def identify(model: ModelOrPath, data: Data) -> Identified:
     """The parameters by least squares.
 
@@ -76,7 +99,8 @@ def identify(model: ModelOrPath, data: Data) -> Identified:
         UsageError: a coordinate without samples, or fewer samples than parameters.
     """
     found = regressor_of(derive(model_at(model)).system)
-    stacked = stack(found, data)
+    stacking = stacking_of(found)
+    stacked = stacking(data)
     base = found.base
     K = base.matrix(found.parameters)
     kept = [found.parameters.index(group.name) for group in base.groups]
@@ -96,6 +120,7 @@ def identify(model: ModelOrPath, data: Data) -> Identified:
     values = _consistent(found, K, scaled, lengths, stacked.b)
     again = stacked.b - W @ (K @ np.array([values[name] for name in found.parameters]))
     formulas = [group.formula for group in base.groups]
+    shifts = _shifts(stacking, data, kept, beta / lengths, _splined(found.system.symbols, data))
     return Identified(
         found,
         {name: (float(x), float(s)) for name, x, s in zip(formulas, beta / lengths, deviations, strict=True)},
@@ -104,43 +129,94 @@ def identify(model: ModelOrPath, data: Data) -> Identified:
         len(np.atleast_1d(data["t"])),
         float(np.sqrt(np.mean(left**2))),
         float(np.sqrt(np.mean(again**2))),
+        dict(zip(formulas, shifts, strict=True)) if shifts else {},
     )
 
 
-def stack(found: Regressor, data: Data) -> Stacked:
-    """W and b of measured samples, along the motions that the ties allow.
+def _splined(symbols: Symbols, data: Data) -> list[str]:
+    """The columns whose rates come of a spline."""
+    wanted = [x.name[:-1] for x in (*symbols.u, *symbols.a) if x.name not in data]
+    return list(dict.fromkeys(name if name in data else name[:-1] for name in wanted))
 
-    Raises:
-        UsageError: a coordinate without samples.
+
+def _shifts(stacking: Stacking, data: Data, kept: Sequence[int], beta: np.ndarray, names: Sequence[str]) -> list[float]:
+    """How far the noise of those columns has moved the base parameters, about; [] where there are none.
+
+    beta - (W^T W - E D^T D)^-1 (W^T b - E D^T d), D and d what as much noise again makes of W and b; where the noise
+    leaves nothing of W^T W, all of beta.
     """
+    t = np.asarray(data["t"], dtype=float)
+    if not names or len(t) < LEAST_SAMPLES:
+        return []
+    noise = {name: noise_of(t, np.asarray(data[name], dtype=float)) for name in names}
+    plain, moments = stacking(data), []
+    W = np.column_stack([plain.W[:, kept], plain.b])
+    for seed in range(DRAWS):
+        rng = np.random.default_rng(seed)
+        noisier = {name: np.asarray(data[name], dtype=float) + rng.normal(size=len(t)) * x for name, x in noise.items()}
+        stacked = stacking({**data, **noisier})
+        D = np.column_stack([stacked.W[:, kept], stacked.b]) - W
+        moments.append(D.T @ D)
+    left = W.T @ W - np.mean(moments, axis=0)
+    A, c = left[:-1, :-1], left[:-1, -1]
+    known = np.linalg.eigvalsh(A)[0] > 0
+    return [float(x) for x in (beta - np.linalg.solve(A, c) if known else beta)]
+
+
+def noise_of(t: np.ndarray, y: np.ndarray) -> float:
+    """Standard deviation of the noise of samples, by what each is off a quintic through three on each side.
+
+    The median of |y_i - w.y| / sqrt(1 + w.w), over that of a normal distribution: jumps do not count.
+    """
+    i = np.arange(3, len(t) - 3)
+    beside = [t[i + k] for k in NEIGHBOURS]
+    off, size = y[i].copy(), np.ones(len(i))
+    for a, k in zip(beside, NEIGHBOURS, strict=True):
+        w = np.prod([(t[i] - b) / (a - b) for b in beside if b is not a], axis=0)
+        off -= w * y[i + k]
+        size += w * w
+    return float(NORMAL_MEDIAN * np.median(np.abs(off) / np.sqrt(size)))
+
+
+def stacking_of(found: Regressor) -> Stacking:
+    """data -> W and b, along the motions that the ties allow; UsageError where a coordinate has no samples."""
     system, symbols = found.system, found.system.symbols
-    t, columns = np.asarray(_column(data, "t"), dtype=float), {}
-    for q in symbols.q:
-        columns[q.name] = np.asarray(_column(data, q.name), dtype=float)
-    for speed, rate in zip(symbols.u, symbols.a, strict=True):
-        columns[speed.name] = _rate(data, t, speed.name, columns)
-        columns[rate.name] = _rate(data, t, rate.name, columns)
     still = dict.fromkeys(symbols.inputs.values(), 0)
     Q = generalized_forces(system.loads)
     applied = tuple(x - y for x, y in zip(Q, substituted(Q, still), strict=True))
     J = tuple(x for row in system.ties.J for x in row)
     outputs = (*(x for row in found.rows for x in row), *found.known, *applied, *J)
     function = compiled(program_of(outputs, symbols, inputs=system.inputs, accelerations=symbols.a), "numpy")
-    states = np.column_stack([columns[x.name] for x in (*symbols.q, *symbols.u, *symbols.a)])
+    size, width, p = len(symbols.u), len(found.parameters), parameter_vector(found.model)
+
+    def stacked(data: Data) -> Stacked:
+        t, states, inputs = _measured(symbols, data)
+        values = np.asarray(function.many(t, states, p, inputs))
+        Y = values[:, : size * width].reshape(-1, size, width)
+        known = values[:, size * width : size * width + size]
+        pushed = values[:, size * width + size : size * width + 2 * size]
+        ties = values[:, size * width + 2 * size :].reshape(len(values), -1, size)
+        parts = [(_along(J_k, size), Y_k, p_k - k_k) for J_k, Y_k, p_k, k_k in zip(ties, Y, pushed, known, strict=True)]
+        return Stacked(np.vstack([Z @ Y_k for Z, Y_k, _ in parts]), np.concatenate([Z @ b for Z, _, b in parts]))
+
+    return stacked
+
+
+def _measured(symbols: Symbols, data: Data) -> tuple[np.ndarray, np.ndarray, Any]:
+    """(t, states with accelerations, inputs) of the samples."""
+    t, columns = np.asarray(_column(data, "t"), dtype=float), {}
+    for q in symbols.q:
+        columns[q.name] = np.asarray(_column(data, q.name), dtype=float)
+    for speed, rate in zip(symbols.u, symbols.a, strict=True):
+        columns[speed.name] = _rate(data, t, speed.name, columns)
+        columns[rate.name] = _rate(data, t, rate.name, columns)
     names = list(symbols.inputs)
     given = {name: np.asarray(data[name], dtype=float) for name in names if name in data}
     if given and len(given) < len(names):
         missing = next(name for name in names if name not in given)
         raise UsageError(f"the data have no column '{missing}'", mend="give all inputs, or none")
     inputs: Any = np.column_stack([given[name] for name in names]) if given else ()
-    values = np.asarray(function.many(t, states, parameter_vector(found.model), inputs))
-    size, width = len(symbols.u), len(found.parameters)
-    Y = values[:, : size * width].reshape(-1, size, width)
-    known = values[:, size * width : size * width + size]
-    pushed = values[:, size * width + size : size * width + 2 * size]
-    ties = values[:, size * width + 2 * size :].reshape(len(values), -1, size)
-    parts = [(_along(J_k, size), Y_k, p_k - k_k) for J_k, Y_k, p_k, k_k in zip(ties, Y, pushed, known, strict=True)]
-    return Stacked(np.vstack([Z @ Y_k for Z, Y_k, _ in parts]), np.concatenate([Z @ b for Z, _, b in parts]))
+    return t, np.column_stack([columns[x.name] for x in (*symbols.q, *symbols.u, *symbols.a)]), inputs
 
 
 def _along(J: np.ndarray, size: int) -> np.ndarray:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import csv
+from dataclasses import replace
 from typing import Any
 
 import numpy as np
@@ -15,6 +16,10 @@ from eomgen.identification.fit import Identified, identify
 from eomgen.model.parts import Model
 
 LARGEST = 200_000_000  # bytes of a file
+BIASED = (
+    "rates come of noisy columns, which moves parameters by more than their deviations say, by about as far as each "
+    "line tells: measure rates and accelerations, or filter all columns alike"
+)
 POOR = 100.0  # a condition number beyond which parameters are hardly told apart
 
 
@@ -32,12 +37,20 @@ def identify_document(model: Model, *, data: str) -> Document:
         f"condition of the motion: {found.condition:.6g}{poor}",
         "",
         "base parameters (least squares, standard deviation)",
-        *(f"    {name:{width}}  {x:.9g} +- {deviation:.2g}" for name, (x, deviation) in found.base.items()),
+        *(
+            f"    {name:{width}}  {x:.9g} +- {deviation:.2g}{_shift(found, name)}"
+            for name, (x, deviation) in found.base.items()
+        ),
         "",
         f"parameters of bodies of positive density, residual {found.consistent_residual:.6g}",
         *(f"    {name:{width}}  {x:.9g}" for name, x in found.values.items()),
     ]
-    return plain_document(model, lambda: _entries(found), Lines(tuple(lines)))
+    document = plain_document(model, lambda: _entries(found), Lines(tuple(lines)))
+    return replace(document, notes=(*document.notes, *([BIASED] if found.biased else [])))
+
+
+def _shift(found: Identified, name: str) -> str:
+    return f", noise moved it by about {found.bias[name]:.2g}" if name in found.biased else ""
 
 
 def _entries(found: Identified) -> dict[str, Any]:
@@ -47,6 +60,7 @@ def _entries(found: Identified) -> dict[str, Any]:
         "condition": found.condition,
         "residual": found.residual,
         "base": {name: {"value": x, "deviation": deviation} for name, (x, deviation) in found.base.items()},
+        "bias": dict(found.bias),
         "values": found.values,
         "consistent_residual": found.consistent_residual,
     }

@@ -55,7 +55,7 @@ def ran(folder: Path, *commands: list[str]) -> str:
 
 
 def by_cpp(folder: Path) -> str:
-    compiler = [*cpp.COMPILER.command(), "-std=c++17", *WARNINGS]
+    compiler = [*cpp.COMPILER.command(), "-std=c++17", "-O2", *WARNINGS]  # what is not set is seen when optimized
     found = sorted(folder.rglob("*_test.cpp"))
     return "".join(ran(x.parent, [*compiler, x.name, "-o", "run_test"], ["./run_test"]) for x in found)
 
@@ -75,7 +75,7 @@ def by_rust(folder: Path) -> str:
 
 def by_fortran(folder: Path) -> str:
     compiler, found = (
-        [*fortran.COMPILER.command(), "-std=f2008", "-Wall", "-Werror"],
+        [*fortran.COMPILER.command(), "-std=f2008", "-Wall", "-Wextra", "-Wno-compare-reals", "-Werror"],
         sorted(folder.rglob("*_test.f90")),
     )
     return "".join(

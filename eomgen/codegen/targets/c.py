@@ -6,29 +6,20 @@ The reactions alike: `NAME_reactions(..., double *out)`; inverse dynamics has th
 
 from __future__ import annotations
 
-import ctypes
-import re
 from collections.abc import Mapping, Sequence
-from functools import partial
 from typing import Any
 
-from eomgen.codegen.build import function_of, library, of_this_machine
+from eomgen.codegen.build import C as COMPILER
+from eomgen.codegen.build import library, of_this_machine
 from eomgen.codegen.lowered import CHANGED, INDICES, INT, PLACES, READ, REAL, ROOM, Language, one_line
 from eomgen.codegen.lowering import Lowered
 from eomgen.codegen.program import Program
-from eomgen.codegen.targets.base import (
-    RHS,
-    Called,
-    Emitted,
-    FileContent,
-    Functions,
-    Role,
-    Single,
-    Target,
-)
+from eomgen.codegen.targets.base import RHS, Emitted, FileContent, Functions, Role
 from eomgen.codegen.targets.c_loading import functions_of
+from eomgen.codegen.targets.cases import by_cases
 from eomgen.codegen.targets.form import FileForm, header
 from eomgen.codegen.targets.in_single import FUNCTIONS, QUOTED, SUFFIXED, SingleWords
+from eomgen.codegen.targets.library_call import compiled_target
 
 
 def comment(text: str) -> str:
@@ -47,15 +38,11 @@ C = Language(
     )
     | {f"{name}f" for name in FUNCTIONS.split("|")},  # those of single precision
     functions={"abs": "fabs({0})", "select": "pick({0}, {1}, {2})"},  # POSIX has another select
-    defined={  # C has none of these, or drops a NaN
-        "sign": "static double sign(double a) { return a > 0 ? 1 : a < 0 ? -1 : a; }",
-        "min": "static double min(double a, double b) { return a < b || a != a ? a : b; }",
-        "max": "static double max(double a, double b) { return a > b || a != a ? a : b; }",
-        "less": "static double less(double a, double b) { return a < b ? 1 : a >= b ? 0 : NAN; }",
-        "less_equal": "static double less_equal(double a, double b) { return a <= b ? 1 : a > b ? 0 : NAN; }",
-        "select": "static double pick(double given, double a, double b) "
-        "{ return given == 0 ? b : given == given ? a : given; }",
-    },
+    defined=by_cases(
+        "static double {name}({arguments}) {{ return {value}; }}",
+        argument="double {name}",
+        words={"select": "pick", "nan": "NAN"},
+    ),
     words={"not": "!", "nan": "NAN", "given": "inputs != NULL"},
     kinds={
         "": "void {name}",
@@ -66,11 +53,7 @@ C = Language(
         INDICES: "const int *{name}",
         PLACES: "long *{name}",
     },
-    at="{array}[{index}]",
     let="const {declared} = {value};",
-    put="{place} = {value};",
-    call="{function}({arguments});",
-    back="return {value};",
     arrays={
         CHANGED: "double {name}[{size}] = {{0}};",
         ROOM: "double {name}[{size}];",
@@ -84,7 +67,6 @@ C = Language(
     listed=("{", "}"),
     loop=("for (long {name} = {first}; {name} < {last}; {name}++) {{", "}"),
     down=("for (long {name} = {last} - 1; {name} >= {first}; {name}--) {{", "}"),
-    branch=("if ({condition}) {{", "} else {", "}"),
     function=("{hidden}{declared}({arguments})\n{{", "}"),
     hidden="static ",
     out=("void {name}({arguments}, double *{out})\n{{", "}"),
@@ -182,6 +164,17 @@ int main(void)
 }}
 """
 
+ENTRY = """\
+{text}
+{linked}void {entry}(size_t n, const double *t, const double *x, const double *p, const double *inputs, double *out)
+{{
+    double c[{size}];
+    {of}constants(p, c);
+    for (size_t i = 0; i < n; i++)
+        {of}evaluate(t[i], x + i*{moving}, {a_row}p, c, inputs ? inputs + i*{inputs} : NULL, out + i*{outputs});
+}}
+"""
+CONSTANTS = r"(?:double|float|Real) c\[(\d+)\]"  # how many there are, as their caller in the text says; 1 of none
 _X, _A, _P = (f"const double *{name}" for name in "xap")
 FORM = FileForm(
     C,
@@ -198,7 +191,8 @@ FORM = FileForm(
         "a_given": ("a n x speeds, ", ""),
         "a_array": ("a[{accelerations}], ", ""),
         "a_of": ("vectors[i].a, ", ""),
-        "tested": ("{main}",) * 2,
+        "a_row": ("x + i*{moving} + {states}, ", ""),
+        **{word: (text,) * 2 for word, text in {"tested": "{main}", "linked": "", "of": "{others}_"}.items()},
     },
     test=f"#ifdef EOMGEN_SELFTEST\n{SELF_TEST}#endif\n",
     vector="    {{{t}, {x}, {a}{p}, {inputs}, {result}, {tolerance}}},",
@@ -212,13 +206,6 @@ FORM = FileForm(
 def c_text(program: Program, stem: str, role: Role = RHS, remarks: Mapping[str, str] | None = None) -> str:
     """The functions of a program: NAME_constants, NAME_evaluate, NAME_rhs and NAME_many, or what its role says."""
     return FORM.text(program, stem, role, remarks)
-
-
-def constants_in(text: str) -> int:
-    """How many constants a function has, as its caller in the text says; 1 of none."""
-    found = re.search(r"double c\[(\d+)\];", text)
-    assert found is not None
-    return int(found[1])
 
 
 def c_functions(program: Program) -> Functions:
@@ -262,30 +249,6 @@ def _files(stem: str, emitted: Sequence[Emitted]) -> dict[str, FileContent]:
     return files
 
 
-def run(
-    texts: Mapping[str, FileContent], program: Program, stem: str, role: Role, real: Any = ctypes.c_double
-) -> Called:
-    """NAME_rhs of the files, compiled; `real` is the type of its numbers."""
-    name = role.main(stem)
-    text = str(texts[f"{name}.c"]).replace(f'#include "{name}.h"\n', str(texts[f"{name}.h"]), 1)
-    function, outputs = function_of(library(text, quickly=True), name), len(program.outputs)
-    reals = ctypes.POINTER(real)
-    function.argtypes = [real, *[reals] * (5 if program.accelerations else 4)]
-    function.restype = None
-
-    def called(
-        t: float, x: Sequence[float], a: Sequence[float], p: Sequence[float], inputs: Sequence[float] | None
-    ) -> Sequence[float]:
-        arrays = [(real * max(len(y), 1))(*y) for y in ((x, a, p) if program.accelerations else (x, p))]
-        acting = None if inputs is None else (real * max(len(inputs), 1))(*inputs)
-        found = (real * max(outputs, 1))()
-        function(t, *arrays, acting, found)
-        result: list[float] = found[:outputs]
-        return result
-
-    return called
-
-
 USE = ("cc -O2 -c {stem}_rhs.c", "cc -O2 -DEOMGEN_SELFTEST {stem}_rhs.c -lm -o selftest && ./selftest")
 SINGLE = SingleWords(
     (
@@ -297,7 +260,15 @@ SINGLE = SingleWords(
     rf"/\*.*?\*/|{QUOTED}",
     r"\.[ch]$",
 )
-TARGET = Target(
-    "c", "C99, no dependencies", FORM.text, _files, USE, c_functions, run,
-    single=Single(SINGLE.files, partial(run, real=ctypes.c_float)),
-)  # fmt: skip
+TARGET = compiled_target(
+    "c",
+    "C99, no dependencies",
+    FORM,
+    USE,
+    entry=ENTRY,
+    size=CONSTANTS,
+    by=COMPILER,
+    single=SINGLE,
+    files=_files,
+    load=c_functions,
+)

@@ -5,6 +5,7 @@ from __future__ import annotations
 from dataclasses import replace
 
 from eomgen.codegen.targets import branch_free
+from eomgen.codegen.targets.cases import by_cases
 from eomgen.codegen.targets.numpy import PYTHON
 from eomgen.codegen.targets.python_files import python_form, python_target
 
@@ -39,11 +40,14 @@ CASADI = replace(
         "select": "select({0}, {1}, {2})",
     },
     defined={
-        "sign": "def sign(a):\n    return ca.if_else(a > 0, 1, ca.if_else(a < 0, -1, a))\n\n",
+        **by_cases(
+            "def {name}({arguments}):\n    return {value}\n\n",
+            "ca.if_else({condition}, {value}, {otherwise})",
+            words={"nan": 'float("nan")'},
+            only=("sign", "less", "less_equal"),
+        ),
         "min": "def min(a, b):\n    return ca.if_else(a < b, a, ca.if_else(a >= b, b, a + b))\n\n",
         "max": "def max(a, b):\n    return ca.if_else(a > b, a, ca.if_else(a <= b, b, a + b))\n\n",
-        "less": 'def less(a, b):\n    return ca.if_else(a < b, 1, ca.if_else(a >= b, 0, float("nan")))\n\n',
-        "less_equal": 'def less_equal(a, b):\n    return ca.if_else(a <= b, 1, ca.if_else(a > b, 0, float("nan")))\n\n',
         "select": "def select(given, a, b):\n"
         '    return ca.if_else(given == 0, b, ca.if_else(ca.logic_or(given > 0, given < 0), a, float("nan")))\n\n',
         **branch_free.SOLVERS,

@@ -5,16 +5,17 @@ With it comes a test over the test vectors, a plain main.
 
 from __future__ import annotations
 
-import json
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import replace
 
 from eomgen.codegen.build import Compiler
 from eomgen.codegen.expressions import ATOM, PRODUCT, SUM, RankedText, ranked_number
-from eomgen.codegen.lowered import CHANGED, INDICES, INT, PLACES, READ, REAL, ROOM, Language
+from eomgen.codegen.lowered import INDICES, INT, READ
 from eomgen.codegen.lowering import Lowered
+from eomgen.codegen.targets.c import CONSTANTS, ENTRY, SELF_TEST, C
 from eomgen.codegen.targets.c import FORM as C_FORM
-from eomgen.codegen.targets.c import SELF_TEST, C, comment
+from eomgen.codegen.targets.cases import by_cases
+from eomgen.codegen.targets.form import in_quotes
 from eomgen.codegen.targets.in_single import QUOTED, SUFFIXED, SingleWords
 from eomgen.codegen.targets.library_call import compiled_target
 from eomgen.symbolic.expression.graph import Number
@@ -28,7 +29,13 @@ def _number(a: Number) -> RankedText:
     return (f"-{_number(-a)[0]}", SUM) if a < 0 else ("/".join(f"Real({part})" for part in text.split("/")), PRODUCT)
 
 
-CPP = Language(
+def _real(texts: Mapping[str, str]) -> dict[str, str]:
+    """Texts of C over the scalar."""
+    return {key: text.replace("double", "Real") for key, text in texts.items()}
+
+
+CPP = replace(
+    C,
     reserved=C.reserved
     | frozenset(
         "alignas alignof and and_eq asm bitand bitor catch char16_t char32_t char8_t class co_await co_return co_yield "
@@ -37,52 +44,25 @@ CPP = Language(
         "reinterpret_cast requires static_assert static_cast template this thread_local throw true try typeid typename "
         "using virtual wchar_t xor xor_eq std Real".split()
     ),
-    functions={"abs": "fabs({0})", "select": "pick({0}, {1}, {2})"},
-    defined={
-        "sign": "static Real sign(Real a) { return a > 0 ? Real(1) : a < 0 ? Real(-1) : a; }",
-        "min": "static Real min(Real a, Real b) { return a < b || a != a ? a : b; }",
-        "max": "static Real max(Real a, Real b) { return a > b || a != a ? a : b; }",
-        "less": "static Real less(Real a, Real b) { return a < b ? Real(1) : a >= b ? Real(0) : a + b; }",
-        "less_equal": "static Real less_equal(Real a, Real b) { return a <= b ? Real(1) : a > b ? Real(0) : a + b; }",
-        "select": "static Real pick(Real given, Real a, Real b) "
-        "{ return given == 0 ? b : given == given ? a : given; }",
-    },
+    defined=by_cases(
+        "static Real {name}({arguments}) {{ return {value}; }}",
+        argument="Real {name}",
+        number="Real({value})",
+        words={"select": "pick", "nan": "a + b"},
+    ),
     words={"not": "!", "nan": "std::numeric_limits<Real>::quiet_NaN()", "given": "inputs != nullptr"},
-    kinds={
-        "": "void {name}",
-        REAL: "Real {name}",
-        INT: "long {name}",
-        READ: "const Real *{name}",
-        CHANGED: "Real *{name}",
-        INDICES: "const int *{name}",
-        PLACES: "long *{name}",
-    },
-    at=C.at,
-    let=C.let,
-    put=C.put,
-    call=C.call,
-    back=C.back,
-    arrays={
-        CHANGED: "Real {name}[{size}] = {{}};",
-        ROOM: "Real {name}[{size}];",
-        PLACES: "long {name}[{size}] = {{}};",
-    },
+    kinds=_real(C.kinds),
+    arrays={kind: text.replace("{{0}}", "{{}}") for kind, text in _real(C.arrays).items()},
     tables={
         INT: "static constexpr long {name} = {value};",
         INDICES: "static constexpr int {name}[{size}] = {values};",
         READ: "inline static const Real {name}[{size}] = {values};",
     },
-    listed=C.listed,
-    loop=C.loop,
-    down=C.down,
-    branch=C.branch,
     function=("static {declared}({arguments})\n{{", "}"),
+    hidden="",
     out=("static void {name}({arguments}, Real *{out})\n{{", "}"),
     remark="// {text}",
-    harmless=comment,
-    unused=C.unused,
     number=_number,
-    longest=C.longest,
 )
 COMPILER = Compiler(
     "C++",
@@ -112,25 +92,11 @@ struct {main} {{
     // {result} has {outputs} places; inputs nullptr: the model's own
     static void {role}(Real t, const Real *x, {a_declared}const Real *p, const Real *inputs, Real *{result})
     {{
-        Real c[{size}];
+        Real c[{size}]{cleared};
         constants(p, c);
         evaluate(t, x, {a}p, c, inputs, {result});
     }}
 }};
-"""
-
-_ENTRY = """\
-{text}
-#include <cstddef>
-extern "C" __attribute__((visibility("default")))
-void {entry}(std::size_t n, const double *t, const double *x, const double *p, const double *inputs, double *out)
-{{
-    double c[{size}];
-    {main}<double>::constants(p, c);
-    for (std::size_t i = 0; i < n; i++)
-        {main}<double>::evaluate(t[i], x + i*{moving}, {a_there}p, c, inputs ? inputs + i*{inputs} : nullptr,
-            out + i*{outputs});
-}}
 """
 
 
@@ -142,7 +108,7 @@ def _inner(made: Lowered) -> dict[str, str]:
 
 def _named(key: str, names: Sequence[str]) -> list[str]:
     """Names in quotes, where there are any; C++ knows no array without entries."""
-    listed = ", ".join(json.dumps(name, ensure_ascii=False).replace("??", "?\\?") for name in names)
+    listed = ", ".join(in_quotes(name).replace("??", "?\\?") for name in names)
     return [f"    static constexpr const char *{key}[] = {{{listed}}};"] * bool(names)
 
 
@@ -158,9 +124,11 @@ FORM = replace(
     given={
         **C_FORM.given,
         "a_declared": ("const Real *a, ", ""),
-        "a_there": ("x + i*{moving} + {states}, ", ""),
         "tested": ("{main}<double>::{role}",) * 2,
+        "of": ("{main}<double>::",) * 2,
+        "linked": ('extern "C" __attribute__((visibility("default")))\n',) * 2,
     },
+    marked={"cleared": ("(void)c;", " = {}")},  # else it is said to be used before it is set
     body=_inner,
     named=_named,
     test=f'// Held against its test vectors: exit 0 where all agree\n#include "{{main}}.hpp"\n{SELF_TEST}',
@@ -171,8 +139,8 @@ TARGET = compiled_target(
     "C++17 header, templates over the scalar",
     FORM,
     USE,
-    entry=_ENTRY,
-    size=r"Real c\[(\d+)\]",
+    entry=ENTRY,
+    size=CONSTANTS,
     by=COMPILER,
     single=SingleWords(((r"\bdouble\b", "float"), SUFFIXED), rf"//[^\n]*|{QUOTED}", r"_test\.cpp$"),
 )

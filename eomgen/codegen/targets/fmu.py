@@ -16,23 +16,15 @@ import weakref
 import zipfile
 from collections.abc import Mapping, Sequence
 from importlib import resources
+from itertools import accumulate
 from pathlib import Path
 from typing import Any
 
 from eomgen.codegen.build import C as COMPILER
 from eomgen.codegen.build import Compiler, library
 from eomgen.codegen.program import Program
-from eomgen.codegen.targets.base import (
-    RHS,
-    Called,
-    Description,
-    Emitted,
-    FileContent,
-    Functions,
-    Role,
-    Target,
-)
-from eomgen.codegen.targets.c import apart, c_functions, c_text, constants_in
+from eomgen.codegen.targets.base import OUTPUTS, RHS, Called, Description, Emitted, FileContent, Role, Target
+from eomgen.codegen.targets.c import CONSTANTS, apart, c_functions, c_text
 from eomgen.codegen.targets.form import header
 from eomgen.errors import RunFailed, ToolMissing
 from eomgen.symbolic.numeric.tolerances import BEST, RUN
@@ -94,23 +86,34 @@ def test_both_kinds_of_simulation_agree():
 '''
 
 
+def _kept(emitted: Sequence[Emitted]) -> list[Emitted]:
+    """The functions that an FMU has, the right-hand side first."""
+    return [each for each in emitted if each[1].role.name in ROLES]
+
+
+def _firsts(programs: Sequence[Program]) -> list[int]:
+    """The first value reference of each function's results: time, x, x', p, inputs, then the outputs in a row."""
+    n, symbols = len(programs[0].states), programs[0].symbols
+    after = 1 + 2 * n + len(symbols.parameters) + len(symbols.inputs)
+    return [1 + n, *accumulate((len(each.outputs) for each in programs[1:-1]), initial=after)][: len(programs)]
+
+
 def source(stem: str, emitted: Sequence[Emitted]) -> str:
     """Everything in one text of C."""
-    kept = [(program, told) for program, told in emitted if told.role.name in ROLES]
+    kept = _kept(emitted)
     program, told = kept[0]
-    symbols, start = program.symbols, _start(told, program)
-    further = [(each, other.role) for each, other in kept[1:]]
+    start, firsts = _start(told, program), _firsts([each for each, _ in kept])
     calls = "".join(
-        f" {role.main(stem)}(t, x, p, inputs, (out) + {at});"
-        for (_, role), at in zip(further, _places(kept)[1:], strict=True)
+        f" {other.role.main(stem)}(t, x, p, inputs, (out) + {at - firsts[1]});"
+        for (_, other), at in zip(kept[1:], firsts[1:], strict=True)
     )
     parts = [apart(each, stem, other.role) for each, other in kept]
     sizes = {
         "STATES": len(program.states),
-        "PARAMETERS": len(symbols.parameters),
-        "INPUTS": len(symbols.inputs),
-        "OUTPUTS": sum(len(each.outputs) for each, _ in further),
-        "CONSTANTS": constants_in(parts[0]),
+        "PARAMETERS": len(program.symbols.parameters),
+        "INPUTS": len(program.symbols.inputs),
+        "OUTPUTS": sum(len(each.outputs) for each, _ in kept[1:]),
+        "CONSTANTS": re.findall(CONSTANTS, parts[0])[0],
         "FIRST_X": _braces(start[0]),
         "FIRST_P": _braces(start[1]),
         "TOLERANCE": repr(RUN),
@@ -121,19 +124,9 @@ def source(stem: str, emitted: Sequence[Emitted]) -> str:
         "MAKE_OUTPUTS(t, x, p, inputs, out)": f"do {{{calls} (void)(out); }} while (0)",
     }
     defined = "\n".join(f"#define {name} {value}" for name, value in sizes.items())
-    texts = [
-        resources.files("eomgen.codegen").joinpath(name).read_text("utf-8") for name in ("dop853.c", "targets/fmi3.c")
-    ]
-    return "\n".join([*parts, texts[0].replace("static void dop853_dense", "void dop853_dense"), defined, texts[1]])
-
-
-def _places(kept: Sequence[Emitted]) -> list[int]:
-    """Where the outputs of each function begin; of the right-hand side 0."""
-    places, at = [0], 0
-    for program, _ in kept[1:]:
-        places.append(at)
-        at += len(program.outputs)
-    return places
+    own = resources.files("eomgen.codegen")
+    dop853, fmi3 = (own.joinpath(name).read_text("utf-8") for name in ("dop853.c", "targets/fmi3.c"))
+    return "\n".join([*parts, dop853.replace("static void dop853_dense", "void dop853_dense"), defined, fmi3])
 
 
 def _braces(values: Sequence[float]) -> str:
@@ -151,45 +144,46 @@ def _start(told: Description, program: Program) -> tuple[Sequence[float], Sequen
 
 def token(stem: str, emitted: Sequence[Emitted]) -> str:
     """What belongs to this model alone."""
-    text = "\n".join(c_text(program, stem, told.role) for program, told in emitted if told.role.name in ROLES)
+    text = "\n".join(c_text(program, stem, told.role) for program, told in _kept(emitted))
     return hashlib.sha256(text.encode()).hexdigest()[:32]
+
+
+def _variables(kept: Sequence[Emitted]) -> list[tuple[str, str, str]]:
+    """(name, remark, attributes) of each, in the order of the value references."""
+    program, told = kept[0]
+    symbols, (x, p), states = program.symbols, _start(told, program), [node.name for node in program.states]
+    how = [f'causality="local" initial="exact" start="{value!r}"' for value in x]
+    how += [f'causality="local" derivative="{k}"' for k in range(1, len(x) + 1)]
+    how += [f'causality="parameter" variability="tunable" start="{value!r}"' for value in p]
+    how += ['causality="input" start="0.0"'] * len(symbols.inputs)
+    names = (*states, *(f"der({name})" for name in states), *symbols.parameters, *symbols.inputs)
+    found = [("time", "", 'causality="independent" variability="continuous"')]
+    found += [(name, told.remarks.get(name, ""), said) for name, said in zip(names, how, strict=True)]
+    for _, other in kept[1:]:
+        found += [(name, other.remarks.get(name, ""), 'causality="output"') for name in other.outputs]
+    return found
 
 
 def description(stem: str, emitted: Sequence[Emitted]) -> str:
     """modelDescription.xml."""
     from xml.sax.saxutils import quoteattr  # with it come urllib, http and email, for every verb
 
-    kept = [(program, told) for program, told in emitted if told.role.name in ROLES]
-    program, told = kept[0]
-    symbols, (x, p) = program.symbols, _start(told, program)
-    n, remarks = len(program.states), told.remarks
+    kept, n = _kept(emitted), len(emitted[0][0].states)
     units: dict[str, None] = {}
-    lines = ['<Float64 name="time" valueReference="0" causality="independent" variability="continuous"/>']
-
-    def add(name: str, remark: str, attributes: str) -> int:
+    taken: set[str] = set()
+    lines: list[str] = []
+    for k, (name, remark, attributes) in enumerate(_variables(kept)):
         unit = UNIT.match(remark)
         if unit and unit[1]:
             units[unit[1]] = None
             attributes += f" unit={quoteattr(unit[1])}"
         about = remark[unit.end() :].strip() if unit else remark
         attributes += f" description={quoteattr(about)}" if about else ""
-        unique = name if name not in taken else f"{name} ({len(lines)})"
+        unique = name if name not in taken else f"{name} ({k})"
         taken.add(unique)
-        lines.append(f'<Float64 name={quoteattr(unique)} valueReference="{len(lines)}" {attributes}/>')
-        return len(lines) - 1
-
-    taken = {"time"}
-    for node, value in zip(program.states, x, strict=True):
-        add(node.name, remarks.get(node.name, ""), f'causality="local" initial="exact" start="{value!r}"')
-    for k, node in enumerate(program.states, start=1):
-        add(f"der({node.name})", "", f'causality="local" derivative="{k}"')
-    for name, value in zip(symbols.parameters, p, strict=True):
-        add(name, remarks.get(name, ""), f'causality="parameter" variability="tunable" start="{value!r}"')
-    for name in symbols.inputs:
-        add(name, remarks.get(name, ""), 'causality="input" start="0.0"')
-    outputs = [
-        add(name, other.remarks.get(name, ""), 'causality="output"') for _, other in kept[1:] for name in other.outputs
-    ]
+        lines.append(f'<Float64 name={quoteattr(unique)} valueReference="{k}" {attributes}/>')
+    first = len(lines) - sum(len(each.outputs) for each, _ in kept[1:])
+    rates, outputs, told = range(n + 1, 2 * n + 1), range(first, len(lines)), kept[0][1]
     known = [f"<Unit name={quoteattr(unit)}/>" for unit in units]
     body = [
         '<?xml version="1.0" encoding="UTF-8"?>',
@@ -205,8 +199,8 @@ def description(stem: str, emitted: Sequence[Emitted]) -> str:
         "</ModelVariables>",
         "<ModelStructure>",
         *(f'<Output valueReference="{v}"/>' for v in outputs),
-        *(f'<ContinuousStateDerivative valueReference="{k}"/>' for k in range(n + 1, 2 * n + 1)),
-        *(f'<InitialUnknown valueReference="{v}"/>' for v in (*range(n + 1, 2 * n + 1), *outputs)),
+        *(f'<ContinuousStateDerivative valueReference="{k}"/>' for k in rates),
+        *(f'<InitialUnknown valueReference="{v}"/>' for v in (*rates, *outputs)),
         "</ModelStructure>",
         "</fmiModelDescription>",
     ]
@@ -220,37 +214,28 @@ def _plain(text: str) -> str:
 
 def fmu_files(stem: str, emitted: Sequence[Emitted]) -> dict[str, FileContent]:
     """NAME.fmu and its test; with sources alone where there is no compiler."""
-    text, packed = source(stem, emitted), io.BytesIO()
+    text, packed, kept = source(stem, emitted), io.BytesIO(), _kept(emitted)
     build = (
         '<?xml version="1.0" encoding="UTF-8"?>\n<fmiBuildDescription fmiVersion="3.0">\n'
         f'<BuildConfiguration modelIdentifier="{stem}">\n<SourceFileSet language="C99"><SourceFile name="all.c"/>'
         "</SourceFileSet>\n</BuildConfiguration>\n</fmiBuildDescription>\n"
     )
+    about = "\n".join(line for each in kept for line in header(*each)).replace("&", "&amp;").replace("<", "&lt;")
     with zipfile.ZipFile(packed, "w", zipfile.ZIP_DEFLATED) as archive:
         contents: dict[str, str | bytes] = {
             "modelDescription.xml": description(stem, emitted),
             "sources/all.c": text,
             "sources/buildDescription.xml": build,
-            "documentation/index.html": _documentation(emitted),
+            "documentation/index.html": f'<!DOCTYPE html>\n<meta charset="utf-8">\n<pre>{about}</pre>\n',
             **_binary(stem, text),
         }
         for path, content in contents.items():
             archive.writestr(zipfile.ZipInfo(path, EPOCH), content, zipfile.ZIP_DEFLATED)
-    kept = [each for each in emitted if each[1].role.name in ROLES]
-    program = kept[0][0]
-    n, m = len(program.states), len(program.symbols.parameters) + len(program.symbols.inputs)
-    firsts = [1 + n, *(1 + 2 * n + m + at for at in _places(kept)[1:])]
-    test = _TEST.format(
-        run=RUN, stem=stem, states=n, parameters=len(program.symbols.parameters), inputs=len(program.symbols.inputs),
-        kinds=[(told.role.name, first) for (_, told), first in zip(kept, firsts, strict=True)],
-    )  # fmt: skip
+    program, firsts = kept[0][0], _firsts([program for program, _ in kept])
+    sizes = {"parameters": len(program.symbols.parameters), "inputs": len(program.symbols.inputs)}
+    kinds = [(told.role.name, first) for (_, told), first in zip(kept, firsts, strict=True)]
+    test = _TEST.format(run=RUN, stem=stem, states=len(program.states), kinds=kinds, **sizes)
     return {f"{stem}.fmu": packed.getvalue(), f"test_{stem}_fmu.py": test}
-
-
-def _documentation(emitted: Sequence[Emitted]) -> str:
-    lines = "\n".join(line for program, told in emitted if told.role.name in ROLES for line in header(program, told))
-    escaped = lines.replace("&", "&amp;").replace("<", "&lt;")
-    return f'<!DOCTYPE html>\n<meta charset="utf-8">\n<pre>{escaped}</pre>\n'
 
 
 def _binary(stem: str, text: str) -> dict[str, bytes]:
@@ -285,63 +270,38 @@ def run(texts: Mapping[str, FileContent], program: Program, stem: str, role: Rol
         raise ToolMissing("the FMU has sources alone", mend=COMPILER.mend)
     folder = tempfile.TemporaryDirectory(prefix="eomgen-")
     model = ctypes.CDLL(archive.extract(path, folder.name))
-    found = re.search(r'instantiationToken="(\w+)"', archive.read("modelDescription.xml").decode())
-    first = archive.read("modelDescription.xml").decode().count('causality="output"')
+    told = archive.read("modelDescription.xml").decode()
+    found = re.search(r'instantiationToken="(\w+)"', told)
     assert found is not None
     model.fmi3InstantiateModelExchange.restype = ctypes.c_void_p
-    made = model.fmi3InstantiateModelExchange(stem.encode(), found[1].encode(), None, False, False, None, None)
-    n, symbols = len(program.states), program.symbols
-    begin = 1 + n if role is RHS else 1 + 2 * n + len(symbols.parameters) + len(symbols.inputs)
-    begin += first - len(program.outputs) if role.name == _last(texts) else 0
+    made = ctypes.c_void_p(
+        model.fmi3InstantiateModelExchange(stem.encode(), found[1].encode(), None, False, False, None, None)
+    )
+    n, size = len(program.states), len(program.outputs)
+    begin = _firsts([program, program])[0 if role is RHS else 1]
+    begin += told.count('causality="output"') - size if role is OUTPUTS else 0  # they come last
 
     def values(function: str, at: int, numbers: Sequence[float]) -> Any:
-        references = (ctypes.c_uint32 * len(numbers))(*range(at, at + len(numbers)))
-        held = (ctypes.c_double * len(numbers))(*numbers)
-        if len(numbers) and getattr(model, function)(
-            ctypes.c_void_p(made), references, ctypes.c_size_t(len(numbers)), held, ctypes.c_size_t(len(numbers))
-        ):
+        count = len(numbers)
+        references, held = (ctypes.c_uint32 * count)(*range(at, at + count)), (ctypes.c_double * count)(*numbers)
+        many = ctypes.c_size_t(count)
+        if count and getattr(model, function)(made, references, many, held, many):
             raise RunFailed(f"{function} of the FMU refuses")
         return held
 
     def called(t: float, x: Any, a: Any, p: Any, inputs: Any) -> Sequence[float]:
-        model.fmi3Reset(ctypes.c_void_p(made))
-        model.fmi3SetTime(ctypes.c_void_p(made), ctypes.c_double(t))
+        model.fmi3Reset(made)
+        model.fmi3SetTime(made, ctypes.c_double(t))
         values("fmi3SetFloat64", 1, x)
         values("fmi3SetFloat64", 1 + 2 * n, p)
-        if inputs is not None:
-            values("fmi3SetFloat64", 1 + 2 * n + len(p), inputs)
-        found: list[float] = list(values("fmi3GetFloat64", begin, [0.0] * len(program.outputs)))
+        values("fmi3SetFloat64", 1 + 2 * n + len(p), () if inputs is None else inputs)
+        found: list[float] = list(values("fmi3GetFloat64", begin, [0.0] * size))
         return found
 
     weakref.finalize(called, folder.cleanup)
     return called
 
 
-def _last(texts: Mapping[str, FileContent]) -> str:
-    """The role whose outputs come last: that of the first function after the others in the vectors' file."""
-    answers = str(texts["test_vectors.json"])
-    kept = [name for name in ("reactions", "outputs") if f'"{name}": {{' in answers]
-    return max(kept, key=lambda name: answers.index(f'"{name}": {{'), default="")
-
-
-def functions(program: Program) -> Functions:
-    """The program as C runs it, of which the FMU is made."""
-    return c_functions(program)
-
-
-def fmu_text(program: Program, stem: str, role: Role = RHS) -> str:
-    """The source of the functions."""
-    return c_text(program, stem, role)
-
-
 USE = ("python -m fmpy simulate {stem}.fmu --show-plot", "python -m pytest")
-TARGET = Target(
-    "fmu",
-    "FMI 3.0: model exchange and co-simulation, source and binary",
-    fmu_text,
-    fmu_files,
-    USE,
-    functions,
-    run,
-    ROLES,
-)
+ABOUT = "FMI 3.0: model exchange and co-simulation, source and binary"
+TARGET = Target("fmu", ABOUT, c_text, fmu_files, USE, c_functions, run, ROLES)

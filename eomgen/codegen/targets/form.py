@@ -9,6 +9,7 @@ those of the program.
 
 from __future__ import annotations
 
+import json
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import field
 from typing import Any
@@ -26,6 +27,11 @@ NameLines = Callable[[str, Sequence[str]], Sequence[str]]
 CHECK = "check({t}, {x}, {a}{p}, {inputs}, {result}, {tolerance})"
 
 
+def in_quotes(name: str) -> str:
+    """A name in double quotes."""
+    return json.dumps(name, ensure_ascii=False)
+
+
 @dataclass(frozen=True)
 class FileForm:
     """The table of a language's files.
@@ -41,7 +47,8 @@ class FileForm:
         fixed: words that hang on nothing.
         marked: (mark, text): words that are there only where the functions have a mark.
         body: words that are made of the functions.
-        named: names of x, p and inputs, by the three keys.
+        named: the lines that hold names of x, p and inputs, by the three keys; or one line with {key}, {count}, and the
+            {names} as they are `quoted`.
         test: with {lines}, a line a vector.
         vector: one of these: {t}, {x}, {a}, {p}, {inputs}, {result} and {tolerance}.
         listed: how an array is held together; empty: what stands for one without numbers; nan, what for no value.
@@ -62,7 +69,8 @@ class FileForm:
     marked: Mapping[str, tuple[str, str]] = field(default_factory=dict)
     body: Callable[[Lowered], Mapping[str, str]] | None = None
     keys: tuple[str, str, str] = ("x_names", "p_names", "input_names")
-    named: NameLines | None = None
+    named: NameLines | str = ""
+    quoted: Callable[[str], str] = in_quotes
     test: str = ""
     vector: str = f"    {CHECK}"
     listed: tuple[str, str] = ("[", "]")
@@ -125,7 +133,11 @@ class FileForm:
         symbols = program.symbols
         listed = ([x.name for x in program.states], [*symbols.parameters], [*symbols.inputs])
         for key, names in zip(self.keys, listed, strict=True):
-            yield from self.named(key, names) if self.named else ()
+            if isinstance(self.named, str):
+                quoted = ", ".join(map(self.quoted, names))
+                yield from [self.named.format(key=key, count=len(names), names=quoted)] * bool(self.named)
+            else:
+                yield from self.named(key, names)
 
     def head(self, lines: Sequence[str]) -> str:
         """Lines as the language's remarks."""

@@ -14,6 +14,7 @@ from eomgen.codegen.build import Compiler
 from eomgen.codegen.expressions import ATOM, PRODUCT, SUM, RankedText, ranked_number
 from eomgen.codegen.lowered import CHANGED, GIVEN, INDICES, INT, PLACES, READ, REAL, ROOM, Language, Table
 from eomgen.codegen.lowering import Lowered
+from eomgen.codegen.targets.cases import by_cases
 from eomgen.codegen.targets.form import CHECK, FileForm
 from eomgen.codegen.targets.in_single import SingleWords
 from eomgen.codegen.targets.library_call import compiled_target
@@ -36,24 +37,6 @@ def _spelled(name: str) -> str:
     return f"big_{name}" if name.isupper() else name
 
 
-_DEFINED = """\
-elemental function {name}({arguments}) result(found)
-    real(dp), intent(in) :: {arguments}
-    real(dp) :: found
-{body}
-end function {name}"""
-
-
-def _defined(name: str, arguments: str, *cases: str) -> str:
-    """A function by cases: condition, value, ..., and the value where none holds."""
-    lines = [
-        f"    {'else if' if k else 'if'} ({c}) then\n        found = {v}"
-        for k, (c, v) in enumerate(zip(cases[:-1:2], cases[1::2], strict=True))
-    ]
-    body = "\n".join([*lines, "    else", f"        found = {cases[-1]}", "    end if"])
-    return _DEFINED.format(name=name, arguments=arguments, body=body)
-
-
 FORTRAN = Language(
     reserved=frozenset(
         "allocatable allocate associate block call case character class common complex contains continue cycle data "
@@ -61,25 +44,24 @@ FORTRAN = Language(
         "goto if implicit in inout integer intent interface intrinsic kind logical module namelist none nullify only "
         "open optional or out parameter pause pointer present print private procedure program public pure read real "
         "recursive result return save stop subroutine target then to true type use where while write dp size huge "
-        "ieee_value found least most sign_of step pick merge x_names p_names input_names".split()
+        "ieee_value found least most sign_of pick merge less less_equal x_names p_names input_names".split()
     ),
     functions={
-        "less": "step({0} < {1}, {0} >= {1}, {0} + {1})",
-        "less_equal": "step({0} <= {1}, {0} > {1}, {0} + {1})",
         "pow": "({0})**({1})",
         "select": "pick({0}, {1}, {2})",
         "min": "least({0}, {1})",
         "max": "most({0}, {1})",
         "sign": "sign_of({0})",
     },
-    defined={
-        "min": _defined("least", "a, b", "a < b .or. a /= a", "a", "b"),
-        "max": _defined("most", "a, b", "a > b .or. a /= a", "a", "b"),
-        "sign": _defined("sign_of", "a", "a > 0", "1", "a < 0", "-1", "a"),
-        "select": _defined("pick", "given, a, b", "abs(given) <= 0", "b", "abs(given) > 0", "a", "given"),
-    },
+    defined=by_cases(
+        "elemental function {name}({arguments}) result(found)\n    real(dp), intent(in) :: {arguments}\n"
+        "    real(dp) :: found\n    {value}\n    end if\nend function {name}",
+        "if ({condition}) then\n        found = {value}\n    else{otherwise}",
+        ends="\n        found = {value}",
+        words={"min": "least", "max": "most", "sign": "sign_of", "select": "pick", "nan": "a + b", "||": ".or."}
+        | {"a != a": ".not. abs(a) >= 0", "given == 0": "abs(given) <= 0", "given == given": "abs(given) > 0"},
+    ),
     words={"not": ".not. ", "!=": "/=", "nan": "ieee_value(1.0_dp, ieee_quiet_nan)", "given": "present(inputs)"},
-    kinds=dict.fromkeys(("", REAL, INT, READ, CHANGED, INDICES, PLACES, GIVEN), "{name}"),
     at="{array}({index})",
     let="{declared} = {value}",
     put="{place} = {value}",
@@ -92,7 +74,6 @@ FORTRAN = Language(
         INDICES: "integer, parameter :: {name}(0:{last}) = {values}",
         READ: "real(dp), parameter :: {name}(0:{last}) = {values}",
     },
-    listed=("[", "]"),
     loop=("do {name} = {first}, {last} - 1", "end do"),
     down=("do {name} = {last} - 1, {first}, -1", "end do"),
     branch=("if ({condition}) then", "else", "end if"),
@@ -129,15 +110,6 @@ COMPILER = Compiler(
     ("-std=f2008", "-shared", "-fPIC"),
     "install gfortran, or set FC",
 )
-_STEP = """\
-elemental function step(yes, no, otherwise) result(found)
-    logical, intent(in) :: yes, no
-    real(dp), intent(in) :: otherwise
-    real(dp) :: found
-    found = otherwise
-    if (yes) found = 1
-    if (no) found = 0
-end function step"""
 
 _MODULE = """\
 module {main}
@@ -215,8 +187,8 @@ contains
         end if
         largest = max(1.0_dp, maxval(abs(right), mask=abs(right) >= 0))
         do k = 1, size(right)
-            if (right(k) /= right(k)) then
-                if (found(k) /= found(k)) cycle
+            if (.not. abs(right(k)) >= 0) then
+                if (.not. abs(found(k)) >= 0) cycle
             else if (abs(found(k) - right(k)) <= tolerance*largest) then
                 cycle
             end if
@@ -232,7 +204,6 @@ def _body(made: Lowered) -> dict[str, str]:
     """The tables, and the functions inside the module."""
     tables = [line for table in made.tables for line in _held(table)]
     defined = [FORTRAN.defined[op] for op in sorted(made.ops & FORTRAN.defined.keys())]
-    defined += [_STEP] if made.ops & {"less", "less_equal"} else []
     body = "\n\n".join([*defined, *("\n".join(FORTRAN.defines(f)) for f in (*made.kernels, *made.bodies))])
     return {
         "tables": "".join(f"    {line}\n" for line in tables),

@@ -7,8 +7,9 @@ from __future__ import annotations
 
 from dataclasses import replace
 
-from eomgen.codegen.lowered import CHANGED, INDICES, INT, PLACES, READ, REAL, ROOM, Language
+from eomgen.codegen.lowered import CHANGED, INDICES, INT, PLACES, READ, ROOM, Language
 from eomgen.codegen.program import Program
+from eomgen.codegen.targets.cases import by_cases
 from eomgen.codegen.targets.node import node_form, node_target
 
 _OUT = "function {name}({arguments}, {out} = new Float64Array({size})) {{"
@@ -23,18 +24,13 @@ JAVASCRIPT = Language(
         **{op: f"Math.{op}({{0}})" for op in "sqrt sin cos asin acos atan sinh cosh tanh exp log abs sign".split()},
         **{op: f"Math.{op}({{0}}, {{1}})" for op in "atan2 pow min max".split()},
     },
-    defined={
-        "less": "const less = (a, b) => a < b ? 1 : a >= b ? 0 : NaN;",
-        "less_equal": "const less_equal = (a, b) => a <= b ? 1 : a > b ? 0 : NaN;",
-        "select": "const select = (given, a, b) => given === 0 ? b : given === given ? a : given;",
-    },
+    defined=by_cases(
+        "const {name} = ({arguments}) => {value};",
+        words={"nan": "NaN", "given == 0": "given === 0", "given == given": "given === given"},
+        only=("less", "less_equal", "select"),
+    ),
     words={"not": "!", "nan": "NaN", "given": "inputs !== null"},
-    kinds=dict.fromkeys(("", REAL, INT, READ, CHANGED, INDICES, PLACES), "{name}"),
-    at="{array}[{index}]",
     let="const {declared} = {value};",
-    put="{place} = {value};",
-    call="{function}({arguments});",
-    back="return {value};",
     arrays={
         **dict.fromkeys(
             (CHANGED, PLACES), "const {name} = {name}_of_{of};\nfor (let i = 0; i < {size}; i++) {name}[i] = 0;"
@@ -43,13 +39,10 @@ JAVASCRIPT = Language(
     },
     kept="const {name}_of_{of} = new Float64Array({size});",  # cheaper than one a call
     tables={INT: "const {name} = {value};", INDICES: "const {name} = {values};", READ: "const {name} = {values};"},
-    listed=("[", "]"),
     loop=("for (let {name} = {first}; {name} < {last}; {name}++) {{", "}"),
     down=("for (let {name} = {last} - 1; {name} >= {first}; {name}--) {{", "}"),
-    branch=("if ({condition}) {{", "} else {", "}"),
     function=("function {declared}({arguments}) {{", "}"),
     out=(f"export {_OUT}", "    return {out};\n}"),
-    remark="// {text}",
     longest=2000,  # V8 leaves longer functions unoptimized
 )
 

@@ -5,6 +5,7 @@ from __future__ import annotations
 from dataclasses import replace
 
 from eomgen.codegen.targets import branch_free
+from eomgen.codegen.targets.cases import by_cases
 from eomgen.codegen.targets.in_single import SingleWords
 from eomgen.codegen.targets.numpy import PYTHON
 from eomgen.codegen.targets.python_files import python_form, python_target
@@ -41,10 +42,13 @@ JAX = replace(
         **{op: f"{name}({{0}}, {{1}})" for op, name in BINARY.items()},
     },
     defined={
-        "less": "def less(a, b):\n    return jnp.where(a < b, 1.0, jnp.where(a >= b, 0.0, jnp.nan))\n\n",
-        "less_equal": "def less_equal(a, b):\n    return jnp.where(a <= b, 1.0, jnp.where(a > b, 0.0, jnp.nan))\n\n",
-        "select": "def select(given, a, b):\n"
-        "    return jnp.where(given == 0, b, jnp.where(given == given, a, jnp.nan))\n\n",
+        **by_cases(
+            "def {name}({arguments}):\n    return {value}\n\n",
+            "jnp.where({condition}, {value}, {otherwise})",
+            number="{value}.0",
+            words={"nan": "jnp.nan"},
+            only=("less", "less_equal", "select"),
+        ),
         **branch_free.SOLVERS,
         "through_samples": """
 def through_samples(t, n, closed, steps, depth, bounds, degree, v):

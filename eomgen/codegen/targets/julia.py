@@ -6,13 +6,11 @@ and nobody has run it; its head says so.
 
 from __future__ import annotations
 
-import json
-from collections.abc import Sequence
-
-from eomgen.codegen.lowered import CHANGED, INDICES, INT, PLACES, READ, REAL, ROOM, Language
+from eomgen.codegen.lowered import CHANGED, INDICES, INT, PLACES, READ, ROOM, Language
 from eomgen.codegen.program import Program
 from eomgen.codegen.targets.base import Functions, Target
-from eomgen.codegen.targets.form import FileForm
+from eomgen.codegen.targets.cases import by_cases
+from eomgen.codegen.targets.form import FileForm, in_quotes
 from eomgen.errors import ToolMissing
 
 NOT_RUN = "Not run where it was made: no Julia was there."
@@ -29,13 +27,15 @@ JULIA = Language(
         "pow": "power({0}, {1})",
     },
     defined={
-        "less": "less(a, b) = a < b ? one(a) : a >= b ? zero(a) : a + b",
-        "less_equal": "less_equal(a, b) = a <= b ? one(a) : a > b ? zero(a) : a + b",
-        "select": "select(given, a, b) = given == 0 ? b : given == given ? a : given",
+        **by_cases(
+            "{name}({arguments}) = {value}",
+            number="oftype(a, {value})",
+            words={"nan": "a + b"},
+            only=("less", "less_equal", "select"),
+        ),
         "pow": "power(a, b) = a < 0 && b != round(b) ? oftype(a, NaN) : a^b",
     },
     words={"not": "!", "nan": "NaN", "given": "!isempty(inputs)"},
-    kinds=dict.fromkeys(("", REAL, INT, READ, CHANGED, INDICES, PLACES), "{name}"),
     at="{array}[{index}]",
     index="{index} + 1",
     first=1,
@@ -46,7 +46,6 @@ JULIA = Language(
     leave="return",
     arrays=dict.fromkeys((CHANGED, ROOM), "{name} = zeros(Real, {size})") | {PLACES: "{name} = zeros(Int, {size})"},
     tables={INT: "const {name} = {value}", INDICES: "const {name} = {values}", READ: "const {name} = {values}"},
-    listed=("[", "]"),
     loop=("for {name} in {first}:({last} - 1)", "end"),
     down=("for {name} in ({last} - 1):-1:{first}", "end"),
     branch=("if {condition}", "else", "end"),
@@ -107,18 +106,14 @@ end
 """
 
 
-def _named(key: str, names: Sequence[str]) -> list[str]:
-    quoted = (json.dumps(name, ensure_ascii=False).replace("$", "\\$") for name in names)
-    return [f"const {key} = String[{', '.join(quoted)}]"]
-
-
 FORM = FileForm(
     JULIA,
     _MODULE,
     "{main}.jl",
     "{main}_test.jl",
     fixed={"not_run": NOT_RUN},
-    named=_named,
+    named="const {key} = String[{names}]",
+    quoted=lambda name: in_quotes(name).replace("$", "\\$"),
     test=_TEST,
     listed=("Float64[", "]"),
     acting=("Float64[]", "{}"),

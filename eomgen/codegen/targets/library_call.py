@@ -34,6 +34,7 @@ from eomgen.codegen.targets.form import FileForm
 from eomgen.codegen.targets.in_single import SingleWords
 
 ENTRY = "eomgen_many"
+INCLUDED = re.compile(r'#include "(.+)"\n')
 
 
 def many_of(text: str, program: Program, by: Compiler, *, quickly: bool = False, real: Any = np.float64) -> Many:
@@ -62,11 +63,12 @@ def many_of(text: str, program: Program, by: Compiler, *, quickly: bool = False,
 def compiled_target(
     name: str, language: str, form: FileForm, use: tuple[str, ...], *, entry: str, size: str, by: Compiler,
     single: SingleWords, files: Callable[[str, Sequence[Emitted]], dict[str, FileContent]] | None = None,
+    load: Callable[[Program], Functions] | None = None,
 ) -> Target:  # fmt: skip
     """A language whose texts become libraries.
 
     Args:
-        use, files: as of Target; without files those of the form.
+        use, files, load: as of Target; without files those of the form, loaded by the function above.
         entry: a {text} with the function above, by the words of the form.
         size: how many constants the text says that there are, a pattern.
         by: what compiles it.
@@ -80,12 +82,12 @@ def compiled_target(
         whole, real = entry.format(**words), how.get("real", np.float64)
         return many_of(whole if real is np.float64 else single.text(whole), program, by, **how)
 
-    def load(program: Program) -> Functions:
+    def loaded(program: Program) -> Functions:
         return functions_by(many(form.text(program, "eomgen"), program, "eomgen", RHS))
 
     def run(texts: Mapping[str, FileContent], program: Program, stem: str, role: Role, **how: Any) -> Called:
-        text = str(texts[form.path_of(program, stem, role)])
+        text = INCLUDED.sub(lambda found: str(texts[found[1]]), str(texts[form.path_of(program, stem, role)]))
         return called_by(many(text, program, stem, role, quickly=True, **how))
 
     in_single = Single(single.files, partial(run, real=np.float32))
-    return Target(name, language, form.text, files or form.files, use, load, run, single=in_single)
+    return Target(name, language, form.text, files or form.files, use, load or loaded, run, single=in_single)

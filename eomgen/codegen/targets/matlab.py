@@ -11,11 +11,11 @@ import weakref
 from collections.abc import Mapping
 from pathlib import Path
 
-from eomgen.codegen.lowered import CHANGED, INDICES, INT, PLACES, READ, REAL, ROOM, Language
-from eomgen.codegen.lowering import Lowered
+from eomgen.codegen.lowered import CHANGED, INDICES, INT, PLACES, READ, ROOM, Language
 from eomgen.codegen.program import Program
 from eomgen.codegen.targets.base import Called, FileContent, Functions, Many, Role, Target, called_by, functions_by
 from eomgen.codegen.targets.beside import many_beside
+from eomgen.codegen.targets.cases import by_cases
 from eomgen.codegen.targets.form import CHECK, FileForm
 from eomgen.errors import ToolMissing
 
@@ -32,8 +32,8 @@ MATLAB = Language(
     reserved=frozenset(
         "break case catch classdef continue else elseif end for function global if otherwise parfor persistent return "
         "spmd switch try while end_try_catch unwind_protect do until endif endfor endfunction endwhile e i j Inf NaN "
-        "NA eps zeros isempty nargin table place found root logarithm arc_sine arc_cosine power_of least most step_to "
-        "pick ans ones size numel false true ode45 assert abs any all".split()
+        "NA eps zeros isempty nargin table place found root logarithm arc_sine arc_cosine power_of least most "
+        "less less_equal pick ans ones size numel false true ode45 assert abs any all".split()
     ),
     functions={
         "sqrt": "root({0})",
@@ -43,8 +43,6 @@ MATLAB = Language(
         "pow": "power_of({0}, {1})",
         "min": "least({0}, {1})",
         "max": "most({0}, {1})",
-        "less": "step_to({0} < {1}, {0} + {1})",
-        "less_equal": "step_to({0} <= {1}, {0} + {1})",
         "select": "pick({0}, {1}, {2})",
     },
     defined={
@@ -53,21 +51,19 @@ MATLAB = Language(
         "asin": _guarded("arc_sine", "a", "~(abs(a) <= 1)", "asin(a)"),
         "acos": _guarded("arc_cosine", "a", "~(abs(a) <= 1)", "acos(a)"),
         "pow": _guarded("power_of", "a, b", "a < 0 && b ~= round(b)", "a^b"),
-        "min": _guarded("least", "a, b", "a ~= a || b ~= b", "min(a, b)"),
-        "max": _guarded("most", "a, b", "a ~= a || b ~= b", "max(a, b)"),
-        "less": _guarded("step_to", "holds, a", "a ~= a", "double(holds)"),
-        "less_equal": _guarded("step_to", "holds, a", "a ~= a", "double(holds)"),
-        "select": "function found = pick(given, a, b)\n    if given == 0\n        found = b;\n"
-        "    elseif given == given\n        found = a;\n    else\n        found = given;\n    end\nend\n",
+        **by_cases(
+            "function found = {name}({arguments})\n    {value}\n    end\nend\n",
+            "if {condition}\n        found = {value};\n    else{otherwise}",
+            ends="\n        found = {value};",
+            words={"min": "least", "max": "most", "select": "pick", "a != a": "a ~= a", "nan": "a + b"},
+            only=("min", "max", "less", "less_equal", "select"),
+        ),
     },
     words={"not": "~", "!=": "~=", "nan": "NaN", "given": "~isempty(inputs)"},
-    kinds=dict.fromkeys(("", REAL, INT, READ, CHANGED, INDICES, PLACES), "{name}"),
     at="{array}({index})",
     index="{index} + 1",
     first=1,
     let="{declared} = {value};",
-    put="{place} = {value};",
-    call="{function}({arguments});",
     changes="[{results}] = {function}({arguments});",
     back="found = {value};\nreturn;",
     arrays=dict.fromkeys((CHANGED, ROOM, PLACES), "{name} = zeros({size}, 1);"),
@@ -79,7 +75,6 @@ MATLAB = Language(
             "    end\n    if nargin\n        found = table(place);\n    else\n        found = table;\n    end\nend\n",
         ),
     },
-    listed=("[", "]"),
     loop=("for {name} = {first}:({last} - 1)", "end"),
     down=("for {name} = ({last} - 1):-1:{first}", "end"),
     branch=("if {condition}", "else", "end"),
@@ -145,11 +140,6 @@ end
 """
 
 
-def _body(made: Lowered) -> dict[str, str]:
-    """The functions, step_to of both comparisons once."""
-    return {"functions": "\n\n".join(dict.fromkeys("\n\n".join(made.texts(MATLAB)).split("\n\n")))}
-
-
 FORM = FileForm(
     MATLAB,
     _MAIN,
@@ -157,7 +147,6 @@ FORM = FileForm(
     "{main}_test.m",
     "{text}",
     given={"count": ("5", "4")},
-    body=_body,
     test=_TEST,
     vector=f"    {CHECK};",
     empty="zeros(1, 0)",

@@ -109,7 +109,8 @@ def node_form(language: Language, module: str, **words: Any) -> FileForm:
         told=lambda line: f"// {one_line(line)}".rstrip(),
         given={"a_of_v": ("v.a, ", "")},
         keys=("x", "p", "inputs"),
-        named=lambda key, names: [f"    {key}: {json.dumps(names)},"],
+        named="    {key}: [{names}],",
+        quoted=json.dumps,
         test=_TEST,
         **words,
     )

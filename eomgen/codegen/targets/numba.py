@@ -5,30 +5,28 @@ from __future__ import annotations
 from dataclasses import replace
 
 from eomgen.codegen.lowered import CHANGED, INDICES, PLACES, READ, ROOM
+from eomgen.codegen.targets.cases import CASES, by_cases
 from eomgen.codegen.targets.numpy import PYTHON
 from eomgen.codegen.targets.python_files import python_form, python_target
 
-_DEFINED = {
-    "abs": ("value", "math.fabs(value)"),
-    "sign": ("value", "1.0 if value > 0 else -1.0 if value < 0 else value"),
-    "min": ("a, b", "a if a < b or a != a else b"),
-    "max": ("a, b", "a if a > b or a != a else b"),
-    "less": ("a, b", "1.0 if a < b else 0.0 if a >= b else math.nan"),
-    "less_equal": ("a, b", "1.0 if a <= b else 0.0 if a > b else math.nan"),
-    "select": ("given, a, b", "b if given == 0 else a if given == given else given"),
-}
 MATH = "sqrt sin cos asin acos atan sinh cosh tanh exp log atan2 pow".split()
 NUMBA = replace(
     PYTHON,
     functions={
         **{op: f"math.{op}({{0}})" for op in MATH},
         **{op: f"math.{op}({{0}}, {{1}})" for op in ("atan2", "pow")},
+        "abs": "math.fabs({0})",
         **{
-            op: f"own_{op}({', '.join(f'{{{k}}}' for k in range(len(a.split(','))))})"
-            for op, (a, _) in _DEFINED.items()
+            op: f"own_{op}({', '.join(f'{{{k}}}' for k in range(len(case[0].split(','))))})"
+            for op, case in CASES.items()
         },
     },
-    defined={op: f"@_compiled\ndef own_{op}({a}):\n    return {value}\n\n" for op, (a, value) in _DEFINED.items()},
+    defined=by_cases(
+        "@_compiled\ndef own_{name}({arguments}):\n    return {value}\n\n",
+        "{value} if {condition} else {otherwise}",
+        number="{value}.0",
+        words={"nan": "math.nan", "||": "or"},
+    ),
     arrays=dict.fromkeys((CHANGED, ROOM), "{name} = np.zeros({size})")
     | {PLACES: "{name} = np.zeros({size}, dtype=np.int64)"},
     tables={**PYTHON.tables, INDICES: "{name} = np.array({values})", READ: "{name} = np.array({values})"},

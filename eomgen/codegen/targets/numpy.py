@@ -7,10 +7,11 @@ import textwrap
 from collections.abc import Mapping
 from typing import Any
 
-from eomgen.codegen.lowered import CHANGED, INDICES, INT, PLACES, READ, REAL, ROOM, Language
+from eomgen.codegen.lowered import CHANGED, INDICES, INT, PLACES, READ, ROOM, Language
 from eomgen.codegen.lowering import Lowered
 from eomgen.codegen.program import Program
 from eomgen.codegen.targets.base import Called, FileContent, Functions, Role, Target
+from eomgen.codegen.targets.cases import by_cases
 from eomgen.codegen.targets.python_files import called_each, executed, python_form
 
 PYTHON = Language(
@@ -18,15 +19,12 @@ PYTHON = Language(
     functions={},
     defined={},
     words={"not": "not ", "nan": "math.nan", "given": "inputs is not None"},
-    kinds=dict.fromkeys(("", REAL, INT, READ, CHANGED, INDICES, PLACES), "{name}"),
-    at="{array}[{index}]",
     let="{declared} = {value}",
     put="{place} = {value}",
     call="{function}({arguments})",
     back="return {value}",
     arrays=dict.fromkeys((CHANGED, ROOM), "{name} = [0.0]*({size})") | {PLACES: "{name} = [0]*({size})"},
     tables={INT: "{name} = {value}", INDICES: "{name} = {values}", READ: "{name} = {values}"},
-    listed=("[", "]"),
     loop=("for {name} in range({first}, {last}):", ""),
     down=("for {name} in range({last} - 1, {first} - 1, -1):", ""),
     branch=("if {condition}:", "else:", ""),
@@ -37,21 +35,25 @@ PYTHON = Language(
 SCALARS = {
     **{name: f"math.{name}" for name in "sqrt sin cos asin acos atan sinh cosh tanh exp log atan2 pow".split()},
     "abs": "abs",
-    "sign": "lambda a: 1.0 if a > 0 else -1.0 if a < 0 else a",
-    "min": "lambda a, b: a if a < b or a != a else b",
-    "max": "lambda a, b: a if a > b or a != a else b",
-    "less": "lambda a, b: float(a < b) if a == a and b == b else a + b",
-    "less_equal": "lambda a, b: float(a <= b) if a == a and b == b else a + b",
-    "select": "lambda given, a, b: b if given == 0 else a if given == given else given",
+    **by_cases(
+        "lambda {arguments}: {value}",
+        "{value} if {condition} else {otherwise}",
+        number="{value}.0",
+        words={"nan": "a + b", "||": "or"},
+    ),
 }
 ARRAYS = {
     **{name: f"np.{name}" for name in "sqrt sin cos sinh cosh tanh exp log abs sign".split()},
     **{"asin": "np.arcsin", "acos": "np.arccos", "atan": "np.arctan", "atan2": "np.arctan2", "pow": "np.float_power"},
     "min": "np.minimum",
     "max": "np.maximum",
-    "less": "lambda a, b: np.where(a < b, 1.0, np.where(a >= b, 0.0, np.nan))",
-    "less_equal": "lambda a, b: np.where(a <= b, 1.0, np.where(a > b, 0.0, np.nan))",
-    "select": "lambda given, a, b: np.where(given == 0, b, np.where(given == given, a, given))",
+    **by_cases(
+        "lambda {arguments}: {value}",
+        "np.where({condition}, {value}, {otherwise})",
+        number="{value}.0",
+        words={"nan": "np.nan"},
+        only=("less", "less_equal", "select"),
+    ),
 }
 
 _EACH = '''

@@ -5,17 +5,16 @@ It needs no other crate: sine and the like are those of the C library. With it c
 
 from __future__ import annotations
 
-import json
 from collections.abc import Sequence
 
 from eomgen.codegen.build import Compiler
 from eomgen.codegen.lowered import CHANGED, INDICES, INT, PLACES, READ, REAL, ROOM, Language
 from eomgen.codegen.targets.base import Emitted, FileContent
-from eomgen.codegen.targets.form import FileForm
+from eomgen.codegen.targets.cases import by_cases
+from eomgen.codegen.targets.form import FileForm, in_quotes
 from eomgen.codegen.targets.in_single import QUOTED, SingleWords
 from eomgen.codegen.targets.library_call import compiled_target
 
-LONGEST_CONST = 1000  # names: a larger constant would be copied where it is used
 UNARY = "sin cos asin acos atan sinh cosh tanh exp log sqrt".split()
 RUST = Language(
     reserved=frozenset(
@@ -40,13 +39,9 @@ RUST = Language(
         INDICES: "{name}: &[isize]",
         PLACES: "{name}: &mut [isize]",
     },
-    at="{array}[{index}]",
     index="({index}) as usize",
     sized="({size}) as usize",
     let="let {declared} = {value};",
-    put="{place} = {value};",
-    call="{function}({arguments});",
-    back="return {value};",
     arrays={
         CHANGED: "let {name}: &mut [f64] = &mut [0.0; {size}];",
         ROOM: "let {name}: &mut [f64] = &mut [0.0; {size}];",
@@ -57,14 +52,12 @@ RUST = Language(
         INDICES: "static {name}: &[isize] = &{values};",
         READ: "static {name}: &[f64] = &{values};",
     },
-    listed=("[", "]"),
     loop=("for {name} in {first}..{last} {{", "}"),
     down=("for {name} in ({first}..{last}).rev() {{", "}"),
     branch=("if {condition} {{", "} else {", "}"),
     function=("fn {name}({arguments}){gives} {{", "}"),
     gives={INT: " -> isize", REAL: " -> f64"},
     out=("pub fn {name}({arguments}, {out}: &mut [f64]) {{", "}"),
-    remark="// {text}",
     unused="let _ = {name};",
     longest=4000,
 )
@@ -89,63 +82,44 @@ ALLOWED = (
     "clippy::manual_swap, clippy::collapsible_if, clippy::many_single_char_names, clippy::assign_op_pattern)]"
 )
 
+_ARGUMENTS = {**dict.fromkeys(UNARY, "a: f64"), **dict.fromkeys(("atan2", "pow"), "a: f64, b: f64")}
 _MATH = """\
 //! Functions of the C library, and those that neither it nor `core` has: what has no value stays without one.
 #![allow(dead_code)]
 mod c {
     extern "C" {
 @FOREIGN@
-        pub fn atan2(a: f64, b: f64) -> f64;
-        pub fn pow(a: f64, b: f64) -> f64;
     }
 }
 
 @SAFE@
 
-pub fn atan2(a: f64, b: f64) -> f64 {
-    // SAFETY: a pure function of numbers
-    unsafe { c::atan2(a, b) }
-}
-
-pub fn pow(a: f64, b: f64) -> f64 {
-    // SAFETY: a pure function of numbers
-    unsafe { c::pow(a, b) }
-}
-
 pub fn abs(a: f64) -> f64 {
     f64::from_bits(a.to_bits() & !(1 << 63))
 }
 
-pub fn sign(a: f64) -> f64 {
-    if a > 0.0 { 1.0 } else if a < 0.0 { -1.0 } else { a }
-}
-
-pub fn min(a: f64, b: f64) -> f64 {
-    if a < b || a.is_nan() { a } else { b }
-}
-
-pub fn max(a: f64, b: f64) -> f64 {
-    if a > b || a.is_nan() { a } else { b }
-}
-
-pub fn less(a: f64, b: f64) -> f64 {
-    if a < b { 1.0 } else if a >= b { 0.0 } else { f64::NAN }
-}
-
-pub fn less_equal(a: f64, b: f64) -> f64 {
-    if a <= b { 1.0 } else if a > b { 0.0 } else { f64::NAN }
-}
-
-pub fn select(given: f64, a: f64, b: f64) -> f64 {
-    if given == 0.0 { b } else if given.is_nan() { given } else { a }
-}
+@CHOSEN@
 """
-_MATH = _MATH.replace("@FOREIGN@", "\n".join(f"        pub fn {op}(a: f64) -> f64;" for op in UNARY)).replace(
-    "@SAFE@",
-    "\n\n".join(
-        f"pub fn {op}(a: f64) -> f64 {{\n    // SAFETY: a pure function of numbers\n    unsafe {{ c::{op}(a) }}\n}}"
-        for op in UNARY
-    ),
+_SAFE = """\
+pub fn {op}({arguments}) -> f64 {{
+    // SAFETY: a pure function of numbers
+    unsafe {{ c::{op}({names}) }}
+}}"""
+_CHOSEN = by_cases(
+    "pub fn {name}({arguments}) -> f64 {{\n    {value}\n}}",
+    "if {condition} {{ {value} }} else {otherwise}",
+    argument="{name}: f64",
+    number="{value}.0",
+    ends="{{ {value} }}",
+    words={"a != a": "a.is_nan()", "given == given": "!given.is_nan()", "nan": "f64::NAN", "0": "0.0"},
+)
+_MATH = (
+    _MATH.replace("@FOREIGN@", "\n".join(f"        pub fn {op}({a}) -> f64;" for op, a in _ARGUMENTS.items()))
+    .replace("@CHOSEN@", "\n\n".join(_CHOSEN.values()))
+    .replace(
+        "@SAFE@",
+        "\n\n".join(_SAFE.format(op=op, arguments=a, names=a.replace(": f64", "")) for op, a in _ARGUMENTS.items()),
+    )
 )
 
 _MODULE = """\
@@ -220,15 +194,6 @@ fn {role}_gives_the_values_of_its_test_vectors() {{
 """
 
 
-def _named(key: str, names: Sequence[str]) -> list[str]:
-    kind, quoted = "const" if len(names) <= LONGEST_CONST else "static", ", ".join(map(_quoted, names))
-    return [f"pub {kind} {key}: [&str; {len(names)}] = [{quoted}];"]
-
-
-def _quoted(name: str) -> str:
-    return json.dumps(name, ensure_ascii=False)
-
-
 FORM = FileForm(
     RUST,
     _MODULE,
@@ -237,7 +202,7 @@ FORM = FileForm(
     fixed={"allowed": ALLOWED, "math": _MATH},
     marked={"uses": ("math::", "use crate::math;\n\n")},
     keys=("STATES", "PARAMETERS", "INPUTS"),
-    named=_named,
+    named="pub static {key}: [&str; {count}] = [{names}];",
     test=_CASE,
     vector="    {role}({t}, {x}, {a}{p}, {inputs}, out);\n    agree(out, {result}, {tolerance});",
     listed=("&[", "]"),
@@ -251,7 +216,7 @@ def rust_files(stem: str, emitted: Sequence[Emitted]) -> dict[str, FileContent]:
     folder, about = f"{stem}_rhs", RUST.harmless(emitted[0][1].origin)
     modules = "".join(f"pub mod {told.role.name};\n" for _, told in emitted)
     return {
-        f"{folder}/Cargo.toml": _CARGO.format(stem=stem, about=_quoted(about)),
+        f"{folder}/Cargo.toml": _CARGO.format(stem=stem, about=in_quotes(about)),
         f"{folder}/src/lib.rs": f"// {about}\n#![no_std]\n\nmod math;\n{modules}",
         f"{folder}/src/math.rs": _MATH,
         **FORM.files(stem, emitted),

@@ -36,8 +36,8 @@ contains
         end if
         largest = max(1.0_dp, maxval(abs(right), mask=abs(right) >= 0))
         do k = 1, size(right)
-            if (right(k) /= right(k)) then
-                if (found(k) /= found(k)) cycle
+            if (.not. abs(right(k)) >= 0) then
+                if (.not. abs(found(k)) >= 0) cycle
             else if (abs(found(k) - right(k)) <= tolerance*largest) then
                 cycle
             end if

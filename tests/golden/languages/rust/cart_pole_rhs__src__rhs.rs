@@ -15,9 +15,9 @@
 #![allow(non_snake_case, non_upper_case_globals, clippy::needless_range_loop, clippy::needless_return, clippy::too_many_arguments, clippy::neg_cmp_op_on_partial_ord, clippy::identity_op, clippy::erasing_op, clippy::approx_constant, clippy::excessive_precision, clippy::manual_range_contains, clippy::manual_memcpy, clippy::manual_swap, clippy::collapsible_if, clippy::many_single_char_names, clippy::assign_op_pattern)]
 use crate::math;
 
-pub const STATES: [&str; 4] = ["x", "theta", "x'", "theta'"];
-pub const PARAMETERS: [&str; 4] = ["M", "m", "l", "g"];
-pub const INPUTS: [&str; 1] = ["F"];
+pub static STATES: [&str; 4] = ["x", "theta", "x'", "theta'"];
+pub static PARAMETERS: [&str; 4] = ["M", "m", "l", "g"];
+pub static INPUTS: [&str; 1] = ["F"];
 
 pub fn constants(p: &[f64], c: &mut [f64]) {
     let M: f64 = p[0];
