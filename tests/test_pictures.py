@@ -120,3 +120,28 @@ joint = { kind = "placed", at = ["l*sin(phi)", 0], angle = "pi/2 + phi" }
     assert np.allclose(np.linalg.norm(fixed, axis=1), 2.0)
     middle = np.array([np.sin(0.6), np.cos(0.6)])
     assert np.allclose(np.linalg.norm(moving - middle, axis=1), 1.0)
+
+
+def test_a_body_that_is_a_point_has_a_dot_in_the_diagrams_of_velocities():
+    """A prism slides with v_x = 2 m/s and has no height: its piece over y is the dot (2, 0)."""
+    from matplotlib.figure import Figure
+
+    figure = Figure(layout="constrained")
+    state = eomgen.kinematics(MODELS / "seeds" / "ch10_p1.toml")
+    state.picture.fill(figure)
+    (panel,) = (axes for axes in figure.axes if axes.get_xlabel() == "$v_x$ [m/s]")
+    dots = [line.get_xydata()[0] for line in panel.lines if line.get_marker() == "o"]
+    assert np.allclose(dots[0], [2.0, 0.0]) and len(dots) == 2
+
+
+def test_of_the_reference_only_bodies_stand_behind_a_mode():
+    """Each spring of two masses between walls is drawn once, swung out; the two masses twice."""
+    from matplotlib.colors import to_hex
+    from matplotlib.figure import Figure
+
+    figure = Figure(layout="constrained")
+    eomgen.linearize(MODELS / "two_mass_oscillator.toml").picture.fill(figure)
+    for panel in figure.axes:
+        teeth = [line for line in panel.lines if len(line.get_xdata()) == 12]
+        masses = [patch for patch in panel.patches if to_hex(patch.get_edgecolor()) in ("#c4c4c4", "#2f5d8a")]
+        assert (len(teeth), len(masses)) == (3, 4)

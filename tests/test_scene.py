@@ -290,6 +290,13 @@ def test_no_ellipsoid_of_inertia_hides_what_shows_its_body():
         assert len(tracks) == len(set(tracks))
 
 
+def test_of_a_long_chain_no_lengths_are_written():
+    """Twenty rods have no room for twenty dimension lines and arcs; a four-bar has them all."""
+    for name, kinds in (("chain20", set()), ("four_bar", {"dimension", "angle"})):
+        marks = eomgen.load(MODELS / f"{name}.toml").scene().marks
+        assert {mark.form.kind for mark in marks if mark.role == "dimension"} == kinds
+
+
 def test_a_long_name_stays_in_its_picture():
     """The title of a narrow picture goes on in a second line."""
     found: list[bool] = []

@@ -16,19 +16,25 @@ from eomgen.symbolic.expression.graph import Node, collected, is_zero
 from eomgen.symbolic.expression.rational import Fraction
 from eomgen.symbolic.expression.spatial import Vector, minus, plus, times
 
+MOST = 12  # lengths, or coordinates, that a picture has room for
 TIERS = (3, 5, 4, 6)  # of angles at one place, one after the other [symbol units]
 OBLIQUE: Vector = (Fraction(3, 5), Fraction(4, 5), 0)  # along which the radius of a circle is drawn
 
 
 def size_marks(system: System, marks: Iterable[Mark]) -> list[Mark]:
-    """Every parameter that is a length and every coordinate, once, where one first sees it; in the plane."""
+    """Every parameter that is a length and every coordinate, once, where one first sees it; in the plane.
+
+    Of a chain of many bodies neither: nothing could be read.
+    """
     if system.scope.model.space != "plane":
         return []
     names = {node: name for name, node in system.symbols.parameters.items()}
     found: dict[str, Mark] = {}
     for mark in (*_body_lengths(system, names), *_of_forms(marks, names), *_ground_lengths(system, names)):
         found.setdefault(getattr(mark.form, "text", ""), mark)
-    return [*found.values(), *_coordinates(system)]
+    return [
+        mark for marks in (list(found.values()), list(_coordinates(system))) if len(marks) <= MOST for mark in marks
+    ]
 
 
 def _body_lengths(system: System, names: dict[Node, str]) -> Iterator[Mark]:

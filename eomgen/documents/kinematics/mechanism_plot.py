@@ -134,7 +134,7 @@ class _Panels:
         """v_y of every body over x; thin to where it is zero."""
         for color, (start, end), slope, offset in self._pieces(axis=0):
             for ends, style in ((_to_zero(start, end, slope, offset, limits), ":"), ((start, end), "-")):
-                panel.plot(ends, [slope * x + offset for x in ends], color=color, linestyle=style, linewidth=1.8)
+                _line(panel, ends, [slope * x + offset for x in ends], color, style)
         panel.axhline(0, color="#505050", linewidth=0.8)
         panel.set(xlim=limits, xlabel="x [m]", ylabel="$v_y$ [m/s]")
 
@@ -142,7 +142,7 @@ class _Panels:
         """v_x of every body over y, y upwards; thin to where it is zero."""
         for color, (start, end), slope, offset in self._pieces(axis=1):
             for ends, style in ((_to_zero(start, end, slope, offset, limits), ":"), ((start, end), "-")):
-                panel.plot([slope * y + offset for y in ends], ends, color=color, linestyle=style, linewidth=1.8)
+                _line(panel, [slope * y + offset for y in ends], ends, color, style)
         panel.axvline(0, color="#505050", linewidth=0.8)
         panel.set(ylim=limits, ylabel="y [m]", xlabel="$v_x$ [m/s]")
 
@@ -176,6 +176,12 @@ class _Panels:
         rate = [] if self.state.symbol is None else [f"for {self.state.rate} = 1"]
         lines = [*rate, *(["centres out of sight:", *far] if far else [])]
         panel.text(0.02, 0.05, "\n".join(lines).replace("$", r"\$"), fontsize=8, va="bottom", transform=panel.transAxes)
+
+
+def _line(panel: Any, x: Sequence[float], y: Sequence[float], color: str, style: str) -> None:
+    """The velocities of a body; of one that is a point in this direction, a dot."""
+    dot = "o" if style == "-" and x[0] == x[1] and y[0] == y[1] else ""
+    panel.plot(x, y, color=color, linestyle=style, linewidth=1.8, marker=dot, markersize=6)
 
 
 def _to_zero(start: float, end: float, slope: float, offset: float, limits: tuple[float, float]) -> tuple[float, ...]:

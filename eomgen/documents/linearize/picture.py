@@ -9,6 +9,7 @@ from typing import Any
 from eomgen.documents.drawing import Sketch, draw_model
 from eomgen.documents.figures import Picture, mathtext
 from eomgen.documents.latex_names import notation_of
+from eomgen.documents.scene_drawing import artist_of, limits
 from eomgen.errors import RunFailed
 from eomgen.mechanics.equations.system import System
 from eomgen.mechanics.small_motions.modes import Modes
@@ -17,7 +18,8 @@ from eomgen.symbolic.expression.graph import Node
 from eomgen.symbolic.numeric.tolerances import WIDE_STEP
 
 MOST = 9  # modes that are drawn
-SIDE = 3.4  # of one panel [inches]
+SIDE, TITLE = 3.4, 0.4  # of one panel, of what is written over it [inches]
+BODIES = ("body", "inertia", "hole")  # roles that are drawn of the reference
 PART = 0.12  # of the drawing's extent, by which the point that moves most is swung out
 AT_REST, BAR = "#c4c4c4", "#336699"
 
@@ -35,6 +37,10 @@ def modes_picture(modes: Modes) -> Picture:
     columns = math.ceil(math.sqrt(len(drawn)))
     rows = math.ceil(len(drawn) / columns)
     plane = reference.system.scope.model.space == "plane"
+    height = SIDE
+    if plane:
+        low, high = limits(_at_rest(modes).drawing)
+        height = min(SIDE, TITLE + SIDE * float(high[1] - low[1]) / float(high[0] - low[0]))
 
     def fill(figure: Any) -> None:
         for k, mode in enumerate(drawn, start=1):
@@ -42,7 +48,7 @@ def modes_picture(modes: Modes) -> Picture:
             (_swung if plane else _bars)(panel, modes, mode)
             panel.set_title(_title(k, mode), fontsize=10)
 
-    return Picture((SIDE * columns, SIDE * rows), fill, reference.system.scope.model.name)
+    return Picture((SIDE * columns, height * rows + TITLE), fill, reference.system.scope.model.name)
 
 
 def _title(k: int, mode: Mode) -> str:
@@ -52,14 +58,23 @@ def _title(k: int, mode: Mode) -> str:
 
 
 def _swung(panel: Any, modes: Modes, mode: Mode) -> None:
-    """The reference in grey, the system swung out over it."""
+    """The bodies of the reference in grey, the system swung out over them."""
     system = modes.small.reference.system
-    values = {x: float(v) for x, v in modes.small.reference.numbers.items()}
-    here = Sketch(system, values)
-    draw_model(panel, here, names=False, colors=dict.fromkeys(system.motion.index, AT_REST))
+    here = _at_rest(modes)
+    values = here.values
+    grey = dict.fromkeys(system.motion.index, AT_REST)
+    for stroke in here.drawing.strokes:
+        if stroke.role in BODIES:
+            artist_of(panel, stroke, 0, grey, 0.5)
     size = _size(system, values, mode, here)
     moved = {q: values[q] + size * mode.shape[q].real for q in mode.shape}
     draw_model(panel, Sketch(system, {**values, **moved}), names=False)
+
+
+def _at_rest(modes: Modes) -> Sketch:
+    """The reference in numbers."""
+    reference = modes.small.reference
+    return Sketch(reference.system, {x: float(v) for x, v in reference.numbers.items()})
 
 
 def _size(system: System, values: Mapping[Node, float], mode: Mode, here: Sketch) -> float:
