@@ -384,6 +384,31 @@ def test_sdf_has_frames_springs_screws_and_links_that_nothing_holds(tmp_path):
             robot(tmp_path, SDF.replace(*change), "sdf")
 
 
+def test_sdf_takes_the_models_that_a_world_includes_and_a_model_merges(tmp_path):
+    """The same tables as with everything in one file, under the name that is included; a cycle and no file are told."""
+    whole = robot(tmp_path, SDF, "sdf")
+    inner = SDF[SDF.index("<link") : SDF.index("</model>")]
+    eye = inner[inner.index('  <link name="eye"') : inner.index('  <frame name="top"')]
+    (tmp_path / "eye").mkdir()
+    (tmp_path / "eye" / "model.sdf").write_text(
+        f'<sdf version="1.9"><model name="e">{eye}<plugin name="p"/></model></sdf>'
+    )
+    merged = inner.replace(eye, '<include merge="true"><uri>model://eye</uri></include>')
+    (tmp_path / "rover.sdf").write_text(f'<sdf version="1.9"><model name="x">{merged}</model></sdf>')
+    world = "<include><uri>file://rover.sdf</uri><name>rover</name></include></world></sdf>"
+    found = robot(tmp_path, SDF[: SDF.index("<model")] + world, "sdf")
+    assert found.model.bodies == whole.model.bodies and found.model.name == whole.model.name == "rover"
+    assert found.model.constraints == whole.model.constraints and found.model.inputs == whole.model.inputs
+    plugins, own = ([each.where for each in x.left_out if each.what == "plugin"] for x in (found, whole))
+    assert [len(each) for each in plugins] == [2] and [len(each) for each in own] == [1]
+    with pytest.raises(ModelError, match="no file is there for 'rove"):
+        robot(tmp_path, SDF[: SDF.index("<model")] + world.replace("rover.sdf", "rove.sdf"), "sdf")
+    circle = '<include merge="true"><uri>rover.sdf</uri></include>'
+    (tmp_path / "rover.sdf").write_text(f'<sdf version="1.9"><model name="x">{merged}{circle}</model></sdf>')
+    with pytest.raises(ModelError, match="includes itself"):
+        robot(tmp_path, SDF[: SDF.index("<model")] + world, "sdf")
+
+
 @pytest.mark.parametrize("seed", [0, 3])
 def test_what_is_exported_is_imported_with_the_same_equations(seed, tmp_path):
     """M and c - Q of import(export(import(F))) are those of import(F); nothing is left out."""

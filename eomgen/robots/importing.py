@@ -14,13 +14,12 @@ from eomgen.records import dataclass
 from eomgen.robots.drawn_up import Imported, LeftOut
 from eomgen.robots.mjcf import mjcf
 from eomgen.robots.numbers import EXACTLY
-from eomgen.robots.sdf import sdf
+from eomgen.robots.sdf import LARGEST, sdf
 from eomgen.robots.toml_text import toml_text
 from eomgen.robots.urdf import urdf
 
 COMMENT = re.compile(rb"<!--.*?-->", re.S)
 ROOT = re.compile(rb"<\s*([A-Za-z][A-Za-z0-9]*)")  # the first element
-LARGEST = 20_000_000  # bytes of a robot file
 
 
 @dataclass(frozen=True)

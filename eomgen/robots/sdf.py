@@ -7,12 +7,15 @@ is free, unless the model is static.
 
 from __future__ import annotations
 
+import re
 from collections.abc import Mapping
 from dataclasses import field
 from decimal import Decimal
+from pathlib import Path
 from typing import Any
 
 from eomgen.errors import ModelError
+from eomgen.files import read
 from eomgen.model.findings import nearest
 from eomgen.records import dataclass
 from eomgen.robots.drawn_up import Entries, Imported, LegalNames, Moved, Seat, hung, in_file, signed_sum, without_empty
@@ -25,12 +28,13 @@ ONE_AXIS = {"revolute": "rad", "continuous": "rad", "prismatic": "m", "screw": "
 TWO_AXES = ("universal", "revolute2")
 KINDS = (*ONE_AXIS, *TWO_AXES, "fixed", "ball")
 ENDLESS = Decimal(10) ** 15  # a limit beyond it is none
+LARGEST = 20_000_000  # bytes of a file
 STANDARD = "0 0 -9.8"  # gravity, where the file says nothing
 WHY = LEFT_OUT | {
     "plugin": "code of a simulator",
     "physics": "settings of a simulator",
     "self_collide": "no contact is declared by a shape: see [constraints]",
-    "include": "put the model of that file in its place",
+    "include": "a model within a model: merge it, or put its links here",
     "model": "models within a model: import each by itself",
 }
 
@@ -48,13 +52,55 @@ def sdf(data: bytes, name: str) -> Imported:
     world = root.one("world")
     top = root if world is None else world
     top.get("name")
-    model = top.one("model")
+    model, files = top.one("model"), (str(Path(name).resolve()),)
     if model is None:
-        raise ModelError("the file holds no <model>", root.where, "name an SDF file with one")
+        include = top.one("include")
+        if include is None:
+            raise ModelError("the file holds no <model>", root.where, "name an SDF file with one")
+        old, model, files = _included(include, files)
+        include.children.append(model)  # what nobody reads of it is left out
+    _merge(model, files)
     gravity = None if world is None else world.one("gravity")
     acceleration = gravity.value(3) if gravity is not None else decimals(STANDARD.split())
     found = _Reading.of(model, old).tables(acceleration)
     return Imported(found, left_out(root, WHY))
+
+
+def _included(include: XmlElement, files: tuple[str, ...]) -> tuple[bool, XmlElement, tuple[str, ...]]:
+    """The model of the file that an <include> names, beside this file or above; <name> and <static> are the include's.
+
+    Args:
+        files: that include one another, this last.
+    Returns:
+        whether axes are given in the model's; the model; the files, its own among them.
+    """
+    uri = include.one("uri")
+    where = re.sub(r"^(model|file|package)://", "", "" if uri is None else uri.text)
+    places = [folder / where for folder in Path(files[-1]).parents]
+    found = next((x for place in places for x in (place, place / "model.sdf") if where and x.is_file()), None)
+    if found is None:
+        raise ModelError(f"no file is there for '{where}'", include.where, "put it into this folder, or one above it")
+    if str(found) in files:
+        raise ModelError(f"'{where}' includes itself", include.where, "take one <include> out")
+    root = xml_tree(read(found, LARGEST), str(found))
+    model = root.one("model")
+    if model is None:
+        raise ModelError("the file holds no <model>", root.where, "include one with a model")
+    title, static = include.one("name"), include.one("static")
+    attributes = model.attributes if title is None else {**model.attributes, "name": title.text}
+    kept = [child for child in model.children if static is None or child.tag != "static"]
+    made = XmlElement("model", attributes, model.where, [*([] if static is None else [static]), *kept], seen=True)
+    return _version(root) < (1, 5), made, (*files, str(found))
+
+
+def _merge(model: XmlElement, files: tuple[str, ...]) -> None:
+    """Links, joints and frames of the files that are merged into a model, which stand where the model's own do."""
+    for include in [child for child in model.children if child.tag == "include" and not child.one("pose")]:
+        if include.get("merge") in ("true", "1"):
+            include.seen = True
+            _, other, through = _included(include, files)
+            _merge(other, through)
+            model.children += [child for child in other.children if child.tag != "static"]
 
 
 def _version(root: XmlElement) -> tuple[int, ...]:
