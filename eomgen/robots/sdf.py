@@ -52,7 +52,8 @@ def sdf(data: bytes, name: str) -> Imported:
     world = root.one("world")
     top = root if world is None else world
     top.get("name")
-    model, files = top.one("model"), (str(Path(name).resolve()),)
+    model = top.one("model")
+    files: tuple[str, ...] = (str(Path(name).resolve()),)
     if model is None:
         include = top.one("include")
         if include is None:
