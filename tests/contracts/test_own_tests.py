@@ -42,7 +42,7 @@ lambda' θ Θ ω_1 theta_dot' global nonlocal quote import using macro sum produ
 core Vec String u8 bool real Real i j e E I inf nan jnp jax ca np casadi test check vectors main found right largest
 tolerance a b k m n d f g h self Self None fn type end class function lambda block exports bytes read
 """
-WARNINGS = ["-Wall", "-Wextra", "-pedantic", "-Wconversion", "-Wshadow", "-Werror"]
+WARNINGS = ["-Wall", "-Wextra", "-pedantic", "-Wconversion", "-Wshadow", "-Wdouble-promotion", "-Werror"]
 
 
 def ran(folder: Path, *commands: list[str]) -> str:

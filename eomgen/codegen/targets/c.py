@@ -156,7 +156,7 @@ int main(void)
             if (isnan(vectors[i].{result}[j]) ? !isnan({result}[j])
                 : !(fabs({result}[j] - vectors[i].{result}[j]) <= vectors[i].tolerance*largest)) {{
                 fprintf(stderr, "vector %d: {result}[%d] is %.17g, not %.17g\\n", (int)i, j, \
-{result}[j], vectors[i].{result}[j]);
+(double){result}[j], (double)vectors[i].{result}[j]);
                 wrong = 1;
             }}
     }}
@@ -257,7 +257,7 @@ SINGLE = SingleWords(
         (rf"\b({FUNCTIONS})(?=\()", r"\1f"),
         SUFFIXED,
     ),
-    rf"/\*.*?\*/|{QUOTED}",
+    rf"/\*.*?\*/|{QUOTED}|(?<!sizeof)\(double\)",  # a cast for printf
     r"\.[ch]$",
 )
 TARGET = compiled_target(

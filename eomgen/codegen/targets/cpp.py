@@ -142,5 +142,7 @@ TARGET = compiled_target(
     entry=ENTRY,
     size=CONSTANTS,
     by=COMPILER,
-    single=SingleWords(((r"\bdouble\b", "float"), SUFFIXED), rf"//[^\n]*|{QUOTED}", r"_test\.cpp$"),
+    single=SingleWords(
+        ((r"\bdouble\b", "float"), SUFFIXED), rf"//[^\n]*|{QUOTED}|(?<!sizeof)\(double\)", r"_test\.cpp$"
+    ),
 )

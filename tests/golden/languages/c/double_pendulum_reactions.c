@@ -128,7 +128,7 @@ int main(void)
         for (int j = 0; j < 4; j++)
             if (isnan(vectors[i].out[j]) ? !isnan(out[j])
                 : !(fabs(out[j] - vectors[i].out[j]) <= vectors[i].tolerance*largest)) {
-                fprintf(stderr, "vector %d: out[%d] is %.17g, not %.17g\n", (int)i, j, out[j], vectors[i].out[j]);
+                fprintf(stderr, "vector %d: out[%d] is %.17g, not %.17g\n", (int)i, j, (double)out[j], (double)vectors[i].out[j]);
                 wrong = 1;
             }
     }

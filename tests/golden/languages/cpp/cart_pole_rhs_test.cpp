@@ -27,7 +27,7 @@ int main(void)
         for (int j = 0; j < 4; j++)
             if (isnan(vectors[i].dx[j]) ? !isnan(dx[j])
                 : !(fabs(dx[j] - vectors[i].dx[j]) <= vectors[i].tolerance*largest)) {
-                fprintf(stderr, "vector %d: dx[%d] is %.17g, not %.17g\n", (int)i, j, dx[j], vectors[i].dx[j]);
+                fprintf(stderr, "vector %d: dx[%d] is %.17g, not %.17g\n", (int)i, j, (double)dx[j], (double)vectors[i].dx[j]);
                 wrong = 1;
             }
     }
