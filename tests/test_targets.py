@@ -24,6 +24,7 @@ from eomgen.codegen import build
 from eomgen.codegen.files import texts_of
 from eomgen.codegen.program import program_of, right_hand_side
 from eomgen.codegen.rhs import compiled
+from eomgen.codegen.single_precision import single_vectors
 from eomgen.codegen.targets import ALL, wasm
 from eomgen.codegen.targets.base import REACTIONS, Description
 from eomgen.codegen.vectors import outputs_at, vectors
@@ -453,6 +454,16 @@ def test_the_python_file_needs_nothing_of_ours(tmp_path):
             "    assert all(abs(a - b) <= v['tolerance']*scale for a, b in zip(many, v['dx'], strict=True))\n"
         )
         subprocess.run([sys.executable, "-W", "error", "-c", check], cwd=folder, check=True)
+
+
+def test_vectors_in_single_precision_have_no_number_below_its_range():
+    """1e-51 is 0 in them: as 1e-51f it stops a strict compiler; nan stays."""
+    s = symbols("x")
+    program = program_of([s.q[0] * Fraction(1, 10**51), s.q[0] * 2], s)
+    plain = vectors(program)
+    found = single_vectors(program, plain)
+    assert any(0 < abs(v.result[0]) < 1e-45 for v in plain) and all(v.result[0] == 0 for v in found)
+    assert [v.result[1] for v in found] == [v.result[1] for v in plain]
 
 
 def test_test_vectors_say_what_they_are(tmp_path):
