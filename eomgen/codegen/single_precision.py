@@ -30,9 +30,9 @@ def single_vectors(program: Program, vectors: Sequence[TestVector]) -> tuple[Tes
         for _ in range(TRIES):
             found = rhs(v.t, beside([*v.x, *v.a]), beside(v.p), beside(v.inputs or ()))
             far = max([far, *(abs(a - b) for a, b in zip(found, v.result, strict=True) if a == a and b == b)])
-        numbers = {name: _in_range(getattr(v, name)) for name in ("x", "p", "result", "a")}
+        x, a, p, result = map(_in_range, (v.x, v.a, v.p, v.result))
         inputs = None if v.inputs is None else _in_range(v.inputs)
-        return replace(v, **numbers, inputs=inputs, tolerance=float(SINGLE + GROWN * far / size))
+        return replace(v, x=x, a=a, p=p, inputs=inputs, result=result, tolerance=float(SINGLE + GROWN * far / size))
 
     return tuple(map(measured, vectors))
 
