@@ -216,7 +216,7 @@ class _Solver:
     # -- of the linearized system ------------------------------------------------------------------
 
     @cached_property
-    def _linearization(self) -> Linearization:
+    def linearization(self) -> Linearization:
         return linearize(self.model)
 
     def _of_small_motions(self, output: Output) -> Answer:
@@ -233,7 +233,7 @@ class _Solver:
                     f"'{call}' is a function of the state, and stands beside the linearized system",
                     mend="ask it in an output of its own",
                 )
-            found, is_exact = self._linearization.value(call)
+            found, is_exact = self.linearization.value(call)
             exact = exact and is_exact
             return transplanted((found,), scope.graph, dict(scope.symbols.parameters))[0]
 

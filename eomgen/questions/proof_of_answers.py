@@ -17,19 +17,22 @@ import numpy as np
 from eomgen.certificate import certify
 from eomgen.codegen.program import program_of, right_hand_side
 from eomgen.codegen.rhs import compiled
+from eomgen.documents.linearize.result import Linearization
 from eomgen.documents.quantity import Quantity
 from eomgen.errors import DerivationError, ModelError, RunFailed
 from eomgen.mechanics.equations.articulated import with_accelerations
 from eomgen.mechanics.initial_state.numeric_value import known_exactly
 from eomgen.mechanics.instant.outputs import asks_of
+from eomgen.mechanics.small_motions.modes import MATRICES
 from eomgen.model.fields import AtRest
 from eomgen.model.outputs import FUNCTIONS
-from eomgen.model.outputs.base import SMALL_MOTIONS
+from eomgen.model.outputs.base import SMALL_MOTIONS, names_of
 from eomgen.model.parts import Model, Output
 from eomgen.proof.at_a_state import NumericState, differing, moving_states, off_by, place_of, read_back
 from eomgen.proof.check import Certificate, Check, Tally
 from eomgen.proof.emitted_code import PhaseMotion, TriedState
 from eomgen.proof.second_definitions import second_definition
+from eomgen.proof.small_motions import small_motion_checks
 from eomgen.questions.at_instant import StateAtInstant
 from eomgen.questions.in_phase import PhaseEquations
 from eomgen.questions.motion_from_start import MotionFromStart
@@ -40,7 +43,9 @@ from eomgen.simulation.constraint_rank import nearness_of
 from eomgen.simulation.integrate import integrate
 from eomgen.simulation.result import Trajectory
 from eomgen.symbolic.expression.derivative import depends_on, symbols_of
+from eomgen.symbolic.expression.expressions import Call
 from eomgen.symbolic.expression.graph import Node, Scalar
+from eomgen.symbolic.expression.rational import Fraction
 from eomgen.symbolic.numeric.evaluation import NoValue
 from eomgen.symbolic.numeric.sure_numbers import number_of
 from eomgen.symbolic.numeric.tolerances import CARRIED, COMPUTED, FINE_RUN, RUNS_AGREE, SAME_PLACE
@@ -64,13 +69,15 @@ class Solver(Protocol):
     @property
     def at_rest(self) -> StateAtInstant: ...
 
+    @property
+    def linearization(self) -> Linearization: ...
+
 
 def certificate_of(solver: Solver, answers: Mapping[str, Quantity]) -> Certificate:
     """The proof of the equations where a motion is asked, then of every answer."""
     proof = _Proof(solver, answers)
-    return Certificate(
-        (*proof.equations(), *proof.texts(), *proof.numbers(), *proof.formulas(), *proof.instants(), *proof.ways())
-    )
+    of_a_motion = (*proof.numbers(), *proof.formulas(), *proof.instants(), *proof.ways())
+    return Certificate((*proof.equations, *proof.texts(), *of_a_motion, *proof.small_motions()))
 
 
 @dataclass(frozen=True)
@@ -84,6 +91,7 @@ class _Proof:
         outputs = self.solver.model.outputs
         return {name: (outputs[name], found) for name, found in self.answers.items() if found.answered}
 
+    @cached_property
     def equations(self) -> tuple[Check, ...]:
         """Of the first phase; () where nothing moves."""
         phase = self.solver.motions[False].phase
@@ -128,7 +136,8 @@ class _Proof:
         """The number of an answer is what its formula is worth at the state in numbers."""
         tally = Tally("numbers are those of the formulas at the state", "50 digits, reactions in doubles")
         for name, (output, found) in self.asked.items():
-            if (found.value is not None and output.from_ is None) or output.at is not None:
+            at_start = found.value is not None and output.from_ is None
+            if (at_start or output.at is not None) and name not in self._linear:
                 tally.add(name, partial(self._against_state, output, found))
         return iter((*tally.checks(), *self._differences()))
 
@@ -151,7 +160,8 @@ class _Proof:
             "formulas, read back, hold at other states", "50 digits, second definitions, reactions in doubles"
         )
         for name, (output, found) in self.asked.items():
-            if output.at is None and output.from_ is None and found.exact is not None and self._others:
+            own = output.at is None and output.from_ is None and name not in self._linear
+            if own and found.exact is not None and self._others:
                 tally.add(name, partial(self._elsewhere, output, found.exact))
         return tally.checks()
 
@@ -219,7 +229,7 @@ class _Proof:
     def _refuse_other(self, output: Output) -> None:
         """Raises DerivationError for what is of no state of the motion."""
         if asks_of(output.value, SMALL_MOTIONS):
-            raise DerivationError("it is of the linearized system: `eomgen linearize` proves it")
+            raise DerivationError("it is of the linearized system, and of no state")
         if output.at is None and self.solver.is_of_the_instant(output):
             raise DerivationError("it is of one instant that no motion leads to: `eomgen kinematics` proves it")
 
@@ -241,6 +251,41 @@ class _Proof:
     @cached_property
     def _states(self) -> dict[Any, NumericState]:
         return {}
+
+    # -- of the linearized system --------------------------------------------------------------------
+
+    @cached_property
+    def _linear(self) -> dict[str, tuple[Output, Quantity]]:
+        """What asks mass, damping, stiffness or frequency."""
+        return {name: pair for name, pair in self.asked.items() if asks_of(pair[0].value, SMALL_MOTIONS)}
+
+    def small_motions(self) -> Iterator[Check]:
+        """Matrices and modes as `linearize` proves them, and what is asked of them by the matrices in numbers."""
+        if not self._linear:
+            return
+        found, system = self.solver.linearization, self.solver.motions[False].phase.system
+        proven = self.equations and found.small.first.system.modes == system.modes  # of the same contacts
+        yield from small_motion_checks(found.modes) if proven else found.certify().checks
+        tally = Tally("answers of small motions are those of the matrices in numbers", "eigenvalues of A in doubles")
+        for name, (output, answer) in self._linear.items():
+            if answer.value is not None:
+                tally.add(name, partial(self._of_matrices, output, answer.value))
+        yield from tally.checks()
+
+    def _of_matrices(self, output: Output, value: float) -> str:
+        """By the entries in floats, and by the eigenvalue of A whose Im is next to the frequency."""
+        modes, scope = self.solver.linearization.modes, self.solver.motions[False].phase.system.scope
+
+        def second(call: Call) -> Scalar:
+            if call.name != "frequency":
+                row, column = modes.place(call.name, *names_of(call))
+                return Fraction(getattr(modes.small.numbers, MATRICES[call.name])[row][column])
+            told = self.solver.linearization.frequency(call).mode.frequency
+            found = np.linalg.eigvals(modes.small.state_matrix).imag
+            return Fraction(float(min(found, key=lambda w: abs(w - (told or 0)))))
+
+        right = number_of(output.value.evaluate(scope.names, second), self._start_values)
+        return differing(value, _in_unit(right, output), SAME_PLACE)
 
     # -- when ----------------------------------------------------------------------------------------
 

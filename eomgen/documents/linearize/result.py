@@ -191,12 +191,20 @@ class Linearization(Result):
         found, exact = self.modes.entry(call.name, *names_of(call))
         return found if exact else self._rounded(found), exact
 
-    def _frequency(self, call: Call) -> tuple[Scalar, bool]:
+    def frequency(self, call: Call) -> Frequency:
+        """Of which frequency(k) speaks.
+
+        Raises:
+            DerivationError: there are not so many.
+        """
         (number,) = call.args
         k = number.literal if isinstance(number, Expression) else None
         if k is None or k != int(k):
             raise DerivationError(f"'{call}': frequencies are numbered 1, 2, ...")
-        found = self.modes.frequency(int(k))
+        return self.modes.frequency(int(k))
+
+    def _frequency(self, call: Call) -> tuple[Scalar, bool]:
+        found = self.frequency(call)
         if found.exact is not None:
             return found.exact, True
         assert found.mode.frequency is not None

@@ -1,4 +1,4 @@
-"""mass, damping, stiffness, frequency: of the linearized system, which is none of a state; `linearize` proves them."""
+"""mass, damping, stiffness, frequency: of the linearized system, which is none of a state; proven as `linearize` is."""
 
 from __future__ import annotations
 

@@ -1,0 +1,242 @@
+"""Errors that nobody chose: one operator, sign, number or comparison of the package is changed at random; who sees it?
+
+Where `planted_errors.toml` is a list made by hand, here the places are drawn by lot from the functions that a run really
+calls. Each error is put into a copy of the module in memory, and up to three runs that call the function are made again:
+
+    product     the verb says so: exit code other than 0
+    harmless    every number and formula that is printed is right all the same
+    no effect   what is printed is the same
+    open        exit code 0, and something that is printed differs: read it, by -v
+
+    python benchmarks/random_errors.py 200 --seed 1 [-v] [--rooms mechanics,model]
+"""
+
+from __future__ import annotations
+
+import argparse
+import ast
+import json
+import multiprocessing
+import random
+import sys
+from collections import Counter, defaultdict
+from collections.abc import Iterator
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+import planted_errors as planted
+
+ROOT = planted.ROOT
+ROOMS = ("mechanics", "model", "simulation", "symbolic", "codegen", "questions", "documents")
+# Of these a change is no wrong law: what is refused, said or bounded, and what looks at numbers by itself.
+APART = ("schema", "checks", "reader", "tolerances", "work.py", "errors", "closeness", "suggest", "templates")
+RUNS = """
+derive arm3; derive whipple_bicycle; derive ball_on_turntable; derive seeds/s1_euler; derive gyrostat; derive four_bar
+derive flyball_governor; derive seeds/ch22_p3; derive block_on_wedge
+solve seeds/ch22_p1; solve seeds/ch22_p6; solve seeds/ch20_p3; solve seeds/ch17_p5; solve seeds/ch16_p4
+solve seeds/ch18_p2; solve seeds/ch21_p4; solve seeds/ch13_p1; solve seeds/ch11_p5; solve quick_return; solve arm3
+solve epicyclic_gear; solve double_atwood; solve rolling_cone; solve half_car; solve flyball_governor
+solve skate_on_slope; solve seeds/ch9_p10; solve spherical_pendulum
+reactions seeds/ch22_p3; reactions four_bar; reactions heavy_top; reactions block_on_wedge; reactions rolling_disc
+reactions slider_crank; reactions seeds/ch20_p5
+statics gerber_beam; statics three_hinged_arch; statics a_frame; statics fink_truss; statics tripod
+statics strut_frame; statics seeds/ch10_p2; statics bolt_cutter; statics shear_legs
+kinematics four_bar; kinematics slider_crank; kinematics quick_return; kinematics epicyclic_gear
+inertia seeds/s1_inertia_tensor; inertia seeds/s1_principal_axes; inertia heavy_top
+linearize half_car; linearize double_pendulum; linearize four_bar; linearize two_mass_oscillator
+linearize furuta_pendulum; linearize whipple_bicycle
+simulate double_pendulum --time 1; simulate four_bar --time 0.5; simulate sliding_ladder --time 1.2
+simulate rattleback --time 0.5; simulate tumbling_body --time 0.5; simulate rough_incline --time 0.5
+simulate box_on_two_feet --time 0.5; simulate chaplygin_sleigh --time 1; simulate elastic_pendulum --time 1
+simulate tippe_top --time 0.2; simulate scotch_yoke --time 0.5; simulate disc_leaves_cylinder --time 1
+"""
+
+
+@dataclass(frozen=True)
+class Place:
+    """A node of a module's text that can be changed: between two offsets `new` is put in, in words `what`."""
+
+    file: str
+    line: int
+    begin: int
+    end: int
+    new: str
+    what: str
+
+    def patched(self) -> str:
+        source = (ROOT / "eomgen" / self.file).read_bytes()
+        return (source[: self.begin] + self.new.encode() + source[self.end :]).decode()
+
+    def planted(self) -> planted.Planted:
+        return _Drawn(self.what, "", self.file, "", "", "", place=self)
+
+
+@dataclass(frozen=True)
+class _Drawn(planted.Planted):
+    place: Place | None = None
+
+    @property
+    def patched(self) -> str:
+        assert self.place is not None
+        return self.place.patched()
+
+
+OTHER = {ast.Add: "-", ast.Sub: "+", ast.Mult: "/", ast.Div: "*"}
+SIGNS = {"-": "+", "+": "-", "*": "/", "/": "*"}
+TURNED = {ast.Lt: ">=", ast.Gt: "<=", ast.LtE: ">", ast.GtE: "<", ast.Eq: "!=", ast.NotEq: "=="}
+
+
+def places(file: str, functions: set[int]) -> Iterator[Place]:
+    """What can be changed inside the functions that begin at these lines."""
+    text = (ROOT / "eomgen" / file).read_bytes()
+    starts = [0]
+    for line in text.splitlines(keepends=True):
+        starts.append(starts[-1] + len(line))
+
+    def span(node: ast.expr) -> tuple[int, int]:
+        assert node.end_lineno is not None and node.end_col_offset is not None
+        return starts[node.lineno - 1] + node.col_offset, starts[node.end_lineno - 1] + node.end_col_offset
+
+    def between(left: ast.expr, right: ast.expr, old: str, new: str, line: int, what: str) -> Iterator[Place]:
+        a, b = span(left)[1], span(right)[0]
+        at = text[a:b].find(old.encode())
+        if at >= 0 and text[a:b].count(old.encode()) == 1:
+            yield Place(file, line, a + at, a + at + len(old), new, what)
+
+    for function in ast.walk(ast.parse(text)):
+        if not isinstance(function, ast.FunctionDef):
+            continue
+        first = min([function.lineno, *(d.lineno for d in function.decorator_list)])
+        if first not in functions:
+            continue
+        for node in (x for statement in function.body for x in ast.walk(statement)):
+            if isinstance(node, ast.BinOp) and type(node.op) in OTHER:
+                new = OTHER[type(node.op)]
+                yield from between(node.left, node.right, SIGNS[new], new, node.lineno, f"{SIGNS[new]} becomes {new}")
+            elif isinstance(node, ast.UnaryOp) and isinstance(node.op, ast.USub):
+                a, _ = span(node)
+                yield Place(file, node.lineno, a, a + 1, "+", "a minus is lost")
+            elif isinstance(node, ast.Constant) and type(node.value) is int and node.value in range(10):
+                a, b = span(node)
+                yield Place(file, node.lineno, a, b, str(node.value + 1), f"{node.value} becomes {node.value + 1}")
+            elif isinstance(node, ast.Compare) and len(node.ops) == 1 and type(node.ops[0]) in TURNED:
+                old = {ast.Lt: "<", ast.Gt: ">", ast.LtE: "<=", ast.GtE: ">=", ast.Eq: "==", ast.NotEq: "!="}
+                word = old[type(node.ops[0])]
+                new = TURNED[type(node.ops[0])]
+                yield from between(node.left, node.comparators[0], word, new, node.lineno, f"{word} becomes {new}")
+
+
+def _traced(run: str, pipe: Any) -> None:
+    """In a process of its own: which functions of the package a run calls, by file and first line."""
+    seen: set[tuple[str, int]] = set()
+    home = str(ROOT / "eomgen") + "/"
+
+    def look(frame: Any, event: str, _: Any) -> None:  # None: its lines are not told
+        if event == "call" and frame.f_code.co_filename.startswith(home):
+            seen.add((frame.f_code.co_filename[len(home) :], frame.f_code.co_firstlineno))
+
+    class Kept:
+        def send(self, found: Any) -> None:
+            self.found = found
+
+    kept = Kept()
+    sys.settrace(look)
+    planted._child(None, run, "", kept)  # type: ignore[arg-type]
+    sys.settrace(None)
+    pipe.send((kept.found, seen))
+
+
+def traced(run: str) -> tuple[planted.Outcome, set[tuple[str, int]]]:
+    context = multiprocessing.get_context("fork")
+    here, there = context.Pipe(duplex=False)
+    child = context.Process(target=_traced, args=(run, there))
+    child.start()
+    found = here.recv()
+    child.join()
+    return found  # type: ignore[no-any-return]
+
+
+def difference(found: str, right: str) -> str:
+    """The first answer that is not right; "" where all are."""
+    a, b = (planted._leaves(json.loads(text)) for text in (found, right))
+    for key in b:
+        if key.startswith((".schema", ".steps")) or ".message" in key or ".method" in key:
+            continue
+        if key not in a:
+            return f"{key}: missing"
+        if not planted._right(a[key], b[key], True) and not _same_text(a[key], b[key]):
+            return f"{key}: {str(a[key])[:150]} for {str(b[key])[:150]}"
+    return ""
+
+
+def _same_text(one: Any, other: Any) -> bool:
+    if not (isinstance(one, str) and isinstance(other, str) and "=" in one and "=" in other):
+        return False
+    sides = [x.split("=") for x in (one, other)]
+    return all(len(x) == 2 for x in sides) and planted._equal_formulas(*("(" + ")-(".join(x) + ")" for x in sides))
+
+
+def main() -> int:
+    parser = argparse.ArgumentParser(description=__doc__.partition("\n")[0])
+    parser.add_argument("number", type=int)
+    parser.add_argument("--seed", type=int, default=1)
+    parser.add_argument("--rooms", default=",".join(ROOMS))
+    parser.add_argument("-v", "--verbose", action="store_true")
+    options = parser.parse_args()
+    planted.warm()
+    rng = random.Random(options.seed)
+    runs = [run.strip() for run in RUNS.replace("\n", ";").split(";") if run.strip()]
+    right: dict[str, planted.Outcome] = {}
+    called: dict[tuple[str, int], list[str]] = defaultdict(list)
+    for run in runs:
+        right[run], functions = traced(run)
+        if right[run].code:
+            print(f"left out: {run}: exit {right[run].code} {right[run].why}", flush=True)
+            continue
+        for function in functions:
+            called[function].append(run)
+    by_file: dict[str, set[int]] = defaultdict(set)
+    for file, line in called:
+        if file.split("/")[0] in options.rooms.split(",") and not any(word in file for word in APART):
+            by_file[file].add(line)
+    every = [
+        (place, called[file, line])
+        for file, lines in sorted(by_file.items())
+        for line in sorted(lines)
+        for place in places(file, {line})
+    ]
+    print(f"{len(every)} places in {len(by_file)} files, {len(right)} runs", flush=True)
+    rows: Counter[tuple[str, str]] = Counter()
+    for place, mine in rng.sample(every, options.number):
+        seen = "no effect"
+        for run in rng.sample(mine, min(3, len(mine))):
+            wrong = planted.outcome(place.planted(), run)
+            if wrong.code:
+                seen, said = "product", wrong.why
+            elif wrong.out == right[run].out:
+                continue
+            else:
+                said = difference(wrong.out, right[run].out)
+                seen = "open" if said else "harmless"
+            if options.verbose or seen == "open":
+                print(f"{seen:9} {place.file}:{place.line} {place.what} [{run}] {said[:330]}", flush=True)
+            if seen != "harmless":
+                break
+        rows[place.file.split("/")[0], seen] += 1
+    print(table(rows))
+    return 0
+
+
+def table(rows: Counter[tuple[str, str]]) -> str:
+    """Markdown: of every room how many were drawn and who saw them."""
+    words = ("product", "harmless", "no effect", "open")
+    lines = [f"| room | {' | '.join(words)} |", f"|---|{'---:|' * len(words)}"]
+    for room in (*sorted({room for room, _ in rows}), "all"):
+        counts = [sum(n for (r, w), n in rows.items() if w == word and room in (r, "all")) for word in words]
+        lines.append(f"| {room} | {' | '.join(map(str, counts))} |")
+    return "\n".join(lines)
+
+
+if __name__ == "__main__":
+    sys.exit(main())
