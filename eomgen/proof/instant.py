@@ -87,6 +87,18 @@ def instant_checks(
             yield checked(name, found, DIFFERENCES)
 
 
+def values_of(state: KinematicState) -> Mapping[Node, Any]:
+    """Every symbol at the instant, with 50 digits; parameters and rates that have no value are something."""
+    rng = Random(3)
+    known: dict[Node, Any] = values_of_parameters(state.system.scope, rng)
+    scalars = tuple(state.state.values())
+    for x in symbols_of(scalars):
+        if x not in known:
+            known[x] = fifty_digits().number(rng.randint(50, 90)) / 60
+    found = dict(zip(state.state, evaluate(scalars, known, fifty_digits()), strict=True))
+    return {**known, **found}
+
+
 @dataclass(frozen=True)
 class Seen:
     """A rigid body by differences of its poses, ground axes.
@@ -133,15 +145,7 @@ class _Proof:
 
     @cached_property
     def values(self) -> Mapping[Node, Any]:
-        """Of every symbol at the instant; parameters and rates that have none are something."""
-        state, rng = self.state, Random(3)
-        known: dict[Node, Any] = values_of_parameters(state.system.scope, rng)
-        scalars = tuple(state.state.values())
-        for x in symbols_of(scalars):
-            if x not in known:
-                known[x] = fifty_digits().number(rng.randint(50, 90)) / 60
-        found = dict(zip(state.state, evaluate(scalars, known, fifty_digits()), strict=True))
-        return {**known, **found}
+        return values_of(self.state)
 
     @property
     def accelerated(self) -> bool:

@@ -23,19 +23,18 @@ from eomgen.errors import DerivationError, ModelError, RunFailed
 from eomgen.mechanics.equations.articulated import with_accelerations
 from eomgen.mechanics.initial_state.numeric_value import known_exactly
 from eomgen.mechanics.instant.outputs import asks_of
-from eomgen.mechanics.small_motions.modes import MATRICES
 from eomgen.model.fields import AtRest
 from eomgen.model.outputs import FUNCTIONS
-from eomgen.model.outputs.base import SMALL_MOTIONS, names_of
+from eomgen.model.outputs.base import SMALL_MOTIONS
 from eomgen.model.parts import Model, Output
 from eomgen.proof.at_a_state import NumericState, differing, moving_states, off_by, place_of, read_back
 from eomgen.proof.check import Certificate, Check, Tally
 from eomgen.proof.emitted_code import PhaseMotion, TriedState
 from eomgen.proof.second_definitions import second_definition
-from eomgen.proof.small_motions import small_motion_checks
 from eomgen.questions.at_instant import StateAtInstant
 from eomgen.questions.in_phase import PhaseEquations
 from eomgen.questions.motion_from_start import MotionFromStart
+from eomgen.questions.proof_apart import Asked, in_unit, of_one_instant, of_small_motions
 from eomgen.questions.proof_of_phases import wrong_way
 from eomgen.records import dataclass
 from eomgen.simulation.constraint_drift import projection_of
@@ -43,9 +42,7 @@ from eomgen.simulation.constraint_rank import nearness_of
 from eomgen.simulation.integrate import integrate
 from eomgen.simulation.result import Trajectory
 from eomgen.symbolic.expression.derivative import depends_on, symbols_of
-from eomgen.symbolic.expression.expressions import Call
 from eomgen.symbolic.expression.graph import Node, Scalar
-from eomgen.symbolic.expression.rational import Fraction
 from eomgen.symbolic.numeric.evaluation import NoValue
 from eomgen.symbolic.numeric.sure_numbers import number_of
 from eomgen.symbolic.numeric.tolerances import CARRIED, COMPUTED, FINE_RUN, RUNS_AGREE, SAME_PLACE
@@ -77,7 +74,7 @@ def certificate_of(solver: Solver, answers: Mapping[str, Quantity]) -> Certifica
     """The proof of the equations where a motion is asked, then of every answer."""
     proof = _Proof(solver, answers)
     of_a_motion = (*proof.numbers(), *proof.formulas(), *proof.instants(), *proof.ways())
-    return Certificate((*proof.equations, *proof.texts(), *of_a_motion, *proof.small_motions()))
+    return Certificate((*proof.equations, *proof.texts(), *of_a_motion, *proof.apart()))
 
 
 @dataclass(frozen=True)
@@ -86,7 +83,7 @@ class _Proof:
     answers: Mapping[str, Quantity]
 
     @cached_property
-    def asked(self) -> dict[str, tuple[Output, Quantity]]:
+    def asked(self) -> dict[str, Asked]:
         """The outputs that were answered."""
         outputs = self.solver.model.outputs
         return {name: (outputs[name], found) for name, found in self.answers.items() if found.answered}
@@ -117,7 +114,7 @@ class _Proof:
         number = number_of(read_back(phase.system, found.exact or ""), self._start_values)
         if math.isnan(number):
             raise NoValue("the text holds what has no value at the start")
-        return differing(found.value or 0.0, _in_unit(number, output))
+        return differing(found.value or 0.0, in_unit(number, output))
 
     @cached_property
     def _start_values(self) -> dict[Node, Scalar | float]:
@@ -137,7 +134,7 @@ class _Proof:
         tally = Tally("numbers are those of the formulas at the state", "50 digits, reactions in doubles")
         for name, (output, found) in self.asked.items():
             at_start = found.value is not None and output.from_ is None
-            if (at_start or output.at is not None) and name not in self._linear:
+            if (at_start or output.at is not None) and not self._is_apart(name):
                 tally.add(name, partial(self._against_state, output, found))
         return iter((*tally.checks(), *self._differences()))
 
@@ -160,7 +157,7 @@ class _Proof:
             "formulas, read back, hold at other states", "50 digits, second definitions, reactions in doubles"
         )
         for name, (output, found) in self.asked.items():
-            own = output.at is None and output.from_ is None and name not in self._linear
+            own = output.at is None and output.from_ is None and not self._is_apart(name)
             if own and found.exact is not None and self._others:
                 tally.add(name, partial(self._elsewhere, output, found.exact))
         return tally.checks()
@@ -170,9 +167,9 @@ class _Proof:
         judged, scalar = False, read_back(self.solver.motions[False].phase.system, text)
         for state in self._others:
             try:
-                told, right = (_in_unit(x, output) for x in (state.number(scalar), state.worth(output.value)))
-                if differing(told, right) and abs(told - right) > _in_unit(state.rounding(output.value), output):
-                    near = [_in_unit(beside.worth(output.value), output) for beside in state.beside()]
+                told, right = (in_unit(x, output) for x in (state.number(scalar), state.worth(output.value)))
+                if differing(told, right) and abs(told - right) > in_unit(state.rounding(output.value), output):
+                    near = [in_unit(beside.worth(output.value), output) for beside in state.beside()]
                     if wrong := off_by(told, right, near):
                         return f"{wrong} at t = {state.t:.6g} s, {place_of(state)}"
                 for call in output.value.calls:
@@ -200,12 +197,12 @@ class _Proof:
         if found.value is None:
             raise DerivationError("it has no number")
         state = self._state_of(output)
-        right = _in_unit(state.worth(output.value), output)
-        if not differing(found.value, right) or abs(found.value - right) <= _in_unit(
+        right = in_unit(state.worth(output.value), output)
+        if not differing(found.value, right) or abs(found.value - right) <= in_unit(
             state.rounding(output.value), output
         ):
             return ""
-        return off_by(found.value, right, [_in_unit(near.worth(output.value), output) for near in state.beside()])
+        return off_by(found.value, right, [in_unit(near.worth(output.value), output) for near in state.beside()])
 
     def _state_of(self, output: Output) -> NumericState:
         """The state at which an output is asked.
@@ -231,7 +228,7 @@ class _Proof:
         if asks_of(output.value, SMALL_MOTIONS):
             raise DerivationError("it is of the linearized system, and of no state")
         if output.at is None and self.solver.is_of_the_instant(output):
-            raise DerivationError("it is of one instant that no motion leads to: `eomgen kinematics` proves it")
+            raise DerivationError("it is of one instant that no motion leads to")
 
     def _moment(self, output: Output) -> StateAtInstant | None:
         """The instant that is asked; None: the start."""
@@ -252,40 +249,26 @@ class _Proof:
     def _states(self) -> dict[Any, NumericState]:
         return {}
 
-    # -- of the linearized system --------------------------------------------------------------------
+    # -- of no state of the motion -------------------------------------------------------------------
 
     @cached_property
-    def _linear(self) -> dict[str, tuple[Output, Quantity]]:
-        """What asks mass, damping, stiffness or frequency."""
-        return {name: pair for name, pair in self.asked.items() if asks_of(pair[0].value, SMALL_MOTIONS)}
+    def _apart(self) -> tuple[dict[str, Asked], dict[str, Asked]]:
+        """What asks mass, damping, stiffness or frequency; what is of one instant that no motion leads to."""
+        linear = {name: pair for name, pair in self.asked.items() if asks_of(pair[0].value, SMALL_MOTIONS)}
+        left = {name: pair for name, pair in self.asked.items() if name not in linear and pair[0].at is None}
+        return linear, {name: pair for name, pair in left.items() if self.solver.is_of_the_instant(pair[0])}
 
-    def small_motions(self) -> Iterator[Check]:
-        """Matrices and modes as `linearize` proves them, and what is asked of them by the matrices in numbers."""
-        if not self._linear:
-            return
-        found, system = self.solver.linearization, self.solver.motions[False].phase.system
-        proven = self.equations and found.small.first.system.modes == system.modes  # of the same contacts
-        yield from small_motion_checks(found.modes) if proven else found.certify().checks
-        tally = Tally("answers of small motions are those of the matrices in numbers", "eigenvalues of A in doubles")
-        for name, (output, answer) in self._linear.items():
-            if answer.value is not None:
-                tally.add(name, partial(self._of_matrices, output, answer.value))
-        yield from tally.checks()
+    def _is_apart(self, name: str) -> bool:
+        return any(name in group for group in self._apart)
 
-    def _of_matrices(self, output: Output, value: float) -> str:
-        """By the entries in floats, and by the eigenvalue of A whose Im is next to the frequency."""
-        modes, scope = self.solver.linearization.modes, self.solver.motions[False].phase.system.scope
-
-        def second(call: Call) -> Scalar:
-            if call.name != "frequency":
-                row, column = modes.place(call.name, *names_of(call))
-                return Fraction(getattr(modes.small.numbers, MATRICES[call.name])[row][column])
-            told = self.solver.linearization.frequency(call).mode.frequency
-            found = np.linalg.eigvals(modes.small.state_matrix).imag
-            return Fraction(float(min(found, key=lambda w: abs(w - (told or 0)))))
-
-        right = number_of(output.value.evaluate(scope.names, second), self._start_values)
-        return differing(value, _in_unit(right, output), SAME_PLACE)
+    def apart(self) -> Iterator[Check]:
+        """Of small motions, and of one instant."""
+        linear, instant = self._apart
+        system = self.solver.motions[False].phase.system
+        if linear:
+            yield from of_small_motions(self.solver.linearization, system, linear, self.equations)
+        if instant:
+            yield from of_one_instant(self.solver.model, instant)
 
     # -- when ----------------------------------------------------------------------------------------
 
@@ -371,19 +354,15 @@ class _Proof:
         one_way = _before_a_turn(run, len(symbols.q))
         for t, x in list(zip(run.t.tolist(), run.x.tolist(), strict=True))[1:one_way:4]:
             state = self._state(phase, {symbols.t: t, **dict(zip(nodes, x, strict=True))})
-            right = _in_unit(state.worth(output.value), output)
+            right = in_unit(state.worth(output.value), output)
             here: dict[Node, Scalar | float] = {**parameters, symbols.t: t, **dict(zip(nodes, x, strict=True))}
-            told = _in_unit(number_of(scalar, here), output)
+            told = in_unit(number_of(scalar, here), output)
             wrong = differing(told, right, CARRIED) and off_by(
-                told, right, [_in_unit(near.worth(output.value), output) for near in state.beside()]
+                told, right, [in_unit(near.worth(output.value), output) for near in state.beside()]
             )
             if wrong:
                 return f"{wrong} at t = {t:.6g} s"
         return ""
-
-
-def _in_unit(value: float, output: Output) -> float:
-    return value if output.unit is None else float(output.unit.from_si(value, math.pi))
 
 
 def _start(motion: MotionFromStart) -> dict[Node, float]:
