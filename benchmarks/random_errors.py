@@ -1,7 +1,8 @@
-"""Errors that nobody chose: one operator, sign, number or comparison of the package is changed at random; who sees it?
+"""Errors that nobody chose: one operator, sign, number or comparison of the package is changed; who sees it?
 
-Where `planted_errors.toml` is a list made by hand, here the places are drawn by lot from the functions that a run really
-calls. Each error is put into a copy of the module in memory, and up to three runs that call the function are made again:
+Where `planted_errors.toml` is a list made by hand, here the places are drawn by lot from the functions that a run
+really calls. Each error is put into a copy of the module in memory, and up to three runs that call the function are
+made again:
 
     product     the verb says so: exit code other than 0
     harmless    every number and formula that is printed is right all the same
@@ -22,7 +23,6 @@ import sys
 from collections import Counter, defaultdict
 from collections.abc import Iterator
 from dataclasses import dataclass
-from pathlib import Path
 from typing import Any
 
 import planted_errors as planted

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import replace
+from functools import partial
 from typing import TYPE_CHECKING, Any
 
 import click
@@ -165,7 +166,8 @@ def derive_command(*, fresh: bool, **options: Any) -> int:
     told = options["diff"] is None, "is of one model, and --diff tells what differs between two"
     refuse_idle(units=told, full=told)
     if fresh or options["model"] == "-" or options["diff"] is not None or not options["certify"]:
-        return write_asked(_derived, **options)
+        wants = form_asked(options["wants_json"], options["format_"], options["output"])
+        return write_asked(partial(_derived, data=wants == "json"), **options)
     return _kept_derivation(**options)
 
 
@@ -192,7 +194,7 @@ def _kept_derivation(
         if before is not None and (known := before.found()) is not None:
             found = Delivery(*known)
         else:
-            document = asked_document(_derived, source, options)
+            document = asked_document(partial(_derived, data=form == "json"), source, options)
             found = delivery_of(document, form, strict=strict)
             if before is not None and found.code == 0 and document.certificate is not None and document.certificate.ok:
                 before.keep(found.text, found.lines, found.code)

@@ -19,7 +19,7 @@ from eomgen.codegen.rhs import RightHandSide, compiled, parameter_vector
 from eomgen.documents.derivation import derivation_of, printed_formulas
 from eomgen.documents.document import Document
 from eomgen.documents.latex import equations_latex
-from eomgen.documents.payload import equations_payload
+from eomgen.documents.payload import Texts, equations_payload, payload_texts
 from eomgen.documents.reaction_steps import letters_of
 from eomgen.documents.result import Result
 from eomgen.documents.setting_steps import assumption_steps
@@ -298,9 +298,22 @@ class Equations(Result):
         derived = None if self.method == "lagrange" else self.derived
         return certify(self.graph, compiled(self.program, target), derived, printed=printed)
 
-    def proven(self, document: Document) -> Document:
-        """A derivation with its proof: the equations', and of its own formulas as they are printed."""
-        return document.proven(self.certify(printed=Printed(*printed_formulas(document), self._letters)))
+    def proven(self, document: Document, *, data: bool = False) -> Document:
+        """A derivation with its proof: the equations', and of its own formulas as they are printed.
+
+        Args:
+            data: what `derive --json` carries, too, read back.
+        """
+        printed = Printed(*printed_formulas(document), self._letters)
+        if data:
+            found = self._texts
+            texts = tuple((name, text, x) for (name, x), text in zip(found.scalars, found.texts, strict=True))
+            printed = replace(printed, texts=texts, definitions=tuple(found.definitions))
+        return document.proven(self.certify(printed=printed))
+
+    @cached_property
+    def _texts(self) -> Texts:
+        return payload_texts(self.graph)
 
     @property
     def _letters(self) -> dict[str, Scalar]:
@@ -383,7 +396,7 @@ class Equations(Result):
 
     def entries(self) -> dict[str, Any]:
         """What `derive --json` carries."""
-        payload = equations_payload(self.graph, self.method)
+        payload = equations_payload(self.graph, self.method, self._texts)
         return {**payload, "assumptions": list(self.assumptions)}
 
     def _repr_latex_(self) -> str:

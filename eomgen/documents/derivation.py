@@ -201,15 +201,18 @@ def _projection(equations: EquationsOfMotion, reader: Reader) -> tuple[tuple[Ste
 _BY_METHOD = {"lagrange": _lagrange, "projection": _projection}
 
 
-def printed_formulas(document: Document) -> tuple[tuple[tuple[str, ...], ...], tuple[str, ...]]:
-    """(the sides of every formula that holds at any state, what is said to stay constant), as they are printed."""
+def printed_formulas(document: Document) -> tuple[tuple[tuple[str, ...], ...], tuple[str, ...], frozenset[str]]:
+    """As they are printed: the sides of every formula that holds at any state, what is said to stay constant, and
+    which of these texts are expressions."""
+    expressions: set[str] = set()
     formulas: list[tuple[str, ...]] = []
     constants: list[str] = []
     for step in (step for step in document.steps if step.key not in FROM_THE_START):
         for statement in (s for s in step.statements if isinstance(s, Formula)):
             sides = tuple(map(side_text, statement.sides))
+            expressions |= {text for side, text in zip(statement.sides, sides, strict=True) if isinstance(side, Node)}
             if step.key == "integrals" and type(statement.sides[0]) is not Node:  # a symbol is a part of what follows
                 constants.append(sides[-1])
             else:
                 formulas.append(sides)
-    return tuple(formulas), tuple(constants)
+    return tuple(formulas), tuple(constants), frozenset(expressions)

@@ -5,7 +5,7 @@ q' = N u + nu,   M a = forcing + J^T lam,   J a + gamma = 0
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from typing import Any
 
 from eomgen.documents.equation_steps import multiplier_forces
@@ -21,7 +21,34 @@ LARGEST = 16_000_000  # characters of all expressions together that are written 
 NAMED_PART = 200  # characters of a text in which long parts have names
 
 
-def equations_payload(equations: EquationsOfMotion, method: str) -> dict[str, Any]:
+@dataclass(frozen=True)
+class Texts:
+    """The expressions of the payload as texts.
+
+    Args:
+        fields: the scalars, by entry.
+        definitions: (name, text) of parts that have a name, each before its use.
+        texts: of all scalars, one entry after the other.
+    """
+
+    fields: Mapping[str, Field]
+    definitions: Sequence[tuple[str, str]]
+    texts: Sequence[str]
+
+    @property
+    def scalars(self) -> Iterator[tuple[str, Scalar]]:
+        """(entry, scalar), as they stand beside the texts."""
+        return ((name, x) for name, field in self.fields.items() for x in field.scalars)
+
+
+def payload_texts(equations: EquationsOfMotion) -> Texts:
+    """What the payload says of the equations of motion, the reactions left out."""
+    fields = _fields(equations)
+    definitions, texts = _texts([x for field in fields.values() for x in field.scalars], _taken(equations))
+    return Texts(fields, definitions, texts)
+
+
+def equations_payload(equations: EquationsOfMotion, method: str, found: Texts) -> dict[str, Any]:
     """The equations of motion as plain data, ready for JSON.
 
     Matrices are lists of rows, vectors flat lists. Small expressions are multiplied out. Where everything written out
@@ -29,10 +56,8 @@ def equations_payload(equations: EquationsOfMotion, method: str) -> dict[str, An
     before its use.
     """
     model, symbols = equations.system.scope.model, equations.symbols
-    fields = _fields(equations)
-    definitions, texts = _texts([x for field in fields.values() for x in field.scalars], _taken(equations))
-    rest = iter(texts)
-    written = {name: field.shaped([next(rest) for _ in field.scalars]) for name, field in fields.items()}
+    definitions, rest = found.definitions, iter(found.texts)
+    written = {name: field.shaped([next(rest) for _ in field.scalars]) for name, field in found.fields.items()}
     sides = written.pop("equations")
     values = exact_parameters(model)
     return {

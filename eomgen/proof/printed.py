@@ -7,7 +7,7 @@ the next instant: the state a step later and a step earlier, to first order, wit
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import field
 from functools import cached_property
 from typing import Any
@@ -25,7 +25,7 @@ from eomgen.proof.in_numbers import way_through
 from eomgen.proof.states import refuse_open
 from eomgen.records import dataclass
 from eomgen.symbolic.expression.derivative import gradient
-from eomgen.symbolic.expression.expressions import Call, parse
+from eomgen.symbolic.expression.expressions import LONGEST, Call, parse
 from eomgen.symbolic.expression.graph import Node, Scalar
 from eomgen.symbolic.expression.node import State
 from eomgen.symbolic.expression.spatial import Vector
@@ -34,7 +34,7 @@ from eomgen.symbolic.numeric.evaluation import evaluate, fifty_digits
 from eomgen.symbolic.numeric.tolerances import COMPUTED
 
 SPINS = ("omega_x", "omega_y", "omega_z")
-LONGEST = 20_000  # characters of one formula that is read back
+SHOWN = 60  # characters of one that cannot be read
 
 
 @dataclass(frozen=True)
@@ -44,12 +44,18 @@ class Printed:
     Args:
         formulas: the sides of each.
         constants: of what is said to stay constant along every motion.
+        expressions: which of these texts are expressions, and must be such to our grammar.
         letters: what a letter that only formulas define is worth by another way.
+        texts: (where, text, the scalar that it stands for).
+        definitions: (name, text) of parts that have a name in these texts, each before its use.
     """
 
     formulas: tuple[tuple[str, ...], ...] = ()
     constants: tuple[str, ...] = ()
+    expressions: frozenset[str] = frozenset()
     letters: Mapping[str, Scalar] = field(default_factory=dict)
+    texts: tuple[tuple[str, str, Scalar], ...] = ()
+    definitions: tuple[tuple[str, str], ...] = ()
 
 
 @dataclass(frozen=True)
@@ -99,10 +105,36 @@ class ReadBack:
         if len(text) > LONGEST:
             return None
         try:
-            found: Scalar = parse(text, references=True).evaluate(names, self._value)
+            formula = parse(text, references=True)
+        except ExpressionError:
+            return None
+        try:
+            found: Scalar = formula.evaluate(names, self._value)
         except (ExpressionError, DerivationError, UsageError, KeyError):
             return None
         return found
+
+    @cached_property
+    def unreadable(self) -> str:
+        """The first expression that our grammar does not read; "" as it must be."""
+        texts = (*sorted(self.printed.expressions), *(text for _, text, _ in self.printed.texts))
+        for text in texts:
+            try:
+                parse(text, references=True) if len(text) <= LONGEST else None
+            except ExpressionError as error:
+                return f"{text[:SHOWN]}: {error.what}"
+        return ""
+
+    @cached_property
+    def data(self) -> list[tuple[str, Scalar, Scalar]]:
+        """(where, what the text says, what it stands for)."""
+        names = dict(self._symbols)
+        for name, text in self.printed.definitions:
+            read = self._read(text, names)
+            if read is not None:
+                names[name] = read
+        found = ((where, self._read(text, names), x) for where, text, x in self.printed.texts)
+        return [(where, read, x) for where, read, x in found if read is not None]
 
     def _value(self, call: Call) -> Scalar:
         """A function of the motion, as outputs ask it; energies, forces and spins by their names."""
@@ -149,13 +181,15 @@ class ReadBack:
 
     def wrong(self, state: State) -> str:
         """Which formula does not hold at a state of the motion; "" where all do."""
-        known = state | least_multipliers(self.equations, state)
-        values = iter(evaluate([x for _, *sides in self.equalities for x in sides], known, fifty_digits()))
-        for left, _, _ in self.equalities:
-            a, b = next(values), next(values)
-            if abs(a - b) > COMPUTED * (1 + abs(a) + abs(b)):
-                return f"{left}: {float(a):.10g} against {float(b):.10g}"
-        return ""
+        if self.unreadable:
+            return self.unreadable
+        return _unequal(self.equalities, state | least_multipliers(self.equations, state))
+
+    def wrong_data(self, state: State) -> str:
+        """Which text is not worth what it stands for at a state, at some accelerations and multipliers; ""."""
+        symbols = self.equations.symbols
+        some = {x: precise(1 + 1 / k) for k, x in enumerate((*symbols.a, *symbols.lam), start=2)}
+        return self.unreadable or _unequal(self.data, {**some, **state})
 
     def drifting(self, state: State) -> str:
         """Which constant does not stay at a state of the motion; "" where all do."""
@@ -165,6 +199,16 @@ class ReadBack:
             if abs(rate) > COMPUTED * (1 + abs(worth)):
                 return f"{text} changes by {float(rate):.3g} in a second"
         return ""
+
+
+def _unequal(pairs: Sequence[tuple[str, Scalar, Scalar]], state: State) -> str:
+    """The first pair that is not equal at a state, to nine digits, in words."""
+    values = iter(evaluate([x for _, *sides in pairs for x in sides], state, fifty_digits()))
+    for where, _, _ in pairs:
+        a, b = next(values), next(values)
+        if abs(a - b) > COMPUTED * (1 + abs(a) + abs(b)):
+            return f"{where}: {float(a):.10g} against {float(b):.10g}"
+    return ""
 
 
 def least_multipliers(equations: EquationsOfMotion, state: State) -> dict[Node, Any]:

@@ -317,6 +317,9 @@ class Trials:
         if text.equalities:
             name = "what is printed, read back, holds along the motion"
             yield self._at_states(name, "50 digits", lambda state: text.wrong(self._moving(state)), moving=True)
+        if printed.texts:
+            name = "texts for machines, read back, are the equations"
+            yield self._at_states(name, "50 digits", text.wrong_data)
         if text.constants:
             name = "first integrals as they are printed stay constant along the motion"
             yield self._at_states(

@@ -19,7 +19,14 @@ HEADS = {"names": "name", "equations": "equation of motion along", "reactions": 
 
 
 def derive_document(
-    model: Model, *, method: str, certify: bool, full: bool = False, units: bool = False, diff: str | None = None
+    model: Model,
+    *,
+    method: str,
+    certify: bool,
+    full: bool = False,
+    units: bool = False,
+    diff: str | None = None,
+    data: bool = False,
 ) -> Document:
     """The derivation, and its certificate.
 
@@ -27,6 +34,7 @@ def derive_document(
         full: everything is printed, however long.
         units: those of names, equations, reactions and outputs too.
         diff: the file of another model: what differs from it is told instead.
+        data: the texts for machines are proven, too.
     """
     if diff is not None:
         from eomgen.verbs.derive_difference import difference_document
@@ -35,7 +43,7 @@ def derive_document(
     equations = pipeline.derive(model, method)
     document = equations.written(full=full)
     document = _with_units(equations, document) if units else document
-    return equations.proven(document) if certify else document.proven(None)
+    return equations.proven(document, data=data) if certify else document.proven(None)
 
 
 def _with_units(equations: Equations, document: Document) -> Document:
