@@ -179,6 +179,9 @@ class _Proof:
         usual = max((abs(late[u] - early[u]) / (2 * STEP) for u in late), default=0)
         for u, x in self.nearby.going(numbers).a.items():
             if abs(x) > COMPUTED * usual + ZERO_AT_50:
+                beside = self.nearby.going({**numbers, **{q: numbers[q] + STEP * d for q, d in aside.items()}}).a[u]
+                if abs(beside - x) > SHARE * abs(x):
+                    raise NoValue(f"{u.name} is 0/0 there")
                 return f"{u.name} changes by {float(x):.3g}"
         return ""
 

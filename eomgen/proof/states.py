@@ -18,7 +18,7 @@ from eomgen.model.values import exact_parameters
 from eomgen.proof.in_numbers import with_inputs
 from eomgen.proof.pieces import Switch, switches_of
 from eomgen.records import dataclass
-from eomgen.symbolic.expression.graph import Scalar
+from eomgen.symbolic.expression.graph import Scalar, is_zero
 from eomgen.symbolic.expression.node import State
 from eomgen.symbolic.numeric.evaluation import NoValue, evaluate, fifty_digits
 from eomgen.symbolic.numeric.tolerances import COMPUTED, LARGEST_AT_50, LARGEST_SQUARED
@@ -76,7 +76,20 @@ class States:
         )
 
     def _supply(self, states: Iterator[TrialState]) -> Supply:
-        return Supply(place for place in states if self._is_near(place.state))
+        return Supply(place for place in states if self._is_near(place.state) and self._satisfied(place.state))
+
+    @cached_property
+    def _identities(self) -> tuple[Scalar, ...]:
+        """Gaps that the coordinates satisfy by themselves, as far as that is not plain: |1 + s| + |1 - s| - 2."""
+        rows = (row for row in self.system.ties.rows if row.identical and row.gap is not None)
+        return tuple(row.gap for row in rows if row.gap is not None and not is_zero(row.gap))
+
+    def _satisfied(self, state: State) -> bool:
+        """Whether ties that are identities about the start are so there: past its eyelet a string is too long."""
+        try:
+            return all(abs(x) <= COMPUTED for x in evaluate(self._identities, state, fifty_digits()))
+        except (NoValue, ZeroDivisionError):
+            return True
 
     def _is_near(self, state: State) -> bool:
         """Whether its numbers are so small that digits are left for differences, and squares for doubles."""

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 
+import numpy as np
 import pytest
 
 import eomgen
@@ -95,3 +96,55 @@ def test_kinds_of_motion_are_left_out_where_no_strand_is_real_nearby():
     y = { start = "l", speed = "w*R" }
     """
     assert failing(eomgen.kinematics(eomgen.loads(PLANE + text)).certify()) == []
+
+
+def test_a_guess_of_a_dependent_coordinate_is_no_place():
+    """V = k1 k2/(k1 + k2) x^2/2 of springs in series rests at 0; `near` is a guess, and no constant of a motion."""
+    text = """
+    parameters = { k1 = 100, k2 = 300 }
+    coordinates = { y = { dependent = true, near = 0.1 }, x = 0.2 }
+    bodies.node.joint = { kind = "prismatic", axis = [1, 0], displacement = "y", stiffness = "k1" }
+    constraints.series = { kind = "equation", gap = "k1*y - k2*(x - y)" }
+    [bodies.block]
+    shape = { kind = "particle", mass = 2 }
+    joint = { kind = "prismatic", on = "node", axis = [1, 0], displacement = "x - y", stiffness = "k2" }
+    """
+    model = eomgen.loads(PLANE + text)
+    places = eomgen.statics(model)
+    assert [place.numbers[q] for place in places.places for q in place.statics.q] == pytest.approx([0, 0], abs=1e-12)
+    roots = np.linalg.eigvals(eomgen.linearize(model).A)
+    assert abs(roots.imag) == pytest.approx(math.sqrt(75 / 2), rel=1e-9)
+
+
+def test_small_motions_about_the_cusp_of_a_cycloid_are_refused_by_name():
+    """M = 2 m R^2 (1 + cos u) = 0 at u = pi, the nearest place of rest of a start at 2."""
+    text = """
+    parameters = { R = 0.5 }
+    coordinates = { u = 2.0 }
+    forces.weight = { kind = "gravity", acceleration = [0, -9.81] }
+    [bodies.bead]
+    shape = { kind = "particle", mass = 0.3 }
+    joint = { kind = "placed", at = ["R*(u + sin(u))", "R*(1 - cos(u))"] }
+    """
+    model = eomgen.loads(PLANE + text)
+    assert failing(eomgen.statics(model).certify()) == []
+    with pytest.raises(eomgen.DerivationError, match="moves no mass"):
+        str(eomgen.linearize(model))
+
+
+def test_a_string_is_not_proven_where_it_would_be_too_long():
+    """|1/2 + s| + |1/2 - s| = 1 for |s| < 1/2 alone: past the eyelet no state is the model's."""
+    text = """
+    coordinates = { X = 0, s = 0 }
+    bodies.a.shape = { kind = "particle", mass = 2 }
+    bodies.a.joint = { kind = "prismatic", on = "wedge.top", axis = [-1, -1], displacement = "0.5 + s" }
+    bodies.b.shape = { kind = "particle", mass = 1 }
+    bodies.b.joint = { kind = "prismatic", on = "wedge.top", axis = [1, -2], displacement = "0.5 - s" }
+    constraints.rope = { kind = "string", path = ["a.center", "wedge.top", "b.center"] }
+    forces.weight = { kind = "gravity", acceleration = [0, -9.81] }
+    [bodies.wedge]
+    shape = { kind = "particle", mass = 6 }
+    points = { top = [0, 1] }
+    joint = { kind = "prismatic", axis = [1, 0], displacement = "X" }
+    """
+    assert failing(eomgen.derive(eomgen.loads(PLANE + text)).certify()) == []

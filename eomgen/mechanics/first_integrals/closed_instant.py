@@ -183,14 +183,17 @@ def _integrated_relations(system: System, start: Mapping[Node, Scalar], relation
 def _integrated_rates(system: System, start: Mapping[Node, Scalar]) -> list[Scalar]:
     """q - q0 - sum of A_k (q_k - q_k0) of q' = sum of A_k q_k' with numbers A_k, or one A_k that is a function of q_k.
 
-    Of closing rows J u = 0 without a gap, with a J that does not move, J (q - q0).
+    Of closing rows J u = 0 without a gap, with a J that does not move, J (q - q0). Dependent coordinates that gaps
+    determine are where these say, and their q0 may be a guess.
     """
     symbols, scope = system.symbols, system.scope
     own = {u: q for q, rate in zip(symbols.q, scope.rates, strict=True) for u in symbols.u if rate is u}
     moving = (*symbols.q, symbols.t)
     found: list[Scalar] = []
     rows = [(q, row) for q, row, bias in zip(symbols.q, scope.N, scope.nu, strict=True) if is_zero(bias)]
-    combinations = [(q - start[q], row) for q, row in rows if q not in own.values() and q in start]
+    placed = _placed_by_gaps(system)
+    rates = [(q, row) for q, row in rows if q not in own.values() and q in start and q.name not in placed]
+    combinations = [(q - start[q], row) for q, row in rates]
     closing = [row for row in system.ties.closing if row.gap is None and not depends_on(row.velocity, moving)]
     combinations += [(0, gradient(row.velocity, symbols.u)) for row in closing]
     for left, row in combinations:
@@ -198,6 +201,13 @@ def _integrated_rates(system: System, start: Mapping[Node, Scalar]) -> list[Scal
         if gained and all(x is not None for x in gained):
             found.append(left - sum((x for x in gained if x is not None), start=0))
     return found
+
+
+def _placed_by_gaps(system: System) -> frozenset[str]:
+    """The dependent coordinates that ties of positions alone determine."""
+    of_velocities = {row.tie for row in system.ties.rows if row.gap is None}
+    blocks = () if system.elimination is None else system.elimination.blocks
+    return frozenset(name for block in blocks if not of_velocities & {*block.ties} for name in block.coordinates)
 
 
 def _gained(a: Scalar, q: Node | None, start: Mapping[Node, Scalar], moving: Sequence[Node]) -> Scalar | None:

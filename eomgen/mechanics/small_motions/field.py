@@ -10,6 +10,7 @@ from dataclasses import field as dataclass_field
 from dataclasses import replace
 from typing import Any, Protocol
 
+from eomgen.errors import DerivationError
 from eomgen.records import dataclass
 from eomgen.symbolic.exact.normal_form import simplest
 from eomgen.symbolic.expression.derivative import substituted
@@ -136,12 +137,19 @@ def matrix_transposed(A: Entries, columns: int) -> Entries:
 
 
 def matrix_solution(field: NumberField, A: Entries, B: Entries) -> Entries:
-    """X of A X = B. A has full column rank; rows beyond that follow from the others, and are not looked at."""
+    """X of A X = B. A has full column rank; rows beyond that follow from the others, and are not looked at.
+
+    Raises:
+        DerivationError: the rank is less.
+    """
     rows = [[*a, *b] for a, b in zip(A, B, strict=True)]
     unknowns = len(A[0]) if A else 0
     for k in range(unknowns):
         pivot = max(range(k, len(rows)), key=lambda i: (field.size(rows[i][k]), -i))
         rows[k], rows[pivot] = rows[pivot], rows[k]
+        if is_zero(rows[k][k]):
+            what = "linearize: something moves no mass at the place of reference: its accelerations are not determined"
+            raise DerivationError(what, mend="take coordinates that are regular there, or another place")
         rows[k] = [field.tidy(over(x, rows[k][k])) for x in rows[k]]
         for i, row in enumerate(rows):
             if i != k and not is_zero(row[k]):
