@@ -54,3 +54,11 @@ def test_an_expression_that_the_grammar_does_not_read_is_a_contradiction():
     printed = carried()
     broken = replace(printed, expressions=printed.expressions | {"m*l/()"})
     assert "what is printed, read back, holds along the motion" in failing(broken)
+
+
+def test_cases_are_printed_in_words_that_the_grammar_does_not_have():
+    """V of a bead on a path of two pieces, "... where s <= L; ...", is no broken expression."""
+    found = eomgen.derive(MODELS / "loop_the_loop.toml")
+    formulas, _, expressions = printed_formulas(found.derivation)
+    sides = {text for sides in formulas for text in sides}
+    assert any(" where " in text for text in sides) and not any(" where " in text for text in expressions)

@@ -201,6 +201,9 @@ def _projection(equations: EquationsOfMotion, reader: Reader) -> tuple[tuple[Ste
 _BY_METHOD = {"lagrange": _lagrange, "projection": _projection}
 
 
+WHERE = " where "  # between a value and where it holds: so cases are printed, and the grammar has none
+
+
 def printed_formulas(document: Document) -> tuple[tuple[tuple[str, ...], ...], tuple[str, ...], frozenset[str]]:
     """As they are printed: the sides of every formula that holds at any state, what is said to stay constant, and
     which of these texts are expressions."""
@@ -210,7 +213,8 @@ def printed_formulas(document: Document) -> tuple[tuple[tuple[str, ...], ...], t
     for step in (step for step in document.steps if step.key not in FROM_THE_START):
         for statement in (s for s in step.statements if isinstance(s, Formula)):
             sides = tuple(map(side_text, statement.sides))
-            expressions |= {text for side, text in zip(statement.sides, sides, strict=True) if isinstance(side, Node)}
+            scalars = (text for side, text in zip(statement.sides, sides, strict=True) if isinstance(side, Node))
+            expressions |= {text for text in scalars if WHERE not in text}
             if step.key == "integrals" and type(statement.sides[0]) is not Node:  # a symbol is a part of what follows
                 constants.append(sides[-1])
             else:

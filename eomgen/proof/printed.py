@@ -7,7 +7,7 @@ the next instant: the state a step later and a step earlier, to first order, wit
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import field
 from functools import cached_property
 from typing import Any
@@ -114,10 +114,9 @@ class ReadBack:
             return None
         return found
 
-    @cached_property
-    def unreadable(self) -> str:
+    @staticmethod
+    def unreadable(texts: Iterable[str]) -> str:
         """The first expression that our grammar does not read; "" as it must be."""
-        texts = (*sorted(self.printed.expressions), *(text for _, text, _ in self.printed.texts))
         for text in texts:
             try:
                 parse(text, references=True) if len(text) <= LONGEST else None
@@ -181,15 +180,14 @@ class ReadBack:
 
     def wrong(self, state: State) -> str:
         """Which formula does not hold at a state of the motion; "" where all do."""
-        if self.unreadable:
-            return self.unreadable
-        return _unequal(self.equalities, state | least_multipliers(self.equations, state))
+        unread = self.unreadable(sorted(self.printed.expressions))
+        return unread or _unequal(self.equalities, state | least_multipliers(self.equations, state))
 
     def wrong_data(self, state: State) -> str:
         """Which text is not worth what it stands for at a state, at some accelerations and multipliers; ""."""
         symbols = self.equations.symbols
         some = {x: precise(1 + 1 / k) for k, x in enumerate((*symbols.a, *symbols.lam), start=2)}
-        return self.unreadable or _unequal(self.data, {**some, **state})
+        return self.unreadable(text for _, text, _ in self.printed.texts) or _unequal(self.data, {**some, **state})
 
     def drifting(self, state: State) -> str:
         """Which constant does not stay at a state of the motion; "" where all do."""
