@@ -304,7 +304,7 @@ class Equations(Result):
         Args:
             data: what `derive --json` carries, too, read back.
         """
-        printed = Printed(*printed_formulas(document), self._letters)
+        printed = replace(printed_formulas(document), letters=self._letters)
         if data:
             found = self._texts
             texts = tuple((name, text, x) for (name, x), text in zip(found.scalars, found.texts, strict=True))

@@ -147,7 +147,7 @@ class _Writing:
     def _stands(self, link: BodyLink) -> bool:
         """Whether a link of the ground is fixed to it in the ground's own place and axes."""
         R, p = (place := link.before.then(link.relative)).R, place.p
-        held = not any(symbol not in self.known for symbol in symbols_of((*link.s, *p, *(x for row in R for x in row))))
+        held = all(symbol in self.known for symbol in symbols_of((*link.s, *p, *(x for row in R for x in row))))
         return held and self.numbers((*minus(p, (0, 0, 0)), *(x for row in R for x in row)), link.name) == STANDING
 
     def _shape(self, link: BodyLink, own: list[Any], where: str) -> tuple[str, list[float]]:

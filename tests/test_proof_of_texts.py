@@ -27,7 +27,7 @@ def carried() -> Printed:
     found = equations()
     texts = found._texts
     named = tuple((name, text, x) for (name, x), text in zip(texts.scalars, texts.texts, strict=True))
-    return Printed(*printed_formulas(found.derivation), texts=named, definitions=tuple(texts.definitions))
+    return replace(printed_formulas(found.derivation), texts=named, definitions=tuple(texts.definitions))
 
 
 def failing(printed: Printed) -> list[str]:
@@ -59,6 +59,6 @@ def test_an_expression_that_the_grammar_does_not_read_is_a_contradiction():
 def test_cases_are_printed_in_words_that_the_grammar_does_not_have():
     """V of a bead on a path of two pieces, "... where s <= L; ...", is no broken expression."""
     found = eomgen.derive(MODELS / "loop_the_loop.toml")
-    formulas, _, expressions = printed_formulas(found.derivation)
-    sides = {text for sides in formulas for text in sides}
-    assert any(" where " in text for text in sides) and not any(" where " in text for text in expressions)
+    printed = printed_formulas(found.derivation)
+    sides = {text for sides in printed.formulas for text in sides}
+    assert any(" where " in text for text in sides) and not any(" where " in text for text in printed.expressions)

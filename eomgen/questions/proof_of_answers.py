@@ -141,7 +141,9 @@ class _Proof:
     def _differences(self) -> Iterator[Check]:
         """What a function of the motion is worth is what its second definition says."""
         tally = Tally("functions of the motion hold by their second definitions", "differences of poses, particles")
-        for output, found in self.asked.values():
+        for name, (output, found) in self.asked.items():
+            if self._is_apart(name):
+                continue
             calls = [call for call in output.value.calls if FUNCTIONS[call.name].second is not None]
             if found.value is None or (output.from_ is not None and output.at is None) or not calls:
                 continue
@@ -163,7 +165,6 @@ class _Proof:
         return tally.checks()
 
     def _elsewhere(self, output: Output, text: str) -> str:
-        self._refuse_other(output)
         judged, scalar = False, read_back(self.solver.motions[False].phase.system, text)
         for state in self._others:
             try:
@@ -210,7 +211,6 @@ class _Proof:
         Raises:
             DerivationError, RunFailed: it is of none, or of one that is not known in numbers.
         """
-        self._refuse_other(output)
         moment = self._moment(output)
         if moment is None:
             phase, numbers = self.solver.motions[False].phase, _start(self.solver.motions[False])
@@ -222,13 +222,6 @@ class _Proof:
         if any(math.isnan(x) for x in numbers.values()) or (phase.system.symbols.u and not numbers):
             raise RunFailed("the state is not known in numbers")
         return self._state(phase, numbers)
-
-    def _refuse_other(self, output: Output) -> None:
-        """Raises DerivationError for what is of no state of the motion."""
-        if asks_of(output.value, SMALL_MOTIONS):
-            raise DerivationError("it is of the linearized system, and of no state")
-        if output.at is None and self.solver.is_of_the_instant(output):
-            raise DerivationError("it is of one instant that no motion leads to")
 
     def _moment(self, output: Output) -> StateAtInstant | None:
         """The instant that is asked; None: the start."""
