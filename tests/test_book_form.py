@@ -79,6 +79,11 @@ def printed(text: str) -> str:
         ("(m*l^2*g*a + k*b^2)/(m*l^2)", "b^2*k/(m*l^2) + a*g"),
         ("sqrt(m1*a^2 - 2*m1*a*b + m1*b^2 + m2*(a + b)^2)", "sqrt(m1*(a - b)^2 + m2*(a + b)^2)"),
         ("m1*a + m1*b + m2*a + m2*b + sqrt(g^2 + l^2)", "(m1 + m2)*(a + b) + sqrt(g^2 + l^2)"),
+        (
+            "a*g*m*cos(alpha) - 3*b*g*M*cos(alpha)/(10*a) - 9*b*g*m*cos(alpha)/(10*a) + b*g*m*cos(alpha)"
+            " - g*R*m1*sin(alpha) - 9/10*g*m*cos(alpha) - 7/10*g*m*sin(alpha) + m2*a*g - m2*b*g",
+            "m2*(a - b)*g - (7/10*m + m1*R)*g*sin(alpha) + (m*(10*a - 9)*(b + a) - 3*M*b)*g*cos(alpha)/(10*a)",
+        ),
     ],
 )
 def test_formulas_are_collected_and_factored_as_an_author_does(given: str, wanted: str):

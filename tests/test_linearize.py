@@ -11,6 +11,9 @@ from click.testing import CliRunner
 import eomgen
 from eomgen.cli import main
 from eomgen.documents import rendered
+from eomgen.symbolic.exact.book_form import book_form
+from eomgen.symbolic.expression.expressions import parse
+from eomgen.symbolic.print.text import to_text
 
 pytestmark = pytest.mark.slow
 
@@ -122,6 +125,21 @@ def test_exact_matrices_at_the_values_are_the_numbers():
         at_values = exact.subs({symbol: values[symbol.name] for symbol in exact.free_symbols})
         assert [float(x) for x in at_values] == pytest.approx(numbers.ravel().tolist(), rel=1e-14)
     assert list(found.exact["B"]) == [1, 0]
+
+
+def test_entries_are_written_as_formulas_of_a_book():
+    """As short as they get: written again they stay as they are; of C what is not there is not printed."""
+    found = eomgen.linearize(eomgen.load(MODELS / "whipple_bicycle.toml"))
+    graph = found.modes.small.reference.system.scope.graph
+    symbols = {name: graph.constant(name) for name in found.model.parameters}
+    matrices = [found.as_dict()[name]["exact"] for name in ("mass", "damping", "gyroscopic", "stiffness", "circulatory")]
+    texts = {text for rows in matrices for row in rows for text in row}
+    for text in texts:
+        assert to_text(book_form(parse(text, longest=len(text)).evaluate(symbols))) == text
+    assert sum(map(len, texts)) < 2100  # 3 368 characters multiplied out
+    told = found.render("text")
+    assert "G[phi, delta]" in told and "G[delta, phi]" not in told
+    assert " G = " not in eomgen.linearize(eomgen.load(MODELS / "furuta_pendulum.toml")).render("text")
 
 
 def test_an_input_that_does_not_reach_a_coordinate_has_the_transfer_function_zero():

@@ -50,7 +50,7 @@ def small_motion_checks(modes: Modes) -> Iterator[Check]:
     differences = Differences(small)
     try:
         yield _reference(differences)
-        yield from _matrices(differences)
+        yield from _matrices(modes, differences)
         if small.is_second_order:
             yield checked("C = D + G and K = S + H, D and S symmetric, G and H skew", _wrong_parts(modes), "50 digits")
         yield from mode_checks(modes)
@@ -74,13 +74,13 @@ def _reference(differences: Differences) -> Check:
     return checked(name, "; ".join(wrong), "50 digits")
 
 
-def _matrices(differences: Differences) -> Iterator[Check]:
+def _matrices(modes: Modes, differences: Differences) -> Iterator[Check]:
     """M, C, K, B (F, E) and the state matrix."""
     small, rng = differences.small, Random(11)
     if differences.is_part:
         yield _of_part(differences)
         return
-    exact, tolerance = _entries(small), DIFFERENCE_AT_50 if small.exact is not None else COMPUTED
+    exact, tolerance = _entries(modes), DIFFERENCE_AT_50 if small.exact is not None else COMPUTED
     wrong: dict[str, str] = {"motion": "", "state": "", "mass": ""}
     for _ in range(DIRECTIONS):
         beside = differences.along(_random((*small.whole.coordinates, *small.whole.speeds, *small.whole.inputs), rng))
@@ -111,15 +111,18 @@ def _of_part(differences: Differences) -> Check:
     return checked("the coordinates that are asked move as they do in the whole", wrong, "differences, floating point")
 
 
-def _entries(small: SmallMotions) -> dict[str, list[list[Any]]]:
-    """The printed matrices in numbers: exact ones with 50 digits."""
+def _entries(modes: Modes) -> dict[str, list[list[Any]]]:
+    """The printed matrices in numbers: exact ones with 50 digits; C of second order is printed in its parts."""
+    small = modes.small
     e: LinearEquations = small.exact or small.numbers
-    return {letter: _numbers(small, getattr(e, letter)) for letter in "MCKBFE"}
+    whole = {"C": _numbers(small, e.C)} if small.is_second_order else {}
+    return {letter: _numbers(small, getattr(e, letter), modes) for letter in "MCKBFE" if letter not in whole} | whole
 
 
-def _numbers(small: SmallMotions, rows: Sequence[Sequence[Any]]) -> list[list[Any]]:
+def _numbers(small: SmallMotions, rows: Sequence[Sequence[Any]], modes: Modes | None = None) -> list[list[Any]]:
     flat: Sequence[Any] = [x for row in rows for x in row]
     if small.exact is not None:
+        flat = [x if modes is None else modes.written(x) for x in flat]
         flat = evaluate(tuple(flat), small.reference.trial, fifty_digits())
     values = iter(flat)
     return [[next(values) for _ in row] for row in rows]
@@ -128,7 +131,8 @@ def _numbers(small: SmallMotions, rows: Sequence[Sequence[Any]]) -> list[list[An
 def _wrong_parts(modes: Modes) -> str:
     """Which of the printed parts of C and K is not what its letter says, or ""."""
     small = modes.small
-    whole, parts = _entries(small), {name: _numbers(small, A) for name, A in modes.symmetric_parts.items()}
+    whole = {letter: _numbers(small, getattr(small.exact or small.numbers, letter)) for letter in "CK"}
+    parts = {name: _numbers(small, A, modes if name != "S" else None) for name, A in modes.symmetric_parts.items()}
     tolerance = ZERO_AT_50 if small.exact is not None else ROUNDING
     for letter, even, odd in (("C", "D", "G"), ("K", "S", "H")):
         for i, j in product(range(len(whole[letter])), repeat=2):

@@ -286,7 +286,7 @@ class Linearization(Result):
                 )
             },
             **{
-                name: self._matrix([[self.modes.tidy(x) for x in row] for row in parts[letter]])
+                name: self._matrix(parts[letter])
                 for name, letter in (("damping", "D"), ("gyroscopic", "G"), ("circulatory", "H"))
                 if parts
             },
@@ -319,7 +319,7 @@ class Linearization(Result):
             "outputs": list(self.coordinates),
             **{
                 letter: {
-                    "exact": None if exact is None else [[to_text(x) for x in row] for row in getattr(exact, letter)],
+                    "exact": None if exact is None else self._texts(getattr(exact, letter)),
                     "value": None if numbers is None else getattr(numbers, letter),
                 }
                 for letter in LETTERS
@@ -349,7 +349,10 @@ class Linearization(Result):
     def _matrix(self, A: Entries) -> dict[str, Any]:
         if not self.is_exact:
             return {"exact": None, "value": A}
-        return {"exact": [[to_text(x) for x in row] for row in A], "value": self._values(A)}
+        return {"exact": self._texts(A), "value": self._values(A)}
+
+    def _texts(self, A: Entries) -> list[list[str]]:
+        return [[to_text(self.modes.written(x)) for x in row] for row in A]
 
     def _values(self, A: Entries) -> list[list[float]] | None:
         if not self.valued:

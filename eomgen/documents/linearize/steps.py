@@ -27,7 +27,7 @@ from eomgen.errors import DerivationError
 from eomgen.mechanics.initial_state.numeric_value import known_exactly
 from eomgen.mechanics.small_motions.field import Entries, MatrixEntry
 from eomgen.mechanics.small_motions.forms import floats
-from eomgen.mechanics.small_motions.modes import Frequency, Modes
+from eomgen.mechanics.small_motions.modes import MOST_WRITTEN, Frequency, Modes
 from eomgen.mechanics.small_motions.polynomial import Polynomial, laplace_variable
 from eomgen.mechanics.small_motions.reduction import LinearEquations
 from eomgen.mechanics.small_motions.spectrum import Mode
@@ -62,7 +62,6 @@ DETERMINANT = ("det({s}^2*M + {s}*C + K)", r"\det\left({s}^{{2}} M + {s} C + K\r
 STATE_DETERMINANT = ("det(M)*det({s}*1 - A)", r"\det M \det\left({s} \mathbf{{1}} - A\right)")
 LONG = 1200  # characters of one formula
 WIDEST = 88  # characters of a row of a matrix
-MOST_SHOWN = 8  # coordinates of matrices that are printed entry by entry
 
 
 def linearization_steps(modes: Modes) -> tuple[Step, ...]:
@@ -103,24 +102,23 @@ def _equations(modes: Modes) -> Step:
         statements.append(prose("The ties, differentiated, say what follows: ", FOLLOW, "."))
     law = (SECOND_ORDER if e.inputs else UNDAMPED if undamped else FREE) if small.is_second_order else FIRST_ORDER
     statements.append(prose(law, "."))
-    if len(e.speeds) > MOST_SHOWN:
+    if len(e.speeds) > MOST_WRITTEN:
         statements.append(prose(f"M, C and K of {len(e.speeds)} coordinates stand in the result for machines."))
         return Step("equations", "Equations to first order", tuple(statements))
     rows = _rows(modes)
     if len(rows) > 1:
         statements.append(prose("Rows and columns in the order ", *listed_symbols(tuple(map(_plain, rows))), ":"))
-    statements += _entries("M", e.M, rows, rows, symmetric=True)
+    statements += _entries(modes, "M", e.M, rows, rows, once=True)
     statements += _rates(modes, undamped)
     symmetric = small.is_second_order and _symmetric(modes, e.K)
-    statements += _entries("K", e.K, rows, e.coordinates, symmetric=symmetric)
+    statements += _entries(modes, "K", e.K, rows, e.coordinates, once=symmetric)
     if small.is_second_order and not symmetric:
-        H = [[modes.tidy(x) for x in row] for row in modes.symmetric_parts["H"]]
         statements.append(prose("The skew part H = (K - K^T)/2 of K is circulatory."))
-        statements += _entries("H", H, rows, e.coordinates, symmetric=False)
-    statements += _entries("B", e.B, rows, e.inputs, symmetric=False)
+        statements += _entries(modes, "H", modes.symmetric_parts["H"], rows, e.coordinates, once=True)
+    statements += _entries(modes, "B", e.B, rows, e.inputs)
     if not small.is_second_order:
-        statements += _entries("E", e.E, e.coordinates, e.speeds, symmetric=False)
-        statements += _entries("F", e.F, e.coordinates, e.coordinates, symmetric=False)
+        statements += _entries(modes, "E", e.E, e.coordinates, e.speeds)
+        statements += _entries(modes, "F", e.F, e.coordinates, e.coordinates)
     return Step("equations", "Equations to first order", tuple(statements))
 
 
@@ -136,17 +134,17 @@ def _rates(modes: Modes, undamped: bool) -> list[Statement]:
     if undamped:
         return []
     if not modes.small.is_second_order:
-        return _entries("C", e.C, e.speeds, e.speeds, symmetric=False)
-    parts = {letter: [[modes.tidy(x) for x in row] for row in modes.symmetric_parts[letter]] for letter in "DG"}
-    there = [letter for letter, A in parts.items() if not all(is_zero(x) for row in A for x in row)]
+        return _entries(modes, "C", e.C, e.speeds, e.speeds)
+    parts = {letter: modes.symmetric_parts[letter] for letter in "DG"}
+    there = [letter for letter, A in parts.items() if not all(is_zero(modes.written(x)) for row in A for x in row)]
     words = {
         "D": "C = D, of damping (symmetric).",
         "G": "C = G, gyroscopic (skew).",
         "DG": "C = D + G, of damping (symmetric) and gyroscopic (skew).",
     }
     shown: list[Statement] = [prose(words.get("".join(there), ""))] if there else []
-    for letter, A in parts.items():
-        shown += _entries(letter, A, e.coordinates, e.coordinates, symmetric=letter == "D")
+    for letter in there:
+        shown += _entries(modes, letter, parts[letter], e.coordinates, e.coordinates, once=True)
     return shown
 
 
@@ -159,25 +157,29 @@ def _symmetric(modes: Modes, A: Entries) -> bool:
 
 
 def _entries(
-    letter: str, A: Entries, rows: Sequence[Node], columns: Sequence[Node], *, symmetric: bool
+    modes: Modes, letter: str, A: Entries, rows: Sequence[Node], columns: Sequence[Node], *, once: bool = False
 ) -> list[Statement]:
-    """The matrix; where it is too wide for a line its entries that are not zero, of a symmetric one each once."""
+    """The matrix; where it is too wide for a line its entries that are not zero.
+
+    Args:
+        once: of a symmetric or skew one those above the diagonal alone.
+    """
     if not columns:
         return []
-    whole = matrix_of(A)
+    whole = matrix_of(modes, A)
     if whole is not None:
         return [Formula((Law(letter, letter), whole))]
     found: list[Statement] = []
     for i, row in enumerate(rows):
         for j, column in enumerate(columns):
-            if not is_zero(A[i][j]) and (j >= i or not symmetric):
-                found.append(Formula((Place(letter, _plain(row), _plain(column)), _side(A[i][j]))))
+            if (j >= i or not once) and not is_zero(x := modes.written(A[i][j])):
+                found.append(Formula((Place(letter, _plain(row), _plain(column)), _side(x))))
     return found
 
 
-def matrix_of(A: Entries) -> Matrix | None:
+def matrix_of(modes: Modes, A: Entries) -> Matrix | None:
     """The matrix as it is printed; None where a line does not hold a row of it."""
-    rows = tuple(tuple(_number(x) if isinstance(x, float) else x for x in row) for row in A)
+    rows = tuple(tuple(_number(x) if isinstance(x, float) else modes.written(x) for x in row) for row in A)
     texts = [[x.text if isinstance(x, Law) else to_text(x) for x in row] for row in rows]
     width = sum(max(map(len, column)) + 2 for column in zip(*texts, strict=True))
     return Matrix(rows) if rows and rows[0] and width <= WIDEST else None
@@ -219,10 +221,9 @@ def _polynomial(modes: Modes) -> Side | None:
     """Exact where that is short enough to print, else in numbers; None where there are neither."""
     small = modes.small
     if modes.polynomial is not None and small.exact is not None:
-        exact = _written(modes.polynomial, laplace_variable(small.exact))
-        if text_size(exact) <= LONG or not small.reference.valued:
-            return _side(exact)
-    if not small.reference.valued or len(small.state_matrix) > MOST_SHOWN:
+        if sum(map(text_size, modes.polynomial.coefficients)) <= LONG or not small.reference.valued:
+            return _side(_written(modes, modes.polynomial))
+    if not small.reference.valued or len(small.state_matrix) > MOST_WRITTEN:
         return None
     scale = np.linalg.det(floats(small.numbers.M))
     return _in_numbers(scale * np.poly(small.state_matrix))
@@ -252,9 +253,11 @@ def _latex_number(text: str) -> str:
     return rf"{mantissa} \cdot 10^{{{int(power)}}}" if power else text
 
 
-def _written(polynomial: Polynomial, s: Node) -> Scalar:
+def _written(modes: Modes, polynomial: Polynomial) -> Scalar:
     """The highest power first."""
-    total: Scalar = sum((c * s**n for n, c in reversed(list(enumerate(polynomial.coefficients)))), start=0)
+    assert modes.small.exact is not None
+    s, coefficients = laplace_variable(modes.small.exact), [modes.written(c) for c in polynomial.coefficients]
+    total: Scalar = sum((c * s**n for n, c in reversed(list(enumerate(coefficients)))), start=0)
     return total
 
 
@@ -263,7 +266,7 @@ def _modes(modes: Modes) -> Step:
     statements: list[Statement] = []
     for k, found in enumerate(_frequencies(modes), start=1):
         if found.exact is not None and not is_zero(found.exact):
-            statements.append(Formula((Law(f"omega_{k}", rf"\omega_{{{k}}}"), _side(found.exact))))
+            statements.append(Formula((Law(f"omega_{k}", rf"\omega_{{{k}}}"), _side(modes.written(found.exact)))))
     if modes.small.reference.valued:
         listed_modes = modes.spectrum.modes
         rows = [_row(k, mode) for k, mode in enumerate(listed_modes, start=1)]
@@ -332,14 +335,14 @@ def _or_number(modes: Modes, x: Scalar) -> Side:
     """A formula, or its value where it is too long to print."""
     reference = modes.small.reference
     if text_size(x) <= LONG or not reference.valued:
-        return _side(x)
+        return _side(modes.written(x))
     return _number(number_of(x, known_exactly(reference.system.scope)))
 
 
 def _state_space(modes: Modes) -> tuple[Step, ...]:
     """A, B, C_y, D_y of the coordinates as outputs, exact where they are short, else in numbers; without inputs A."""
     e = modes.small.exact or modes.small.numbers
-    shown = _state_matrices(modes) if len(e.speeds) <= MOST_SHOWN else ()
+    shown = _state_matrices(modes) if len(e.speeds) <= MOST_WRITTEN else ()
     if not shown:
         return ()
     words = prose(Law("x' = A*x", r"\dot{x} = A x"), ", with x = (", *listed_symbols((*e.coordinates, *e.speeds)), "):")
@@ -373,7 +376,7 @@ def _state_matrices(modes: Modes) -> tuple[Matrix, ...]:
         ways.append(with_outputs(small.numbers, A, B, outputs))
     for found in ways:
         if found is not None:
-            shown = [matrix_of(x) for x in ((found.A, found.B, found.C_y, found.D_y) if found.inputs else (found.A,))]
+            shown = [matrix_of(modes, x) for x in ((found.A, found.B, found.C_y, found.D_y) if found.inputs else (found.A,))]
             if None not in shown:
                 return tuple(x for x in shown if x is not None)
     return ()
@@ -393,8 +396,7 @@ def _transfers(modes: Modes) -> tuple[Step, ...]:
 def _quotient(modes: Modes, f: TransferFunction) -> Side:
     exact = modes.small.exact
     if exact is not None and not any(isinstance(c, float) for c in f.below.coefficients):
-        s = laplace_variable(exact)
-        return _side(over(_written(f.above, s), _written(f.below, s)))
+        return _side(over(_written(modes, f.above), _written(modes, f.below)))
     if not any(f.above.coefficients):
         return 0
     above, below = (_in_numbers(np.array(p.coefficients[::-1], dtype=float)) for p in (f.above, f.below))

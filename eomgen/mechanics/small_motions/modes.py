@@ -20,6 +20,7 @@ from eomgen.mechanics.small_motions.polynomial import (
 from eomgen.mechanics.small_motions.spectrum import Mode, Spectrum, spectrum_of
 from eomgen.mechanics.small_motions.transfer import TransferFunction, transfer_functions, transfers_in_numbers
 from eomgen.records import dataclass
+from eomgen.symbolic.exact.book_form import book_form
 from eomgen.symbolic.exact.normal_form import simplest
 from eomgen.symbolic.expression.graph import Node, Scalar, is_zero
 from eomgen.symbolic.expression.rational import Fraction
@@ -30,6 +31,7 @@ from eomgen.symbolic.print.text import text_size
 
 TRIES = 12  # values of the parameters at which the order of frequencies is looked at
 LONGEST = 6_000  # characters of a polynomial whose roots are written
+MOST_WRITTEN = 8  # speeds of matrices whose entries are written as a book does
 MOST_STATES = 8  # of transfer functions in floats
 MATRICES = {"mass": "M", "damping": "C", "stiffness": "K"}
 
@@ -213,6 +215,18 @@ class Modes:
     def tidy(self, x: MatrixEntry) -> MatrixEntry:
         """An entry in its shortest form."""
         return x if isinstance(x, float) else simplest(x, Work.VALUE, self.positive)
+
+    def written(self, x: MatrixEntry) -> MatrixEntry:
+        """An entry as it is printed, as formulas of a book are; of many speeds as it is."""
+        if isinstance(x, float) or len(self.small.numbers.speeds) > MOST_WRITTEN:
+            return x
+        if x not in self._forms:
+            self._forms[x] = book_form(x, Work.ENTRY, self.positive)
+        return self._forms[x]
+
+    @cached_property
+    def _forms(self) -> dict[Scalar, Scalar]:
+        return {}
 
 
 def _parted(A: list[list[MatrixEntry]]) -> tuple[list[list[MatrixEntry]], list[list[MatrixEntry]]]:

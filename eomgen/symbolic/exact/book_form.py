@@ -38,14 +38,14 @@ from eomgen.symbolic.print.printed import has_nested_quotient
 from eomgen.symbolic.print.text import text_size, to_text
 
 MOST_FACTORED = 40  # terms of a sum that is looked through for factors
-MOST_NESTED = 12  # terms of a sum of which parts have a factor in common: a + b*(c + d)
+MOST_NESTED = 8  # terms of a sum of which several factors are tried outside of parts: a + b*(c + d); of longer ones one
 LARGEST_DEGREE = 16  # of a sum that is looked through for factors
 BRACKETS = 1  # marks that a sum may be longer in factors: (M + m)*g is M*g + m*g
 DEEPER = 10  # marks that parentheses within parentheses must save
 INSIDE = 1  # marks that a number must save in the parentheses before which it stands: (1/3*m1 + m2)*l1^2
 LARGEST_RATIO = 99  # of two decimals that stand as whole numbers behind a common one: 0.02*(2*a + b)
 MERGED = 6  # marks that one coefficient of several accelerations and rates must save
-MOST_SHARED = 4  # factors that several terms of a sum hold, of which each is tried outside of them
+MOST_SHARED = 3  # factors that several terms of a sum hold, of which each is tried outside of them
 LONGEST = 3000  # characters of a quotient that is written anew
 AGAIN = 3  # times that a quotient is written anew, until it stays as it is
 MOST_TRIED = 150  # sums that are formed for one scalar in search of shorter ones
@@ -82,10 +82,13 @@ def book_form(x: Scalar, limit: int = Work.ENTRY, positive: Collection[Node] = (
 def _written(x: Scalar, limit: int, positive: Collection[Node]) -> tuple[Scalar, bool]:
     """(the shortest of its forms, whether it is that of the function and not of how the sum was parted)."""
     try:
-        expansion, (terms,) = expanded((x,), limit, positive)
+        expansion, (found,) = expanded((x,), limit, positive)
+        terms = {key: found[key] for key in sorted(found)}  # whatever was written before
         writer = Writer(expansion)
         book = _Book(expansion, writer)
+        parted = any(e < 0 and atom in expansion.atoms.opaque for monomial, _ in terms for atom, e in monomial)
         divided = any(e < 0 for monomial, _ in terms for _, e in monomial)
+        divided = parted or (divided and len(terms) <= MOST_NESTED)
         forms = _quotients(expansion, writer, book, terms) if divided else []
         whole = len(forms)
         forms.append(book.sum(book.coordinates_first(_parts(writer, terms))))
@@ -96,7 +99,7 @@ def _written(x: Scalar, limit: int, positive: Collection[Node]) -> tuple[Scalar,
     if divided:
         forms += _of_its_parameters(expansion, writer, book, terms)
     best = min(range(len(forms)), key=lambda k: _length(forms[k]))
-    form, settled = _roots_read(forms[best], limit, positive), not divided or best < whole
+    form, settled = _roots_read(forms[best], limit, positive), not parted or best < whole
     other = _roots_as_letters(x, limit, positive) if type(x) is Node else None
     return (form if other is None or _length(other) >= _length(form) else other), settled
 
@@ -225,6 +228,8 @@ class _Book:
     expansion: Expansion
     writer: Writer
     tried: Counter[str] = field(default_factory=Counter)
+    known: dict[tuple[Part, ...], Scalar] = field(default_factory=dict)  # each sum is collected once
+    terms: dict[Part, Scalar] = field(default_factory=dict)
 
     def sum(self, parts: Parts) -> Scalar:
         """The sum, collected, with what all terms hold before it where that is shorter."""
@@ -292,6 +297,12 @@ class _Book:
         """The sum with one term for each product of what accelerates and turns, each coefficient at its shortest."""
         if len(parts) < 2:
             return self.sum(parts)
+        key = tuple(parts)
+        if key not in self.known:
+            self.known[key] = self._by_what_moves(parts)
+        return self.known[key]
+
+    def _by_what_moves(self, parts: Parts) -> Scalar:
         groups = _grouped(parts, self._is_kinetic)
         if not any(groups):
             return self._still(parts)
@@ -355,20 +366,20 @@ class _Book:
             groups = _grouped(parts, chosen)
             if 1 < len(groups) < len(parts):
                 forms.append(self.added([self._with(key, part) for key, part in groups.items()]))
-        if 2 < len(parts) <= MOST_NESTED:
+        if len(parts) > 2:
             forms += self._nested(parts)
         best = min(forms, key=length_of, default=apart)
         return best if length_of(best) <= length_of(apart) else apart
 
     def _nested(self, parts: Parts) -> list[Scalar]:
-        """factor*(...) + ..., for each factor that several terms hold and not all."""
-        highest: dict[Base, int] = {}
-        for base, e in (item for _, powers in parts for item in powers):
-            highest[base] = max(e, highest.get(base, 0))
-        held = {(base, e): [part for part in parts if (base, e) in part[1]] for base, e in highest.items() if e > 0}
+        """factor*(...) + ..., for each factor or divisor that several terms hold and not all; of long sums for one."""
+        held: dict[tuple[Base, bool], Parts] = {}
+        for part in parts:
+            for base, e in part[1]:
+                held.setdefault((base, e > 0), []).append(part)
         shared = [inside for inside in held.values() if 1 < len(inside) < len(parts)]
         found = []
-        for inside in sorted(shared, key=len, reverse=True)[:MOST_SHARED]:
+        for inside in sorted(shared, key=len, reverse=True)[: MOST_SHARED if len(parts) <= MOST_NESTED else 1]:
             self.tried["sums"] += 1
             if self.tried["sums"] <= MOST_TRIED:
                 place = parts.index(inside[0])
@@ -425,6 +436,11 @@ class _Book:
 
     def _term(self, c: Number, powers: Powers) -> Scalar:
         """c * powers; sin(a)*cos(a) as sin(2*a)/2 where that is shorter."""
+        if (c, powers) not in self.terms:
+            self.terms[c, powers] = self._shorter_term(c, powers)
+        return self.terms[c, powers]
+
+    def _shorter_term(self, c: Number, powers: Powers) -> Scalar:
         plain = self._product_of(c, powers)
         doubled = _doubled(c, powers)
         if doubled is None:
