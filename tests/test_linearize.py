@@ -132,8 +132,8 @@ def test_entries_are_written_as_formulas_of_a_book():
     found = eomgen.linearize(eomgen.load(MODELS / "whipple_bicycle.toml"))
     graph = found.modes.small.reference.system.scope.graph
     symbols = {name: graph.constant(name) for name in found.model.parameters}
-    matrices = [found.as_dict()[name]["exact"] for name in ("mass", "damping", "gyroscopic", "stiffness", "circulatory")]
-    texts = {text for rows in matrices for row in rows for text in row}
+    names, payload = ("mass", "damping", "gyroscopic", "stiffness", "circulatory"), found.as_dict()
+    texts = {text for name in names for row in payload[name]["exact"] for text in row}
     for text in texts:
         assert to_text(book_form(parse(text, longest=len(text)).evaluate(symbols))) == text
     assert sum(map(len, texts)) < 2100  # 3 368 characters multiplied out

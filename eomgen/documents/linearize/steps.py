@@ -220,9 +220,9 @@ def _characteristic(modes: Modes) -> tuple[Step, ...]:
 def _polynomial(modes: Modes) -> Side | None:
     """Exact where that is short enough to print, else in numbers; None where there are neither."""
     small = modes.small
-    if modes.polynomial is not None and small.exact is not None:
-        if sum(map(text_size, modes.polynomial.coefficients)) <= LONG or not small.reference.valued:
-            return _side(_written(modes, modes.polynomial))
+    found = modes.polynomial
+    if found is not None and (not small.reference.valued or sum(map(text_size, found.coefficients)) <= LONG):
+        return _side(_written(modes, found))
     if not small.reference.valued or len(small.state_matrix) > MOST_WRITTEN:
         return None
     scale = np.linalg.det(floats(small.numbers.M))
@@ -376,7 +376,8 @@ def _state_matrices(modes: Modes) -> tuple[Matrix, ...]:
         ways.append(with_outputs(small.numbers, A, B, outputs))
     for found in ways:
         if found is not None:
-            shown = [matrix_of(modes, x) for x in ((found.A, found.B, found.C_y, found.D_y) if found.inputs else (found.A,))]
+            parts = (found.A, found.B, found.C_y, found.D_y) if found.inputs else (found.A,)
+            shown = [matrix_of(modes, x) for x in parts]
             if None not in shown:
                 return tuple(x for x in shown if x is not None)
     return ()
