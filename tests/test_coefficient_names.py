@@ -80,6 +80,13 @@ def test_the_name_is_defined_in_every_form(form: str, definition: str) -> None:
     assert definition in text
     if form == "text":
         assert text.count("I_1 = ") == 1 and text.index("I_1 = ") < text.index("I_1*theta''")
+
+
+def test_the_name_stands_wherever_a_multiple_of_the_coefficient_does() -> None:
+    """T = I_1 theta'^2/2, dT/dtheta' = I_1 theta': the definition comes before the first of them"""
+    text = rendered(train().derivation, "text")
+    for use in ("T = 1/2*I_1*theta'^2", "dT/dtheta' = I_1*theta'", "I_1*theta'' = M"):
+        assert text.index("I_1 = ") < text.index(use)
         assert "coefficient in the equations of motion" in text and "kg·m²" in text
 
 

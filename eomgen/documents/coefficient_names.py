@@ -9,7 +9,7 @@ from collections.abc import Collection, Iterator, Sequence
 from dataclasses import replace
 
 from eomgen.documents.reading import free_names
-from eomgen.documents.statements import Equation, Formula, Meaning, Statement, prose
+from eomgen.documents.statements import Equation, Meaning
 from eomgen.mechanics.bodies.scope import Scope
 from eomgen.model.catalog import Catalog
 from eomgen.model.dimensions import inferred
@@ -42,13 +42,6 @@ class NamedCoefficients:
     units: tuple[str, ...] = ()
 
     @property
-    def statements(self) -> list[Statement]:
-        """What the names stand for; nothing where there are none."""
-        return (
-            [prose("With short names for large coefficients,"), *map(Formula, self.definitions)] if self.units else []
-        )
-
-    @property
     def meanings(self) -> tuple[Meaning, ...]:
         """The names for a table of symbols."""
         pairs = zip(self.definitions, self.units, strict=True)
@@ -64,7 +57,7 @@ def with_coefficients_named(scope: Scope, equations: Sequence[Equation], taken: 
     """
     large: dict[Node, None] = {}
     for equation in equations:
-        parts = dict.fromkeys(part for side in (equation.left, equation.right) for part in _constants(side))
+        parts = dict.fromkeys(part for side in (equation.left, equation.right) for part in large_constants(side))
         named = substituted((equation.left, equation.right), dict.fromkeys(parts, scope.symbols.t))
         if parts and length_of(*named) + len(parts) <= HALF * length_of(equation.left, equation.right):
             large |= parts
@@ -82,7 +75,7 @@ def with_coefficients_named(scope: Scope, equations: Sequence[Equation], taken: 
     return NamedCoefficients(written, tuple((symbol, part) for part, symbol in known.items()), tuple(units))
 
 
-def _constants(x: Scalar) -> Iterator[Node]:
+def large_constants(x: Scalar) -> Iterator[Node]:
     """The largest parts made of parameters alone that are sums or quotients, and long."""
     stack = [x]
     while stack:

@@ -11,7 +11,7 @@ from eomgen.documents.energy_steps import Momenta
 from eomgen.documents.equation_steps import EquationSteps, Sides, equations_of, multiplier_forces, sides_of
 from eomgen.documents.integral_steps import integral_steps
 from eomgen.documents.maggi_steps import MAGGI, maggi_equations
-from eomgen.documents.naming import Written, with_parts_named, with_roots_named
+from eomgen.documents.naming import Written, with_coefficients_throughout, with_parts_named, with_roots_named
 from eomgen.documents.notation import notation_step
 from eomgen.documents.reaction_names import Lettered, lettered
 from eomgen.documents.reaction_steps import along_the_motion, letters_of, reactions_step
@@ -74,6 +74,7 @@ def derivation_of(
     written = Written((*setting_steps(system), *steps, *result.steps, *last), result.equations, result.definitions)
     graph, taken = equations.symbols.graph, {*system.scope.names, *(symbol.name for symbol, _ in result.definitions)}
     taken |= set() if isinstance(letters, str) else letters.names
+    written = with_coefficients_throughout(written, result.coefficients)
     written = with_roots_named(written, graph, taken, reader.roots)
     if full:
         written = with_parts_named(written, graph, taken, reader.raw)

@@ -55,7 +55,7 @@ class EquationSteps:
     """The equations as printed, and the steps that print them.
 
     Args:
-        definitions: (name, what it stands for) of what has a name in them.
+        definitions: (name, what it stands for) of what has a name in them; those of coefficients no step states yet.
         meanings: of names of coefficients, for the table of symbols.
     """
 
@@ -63,6 +63,11 @@ class EquationSteps:
     definitions: tuple[tuple[Node, Scalar], ...]
     steps: tuple[Step, ...]
     meanings: tuple[Meaning, ...] = ()
+
+    @property
+    def coefficients(self) -> dict[Node, Scalar]:
+        """What the names of coefficients stand for."""
+        return {symbol: x for symbol, x in self.definitions if any(row.symbol is symbol for row in self.meanings)}
 
 
 def multiplier_forces(equations: EquationsOfMotion) -> tuple[Scalar, ...]:
@@ -112,7 +117,7 @@ def _equations(
     written = readable_equations(reader, equations, sides)
     if written is not None:
         named = with_coefficients_named(equations.system.scope, written, taken_in(equations))
-        lines = (*named.statements, *printed(equations.system, named.equations), *closing(reader, equations))
+        lines = (*printed(equations.system, named.equations), *closing(reader, equations))
         first = Step("equations", "Equations of motion", (Prose(rule), *lines))
         steps = (first, *_solved(reader, equations, named.equations))
         return EquationSteps(named.equations, named.definitions, steps, named.meanings)

@@ -65,7 +65,6 @@ def maggi_equations(
     named = with_coefficients_named(system.scope, written, taken_in(equations))
     statements = (
         prose(words, law, ":"),
-        *named.statements,
         *printed(system, named.equations),
         *closing(reader, equations),
         prose("The dependent coordinates follow, their rates as above:"),

@@ -9,9 +9,11 @@ from collections.abc import Callable, Container, Iterator, Mapping, Sequence
 from dataclasses import replace
 from typing import TypeGuard
 
+from eomgen.documents.coefficient_names import large_constants
 from eomgen.documents.reading import LONGEST, NAMED_PART, free_names
 from eomgen.documents.statements import Equation, Formula, Side, Statement, Step
 from eomgen.records import dataclass
+from eomgen.symbolic.exact.book_form import book_form
 from eomgen.symbolic.exact.roots import is_root_of_sum
 from eomgen.symbolic.expression.derivative import substituted
 from eomgen.symbolic.expression.graph import Graph, Node, Scalar
@@ -52,6 +54,17 @@ def with_roots_named(written: Written, graph: Graph, taken: Container[str], root
     parts = {symbol: substituted((value,), whole)[0] for symbol, value in roots.items() if symbol not in whole}
     names = {letter: map(graph.symbol, free_names(letter, taken)) for letter in "rv"}
     return _introduced(written, parts, lambda part: next(names["r" if is_root_of_sum(parts[part]) else "v"]), _always)
+
+
+def with_coefficients_throughout(written: Written, coefficients: Mapping[Node, Scalar]) -> Written:
+    """The names that coefficients have in the equations of motion wherever a multiple of one stands, T = 1/2*I_1*u^2."""
+    multiples: dict[Node, Scalar] = {}
+    for part in {c: None for x in _scalars(written.steps) for c in large_constants(x)} if coefficients else ():
+        for symbol, value in coefficients.items():
+            ratio = book_form(part.graph.div(part, value))
+            if type(ratio) is not Node:
+                multiples[part] = part.graph.mul(ratio, symbol)
+    return _introduced(_substituted(written, multiples), coefficients, lambda symbol: symbol, _always)
 
 
 def _always(x: Scalar) -> bool:

@@ -105,10 +105,11 @@ def _equation(path: Path, name: str) -> Ours:
 
 def _formula(path: Path, left: str) -> Ours:
     derivation = _derived(path).derivation
+    named = dict(derivation.definitions)  # as if it had no names
     statements = [statement for step in derivation.steps for statement in step.statements]
     found = [s.sides[1] for s in statements if isinstance(s, Formula) and side_text(s.sides[0]) == left]
     assert found, f"{path.stem}: the derivation has no formula for {left}"
-    return _joined(setter_of(derivation), found[:1])
+    return _joined(setter_of(derivation), [substituted((x,), named)[0] if type(x) is Node else x for x in found[:1]])
 
 
 def _output(path: Path, name: str) -> Ours:
