@@ -57,7 +57,7 @@ def with_roots_named(written: Written, graph: Graph, taken: Container[str], root
 
 
 def with_coefficients_throughout(written: Written, coefficients: Mapping[Node, Scalar]) -> Written:
-    """The names that coefficients have in the equations of motion wherever a multiple of one stands, T = 1/2*I_1*u^2."""
+    """The names of coefficients in the equations of motion wherever a multiple of one stands, T = 1/2*I_1*u^2."""
     multiples: dict[Node, Scalar] = {}
     for part in {c: None for x in _scalars(written.steps) for c in large_constants(x)} if coefficients else ():
         for symbol, value in coefficients.items():
