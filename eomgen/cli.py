@@ -29,6 +29,7 @@ from eomgen.cli_options import (
     OUTPUT,
     form_asked,
     refuse_idle,
+    time_typed,
     with_form,
     with_picture,
     with_values,
@@ -213,21 +214,34 @@ def solve_command(**options: Any) -> int:
 
 
 @main.command("reactions")
-@with_form
+@with_picture
 @click.option(
     "--at", metavar="EQUATION", help='The first instant after the start at which "theta=pi/2" holds; or "equilibrium".'
 )
 @click.option("--from-rest", multiple=True, metavar="NAME=VALUE", help="Start there, all speeds 0.")
 @FOLLOW
-@CERTIFY
+@click.option(
+    "--view",
+    type=click.Choice(["polar", "resultants"]),
+    help="What --plot draws: the force of each hinge by size and direction, or sizes over time.  [default: what fits]",
+)
+@click.option(
+    "--time",
+    type=time_typed,
+    metavar="TIME",
+    help="How much of the motion --plot draws.  [default: one turn of a drive]",
+)
 def reactions_command(**options: Any) -> int:
     """Give every reaction, as formulas or at an instant.
 
     Each stands under the name by which an output asks for it, and with the body on which it acts: as a function of
-    coordinates and rates with its number at the start; with --at, exactly and as a number at that instant.
+    coordinates and rates with its number at the start; with --at, exactly and as a number at that instant. --plot
+    draws them along the motion from the start.
     """
     from eomgen.verbs.reactions import reactions_document
 
+    drawn = (options["plot"] is not None, OF_PLOT)
+    refuse_idle(view=drawn, time=(drawn[0], "says how much --plot draws: give both"))
     return write_asked(reactions_document, **options)
 
 

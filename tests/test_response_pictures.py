@@ -13,10 +13,23 @@ from eomgen.cli import main
 from eomgen.documents.linearize.response_pictures import roots_over
 from eomgen.documents.run_pictures import VIEWS, resultants
 from eomgen.model.ranges import range_of
+from eomgen.verbs.reaction_picture import turn_of
 
 pytestmark = pytest.mark.slow
 
 MODELS = Path(__file__).parent.parent / "models"
+
+
+def test_reactions_are_drawn_over_one_turn_of_the_drive(tmp_path):
+    """phi = n t turns in 2 pi / n; at rates that change, or without a drive, there is no such time"""
+    for name, turn in (("scotch_yoke", 2 * np.pi / 5), ("seeds/ch9_p6", None), ("four_bar", None)):
+        found = turn_of(eomgen.derive(MODELS / f"{name}.toml").graph.system)
+        assert found == (None if turn is None else pytest.approx(turn, rel=1e-12)), name
+    path = tmp_path / "forces.svg"
+    told = CliRunner().invoke(main, ["reactions", str(MODELS / "four_bar.toml"), "--plot", str(path), "--time", "0.3"])
+    assert told.exit_code == 0 and "crank [N]" in path.read_text()
+    idle = CliRunner().invoke(main, ["reactions", str(MODELS / "four_bar.toml"), "--view", "polar"])
+    assert idle.exit_code == 2 and "--plot" in idle.stderr
 
 
 @pytest.fixture(scope="module")

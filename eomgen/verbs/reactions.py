@@ -116,12 +116,16 @@ def reactions_document(
     *,
     at: WrittenEquation | AtRest | None = None,
     from_rest: Values | Sequence[str] = (),
+    plot: str | None = None,
+    view: str | None = None,
+    time: float | None = None,
     certify: bool = True,
 ) -> Document:
     """Every reaction, as `reactions` finds it, in words and for machines.
 
     Args:
         at, from_rest: as of `reactions`.
+        plot: the file of the picture of them along the motion, if one is asked for; view, time: as of that picture.
         certify: whether it is proven.
     """
     found = reactions(model, at=at, from_rest=from_rest)
@@ -143,7 +147,12 @@ def reactions_document(
         failed=f"not answered: {listed(failed)}" if failed else broken,
         notes=() if found else ("nothing reacts: no body is held by joints or ties",),
     )
-    document = with_start_told(document, _at_rest(model, from_rest))
+    starting = _at_rest(model, from_rest)
+    document = with_start_told(document, starting)
+    if plot is not None:
+        from eomgen.verbs.reaction_picture import reaction_picture
+
+        reaction_picture(starting, view, time).save(plot)
     return document.proven(found.certify() if certify and found else None)
 
 

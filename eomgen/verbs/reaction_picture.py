@@ -1,0 +1,50 @@
+"""Model -> the picture of its reactions over a cycle: of each hinge by size and direction, or sizes over time."""
+
+from __future__ import annotations
+
+import math
+
+from eomgen import pipeline
+from eomgen.documents.figures import Picture
+from eomgen.documents.run_pictures import run_picture
+from eomgen.mechanics.equations.system import System
+from eomgen.mechanics.initial_state.numeric_value import known_exactly
+from eomgen.model.parts import Model
+from eomgen.questions.run import run_of_a_page
+from eomgen.symbolic.expression.derivative import symbols_of
+from eomgen.symbolic.expression.graph import is_zero
+from eomgen.symbolic.numeric.sure_numbers import number_of
+
+SAMPLES = 721  # of a cycle
+
+
+def reaction_picture(model: Model, view: str | None = None, time: float | None = None) -> Picture:
+    """Reactions along the motion from the start.
+
+    Args:
+        view: "polar" or "resultants"; None: of hinges in the plane the first.
+        time: how long [s]; None: one turn of what is driven, else as long as a page shows it.
+    Raises:
+        RunFailed: nothing carries such a force; the motion ends at once.
+    """
+    equations = pipeline.derive(model)
+    run, _ = run_of_a_page(equations, time or turn_of(equations.graph.system), SAMPLES)
+    return run_picture(run, view or ("polar" if model.space == "plane" else "resultants"), title=model.name)
+
+
+def turn_of(system: System) -> float | None:
+    """How long the slowest joint takes for a turn that is driven at a constant rate [s]; None: there is none."""
+    scope, driven = system.scope, [q for q in system.symbols.q if system.scope.model.coordinates[q.name].driven]
+    turned = {
+        x
+        for link in system.motion.links
+        for s, (w, _) in zip(link.s, link.S, strict=False)
+        if not all(map(is_zero, w))
+        for x in symbols_of((s,))
+    }
+    rates = [scope.names[f"{q.name}'"] for q in driven if q in turned]
+    parameters = set(system.symbols.parameters.values())
+    steady = [rate for rate in rates if parameters.issuperset(symbols_of((rate,)))]
+    known = known_exactly(scope)
+    sizes = [abs(number_of(rate, known)) for rate in steady if not is_zero(rate)]
+    return math.tau / min(sizes) if sizes else None
