@@ -10,6 +10,7 @@ import pytest
 import eomgen
 from eomgen.documents.arrows import is_freer_outward
 from eomgen.documents.figures import figures, scale_of
+from eomgen.documents.inertia.picture import inertia_scene
 from eomgen.scene import forms, plane_strokes
 from eomgen.scene.instant import drawn_start, frame_at
 from eomgen.scene.scene import Mark
@@ -89,6 +90,37 @@ def test_results_show_themselves_and_their_pictures_in_a_notebook(made, tmp_path
     assert found.picture._repr_png_().startswith(b"\x89PNG")
     found.plot(tmp_path / "it.svg")
     assert "<svg" in (tmp_path / "it.svg").read_text()
+
+
+SKEW = """eomgen = 1
+name = "Skew body"
+space = "space"
+[coordinates]
+a = 0.7
+b = 0.2
+[bodies.ball]
+shape = { kind = "sphere", mass = 2, radius = 0.3 }
+joint = { kind = "revolute", axis = [0, 1, 1], angle = "a" }
+[bodies.skew]
+mass = 3
+center = [0.1, 0.2, 0]
+inertia = [0.9, 0.7, 0.6, -0.1, 0.2, 0.05]
+joint = { kind = "revolute", at = [1, 0, 0], axis = [1, 0, 0], angle = "b" }
+"""
+
+
+def test_the_ellipsoid_of_inertia_is_drawn_in_space(tmp_path):
+    """x I x = c: R diag(1/a^2) R^T goes as the tensor; that of a ball is the ball"""
+    found = eomgen.inertia(eomgen.loads(SKEW))
+    scene = inertia_scene(found.system, found.axes, found.moments)
+    drawn = {mark.of: mark for mark in scene.marks_of_kind("ellipsoid") if mark.role == "inertia"}
+    assert list(map(float, drawn["ball"].form.size)) == pytest.approx([0.3, 0.3, 0.3])
+    R = np.array([[float(x) for x in row] for row in scene.frames[drawn["skew"].frame].pose.R])
+    shape = R @ np.diag([1 / float(a) ** 2 for a in drawn["skew"].form.size]) @ R.T
+    tensor = np.array([[0.9, -0.1, 0.05], [-0.1, 0.7, 0.2], [0.05, 0.2, 0.6]])
+    assert np.allclose(shape / np.trace(shape), tensor / np.trace(tensor))
+    found.plot(tmp_path / "it.png")
+    assert (tmp_path / "it.png").read_bytes().startswith(b"\x89PNG")
 
 
 def test_the_python_name_gives_places_of_rest_where_the_verb_does():

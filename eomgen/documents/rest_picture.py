@@ -12,6 +12,7 @@ from eomgen.model.parts import Model
 from eomgen.scene.instant import drawn_start, frame_at
 from eomgen.scene.making import scene_of
 from eomgen.scene.plane_strokes import plane_drawing
+from eomgen.scene.scene import Scene
 from eomgen.scene.space_strokes import space_drawing
 from eomgen.scene.strokes import SceneNumbers
 
@@ -24,7 +25,11 @@ def rest_picture(model: Model) -> Picture:
     Raises:
         DerivationError, NotYet: what cannot be derived is not drawn either.
     """
-    scene = scene_of(model)
+    return picture_of_scene(scene_of(model))
+
+
+def picture_of_scene(scene: Scene) -> Picture:
+    """A scene at the start of its model."""
     numbers = SceneNumbers(scene, frame_at(scene, drawn_start(scene.system))[None, :])
     drawing = (plane_drawing if scene.plane else space_drawing)(numbers, dimensions=True)
 
@@ -36,4 +41,4 @@ def rest_picture(model: Model) -> Picture:
     def fill(figure: Any) -> None:
         (draw if scene.plane else draw_space)(figure.subplots(), drawing, notation_of(scene.system.scope.model))
 
-    return Picture((width, height), fill, model.name)
+    return Picture((width, height), fill, scene.name)

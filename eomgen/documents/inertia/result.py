@@ -90,13 +90,19 @@ class Inertia(Result):
 
     @property
     def picture(self) -> Picture:
-        """The bodies with mass centres and principal axes.
+        """The bodies with mass centres and principal axes, in space with the ellipsoid of inertia.
 
         Raises:
-            RunFailed: they are in space.
             MissingValues: parameters without a value.
         """
-        return inertia_picture(self.system, self.axes)
+        return inertia_picture(self.system, self.axes, self.moments)
+
+    @property
+    def moments(self) -> dict[str, list[float]]:
+        """The three principal moments in numbers, by "plate" or "O", of what has them [kg m^2]."""
+        found = {of: [self.results.get(f"I_{k}({of})") for k in (1, 2, 3)] for of in self.axes}
+        known = {of: [x.value for x in each if x is not None and x.value is not None] for of, each in found.items()}
+        return {of: each for of, each in known.items() if len(each) == 3}
 
     def certify(self) -> Certificate:
         """Check shapes, parts and all that is stated of them against quadratures of what the shapes fill."""
