@@ -10,11 +10,13 @@ from eomgen.documents.friction_steps import friction_of
 from eomgen.documents.reading import (
     LARGEST_DIVISOR,
     LONGEST,
+    NAMED_LENGTH,
     NAMED_PART,
     Reader,
     Shortened,
     conditions_in,
     free_names,
+    holds_roots,
     length_in_print,
     readable_value,
     shortened,
@@ -172,12 +174,21 @@ def _named(
 ) -> tuple[list[Equation], tuple[tuple[Node, Scalar], ...]] | None:
     """The shortest form of the equations with named sub-expressions; None where even that is too long."""
     graph = equations.symbols.graph
+    if _is_beyond_names(equations):
+        return None
     taken = {node.name for node in _symbols(equations)}
     found: Shortened | None = shortened(graph, _shortest_sides(reader, equations), NAMED_PART, taken)
     if found is None:
         return None
     texts = iter(found.expressions)
     return [Equation(u, next(texts), next(texts)) for u in equations.symbols.u], found.definitions
+
+
+def _is_beyond_names(equations: EquationsOfMotion) -> bool:
+    """Whether no form is short enough: every operation on what moves is written at least once, an operand beside it."""
+    sides = (*(x for row in equations.M for x in row), *equations.forcing)
+    moving = operations(sides, equations.symbols.parameters.values()).total
+    return 2 * moving > NAMED_LENGTH and not holds_roots(*sides)
 
 
 def taken_in(equations: EquationsOfMotion) -> set[str]:
