@@ -238,6 +238,16 @@ def test_several_share_one_expansion_and_the_large_ones_stay(the):
     assert written[2] == 3
 
 
+def test_a_long_sum_stays_in_the_parentheses_in_which_it_is_shorter(the):
+    """(M + m + k)^3 (R + l)^2 has 30 terms: written out where more are allowed, as it came where fewer are."""
+    M, m, k, R, l = the("M m k R l")
+    short = (M + m + k) ** 3 * (R + l) ** 2
+    assert simplest(short, most=29) is short
+    assert to_text(simplest(short, most=30)).count("+") == 29
+    long = sum((short - (j + 1) * M * m * k * R * l for j in range(8)), start=0)
+    assert to_text(simplest(long, most=20)) == to_text(simplest(long))
+
+
 def chain(graph: Graph, n: int, absolute: bool = True) -> tuple[Node, list[Node], list[Node]]:
     """T of n equal point masses on equal links."""
     m, l = graph.symbol("m"), graph.symbol("l")

@@ -80,12 +80,13 @@ def _matrices(modes: Modes, differences: Differences) -> Iterator[Check]:
     if differences.is_part:
         yield _of_part(differences)
         return
+    A, B = (_in_rows(x.ravel().tolist(), x) for x in (small.state_matrix, small.input_matrix))
     exact, tolerance = _entries(modes), DIFFERENCE_AT_50 if small.exact is not None else COMPUTED
     wrong: dict[str, str] = {"motion": "", "state": "", "mass": ""}
     for _ in range(DIRECTIONS):
         beside = differences.along(_random((*small.whole.coordinates, *small.whole.speeds, *small.whole.inputs), rng))
         wrong["motion"] = wrong["motion"] or _in_equations(small, exact, beside, tolerance)
-        wrong["state"] = wrong["state"] or _in_state_form(small, beside)
+        wrong["state"] = wrong["state"] or _in_state_form(small, A, B, beside)
         wrong["mass"] = wrong["mass"] or _in_energy(differences, exact["M"], rng, tolerance)
     form = "M q'' + C q' + K q = B w" if small.is_second_order else "M u' + C u + K q = B w, q' = F q + E u"
     yield checked(f"motions beside the reference satisfy {form}", wrong["motion"], BY_DIFFERENCES)
@@ -124,7 +125,13 @@ def _numbers(small: SmallMotions, rows: Sequence[Sequence[Any]], modes: Modes | 
     if small.exact is not None:
         flat = [x if modes is None else modes.written(x) for x in flat]
         flat = evaluate(tuple(flat), small.reference.trial, fifty_digits())
-    values = iter(flat)
+    return _in_rows(flat, rows)
+
+
+def _in_rows(flat: Sequence[Any], rows: Sequence[Sequence[Any]]) -> list[list[Any]]:
+    """The numbers with 50 digits, in rows as these are."""
+    one = fifty_digits().number(1)
+    values = iter([one * x for x in flat])
     return [[next(values) for _ in row] for row in rows]
 
 
@@ -150,7 +157,8 @@ def _random(nodes: Sequence[Node], rng: Random) -> State:
 def _in_equations(small: SmallMotions, A: Mapping[str, list[list[Any]]], at: Beside, tolerance: float) -> str:
     u, a = (at.q1, at.q2) if small.is_second_order else (at.u, at.a)
     for i, speed in enumerate(small.numbers.speeds):
-        terms = [*_terms(A["M"][i], a), *_terms(A["C"][i], u), *_terms(A["K"][i], at.q), *_terms(A["B"][i], at.w, -1)]
+        pushes = [-x for x in _terms(A["B"][i], at.w)]
+        terms = [*_terms(A["M"][i], a), *_terms(A["C"][i], u), *_terms(A["K"][i], at.q), *pushes]
         if wrong := _left(terms, tolerance, sum(map(abs, A["M"][i]))):
             return f"the equation of {speed.name.rstrip(chr(39))}: {wrong}"
     for i, q in enumerate(small.numbers.coordinates):
@@ -159,10 +167,10 @@ def _in_equations(small: SmallMotions, A: Mapping[str, list[list[Any]]], at: Bes
     return ""
 
 
-def _in_state_form(small: SmallMotions, at: Beside) -> str:
+def _in_state_form(small: SmallMotions, A: list[list[Any]], B: list[list[Any]], at: Beside) -> str:
     u, a = (at.q1, at.q2) if small.is_second_order else (at.u, at.a)
     names = [x.name for x in (*small.numbers.coordinates, *small.numbers.speeds)]
-    rows = zip(names, small.state_matrix, small.input_matrix, (*at.q1, *a), strict=True)
+    rows = zip(names, A, B, (*at.q1, *a), strict=True)
     for name, row, push, rate in rows:
         if wrong := _left([-rate, *_terms(row, (*at.q, *u)), *_terms(push, at.w)], COMPUTED):
             return f"the row of {name}: {wrong}"
@@ -178,8 +186,9 @@ def _in_energy(differences: Differences, M: list[list[Any]], rng: Random, tolera
     )
 
 
-def _terms(row: DigitColumn, x: DigitColumn, sign: int = 1) -> list[Any]:
-    return [sign * a * b for a, b in zip(row, x, strict=True)]
+def _terms(row: DigitColumn, x: DigitColumn) -> list[Any]:
+    """The terms of row x, but for those that are 0."""
+    return [a * b for a, b in zip(row, x, strict=True) if a]
 
 
 def _left(terms: DigitColumn, tolerance: float, unit: Any = 1) -> str:

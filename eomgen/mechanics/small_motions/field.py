@@ -20,6 +20,9 @@ from eomgen.symbolic.numeric.evaluation import evaluate, fifty_digits, floats_of
 from eomgen.symbolic.numeric.work import Work
 from eomgen.symbolic.solve.solving import vanishes
 
+MOST_TERMS = (
+    60  # of an entry that is multiplied out however short it came: more fill more than the lines of one formula
+)
 MatrixEntry = Any  # an exact scalar, or a float
 Entries = list[list[MatrixEntry]]
 
@@ -88,7 +91,7 @@ class Exact:
         if type(x) is not Node or x.op == "symbol":
             return x
         if x not in self.known:
-            found = simplest(x, Work.VALUE, self.positive)
+            found = simplest(x, Work.VALUE, self.positive, MOST_TERMS)
             self.known[x] = self.known[found] = 0 if is_zero(found) or vanishes(found) else found
         return self.known[x]
 

@@ -46,6 +46,8 @@ __all__ = [
     "simplest",
 ]
 
+A_TERM = 16  # characters of one term of many, at least on the average
+
 
 @dataclass(frozen=True)
 class NormalForm:
@@ -232,7 +234,7 @@ def simplest(x: Scalar, limit: int = Work.ANSWER, positive: Collection[Node] = (
     """The shortest of x multiplied out, x as one quotient without common factors, and that with its factors outside.
 
     Args:
-        most: terms; a longer sum stays as it is.
+        most: terms; a longer sum stays as it is where that is shorter than so many terms are.
     """
     if type(x) is not Node:
         return _simplest(x, limit, positive, most)
@@ -246,7 +248,7 @@ def simplest(x: Scalar, limit: int = Work.ANSWER, positive: Collection[Node] = (
 def _simplest(x: Scalar, limit: int, positive: Collection[Node], most: int | None) -> Scalar:
     try:
         expansion, (terms,) = expanded((x,), limit, positive)
-        if most is not None and len(terms) > most:
+        if most is not None and len(terms) > most and text_size(x) < A_TERM * len(terms):
             return x
         writer = Writer(expansion)
         forms = list(dict.fromkeys((writer.sum(terms), *quotients(expansion, writer, terms))))

@@ -6,7 +6,7 @@ import gc
 from collections.abc import Iterator
 from contextlib import contextmanager
 
-SELDOM = (50_000, 20, 100)  # objects made between two looks at the youngest; looks between two at the older
+SELDOM = (200_000, 50, 100)  # objects made between two looks at the youngest; looks between two at the older
 
 
 @contextmanager

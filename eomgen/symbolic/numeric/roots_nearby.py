@@ -30,12 +30,15 @@ from eomgen.symbolic.numeric.tolerances import (
     CERTAIN_AT_50,
     COMPUTED,
     DIFFERENCE_AT_50,
+    FELT,
     LEAST_CHANGE,
     MET_AT_50,
     NEAR_ROOT,
+    SOLVED,
 )
 
 STEPS = 80
+FAILURES = 3  # steps one after the other after which a place so near a root is as near as its rounding lets it
 UNDAMPED = 8
 SHRINKS = 0.9  # of a step of Newton's method the next, at a root of order 10; along exp(-x^2) it is more
 STEPS_APART = 1e3  # of Newton's steps at two places, within which they are one root
@@ -116,7 +119,9 @@ class Descent:
         With 50 digits, whose exponents have no end: where doubles underflow, nothing would be left and no step.
         """
         try:
-            slopes = np.abs(self._at_digits(self._state(x))) * self._columns
+            A = self._at_digits(self._state(x))
+            quickly = _in_doubles(A, np.ones(len(A)), self._columns)
+            slopes = np.abs(A) * self._columns if quickly is None else np.abs(quickly)
             largest = [max(row, default=0) for row in slopes]
         except (NoValue, ZeroDivisionError):
             return self
@@ -153,7 +158,9 @@ class Descent:
 
     def slopes(self, state: State) -> np.ndarray:
         """Their derivatives, rows and columns scaled."""
-        return np.array(self._rows[:, None] * self._at_digits(state) * self._columns, dtype=float)
+        A = self._at_digits(state)
+        quickly = _in_doubles(A, self._rows, self._columns)
+        return np.array(self._rows[:, None] * A * self._columns, dtype=float) if quickly is None else quickly
 
     def moved(self, state: State, step: Sequence[Any]) -> State:
         """The state after a step of the scaled unknowns."""
@@ -229,15 +236,16 @@ class Descent:
 
     def _arrived(self, x: np.ndarray) -> np.ndarray:
         """Move x to roots in place; where that succeeded."""
-        n = len(self.unknowns)
+        diagonal = np.arange(len(self.unknowns))
         f, A = self._scaled(x)
-        mu, size = np.full(len(x), 1e-3), _size(f)
+        mu, size, failed = np.full(len(x), 1e-3), _size(f), np.zeros(len(x))
         for _ in range(STEPS):
-            left = np.flatnonzero(np.isfinite(size) & (size > BEST))
+            left = np.flatnonzero(np.isfinite(size) & (size > BEST) & ((failed < FAILURES) | (size > SOLVED)))
             if not len(left):
                 break
             At = A[left].transpose(0, 2, 1)
-            normal = At @ A[left] + mu[left, None, None] * np.eye(n)
+            normal = At @ A[left]
+            normal[:, diagonal, diagonal] += mu[left, None]
             step = self._columns * _solved(normal, -(At @ f[left][:, :, None])[:, :, 0])
             trial = x[left] + step
             new_f, new_A = self._scaled(trial)
@@ -245,6 +253,7 @@ class Descent:
             done = left[better]
             x[done], f[done], A[done] = trial[better], new_f[better], new_A[better]
             size[done] = _size(f[done])
+            failed[left] = np.where(better, 0, failed[left] + 1)
             mu[left] = np.clip(np.where(better, mu[left] / 5, mu[left] * 4), DIFFERENCE_AT_50, 1e12)
         return np.asarray(np.isfinite(size) & (size < NEAR_ROOT))
 
@@ -274,6 +283,16 @@ def _solved(normal: np.ndarray, right: np.ndarray) -> np.ndarray:
     except np.linalg.LinAlgError:
         found = (np.linalg.pinv(normal, hermitian=True) @ right[:, :, None])[:, :, 0]
     return found
+
+
+def _in_doubles(A: np.ndarray, rows: np.ndarray, columns: np.ndarray) -> np.ndarray | None:
+    """A of 50 digits, rows and columns scaled, in doubles; None where what is too small for one could be felt."""
+    with np.errstate(all="ignore"):
+        rows = np.array(rows, dtype=float)[:, None]
+        found = rows * np.array(A, dtype=float) * columns
+    largest = np.abs(found).max(axis=1, initial=0.0)
+    felt = np.max(rows * columns, initial=0.0) <= 1 / FELT and np.all((largest >= FELT) & np.isfinite(largest))
+    return found if felt else None
 
 
 def _size(f: np.ndarray) -> np.ndarray:

@@ -16,6 +16,7 @@ BEST = 1e-15  # [of the unknown] asked of a search that shall go as far as doubl
 OUTWARDS = 5e-16  # of an end of an interval, by which it is moved outwards: two units in the last place
 ROUNDING_SQUARED = 1e-28  # of a largest pivot that is the square of a length
 TINIEST = 1e-300  # instead of 0 in a divisor
+FELT = 1e-100  # [of a scaled row] its largest entry: beside one above it what underflows in doubles is nothing
 SLOW = 1e-4  # [of a unit, a second] a rate of this part of 1 is compared as 1 is: smaller ones are mostly rounding
 
 # In single precision (7 digits).
