@@ -60,7 +60,7 @@ def _frozen(cls: type, *, kw_only: bool, eq: bool, shown: bool) -> type:
     fields = dataclasses.fields(cls)
     found: dict[str, Any] = {"__setattr__": _refusing_to_set(cls), "__delattr__": _refusing_to_delete(cls)}
     if "__init__" not in own:
-        cls.__init__ = _InitWhenAsked(cls, fields)
+        type.__setattr__(cls, "__init__", _InitWhenAsked(cls, fields))
     if shown and "__repr__" not in own:
         found["__repr__"] = _shown_by([f.name for f in fields if f.repr])
     if eq:

@@ -80,7 +80,7 @@ def _matrices(modes: Modes, differences: Differences) -> Iterator[Check]:
     if differences.is_part:
         yield _of_part(differences)
         return
-    A, B = (_in_rows(x.ravel().tolist(), x) for x in (small.state_matrix, small.input_matrix))
+    A, B = (_in_rows(x.ravel().tolist(), x.tolist()) for x in (small.state_matrix, small.input_matrix))
     exact, tolerance = _entries(modes), DIFFERENCE_AT_50 if small.exact is not None else COMPUTED
     wrong: dict[str, str] = {"motion": "", "state": "", "mass": ""}
     for _ in range(DIRECTIONS):
