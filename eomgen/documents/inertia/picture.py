@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import replace
 from typing import Any
 
@@ -24,7 +24,8 @@ from eomgen.scene.forms import LabelForm, PointForm
 from eomgen.scene.making import scene_of_system
 from eomgen.scene.scene import ROLES, Mark, Scene, SceneFrame
 from eomgen.symbolic.expression.graph import Node
-from eomgen.symbolic.expression.spatial import ZERO, Pose, Vector, matrix_of, vector_of
+from eomgen.symbolic.expression.rational import Fraction
+from eomgen.symbolic.expression.spatial import ZERO, Pose, Vector, matrix_of, minus, vector_of
 
 CENTER, AXIS = "#b03a2e", "#2e7d4f"
 LONGEST = 4.0  # half-axis of an ellipsoid of inertia, of its shortest: that of a rod has no end
@@ -71,8 +72,8 @@ def inertia_scene(
         if m <= 0:
             continue
         marks += _ellipsoid(moments[body], m, len(frames), body)
-        turned = matrix_of(zip(*rows, strict=True))
-        frames.append(SceneFrame(f"{body}, principal", system.motion.index[body] + 1, Pose(turned, vector_of(com))))
+        pose = Pose(matrix_of(map(_vector, zip(*rows, strict=True))), _vector(com))
+        frames.append(SceneFrame(f"{body}, principal", system.motion.index[body] + 1, pose))
     return replace(scene, frames=tuple(frames), marks=ordered(marks, ROLES))
 
 
@@ -81,12 +82,16 @@ def _ellipsoid(moments: Sequence[float], m: float, frame: int, body: str) -> Ite
     largest = max(moments)
     size = math.sqrt(5 * sum(moments) / (6 * m))  # of the shortest half-axis: of a ball its radius
     half = [size * min(math.sqrt(largest / I) if I > 0 else LONGEST, LONGEST) for I in moments]
-    yield Mark(EllipsoidForm(ZERO, vector_of(half)), frame, "inertia", body)
+    yield Mark(EllipsoidForm(ZERO, _vector(half)), frame, "inertia", body)
     yield Mark(PointForm(ZERO), frame, "center", body)
     for k, length in enumerate(half):
-        end: Vector = vector_of(BEYOND * length * (i == k) for i in range(3))
-        yield Mark(LineForm((vector_of(-x for x in end), end), fine=True), frame, "reaction", body)
+        end = _vector(BEYOND * length * (i == k) for i in range(3))
+        yield Mark(LineForm((minus(ZERO, end), end), fine=True), frame, "reaction", body)
         yield Mark(LabelForm(str(k + 1), end), frame, "axes", body)
+
+
+def _vector(v: Iterable[float]) -> Vector:
+    return vector_of(map(Fraction, v))
 
 
 def values_at_start(system: System) -> dict[Node, float]:
