@@ -36,6 +36,7 @@ from eomgen.scene.space_strokes import space_drawing
 from eomgen.scene.strokes import SceneNumbers
 from eomgen.scene.virtual import SWING, VirtualDisplacement
 from eomgen.symbolic.numeric.evaluation import FLOAT, evaluate
+from eomgen.verbs import animate
 from eomgen.verbs.animate import released
 
 pytestmark = pytest.mark.slow
@@ -92,6 +93,16 @@ def test_a_strip_has_as_many_frames_as_are_asked_from_the_start_to_the_end(tmp_p
         assert json.loads(CliRunner().invoke(main, [*words, "--json"]).stdout)["frames"] == frames
     assert CliRunner().invoke(main, [*words[:-1], "1000"]).exit_code == 2
     assert CliRunner().invoke(main, ["animate", str(PENDULUM), "-o", "m.png", "--modes", "2"]).exit_code == 2
+
+
+def test_a_strip_of_a_drive_that_is_back_at_each_of_its_frames_shows_one_round(tmp_path, monkeypatch):
+    """w = pi: a turn takes 2 s, as long as it is from frame to frame of 10 s; shown are sixths of a turn"""
+    shown = []
+    monkeypatch.setattr(animate, "strip", lambda movie: shown.append(movie) or b"")
+    path = str(tmp_path / "yoke.png")
+    args = ["animate", str(MODELS / "scotch_yoke.toml"), "--set", "w=pi", "-o", path]
+    assert CliRunner().invoke(main, args).exit_code == 0
+    assert shown[0].times == pytest.approx(np.arange(6) / 3) and shown[0].as_at_first.tolist() == [True] + 5 * [False]
 
 
 def test_the_times_of_a_flat_strip_are_seen_whole(tmp_path):

@@ -373,3 +373,48 @@ acceleration = {list(gravity)}
     scene = eomgen.loads(text).scene()
     numbers = SceneNumbers(scene, frame_at(scene, drawn_start(scene.system))[None, :])
     assert np.allclose(space_drawing(numbers).sizes.up, up)
+
+
+def drawn_at_start(name: str) -> tuple[Scene, SceneNumbers]:
+    scene = eomgen.load(MODELS / f"{name}.toml").scene()
+    return scene, SceneNumbers(scene, frame_at(scene, drawn_start(scene.system))[None, :])
+
+
+def test_what_slides_down_a_block_makes_it_a_wedge():
+    """The toe where the face meets the ground, the seat on the face, the back upright; no guide across the picture."""
+    scene, numbers = drawn_at_start("block_on_wedge")
+    (mark,) = [mark for mark in scene.marks_of_kind("polygon") if mark.of == "wedge"]
+    toe, heel, top = numbers.spots(mark.form.points, mark)[0]
+    assert toe[1] == pytest.approx(0) and heel[1] == pytest.approx(0) and top[0] == pytest.approx(heel[0])
+    assert math.degrees(math.atan2(top[1] - toe[1], toe[0] - top[0])) == pytest.approx(30)
+    seat = np.array([0.0, 1.0])
+    assert np.linalg.norm(seat - toe) + np.linalg.norm(top - seat) == pytest.approx(np.linalg.norm(top - toe))
+    assert [mark.of for mark in scene.marks_of_kind("track")] == ["wedge"]
+
+
+def test_two_shafts_that_meet_go_apart():
+    """Of a body without lengths that turns on the ground: the first against its axis, the second along it"""
+    scene, numbers = drawn_at_start("cardan_shaft")
+    ways = {
+        mark.of: numbers.way(mark.form.along, mark)[0]
+        for mark in scene.marks_of_kind("symbol")
+        if mark.form.symbol == "shaft"
+    }
+    assert ways["driving"] == pytest.approx([-1, 0, 0])
+    assert ways["driven"] == pytest.approx([math.cos(math.pi / 6), math.sin(math.pi / 6), 0])
+
+
+@pytest.mark.parametrize("name", ["gimbal_gyroscope", "gyrocompass", "satellite_wheels", "epicyclic_gear"])
+def test_bodies_with_one_middle_have_their_names_at_their_rims(name: str):
+    """Each at a place of its own; of bodies apart the names stay at their middles"""
+    scene, numbers = drawn_at_start(name)
+    drawing = (plane_strokes.plane_drawing if scene.plane else space_drawing)(numbers)
+    places = {letter.of: letter.at[0] for letter in drawing.letters if letter.role == "label"}
+    apart = [np.linalg.norm(a - b) for one, a in places.items() for other, b in places.items() if one < other]
+    assert min(apart) > drawing.sizes.unit
+    pendulum, at = drawn_at_start("double_pendulum")
+    kept = {letter.of: letter.at[0] for letter in plane_strokes.plane_drawing(at).letters if letter.role == "label"}
+    middles = {
+        mark.of: at.spot(mark.form.at, mark)[0] for mark in pendulum.marks_of_kind("label") if mark.role == "label"
+    }
+    assert all(np.array_equal(kept[of], middles[of]) for of in kept)

@@ -55,8 +55,16 @@ class Movie:
     @property
     def stands_still(self) -> bool:
         """Whether all frames show the same."""
-        ways = (np.ptp(stroke.path, axis=0) for stroke in self.drawing.strokes if len(stroke.path) > 1)
-        return not any(np.nanmax(way, initial=0.0) > COMPUTED * self.drawing.sizes.extent for way in ways)
+        return bool(self.as_at_first.all())
+
+    @property
+    def as_at_first(self) -> np.ndarray:
+        """Which frames show what the first does."""
+        found = np.ones(len(self.times), dtype=bool)
+        for path in (stroke.path for stroke in self.drawing.strokes if stroke.path.size):
+            away = np.abs(path - path[:1]).reshape(len(path), -1)
+            found &= ~(np.nan_to_num(away) > COMPUTED * self.drawing.sizes.extent).any(axis=1)
+        return found
 
 
 def frame_times(end: float, fps: float, speed: float) -> np.ndarray:

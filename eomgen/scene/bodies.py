@@ -19,7 +19,7 @@ from eomgen.scene.scene import Mark, SceneFrame
 from eomgen.symbolic.expression.functions import function, over, sqrt
 from eomgen.symbolic.expression.graph import Node, is_zero
 from eomgen.symbolic.expression.rational import Fraction
-from eomgen.symbolic.expression.spatial import ZERO, Vector, apply, cross
+from eomgen.symbolic.expression.spatial import ZERO, Vector, apply, cross, dot, minus, plus, times
 from eomgen.symbolic.numeric.evaluation import FLOAT, evaluate
 from eomgen.symbolic.numeric.tolerances import COMPUTED
 
@@ -51,6 +51,28 @@ def is_block(system: System, link: BodyLink) -> bool:
     return formless and slides and seated and link.parent == GROUND
 
 
+def wedge_of(system: System, link: BodyLink) -> PolygonForm | None:
+    """The triangle under the face of a block: on it another body slides along a line that meets the ground's guide."""
+    if not is_block(system, link):
+        return None
+    motion, own = system.motion, link.point
+    base = next(v for w, v in link.S if all(map(is_zero, w)))
+    up: Vector = (-base[1], base[0], 0)
+    for other in motion.links:
+        if other.parent != motion.index[link.name] or other.joint is None or not other.joint.straight:
+            continue
+        seat, along = other.before.p, apply(other.before.R, apply(other.relative.R, other.S[0][1]))
+        height, fall = dot(up, minus(seat, own)), dot(up, along)
+        if motion.moves(seat) or motion.moves(along):
+            continue
+        if all(abs(x) > COMPUTED for x in evaluate((height, fall), parameters_as_drawn(system), FLOAT)):
+            toe = minus(seat, times(over(height, fall), along))
+            top = plus(seat, times(Fraction(1, 8), minus(seat, toe)))
+            heel = minus(top, times(over(dot(up, minus(top, own)), dot(up, up)), up))
+            return PolygonForm((toe, heel, top))
+    return None
+
+
 def piece_marks(system: System, body: str, parent: int, first: int) -> tuple[list[SceneFrame], list[Mark]]:
     """The frames and marks of the pieces of a composite body; holes lie over what they are cut from."""
     pieces = system.scope.model.bodies[body].parts if body in system.scope.model.bodies else None
@@ -78,12 +100,15 @@ def skeleton(system: System, link: BodyLink, frame: int) -> list[Mark]:
     """A body without a shape: the lines through its joint and its points, in space also its inertia."""
     places = places_of_body(system, link)
     if system.scope.model.space == "plane":
-        return [Mark(form, frame, "body", link.name) for form in _plate(system, places)]
+        wedge = wedge_of(system, link)
+        return [Mark(form, frame, "body", link.name) for form in ([wedge] if wedge else _plate(system, places))]
     rods = [Mark(RodForm(places[0], place), frame, "body", link.name) for place in places[1:]]
     if gimbal := gimbal_of(system, link):
         symbol, axis = gimbal
         pins = Mark(SymbolForm(f"{symbol}_pins", link.point, link.S[0][0]), frame, "body", link.name)
         return [Mark(SymbolForm(symbol, link.point, axis), frame, "body", link.name), pins]
+    if shaft := shaft_of(system, link):
+        return [Mark(SymbolForm("shaft", link.point, shaft), frame, "body", link.name)]
     return [*rods, *inertia_mark(mass_properties(system.scope, link.name), frame, link.name)]
 
 
@@ -93,9 +118,7 @@ def gimbal_of(system: System, link: BodyLink) -> tuple[str, Vector] | None:
     The ring lies in the plane of its own hinge and of that in it.
     """
     part, motion = system.scope.model.bodies[link.name], system.motion
-    turns = len(link.S) == 1 and not all(map(is_zero, link.S[0][0])) and all(map(is_zero, link.S[0][1]))
-    held = link.joint is not None and link.joint.carries_reaction and turns
-    if system.scope.model.space == "plane" or not held or part.shape is not None or part.parts is not None:
+    if system.scope.model.space == "plane" or not _turns(link) or part.shape is not None or part.parts is not None:
         return None
     mass, axis = mass_properties(system.scope, link.name), link.S[0][0]
     hung = [other for other in motion.links if other.parent == motion.index[link.name]]
@@ -108,6 +131,24 @@ def gimbal_of(system: System, link: BodyLink) -> tuple[str, Vector] | None:
     if inner is None or hung[0].before.p != link.point or all(map(is_zero, across)):
         return None
     return "ring" if inner[0] == "rotor" else "outer_ring", across
+
+
+def shaft_of(system: System, link: BodyLink) -> Vector | None:
+    """The way from its bearing along a body on the ground that turns and has no lengths; of a second the other way."""
+    part = system.scope.model.bodies[link.name]
+    if link.parent != GROUND or not _turns(link) or part.shape is not None or part.parts is not None:
+        return None
+    if len(places_of_body(system, link)) > 1:
+        return None
+    before = [other for other in system.motion.links[: system.motion.index[link.name]] if other.parent == GROUND]
+    second = any(_turns(other) and other.before.p == link.before.p for other in before)
+    return link.S[0][0] if second else minus(ZERO, link.S[0][0])
+
+
+def _turns(link: BodyLink) -> bool:
+    """Whether it is held by a hinge."""
+    alone = len(link.S) == 1 and not all(map(is_zero, link.S[0][0])) and all(map(is_zero, link.S[0][1]))
+    return link.joint is not None and link.joint.carries_reaction and alone
 
 
 def _plate(system: System, places: list[Vector]) -> list[Form]:

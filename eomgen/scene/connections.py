@@ -24,7 +24,7 @@ from eomgen.model.forces.load import Couple, PointForce
 from eomgen.model.joints.base import unit
 from eomgen.model.shapes.forms import ArcForm, EllipsoidForm, LineForm
 from eomgen.scene.anchors import walls
-from eomgen.scene.bodies import gimbal_of, is_block, seen
+from eomgen.scene.bodies import gimbal_of, is_block, seen, shaft_of, wedge_of
 from eomgen.scene.forms import DamperForm, RodForm, SpringForm, SymbolForm, TrackForm, WheelForm
 from eomgen.scene.scene import Mark
 from eomgen.symbolic.expression.functions import function
@@ -71,13 +71,14 @@ def _guided(system: System, link: BodyLink, frame: int, turns: bool, own: Vector
     along = apply(link.before.R, apply(link.relative.R, own))
     upward = (-along[1], along[0], 0)
     point, bare = part.shape is not None and part.shape.is_point, part.shape is None and part.parts is None
-    block = is_block(system, link)
-    below = Fraction(3, 5) if bare or block else Fraction(1, 4) if point else 0
+    wedge, block = wedge_of(system, link), is_block(system, link)
+    on_wedge = not grounded and wedge_of(system, system.motion.links[link.parent]) is not None
+    below = 0 if wedge else Fraction(3, 5) if bare or block else Fraction(1, 4) if point else 0
     sprung = any(effort is not None and effort.stiffness is not None for effort in link.joint.efforts())
     found = []
-    if not sprung or grounded:
+    if (not sprung or grounded) and not on_wedge:
         found = [Mark(TrackForm(link.before.p, along, upward if grounded else None, below), above, "track", link.name)]
-    if bare or block:
+    if (bare or block) and wedge is None:
         found.append(Mark(SymbolForm("slider" if turns else "block", link.point, own), frame, "body", link.name))
     return found
 
@@ -87,7 +88,7 @@ def _space_joint(
 ) -> list[Mark]:
     kinds = {(0, 0): "weld", (1, 0): "hinge", (0, 1): "slider", (1, 1): "tube", (2, 0): "cross", (3, 0): "ball"}
     symbol = kinds.get((len(turning), len(sliding)))
-    if symbol is None or gimbal_of(system, link):
+    if symbol is None or gimbal_of(system, link) or shaft_of(system, link):
         return []
     along = turning[0] if turning else sliding[0] if sliding else None
     return [

@@ -7,8 +7,8 @@ are colours and letters. Symbols have one size in a picture: `unit`, a part of i
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Iterable, Mapping
-from dataclasses import field
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+from dataclasses import field, replace
 from functools import cached_property
 from typing import Any
 
@@ -23,6 +23,15 @@ SYMBOL = 0.028  # symbol unit, of the extent
 ARROW = 0.2  # the longest arrow, of the extent
 WIDEST = 6.0  # of the rest, how large a guide may be that is shown as a whole
 LONELY = 14.0  # side of a picture of one point [symbol units]
+SHOWN = frozenset(("body", "inertia"))
+"""Roles that are a body itself."""
+NEAR = 1.0  # symbol units between the middles of bodies whose names stand at their rims
+SIDES_OF_NAMES = (
+    (0.6, 0.6, 0.7),
+    (-0.6, 0.6, 0.7),
+    (0.6, -0.6, -0.7),
+    (-0.6, -0.6, -0.7),
+)  # of the first, the second, ...
 QUANTILE = 0.98  # of all arrows of a kind are no longer than that
 SOLID = frozenset(("body", "inertia", "member", "string", "spring", "damper", "joint", "support", "center"))
 """Roles that make up the extent of a picture."""
@@ -202,7 +211,22 @@ def drawn_with(table: DrawerTable, numbers: SceneNumbers, *, dimensions: bool = 
         drawn, named = table[type(mark.form)](mark.form, mark, numbers, sizes)
         strokes += drawn
         letters += named
-    return Drawing(tuple(strokes), tuple(letters), sizes)
+    return Drawing(tuple(strokes), tuple(_apart(letters, strokes, sizes)), sizes)
+
+
+def _apart(letters: Sequence[Letter], strokes: Sequence[Stroke], sizes: PictureSizes) -> Iterator[Letter]:
+    """The names of bodies whose middles lie together, each at the rim of its own body, at another side of it."""
+    names = [letter for letter in letters if letter.role == "label"]
+    ways = [np.array(way[: len(sizes.low)]) for way in SIDES_OF_NAMES]
+    for letter in letters:
+        near = [x.of for x in names if np.linalg.norm(x.at[0] - letter.at[0]) < NEAR * sizes.unit]
+        own = [s.path.reshape(len(s.path), -1, len(ways[0])) for s in strokes if s.of == letter.of and s.role in SHOWN]
+        places = np.concatenate([x[:, np.isfinite(x[0]).all(axis=1)] for x in own], axis=1) if own else np.zeros((1, 0))
+        if letter.role == "label" and len(near) > 1 and places.size:
+            away = places[0] - letter.at[0]
+            rim = np.linalg.norm(away, axis=1) + away @ ways[near.index(letter.of) % len(ways)]
+            letter = replace(letter, at=places[:, int(np.argmax(rim))])
+        yield letter
 
 
 def _up(numbers: SceneNumbers) -> np.ndarray:

@@ -123,6 +123,7 @@ SPACE: dict[str, SymbolParts] = {
     "tube": (("joint", _drum(0.6, 1.6)),),
     "coil": (("ground", _spiral()),),
     "cross": (("joint", _drum(0.25, 1.2)), ("joint", _block(2.4, 0.5, 0.5))),
+    "shaft": (("body", RevolutionForm(ZERO, ((0, 1), (_exact(0.5), 1), (_exact(0.5), 8), (0, 8)), (_exact(0.5),))),),
     "rotor": (("body", _drum(2.6, 0.4)),),
     "ring": (("body", _ring(3.7, 4.1, 0.3)),),
     "outer_ring": (("body", _ring(5.1, 5.5, 0.3)),),

@@ -48,6 +48,7 @@ ENDINGS = (".gif", ".mp4", ".png", ".html")
 STILL = (".png", ".html")  # of which --fps says nothing
 GIF_FPS = 50  # faster frames are shown at 10 a second by some
 MOST_IN_STRIP = 60
+ROUNDS = 60  # between two frames of a strip, at most
 NOTHING_MOVES = "nothing moves: all frames show the same"
 
 
@@ -135,7 +136,7 @@ def animate_document(
         times = showing.times(time, output)
         samples = FINE * max(len(times) - 1, 1) + 1
         run = simulated(pipeline.derive(model), time=time, samples=samples, how=Stepping())
-        movies, summary = [_shown(run, times, showing)], run.summary()
+        movies, summary = [_shown(run, times, showing, _ending(output) == ".png")], run.summary()
     if _ending(output) == ".html" and run is not None:
         files.write(output, player(run, showing))
     else:
@@ -251,7 +252,7 @@ def animate(
     if path is None:
         return PlayerFrame(player(run, showing))
     refuse_ending(str(path))
-    movie = _shown(run, showing.times(float(run.t[-1]), str(path)), showing)
+    movie = _shown(run, showing.times(float(run.t[-1]), str(path)), showing, _ending(str(path)) == ".png")
     if len(movie.times) > 1 and movie.stands_still:
         warnings.warn(NOTHING_MOVES, RuntimeWarning, stacklevel=2)
     if _ending(str(path)) == ".html":
@@ -289,10 +290,20 @@ def _ending(path: str) -> str:
     return Path(path).suffix.lower()
 
 
-def _shown(run: Trajectory, times: np.ndarray, showing: Showing) -> Movie:
-    """The frames up to where the run ended."""
+def _shown(run: Trajectory, times: np.ndarray, showing: Showing, strip: bool) -> Movie:
+    """The frames up to where the run ended; of a strip that shows one place over and over those of one round."""
     here = times[times <= run.t[-1] * (1 + COMPUTED)] if len(run.t) else times[:0]
-    return movie_of(run, here, trail=showing.trail, forces=showing.forces)
+    movie = movie_of(run, here, trail=showing.trail, forces=showing.forces)
+    if strip and len(here) > 1 and movie.stands_still and (one := _round(run, float(here[1] - here[0]))):
+        return movie_of(run, one * np.arange(len(here)) / len(here), trail=showing.trail, forces=showing.forces)
+    return movie
+
+
+def _round(run: Trajectory, step: float) -> float | None:
+    """After which part of a step, 1/ROUNDS at least, all stands as at first; None: it has not moved."""
+    times = np.array([0.0, *(step / k for k in range(ROUNDS, 0, -1))])
+    back = movie_of(run, times).as_at_first[1:]
+    return None if back.all() else float(times[1:][back][0])
 
 
 def _modes(model: Model, count: int, output: str, showing: Showing) -> list[Movie]:
