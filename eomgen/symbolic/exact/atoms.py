@@ -31,12 +31,14 @@ class Atoms:
         nodes: the node of every atom and angle, by its index.
         opaque: what those atoms are that are no symbols.
         waves: those that were written, as nodes.
+        places: of the monomials that were put in order.
     """
 
     graph: Owner
     nodes: dict[int, Node] = field(default_factory=dict)
     opaque: dict[int, Opaque] = field(default_factory=dict)
     waves: dict[tuple[str, AngleSum], Scalar] = field(default_factory=dict, repr=False)
+    places: dict[Monomial, SortKey] = field(default_factory=dict, repr=False)
 
     def is_a(self, atom: int, op: str) -> bool:
         """Whether the atom is an opaque one of this op."""
@@ -51,6 +53,11 @@ class Atoms:
 
     def place(self, monomial: Monomial) -> SortKey:
         """Accelerations before squares of rates before rates before the rest; then in the order of declaration."""
+        if monomial not in self.places:
+            self.places[monomial] = self._place(monomial)
+        return self.places[monomial]
+
+    def _place(self, monomial: Monomial) -> SortKey:
         moving: tuple[list[tuple[int, int]], list[tuple[int, int]], list[tuple[int, int]]] = ([], [], [])
         for atom, e in monomial:
             moving[min(2, self._primes(atom))].append((atom, -e))

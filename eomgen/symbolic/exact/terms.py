@@ -144,9 +144,16 @@ def common_monomial(a: Terms) -> Monomial:
         if lowest is None:
             lowest = exponents
             continue
-        for atom in lowest.keys() | exponents.keys():
-            lowest[atom] = min(lowest.get(atom, 0), exponents.get(atom, 0))
-    return tuple(sorted((atom, e) for atom, e in (lowest or {}).items() if e and atom >= 0))
+        for atom in list(lowest):
+            least = min(lowest[atom], exponents.get(atom, 0))
+            if least:
+                lowest[atom] = least
+            else:
+                del lowest[atom]
+        for atom, e in monomial:
+            if e < 0 and atom not in lowest:
+                lowest[atom] = e
+    return tuple(sorted((atom, e) for atom, e in (lowest or {}).items() if atom >= 0))
 
 
 def inverse(m: Monomial) -> tuple[Monomial, Fraction]:

@@ -39,7 +39,11 @@ def shortest(waves: Waves) -> Sum:
     """
     if len(waves) > MOST_WAVES or (len(waves) == 1 and not _has_multiple(waves)):
         return _as_waves(waves)
-    return _shortest(tuple(sorted(waves.items())))
+    number = common_number(waves.values())
+    if number == 1:
+        return _shortest(tuple(sorted(waves.items())))
+    found = _shortest(tuple(sorted((w, tidy(c / number)) for w, c in waves.items())))
+    return tuple((tidy(number * c), factors) for c, factors in found)
 
 
 @lru_cache(maxsize=KEPT)

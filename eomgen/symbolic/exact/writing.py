@@ -38,6 +38,7 @@ class Writer:
         self.atoms, self.graph, self.positive = expansion.atoms, expansion.graph, expansion.positive
         self._expansion = expansion
         self._written_atoms: dict[int, Scalar] = {}
+        self._monomials: dict[Monomial, tuple[Scalar, Scalar]] = {}
         self._roots: dict[tuple[tuple[tuple[Key, Number], ...], ...], Scalar] = {}
 
     def sum(self, terms: Terms) -> Scalar:
@@ -135,11 +136,11 @@ class Writer:
 
     def _monomial(self, monomial: Monomial) -> tuple[Scalar, Scalar]:
         """(numerator, denominator)"""
-        monomial, root = self._one_root(monomial)
-        above, below = self.atoms.monomial_nodes(
-            monomial, {atom: self._atom(atom) for atom, _ in monomial if atom >= 0}
-        )
-        return self.graph.mul(above, root), below
+        if monomial not in self._monomials:
+            rest, root = self._one_root(monomial)
+            above, below = self.atoms.monomial_nodes(rest, {atom: self._atom(atom) for atom, _ in rest if atom >= 0})
+            self._monomials[monomial] = self.graph.mul(above, root), below
+        return self._monomials[monomial]
 
     def _one_root(self, monomial: Monomial) -> tuple[Monomial, Scalar]:
         """(the rest, all roots as one): sqrt(2) sqrt(g) sqrt(l)/l = sqrt(2 g/l), sqrt(4 a + 2) = sqrt(2 (2 a + 1))."""
