@@ -49,11 +49,13 @@ def terms_plus(a: Terms, b: Terms, factor: Number = 1) -> Terms:
 
 def accumulate(total: Terms, key: Key, c: Number) -> None:
     """total += c * (the term of this key), in place; a term that vanishes goes."""
-    c = tidy(total.get(key, 0) + c)
+    was = total.get(key)
+    if was is not None:
+        c = was + c
     if c == 0:
         total.pop(key, None)
     else:
-        total[key] = c
+        total[key] = tidy(c)
 
 
 def terms_scaled(a: Terms, c: Number) -> Terms:
@@ -63,11 +65,14 @@ def terms_scaled(a: Terms, c: Number) -> Terms:
 
 def terms_times(a: Terms, b: Terms) -> Terms:
     """a b; powers of roots of atoms are not reduced here (only those of numbers are)."""
+    for one, other in ((a, b), (b, a)):
+        if len(one) == 1 and ONE in one:
+            return terms_scaled(other, one[ONE])
     total: Terms = {}
     for (m, w), c in a.items():
         for (n, v), d in b.items():
             monomial, factor = monomial_product(m, n)
-            product = factor * c * d
+            product = c * d if factor == 1 else factor * c * d
             if not w or not v:
                 accumulate(total, (monomial, w or v), product)
                 continue
