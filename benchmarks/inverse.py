@@ -12,9 +12,11 @@ import platform
 import shutil
 import subprocess
 import tempfile
+from collections.abc import Sequence
 from pathlib import Path
 
 import eomgen
+from eomgen.codegen.build import of_this_machine
 from eomgen.codegen.program import Program
 from eomgen.codegen.targets.base import INVERSE, RHS, Role
 from eomgen.codegen.targets.c import c_text
@@ -31,6 +33,7 @@ SYSTEMS = {
 }
 PLAIN = 779  # operations of a plain recursion over the arm of seven axes, inertias of the bodies not regrouped
 CALLS = 2000
+PLAIN_C = ("-std=c99", "-O2")
 _MAIN = """
 int main(void)
 {{
@@ -48,15 +51,21 @@ int main(void)
 """
 
 
-def instructions(program: Program, role: Role) -> int | None:
+def instructions(program: Program, role: Role, flags: Sequence[str] = PLAIN_C) -> int | None:
     """Instructions of one call, by valgrind: those of many calls less those of none."""
     if shutil.which("valgrind") is None or shutil.which("cc") is None:
         return None
-    many, none = (_counted(program, role, calls) for calls in (CALLS, 0))
+    many, none = (_counted(program, role, flags, calls) for calls in (CALLS, 0))
     return round((many - none) / CALLS)
 
 
-def _counted(program: Program, role: Role, calls: int) -> int:
+def flags_of_this_machine() -> tuple[str, ...]:
+    """Those by which eomgen compiles what it runs itself, but for registers that valgrind does not know."""
+    own = of_this_machine()
+    return tuple(x for x in (*own.flags, *own.usual) if x not in ("-shared", "-fPIC") and "avx512" not in x)
+
+
+def _counted(program: Program, role: Role, flags: Sequence[str], calls: int) -> int:
     sizes = {
         "states": len(program.states),
         "speeds": len(program.symbols.u),
@@ -69,7 +78,7 @@ def _counted(program: Program, role: Role, calls: int) -> int:
     with tempfile.TemporaryDirectory() as place:
         source, made = Path(place) / "run.c", Path(place) / "run"
         source.write_text(text)
-        subprocess.run(["cc", "-std=c99", "-O2", "-o", str(made), str(source), "-lm"], check=True)
+        subprocess.run(["cc", *flags, "-o", str(made), str(source), "-lm"], check=True)
         told = subprocess.run(
             ["valgrind", "--tool=callgrind", f"--callgrind-out-file={place}/out", str(made)],
             capture_output=True,

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from functools import cache
 from pathlib import Path
 
@@ -20,6 +21,7 @@ from eomgen.mechanics.equations.equations_of_motion import EquationsOfMotion
 from eomgen.mechanics.equations.system import System, system_of
 from eomgen.mechanics.formulations import ALL
 from eomgen.model.unbuilt import unbuilt
+from eomgen.symbolic.expression.factors import same_number
 from eomgen.symbolic.numeric.evaluation import NoValue
 
 pytestmark = pytest.mark.slow
@@ -145,6 +147,19 @@ def test_articulated_bodies_give_the_accelerations_of_the_mass_matrix(system):
     a = articulated.accelerations(system.loads, branches)
     state = state_of(system)
     assert close(at(a, state), accelerations_at(ALL[0].assemble(system), state))
+
+
+@pytest.mark.parametrize("name", ["arm7", "puma560", "space_manipulator", "heavy_top"])
+def test_second_moments_of_mass_are_symmetric_scalar_by_scalar(name):
+    """J_ij is J_ji, moved and turned too: not two ways to write one number, which would be carried twice."""
+    system = system_named(name)
+    assert system is not None
+    h = [system.scope.symbols.graph.symbol(x) for x in ("h_x", "h_y", "h_z")]
+    for branch in branches_of(system.motion):
+        own = branch.moments
+        moved = replace(own, h=tuple(h)).moved(branch.p).turned(branch.E).J
+        for J in (own.J, moved):
+            assert all(same_number(J[i][j], J[j][i]) or J[i][j] is J[j][i] for i in range(3) for j in range(i))
 
 
 def test_articulated_bodies_apply_to_chains_with_a_speed_for_each_joint():

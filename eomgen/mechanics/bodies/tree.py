@@ -8,6 +8,8 @@ second moments of mass m, h = int r dm, J = int r r^T dm, about that origin.
 
 from __future__ import annotations
 
+from collections.abc import Mapping
+
 from eomgen.mechanics.bodies.inertia import mass_properties
 from eomgen.mechanics.bodies.kinematics import GROUND, BodyLink, Motion, shortened_twist
 from eomgen.records import dataclass
@@ -56,8 +58,8 @@ class Moments:
     def moved(self, p: Vector) -> Moments:
         """About the point that sees the present origin at p: h + m p, J + p h^T + h p^T + m p p^T."""
         g = plus(self.h, times(self.m, p))  # p h^T + h p^T + m p p^T = p h^T + g p^T
-        J = matrix_of((self.J[i][j] + (p[i] * self.h[j] + g[i] * p[j]) for j in range(3)) for i in range(3))
-        return Moments(self.m, g, J)
+        J = {(i, j): self.J[i][j] + (p[i] * self.h[j] + g[i] * p[j]) for i in range(3) for j in range(i, 3)}
+        return Moments(self.m, g, symmetric(J))
 
 
 @dataclass(frozen=True)
@@ -222,6 +224,11 @@ def _congruence(R: Matrix, J: Matrix) -> Matrix:
     entry = {(i, j): dot(half[i], R[j]) for i, j in ((first, first), (second, second), (first, second))}
     entry |= {(i, last): dot(half[i], R[last]) for i in (first, second)}
     entry[last, last] = _rest_of_trace([J[i][i] for i in range(3)], [entry[first, first], entry[second, second]])
+    return symmetric(entry)
+
+
+def symmetric(entry: Mapping[tuple[int, int], Scalar]) -> Matrix:
+    """The matrix, 3 x 3, of which one of each two equal entries is given."""
     return matrix_of((entry[i, j] if (i, j) in entry else entry[j, i] for j in range(3)) for i in range(3))
 
 
