@@ -10,7 +10,7 @@ from click.testing import CliRunner
 
 import eomgen
 from eomgen.cli import main
-from eomgen.documents.linearize.response_pictures import roots_over
+from eomgen.documents.linearize.response_pictures import dashes, roots_over
 from eomgen.documents.run_pictures import VIEWS, resultants
 from eomgen.model.ranges import range_of
 from eomgen.verbs.reaction_picture import turn_of
@@ -18,6 +18,24 @@ from eomgen.verbs.reaction_picture import turn_of
 pytestmark = pytest.mark.slow
 
 MODELS = Path(__file__).parent.parent / "models"
+
+
+def test_curves_that_are_one_take_turns():
+    """Dashes side by side, so that each is seen; a curve of its own is solid"""
+    x = np.linspace(1, 2, 5)
+    one, alone, other = dashes([x, 2 * x, x * (1 + 1e-12)])
+    assert alone == "-" and one == (0, (8.0, 8.0)) and other == (-8.0, (8.0, 8.0))
+
+
+def test_roots_on_the_imaginary_axis_are_drawn_on_it():
+    """Two undamped masses: real parts that are rounding are not spread over the picture"""
+    from matplotlib.figure import Figure
+
+    model = eomgen.load(MODELS / "two_mass_oscillator.toml")
+    figure = Figure()
+    eomgen.linearize(model).locus("k1=1:200:9").fill(figure)
+    left, right = figure.axes[0].get_xlim()
+    assert right - left > 1
 
 
 def test_reactions_are_drawn_over_one_turn_of_the_drive(tmp_path):

@@ -16,11 +16,13 @@ from eomgen.mechanics.small_motions.reduction import LinearEquations
 from eomgen.model.ranges import Range
 from eomgen.model.values import exact_parameters
 from eomgen.symbolic.numeric.evaluation import FLOAT, NoValue, evaluate
-from eomgen.symbolic.numeric.tolerances import ITERATED
+from eomgen.symbolic.numeric.tolerances import COMPUTED, ITERATED
 
 MOST = 8  # curves of one diagram
 DECADES = 1.5  # of frequency, beside the slowest and the fastest mode
 FINE = 600  # frequencies of a curve
+DASH = 8.0  # of each of several curves that are one [points]
+NARROWEST = 0.15  # of the plane of roots, its shorter side: less is rounding, of roots on an axis
 
 MatrixOf = Callable[[float], np.ndarray]
 
@@ -48,19 +50,37 @@ def bode_picture(small: SmallMotions) -> Picture:
 
     def fill(figure: Any) -> None:
         size, phase = figure.subplots(2, 1, sharex=True)
-        for j, k in pairs:
-            W = response[:, j, k]
+        sizes = [np.abs(response[:, j, k]) for j, k in pairs]
+        styles = zip(dashes(sizes), dashes(list(phases.values())), strict=True)
+        for (j, k), W, (of_size, of_phase) in zip(pairs, sizes, styles, strict=True):
             label = f"${mathtext(e.coordinates[j].name, notation)}/{mathtext(e.inputs[k].name, notation)}$"
-            size.loglog(omega, np.abs(W), label=label, linewidth=1.4)
-            phase.semilogx(omega, phases[j, k], linewidth=1.4)
+            size.loglog(omega, W, label=label, linewidth=1.4, linestyle=of_size)
+            phase.semilogx(omega, phases[j, k], linewidth=1.4, linestyle=of_phase)
         size.set_ylabel("$|W|$")
         phase.set_ylabel("phase [°]")
         phase.set_xlabel(r"$\omega$ [rad/s]")
         phase.set_yticks(_right_angles(list(phases.values())))
-        size.legend(loc="center left", bbox_to_anchor=(1.0, 0.5))
+        for handle in size.legend(loc="center left", bbox_to_anchor=(1.0, 0.5)).get_lines():
+            handle.set_linestyle("-")
         figure.align_ylabels((size, phase))
 
     return Picture((8, 5.2), fill, small.reference.system.scope.model.name)
+
+
+def dashes(curves: Sequence[np.ndarray]) -> list[Any]:
+    """The style of each line: solid, but those that lie on one another take turns."""
+    alike = [
+        [
+            k
+            for k, other in enumerate(curves)
+            if np.allclose(other, own, rtol=COMPUTED, atol=COMPUTED * np.abs(own).max())
+        ]
+        for own in curves
+    ]
+    return [
+        "-" if len(group) == 1 else (-DASH * group.index(k), (DASH, DASH * (len(group) - 1)))
+        for k, group in enumerate(alike)
+    ]
 
 
 def _right_angles(phases: Sequence[np.ndarray]) -> np.ndarray:
@@ -96,6 +116,7 @@ def locus_picture(small: SmallMotions, over: Range) -> Picture:
         of_all = np.repeat(named, roots.shape[1])
         points = panel.scatter(roots.real, roots.imag, c=of_all, s=9, cmap="viridis", zorder=3)
         panel.plot(roots[0].real, roots[0].imag, "x", color="#b03a2e", markersize=7, zorder=4)
+        _widen(panel)
         panel.axvline(0, color="#808080", linewidth=0.9)
         panel.axhline(0, color="#808080", linewidth=0.9)
         panel.set_xlabel(r"Re $s$ [1/s]")
@@ -104,6 +125,15 @@ def locus_picture(small: SmallMotions, over: Range) -> Picture:
         bar.set_label(f"${mathtext(over.name, notation)}$" + (f" [{over.unit}]" if over.unit else ""))
 
     return Picture((6.4, 4.8), fill, small.reference.system.scope.model.name)
+
+
+def _widen(panel: Any) -> None:
+    """The plane of roots, no side much shorter than the other."""
+    (left, right), (low, high) = panel.get_xlim(), panel.get_ylim()
+    least = NARROWEST * max(right - left, high - low)
+    x, y = (max(0.0, 0.5 * (least - side)) for side in (right - left, high - low))
+    panel.set_xlim(left - x, right + x)
+    panel.set_ylim(low - y, high + y)
 
 
 def roots_over(small: SmallMotions, parameter: str, values: Sequence[float]) -> np.ndarray:
