@@ -167,7 +167,9 @@ def delivery_of(document: Document, form: str, *, strict: bool = False) -> Deliv
         strict: warnings end in exit 1.
     """
     from eomgen.documents import rendered
+    from eomgen.documents.proven import proven_for_machines
 
+    document = proven_for_machines(document) if form == "json" else document
     taken = [f"taken: {each}" for each in document.taken]
     lines = (*taken, *document.notes, *(f"warning: {each}" for each in document.warnings), document.wrong)
     return Delivery(rendered(document, form), tuple(filter(None, lines)), _code(document, strict))

@@ -20,6 +20,7 @@ from eomgen.documents.derivation import derivation_of, printed_formulas
 from eomgen.documents.document import Document
 from eomgen.documents.latex import equations_latex
 from eomgen.documents.payload import Texts, equations_payload, payload_texts
+from eomgen.documents.proven import proven
 from eomgen.documents.reaction_steps import letters_of
 from eomgen.documents.result import Result
 from eomgen.documents.setting_steps import assumption_steps
@@ -309,7 +310,7 @@ class Equations(Result):
             found = self._texts
             texts = tuple((name, text, x) for (name, x), text in zip(found.scalars, found.texts, strict=True))
             printed = replace(printed, texts=texts, definitions=tuple(found.definitions))
-        return document.proven(self.certify(printed=printed))
+        return proven(document, self.certify(printed=printed))
 
     @cached_property
     def _texts(self) -> Texts:

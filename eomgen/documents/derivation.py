@@ -17,7 +17,7 @@ from eomgen.documents.reaction_names import Lettered, lettered
 from eomgen.documents.reaction_steps import along_the_motion, letters_of, reactions_step
 from eomgen.documents.reading import Reader
 from eomgen.documents.setting_steps import setting_steps
-from eomgen.documents.statements import Formula, Law, Side, Step
+from eomgen.documents.statements import Formula, Law, Step
 from eomgen.documents.text import side_text
 from eomgen.mechanics.bodies.armature import given_energy
 from eomgen.mechanics.bodies.inertia import BodyEnergy, armature_energy, body_energies, kinetic_energy
@@ -29,7 +29,6 @@ from eomgen.mechanics.reactions.reactions import reactions_of
 from eomgen.proof.printed import Printed
 from eomgen.symbolic.exact.equality import equal_at_random_states
 from eomgen.symbolic.expression.graph import Node, Scalar
-from eomgen.symbolic.expression.node import holds_op
 from eomgen.symbolic.print.text import text_size
 
 LAGRANGE = Law(
@@ -206,20 +205,13 @@ _BY_METHOD = {"lagrange": _lagrange, "projection": _projection}
 
 def printed_formulas(document: Document) -> Printed:
     """The formulas that hold at any state, and what is said to stay constant, as they are printed."""
-    expressions: set[str] = set()
     formulas: list[tuple[str, ...]] = []
     constants: list[str] = []
     for step in (step for step in document.steps if step.key not in FROM_THE_START):
         for statement in (s for s in step.statements if isinstance(s, Formula)):
             sides = tuple(map(side_text, statement.sides))
-            expressions |= {text for x, text in zip(statement.sides, sides, strict=True) if _is_expression(x)}
             if step.key == "integrals" and type(statement.sides[0]) is not Node:  # a symbol is a part of what follows
                 constants.append(sides[-1])
             else:
                 formulas.append(sides)
-    return Printed(tuple(formulas), tuple(constants), frozenset(expressions))
-
-
-def _is_expression(side: Side) -> bool:
-    """Whether the grammar reads it back; cases, "a where x <= y; b", it does not."""
-    return isinstance(side, Node) and not holds_op(side, "select")
+    return Printed(tuple(formulas), tuple(constants))

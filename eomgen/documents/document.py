@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Mapping
-from dataclasses import replace
+from dataclasses import field, replace
 from typing import Any
 
 from eomgen.documents.latex_names import Notation, notation_of
@@ -12,6 +12,7 @@ from eomgen.documents.statements import Equation, Lines, Meaning, Statement, Ste
 from eomgen.errors import Problem
 from eomgen.model.parts import Model
 from eomgen.model.replaced import Taken
+from eomgen.model.values import exact_parameters
 from eomgen.proof.check import Certificate
 from eomgen.records import dataclass
 from eomgen.symbolic.expression.graph import Node, Scalar
@@ -46,6 +47,7 @@ class Document:
         cautions: what is allowed in the model and hardly meant.
         taken: what was made of values that a person typed.
         notation: how its symbols are set in LaTeX.
+        parameters: the values of those that have one.
         answer_code: the exit code that is an answer: 5 where that is no.
     """
 
@@ -65,6 +67,7 @@ class Document:
     cautions: tuple[Problem, ...] = ()
     taken: tuple[Taken, ...] = ()
     notation: Notation = Notation()
+    parameters: Mapping[str, Any] = field(default_factory=dict)
     answer_code: int = 0
 
     def __repr__(self) -> str:
@@ -84,7 +87,7 @@ class Document:
     @property
     def quantities(self) -> dict[str, Quantity]:
         """Every quantity by its place among the entries: reactions.reaction_y(A)."""
-        return dict(_leaves("", self.entries()))
+        return quantities_of(self.entries())
 
     @property
     def distrust(self) -> str:
@@ -102,17 +105,19 @@ class Document:
         unchecked = self.certificate is not None and self.certificate.ok is None
         return (*self.cautions, *((NOTHING_CHECKED,) if unchecked else ()))
 
-    def proven(self, certificate: Certificate | None) -> Document:
-        """With its proof; None: none was asked for."""
-        entries = self.entries
-        proof = None if certificate is None else certificate.as_dict()
-        return replace(self, certificate=certificate, entries=lambda: {**entries(), "certificate": proof})
+
+def quantities_of(entries: Mapping[str, Any]) -> dict[str, Quantity]:
+    """Every quantity by its place among entries."""
+    return dict(_leaves("", entries))
 
 
 def document_of(model: Model, method: str, steps: tuple[Step, ...]) -> Document:
     """The document of a model, under its name, its remark and its source."""
     about, source = model.about or "", model.source or ""
-    return Document(model.name, about, source, model.space, method, steps, notation=notation_of(model))
+    values = exact_parameters(model)
+    return Document(
+        model.name, about, source, model.space, method, steps, notation=notation_of(model), parameters=values
+    )
 
 
 def with_symbols(document: Document, symbols: Mapping[str, Symbol]) -> Document:
@@ -130,9 +135,9 @@ def plain_document(
 ) -> Document:
     """A document of one section without a head: what is no derivation."""
     steps = (Step("", "", statements),)
-    notation = notation_of(model)
-    return Document(
-        model.name, steps=steps, entries=entries, failed=failed, notes=notes, notation=notation, answer_code=answer_code
+    document = document_of(model, "", steps)
+    return replace(
+        document, about="", source="", space="", entries=entries, failed=failed, notes=notes, answer_code=answer_code
     )
 
 

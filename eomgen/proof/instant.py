@@ -257,9 +257,10 @@ class _Proof:
         for names, r, v, a in self.state.points:
             for name in names.split(", "):
                 place, first, second = self.along(motion.position(motion.place(name)))
-                if self.differs(self.here(r), place, 1, self.tolerance) or self.differs(self.here(v), first, 1):
+                held = self.tolerance if "," in names else 0.0  # ties that close in doubles hold them together
+                if self.differs(self.here(r), place, 1, self.tolerance) or self.differs(self.here(v), first, 1, held):
                     return f"velocity of {name}"
-                if a is not None and self.differs(self.here(a), second, 2):
+                if a is not None and self.differs(self.here(a), second, 2, held):
                     return f"acceleration of {name}"
         return "" if self.state.points else None
 

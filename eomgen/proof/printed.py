@@ -44,7 +44,6 @@ class Printed:
     Args:
         formulas: the sides of each.
         constants: of what is said to stay constant along every motion.
-        expressions: which of these texts are expressions, and must be such to our grammar.
         letters: what a letter that only formulas define is worth by another way.
         texts: (where, text, the scalar that it stands for).
         definitions: (name, text) of parts that have a name in these texts, each before its use.
@@ -52,7 +51,6 @@ class Printed:
 
     formulas: tuple[tuple[str, ...], ...] = ()
     constants: tuple[str, ...] = ()
-    expressions: frozenset[str] = frozenset()
     letters: Mapping[str, Scalar] = field(default_factory=dict)
     texts: tuple[tuple[str, str, Scalar], ...] = ()
     definitions: tuple[tuple[str, str], ...] = ()
@@ -180,8 +178,7 @@ class ReadBack:
 
     def wrong(self, state: State) -> str:
         """Which formula does not hold at a state of the motion; "" where all do."""
-        unread = self.unreadable(sorted(self.printed.expressions))
-        return unread or _unequal(self.equalities, state | least_multipliers(self.equations, state))
+        return _unequal(self.equalities, state | least_multipliers(self.equations, state))
 
     def wrong_data(self, state: State) -> str:
         """Which text is not worth what it stands for at a state, at some accelerations and multipliers; ""."""

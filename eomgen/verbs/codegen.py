@@ -6,6 +6,7 @@ from dataclasses import replace
 
 from eomgen.codegen.targets import ALL
 from eomgen.documents.document import Document, lines_document, plain_document
+from eomgen.documents.proven import proven
 from eomgen.documents.statements import Lines
 from eomgen.generated import Generated, generate
 from eomgen.model.parts import Model
@@ -56,7 +57,7 @@ def codegen_document(
     paths = [] if refused else [str(path) for path in found.write(directory)]
     lines = ("no files were written",) if refused else tuple(paths)
     document = plain_document(model, lambda: _payload(found, paths), Lines(lines))
-    return replace(document, notes=tuple(found.notes)).proven(certificate)
+    return proven(replace(document, notes=tuple(found.notes)), certificate)
 
 
 def _payload(found: Generated, paths: list[str]) -> dict[str, object]:

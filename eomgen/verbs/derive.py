@@ -6,6 +6,7 @@ from dataclasses import replace
 
 from eomgen import pipeline
 from eomgen.documents.document import Document
+from eomgen.documents.proven import proven
 from eomgen.documents.statements import Grid, Step
 from eomgen.equations import Equations
 from eomgen.errors import DerivationError
@@ -43,7 +44,7 @@ def derive_document(
     equations = pipeline.derive(model, method)
     document = equations.written(full=full)
     document = _with_units(equations, document) if units else document
-    return equations.proven(document, data=data) if certify else document.proven(None)
+    return equations.proven(document, data=data) if certify else proven(document, None)
 
 
 def _with_units(equations: Equations, document: Document) -> Document:

@@ -10,6 +10,7 @@ from typing import Any
 from eomgen import pipeline
 from eomgen.documents.document import Document, document_of
 from eomgen.documents.equation_steps import sides_of
+from eomgen.documents.proven import proven
 from eomgen.documents.statements import Formula, Grid, Statement, Step, prose
 from eomgen.equations import Equations
 from eomgen.mechanics.equations.equations_of_motion import EquationsOfMotion
@@ -144,7 +145,7 @@ def difference_document(model: Model, other: Model, *, method: str, certify: boo
     """What differs between this model and another, with the proofs of both."""
     found = Difference(pipeline.derive(model, method), pipeline.derive(other, method))
     document = replace(document_of(model, f"difference from {other.name}", found.steps), entries=found.entries)
-    return document.proven(_both(found.first.certify(), found.second.certify()) if certify else None)
+    return proven(document, _both(found.first.certify(), found.second.certify()) if certify else None)
 
 
 def _both(first: Certificate, second: Certificate) -> Certificate:

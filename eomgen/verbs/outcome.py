@@ -6,6 +6,7 @@ from collections.abc import Iterable
 from dataclasses import replace
 
 from eomgen.documents.document import Document
+from eomgen.documents.proven import proven
 from eomgen.documents.result import Result
 from eomgen.errors import DerivationError, ModelError
 from eomgen.mechanics.equations.system import system_of
@@ -19,7 +20,7 @@ def shown(found: Result, *, plot: str | None = None, certify: bool = True) -> Do
     """What is found, proven where that is asked for, its picture in a file where one is."""
     if plot is not None:
         found.plot(plot)
-    document = found.document.proven(found.certify() if certify else None)
+    document = proven(found.document, found.certify() if certify else None)
     over = getattr(found, "over", None)  # the range of a picture
     return document if over is None else replace(document, taken=(*document.taken, over.taken))
 

@@ -7,6 +7,7 @@ from pathlib import Path
 from typing import Any
 
 from eomgen.documents.document import Document, plain_document
+from eomgen.documents.proven import proven
 from eomgen.documents.statements import Lines
 from eomgen.errors import UsageError
 from eomgen.model.parts import Model
@@ -40,7 +41,7 @@ def play_document(
     run = found.played.run
     document = plain_document(model, payload, Lines((output,)), failed="" if run.ok else run.message)
     document = replace(document, taken=taken, notes=tuple(filter(None, (found.rests, found.shorter))))
-    return with_start_told(document, model, run).proven(found.certify() if certify else None)
+    return proven(with_start_told(document, model, run), found.certify() if certify else None)
 
 
 def refuse_other_endings(output: str) -> None:

@@ -16,6 +16,7 @@ from eomgen.certificate import certify as certificate_of_equations
 from eomgen.codegen.rhs import parameter_vector
 from eomgen.documents.document import Document, plain_document
 from eomgen.documents.markdown import listing_markdown
+from eomgen.documents.proven import proven
 from eomgen.documents.quantity import Quantity
 from eomgen.documents.reaction_names import said
 from eomgen.documents.reaction_payload import null_space, reaction_formulas
@@ -153,7 +154,7 @@ def reactions_document(
         from eomgen.verbs.reaction_picture import reaction_picture
 
         reaction_picture(starting, view, time).save(plot)
-    return document.proven(found.certify() if certify and found else None)
+    return proven(document, found.certify() if certify and found else None)
 
 
 def _function(name: str) -> str:

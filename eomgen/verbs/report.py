@@ -16,6 +16,7 @@ from eomgen.documents.document import Document, document_of, plain_document
 from eomgen.documents.inertia.result import inertia
 from eomgen.documents.latex import with_listings_typeset
 from eomgen.documents.linearize.result import linearize
+from eomgen.documents.proven import proven
 from eomgen.documents.result import Result
 from eomgen.documents.statements import Lines
 from eomgen.documents.statics.result import Statics, statics
@@ -117,7 +118,7 @@ class Subject:
 
     def _told(self, key: str) -> Document:
         found = self.found[key] = FOUND[key](self.model)
-        return found.document.proven(found.certify() if self.certify else None)
+        return proven(found.document, found.certify() if self.certify else None)
 
     @cached_property
     def equations(self) -> Equations:
@@ -145,7 +146,7 @@ class Subject:
 
 def _derived(subject: Subject) -> Document:
     document = subject.equations.written(full=False)
-    return subject.equations.proven(document) if subject.certify else document.proven(None)
+    return subject.equations.proven(document) if subject.certify else proven(document, None)
 
 
 FOUND: dict[str, Callable[[Model], Result]] = {
@@ -230,7 +231,7 @@ def report_document(
         failed=found.head.failed,
         notes=tuple(f"{key}: {remark}" for key, remark in remarks.items()),
     )
-    return with_start_told(document, model).proven(found.certificate)
+    return proven(with_start_told(document, model), found.certificate)
 
 
 def report_of(subject: Subject, with_: Sequence[str] = (), without: Sequence[str] = ()) -> Report:
@@ -260,7 +261,7 @@ def report_of(subject: Subject, with_: Sequence[str] = (), without: Sequence[str
     values = replaced(subject)
     lasted = float(subject.run.t[-1]) if "followed" in vars(subject) and len(subject.run.t) else PAGE_TIME
     lasted = subject.time or lasted
-    return Report(head.proven(joint_proof(proofs)), sections, subject.origin, subject.source, values, lasted)
+    return Report(proven(head, joint_proof(proofs)), sections, subject.origin, subject.source, values, lasted)
 
 
 def replaced(subject: Subject) -> dict[str, dict[str, str]]:

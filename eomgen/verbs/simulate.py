@@ -13,6 +13,7 @@ from eomgen import pipeline
 from eomgen.codegen.accelerations import closing_accelerations
 from eomgen.codegen.rhs import parameter_vector
 from eomgen.documents.document import Document, plain_document
+from eomgen.documents.proven import proven
 from eomgen.documents.statements import Grid, Statement, prose
 from eomgen.equations import Equations
 from eomgen.errors import UsageError
@@ -76,8 +77,8 @@ def simulate_document(
         notes=notes,
     )
     if cut:
-        return replace(document.proven(None), interrupted=run.status == "interrupted")
-    return document.proven(run.certify() if certify else None)
+        return replace(proven(document, None), interrupted=run.status == "interrupted")
+    return proven(document, run.certify() if certify else None)
 
 
 def _first_instant(equations: Equations, run: Trajectory) -> dict[str, Any]:

@@ -5,6 +5,7 @@ from __future__ import annotations
 from dataclasses import replace
 
 from eomgen.documents.document import Document
+from eomgen.documents.proven import proven
 from eomgen.model.parts import Model
 from eomgen.questions import answers
 from eomgen.verbs.outcome import with_start_told
@@ -18,6 +19,6 @@ def solve_document(model: Model, *, certify: bool = True) -> Document:
     document = with_start_told(found.document, model)
     if found.stopped:
         note = f"Nothing of it is proven: {'it was interrupted' if found.stopped == 'interrupted' else LATE}."
-        document = document.proven(None)
+        document = proven(document, None)
         return replace(document, interrupted=found.stopped == "interrupted", notes=(*document.notes, note))
-    return document.proven(found.certify() if certify and found else None)
+    return proven(document, found.certify() if certify and found else None)

@@ -8,6 +8,7 @@ from pathlib import Path
 from typing import Any
 
 from eomgen.documents.document import Document, plain_document
+from eomgen.documents.proven import proven
 from eomgen.documents.statements import Grid, prose
 from eomgen.errors import EomgenError, RunFailed, UsageError
 from eomgen.model.parts import Model
@@ -90,7 +91,7 @@ def sweep_document(
     document = _told(valued.model, found, [plot] if plot else [])
     taken = [*valued.taken, *(each.taken for each in ranges), *(each for _, each in spreads)]
     taken += [each for _, of_one in (*ask, critical) for each in of_one]
-    return replace(document.proven(_proof(found) if certify else None), taken=tuple(taken))
+    return replace(proven(document, _proof(found) if certify else None), taken=tuple(taken))
 
 
 def _told(model: Model, found: Sweep, files: list[str]) -> Document:

@@ -10,6 +10,7 @@ from typing import Any
 from eomgen import files
 from eomgen.certificate import certify as certificate_of_equations
 from eomgen.documents.document import Document, plain_document
+from eomgen.documents.proven import proven
 from eomgen.documents.statements import Lines
 from eomgen.errors import ExpressionError, UsageError
 from eomgen.judge.case import Case
@@ -83,7 +84,7 @@ def verify_document(
     document = plain_document(
         model, lambda: {"name": model.name, "equations": entries}, Lines(tuple(lines)), answer_code=code
     )
-    return document.proven(_certificate(judge) if certify else None)
+    return proven(document, _certificate(judge) if certify else None)
 
 
 def _certificate(judge: Judge) -> Certificate:

@@ -9,6 +9,7 @@ from functools import cached_property
 import numpy as np
 
 from eomgen.errors import DerivationError, EomgenError, MissingValues, NotYet
+from eomgen.mechanics.constraints.bifurcations import fork_at
 from eomgen.mechanics.equations.system import System
 from eomgen.mechanics.equilibria.higher_derivatives import states_beside
 from eomgen.mechanics.small_motions.dependent_values import with_followers
@@ -157,6 +158,7 @@ def _about(first: FirstOrder, reference: ReferenceMotion, wanted: Sequence[str])
         raise DerivationError("the ties leave no freedom: there are no small motions")
     choice, raw, kept = _steady_equations(first, choice, reference, wanted)
     refuse_corners(replace(first, at_rest=False), choice, reference, raw, kept)
+    _refuse_fork(reference)
     refuse_singular(Reducing(first, choice, Numbers(reference.numbers)), raw)
     decided = over_coordinates(Numbers(reference.numbers), raw, kept)
     numbers = restricted(Numbers(reference.numbers), decided, wanted, decided)
@@ -168,6 +170,21 @@ def _about(first: FirstOrder, reference: ReferenceMotion, wanted: Sequence[str])
         _refuse_unvalued(reference)
         return small
     return replace(small, exact=small.over(field))
+
+
+def _refuse_fork(reference: ReferenceMotion) -> None:
+    """A place at which ties depend on one another that do not beside it: what they leave to first order is no motion.
+
+    Raises:
+        DerivationError: it is one.
+    """
+    try:
+        fork = fork_at(reference.system.ties, dict(reference.numbers))
+    except (DerivationError, MissingValues):  # the ties close nowhere near: there is but this place
+        return
+    if fork is not None:
+        what = f"the place is {fork.words}: beside it there are no small motions of one kind"
+        raise DerivationError(what, f"constraints.{fork.ties[0]}", "give `near` values that lead to another place")
 
 
 def _stiffness_beside(small: SmallMotions) -> np.ndarray:
