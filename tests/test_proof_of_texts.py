@@ -20,7 +20,7 @@ from eomgen.documents.derivation import printed_formulas
 from eomgen.documents.document import Document
 from eomgen.documents.text import cases_text
 from eomgen.equations import Equations
-from eomgen.proof.check import Certificate
+from eomgen.proof.check import Certificate, checked
 from eomgen.proof.printed import Printed
 from eomgen.symbolic.print import text
 from eomgen.symbolic.print.layout import Product
@@ -99,6 +99,7 @@ def _turned(summands: Callable[..., list[Product]], *asked: Any) -> list[Product
 
 def told(document: Document) -> list[str]:
     """What the proof of what is printed says, by itself."""
-    checks = proof_of_texts.proven(document, Certificate(())).certificate
-    assert checks is not None
-    return [check.status for check in checks.checks]
+    other = checked("another", "", "by another way")
+    certificate = proof_of_texts.proven(document, Certificate((other,))).certificate
+    assert certificate is not None
+    return [check.status for check in certificate.checks if check != other]
