@@ -139,7 +139,10 @@ def _wrong_parts(modes: Modes) -> str:
     """Which of the printed parts of C and K is not what its letter says, or ""."""
     small = modes.small
     whole = {letter: _numbers(small, getattr(small.exact or small.numbers, letter)) for letter in "CK"}
-    parts = {name: _numbers(small, A, modes if name != "S" else None) for name, A in modes.symmetric_parts.items()}
+    parts = {
+        name: _numbers(small, A if name == "S" else _printed_half(modes, A))
+        for name, A in modes.symmetric_parts.items()
+    }
     tolerance = ZERO_AT_50 if small.exact is not None else ROUNDING
     for letter, even, odd in (("C", "D", "G"), ("K", "S", "H")):
         for i, j in product(range(len(whole[letter])), repeat=2):
@@ -148,6 +151,11 @@ def _wrong_parts(modes: Modes) -> str:
             if left > tolerance * (abs(a) + abs(c)):
                 return f"entry {i + 1}, {j + 1} of {even} or {odd}"
     return ""
+
+
+def _printed_half(modes: Modes, A: list[list[Any]]) -> list[list[Any]]:
+    """A symmetric or skew matrix, above the diagonal as it is printed."""
+    return [[modes.written(x) if j >= i else x for j, x in enumerate(row)] for i, row in enumerate(A)]
 
 
 def _random(nodes: Sequence[Node], rng: Random) -> State:

@@ -108,13 +108,13 @@ def _equations(modes: Modes) -> Step:
     rows = _rows(modes)
     if len(rows) > 1:
         statements.append(prose("Rows and columns in the order ", *listed_symbols(tuple(map(_plain, rows))), ":"))
-    statements += _entries(modes, "M", e.M, rows, rows, once=True)
+    statements += _entries(modes, "M", e.M, rows, rows, mirrored=1)
     statements += _rates(modes, undamped)
     symmetric = small.is_second_order and _symmetric(modes, e.K)
-    statements += _entries(modes, "K", e.K, rows, e.coordinates, once=symmetric)
+    statements += _entries(modes, "K", e.K, rows, e.coordinates, mirrored=int(symmetric))
     if small.is_second_order and not symmetric:
         statements.append(prose("The skew part H = (K - K^T)/2 of K is circulatory."))
-        statements += _entries(modes, "H", modes.symmetric_parts["H"], rows, e.coordinates, once=True)
+        statements += _entries(modes, "H", modes.symmetric_parts["H"], rows, e.coordinates, mirrored=-1)
     statements += _entries(modes, "B", e.B, rows, e.inputs)
     if not small.is_second_order:
         statements += _entries(modes, "E", e.E, e.coordinates, e.speeds)
@@ -136,7 +136,8 @@ def _rates(modes: Modes, undamped: bool) -> list[Statement]:
     if not modes.small.is_second_order:
         return _entries(modes, "C", e.C, e.speeds, e.speeds)
     parts = {letter: modes.symmetric_parts[letter] for letter in "DG"}
-    there = [letter for letter, A in parts.items() if not all(is_zero(modes.written(x)) for row in A for x in row)]
+    upper = {letter: [modes.written(x) for k, row in enumerate(A) for x in row[k:]] for letter, A in parts.items()}
+    there = [letter for letter, entries in upper.items() if not all(map(is_zero, entries))]
     words = {
         "D": "C = D, of damping (symmetric).",
         "G": "C = G, gyroscopic (skew).",
@@ -144,7 +145,9 @@ def _rates(modes: Modes, undamped: bool) -> list[Statement]:
     }
     shown: list[Statement] = [prose(words.get("".join(there), ""))] if there else []
     for letter in there:
-        shown += _entries(modes, letter, parts[letter], e.coordinates, e.coordinates, once=True)
+        shown += _entries(
+            modes, letter, parts[letter], e.coordinates, e.coordinates, mirrored={"D": 1, "G": -1}[letter]
+        )
     return shown
 
 
@@ -157,29 +160,31 @@ def _symmetric(modes: Modes, A: Entries) -> bool:
 
 
 def _entries(
-    modes: Modes, letter: str, A: Entries, rows: Sequence[Node], columns: Sequence[Node], *, once: bool = False
+    modes: Modes, letter: str, A: Entries, rows: Sequence[Node], columns: Sequence[Node], *, mirrored: int = 0
 ) -> list[Statement]:
     """The matrix; where it is too wide for a line its entries that are not zero.
 
     Args:
-        once: of a symmetric or skew one those above the diagonal alone.
+        mirrored: 1 or -1 of a symmetric or skew one: below the diagonal is what stands above it, times this.
     """
     if not columns:
         return []
-    whole = matrix_of(modes, A)
+    upper = [[0 if mirrored and j < i else modes.written(x) for j, x in enumerate(row)] for i, row in enumerate(A)]
+    full = [[mirrored * upper[j][i] if mirrored and j < i else x for j, x in enumerate(r)] for i, r in enumerate(upper)]
+    whole = matrix_of(full)
     if whole is not None:
         return [Formula((Law(letter, letter), whole))]
     found: list[Statement] = []
-    for i, row in enumerate(rows):
-        for j, column in enumerate(columns):
-            if (j >= i or not once) and not is_zero(x := modes.written(A[i][j])):
+    for row, entries in zip(rows, upper, strict=True):
+        for column, x in zip(columns, entries, strict=True):
+            if not is_zero(x):
                 found.append(Formula((Place(letter, _plain(row), _plain(column)), _side(x))))
     return found
 
 
-def matrix_of(modes: Modes, A: Entries) -> Matrix | None:
+def matrix_of(A: Entries) -> Matrix | None:
     """The matrix as it is printed; None where a line does not hold a row of it."""
-    rows = tuple(tuple(_number(x) if isinstance(x, float) else modes.written(x) for x in row) for row in A)
+    rows = tuple(tuple(_number(x) if isinstance(x, float) else x for x in row) for row in A)
     texts = [[x.text if isinstance(x, Law) else to_text(x) for x in row] for row in rows]
     width = sum(max(map(len, column)) + 2 for column in zip(*texts, strict=True))
     return Matrix(rows) if rows and rows[0] and width <= WIDEST else None
@@ -377,7 +382,7 @@ def _state_matrices(modes: Modes) -> tuple[Matrix, ...]:
     for found in ways:
         if found is not None:
             parts = (found.A, found.B, found.C_y, found.D_y) if found.inputs else (found.A,)
-            shown = [matrix_of(modes, x) for x in parts]
+            shown = [matrix_of([[modes.written(x) for x in row] for row in part]) for part in parts]
             if None not in shown:
                 return tuple(x for x in shown if x is not None)
     return ()
