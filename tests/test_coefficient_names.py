@@ -85,7 +85,7 @@ def test_the_name_is_defined_in_every_form(form: str, definition: str) -> None:
 def test_the_name_stands_wherever_a_multiple_of_the_coefficient_does() -> None:
     """T = I_1 theta'^2/2, dT/dtheta' = I_1 theta': the definition comes before the first of them"""
     text = rendered(train().derivation, "text")
-    for use in ("T = 1/2*I_1*theta'^2", "dT/dtheta' = I_1*theta'", "I_1*theta'' = M"):
+    for use in ("T = 1/2*I_1*theta'^2", "dT/dtheta' = I_1*theta'", "T + V - W = 1/2*I_1*theta'^2 - M*theta"):
         assert text.index("I_1 = ") < text.index(use)
         assert "coefficient in the equations of motion" in text and "kg·m²" in text
 

@@ -57,7 +57,7 @@ def with_coefficients_named(scope: Scope, equations: Sequence[Equation], taken: 
     """
     large: dict[Node, None] = {}
     for equation in equations:
-        parts = dict.fromkeys(part for side in (equation.left, equation.right) for part in large_constants(side))
+        parts = dict.fromkeys(part for side in (equation.left, equation.right) for part in _constants(side))
         named = substituted((equation.left, equation.right), dict.fromkeys(parts, scope.symbols.t))
         if parts and length_of(*named) + len(parts) <= HALF * length_of(equation.left, equation.right):
             large |= parts
@@ -75,7 +75,7 @@ def with_coefficients_named(scope: Scope, equations: Sequence[Equation], taken: 
     return NamedCoefficients(written, tuple((symbol, part) for part, symbol in known.items()), tuple(units))
 
 
-def large_constants(x: Scalar) -> Iterator[Node]:
+def _constants(x: Scalar) -> Iterator[Node]:
     """The largest parts made of parameters alone that are sums or quotients, and long."""
     stack = [x]
     while stack:

@@ -9,7 +9,7 @@ from collections.abc import Callable, Container, Iterator, Mapping, Sequence
 from dataclasses import replace
 from typing import TypeGuard
 
-from eomgen.documents.coefficient_names import large_constants
+from eomgen.documents.coefficient_names import LARGE
 from eomgen.documents.reading import LONGEST, NAMED_PART, free_names
 from eomgen.documents.statements import Equation, Formula, Side, Statement, Step
 from eomgen.records import dataclass
@@ -17,8 +17,11 @@ from eomgen.symbolic.exact.book_form import book_form
 from eomgen.symbolic.exact.roots import is_root_of_sum
 from eomgen.symbolic.expression.derivative import substituted
 from eomgen.symbolic.expression.graph import Graph, Node, Scalar
+from eomgen.symbolic.expression.node import Owner
 from eomgen.symbolic.expression.rational import Fraction
 from eomgen.symbolic.expression.traversal import order
+from eomgen.symbolic.print.layout import Product, products_of
+from eomgen.symbolic.print.length import length_of
 from eomgen.symbolic.print.text import named_parts, text_size
 
 LONGEST_ROOT = 24  # characters of a root without a name
@@ -58,13 +61,32 @@ def with_roots_named(written: Written, graph: Graph, taken: Container[str], root
 
 def with_coefficients_throughout(written: Written, coefficients: Mapping[Node, Scalar]) -> Written:
     """The names of coefficients in the equations of motion wherever a multiple of one stands, T = 1/2*I_1*u^2."""
-    multiples: dict[Node, Scalar] = {}
-    for part in {c: None for x in _scalars(written.steps) for c in large_constants(x)} if coefficients else ():
-        for symbol, value in coefficients.items():
-            ratio = book_form(part.graph.div(part, value))
-            if type(ratio) is not Node:
-                multiples[part] = part.graph.mul(ratio, symbol)
-    return _introduced(_substituted(written, multiples), coefficients, lambda symbol: symbol, _always)
+    found = {x: _with_multiples(x, coefficients) for x in _scalars(written.steps) if type(x) is Node and coefficients}
+    return _introduced(_substituted(written, found), coefficients, lambda symbol: symbol, _always)
+
+
+def _with_multiples(x: Node, coefficients: Mapping[Node, Scalar]) -> Scalar:
+    """The sum, in terms that hold a multiple of a coefficient its name; the same where none does."""
+    total: Scalar = 0
+    named = False
+    for term in products_of(x):
+        still, moving = _product(x.graph, term, still=True), _product(x.graph, term, still=False)
+        for symbol, value in coefficients.items() if type(still) is Node and length_of(still) >= LARGE else ():
+            if type(ratio := book_form(x.graph.div(still, value))) is not Node:
+                still, named = x.graph.mul(ratio, symbol), True
+                break
+        total = x.graph.add(total, x.graph.mul(still, moving))
+    return total if named else x
+
+
+def _product(graph: Owner, term: Product, *, still: bool) -> Scalar:
+    """What of a term is made of parameters alone, with its number; or the rest."""
+    total: Scalar = term.coefficient if still else 1
+    for base, e in term.numerator:
+        total = graph.mul(total, graph.pow(base, e)) if graph.is_constant(base) == still else total
+    for base, e in term.denominator:
+        total = graph.div(total, graph.pow(base, e)) if graph.is_constant(base) == still else total
+    return total
 
 
 def _always(x: Scalar) -> bool:
