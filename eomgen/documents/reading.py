@@ -217,7 +217,7 @@ def decided(x: Scalar, condition: Node, holds: bool) -> Scalar:
 def without_cases(scalars: Sequence[Scalar]) -> tuple[Scalar, ...]:
     """The same by functions of the grammar: a where x <= y, else b, is (a (1 + s) + b (1 - s))/2, s = sign(y - x).
 
-    Where x = y exactly it is the mean of both.
+    Where x = y exactly it is the mean of both. What holds where two things are equal alone is left out.
     """
     if not any(holds_op(x, "select") for x in scalars):
         return tuple(scalars)
@@ -225,6 +225,9 @@ def without_cases(scalars: Sequence[Scalar]) -> tuple[Scalar, ...]:
     for node in order(scalars):
         if node.op == "select":
             condition, if_true, if_false = node.args
+            if condition.op == "min":  # x <= y and y <= x
+                known[node] = substituted((if_false,), known)[0]
+                continue
             low, high = substituted(condition.args, known)
             s = function("sign", high - low)
             if_true, if_false = substituted((if_true, if_false), known)

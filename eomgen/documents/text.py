@@ -129,7 +129,7 @@ def side_text(side: Side) -> str:
 
 def is_piecewise(side: Side) -> TypeGuard[Node]:
     """True for a quantity that has one formula in one case and another one in the next."""
-    return isinstance(side, Node) and side.op == "select"
+    return isinstance(side, Node) and side.op == "select" and side.args[0].op in RELATIONS
 
 
 def cases_text(x: Scalar) -> list[str]:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 import re
 
 import pytest
@@ -86,3 +87,15 @@ def test_a_rate_that_is_one_letter_stands_for_itself(law: str) -> None:
     equations = arm(law)
     assert equations.in_print is equations.graph
     assert "W^2" in side_text(equations.derivation.equations[0].left)
+
+
+@pytest.mark.parametrize("W", [3, 0])
+def test_what_holds_for_one_value_of_a_parameter_alone_is_not_printed(W: int) -> None:
+    """psi' = A/W - A*exp(-W*t)/W + W, as an author writes it; where W is 0 the motion is that of A t all the same."""
+    text = ARM.format(law=LAWS[-1])
+    model = eomgen.loads(re.sub("W = {.*}", f"W = {{ value = {W} }}", text))
+    assert not any(word in eomgen.derive(model).render() for word in ("less_equal", "select", "otherwise"))
+    run = eomgen.simulate(model, time=1)
+    assert run.certify().ok
+    gained = 0.1 * (1 - (1 - math.exp(-W)) / W) / W if W else 0.1 / 2
+    assert run["psi"][-1] - run["psi"][0] == pytest.approx(W + gained, rel=1e-6)

@@ -7,7 +7,7 @@ speeds take the place of rates last of all (`declared_speeds`); until then their
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Container, Mapping
 from dataclasses import field, replace
 from functools import cached_property
 
@@ -147,6 +147,7 @@ def scope_of(model: Model, *, with_laws: bool = False) -> Scope:
         DerivationError: a given acceleration whose integral has no closed form.
     """
     model = in_parts(model)
+    zero = {name for name, value in exact_parameters(model).items() if value == 0}
     graph = Graph()
     t = graph.symbol("t")
     parameters = {name: graph.constant(name) for name in model.parameters}
@@ -169,7 +170,7 @@ def scope_of(model: Model, *, with_laws: bool = False) -> Scope:
             N.append(tuple(int(k == speed[name]) for k in range(len(free))))
             nu.append(0)
         else:
-            rate = driven_rate(coordinate, names, t, f"coordinates.{name}")
+            rate = driven_rate(coordinate, names, t, f"coordinates.{name}", zero)
             given = {name + "'": rate, name + "''": tangent((rate,), {t: 1})[0]}
             long = {graph.symbol(each): law for each, law in given.items() if with_laws and _is_long(law, t)}
             laws |= long
@@ -207,7 +208,7 @@ def _is_long(law: Scalar, t: Node) -> bool:
     return depends_on(law, (t,)) or length_of(law) > LONGEST_LAW
 
 
-def driven_rate(coordinate: Coordinate, names: dict[str, Scalar], t: Node, where: str) -> Scalar:
+def driven_rate(coordinate: Coordinate, names: dict[str, Scalar], t: Node, where: str, zero: Container[str]) -> Scalar:
     """The rate of a driven coordinate: f' for `motion`, f for `rate`, speed + integral of f for `acceleration`."""
     name = where.rpartition(".")[2]
     if coordinate.motion is not None:
@@ -218,7 +219,7 @@ def driven_rate(coordinate: Coordinate, names: dict[str, Scalar], t: Node, where
     start = 0 if coordinate.speed is None else coordinate.speed.evaluate(names)
     if (sampled := coordinate.acceleration.sampled) is not None:
         return _speed_by_samples(sampled.named(f"{name}''"), start, t)
-    return start + integral_from_zero(coordinate.acceleration.evaluate(names), t, where)
+    return start + integral_from_zero(coordinate.acceleration.evaluate(names), t, where, zero)
 
 
 def _speed_by_samples(acceleration: Sampled, start: Scalar, t: Node) -> Scalar:
@@ -229,13 +230,13 @@ def _speed_by_samples(acceleration: Sampled, start: Scalar, t: Node) -> Scalar:
     return start + through_samples(change.named(f"integral({acceleration.name})"), t)
 
 
-def integral_from_zero(f: Scalar, t: Node, where: str) -> Scalar:
-    """The integral of f from 0 to t in closed form.
+def integral_from_zero(f: Scalar, t: Node, where: str, zero: Container[str] = ()) -> Scalar:
+    """The integral of f from 0 to t in closed form; parameters in `zero` are 0.
 
     Raises:
         DerivationError: none was found.
     """
-    F = primitive(f, t)
+    F = primitive(f, t, zero)
     if F is None:
         raise DerivationError(
             "the given acceleration has no integral in closed form",
@@ -248,13 +249,16 @@ def integral_from_zero(f: Scalar, t: Node, where: str) -> Scalar:
 LONGEST_INTEGRAND = 300  # operations: rules are sought for every part of it, and for products of parts
 
 
-def primitive(f: Scalar, x: Node) -> Scalar | None:
-    """A function of x whose derivative is f, or None where no closed form was found."""
+def primitive(f: Scalar, x: Node, zero: Container[str] = ()) -> Scalar | None:
+    """A function of x whose derivative is f, or None where no closed form was found.
+
+    That another form holds at k = 0, as of exp(k x)/k, is part of it where a parameter in `zero` is 0.
+    """
     if not depends_on(f, (x,)):
         return f * x
     if len(order((f,))) > LONGEST_INTEGRAND:
         return None
-    from sympy import Integral
+    from sympy import Eq, Integral, Ne, false, true
     from sympy.integrals.manualintegrate import manualintegrate
 
     from eomgen.symbolic.print.sympy_form import scalar_from_sympy, to_sympy
@@ -263,6 +267,8 @@ def primitive(f: Scalar, x: Node) -> Scalar | None:
     found = manualintegrate(expression, variable)
     if found.has(Integral):
         return None
+    if not any(symbol.name in zero for symbol in found.free_symbols):
+        found = found.subs({**dict.fromkeys(found.atoms(Eq), false), **dict.fromkeys(found.atoms(Ne), true)})
     lookup = {symbol.name: symbol for symbol in symbols_of((f, x))}
     try:
         return scalar_from_sympy(found, lookup)

@@ -89,7 +89,7 @@ def _scattered(ties: Ties, q: Mapping[str, float], spread: float, rng: Random) -
 def _with_laws(ties: Ties, state: State) -> State:
     """The state, with the given rates and accelerations that are names (`Scope.laws`)."""
     laws = ties.motion.scope.laws
-    return state | dict(zip(laws, evaluate(tuple(laws.values()), state, fifty_digits()), strict=True))
+    return state | dict(zip(laws, evaluate(tuple(laws.values()), state, fifty_digits(partial=True)), strict=True))
 
 
 def on_unit_spheres(spheres: Sequence[Sequence[Node]], state: State) -> State:
