@@ -5,6 +5,7 @@ mistake the words of which one of each group (`a,b+c,d`) must be told; options o
 looked at when the judge was mended afterwards (2026-11-23), of those of even numbers hardly any.
 
     python tests/helpers/fresh_mistakes.py                     # of all; or: odd, even
+    python tests/helpers/fresh_mistakes.py all textbook_mistakes    # of another folder: 60 of textbooks, 2026-11-26
 """
 
 from __future__ import annotations
@@ -19,7 +20,7 @@ from eomgen.errors import EomgenError
 from eomgen.judge.case import Case
 from eomgen.judge.judge import Judge
 
-HERE = Path(__file__).parent / "fresh_mistakes"
+HERE = Path(__file__).parent
 PARTS = {"odd": (1,), "even": (0,), "all": (0, 1)}
 
 
@@ -47,9 +48,9 @@ def is_named(causes: str, groups: list[list[str]]) -> bool:
     return causes != "" and groups not in ([], [["-"]]) and all(any(w in causes for w in g) for g in groups)
 
 
-def main(part: str = "all") -> int:
+def main(part: str = "all", folder: str = "fresh_mistakes") -> int:
     count: Counter[str] = Counter()
-    for path in sorted(HERE.glob("*.toml")):
+    for path in sorted((HERE / folder).glob("*.toml")):
         if int(path.stem[:2]) % 2 not in PARTS[part]:
             continue
         judge = Judge(Case(eomgen.load(path)))
@@ -69,4 +70,4 @@ def main(part: str = "all") -> int:
 
 
 if __name__ == "__main__":
-    sys.exit(main(*sys.argv[1:2]))
+    sys.exit(main(*sys.argv[1:3]))

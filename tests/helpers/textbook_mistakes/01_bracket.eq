@@ -1,0 +1,9 @@
+axis | reaction_x(A) = P*cos(beta) | tip+sin,axis
+missing | reaction_y(A) = P*cos(beta) | roof+missing
+wrong resultant | reaction_y(A) = P*cos(beta) + q*a/2 | roof+factor,half
+sign | reaction_x(A) = -P*sin(beta) | sign
+arm | reaction_couple(A) = P*a*cos(beta) - P*a*sin(beta) + q*a^2/2 - C0 | tip
+missing component | reaction_couple(A) = P*a*cos(beta) + q*a^2/2 - C0 | tip
+arm of the resultant | reaction_couple(A) = P*a*cos(beta) - P*h*sin(beta) + q*a^2 - C0 | roof+factor,end,arm,acts
+sign | reaction_couple(A) = P*a*cos(beta) - P*h*sin(beta) + q*a^2/2 + C0 | turn+sign
+right | reaction_couple(A) = P*a*cos(beta) - P*h*sin(beta) + q*a^2/2 - C0

@@ -1,0 +1,9 @@
+ratio once | (J1 + J2*r1/r2 + m*rd^2*r1^2/r2^2)*phi'' = Mm - m*g*rd*r1/r2 | wheel+rotation
+ratio upside down | (J1 + J2*r2^2/r1^2 + m*rd^2*r1^2/r2^2)*phi'' = Mm - m*g*rd*r1/r2 | wheel
+ratio left out | (J1 + J2 + m*rd^2*r1^2/r2^2)*phi'' = Mm - m*g*rd*r1/r2 | wheel
+drum as the wheel | (J1 + J2*r1^2/r2^2 + m*r1^2)*phi'' = Mm - m*g*r1 | load+rd,r2
+weight without ratio | (J1 + J2*r1^2/r2^2 + m*rd^2*r1^2/r2^2)*phi'' = Mm - m*g*rd | weight+load
+missing | (J1 + J2*r1^2/r2^2)*phi'' = Mm - m*g*rd*r1/r2 | load+missing
+static rope force | T = J1*phi'^2/2 + J2*r1^2/r2^2*phi'^2/2 | load+missing
+energy without half | T = J1*phi'^2/2 + J2*r1^2/r2^2*phi'^2/2 + m*rd^2*r1^2/r2^2*phi'^2 | load+factor
+right | (J1 + J2*r1^2/r2^2 + m*rd^2*r1^2/r2^2)*phi'' = Mm - m*g*rd*r1/r2

@@ -1,0 +1,9 @@
+sphere for cylinder | 7/5*m*s'' + c*s' + k*s = m*g*sin(alpha) | rotation+sphere,ball,factor
+no rotation | m*s'' + c*s' + k*s = m*g*sin(alpha) | rotation+missing
+hoop | 2*m*s'' + c*s' + k*s = m*g*sin(alpha) | rotation+ring,hoop,factor
+axis | 3/2*m*s'' + c*s' + k*s = m*g*cos(alpha) | weight+cos,axis
+damping sign | 3/2*m*s'' - c*s' + k*s = m*g*sin(alpha) | c+sign
+weight left out | 3/2*m*s'' + c*s' + k*s = 0 | weight+missing
+rest | s = m*g/k | sin,weight,factor
+rest | s = k/(m*g*sin(alpha)) | recipro,inver,upside,exchang
+right | 3/2*m*s'' + c*s' + k*s = m*g*sin(alpha)

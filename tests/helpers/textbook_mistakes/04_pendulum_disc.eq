@@ -1,0 +1,10 @@
+frequency without bob's own inertia | frequency(1) = sqrt((m*g*l/2 + M*g*l + k*l^2/4)/(m*l^2/3 + M*l^2)) | bob+rotation,inertia
+frequency rod about centre | frequency(1) = sqrt((m*g*l/2 + M*g*l + k*l^2/4)/(m*l^2/12 + M*l^2 + M*R^2/2)) | rod
+root forgotten | frequency(1) = (m*g*l/2 + M*g*l + k*l^2/4)/(m*l^2/3 + M*l^2 + M*R^2/2) | root,squar
+spring at the end | frequency(1) = sqrt((m*g*l/2 + M*g*l + k*l^2)/(m*l^2/3 + M*l^2 + M*R^2/2)) | spring+factor,end,acts
+spring arm once | (m*l^2/3 + M*l^2 + M*R^2/2)*theta'' + (m*g*l/2 + M*g*l)*sin(theta) + k*l/2*sin(theta)*cos(theta) = 0 | spring
+weight of rod at end | (m*l^2/3 + M*l^2 + M*R^2/2)*theta'' + (m*g*l + M*g*l)*sin(theta) + k*l^2/4*sin(theta)*cos(theta) = 0 | weight+rod
+cos missing | (m*l^2/3 + M*l^2 + M*R^2/2)*theta'' + (m*g*l/2 + M*g*l)*sin(theta) + k*l^2/4*sin(theta) = 0 | spring+cos
+ring for disc | (m*l^2/3 + M*l^2 + M*R^2)*theta'' + (m*g*l/2 + M*g*l)*sin(theta) + k*l^2/4*sin(theta)*cos(theta) = 0 | bob+ring,hoop,factor
+right | (m*l^2/3 + M*l^2 + M*R^2/2)*theta'' + (m*g*l/2 + M*g*l)*sin(theta) + k*l^2/4*sin(theta)*cos(theta) = 0
+right | frequency(1) = sqrt((m*g*l/2 + M*g*l + k*l^2/4)/(m*l^2/3 + M*l^2 + M*R^2/2))

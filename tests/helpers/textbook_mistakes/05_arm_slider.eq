@@ -1,0 +1,10 @@
+coriolis once | (J + m*r^2)*phi'' + m*r*r'*phi' = Mz | coriolis,Coriolis+factor,once,half
+coriolis missing | (J + m*r^2)*phi'' = Mz | Coriolis,coriolis,beside accelerations+missing
+centrifugal sign | m*r'' + m*r*phi'^2 + k*(r - r0) = 0 | sign+phi'
+centrifugal missing | m*r'' + k*(r - r0) = 0 | missing+phi'
+natural length left out | m*r'' - m*r*phi'^2 + k*r = 0 | r0,drive+missing
+centrifugal with r0 | m*r'' - m*r0*phi'^2 + k*(r - r0) = 0 | r0+r
+power for momentum | T = J*phi'^2/2 + m*r'^2/2 | r,bead+missing
+not squared | T = J*phi'^2/2 + m*(r'^2 + r*phi'^2)/2 | bead,translation
+right | (J + m*r^2)*phi'' + 2*m*r*r'*phi' = Mz
+right | m*r'' - m*r*phi'^2 + k*(r - r0) = 0

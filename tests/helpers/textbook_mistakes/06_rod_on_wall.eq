@@ -1,0 +1,10 @@
+velocity | vy(ladder.end) = l*sin(theta)*theta' | sin,cos
+velocity | vx(ladder.start) = -l*sin(theta)*theta' | sign
+velocity without chain rule | vx(ladder.start) = l*sin(theta) | theta',rate,chain
+acceleration without square | ay(ladder.end) = l*cos(theta)*theta'' | missing+theta'
+energy without rotation | T = m*l^2*theta'^2/8 | rotation+missing
+energy about the end and translation | T = m*l^2*theta'^2/6 + m*l^2*theta'^2/8 | rotation,inertia
+force arm | Q(theta) = F*l*cos(theta) - m*g*l/2*cos(theta) | push+cos,sin
+weight at end | Q(theta) = F*l*sin(theta) - m*g*l*cos(theta) | weight+factor,end
+right | Q(theta) = F*l*sin(theta) - m*g*l/2*cos(theta)
+right | T = m*l^2*theta'^2/6

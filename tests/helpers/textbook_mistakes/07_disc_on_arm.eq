@@ -1,0 +1,9 @@
+diameter moment missing | T = J0*psi'^2/2 + m*L^2*psi'^2/2 + m*R^2*phi'^2/4 | disc+rotation
+polar for diameter | T = J0*psi'^2/2 + m*L^2*psi'^2/2 + m*R^2*psi'^2/4 + m*R^2*phi'^2/4 | disc+rotation
+diameter for polar | T = J0*psi'^2/2 + m*L^2*psi'^2/2 + m*R^2*psi'^2/8 + m*R^2*phi'^2/8 | disc+rotation
+point mass | T = J0*psi'^2/2 + m*L^2*psi'^2/2 | rotation+missing
+arm forgotten | T = m*L^2*psi'^2/2 + m*R^2*psi'^2/8 + m*R^2*phi'^2/4 | arm+missing
+speeds added | T = J0*psi'^2/2 + m*L^2*psi'^2/2 + m*R^2*(phi' + psi')^2/4 | disc+rotation
+Steiner forgotten | T = J0*psi'^2/2 + m*R^2*psi'^2/8 + m*R^2*phi'^2/4 | disc+translation,L
+motion, polar for diameter | (J0 + m*L^2 + m*R^2/2)*psi'' = 0 | disc+rotation
+right | T = J0*psi'^2/2 + m*L^2*psi'^2/2 + m*R^2*psi'^2/8 + m*R^2*phi'^2/4
