@@ -56,6 +56,7 @@ def main(part: str = "all", folder: str = "fresh_mistakes") -> int:
         judge = Judge(Case(eomgen.load(path)))
         for kind, text, groups, options in lines(path.with_suffix(".eq")):
             verdict, causes = told(judge, text, options)
+            named = kind != "right" and verdict == "wrong" and is_named(causes, groups)
             if kind == "right":
                 count["right"] += 1
                 count["accepted"] += verdict == "right"
@@ -63,8 +64,10 @@ def main(part: str = "all", folder: str = "fresh_mistakes") -> int:
                 count["mistakes"] += 1
                 count["told wrong"] += verdict == "wrong"
                 count["taken for right"] += verdict == "right"
-                count["cause named"] += verdict == "wrong" and is_named(causes, groups)
-            print(f"{verdict:10} {path.stem} [{kind}] {text}\n    {causes}")
+                count["cause named"] += named
+                count["another cause told"] += verdict == "wrong" and causes != "" and not named
+            sought = "" if named or kind == "right" else f"\n    not named: {' + '.join(map(' or '.join, groups))}"
+            print(f"{verdict:10} {path.stem} [{kind}] {text}\n    {causes}{sought}", flush=True)
     print(", ".join(f"{name}: {n}" for name, n in count.items()))
     return 0
 
