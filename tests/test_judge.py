@@ -115,7 +115,7 @@ def test_what_is_wrong_is_wrong_and_mostly_named(name):
         ("simple_pendulum", "T = m*l^2*theta'^2", "factor", "translation of bob"),
         ("simple_pendulum", "V = m*g*l*(1 + cos(theta))", "sign", "weight of bob"),
         ("simple_pendulum", "frequency(1) = sqrt(g/l)/(2*pi)", "unit", "factor 1/(2*pi)"),
-        ("simple_pendulum", "theta = cos(sqrt(g/l)*t)", "other", "small angle"),
+        ("simple_pendulum", "theta = cos(sqrt(g/l)*t)", "approximation", "small angle"),
         ("double_pendulum", "Q(theta1) = -(m1 + m2)*g*l1*sin(theta1)", "wrong_point", "arm1.end"),
         ("double_pendulum", "R_arm1_y = (m1 + m2)*g", "missing_term", "in motion alone"),
         ("double_pendulum", "omega(arm1) = theta1' + theta2'", "extra_term", "theta2'"),

@@ -82,21 +82,21 @@ def _wrong(case: Case, written: HandEquation, kind: str, at: Instant, left: Answ
     """Both sides have values, and these differ: by what the author put into the equations, or in the answer itself."""
     difference = f"{left.value - right.value:.6g}" if left.value is not None and right.value is not None else ""
     causes: tuple[Cause, ...] = ()
+    target, found = simplest_explanation(implied_by(case, written, kind, at, left, right))
     clash = case.clash(written)
-    if not clash:
-        target, found = simplest_explanation(implied_by(case, written, kind, at, left, right))
-        causes = causes_of(case, found, moving=False) if found else ()
+    if found and not (clash and len(found[0].shares) > 1):
+        causes = causes_of(case, found, moving=False)
         if isinstance(target, Comparison) and target.squared:
             causes = tuple(replace(cause, text=f"under the root {cause.text}") for cause in causes)
+    elif clash:
+        causes = (Cause("unit", clash, quantity="the dimensions"),)
     true, author = (case.exact(each) for each in (left, right))
     if true is not None and author is not None:
         difference = excess(case, true - author) or difference
     it_is = ""
     if left.exact is not None and len(left.exact) <= LONG and len(written.left.code) == 1:
         it_is = f"it is {written.left.text} = {left.exact}"
-    if clash:
-        causes = (Cause("unit", clash, quantity="the dimensions"),)
-    elif not causes:
+    if not causes:
         causes = (Cause("other", f"the left side minus the right side is {difference} there", quantity="the value"),)
     if it_is:
         causes = (*causes[:-1], replace(causes[-1], text=f"{causes[-1].text}; {it_is}"))

@@ -12,6 +12,7 @@ from eomgen.errors import DerivationError, ExpressionError, MissingValues, Model
 from eomgen.judge.contributions import Contributions
 from eomgen.judge.corruptions import Corruptions
 from eomgen.judge.decision import Follows, combination, is_zero_everywhere, linear_row
+from eomgen.judge.edits import Edits
 from eomgen.judge.reading import MULTIPLIER, HandEquation, Reading, side_value
 from eomgen.mechanics.equations.equations_of_motion import EquationsOfMotion
 from eomgen.mechanics.equations.system import System, system_of
@@ -159,6 +160,11 @@ class Case:
     @cached_property
     def parts(self) -> Contributions:
         return Contributions(self.system, self.equations)
+
+    @property
+    def edits(self) -> Edits:
+        """What may go wrong in its formulas."""
+        return self.parts.edits
 
     @cached_property
     def _corruptions(self) -> dict[tuple[str, tuple[str, ...]], Corruptions]:

@@ -55,8 +55,9 @@ def _joined(case: Case, found: Explanation, causes: list[Cause]) -> list[Cause]:
     )
     name, term = causes[k].quantity, causes[k].term
     what = f"{name}, {term}," if term and term not in name else name
-    text = f"{what} stands there as {causes[j].term}"
-    joined = replace(causes[k], kind="factor" if constant else "other", text=text)
+    stands = found.shares[j].corruption.rows[0] * (-1 if found.scale == "opposite" else 1)
+    text = f"{what} stands there as {short_text(stands, case.system.scope.positive)}"
+    joined = replace(causes[k], kind="factor" if constant else "wrong_quantity", text=text)
     return [joined if i == k else cause for i, cause in enumerate(causes) if i != j]
 
 

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Collection, Iterable, Iterator, Mapping, Sequence
 from contextlib import suppress
 from dataclasses import field, replace
 from functools import cached_property
@@ -18,17 +18,19 @@ from eomgen.judge.decision import combination, is_zero_everywhere, linear_row
 from eomgen.judge.diagnosis import WHOLE, Explanation, Samples, Search, explained, samples_of
 from eomgen.judge.inertias import Inertias
 from eomgen.judge.kinds import FUNCTION_KINDS
-from eomgen.judge.terms import corrupted_terms, short_text, term_text, terms_of
+from eomgen.judge.terms import short_text, term_text, terms_of
+from eomgen.judge.wrong_terms import Term, WrongTerms
 from eomgen.records import dataclass
 from eomgen.symbolic.expression.derivative import depends_on, derivative, gradient, substituted, symbols_of
 from eomgen.symbolic.expression.expressions import Call
 from eomgen.symbolic.expression.functions import over
 from eomgen.symbolic.expression.graph import Node, Scalar, is_zero
+from eomgen.symbolic.expression.node import ScalarRow
 from eomgen.symbolic.expression.traversal import operations
 from eomgen.symbolic.numeric.tolerances import CARRIED
 
 LONGEST = 3000  # operations of equations that are looked at term by term
-EXTRA = 4.5  # rank of a term of the author that does not belong there
+EXTRA = 5.6  # rank of a term of the author that does not belong there
 
 
 @dataclass(frozen=True)
@@ -85,11 +87,20 @@ class Comparison:
             structural.append(Corruption(WHOLE, "factor", self.rows, 1))
         if self._is_long:
             return tuple(structural)
-        concerned, known = self._concerned, system.symbols.parameters.values()
+        concerned, known = self._concerned, tuple(system.symbols.parameters.values())
         held = {*symbols_of((self.scalar, *concerned))}
         rates = frozenset(x for x in (*system.symbols.u, *system.symbols.a) if x in held)
-        terms = corrupted_terms(concerned, known, system.scope.positive, rates)
+        wrong = WrongTerms(self.case.edits, known, rates)
+        terms = [*wrong.in_rows(concerned, self._known_terms), *wrong.throughout(concerned)]
+        if not self.what:
+            terms += changed_answers(self.case, self.rows)
         return (*structural, *sorted(terms, key=lambda each: each.rank))
+
+    @property
+    def _known_terms(self) -> Collection[Term]:
+        """Terms that are looked at as those of a contribution."""
+        known = self.what and self.what not in ("ties", "Q") and not self.sizes
+        return self.case.corruptions(self.what, self.of).terms if known else ()
 
     @property
     def _concerned(self) -> tuple[Scalar, ...]:
@@ -191,10 +202,8 @@ class Comparison:
             for search in tuple(found):
                 found.append(Search(search.E, D, -more, self.extra, search.row))
                 for sign in (1, -1):
-                    both = np.concatenate([search.C, sign * more])
-                    found.append(
-                        Search(None, search.E - sign * D, both, (*search.corruptions, *self.extra), search.row)
-                    )
+                    both, all_ = np.concatenate([search.C, sign * more]), (*search.corruptions, *self.extra)
+                    found.append(Search(None, search.E - sign * D, both, all_, search.row, opposite=sign < 0))
         return tuple(found)
 
     def _moving(self, scalars: Sequence[Scalar]) -> Sequence[Scalar]:
@@ -294,6 +303,13 @@ class Comparison:
         row, name = self.rows[best.row], case.system.symbols.u[best.row].name.removesuffix("'")
         factor = over(derivative(self.scalar, a), derivative(row, a))
         return excess(case, self.scalar - factor * row), f", beside the equation of {name}"
+
+
+def changed_answers(case: Case, answer: ScalarRow) -> Iterator[Corruption]:
+    """What people make of an answer as it is written: its nodes changed, all of it turned over or without its root."""
+    for each in case.edits.of_answer(answer):
+        by = tuple(x - y for x, y in zip(each.to, answer, strict=True))
+        yield Corruption(each.text, each.kind, by, each.rank, open=False, text=f"in the answer {each.text}")
 
 
 def excess(case: Case, scalar: Scalar) -> str:

@@ -8,10 +8,11 @@ every equation of motion by one and the same operator:
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import field
 from functools import cached_property
 
+from eomgen.judge.edits import Edits
 from eomgen.mechanics.bodies.armature import given_energy
 from eomgen.mechanics.bodies.inertia import armature_energy, body_energies, mass_properties
 from eomgen.mechanics.bodies.loads import Applied
@@ -19,6 +20,8 @@ from eomgen.mechanics.equations.equations_of_motion import EquationsOfMotion
 from eomgen.mechanics.equations.system import System
 from eomgen.mechanics.equations.work import drive_row, from_potential, load_row, per_speed
 from eomgen.mechanics.formulations.lagrange import free_rates
+from eomgen.model.catalog import Catalog
+from eomgen.model.dimensions import inferred
 from eomgen.model.forces.load import Couple, Load, PointForce, UniformField
 from eomgen.records import dataclass
 from eomgen.symbolic.expression.derivative import depends_on_any, gradient, jacobian, substituted, tangent
@@ -124,6 +127,22 @@ class Contributions:
     @cached_property
     def operator(self) -> Operator:
         return Operator(self.system)
+
+    @cached_property
+    def dimensions(self) -> Mapping[str, str]:
+        """Of every name, as a text."""
+        found = inferred(Catalog(self.system.scope.model, ())).found
+        return {name: str(dimension) for name, dimension in found.items()}
+
+    @cached_property
+    def edits(self) -> Edits:
+        """What may go wrong in formulas of the system."""
+        groups: dict[str, set[Node]] = {}
+        parameters = self.system.symbols.parameters
+        for name, x in parameters.items():
+            groups.setdefault(self.dimensions.get(name, name), set()).add(x)
+        alike = tuple(frozenset(group) for group in groups.values() if len(group) > 1)
+        return Edits(self.system.scope.positive, alike, tuple(parameters.values()))
 
     @cached_property
     def elementary(self) -> tuple[Contribution, ...]:

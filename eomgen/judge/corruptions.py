@@ -8,22 +8,26 @@ speed (`substitutions`); a single term of the result (`terms`). What an equation
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from contextlib import suppress
 from dataclasses import field, replace
 from functools import cached_property
 from itertools import chain, combinations
 
+from eomgen.errors import DerivationError
 from eomgen.judge.contributions import Contribution, Contributions
 from eomgen.judge.corruption import PIECES, PLAIN, SHARED, SHORTER, Corruption
 from eomgen.judge.substitutions import substitutions_in
+from eomgen.judge.terms import terms_of
 from eomgen.judge.wrong_points import changes_of_places
+from eomgen.judge.wrong_terms import Term, WrongTerms
 from eomgen.mechanics.bodies.inertia import HALF, body_energies, mass_properties
 from eomgen.records import dataclass
 from eomgen.symbolic.expression.derivative import depends_on, gradient, substituted, symbols_of
 from eomgen.symbolic.expression.graph import Node, Scalar, is_zero
 from eomgen.symbolic.expression.node import ScalarRow
 
-MOST = 1400  # corruptions of one equation
+MOST = 3000  # corruptions of one equation
 MOST_SPEEDS = 12  # of a model whose products of speeds are looked at one by one
 MOST_NODES = 100_000  # of expressions that are made for them
 
@@ -95,6 +99,47 @@ class Corruptions:
             yield Corruption(
                 change.name, change.kind, rows, change.rank, change.part.body, change.part.force, False, change.text
             )
+        for part in self.whole if self.what != "energy" else ():
+            yield from self._wrong_terms(part).in_rows(self.rows(part))
+        for part in self.whole:
+            yield from self._edited(part)
+
+    # -- a formula with a mistake in it --------------------------------------------------------------
+
+    @cached_property
+    def terms(self) -> frozenset[Term]:
+        """(row, term) of every contribution, multiplied out."""
+        if self.what == "energy":
+            return frozenset()  # what it has changed by since the start is no sum of terms changed one by one
+        positive = frozenset(self.parts.edits.positive)
+        return frozenset(
+            (k, term)
+            for part in self.whole
+            for k, row in enumerate(self.rows(part))
+            for term in terms_of(row, positive)
+        )
+
+    def _wrong_terms(self, part: Contribution) -> WrongTerms:
+        symbols = self.parts.system.symbols
+        parameters, rates = tuple(symbols.parameters.values()), (*symbols.u, *symbols.a)
+        return WrongTerms(self.parts.edits, parameters, rates, part.name, part.body, part.force)
+
+    def _edited(self, part: Contribution) -> Iterator[Corruption]:
+        """A contribution with one place of its energy or its forces changed, carried through the derivation."""
+        edits = self.parts.edits
+        forms: list[tuple[ScalarRow, Callable[[ScalarRow], Contribution]]] = [
+            ((part.T,), lambda x: replace(part, T=x[0], V=0, Q=(), row=None)),
+            ((part.V,), lambda x: replace(part, T=0, V=x[0], Q=(), row=None)),
+            (part.Q, lambda x: replace(part, T=0, V=0, Q=x, row=None)),
+            (part.row or (), lambda x: replace(part, row=x)),
+        ]
+        for formulas, changed in forms:
+            for each in edits.of(formulas):
+                by = tuple(x - y for x, y in zip(each.to, formulas, strict=True))
+                text = f"in {part.name} {each.text}"
+                with suppress(DerivationError):  # it has no value at the start
+                    rows = self.rows(changed(by))
+                    yield Corruption(part.name, each.kind, rows, each.rank, part.body, part.force, False, text)
 
     def _about_axes(self) -> Iterator[Corruption]:
         """The rotations of bodies in space about their principal axes, those with equal moments together."""

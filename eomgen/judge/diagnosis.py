@@ -35,6 +35,7 @@ WELL_KNOWN = 4  # the largest numerator and denominator by which somebody takes 
 WHOLE = "the whole"  # what is asked, as one contribution
 PLACES, VARIANTS = 5, 8  # configurations, and speeds and accelerations at each
 SIMPLE = 12  # the largest numerator and denominator of a factor that somebody wrote by mistake
+ALIKE = 7  # digits to which directions are compared before pairs are sought
 MOST_PLAIN = 40  # contributions beside whose usual factors one more mistake is sought
 PAIRED, TRIPLED = 900, 120  # corruptions of which pairs and triples are sought
 MOST_MISTAKES = 3  # in one explanation
@@ -47,6 +48,7 @@ USUAL = (  # factors that people write by mistake, and how much less each is bel
     ((Fraction(3), Fraction(4), Fraction(1, 3), Fraction(1, 4)), 2.5),
 )
 UNUSUAL = 9.0  # of other factors
+TURNED = 0.3  # of an equation whose sides are exchanged
 MIXED = 6.0  # how much less a combination of equations is believed than one of them
 UNITS = {  # factors of wrong units: as a number, as a scalar of pi, in words
     "pi/180": (np.pi / 180, (Fraction(1, 180), 1)),
@@ -94,7 +96,7 @@ class Explanation:
         shares: the corruptions.
         row: whose equation it is, its place; -1: a combination.
         cost: how much has to be believed.
-        scale: "", "constant" or "function": what the author multiplied the equation by.
+        scale: "", "opposite", "constant" or "function": what the author multiplied the equation by.
     """
 
     shares: tuple[Share, ...]
@@ -164,6 +166,7 @@ class Search:
         row: whose equation E is.
         true: where D is None what the model says, of which something must be left.
         resisting: of E and of each C what must not vanish together.
+        opposite: where D is None whether the author's sides are exchanged.
     """
 
     D: np.ndarray | None
@@ -173,6 +176,7 @@ class Search:
     row: int
     true: np.ndarray | None = None
     resisting: tuple[np.ndarray, np.ndarray] | None = None
+    opposite: bool = False
 
     def explanations(self, number: int) -> list[Explanation]:
         """Those of so many corruptions, one to three."""
@@ -182,8 +186,9 @@ class Search:
         size = float(np.linalg.norm(left))
         if not np.isfinite(size) or size == 0:
             return []
-        chosen = (self._single, self._pairs, self._triples)[number - 1](left, A)
-        found = [self._explained([kept[i] for i in each]) for each in chosen]
+        some = list(range(len(A))) if number == 1 else self._distinct
+        chosen = (self._single, self._pairs, self._triples)[number - 1](left, A[some])
+        found = [self._explained([kept[some[i]] for i in each]) for each in chosen]
         if number == 2:
             found += [self._explained([i, j], y) for i, j, y in self._beside_usual(left, A, kept)]
         return [x for x in found if x is not None]
@@ -198,6 +203,24 @@ class Search:
                 for (j,) in self._single(beside, A) if np.linalg.norm(beside) > CARRIED * np.linalg.norm(left) else ():
                     if j != k:
                         yield i, kept[j], y
+
+    @cached_property
+    def _distinct(self) -> list[int]:
+        """Of those that do the same the most believable, the most believable first."""
+        _, A, kept = self.projection
+        if not kept:
+            return []
+        with np.errstate(all="ignore"):
+            lengths = np.linalg.norm(self._flat(self.C[kept]), axis=1)
+        leading = np.take_along_axis(
+            A, np.argmax(np.abs(A) > np.abs(A).max(axis=1, keepdims=True) / 2, axis=1)[:, None], 1
+        )
+        alike = np.round(A * np.sign(leading), ALIKE) + 0.0
+        found: dict[tuple[bytes, float], int] = {}
+        for k in sorted(range(len(kept)), key=lambda k: self.corruptions[kept[k]].rank):
+            often = 0.0 if self.corruptions[kept[k]].open else float(f"{lengths[k] * np.sign(leading[k, 0]):.6g}")
+            found.setdefault((alike[k].tobytes(), often), k)
+        return list(found.values())
 
     def _length(self, i: int, direction: np.ndarray) -> float:
         """How long a corruption is along its direction in the projection."""
@@ -317,12 +340,12 @@ class Search:
     def _scale(self, C: np.ndarray, y: np.ndarray) -> tuple[str, float]:
         """What the author multiplied by, and how far-fetched that is."""
         if self.D is None:
-            return "", 0.0
+            return ("opposite", TURNED) if self.opposite else ("", 0.0)
         whole = self.E + np.tensordot(y, C, axes=1)
         with np.errstate(all="ignore"):
             sigma = np.sum(whole * self.D, axis=1) / np.sum(self.D * self.D, axis=1)
         if np.allclose(np.abs(sigma), 1, rtol=CARRIED):
-            return "", 0.0 if sigma[0] > 0 else 0.3
+            return ("", 0.0) if sigma[0] > 0 else ("opposite", TURNED)
         if np.allclose(sigma, sigma[0], rtol=CARRIED):
             simple = _simple(float(sigma[0])) is not None
             return "constant", 1.2 if simple else 2.0

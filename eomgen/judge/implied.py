@@ -15,6 +15,7 @@ from collections.abc import Callable, Iterable, Iterator, Mapping
 from contextlib import suppress
 from dataclasses import replace
 from functools import cached_property
+from itertools import chain
 from typing import TypeVar
 
 from eomgen.errors import DerivationError, EomgenError, ExpressionError
@@ -34,7 +35,7 @@ from eomgen.judge.diagnosis import (
 )
 from eomgen.judge.reading import HandEquation
 from eomgen.judge.replays import replays
-from eomgen.judge.terms import corrupted_terms
+from eomgen.judge.wrong_terms import WrongTerms
 from eomgen.model.fields import AtRest, WrittenEquation
 from eomgen.questions.answers import Answer
 from eomgen.records import dataclass
@@ -213,7 +214,8 @@ def _implied(put: PutIn) -> Implied | None:
     found, resisting = list[Corruption](), [put.resisting(whole)]
     symbols = case.system.symbols
     rates = frozenset((*symbols.u, *symbols.a))
-    terms = corrupted_terms((whole,), symbols.parameters.values(), case.system.scope.positive, rates)
+    wrong = WrongTerms(case.edits, tuple(symbols.parameters.values()), rates)
+    terms = chain(wrong.in_rows((whole,)), wrong.throughout((whole,)))
     single = (replace(each, rows=(0,) * put.row + each.rows) for each in terms)
     for each in (*known.all, *single):
         with suppress(DerivationError):

@@ -7,15 +7,12 @@ for absolute; a parameter left out, with the wrong sign or factor, or another of
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
-from functools import cached_property
 
 from eomgen.errors import DerivationError
 from eomgen.judge.contributions import Contribution, Contributions
 from eomgen.judge.corruption import EXCHANGED, ODD, PLACED, SHARED, TERMS
 from eomgen.judge.terms import angles_in, term_text, turned_angles, wrong_parameters
 from eomgen.judge.wrong_points import Altered
-from eomgen.model.catalog import Catalog
-from eomgen.model.dimensions import inferred
 from eomgen.records import dataclass
 from eomgen.symbolic.expression.derivative import substituted, symbols_of
 from eomgen.symbolic.expression.graph import Node, Scalar, is_zero
@@ -53,7 +50,13 @@ class _Substitutions:
             told = term_text(angle)
             for kind, mapping, what in turned_angles(angle):
                 rank = PLACED if is_zero(part.T) else EXCHANGED
-                rank = ODD if part.name == EVERYTHING else max(rank, TERMS) if kind == "other" else rank
+                rank = (
+                    ODD
+                    if part.name == EVERYTHING
+                    else max(rank, TERMS)
+                    if kind in ("factor", "approximation")
+                    else rank
+                )
                 yield from self._change(part, kind, mapping, f"in {part.name} {what.format(told)}", rank)
 
     def motions(self, part: Contribution) -> Iterator[Altered]:
@@ -95,28 +98,23 @@ class _Substitutions:
                 ({q: q - p, u: u - w}, f"{q.name} - {p.name} {meant}: it is a relative one"),
                 ({q: p, u: w}, f"{p.name} stands where {q.name} is meant"),
             ):
-                yield from self._change(part, "other", mapping, f"in {part.name} {what}", EXCHANGED)
+                yield from self._change(part, "wrong_quantity", mapping, f"in {part.name} {what}", EXCHANGED)
 
     def parameters(self, part: Contribution) -> Iterator[Altered]:
         """Masses, lengths and other constants."""
         known = tuple(self.parts.system.symbols.parameters.values())
         for kind, mapping, what in wrong_parameters(symbols_of((part.T, part.V, *part.Q)), known):
             x, y = next(iter(mapping.items()))
-            length = kind == "factor" and self._dimensions.get(x.name) == "m"
-            if kind != "other" or (type(y) is Node and self._alike(y.name, x.name)):
+            length = kind == "factor" and self.parts.dimensions.get(x.name) == "m"
+            if kind != "wrong_quantity" or (type(y) is Node and self._alike(y.name, x.name)):
                 rank = EXCHANGED + 1 if kind == "factor" else EXCHANGED
                 yield from self._change(
                     part, "wrong_point" if length else kind, mapping, f"in {part.name} {what}", rank
                 )
 
-    @cached_property
-    def _dimensions(self) -> dict[str, str]:
-        found = inferred(Catalog(self.parts.system.scope.model, ())).found
-        return {name: str(dimension) for name, dimension in found.items()}
-
     def _alike(self, a: str, b: str) -> bool:
         """Whether two names stand for the same kind of quantity."""
-        return self._dimensions.get(a, a) == self._dimensions.get(b, b)
+        return self.parts.dimensions.get(a, a) == self.parts.dimensions.get(b, b)
 
 
 def _groups(whole: Sequence[Contribution]) -> list[Contribution]:

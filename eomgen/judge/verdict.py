@@ -20,7 +20,8 @@ class Cause:
     """One mistake.
 
     Args:
-        kind: missing_term, extra_term, sign, factor, wrong_axis, wrong_point, coriolis, constraint_force, unit, other.
+        kind: missing_term, extra_term, sign, factor, wrong_axis, wrong_point, coriolis, constraint_force, unit,
+            wrong_quantity (another one in its place), approximation, wrong_formula; other: unexplained.
         text: the sentence.
         term: what it concerns, as a formula, "".
         body, force: whose it is, "".
@@ -68,6 +69,9 @@ AREAS = {
     "coriolis": "the products of speeds",
     "constraint_force": "which forces do work",
     "unit": "the units",
+    "wrong_quantity": "which quantity stands where",
+    "approximation": "what is taken as small",
+    "wrong_formula": "which formula holds here",
 }
 
 

@@ -42,7 +42,7 @@ def other_shapes(scope: Scope, body: str) -> Iterator[tuple[Fraction, str]]:
         if coefficient != share:
             mass = mass_properties(scope, body).m
             taken, true = (term_text(c * mass * length * length) for c in (coefficient, share))
-            text = f"the moment of inertia of {body} is taken as that of {what}, {taken}, where it is {true}"
+            text = f"in the rotation of {body} the moment of inertia is that of {what}, {taken}, where it is {true}"
             yield coefficient / share, text
 
 

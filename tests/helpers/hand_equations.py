@@ -214,18 +214,18 @@ def of_terms(hand: ByHand, rng: random.Random) -> Iterator[tuple[str, sympy.Expr
         pairs = [(x, y, z) for x, y in pairs for z in terms if z.has(x)]
         if pairs:
             x, y, term = rng.choice(pairs)
-            yield "a wrong parameter", with_term(row, term, term.subs(x, y)), ("other",), (y.name, x.name)
+            yield "a wrong parameter", with_term(row, term, term.subs(x, y)), ("wrong_quantity",), (y.name, x.name)
         if hand.a and k >= 0:
             speeds = [x for x in terms if any(power(x, u) == 2 for u in hand.u)]
             if speeds:
                 term = rng.choice(speeds)
                 u = next(u for u in hand.u if power(term, u) == 2)
-                yield "held out: a square lost", with_term(row, term, term / u), ("other", "factor"), (u.name,)
+                yield "held out: a square lost", with_term(row, term, term / u), ("factor",), (u.name,)
         if len(hand.u) > 1:
             moving = [(x, u, w) for x in terms for u in hand.u for w in hand.u if u is not w and x.has(u)]
             if moving:
                 term, u, w = rng.choice(moving)
-                yield "held out: a wrong speed", with_term(row, term, term.subs(u, w)), ("other",), (u.name, w.name)
+                yield "held out: a wrong speed", with_term(row, term, term.subs(u, w)), ("wrong_quantity",), (u.name, w.name)
         lengths = [(x, p) for x in terms for p in hand.parameters if x.has(p)]
         if lengths:
             term, p = rng.choice(lengths)
@@ -239,7 +239,7 @@ def of_terms(hand: ByHand, rng: random.Random) -> Iterator[tuple[str, sympy.Expr
         if doubles:
             term = rng.choice(doubles)
             small = term.replace(sin, lambda x: x).replace(cos, lambda x: 1)
-            yield "held out: small angle", with_term(row, term, small), ("other",), ()
+            yield "held out: small angle", with_term(row, term, small), ("approximation",), ()
 
 
 def _alike(hand: ByHand, x: Symbol, y: Symbol) -> bool:

@@ -25,6 +25,7 @@ from eomgen.judge.case import Case
 from eomgen.judge.judge import Judge
 
 HERE = Path(__file__).parent
+OTHER = ("other", "wrong_quantity", "approximation", "wrong_formula", "factor")  # what `other` in the tables stands for
 MODELS = HERE.parent.parent / "models"
 
 
@@ -55,7 +56,8 @@ class Answer:
         if verdict.verdict != "wrong" or len(verdict.causes) != (2 if self.kind == "two errors" else 1):
             return False
         told = " ".join(f"{x.text} {x.term} {x.body} {x.force}" for x in verdict.causes)
-        return verdict.causes[0].kind in self.causes and (not self.words or any(word in told for word in self.words))
+        kinds = (*self.causes, *(OTHER if "other" in self.causes else ()))
+        return verdict.causes[0].kind in kinds and (not self.words or any(word in told for word in self.words))
 
 
 @cache
