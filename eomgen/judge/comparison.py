@@ -15,7 +15,7 @@ from eomgen.judge.case import Case
 from eomgen.judge.causes import other_calls
 from eomgen.judge.corruption import PIECES, TERMS, Corruption
 from eomgen.judge.decision import combination, is_zero_everywhere, linear_row
-from eomgen.judge.diagnosis import WHOLE, Explanation, Samples, Search, explained, samples_of
+from eomgen.judge.diagnosis import WHOLE, Explanation, Samples, Search, explained, fitting, in_other_units, samples_of
 from eomgen.judge.inertias import Inertias
 from eomgen.judge.kinds import FUNCTION_KINDS
 from eomgen.judge.terms import short_text, term_text, terms_of
@@ -184,8 +184,13 @@ class Comparison:
             return ()
         samples, tied = self._samples
         known, n = self.corruptions, len(self.rows)
-        flat = samples.of(self._moving([self.scalar, *self.rows, *(x for each in known for x in each.rows)]))
+        scalars = self._moving([self.scalar, *self.rows, *(x for each in known for x in each.rows)])
+        flat = samples.of(scalars)
         D, E, C = flat[0], flat[1 : n + 1], flat[n + 1 :].reshape(len(known), n, *flat.shape[1:])
+        others = in_other_units(samples, self.case.parts.dimensions)
+        if others is not None:
+            fits = fitting(flat, others.of(scalars), n + 1, n)
+            known, C = tuple(each for each, fit in zip(known, fits, strict=True) if fit), C[fits]
         if not self._is_equation:
             more = samples.of(self._moving([each.rows[0] for each in self.extra]))
             return (Search(None, -D, np.concatenate([C[:, 0], more]), (*known, *self.extra), 0, E[0]),)

@@ -25,6 +25,7 @@ from eomgen.model.dimensions import inferred
 from eomgen.model.forces.load import Couple, Load, PointForce, UniformField
 from eomgen.records import dataclass
 from eomgen.symbolic.expression.derivative import depends_on_any, gradient, jacobian, substituted, tangent
+from eomgen.symbolic.expression.dimensions import Dimension
 from eomgen.symbolic.expression.functions import inner
 from eomgen.symbolic.expression.graph import Node, Scalar, is_zero
 from eomgen.symbolic.expression.node import ScalarRow
@@ -129,10 +130,9 @@ class Contributions:
         return Operator(self.system)
 
     @cached_property
-    def dimensions(self) -> Mapping[str, str]:
-        """Of every name, as a text."""
-        found = inferred(Catalog(self.system.scope.model, ())).found
-        return {name: str(dimension) for name, dimension in found.items()}
+    def dimensions(self) -> Mapping[str, Dimension]:
+        """Of every name, as far as it is known."""
+        return inferred(Catalog(self.system.scope.model, ())).found
 
     @cached_property
     def edits(self) -> Edits:
@@ -140,7 +140,7 @@ class Contributions:
         groups: dict[str, set[Node]] = {}
         parameters = self.system.symbols.parameters
         for name, x in parameters.items():
-            groups.setdefault(self.dimensions.get(name, name), set()).add(x)
+            groups.setdefault(str(self.dimensions.get(name, name)), set()).add(x)
         alike = tuple(frozenset(group) for group in groups.values() if len(group) > 1)
         return Edits(self.system.scope.positive, alike, tuple(parameters.values()))
 

@@ -10,7 +10,7 @@ the cheapest that leaves nothing is proven exactly, and only then told.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from functools import cached_property
 from itertools import islice
 from random import Random
@@ -21,6 +21,7 @@ from eomgen.judge.corruption import PLAIN, Corruption
 from eomgen.judge.decision import states_of
 from eomgen.mechanics.equations.system import System
 from eomgen.records import dataclass
+from eomgen.symbolic.expression.dimensions import SECOND, Dimension
 from eomgen.symbolic.expression.functions import over
 from eomgen.symbolic.expression.graph import Node, Scalar
 from eomgen.symbolic.expression.rational import Fraction
@@ -137,6 +138,46 @@ def samples_of(
         return None
     names = rows[0].keys()
     return Samples({x: np.array([row[x] for row in rows]) for x in names}, found)
+
+
+UNITS_OF_OTHERS = {"kg": 1.7, "m": 0.83, "s": 1.31}  # the units of somebody who measures otherwise, in ours
+
+
+def in_other_units(samples: Samples, dimensions: Mapping[str, Dimension]) -> Samples | None:
+    """The same states in other units; None where a symbol's dimension is not known."""
+    found = dict[Node, np.ndarray]()
+    for x, values in samples.values.items():
+        name = x.name.rstrip("'")
+        dimension = SECOND if name == "t" else dimensions.get(name)
+        if dimension is None or dimension.unknowns:
+            return None
+        powers = dimension.times(SECOND, len(name) - len(x.name))
+        found[x] = values * float(np.prod([UNITS_OF_OTHERS[base] ** float(n) for base, n in powers.items()]))
+    return Samples(found, samples.places)
+
+
+def fitting(ours: np.ndarray, others: np.ndarray, given: int, rows: int) -> np.ndarray:
+    """Which corruptions have the dimension of the equation; all of them where the author's equation has none.
+
+    Args:
+        ours, others: the author's equation and what else is given, then the rows of each corruption, at the same states
+            in two sets of units.
+        given: how many there are before the corruptions, the last ones the rows.
+    """
+    ours, others = (x.reshape(len(x), -1) for x in (ours, others))
+    places = np.argmax(np.abs(ours), axis=1)[:, None]
+    with np.errstate(all="ignore"):
+        largest = np.take_along_axis(ours, places, 1)
+        ratios = np.take_along_axis(others, places, 1) / largest
+        first = np.where(np.abs(largest) > COMPUTED * np.abs(ours[:given]).max(), ratios, 0.0)[:, 0]
+        alike = np.all(np.abs(others - ratios * ours) <= CARRIED * np.abs(ratios * largest), axis=1) | (first == 0)
+    factors = np.where(alike, first, np.nan)
+    equation, corruptions = factors[given - rows : given], factors[given:].reshape(-1, rows)
+    if np.isnan(factors[:given]).any():
+        return np.ones(len(corruptions), dtype=bool)
+    same = np.abs(corruptions - equation) <= CARRIED * np.abs(equation)
+    fits: np.ndarray = np.all(same | (corruptions == 0) | (equation == 0), axis=1)
+    return fits
 
 
 def _variant(system: System, state: dict[Node, float], rng: Random, on_ties: bool) -> dict[Node, float]:

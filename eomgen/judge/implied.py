@@ -18,6 +18,8 @@ from functools import cached_property
 from itertools import chain
 from typing import TypeVar
 
+import numpy as np
+
 from eomgen.errors import DerivationError, EomgenError, ExpressionError
 from eomgen.judge.case import Case
 from eomgen.judge.comparison import Comparison
@@ -31,6 +33,8 @@ from eomgen.judge.diagnosis import (
     Explanation,
     Search,
     explained,
+    fitting,
+    in_other_units,
     samples_of,
 )
 from eomgen.judge.reading import HandEquation
@@ -97,8 +101,12 @@ class Implied:
         if samples is None:
             return ()
         found, n = samples.of(flat), len(self.corruptions)
-        resisting = (found[n + 1], found[n + 2 :])
-        return (Search(None, found[0], found[1 : n + 1], self.corruptions, 0, resisting=resisting),)
+        others = in_other_units(samples, self.case.parts.dimensions)
+        ours = found[: n + 1]
+        fits = np.ones(n, dtype=bool) if others is None else fitting(ours, others.of(flat[: n + 1]), 1, 1)
+        known = tuple(each for each, fit in zip(self.corruptions, fits, strict=True) if fit)
+        resisting = (found[n + 1], found[n + 2 :][fits])
+        return (Search(None, found[0], found[1 : n + 1][fits], known, 0, resisting=resisting),)
 
     def proves(self, explanation: Explanation) -> bool:
         """Whether the answer satisfies the model's equation with these mistakes, exactly."""

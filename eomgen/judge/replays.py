@@ -14,6 +14,7 @@ from typing import Any
 from eomgen.errors import EomgenError
 from eomgen.judge.case import Case
 from eomgen.judge.corruption import PLACED, PLAIN, SHARED, Corruption
+from eomgen.judge.wrong_terms import WrongTerms
 from eomgen.model.forces.base import Force
 from eomgen.model.forces.couple import CoupleForce
 from eomgen.model.forces.load import PointForce, SpreadLoad
@@ -51,11 +52,23 @@ def replays(case: Case, own: Scalar, asked: Callable[[Case], Scalar | None]) -> 
         if value is None or is_zero(value - own):
             continue
         if name and not model.coordinates:  # a structure: loads add up
-            yield Corruption(f"the force {name}", "factor", (own - value,), PLAIN, "", name)
+            yield from _of_load(case, name, own - value)
         else:
             yield Corruption(text, "missing_term", (value - own,), SHARED, "", name, open=False, text=text)
     if not model.coordinates and model.space == "plane":
         yield from _at_other_places(case, asked)
+
+
+def _of_load(case: Case, force: str, does: Scalar) -> Iterator[Corruption]:
+    """What may be wrong with the share of one load: all of it, a place of it, a term."""
+    name = f"the force {force}"
+    share = (case.phase.simple(does),)
+    yield Corruption(name, "factor", share, PLAIN, "", force)
+    for each in case.edits.of(share):
+        text = f"in {name} {each.text}"
+        yield Corruption(name, each.kind, (each.to[0] - share[0],), each.rank, "", force, False, text)
+    parameters = tuple(case.system.symbols.parameters.values())
+    yield from WrongTerms(case.edits, parameters, (), name, "", force).in_rows(share)
 
 
 def _at_other_places(case: Case, asked: Callable[[Case], Scalar | None]) -> Iterator[Corruption]:

@@ -105,7 +105,7 @@ class _Substitutions:
         known = tuple(self.parts.system.symbols.parameters.values())
         for kind, mapping, what in wrong_parameters(symbols_of((part.T, part.V, *part.Q)), known):
             x, y = next(iter(mapping.items()))
-            length = kind == "factor" and self.parts.dimensions.get(x.name) == "m"
+            length = kind == "factor" and str(self.parts.dimensions.get(x.name)) == "m"
             if kind != "wrong_quantity" or (type(y) is Node and self._alike(y.name, x.name)):
                 rank = EXCHANGED + 1 if kind == "factor" else EXCHANGED
                 yield from self._change(
@@ -114,7 +114,7 @@ class _Substitutions:
 
     def _alike(self, a: str, b: str) -> bool:
         """Whether two names stand for the same kind of quantity."""
-        return self.parts.dimensions.get(a, a) == self.parts.dimensions.get(b, b)
+        return str(self.parts.dimensions.get(a, a)) == str(self.parts.dimensions.get(b, b))
 
 
 def _groups(whole: Sequence[Contribution]) -> list[Contribution]:
