@@ -312,6 +312,7 @@ class Comparison:
 
 def changed_answers(case: Case, answer: ScalarRow) -> Iterator[Corruption]:
     """What people make of an answer as it is written: its nodes changed, all of it turned over or without its root."""
+    answer = case.edits.written(answer)
     for each in case.edits.of_answer(answer):
         by = tuple(x - y for x, y in zip(each.to, answer, strict=True))
         yield Corruption(each.text, each.kind, by, each.rank, open=False, text=f"in the answer {each.text}")

@@ -83,9 +83,16 @@ class Corruptions:
         return tuple(part for part in mine if not all(map(is_zero, self.rows(part))))
 
     def _sought(self) -> Iterator[Corruption]:
+        alike: dict[tuple[str, ScalarRow], list[Contribution]] = {}
         for part in self.whole:
-            squares = not is_zero(part.T)
-            yield Corruption(part.name, "factor", self.rows(part), PLAIN, part.body, part.force, squares=squares)
+            alike.setdefault((part.kind, self.parts.edits.written(self.rows(part))), []).append(part)
+        for members in alike.values():
+            for part in members:  # of several that do the same nobody gets one wrong alone
+                rank, squares = SHARED + PIECES if len(members) > 1 else PLAIN, not is_zero(part.T)
+                yield Corruption(part.name, "factor", self.rows(part), rank, part.body, part.force, squares=squares)
+            if len(members) > 1:
+                name, squares = " and ".join(part.name for part in members), not is_zero(members[0].T)
+                yield Corruption(name, "factor", self._sum(members), PLAIN, squares=squares)
         yield from self._about_axes()
         yield from self._together()
         if self.what == "motion":

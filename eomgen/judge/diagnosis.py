@@ -42,6 +42,7 @@ PAIRED, TRIPLED = 900, 120  # corruptions of which pairs and triples are sought
 MOST_MISTAKES = 3  # in one explanation
 PROVEN = 24  # explanations that are proven before it is given up
 SQUARED = 3.0  # how much less it is believed that a square has the wrong sign
+WHOLE_MOTION = 0.2  # how much less a wrong factor of all that a motion does is believed than one of a force
 MINUS = 5.0  # how much less a sign is believed beside a factor
 USUAL = (  # factors that people write by mistake, and how much less each is believed than a term left out
     ((Fraction(1),), 0.0),
@@ -444,6 +445,7 @@ def _cost(share: Share) -> float:
         return cost
     if x < 0:
         cost += (SQUARED if share.corruption.squares else 0.0) + (MINUS if x != -1 else 0.0)
+    cost += WHOLE_MOTION if share.corruption.squares else 0.0
     size = abs(x)
     return cost + next((more for known, more in USUAL if size in known), UNUSUAL)
 

@@ -66,14 +66,14 @@ class Edits:
     def of(self, formulas: ScalarRow) -> Iterator[Edit]:
         """Those of formulas as they are and as they are written, each once; a place of several in all of them."""
         seen = {formulas}
-        for form in dict.fromkeys((formulas, tuple(map(self._written, formulas)))):
+        for form in dict.fromkeys((formulas, self.written(formulas))):
             for each in self._in_form(form):
                 if each.to not in seen:
                     seen.add(each.to)
                     yield each
 
     def of_answer(self, answer: ScalarRow) -> Iterator[Edit]:
-        """Those of an answer, which may also stand upside down or under a root."""
+        """Those of an answer as it is written, which may also stand upside down or under a root."""
         for each in self.of(answer):
             yield replace(each, rank=max(each.rank, ODD))
         for x in answer if len(answer) == 1 else ():
@@ -85,8 +85,9 @@ class Edits:
                 if x.op != "sqrt":
                     yield Edit("factor", (x.graph.sqrt(x),), "a root is too many", EXCHANGED)
 
-    def _written(self, x: Scalar) -> Scalar:
-        return legible(x, Work.FORMULA, self.positive, LONG)
+    def written(self, formulas: ScalarRow) -> ScalarRow:
+        """Formulas as people write them."""
+        return tuple(legible(x, Work.FORMULA, self.positive, LONG) for x in formulas)
 
     def _in_form(self, formulas: ScalarRow) -> Iterator[Edit]:
         places = [node for node in order(formulas) if node.args]

@@ -73,6 +73,10 @@ class Inertias:
             yield self._changed(name, "factor", (ratio - 1) * own, text, body)
         known = tuple(self.case.system.symbols.parameters.values())
         for told, part in parts:
+            (formula,) = self.case.edits.written((part,))
+            for each in self.case.edits.of((formula,)):
+                text = f"in {told} {each.text}"
+                yield replace(self._changed(told, each.kind, each.to[0] - formula, text, body), rank=each.rank)
             for kind, mapping, what in wrong_parameters(symbols_of((part,)), known):
                 with suppress(DerivationError):
                     by = substituted((part,), mapping)[0] - part

@@ -45,6 +45,9 @@ def targets_of(case: Case, written: HandEquation, kind: str, scalar: Scalar, als
         return []
     (rest,) = substituted((left,), {symbol: 0})
     author, true = over(-rest, slope), case.called(call)
+    sizes = sizes_in(case, written, author - true)
+    if sizes:  # of a speed the author wrote without its sign
+        (true,) = substituted((true,), {**sizes, **signs_at_start(case, sizes)})
     of = tuple(x.name for x in call.args if isinstance(x, Reference))
     found = [Comparison(case, author - true, (true,), _WHAT.get(call.name, ""), call, of)]
     moving = (*case.system.symbols.a, *case.system.symbols.lam)
