@@ -18,8 +18,12 @@ from eomgen.documents.latex import setter_of
 from eomgen.errors import ExpressionError, UsageError
 from eomgen.judge.alphabet import vocabulary
 from eomgen.judge.case import Case
+from eomgen.judge.diagnosis import fitting, in_other_units, samples_of
+from eomgen.judge.edits import powers_of
 from eomgen.judge.handwriting import transcript
 from eomgen.judge.judge import Judge
+from eomgen.symbolic.expression.graph import Graph
+from eomgen.symbolic.expression.rational import Fraction
 from eomgen.symbolic.print.text import to_text
 
 SAMPLE = ("simple_pendulum", "cart_pole", "elastic_pendulum", "seeds/ch22_p3", "furuta_pendulum")
@@ -124,6 +128,62 @@ def test_what_is_wrong_is_wrong_and_mostly_named(name):
 def test_a_mistake_has_its_name(model, equation, cause, word):
     found = verdict(model, equation)
     assert (found.verdict, kinds(found)) == ("wrong", [cause]) and word in found.causes[0].text
+
+
+@pytest.mark.parametrize(
+    ("model", "equation", "cause", "words"),
+    [
+        (
+            "cart_pole",
+            "T = M*x'^2/2 + m*(x'^2 - l*x'*theta'*cos(theta) + l^2*theta'^2/4)/2 + m*l*theta'^2/24",
+            "factor",
+            ("rotation of pole", "l stands where l^2"),
+        ),
+        ("elastic_pendulum", "r*theta'' + 2*r'*theta' + g = 0", "factor", ("weight of bob", "sin(theta)")),
+        (
+            "elastic_pendulum",
+            "m*r'' - m*theta'^2 = m*g*cos(theta) - k*(r - l0)",
+            "factor",
+            ("translation", "r is missing"),
+        ),
+        ("simple_pendulum", "frequency(1) = sqrt(l/g)", "factor", ("reciprocal",)),
+        ("simple_pendulum", "frequency(1) = g/l", "factor", ("root is missing",)),
+        ("half_car", "stiffness(y, y) = k_f*k_r/(k_f + k_r)", "wrong_formula", ("in series",)),
+        ("simple_pendulum", "speed(bob.center) = l/2*theta'", "factor", ("factor 1/2",)),
+        (
+            "beam_with_overhang",
+            "reaction_y(B) = q*L/3 + F*(L + c)/c + F*c/L",
+            "factor",
+            ("force tip", "c/L is turned over"),
+        ),
+    ],
+)
+def test_one_place_of_a_contribution_is_named(model, equation, cause, words):
+    """A factor, a power, a root, a ratio: in the energy of which body, the work of which force, or in the answer."""
+    found = verdict(model, equation)
+    assert (found.verdict, kinds(found)) == ("wrong", [cause])
+    assert all(word in found.causes[0].text for word in words)
+
+
+def test_a_product_is_its_factors_to_their_powers():
+    """x = c prod f^k, whatever it is built of: products, quotients, powers, roots."""
+    graph = Graph()
+    a, b, c = (graph.symbol(name) for name in "abc")
+    x = -3 * a * graph.sqrt(b / c) * (a + b) ** 2 / (c * a**3)
+    powers = powers_of(x)
+    assert powers == {a: -2, b: Fraction(1, 2), c: Fraction(-3, 2), a + b: 2}
+
+
+def test_what_changes_the_dimension_explains_no_equation_that_keeps_it():
+    """In other units, of kg, m and s, what fits the equation changes by the equation's own factor."""
+    case = Case(eomgen.load(MODELS / "cart_pole.toml"))
+    (row, *_), l = case.rows, case.system.symbols.parameters["l"]
+    flat = (row, 2 * row, row * l, row / l + row, 0 * l)
+    samples = samples_of(case.system, flat)
+    others = in_other_units(samples, case.parts.dimensions)
+    assert fitting(samples.of(flat), others.of(flat), 1, 1).tolist() == [True, False, False, True]
+    inhomogeneous = (row + row * l, *flat)
+    assert fitting(samples.of(inhomogeneous), others.of(inhomogeneous), 1, 1).all()
 
 
 @pytest.mark.slow

@@ -2,8 +2,8 @@
 
 A whole contribution (a body's rotation, a weight, a spring) with a wrong factor, several together, or terms of its
 derivatives; derived from a wrong place (`wrong_points`); with something else in the place of a name, an angle or a
-speed (`substitutions`); a single term of the result (`terms`). What an equation differs by is then sought among them
-(`diagnosis`): the lists hold no equation, only what may go wrong.
+speed (`substitutions`); with one place of it changed, before it is derived (`edits`) or in its terms (`wrong_terms`).
+What an equation differs by is then sought among them (`diagnosis`): the lists hold no equation, only what may go wrong.
 """
 
 from __future__ import annotations
@@ -87,12 +87,12 @@ class Corruptions:
         for part in self.whole:
             alike.setdefault((part.kind, self.parts.edits.written(self.rows(part))), []).append(part)
         for members in alike.values():
-            for part in members:  # of several that do the same nobody gets one wrong alone
-                rank, squares = SHARED + PIECES if len(members) > 1 else PLAIN, not is_zero(part.T)
+            for part in members:  # of several that do the same all are rather wrong than one
+                rank, squares = 2 * SHORTER if len(members) > 1 else PLAIN, not is_zero(part.T)
                 yield Corruption(part.name, "factor", self.rows(part), rank, part.body, part.force, squares=squares)
             if len(members) > 1:
                 name, squares = " and ".join(part.name for part in members), not is_zero(members[0].T)
-                yield Corruption(name, "factor", self._sum(members), PLAIN, squares=squares)
+                yield Corruption(name, "factor", self._sum(members), SHORTER, squares=squares)
         yield from self._about_axes()
         yield from self._together()
         if self.what == "motion":

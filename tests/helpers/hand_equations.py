@@ -225,7 +225,8 @@ def of_terms(hand: ByHand, rng: random.Random) -> Iterator[tuple[str, sympy.Expr
             moving = [(x, u, w) for x in terms for u in hand.u for w in hand.u if u is not w and x.has(u)]
             if moving:
                 term, u, w = rng.choice(moving)
-                yield "held out: a wrong speed", with_term(row, term, term.subs(u, w)), ("wrong_quantity",), (u.name, w.name)
+                other = with_term(row, term, term.subs(u, w))
+                yield "held out: a wrong speed", other, ("wrong_quantity",), (u.name, w.name)
         lengths = [(x, p) for x in terms for p in hand.parameters if x.has(p)]
         if lengths:
             term, p = rng.choice(lengths)
