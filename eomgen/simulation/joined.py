@@ -138,7 +138,7 @@ def thinned(full: Trajectory, instants: np.ndarray | None, **more: Any) -> Traje
         return replace(full, **more)
     kept = np.ones(len(full.t), dtype=bool)
     kept[:-1] = full.t[1:] > full.t[:-1]
-    if instants is not None:
+    if instants is not None and not np.array_equal(full.t, instants):
         kept &= np.isin(full.t, instants)
         kept[-1] |= full.status != "finished"
     all_kept = bool(kept.all())

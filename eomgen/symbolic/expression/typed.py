@@ -16,6 +16,7 @@ _BEFORE_UNIT = re.compile(r"(?<=[\d.)])\s*(?=[^\W\d]|°)|\s+(?=[^\W\d]|°|1/)")
 
 Typed = Any
 """A number, a text, (number, unit), a quantity of pint."""
+EXACT_INTEGER = 53  # bits of a whole number that a double holds
 _OF_PINT = {"[length]": "m", "[mass]": "kg", "[time]": "s"}
 
 
@@ -25,6 +26,8 @@ def seconds(typed: Any) -> float:
     Raises:
         UsageError: it is none.
     """
+    if (type(typed) is float and math.isfinite(typed)) or (type(typed) is int and typed.bit_length() < EXACT_INTEGER):
+        return float(typed)
     refused = UsageError(f"{typed!r} is no time", mend="write 5, or '5 s'")
     try:
         value, unit = read_typed(typed)
