@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Sequence
+from dataclasses import field
 from functools import cache, partial
 from itertools import chain
 from typing import Any
@@ -17,6 +18,11 @@ from eomgen.symbolic.expression.functions import over
 from eomgen.symbolic.expression.graph import Scalar
 from eomgen.symbolic.expression.spatial import ZERO, Vector, cross, dot, minus, plus, vector_of
 from eomgen.symbolic.numeric.tolerances import ZERO_AT_50
+
+Member = tuple[str, str, tuple[str, str]]
+"""(truss, member, its two nodes)"""
+NodeNumbers = Sequence[Any]
+"""Of a node in the plane (v_x, v_y, x, y), with 50 digits."""
 
 
 @dataclass(frozen=True)
@@ -49,14 +55,21 @@ class RigidBlock:
 
 def blocks_of(plan: VelocityPlan) -> tuple[RigidBlock, ...]:
     """The blocks that move, in the order of the model; what is in none of them stays at rest."""
-    groups: list[list[_Part]] = []
-    for part in (*_bodies(plan), *_members(plan)):
-        group = next((g for g in groups if _agree(g[0].numbers, part.numbers)), None)
+    groups: list[_Group] = []
+    for part in _bodies(plan):
+        group = next((g for g in groups if _agree(g.parts[0].numbers, part.numbers)), None)
         if group is None:
-            groups.append([part])
+            groups.append(_Group([part]))
         else:
-            group.append(part)
-    blocks = [_joined(plan, group) for group in groups]
+            group.parts.append(part)
+    nodes = _nodes_of(plan)
+    for member in _moving_members(plan):
+        group = next((g for g in groups if all(g.carries(node, nodes(node)) for node in member[2])), None)
+        if group is not None:
+            group.parts.append(_member(plan, member, ()))
+        elif numbers := _numbers_of(*map(nodes, member[2])):
+            groups.append(_Group([_member(plan, member, numbers)]))
+    blocks = [_joined(plan, group.parts) for group in groups]
     return (*blocks, *_single_nodes(plan, blocks))
 
 
@@ -87,7 +100,7 @@ def numeral(number: int) -> str:
     return text
 
 
-def members_of(system: System) -> list[tuple[str, str, tuple[str, str]]]:
+def members_of(system: System) -> list[Member]:
     """(truss, member, its two nodes) of every truss."""
     trusses = trusses_of(system.scope.model.constraints)
     return [(name, member, truss.ends(member)) for name, truss in trusses.items() for member in truss.members]
@@ -111,26 +124,66 @@ class _Part:
 def _bodies(plan: VelocityPlan) -> Iterable[_Part]:
     """The bodies that are no nodes."""
     names = [name for name in plan.moving if not is_node(name)]
-    fields = [(plan.raw_spin(name), plan.raw_velocity_at(name, ZERO)) for name in names]
-    flat = iter(plan.numbers([x for field in fields for three in field for x in three]))
-    for name, field in zip(names, fields, strict=True):
-        yield _Part((name,), (), [next(flat) for _ in range(6)], partial(tuple, field))
+    motions = [(plan.raw_spin(name), plan.raw_velocity_at(name, ZERO)) for name in names]
+    flat = iter(plan.numbers([x for motion in motions for three in motion for x in three]))
+    for name, motion in zip(names, motions, strict=True):
+        yield _Part((name,), (), [next(flat) for _ in range(6)], partial(tuple, motion))
+
+
+@dataclass(frozen=True)
+class _Group:
+    """What moves as one.
+
+    Args:
+        parts: the first has the numbers of all.
+        known: of the nodes that were asked, whether they move with it.
+    """
+
+    parts: list[_Part]
+    known: dict[str, bool] = field(default_factory=dict)
+
+    def carries(self, node: str, moving: NodeNumbers) -> bool:
+        """Whether a node in the plane moves with it: v = v_0 + w x r."""
+        if node not in self.known:
+            _, _, w, v_x, v_y, _ = self.parts[0].numbers
+            vx, vy, x, y = moving
+            self.known[node] = abs(vx - v_x + w * y) < ZERO_AT_50 and abs(vy - v_y - w * x) < ZERO_AT_50
+        return self.known[node]
 
 
 def _members(plan: VelocityPlan) -> Iterable[_Part]:
-    """The moving members in the plane that keep their length: w = r x (v_2 - v_1) / r.r"""
+    """The moving members in the plane that keep their length."""
+    nodes = _nodes_of(plan)
+    for member in _moving_members(plan):
+        if numbers := _numbers_of(*map(nodes, member[2])):
+            yield _member(plan, member, numbers)
+
+
+def _moving_members(plan: VelocityPlan) -> list[Member]:
     if plan.system.scope.model.space != "plane":
-        return
+        return []
     moving = {*plan.moving}
-    members = [each for each in members_of(plan.system) if not moving.isdisjoint(each[2])]
-    known = cache(lambda node: plan.numbers(_of_node(plan, node)))
-    for truss, member, ends in members:
-        (vx, vy, x, y), (wx, wy, x_2, y_2) = map(known, ends)
-        ax, ay, dx, dy = wx - vx, wy - vy, x_2 - x, y_2 - y
-        if abs(ax * dx + ay * dy) <= ZERO_AT_50:
-            w = (dx * ay - dy * ax) / (dx * dx + dy * dy) if ax or ay else 0
-            numbers = (0, 0, w, vx + w * y, vy - w * x, 0)
-            yield _Part((), ((truss, member),), numbers, partial(_of_ends, plan, ends))
+    return [each for each in members_of(plan.system) if not moving.isdisjoint(each[2])]
+
+
+def _member(plan: VelocityPlan, member: Member, numbers: Sequence[Any]) -> _Part:
+    truss, name, ends = member
+    return _Part((), ((truss, name),), numbers, partial(_of_ends, plan, ends))
+
+
+def _nodes_of(plan: VelocityPlan) -> Callable[[str], NodeNumbers]:
+    """node -> (vx, vy, x, y) with 50 digits"""
+    return cache(lambda node: plan.numbers(_of_node(plan, node)))
+
+
+def _numbers_of(one: NodeNumbers, other: NodeNumbers) -> tuple[Any, ...]:
+    """Of a member by its nodes, w = r x (v_2 - v_1) / r.r; () of one that does not keep its length."""
+    (vx, vy, x, y), (wx, wy, x_2, y_2) = one, other
+    ax, ay, dx, dy = wx - vx, wy - vy, x_2 - x, y_2 - y
+    if abs(ax * dx + ay * dy) > ZERO_AT_50:
+        return ()
+    w = (dx * ay - dy * ax) / (dx * dx + dy * dy) if ax or ay else 0
+    return 0, 0, w, vx + w * y, vy - w * x, 0
 
 
 def _of_node(plan: VelocityPlan, name: str) -> tuple[Scalar, ...]:

@@ -10,7 +10,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping, Sequence
-from dataclasses import replace
+from dataclasses import field, replace
 from functools import cached_property
 from typing import Any
 
@@ -57,6 +57,7 @@ class Descent:
         telling: how many of the unknowns, the first ones, tell two roots apart and how near they are (None: all). The
             others may be free at a root, as the multipliers of redundant ties are.
         scales: of the rows and of the columns (None: those of slopes at a few places).
+        last: the slopes where they were asked last, by the unknowns there.
     """
 
     equations: tuple[Scalar, ...]
@@ -64,6 +65,7 @@ class Descent:
     values: Mapping[Node, Any]
     telling: int | None = None
     scales: tuple[np.ndarray, np.ndarray] | None = None
+    last: dict[tuple[Any, ...], np.ndarray] = field(default_factory=dict, compare=False, repr=False)
 
     def roots_near(self, guesses: np.ndarray, most: int | None = None) -> list[np.ndarray]:
         """From each guess the root that is reached; those that reach none are left out.
@@ -169,9 +171,13 @@ class Descent:
 
     def _at_digits(self, state: Mapping[Node, Any]) -> np.ndarray:
         """df/dx with 50 digits."""
-        found = np.empty(len(self._derivatives), dtype=object)
-        found[:] = evaluate(self._derivatives, state, fifty_digits())
-        return found.reshape(self._shape)
+        place = tuple(state[x] for x in self.unknowns)
+        if place not in self.last:
+            found = np.empty(len(self._derivatives), dtype=object)
+            found[:] = evaluate(self._derivatives, state, fifty_digits())
+            self.last.clear()
+            self.last[place] = found.reshape(self._shape)
+        return self.last[place]
 
     def at_one(self, x: np.ndarray) -> np.ndarray:
         """df/dx at x, equations x unknowns."""
