@@ -204,11 +204,14 @@ def _about_origin(system: System, load: PointForce | Couple) -> list[Scalar]:
 
 
 def _momentum_rates(system: System) -> tuple[Scalar, ...]:
-    """(dP/dt, dL/dt) of all bodies about the ground's origin, ground axes, from their twists."""
-    P, L = ZERO, ZERO
-    for p, l in _momenta(system):
-        P, L = plus(P, p), plus(L, l)
-    return system.scope.with_accelerations((*P, *L))
+    """(dP/dt, dL/dt) of all bodies about the ground's origin, ground axes, from their twists; found once."""
+    if _momentum_rates not in system.found:
+        P, L = ZERO, ZERO
+        for p, l in _momenta(system):
+            P, L = plus(P, p), plus(L, l)
+        system.found[_momentum_rates] = system.scope.with_accelerations((*P, *L))
+    found: tuple[Scalar, ...] = system.found[_momentum_rates]
+    return found
 
 
 def _momenta(system: System) -> Iterable[tuple[Vector, Vector]]:

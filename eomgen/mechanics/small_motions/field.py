@@ -14,7 +14,7 @@ from eomgen.errors import DerivationError
 from eomgen.records import dataclass
 from eomgen.symbolic.exact.normal_form import simplest
 from eomgen.symbolic.expression.derivative import substituted
-from eomgen.symbolic.expression.functions import inner, over
+from eomgen.symbolic.expression.functions import over
 from eomgen.symbolic.expression.graph import Node, Scalar, is_zero
 from eomgen.symbolic.numeric.evaluation import evaluate, fifty_digits, floats_of
 from eomgen.symbolic.numeric.work import Work
@@ -112,8 +112,14 @@ def matrix_product(field: NumberField, A: Entries, B: Entries) -> Entries:
     """A B."""
     if _is_one(A) or _is_one(B):
         return [[0 if is_zero(x) else field.tidy(x) for x in row] for row in (B if _is_one(A) else A)]
-    columns = list(zip(*B, strict=True))
-    return [[field.tidy(inner(row, column)) for column in columns] for row in A]
+    columns = [[None if is_zero(y) else y for y in column] for column in zip(*B, strict=True)]
+    rows = [[(k, x) for k, x in enumerate(row) if not is_zero(x)] for row in A]
+    return [[field.tidy(_inner(row, column)) for column in columns] for row in rows]
+
+
+def _inner(row: list[tuple[int, MatrixEntry]], column: list[MatrixEntry | None]) -> MatrixEntry:
+    """The sum of what is not 0 in the row, each by its place, times what is not in the column."""
+    return sum([x * column[k] for k, x in row if column[k] is not None], start=0)
 
 
 def _is_one(A: Entries) -> bool:
