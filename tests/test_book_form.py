@@ -78,6 +78,7 @@ def printed(text: str) -> str:
         ),
         ("(m*l^2*g*a + k*b^2)/(m*l^2)", "b^2*k/(m*l^2) + a*g"),
         ("sqrt(m1*a^2 - 2*m1*a*b + m1*b^2 + m2*(a + b)^2)", "sqrt(m1*(a - b)^2 + m2*(a + b)^2)"),
+        ("a^2 + h^2 + 2*a*b*cos(x) + 2*a*c*sin(x)", "a^2 + h^2 + 2*a*b*cos(x) + 2*a*c*sin(x)"),
         ("m1*a + m1*b + m2*a + m2*b + sqrt(g^2 + l^2)", "(m1 + m2)*(a + b) + sqrt(g^2 + l^2)"),
         (
             "a*g*m*cos(alpha) - 3*b*g*M*cos(alpha)/(10*a) - 9*b*g*m*cos(alpha)/(10*a) + b*g*m*cos(alpha)"

@@ -372,14 +372,22 @@ class _Book:
         return best if length_of(best) <= length_of(apart) else apart
 
     def _nested(self, parts: Parts) -> list[Scalar]:
-        """factor*(...) + ..., for each factor or divisor that several terms hold and not all; of long sums for one."""
+        """factor*(...) + ..., for each factor or divisor that several terms hold and not all; of long sums for one.
+
+        Of a short sum only the highest power is taken out: a^2 + 2*a*b + c reads better than a*(a + 2*b) + c.
+        """
+        long = len(parts) > MOST_NESTED
+        highest: dict[Base, int] = {}
+        for base, e in (item for _, powers in parts for item in powers):
+            highest[base] = max(e, highest.get(base, 0))
         held: dict[tuple[Base, bool], Parts] = {}
         for part in parts:
             for base, e in part[1]:
-                held.setdefault((base, e > 0), []).append(part)
+                if long or e < 0 or e == highest[base]:
+                    held.setdefault((base, e > 0), []).append(part)
         shared = [inside for inside in held.values() if 1 < len(inside) < len(parts)]
         found = []
-        for inside in sorted(shared, key=len, reverse=True)[: MOST_SHARED if len(parts) <= MOST_NESTED else 1]:
+        for inside in sorted(shared, key=len, reverse=True)[: 1 if long else MOST_SHARED]:
             self.tried["sums"] += 1
             if self.tried["sums"] <= MOST_TRIED:
                 place = parts.index(inside[0])
