@@ -166,6 +166,33 @@ def test_a_stiffness_that_changes_has_no_modes_at_whatever_rate(k):
         small(SLIDER.format(rest=f'stiffness = "{k}"'))
 
 
+@pytest.mark.parametrize("force", ["cos(10*t)", "sin(10*t)", "3*t", "exp(-t)"])
+def test_a_force_of_time_alone_leaves_the_modes_as_they_are(force):
+    """m x'' + k x = f(t)"""
+    found = small(SLIDER.format(rest=f'stiffness = "k", force = "{force}"'))
+    assert_same(np.linalg.eigvals(found.A), [10j, -10j])
+    assert found.certify().ok
+    assert "stands on the right side" in found.render()
+
+
+def test_a_force_of_time_that_turns_with_a_body_has_no_modes():
+    """F(t) across a pendulum: K = m g l + F(t) l sin(theta0), another at every instant."""
+    text = """[parameters]
+m = 1
+g = 10
+[coordinates]
+theta = 0
+[bodies.b]
+shape = { kind = "rod", mass = "m", length = 1 }
+joint = { kind = "revolute", angle = "theta - pi/2" }
+[forces]
+weight = { kind = "gravity", acceleration = [0, "-g"] }
+push = { kind = "force", point = "b.end", force = ["2*cos(t)", 0] }
+"""
+    with pytest.raises(eomgen.DerivationError, match="change with time"):
+        small(text)
+
+
 @pytest.mark.parametrize("force", ["-4*max(0, x) - min(0, x)", "-sign(x)", "-k*abs(x)", "-k*x - 3*abs(x')"])
 def test_a_corner_of_a_force_is_named(force):
     with pytest.raises(eomgen.DerivationError, match="corner or a jump"):

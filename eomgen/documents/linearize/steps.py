@@ -41,6 +41,10 @@ from eomgen.symbolic.print.text import text_size, to_text
 
 SECOND_ORDER = Law("M*q'' + C*q' + K*q = B*w", r"M \ddot{q} + C \dot{q} + K q = B w")
 FREE = Law("M*q'' + C*q' + K*q = 0", r"M \ddot{q} + C \dot{q} + K q = 0")
+FORCED = (
+    "Forces that change with time are taken as they are at t = 0; what they change by stands on the right side, as an "
+    "input would, and the modes do not depend on it."
+)
 UNDAMPED = Law("M*q'' + K*q = 0", r"M \ddot{q} + K q = 0")
 FIRST_ORDER = Law("M*u' + C*u + K*q = B*w,  q' = E*u + F*q", r"M \dot{u} + C u + K q = B w,\quad \dot{q} = E u + F q")
 WHERE = Law(
@@ -102,6 +106,8 @@ def _equations(modes: Modes) -> Step:
         statements.append(prose("The ties, differentiated, say what follows: ", FOLLOW, "."))
     law = (SECOND_ORDER if e.inputs else UNDAMPED if undamped else FREE) if small.is_second_order else FIRST_ORDER
     statements.append(prose(law, "."))
+    if small.forced:
+        statements.append(prose(FORCED))
     if len(e.speeds) > MOST_WRITTEN:
         statements.append(prose(f"M, C and K of {len(e.speeds)} coordinates stand in the result for machines."))
         return Step("equations", "Equations to first order", tuple(statements))

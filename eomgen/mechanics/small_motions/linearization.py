@@ -44,6 +44,7 @@ from eomgen.mechanics.small_motions.steady_family import family_of
 from eomgen.model.unknowns import refuse_motion
 from eomgen.model.values import exact_parameters
 from eomgen.records import dataclass
+from eomgen.symbolic.expression.derivative import depends_on
 from eomgen.symbolic.expression.graph import Node
 from eomgen.symbolic.expression.traversal import operations
 from eomgen.symbolic.numeric.evaluation import NoValue
@@ -93,6 +94,13 @@ class SmallMotions:
     def is_second_order(self) -> bool:
         """Whether they are M q'' + C q' + K q = B w."""
         return is_second_order(self.numbers)
+
+    @property
+    def forced(self) -> bool:
+        """Whether forces change with t about a place of rest: they are taken as they are at t = 0."""
+        equations = self.first.equations
+        rows = (*equations.forcing, *equations.gamma, *equations.sigma)
+        return self.reference.at_rest and any(depends_on(x, (self.first.system.symbols.t,)) for x in rows)
 
     @cached_property
     def state_matrix(self) -> np.ndarray:

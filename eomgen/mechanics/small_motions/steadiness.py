@@ -139,14 +139,18 @@ def refuse_singular(reducing: Reducing, equations: LinearEquations) -> None:
 def _changed(
     first: FirstOrder, choice: Choice, reference: ReferenceMotion, raw: LinearEquations, kept: Sequence[int]
 ) -> Callable[[Mapping[Node, Any]], bool]:
-    """Whether the equations are others at a shifted state; they are those here where they hold nothing that shifts."""
+    """Whether the equations are others at a shifted state; they are those here where they hold nothing that shifts.
+
+    At rest a force that t alone changes is no other equation: it stands on the right side, as an input does.
+    """
+    t = first.system.symbols.t
     here, held = list(_compared(raw, kept)), first.held
 
     @cache
     def found(shift: tuple[tuple[Node, Any], ...]) -> bool:
         reducing = Reducing(first, choice, Numbers({**reference.numbers, **dict(shift)}))
         try:
-            if unsettled(reducing, COMPUTED):
+            if (not reference.at_rest or any(x is not t for x, _ in shift)) and unsettled(reducing, COMPUTED):
                 return True
             there = list(_compared(reduced_of(reducing, reference), kept)) if shift else here
         except (NoValue, ZeroDivisionError):
