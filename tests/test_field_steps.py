@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from pathlib import Path
+
 import pytest
 
 import eomgen
@@ -151,3 +153,9 @@ def test_a_centrode_is_drawn_where_the_centre_runs():
     fixed, moving, now = (line.get_xydata() for line in panel.get_lines())
     assert abs((fixed**2).sum(axis=1) ** 0.5 - 2).max() < 1e-9
     assert abs(((moving - now / 2) ** 2).sum(axis=1) ** 0.5 - 1).max() < 1e-9
+
+
+def test_the_radius_of_a_centrode_is_a_short_formula():
+    """Of a planet its centrodes are circles: their radii are lengths of vectors whose components are short."""
+    text = " ".join(eomgen.kinematics(Path(__file__).parent.parent / "models" / "epicyclic_gear.toml").render().split())
+    assert "a circle about (0, 0), radius (a + b)*b*abs(w_arm/(a*w_arm - a*w_sun + b*w_arm))." in text

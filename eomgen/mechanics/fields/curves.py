@@ -74,6 +74,19 @@ class Constants:
         found = [value for each in x if (value := self.of(each)) is not None]
         return vector_of(found) if len(found) == 3 else None
 
+    def length(self, x: Vector) -> Scalar | None:
+        """The same of the length of a vector that may turn: of its components where they are short."""
+        symbols = self.possible.system.symbols
+        moving = (symbols.t, *symbols.q, *symbols.u, *symbols.a, *self.possible.jerks)
+        for state in self._states(moving):
+            try:
+                there = vector_of([simplest(each, Work.VALUE, self.positive) for each in substituted(x, state)])
+            except DerivationError:  # a division by zero there
+                continue
+            if not any(depends_on(each, moving) for each in there):
+                return simplest(sqrt(dot(there, there)), Work.VALUE, self.positive)
+        return self.of(sqrt(dot(x, x)))
+
     def some_place(self, place: Vector) -> Vector | None:
         """A place on the way of one that moves, as functions of the parameters: where it is at the start, if known."""
         symbols = self.possible.system.symbols
@@ -107,18 +120,17 @@ def curve_of(place: Vector, possible: Possible, constants: Constants) -> Curve:
     n = cross(v, a)
     if possible.vanish(*n):
         return Curve("line", constants.some_place(place), _direction(v, possible, constants))
-    center, rho = curvature_center(place, v, a)
+    arm = _arm(v, a)
+    center = plus(place, arm)
     if possible.vanish(*possible.rate_of(center), *_turning(n, possible)):
-        return Curve("circle", constants.vector(center), _direction(n, possible, constants), constants.of(rho))
+        return Curve("circle", constants.vector(center), _direction(n, possible, constants), constants.length(arm))
     return Curve("curve")
 
 
-def curvature_center(place: Vector, v: Vector, a: Vector) -> tuple[Vector, Scalar]:
-    """(centre of curvature, radius) of the way of a point with velocity v and acceleration a."""
+def _arm(v: Vector, a: Vector) -> Vector:
+    """From a point with velocity v and acceleration a to the centre of curvature of its way."""
     n = cross(v, a)
-    square = dot(n, n)
-    arm = times(over(dot(v, v), square), cross(n, v))
-    return plus(place, arm), sqrt(dot(arm, arm))
+    return times(over(dot(v, v), dot(n, n)), cross(n, v))
 
 
 def _direction(v: Vector, possible: Possible, constants: Constants) -> Vector | None:
