@@ -8,10 +8,10 @@ from typing import Any
 from eomgen.mechanics.small_motions.polynomial import Polynomial, factors_of
 from eomgen.records import dataclass
 from eomgen.symbolic.exact.expansion import Expansion
-from eomgen.symbolic.exact.normal_form import simplest
-from eomgen.symbolic.exact.terms import TooLarge, content
+from eomgen.symbolic.exact.normal_form import written_shortest
+from eomgen.symbolic.exact.terms import Key, TooLarge, content, terms_scaled
 from eomgen.symbolic.expression.functions import over
-from eomgen.symbolic.expression.graph import Node, Scalar, is_zero
+from eomgen.symbolic.expression.graph import Node, Number, Scalar, is_zero
 from eomgen.symbolic.numeric.evaluation import evaluate, fifty_digits
 from eomgen.symbolic.numeric.work import Work
 from eomgen.symbolic.solve import cramer
@@ -73,12 +73,12 @@ def _without_number(x: Scalar, positive: Collection[Node]) -> Scalar:
     """A positive multiple of x, its coefficients whole numbers without a common factor."""
     if type(x) is not Node:
         return x
-    expansion = Expansion(x.graph, Work.ANSWER, positive)
+    expansion, terms = Expansion(x.graph, Work.ANSWER, positive), dict[Key, Number]()
     try:
         terms = expansion.of(x)
+        return written_shortest(expansion, terms_scaled(terms, 1 / content(terms)))
     except TooLarge:
-        return x
-    return simplest(over(x, content(terms)) if terms else 0, Work.ANSWER, positive)
+        return over(x, content(terms)) if terms else x
 
 
 def _polynomials(polynomial: Polynomial, s: Node, positive: Collection[Node]) -> Iterator[Polynomial]:

@@ -44,6 +44,7 @@ __all__ = [
     "readable_all",
     "simple_constants",
     "simplest",
+    "written_shortest",
 ]
 
 A_TERM = 16  # characters of one term of many, at least on the average
@@ -250,10 +251,19 @@ def _simplest(x: Scalar, limit: int, positive: Collection[Node], most: int | Non
         expansion, (terms,) = expanded((x,), limit, positive)
         if most is not None and len(terms) > most and text_size(x) < A_TERM * len(terms):
             return x
-        writer = Writer(expansion)
-        forms = list(dict.fromkeys((writer.sum(terms), *quotients(expansion, writer, terms))))
+        return written_shortest(expansion, terms)
     except TooLarge:
         return x
+
+
+def written_shortest(expansion: Expansion, terms: Terms) -> Scalar:
+    """The same of a sum of terms.
+
+    Raises:
+        TooLarge: it takes more work than the expansion has left.
+    """
+    writer = Writer(expansion)
+    forms = list(dict.fromkeys((writer.sum(terms), *quotients(expansion, writer, terms))))
     return rebuilt_as_written(forms[0] if len(forms) == 1 else min(forms, key=_length))
 
 
