@@ -20,6 +20,8 @@ from eomgen.documents.derivation import printed_formulas
 from eomgen.documents.document import Document
 from eomgen.documents.text import cases_text
 from eomgen.equations import Equations
+from eomgen.model.values import exact_parameters
+from eomgen.proof import parameters
 from eomgen.proof.check import Certificate, checked
 from eomgen.proof.printed import Printed
 from eomgen.symbolic.print import text
@@ -103,3 +105,13 @@ def told(document: Document) -> list[str]:
     certificate = proof_of_texts.proven(document, Certificate((other,))).certificate
     assert certificate is not None
     return [check.status for check in certificate.checks if check != other]
+
+
+@pytest.mark.parametrize(("verb", "name"), [("derive", "cart_pole"), *VERBS[1:5]])
+def test_numbers_of_other_parameters_are_a_contradiction(verb: str, name: str, monkeypatch: pytest.MonkeyPatch):
+    """What is proven at values that are not the file's is proven of another system."""
+    monkeypatch.setattr(parameters, "exact_parameters", lambda model: {x: 2 * y + 1 for x, y in values(model).items()})
+    values = exact_parameters
+    monkeypatch.setenv("EOMGEN_FRESH", "1")
+    found = CliRunner().invoke(main, [verb, str(MODELS / f"{name}.toml")])
+    assert found.exit_code == 3 and "FAIL parameters are worth what the file says" in found.stdout

@@ -40,6 +40,7 @@ from eomgen.model.reader import ModelOrPath, model_at
 from eomgen.model.replaced import Values
 from eomgen.proof.check import Certificate
 from eomgen.proof.masses import Stated, mass_checks, tried
+from eomgen.proof.parameters import other_parameters
 from eomgen.records import dataclass
 from eomgen.symbolic.expression.derivative import symbols_of
 from eomgen.symbolic.expression.graph import is_zero
@@ -106,7 +107,8 @@ class Inertia(Result):
 
     def certify(self) -> Certificate:
         """Check shapes, parts and all that is stated of them against quadratures of what the shapes fill."""
-        return Certificate(tuple(mass_checks(self.system.motion, self.stated, self.start or tried(self.system.scope))))
+        checks = mass_checks(self.system.motion, self.stated, self.start or tried(self.system.scope))
+        return Certificate((*checks, *other_parameters(self.system.scope)))
 
     def entries(self) -> dict[str, Any]:
         """For machines."""

@@ -1,0 +1,22 @@
+"""Scope -> whether parameters are worth what the file says, by the arithmetic of its reader."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator
+
+from eomgen.mechanics.bodies.scope import Scope
+from eomgen.mechanics.initial_state.values_at_rest import values_of_parameters
+from eomgen.model.values import exact_parameters
+from eomgen.proof.check import Check, checked
+from eomgen.symbolic.numeric.tolerances import COMPUTED
+
+
+def other_parameters(scope: Scope) -> Iterator[Check]:
+    """A contradiction where the numbers at which all else is looked at are not those of the file; else nothing."""
+    known, found = exact_parameters(scope.model), values_of_parameters(scope, None)
+    there = {x.name: float(value) for x, value in found.items()}
+    pairs = [(name, there.get(name, math.nan), float(right)) for name, right in known.items()]
+    wrong = [f"'{name}': {x:.10g} for {y:.10g}" for name, x, y in pairs if not abs(x - y) <= COMPUTED * abs(y)]
+    if wrong:
+        yield checked("parameters are worth what the file says", "; ".join(wrong[:3]), "floating point")
