@@ -21,6 +21,7 @@ from eomgen.mechanics.equations.equations_of_motion import EquationsOfMotion
 from eomgen.mechanics.equations.system import System, system_of
 from eomgen.mechanics.formulations import ALL
 from eomgen.model.unbuilt import unbuilt
+from eomgen.symbolic.expression.derivative import depends_on_any
 from eomgen.symbolic.expression.factors import same_number
 from eomgen.symbolic.numeric.evaluation import NoValue
 
@@ -215,3 +216,10 @@ def test_free_bodies_move_alike_under_ties_at_points_that_slide_and_ties_without
     system = written(SLOTTED.replace("KIND", tie))
     state = state_of(system)
     assert close(free_body_accelerations(system, state), accelerations_at(ALL[0].assemble(system), state))
+
+
+def test_the_angle_of_a_body_of_revolution_about_its_axis_stands_nowhere():
+    """A rotor's moments across its axis are one: R J R^T = R (J - A 1) R^T + A 1 holds no angle of it."""
+    equations = eomgen.derive(MODELS["dual_spin_satellite"]).graph
+    sigma = next(q for q in equations.symbols.q if q.name == "sigma")
+    assert not depends_on_any([*(x for row in equations.M for x in row), *equations.forcing], (sigma,))

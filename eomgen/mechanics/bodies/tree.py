@@ -8,13 +8,14 @@ second moments of mass m, h = int r dm, J = int r r^T dm, about that origin.
 
 from __future__ import annotations
 
+from collections import Counter
 from collections.abc import Mapping
 
 from eomgen.mechanics.bodies.inertia import mass_properties
 from eomgen.mechanics.bodies.kinematics import GROUND, BodyLink, Motion, shortened_twist
 from eomgen.records import dataclass
 from eomgen.symbolic.expression.derivative import symbols_of, tangent
-from eomgen.symbolic.expression.graph import Node, Scalar
+from eomgen.symbolic.expression.graph import Node, Scalar, is_zero
 from eomgen.symbolic.expression.rational import Fraction
 from eomgen.symbolic.expression.spatial import (
     IDENTITY,
@@ -217,7 +218,15 @@ def _hinge_axis(motion: Motion, link: BodyLink, offset: Vector) -> int | None:
 
 
 def _congruence(R: Matrix, J: Matrix) -> Matrix:
-    """R J R^T for symmetric J; the diagonal entry of the busiest row comes from the trace, which stays."""
+    """R J R^T for symmetric J; the diagonal entry of the busiest row comes from the trace, which stays.
+
+    What stands twice on the diagonal, A, is felt in no direction apart: R J R^T = R (J - A 1) R^T + A 1.
+    """
+    (A, times_there), *_ = Counter(J[i][i] for i in range(3)).most_common()
+    if times_there > 1 and not is_zero(A):
+        part = matrix_of((J[i][j] - A if i == j else J[i][j] for j in range(3)) for i in range(3))
+        turned = _congruence(R, part)
+        return matrix_of((turned[i][j] + A if i == j else turned[i][j] for j in range(3)) for i in range(3))
     last = max(range(3), key=lambda i: (sum(type(x) is Node for x in R[i]), i))
     first, second = (i for i in range(3) if i != last)
     half = {i: apply(transposed(J), R[i]) for i in (first, second)}
