@@ -281,22 +281,25 @@ def _right(found: Any, right: Any, formula: bool) -> bool:
 
 
 def _equal_formulas(one: str | None, other: str | None) -> bool:
-    """Whether two texts are worth the same at three states, every name a number between 1/2 and 1."""
-    import math
+    """Whether two texts are worth the same at three states, every name a number between 1/2 and 1, with 60 digits."""
     import random
+
+    import mpmath
 
     if one is None or other is None:
         return False
     texts = [re.sub("'+", lambda m: "_" * len(m[0]), x).replace("^", "**") for x in (one, other)]
-    functions = {**vars(math), "abs": abs, "max": max, "min": min}
+    texts = [re.sub(r"(?<![\w.])(\d+)(?![\w.])", r"mpf(\1)", x) for x in texts]
     names = sorted({name for x in texts for name in re.findall(r"[A-Za-z_]\w*(?![\w(])", x)} - {"pi"})
     rng = random.Random(1)
-    states = [{**functions, **{name: rng.uniform(0.5, 1) for name in names}} for _ in range(3)]
-    try:
-        pairs = [[eval(x, dict(state)) for x in texts] for state in states]
-    except (ArithmeticError, ValueError, TypeError, NameError, SyntaxError):
-        return False
-    return all(abs(a - b) <= 1e-9 * (1 + abs(b)) for a, b in pairs)
+    with mpmath.workdps(60):
+        known = {**vars(mpmath), "abs": abs, "max": max, "min": min}
+        states = [{**known, **{name: mpmath.mpf(rng.uniform(0.5, 1)) for name in names}} for _ in range(3)]
+        try:
+            pairs = [[eval(x, dict(state)) for x in texts] for state in states]
+            return all(abs(a - b) <= 1e-9 * (1 + abs(b)) for a, b in pairs)
+        except (ArithmeticError, ValueError, TypeError, NameError, SyntaxError):
+            return False
 
 
 def seen_by_tests(planted: Planted) -> bool:

@@ -14,6 +14,7 @@ from eomgen.mechanics.balance.friction import has_friction
 from eomgen.mechanics.equations.equations_of_motion import EquationsOfMotion
 from eomgen.proof import identities
 from eomgen.proof.check import Certificate
+from eomgen.proof.masses import other_masses
 from eomgen.proof.parameters import other_parameters
 from eomgen.proof.printed import Printed
 from eomgen.proof.trials import Trials
@@ -67,4 +68,5 @@ def certify(
     checks += [] if printed is None else trials.printed(printed)
     if rhs is not None:
         checks.append(trials.code(rhs))
-    return Certificate((*checks, *other_parameters(equations.system.scope)))
+    system = equations.system
+    return Certificate((*checks, *other_parameters(system.scope), *other_masses(system.motion)))

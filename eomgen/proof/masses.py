@@ -12,8 +12,8 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterator, Mapping, Sequence
-from functools import cached_property
-from itertools import product
+from functools import cache, cached_property
+from itertools import product, starmap
 from random import Random
 from typing import Any
 
@@ -38,6 +38,7 @@ from eomgen.symbolic.numeric.tolerances import COMPUTED, IMAGINARY_STEP, LARGEST
 
 NODES = (32, 32, 16)  # of Gauss and Legendre in each direction, for lines, surfaces and volumes
 QUADRATURE = "quadrature"
+FILLED = "every shape has the mass centre and the inertia of the points that it fills"
 AXES = "xyz"
 
 
@@ -89,6 +90,21 @@ def mass_checks(motion: Motion, stated: Sequence[Stated], numbers: Mapping[Node,
         yield checked(name, first_wrong(map(proof.wrong_axes, principal)), "floating point")
 
 
+def other_masses(motion: Motion) -> Iterator[Check]:
+    """A contradiction where bodies have not the masses of the points that they fill, each kind tried once."""
+    proof, bodies = _Proof(motion, tried(motion.scope)), motion.scope.model.bodies
+    shapes = {shape.kind: (body, shape) for body in bodies for shape in proof.shapes_of(body)}
+    made = [body for body, part in bodies.items() if part.parts is not None]
+    possible = (pair for pair in shapes.values() if not pair[1].impossible(proof.value))
+    with np.errstate(all="ignore"):  # beyond doubles nothing can be compared
+        found = attempted(
+            FILLED,
+            QUADRATURE,
+            lambda: first_wrong((*starmap(proof.wrong_shape, possible), *map(proof.wrong_parts, made))),
+        )
+    yield from (x for x in (found,) if x.status == "fails")
+
+
 def tried(scope: Scope) -> dict[Node, float]:
     """Values of parameters without one, and somewhere for what moves: what is stated holds anywhere."""
     rng, symbols = Random(3), scope.symbols
@@ -112,11 +128,17 @@ def filled(shape: Shape, value: Any) -> tuple[float, np.ndarray]:
 
 def _cell(cell: Cell, dimension: int) -> tuple[np.ndarray, np.ndarray]:
     """(weights, places) of the nodes of Gauss and Legendre in one cell."""
-    x, w = np.polynomial.legendre.leggauss(NODES[dimension - 1])
-    s = np.array(list(product((x + 1) / 2, repeat=dimension))).T
-    weights = np.prod(np.array(list(product(w / 2, repeat=dimension))), axis=1)
+    s, weights = _nodes(dimension)
     slopes = np.array([_at(cell, s + _step(dimension, k)).imag / IMAGINARY_STEP for k in range(dimension)])
     return weights * _measure(slopes), _at(cell, s.astype(complex)).real.T
+
+
+@cache
+def _nodes(dimension: int) -> tuple[np.ndarray, np.ndarray]:
+    """(places in [0, 1]^d, weights)"""
+    x, w = np.polynomial.legendre.leggauss(NODES[dimension - 1])
+    s = np.array(list(product((x + 1) / 2, repeat=dimension))).T
+    return s, np.prod(np.array(list(product(w / 2, repeat=dimension))), axis=1)
 
 
 def _step(dimension: int, k: int) -> np.ndarray:
@@ -197,23 +219,25 @@ class _Proof:
     # -- shapes ----------------------------------------------------------------------------------------------
 
     def shapes(self, bodies: Sequence[str]) -> Iterator[Check]:
-        """Each kind once, with the sizes that it has where it is met first."""
-        name = "every shape has the mass centre and the inertia of the points that it fills"
+        """Of all parts of these bodies."""
         wrong, impossible, any_ = "", "", False
         for body in bodies:
-            part = self.motion.scope.model.bodies[body]
-            for shape in [piece.shape for piece in part.parts or ()] + ([part.shape] if part.shape else []):
+            for shape in self.shapes_of(body):
                 if shape.impossible(self.value):
                     impossible = f"the sizes of a {shape.kind} of '{body}' have no values that it can have"
                     continue
                 any_ = True
-                wrong = wrong or self._wrong_shape(body, shape)
+                wrong = wrong or self.wrong_shape(body, shape)
         if any_:
-            yield checked(name, wrong, QUADRATURE)
+            yield checked(FILLED, wrong, QUADRATURE)
         elif impossible:
-            yield unchecked(name, impossible, QUADRATURE)
+            yield unchecked(FILLED, impossible, QUADRATURE)
 
-    def _wrong_shape(self, body: str, shape: Shape) -> str:
+    def shapes_of(self, body: str) -> list[Shape]:
+        part = self.motion.scope.model.bodies[body]
+        return [piece.shape for piece in part.parts or ()] + ([part.shape] if part.shape else [])
+
+    def wrong_shape(self, body: str, shape: Shape) -> str:
         measure, S = filled(shape, self.value)
         stated = shape.of_mass(1, self.motion.scope.value)
         if _differs(S, _moments_of(stated, self.numbers)):

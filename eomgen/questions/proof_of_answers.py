@@ -30,6 +30,8 @@ from eomgen.model.parts import Model, Output
 from eomgen.proof.at_a_state import NumericState, differing, moving_states, off_by, place_of, read_back
 from eomgen.proof.check import Certificate, Check, Tally
 from eomgen.proof.emitted_code import PhaseMotion, TriedState
+from eomgen.proof.masses import other_masses
+from eomgen.proof.parameters import other_parameters
 from eomgen.proof.second_definitions import second_definition
 from eomgen.questions.at_instant import StateAtInstant
 from eomgen.questions.in_phase import PhaseEquations
@@ -90,14 +92,12 @@ class _Proof:
 
     @cached_property
     def equations(self) -> tuple[Check, ...]:
-        """Of the first phase; () where nothing moves."""
+        """Of the first phase; where nothing moves of what the file gives."""
         phase = self.solver.motions[False].phase
-        if not phase.system.symbols.u or not self.asked:
-            return ()
-        try:
-            return certify(phase.equations).checks
-        except (ModelError, DerivationError):  # what moves no mass, or forces that are sought: at rest alone
-            return ()
+        if phase.system.symbols.u and self.asked:
+            with suppress(ModelError, DerivationError):  # what moves no mass, or forces that are sought: at rest alone
+                return certify(phase.equations).checks
+        return (*other_parameters(phase.system.scope), *other_masses(phase.system.motion))
 
     # -- what is printed ---------------------------------------------------------------------------
 

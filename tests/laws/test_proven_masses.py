@@ -7,14 +7,17 @@ from typing import Any
 
 import numpy as np
 import pytest
+from click.testing import CliRunner
 from known_answers import MODELS
 
 import eomgen
+from eomgen.cli import main
 from eomgen.documents.inertia import result, rows, steps
 from eomgen.documents.inertia.result import inertia as verb
 from eomgen.documents.json_form import as_dict
 from eomgen.mechanics.bodies import composition
 from eomgen.model.shapes import MassProperties, Rod, Sector
+from eomgen.proof.masses import FILLED
 from eomgen.verbs.outcome import shown
 
 PLATE = MODELS / "seeds" / "ch13_p1.toml"
@@ -26,7 +29,8 @@ def wrong_checks(path: Any, **asked: Any) -> list[str]:
     return [check.name for check in eomgen.inertia(eomgen.load(path), **asked).certify().checks if check.ok is False]
 
 
-def test_a_wrong_shape_is_seen(monkeypatch: pytest.MonkeyPatch) -> None:
+@pytest.fixture
+def heavy_rods(monkeypatch: pytest.MonkeyPatch) -> None:
     """A rod of m l^2 / 3 about its middle."""
     right = Rod.of_mass
 
@@ -35,7 +39,31 @@ def test_a_wrong_shape_is_seen(monkeypatch: pytest.MonkeyPatch) -> None:
         return replace(found, I=tuple(tuple(4 * x for x in row) for row in found.I))
 
     monkeypatch.setattr(Rod, "of_mass", planted)
+
+
+@pytest.mark.usefixtures("heavy_rods")
+def test_a_wrong_shape_is_seen() -> None:
     assert any(name.startswith("every shape") for name in wrong_checks(MODELS / "sliding_ladder.toml"))
+
+
+VERBS = [
+    "derive sliding_ladder",
+    "solve sliding_ladder",
+    "solve seeds/ch13_p1",
+    "reactions sliding_ladder",
+    "statics a_frame",
+    "linearize double_pendulum",
+]
+
+
+@pytest.mark.parametrize("run", VERBS)
+@pytest.mark.usefixtures("heavy_rods")
+def test_a_wrong_shape_is_seen_by_every_verb(run: str, monkeypatch: pytest.MonkeyPatch) -> None:
+    """Equations, outputs and small motions of a rod of m l^2 / 3 are those of another body."""
+    verb, name = run.split()
+    monkeypatch.setenv("EOMGEN_FRESH", "1")
+    found = CliRunner().invoke(main, [verb, str(MODELS / f"{name}.toml")])
+    assert found.exit_code == 3 and f"FAIL {FILLED}" in found.stdout
 
 
 def test_parts_that_do_not_add_up_are_seen(monkeypatch: pytest.MonkeyPatch) -> None:

@@ -36,6 +36,7 @@ from eomgen.model.parts import Model
 from eomgen.model.reader import ModelOrPath, model_at
 from eomgen.model.replaced import Values
 from eomgen.proof.check import Certificate
+from eomgen.proof.masses import other_masses
 from eomgen.proof.parameters import other_parameters
 from eomgen.proof.structure import structure_checks
 from eomgen.records import dataclass
@@ -122,7 +123,8 @@ class Statics(Result):
     def certify(self) -> Certificate:
         """Check the two ways, every body's balance, section forces from the other end, influence lines by loads."""
         checks = structure_checks(self.found, self.sections.found, self.influence)
-        return Certificate((*checks, *other_parameters(self.found.system.scope)))
+        system = self.found.system
+        return Certificate((*checks, *other_parameters(system.scope), *other_masses(system.motion)))
 
     @cached_property
     def derivation(self) -> Document:
