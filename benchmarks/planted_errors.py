@@ -280,13 +280,13 @@ def _right(found: Any, right: Any, formula: bool) -> bool:
     return found == right or (formula and (found is None or _equal_formulas(found, right)))
 
 
-def _equal_formulas(one: str | None, other: str | None) -> bool:
+def _equal_formulas(one: object, other: object) -> bool:
     """Whether two texts are worth the same at three states, every name a number between 1/2 and 1, with 60 digits."""
     import random
 
     import mpmath
 
-    if one is None or other is None:
+    if not (isinstance(one, str) and isinstance(other, str)):
         return False
     texts = [re.sub("'+", lambda m: "_" * len(m[0]), x).replace("^", "**") for x in (one, other)]
     texts = [re.sub(r"(?<![\w.])(\d+)(?![\w.])", r"mpf(\1)", x) for x in texts]

@@ -63,6 +63,7 @@ def certify(
         *trials.threads(),
         *trials.kept_ties(),
         *trials.elements(),
+        *trials.energies(),
         *trials.balance(),
     ]
     checks += [] if printed is None else trials.printed(printed)

@@ -107,6 +107,15 @@ def told(document: Document) -> list[str]:
     return [check.status for check in certificate.checks if check != other]
 
 
+@pytest.mark.parametrize("letter", ["T", "V"])
+def test_an_energy_with_a_constant_part_is_a_contradiction(letter: str):
+    """T = sum of (m v.v + w.I w)/2, V = - sum of f.r: no derivative, and so no equation of motion, knows a constant."""
+    graph = equations().graph
+    assert certify(graph)
+    found = certify(replace(graph, **{letter: getattr(graph, letter) + 1})).checks
+    assert [check.name for check in found if check.status == "fails"] == ["T and V are the energies of the bodies"]
+
+
 @pytest.mark.parametrize(("verb", "name"), [("derive", "cart_pole"), *VERBS[1:5]])
 def test_numbers_of_other_parameters_are_a_contradiction(verb: str, name: str, monkeypatch: pytest.MonkeyPatch):
     """What is proven at values that are not the file's is proven of another system."""

@@ -24,6 +24,7 @@ from eomgen.mechanics.reactions.reactions import reactions_of
 from eomgen.proof.check import Check, checked, unchecked
 from eomgen.proof.contact_geometry import apart, meetings_of
 from eomgen.proof.elements import elements_of, undeclared
+from eomgen.proof.energies import other_energies
 from eomgen.proof.free_bodies import Demand, demand_of
 from eomgen.proof.in_numbers import FINER_STEP, STEP, way_through
 from eomgen.proof.joint_places import misplaced
@@ -310,6 +311,12 @@ class Trials:
         if elements_of(self.equations.system) or self.equations.system.loads.efforts:
             name = "springs, dampers and drives act as they are declared, equal and opposite"
             yield self._at_states(name, "50 digits", lambda state: undeclared(self.equations.system, state))
+
+    def energies(self) -> Iterable[Check]:
+        """A contradiction where T or V has a part too much or too little, a constant even; else nothing."""
+        name = "T and V are the energies of the bodies"
+        found = self._at_states(name, "50 digits", lambda state: other_energies(self.equations, state))
+        return (found,) if found.status == "fails" else ()
 
     def printed(self, printed: Printed) -> Iterable[Check]:
         """Formulas as they are printed, read back; none where nothing can be read."""
