@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import textwrap
 from collections.abc import Iterator
+from functools import lru_cache
 from typing import TypeGuard
 
 from eomgen.documents.document import Document
@@ -34,6 +35,7 @@ from eomgen.symbolic.print.text import to_text
 name = "text"
 
 RELATIONS = {"less": "<", "less_equal": "<="}
+KEPT = 4096  # texts of formulas that may be asked again
 WIDTH = 100
 INDENT = "    "
 MEANING = 20  # characters that a column of meanings has at least
@@ -124,7 +126,13 @@ def side_text(side: Side) -> str:
         return f"({side.operations} operations, not printed)"
     if isinstance(side, Law):
         return side.text
-    return "; ".join(cases_text(side)) if is_piecewise(side) else to_text(without_cases((side,))[0])
+    return "; ".join(cases_text(side)) if is_piecewise(side) else _formula_text(side)
+
+
+@lru_cache(maxsize=KEPT, typed=True)
+def _formula_text(x: Scalar) -> str:
+    """Asked when it is printed, and when that is read back."""
+    return to_text(without_cases((x,))[0])
 
 
 def is_piecewise(side: Side) -> TypeGuard[Node]:
