@@ -73,7 +73,7 @@ def _without_number(x: Scalar, positive: Collection[Node]) -> Scalar:
     """A positive multiple of x, its coefficients whole numbers without a common factor."""
     if type(x) is not Node:
         return x
-    expansion, terms = Expansion(x.graph, Work.ANSWER, positive), dict[Key, Number]()
+    expansion, terms = Expansion(x.graph, Work.VALUE, positive), dict[Key, Number]()
     try:
         terms = expansion.of(x)
         return written_shortest(expansion, terms_scaled(terms, 1 / content(terms)))
