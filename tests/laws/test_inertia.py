@@ -529,7 +529,7 @@ def test_what_is_not_known_of_a_body_of_the_plane_is_not_answered():
 
 
 def test_the_verb_draws_a_plate_and_writes_it_for_machines(tmp_path):
-    """--plot makes a picture of the plane; JSON has every result by name; in space nothing is drawn."""
+    """--plot makes a picture; JSON has every result by name; without values nothing is drawn."""
     from eomgen.verbs.outcome import shown
 
     picture = tmp_path / "plate.png"
@@ -537,7 +537,7 @@ def test_the_verb_draws_a_plate_and_writes_it_for_machines(tmp_path):
     assert picture.read_bytes().startswith(b"\x89PNG")
     assert found["results"]["m(plate)"] == {"exact": "87", "value": 87.0, "unit": "kg"}
     assert found["principal_axes"].keys() == {"plate", "O"}
-    with pytest.raises(eomgen.RunFailed):
+    with pytest.raises(eomgen.MissingValues, match="'m', 'a'"):
         shown(eomgen.inertia(eomgen.Model(**CUBE)), plot=str(picture))
 
 
