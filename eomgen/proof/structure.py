@@ -11,7 +11,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
 from functools import cached_property
-from itertools import combinations
+from itertools import combinations, pairwise
 from random import Random
 from typing import Any
 
@@ -30,6 +30,7 @@ from eomgen.mechanics.structures.blocks import RigidBlock, blocks_of, members_of
 from eomgen.mechanics.structures.velocity_plan import VelocityPlan
 from eomgen.proof.check import Check, attempted, checked, first_wrong
 from eomgen.records import dataclass
+from eomgen.symbolic.expression.derivative import symbols_of
 from eomgen.symbolic.expression.expressions import single_call
 from eomgen.symbolic.expression.graph import Node, Scalar
 from eomgen.symbolic.expression.spatial import ZERO, Vector
@@ -38,6 +39,7 @@ from eomgen.symbolic.numeric.tolerances import COMPUTED, RANK
 
 IN_NUMBERS = "floating point"
 MOST_PLANS = 4  # released structures whose blocks are looked at, evenly spread
+PARTS = tuple((2 * k + 1) / 16 for k in range(8))  # of a piece, at which the sign of V is looked at
 QUARTERS = (0.25, 0.75)  # of a straight piece, at which straight lines are compared
 
 
@@ -148,19 +150,42 @@ class _Proof:
         return float(evaluate((piece.value(kind, section),), {**self.values, section: x}, FLOAT)[0])
 
     def wrong_extremes(self, forces: SectionForces) -> str:
-        """V = 0 there, and the M that is stated, both from the other end."""
-        along = self.along(forces)
-        for extreme in forces.extremes:
-            x, M = self.numbers((extreme.x, extreme.M))
+        """V = 0 there, and the M that is stated, both from the other end; where V changes its sign there is one."""
+        stated = [self.numbers((extreme.x, extreme.M)) for extreme in forces.extremes]
+        for x, M in stated:
             mine = [p for p in forces.pieces if self.one(p.start) < x < self.one(p.end)]
             if not mine:
                 return f"x = {x:.6g} lies in no part of '{forces.axis.body}'"
-            leg = mine[0].leg
-            t, n = self.numbers(leg.along), self.numbers(leg.left)
-            R, T, size, moment = along.behind(x, self.numbers(leg.start) + (x - self.one(leg.x)) * t)
-            if abs(R @ n) > COMPUTED * size or abs(T - M) > COMPUTED * moment:
-                return f"at x = {x:.6g} of '{forces.axis.body}' V = {-R @ n:.6g} and M = {T:.10g} for {M:.10g}"
+            V, T, size, moment = self._behind(forces, mine[0], x)
+            if abs(V) > COMPUTED * size or abs(T - M) > COMPUTED * moment:
+                return f"at x = {x:.6g} of '{forces.axis.body}' V = {V:.6g} and M = {T:.10g} for {M:.10g}"
+        for a, b in self._turns(forces):
+            if not any(a < x < b for x, _ in stated):
+                return f"M has an extreme between x = {a:.6g} and {b:.6g} of '{forces.axis.body}', which is not told"
         return ""
+
+    def _behind(self, forces: SectionForces, piece: SectionPiece, x: float) -> tuple[float, float, float, float]:
+        """(V, M, and what is large for each) at a place of a piece, from the other end."""
+        leg = piece.leg
+        t, n = self.numbers(leg.along), self.numbers(leg.left)
+        R, T, size, moment = self.along(forces).behind(x, self.numbers(leg.start) + (x - self.one(leg.x)) * t)
+        return float(-R @ n), T, size, moment
+
+    def _turns(self, forces: SectionForces) -> Iterator[tuple[float, float]]:
+        """(a, b) between which V surely changes its sign within a piece, of pieces whose place is known."""
+        sizes = forces.sizes
+        for piece in forces.pieces:
+            if not set(symbols_of((piece.start, piece.end, *piece.V))) <= sizes.values.keys() | sizes.at.keys():
+                continue
+            start, end = self.one(piece.start), self.one(piece.end)
+            places = [start + part * (end - start) for part in PARTS]
+            signs = [
+                (x, V)
+                for x in places
+                for V, _, size, _ in (self._behind(forces, piece, x),)
+                if abs(V) > COMPUTED * size
+            ]
+            yield from ((a, b) for (a, V), (b, W) in pairwise(signs) if V * W < 0)
 
     def wrong_slopes(self, forces: SectionForces) -> str:
         """Of the polynomials, whose derivatives have coefficients k c_k."""

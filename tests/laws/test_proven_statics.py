@@ -59,6 +59,13 @@ def test_wrong_section_forces_are_seen(monkeypatch: pytest.MonkeyPatch, series: 
     assert what in wrong_checks(BEAM)
 
 
+@pytest.mark.parametrize("name", ["gerber_beam", "three_hinged_arch", "seeds/ch21_p2"])
+def test_an_extreme_that_is_not_told_is_seen(monkeypatch: pytest.MonkeyPatch, name: str) -> None:
+    """Where V changes its sign within a piece M has an extreme."""
+    monkeypatch.setattr(section_forces, "_roots", lambda *given: [])
+    assert wrong_checks(MODELS / f"{name}.toml") == "where M has an extreme V is 0, within a part"
+
+
 def test_a_wrong_influence_line_is_seen(monkeypatch: pytest.MonkeyPatch) -> None:
     """X(P) = -e . v(P)"""
     right = influence._Travelling._value
