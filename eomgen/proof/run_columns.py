@@ -10,7 +10,7 @@ import numpy as np
 from eomgen.codegen.reactions import determinate
 from eomgen.model.outputs import FUNCTIONS
 from eomgen.proof.at_a_state import NumericState, differing, off_by
-from eomgen.proof.check import Check, Tally
+from eomgen.proof.check import Check, Tally, checked
 from eomgen.proof.emitted_code import WORK
 from eomgen.proof.second_definitions import second_definition
 from eomgen.simulation.result import Phase, Trajectory
@@ -21,7 +21,25 @@ from eomgen.symbolic.expression.traversal import order
 from eomgen.symbolic.numeric.evaluation import NoValue
 from eomgen.symbolic.numeric.tolerances import COMPUTED
 
+ROWS, EXACTLY = "a run has a row at every instant that was asked", "floating point"
 MOST = 4  # phases that are looked at, each in its middle
+
+
+def rows_left_out(run: Trajectory, instants: np.ndarray | None) -> Iterator[Check]:
+    """A contradiction where an instant that was asked, and passed, has no row, or rows do not go on; else nothing.
+
+    Args:
+        instants: that were asked; None: none in particular.
+    """
+    if instants is None or not len(run.t):
+        return
+    end = run.phases[-1].end if run.status == "finished" and run.phases else run.t[-1]
+    passed = instants[instants <= end]
+    missing = passed[~np.isin(passed, run.t)]
+    if len(missing):
+        yield checked(ROWS, f"none at t = {missing[0]:.6g} s", EXACTLY)
+    elif (np.diff(run.t) <= 0).any():
+        yield checked(ROWS, "they do not go on in time", EXACTLY)
 
 
 def _middles(run: Trajectory) -> Iterator[tuple[Phase, int]]:

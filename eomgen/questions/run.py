@@ -20,7 +20,7 @@ from eomgen.model.fields import WrittenEquation
 from eomgen.proof import motion
 from eomgen.proof.check import Certificate, Check, unchecked
 from eomgen.proof.contact_phases import bodies_stand_as_told, changes_follow_impulses, contacts_do_as_told
-from eomgen.proof.run_columns import output_columns_hold, reaction_columns_hold
+from eomgen.proof.run_columns import output_columns_hold, reaction_columns_hold, rows_left_out
 from eomgen.questions.of_a_run import WholeRun
 from eomgen.records import dataclass, with_fields
 from eomgen.simulation.accuracy import Accuracy, accuracy_of, finer
@@ -74,7 +74,8 @@ class RunProof:
             *reaction_columns_hold(found),
             *output_columns_hold(found, formulas_of(self.models.model)),
         )
-        certificate += () if self.whole is None else self.whole.checks()
+        if self.whole is not None:
+            certificate += (*self.whole.checks(), *rows_left_out(found, self.whole.plan.instants))
         return certificate + columns + self._contacts(found)
 
     def _contacts(self, found: Trajectory) -> Iterator[Check]:

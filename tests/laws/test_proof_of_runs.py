@@ -76,6 +76,15 @@ def test_a_single_wrong_row_between_the_steps_is_seen():
     assert STEPS in failing(bent(run, 0, aside))
 
 
+@pytest.mark.parametrize("left_out", [0, 500, 1000])
+def test_a_row_that_is_left_out_is_seen(left_out):
+    """Every instant that was asked has a row: the first, one between, the last."""
+    run = run_of("simple_pendulum")
+    assert len(run.t) == 1001
+    cut = replace(run, t=np.delete(run.t, left_out), x=np.delete(run.x, left_out, axis=0), reactions={}, outputs={})
+    assert "a run has a row at every instant that was asked" in failing(cut)
+
+
 def test_a_damper_that_is_forgotten_in_the_power_is_seen(monkeypatch):
     """E - E0 = integral of Q_nc . u: without Q_nc of the damper nothing accounts for what is lost."""
     model = eomgen.loads(DAMPED)
