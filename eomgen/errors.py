@@ -112,6 +112,10 @@ class ExpressionError(EomgenError):
         super().__init__(what, "", mend)
 
 
+class NumberBeyond(ExpressionError):
+    """A number that the grammar does not take: too many digits, too large."""
+
+
 class UsageError(EomgenError):
     """The command was called wrongly."""
 

@@ -13,7 +13,7 @@ from eomgen.documents.document import Document, quantities_of
 from eomgen.documents.quantity import Quantity
 from eomgen.documents.statements import Equation, Listing, Matrix, Statement, parts_of
 from eomgen.documents.text import cases_text, is_piecewise, side_text
-from eomgen.errors import ExpressionError
+from eomgen.errors import ExpressionError, NumberBeyond
 from eomgen.proof.at_a_state import differing
 from eomgen.proof.check import Certificate, Check, Tally
 from eomgen.symbolic.expression.derivative import symbols_of
@@ -85,6 +85,8 @@ def _misread(x: Node) -> str:
     """What a formula says as it is printed, where that is not what it stands for; ""."""
     try:
         read = [(_read(text, meant), meant) for text, meant in _as_printed(x)]
+    except NumberBeyond as error:
+        raise NoValue(error.what) from error
     except ExpressionError as error:
         return error.what
     return next(filter(None, (_unlike(found, meant) for found, meant in read if found is not meant)), "")
@@ -144,6 +146,8 @@ def _compared(quantities: Mapping[str, Quantity], values: Mapping[str, Any]) -> 
             continue
         try:
             expression = parse(text, references=True, longest=len(text))
+        except NumberBeyond:
+            continue
         except ExpressionError as error:
             yield name, partial(str, f"{text[:SHOWN]}: {error.what}")
             continue

@@ -152,6 +152,7 @@ def _equation(structure: Structure, name: str, combination: Mapping[int, Scalar]
     loads = loads_at_rest(structure)
     works = substituted(tuple(load.work(plan) for load in loads), still)
     parts = [substituted(substituted(load.parts, structure.at), still) for load in loads]
+    plan.numbers([x for x in (*works, *(x for own in parts for x in own)) if type(x) is Node])  # all in one go
     working = [not plan.vanishes((work,), beside=own) for work, own in zip(works, parts, strict=True)]
     terms = tuple(WorkTerm(load, plan.simple(w)) for load, w, does in zip(loads, works, working, strict=True) if does)
     total = sum((term.work for term in terms), start=0)

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Sequence
 from dataclasses import field
-from functools import cache, partial
+from functools import partial
 from itertools import chain
 from typing import Any
 
@@ -172,8 +172,11 @@ def _member(plan: VelocityPlan, member: Member, numbers: Sequence[Any]) -> _Part
 
 
 def _nodes_of(plan: VelocityPlan) -> Callable[[str], NodeNumbers]:
-    """node -> (vx, vy, x, y) with 50 digits"""
-    return cache(lambda node: plan.numbers(_of_node(plan, node)))
+    """node -> (vx, vy, x, y) with 50 digits, of the nodes of moving members, all found in one go"""
+    names = dict.fromkeys(node for _, _, ends in _moving_members(plan) for node in ends)
+    flat = iter(plan.numbers([x for name in names for x in _of_node(plan, name)]))
+    known = {name: tuple(next(flat) for _ in range(4)) for name in names}
+    return known.__getitem__
 
 
 def _numbers_of(one: NodeNumbers, other: NodeNumbers) -> tuple[Any, ...]:

@@ -177,7 +177,8 @@ class VelocityPlan:
     def numbers(self, scalars: Sequence[Scalar]) -> list[Any]:
         """What scalars are worth at these parameters, with 50 digits."""
         new = tuple(dict.fromkeys(x for x in scalars if x not in self.known))
-        self.known.update(zip(new, evaluate(new, self.parameters, fifty_digits()), strict=True))
+        if new:
+            self.known.update(zip(new, evaluate(new, self.parameters, fifty_digits()), strict=True))
         return [self.known[x] for x in scalars]
 
     # -- helpers -------------------------------------------------------------------------------------

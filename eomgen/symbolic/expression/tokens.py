@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import re
 
-from eomgen.errors import ExpressionError
+from eomgen.errors import ExpressionError, NumberBeyond
 from eomgen.records import dataclass
 from eomgen.symbolic.expression.habits import degrees, plainly
 from eomgen.symbolic.expression.rational import Fraction, fraction_of
@@ -122,9 +122,9 @@ def number_in(token: Token) -> int | Fraction:
     if len(mantissa) > MOST_DIGITS or len(exponent) > 6 or abs(int(exponent or 0)) > LARGEST_EXPONENT:
         shown = token.text if len(token.text) < 30 else f"{token.text[:24]}..."
         what = f"the number {shown} has too many digits or too large an exponent"
-        raise ExpressionError(what, token.start, f"at most {LARGEST_EXPONENT} in each", len(token.text))
+        raise NumberBeyond(what, token.start, f"at most {LARGEST_EXPONENT} in each", len(token.text))
     value = fraction_of(f"{mantissa}e{exponent or 0}")
     if value.numerator.bit_length() - value.denominator.bit_length() > LARGEST_SIZE:
         what = f"{token.text[:24]}... is too large for a number"
-        raise ExpressionError(what, token.start, f"at most 1e{LARGEST_EXPONENT}", len(token.text))
+        raise NumberBeyond(what, token.start, f"at most 1e{LARGEST_EXPONENT}", len(token.text))
     return value.numerator if value.denominator == 1 else value
