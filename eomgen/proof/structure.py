@@ -51,6 +51,7 @@ def structure_checks(
     both = [reaction for reaction in found.reactions if reaction.work is not None]
     if both:
         yield checked("virtual work and the balance of the bodies give the same reactions", wrong, "exact")
+    yield from _left_out(found)
     proof = _Proof(found)
     name = "every body, every pair and the whole are in balance"
     yield attempted(name, IN_NUMBERS, lambda: imbalance(found.balance, proof.state, Random(7)))
@@ -67,6 +68,14 @@ def structure_checks(
     if influence is not None:
         wrong = proof.wrong_influence(influence)
         yield checked("the influence line is what unit loads give at places of it", wrong, IN_NUMBERS)
+
+
+def _left_out(found: StaticReactions) -> Iterator[Check]:
+    """A contradiction where something that holds the bodies is in none of the reactions that are told; else nothing."""
+    told = {j for reaction in found.reactions if reaction.named for j in reaction.named.combination}
+    missing = [c.name for j, c in enumerate(found.structure.components) if j not in told]
+    if missing:
+        yield checked("every reaction is told", ", ".join(missing), "exact")
 
 
 @dataclass(frozen=True)

@@ -59,6 +59,14 @@ def test_wrong_section_forces_are_seen(monkeypatch: pytest.MonkeyPatch, series: 
     assert what in wrong_checks(BEAM)
 
 
+@pytest.mark.parametrize("name", ["gerber_beam", "shear_legs", "a_frame"])
+def test_a_reaction_that_is_not_told_is_seen(monkeypatch: pytest.MonkeyPatch, name: str) -> None:
+    """Each component of what holds the bodies is in one of the reactions."""
+    right = two_ways.asked_reactions
+    monkeypatch.setattr(two_ways, "asked_reactions", lambda structure: dict(list(right(structure).items())[1:]))
+    assert "every reaction is told" in wrong_checks(MODELS / f"{name}.toml")
+
+
 @pytest.mark.parametrize("name", ["gerber_beam", "three_hinged_arch", "seeds/ch21_p2"])
 def test_an_extreme_that_is_not_told_is_seen(monkeypatch: pytest.MonkeyPatch, name: str) -> None:
     """Where V changes its sign within a piece M has an extreme."""
