@@ -88,6 +88,7 @@ BESIDE = {
     "export": ["-o", "OUT.urdf"],
     "identify": ["--data", "OUT.csv"],
     "play": ["-o", "OUT.html"],
+    "reactions": ["--plot", "OUT.svg"],
     "report": ["-o", "OUT.html", "--without", "figure,plots,motion,downloads"],
     "simulate": ["--target", "numpy"],
     "sweep": ["--over", "g=9,10", "--ask", "max(theta)"],
