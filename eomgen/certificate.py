@@ -14,8 +14,7 @@ from eomgen.mechanics.balance.friction import has_friction
 from eomgen.mechanics.equations.equations_of_motion import EquationsOfMotion
 from eomgen.proof import identities
 from eomgen.proof.check import Certificate
-from eomgen.proof.masses import other_masses
-from eomgen.proof.parameters import other_parameters
+from eomgen.proof.parameters import other_data
 from eomgen.proof.printed import Printed
 from eomgen.proof.trials import Trials
 from eomgen.symbolic.numeric.gc_pause import growing
@@ -69,5 +68,4 @@ def certify(
     checks += [] if printed is None else trials.printed(printed)
     if rhs is not None:
         checks.append(trials.code(rhs))
-    system = equations.system
-    return Certificate((*checks, *other_parameters(system.scope), *other_masses(system.motion)))
+    return Certificate((*checks, *other_data(equations.system.motion)))

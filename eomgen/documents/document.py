@@ -114,10 +114,8 @@ def quantities_of(entries: Mapping[str, Any]) -> dict[str, Quantity]:
 def document_of(model: Model, method: str, steps: tuple[Step, ...]) -> Document:
     """The document of a model, under its name, its remark and its source."""
     about, source = model.about or "", model.source or ""
-    values = exact_parameters(model)
-    return Document(
-        model.name, about, source, model.space, method, steps, notation=notation_of(model), parameters=values
-    )
+    notation, values = notation_of(model), exact_parameters(model)
+    return Document(model.name, about, source, model.space, method, steps, notation=notation, parameters=values)
 
 
 def with_symbols(document: Document, symbols: Mapping[str, Symbol]) -> Document:
@@ -135,10 +133,9 @@ def plain_document(
 ) -> Document:
     """A document of one section without a head: what is no derivation."""
     steps = (Step("", "", statements),)
-    document = document_of(model, "", steps)
-    return replace(
-        document, about="", source="", space="", entries=entries, failed=failed, notes=notes, answer_code=answer_code
-    )
+    document = Document(model.name, steps=steps, entries=entries, notation=notation_of(model))
+    values = exact_parameters(model)
+    return replace(document, failed=failed, notes=notes, parameters=values, answer_code=answer_code)
 
 
 def lines_document(entries: Callable[[], Mapping[str, Any]], *lines: str) -> Document:

@@ -45,7 +45,7 @@ def proven_for_machines(document: Document) -> Document:
     if document.certificate is None:
         return document
     entries, tally = document.entries(), Tally("texts for machines, read back, give their numbers", HOW)
-    for name, compared in _compared(quantities_of(entries), document.parameters):
+    for name, compared in _compared(quantities_of(entries).items(), document.parameters):
         tally.add(name, compared)
     certificate = _joined(document.certificate, tally.checks())
     found = {**entries, "certificate": certificate.as_dict()}
@@ -63,8 +63,8 @@ def _printed_as_found(document: Document) -> Iterator[Check]:
     statements = [statement for step in document.steps for statement in step.statements]
     for x in dict.fromkeys(_formulas(document.equations, statements)):
         tally.add(side_text(x)[:SHOWN], partial(_misread, x))
-    rows = [row for listing in statements if isinstance(listing, Listing) for row in listing.rows]
-    for name, compared in _compared({row.name: row.quantity for row in rows}, document.parameters):
+    rows = (row for listing in statements if isinstance(listing, Listing) for row in listing.rows)
+    for name, compared in _compared(((row.name, row.quantity) for row in rows), document.parameters):
         tally.add(name, compared)
     return tally.checks()
 
@@ -138,9 +138,11 @@ def _unlike(found: Scalar, meant: Scalar) -> str:
     raise NoValue("at none of the states tried it has a value")
 
 
-def _compared(quantities: Mapping[str, Quantity], values: Mapping[str, Any]) -> Iterator[tuple[str, Callable[[], str]]]:
+def _compared(
+    quantities: Iterable[tuple[str, Quantity]], values: Mapping[str, Any]
+) -> Iterator[tuple[str, Callable[[], str]]]:
     """(name, what differs between its text and its number) of those that have both, of parameters with values."""
-    for name, quantity in quantities.items():
+    for name, quantity in quantities:
         text = quantity.exact
         if text is None:
             continue

@@ -1,15 +1,23 @@
-"""Scope -> whether parameters are worth what the file says, by the arithmetic of its reader."""
+"""Motion -> whether what all rests on is of the file: parameters by its reader's arithmetic, shapes by filling."""
 
 from __future__ import annotations
 
 import math
 from collections.abc import Iterator
 
+from eomgen.mechanics.bodies.kinematics import Motion
 from eomgen.mechanics.bodies.scope import Scope
 from eomgen.mechanics.initial_state.values_at_rest import values_of_parameters
 from eomgen.model.values import exact_parameters
 from eomgen.proof.check import Check, checked
+from eomgen.proof.masses import other_masses
 from eomgen.symbolic.numeric.tolerances import COMPUTED
+
+
+def other_data(motion: Motion) -> Iterator[Check]:
+    """A contradiction where parameters or bodies' masses are not those of the file; else nothing."""
+    yield from other_parameters(motion.scope)
+    yield from other_masses(motion)
 
 
 def other_parameters(scope: Scope) -> Iterator[Check]:

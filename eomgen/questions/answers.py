@@ -17,6 +17,7 @@ from eomgen.documents.document import Document, plain_document
 from eomgen.documents.linearize.result import Linearization, linearize
 from eomgen.documents.markdown import listing_markdown
 from eomgen.documents.quantity import Quantity
+from eomgen.documents.reading import without_cases
 from eomgen.documents.result import Result
 from eomgen.documents.statements import Found, Listing
 from eomgen.documents.statics.result import why_not_at_rest
@@ -322,7 +323,8 @@ class _Solver:
         """The text of an exact answer; None where nobody would read it."""
         if text_size(scalar) > LONGEST_RESULT:
             return None
-        return readable_text(book_form(scalar, Work.FORMULA, self.phase.system.scope.positive))
+        form = book_form(scalar, Work.FORMULA, self.phase.system.scope.positive)
+        return readable_text(without_cases((form,))[0])
 
     def _at_start(self, quantity: Scalar, output: Output) -> float:
         """The value at the start in the output's unit; what it does not depend on may be missing.

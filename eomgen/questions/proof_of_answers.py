@@ -30,8 +30,7 @@ from eomgen.model.parts import Model, Output
 from eomgen.proof.at_a_state import NumericState, differing, moving_states, off_by, place_of, read_back
 from eomgen.proof.check import Certificate, Check, Tally
 from eomgen.proof.emitted_code import PhaseMotion, TriedState
-from eomgen.proof.masses import other_masses
-from eomgen.proof.parameters import other_parameters
+from eomgen.proof.parameters import other_data
 from eomgen.proof.second_definitions import second_definition
 from eomgen.questions.at_instant import StateAtInstant
 from eomgen.questions.in_phase import PhaseEquations
@@ -97,7 +96,7 @@ class _Proof:
         if phase.system.symbols.u and self.asked:
             with suppress(ModelError, DerivationError):  # what moves no mass, or forces that are sought: at rest alone
                 return certify(phase.equations).checks
-        return (*other_parameters(phase.system.scope), *other_masses(phase.system.motion))
+        return tuple(other_data(phase.system.motion))
 
     # -- what is printed ---------------------------------------------------------------------------
 

@@ -31,7 +31,7 @@ SIDES_OF_NAMES = (
     (-0.6, 0.6, 0.7),
     (0.6, -0.6, -0.7),
     (-0.6, -0.6, -0.7),
-)  # of the first, the second, ...
+)  # the first, the second, ...
 QUANTILE = 0.98  # of all arrows of a kind are no longer than that
 SOLID = frozenset(("body", "inertia", "member", "string", "spring", "damper", "joint", "support", "center"))
 """Roles that make up the extent of a picture."""

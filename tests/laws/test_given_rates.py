@@ -99,3 +99,28 @@ def test_what_holds_for_one_value_of_a_parameter_alone_is_not_printed(W: int) ->
     assert run.certify().ok
     gained = 0.1 * (1 - (1 - math.exp(-W)) / W) / W if W else 0.1 / 2
     assert run["psi"][-1] - run["psi"][0] == pytest.approx(W + gained, rel=1e-6)
+
+
+@pytest.mark.parametrize(("k", "V"), [(0.0, 3 * 1.5), (0.5, -3 * math.exp(-0.5 * 1.5) / 0.5)])
+def test_a_potential_has_its_number_where_a_parameter_is_0_too(k: float, V: float) -> None:
+    """Of the pull F exp(-k r) it is F r at k = 0, and -F exp(-k r)/k else; the second alone is printed."""
+    found = eomgen.solve(eomgen.loads(PULLED.replace("k = 0", f"k = {k}")))
+    assert found["V"].value == pytest.approx(V, rel=1e-12)
+    assert found["V"].exact == "-F*exp(-k*abs(x))/k"
+    assert found.certify().ok
+
+
+PULLED = """
+eomgen = 1
+space = "plane"
+parameters = { m = 2, k = 0, F = 3 }
+coordinates = { x = 1.5 }
+points = { O = [0, 0] }
+[bodies.b]
+shape = { kind = "particle", mass = "m" }
+joint = { kind = "prismatic", axis = [1, 0], displacement = "x" }
+[forces]
+pull = { kind = "between", points = ["O", "b.center"], pull = "F*exp(-k*r)" }
+[outputs]
+V = "potential_energy(pull)"
+"""

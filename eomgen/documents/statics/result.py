@@ -36,8 +36,7 @@ from eomgen.model.parts import Model
 from eomgen.model.reader import ModelOrPath, model_at
 from eomgen.model.replaced import Values
 from eomgen.proof.check import Certificate
-from eomgen.proof.masses import other_masses
-from eomgen.proof.parameters import other_parameters
+from eomgen.proof.parameters import other_data
 from eomgen.proof.structure import structure_checks
 from eomgen.records import dataclass
 from eomgen.symbolic.expression.graph import Scalar
@@ -123,8 +122,7 @@ class Statics(Result):
     def certify(self) -> Certificate:
         """Check the two ways, every body's balance, section forces from the other end, influence lines by loads."""
         checks = structure_checks(self.found, self.sections.found, self.influence)
-        system = self.found.system
-        return Certificate((*checks, *other_parameters(system.scope), *other_masses(system.motion)))
+        return Certificate((*checks, *other_data(self.found.system.motion)))
 
     @cached_property
     def derivation(self) -> Document:

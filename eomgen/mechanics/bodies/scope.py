@@ -147,7 +147,7 @@ def scope_of(model: Model, *, with_laws: bool = False) -> Scope:
         DerivationError: a given acceleration whose integral has no closed form.
     """
     model = in_parts(model)
-    zero = {name for name, value in exact_parameters(model).items() if value == 0}
+    zero = parameters_of_zero(model)
     graph = Graph()
     t = graph.symbol("t")
     parameters = {name: graph.constant(name) for name in model.parameters}
@@ -230,8 +230,8 @@ def _speed_by_samples(acceleration: Sampled, start: Scalar, t: Node) -> Scalar:
     return start + through_samples(change.named(f"integral({acceleration.name})"), t)
 
 
-def integral_from_zero(f: Scalar, t: Node, where: str, zero: Container[str] = ()) -> Scalar:
-    """The integral of f from 0 to t in closed form; parameters in `zero` are 0.
+def integral_from_zero(f: Scalar, t: Node, where: str, zero: Container[str] | None = None) -> Scalar:
+    """The integral of f from 0 to t in closed form; zero: as of `primitive`.
 
     Raises:
         DerivationError: none was found.
@@ -246,13 +246,20 @@ def integral_from_zero(f: Scalar, t: Node, where: str, zero: Container[str] = ()
     return F - substituted((F,), {t: 0})[0]
 
 
+def parameters_of_zero(model: Model) -> frozenset[str]:
+    """The parameters whose value is 0."""
+    return frozenset(name for name, value in exact_parameters(model).items() if value == 0)
+
+
 LONGEST_INTEGRAND = 300  # operations: rules are sought for every part of it, and for products of parts
 
 
-def primitive(f: Scalar, x: Node, zero: Container[str] = ()) -> Scalar | None:
+def primitive(f: Scalar, x: Node, zero: Container[str] | None = None) -> Scalar | None:
     """A function of x whose derivative is f, or None where no closed form was found.
 
-    That another form holds at k = 0, as of exp(k x)/k, is part of it where a parameter in `zero` is 0.
+    Args:
+        zero: the parameters that are 0. Where none of them stands in it, a form that holds at k = 0 alone, as of
+            exp(k x)/k, is left out; None: it is always part of it.
     """
     if not depends_on(f, (x,)):
         return f * x
@@ -267,7 +274,7 @@ def primitive(f: Scalar, x: Node, zero: Container[str] = ()) -> Scalar | None:
     found = manualintegrate(expression, variable)
     if found.has(Integral):
         return None
-    if not any(symbol.name in zero for symbol in found.free_symbols):
+    if zero is not None and not any(symbol.name in zero for symbol in found.free_symbols):
         found = found.subs({**dict.fromkeys(found.atoms(Eq), false), **dict.fromkeys(found.atoms(Ne), true)})
     lookup = {symbol.name: symbol for symbol in symbols_of((f, x))}
     try:

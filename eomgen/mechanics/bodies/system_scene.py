@@ -8,7 +8,7 @@ from typing import Any
 from eomgen.errors import DerivationError, ModelError
 from eomgen.mechanics.bodies.inertia import mass_properties
 from eomgen.mechanics.bodies.kinematics import GROUND, Motion, ground_place
-from eomgen.mechanics.bodies.scope import Scope, primitive
+from eomgen.mechanics.bodies.scope import Scope, parameters_of_zero, primitive
 from eomgen.model.forces.load import BodyPoint
 from eomgen.model.quaternions import quaternions_of
 from eomgen.model.values import exact_parameters, no_orientation
@@ -47,7 +47,7 @@ class SystemScene:
         if any(other != name and other not in (*scope.symbols.parameters, "pi") for other in expression.names):
             return None
         variable = scope.graph.symbol(f"({name})")  # no name of a model has parentheses
-        F = primitive(self.value_at(expression, {name: variable}), variable)
+        F = primitive(self.value_at(expression, {name: variable}), variable, parameters_of_zero(scope.model))
         return None if F is None else substituted((F,), {variable: at})[0]
 
     def vector(self, expressions: tuple[Expression, ...] | None) -> Vector:

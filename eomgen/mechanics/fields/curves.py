@@ -55,8 +55,7 @@ class Constants:
 
     def of(self, x: Scalar) -> Scalar | None:
         """The constant as a function of the parameters; None where it has no closed form."""
-        symbols = self.possible.system.symbols
-        moving = (symbols.t, *symbols.q, *symbols.u, *symbols.a, *self.possible.jerks)
+        moving = self._moving
         x = simplest(x, Work.VALUE, self.positive)
         if not depends_on(x, moving):
             return x
@@ -76,8 +75,7 @@ class Constants:
 
     def length(self, x: Vector) -> Scalar | None:
         """The same of the length of a vector that may turn: of its components where they are short."""
-        symbols = self.possible.system.symbols
-        moving = (symbols.t, *symbols.q, *symbols.u, *symbols.a, *self.possible.jerks)
+        moving = self._moving
         for state in self._states(moving):
             try:
                 there = vector_of([simplest(each, Work.VALUE, self.positive) for each in substituted(x, state)])
@@ -96,6 +94,11 @@ class Constants:
             if not any(depends_on(each, moving) for each in (x, y, z)):
                 return (x, y, z)
         return None
+
+    @property
+    def _moving(self) -> tuple[Node, ...]:
+        symbols = self.possible.system.symbols
+        return (symbols.t, *symbols.q, *symbols.u, *symbols.a, *self.possible.jerks)
 
     def _states(self, moving: tuple[Node, ...]) -> Iterator[dict[Node, Scalar]]:
         """Exact states: those with the coordinates of the start, and where nothing ties them any others."""

@@ -20,9 +20,7 @@ from eomgen.symbolic.numeric.evaluation import evaluate, fifty_digits, floats_of
 from eomgen.symbolic.numeric.work import Work
 from eomgen.symbolic.solve.solving import vanishes
 
-MOST_TERMS = (
-    60  # of an entry that is multiplied out however short it came: more fill more than the lines of one formula
-)
+MOST_TERMS = 60  # of an entry that is multiplied out however short it came: more fill more than a formula's lines
 MatrixEntry = Any  # an exact scalar, or a float
 Entries = list[list[MatrixEntry]]
 
