@@ -140,7 +140,10 @@ def simulate_command(
 )
 @click.option("--seed", type=click.IntRange(min=0), default=0, show_default=True, help="Of all chance in the sweep.")
 @click.option(
-    "--ask", multiple=True, metavar="EXPR", help='An output, "max(reaction_x(A))", "x at y = 0", "frequency(1)".'
+    "--ask",
+    multiple=True,
+    metavar="EXPR",
+    help='An output, as "max(reaction_x(A))", "x at y = 0", "frequency(1)"; of none all [outputs].',
 )
 @click.option("--critical", default="", metavar="EXPR", help="Seek where it changes its sign along the first range.")
 @TIME

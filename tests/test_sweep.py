@@ -449,13 +449,34 @@ def test_names_that_sqlite_takes_for_one_are_two_columns(spring, tmp_path):
     assert found["m (asked)"].tolist() == [1, 2] and found["M"].tolist() == [3, 3]
 
 
+@pytest.mark.slow
+def test_of_nothing_all_outputs_are_asked_and_the_ledger_is_one_file(spring, tmp_path):
+    """No --ask: the [outputs] of the model, in SI as ever. What sqlite keeps beside a ledger is gone at the end."""
+    found = eomgen.sweep(spring, over={"k": [40, 50]}, time=2, out=tmp_path / "out")
+    assert found.columns[4:] == ("k", "amplitude") and found["amplitude"] == pytest.approx([0.1, 0.1])
+    assert {x.name for x in (tmp_path / "out").iterdir()} >= {"ledger.sqlite", "table.csv", "plan.json"}
+    assert not list((tmp_path / "out").glob("ledger.sqlite-*"))
+    model = eomgen.loads(SPRING.partition("[outputs]")[0])
+    with pytest.raises(UsageError, match="nothing is asked of the runs"):
+        eomgen.sweep(model, over={"k": [40, 50]}, time=2)
+
+
+@pytest.mark.slow
+def test_what_is_asked_may_hold_outputs_by_name():
+    """An output of the state stands for its formula; other things of that name stay what they are."""
+    text = SPRING + "pull = 'k*x'\nmass = 'k*x/m'\n"
+    asked = ["max(pull-x*k/2)", "max(k*x - x*k/2)", "max(pull + k*x(mass.center))", "max(2*k*x)"]
+    found = eomgen.sweep(eomgen.loads(text), over={"k": [40.0]}, ask=asked, time=2)
+    values = [found[name][0] for name in asked]
+    assert values[0] == values[1] and values[2] == values[3]
+
+
 @pytest.mark.parametrize(
     ("words", "message"),
     [
         ([], "nothing changes from run to run"),
         (["--over", "q=1,2", "--ask", "k"], "no parameter, coordinate, rate or speed 'q'"),
         (["--over", "k=1:2", "--ask", "k"], "is no range"),
-        (["--over", "k=1,2"], "nothing is asked"),
         (["--over", "k=1,2", "--over", "k=3", "--ask", "k"], "one name twice"),
         (["--over", "k=1,2", "--random", "k=uniform(0, 1)", "--ask", "k"], "'k' is set twice"),
         (["--random", "k=gauss(0, 1)", "--ask", "k"], "no distribution 'gauss'"),

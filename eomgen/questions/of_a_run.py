@@ -7,6 +7,7 @@ integral are those of the motion and not of its samples.
 from __future__ import annotations
 
 import math
+import re
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import replace
 from functools import cached_property, partial
@@ -363,6 +364,8 @@ def asked_typed(model: Model, text: str) -> tuple[str, tuple[Taken, ...]]:
 def asked_of(model: Model, text: str) -> Output:
     """The output that a text asks: an output's name, a formula, or "FORMULA at EQUATION" with ", event 2" or "every".
 
+    In a formula the name of an output without an instant stands for its formula.
+
     Raises:
         UsageError: it cannot be read, or names what the model does not have.
     """
@@ -371,7 +374,7 @@ def asked_of(model: Model, text: str) -> Output:
     formula, at, condition = text.partition(" at ")
     condition, comma, event = condition.partition(", event")
     try:
-        output = Output(value=parse(formula.strip(), references=True))
+        output = Output(value=parse(_in_full(model, formula.strip()), references=True))
         if at:
             when: Any = AtRest() if condition.strip() == AtRest.text else equation_typed(model, condition.strip())[0]
             output = replace(output, at=when)
@@ -385,3 +388,18 @@ def asked_of(model: Model, text: str) -> Output:
     except ModelError as error:
         raise UsageError(f"'{text}': {error.problems[0].what}", mend=error.problems[0].mend) from error
     return output
+
+
+def _in_full(model: Model, formula: str) -> str:
+    """The formula, names of outputs that are formulas of the state replaced by these."""
+    tables = [*model.trusses.values(), model]
+    others = {
+        name
+        for part in tables
+        for what, x in vars(part).items()
+        if isinstance(x, Table) and what != "outputs"
+        for name in x
+    }
+    plain = {name: f"({output.value})" for name, output in model.outputs.items() if output.at is None}
+    names = "|".join(map(re.escape, plain.keys() - others))
+    return re.sub(rf"(?<![\w.])({names})(?![\w.'(])", lambda found: plain[found[0]], formula) if names else formula

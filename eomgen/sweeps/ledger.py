@@ -8,6 +8,7 @@ from __future__ import annotations
 import math
 import sqlite3
 from collections.abc import Iterable, Iterator, Sequence
+from contextlib import suppress
 from pathlib import Path
 
 from eomgen.errors import UsageError, WriteFailed
@@ -97,6 +98,11 @@ class SweepLedger:
     def critical(self) -> list[SampleRow]:
         """The critical values that were found."""
         return list(self.connection.execute("SELECT * FROM critical ORDER BY number"))
+
+    def settle(self) -> None:
+        """All that is done stands in the one file; what is beside it while rows are added is gone."""
+        with suppress(sqlite3.OperationalError):  # somebody else reads it: whoever is the last does it
+            self.connection.execute("PRAGMA journal_mode=DELETE")
 
     def close(self) -> None:
         """No more rows."""

@@ -190,7 +190,8 @@ def sweep(
         random: distributions: "normal(0, 0.1)", "uniform(1, 2)", "loguniform", "lognormal", "triangular".
         runs: how many are drawn (at each point of the grid).
         design: "random", "sobol" or "lhs" (Latin hypercube).
-        ask: what is asked of each run: outputs by name, "max(reaction_x(A))", "theta' at theta = 0", "frequency(1)".
+        ask: what is asked of each run: outputs by name, "max(reaction_x(A))", "theta' at theta = 0", "frequency(1)";
+            of nothing, and without `critical`, all [outputs].
         critical: an expression whose changes of sign are sought along what is first in `over`.
         workers: processes here.
         executor: anything with `submit`, instead of them: of dask.distributed, loky, mpi4py.futures.
@@ -271,9 +272,11 @@ def planned(model: Model, *, runs: int | None, **fields: Any) -> SweepPlan:
     if fields["critical"] and fields["random"] and fields["design"] == "random":
         what = "neighbours of the grid have other draws: nothing but the first range may change where a sign is sought"
         raise UsageError(what, mend="--design sobol or lhs, which draw the same at every point")
+    if not fields["ask"] and not fields["critical"]:
+        fields["ask"] = tuple(name for name, output in model.outputs.items() if output.event != "every")
     plan = SweepPlan(draws=draws, **fields)
     if not plan.asked:
-        raise UsageError("nothing is asked of the runs", mend='--ask "max(theta)"')
+        raise UsageError("nothing is asked of the runs", mend='--ask "max(theta)", or give the model [outputs]')
     how = fields["how"]
     if not how.time > 0:
         raise UsageError(f"the time {how.time:g} s makes no sense", mend="give one above 0")
@@ -320,6 +323,7 @@ def swept(plan: SweepPlan, *, workers: int = 1, executor: Any = None, out: str |
         pool.close()
         if folder is not None:
             _write_tables(found, folder)
+            ledger.settle()
     return found
 
 
