@@ -252,3 +252,57 @@ def test_the_momentum_changes_by_the_generalized_force():
         node = next(n for n in motion.system.symbols.q if n.name == q)
         dT = motion.number(derivative(motion.scalar("kinetic_energy()"), node))
         assert motion.slope(f"momentum({q})") == pytest.approx(motion.value(f"generalized_force({q})") + dT, rel=1e-6)
+
+
+LINES = """
+eomgen = 1
+space = "plane"
+parameters = { m = 2, k = 30, l0 = 0.4, c = 3, G = 5, kt = 7, ct = 0.6 }
+coordinates = { x = { start = 0.7, speed = 0.4 }, y = { start = -0.3, speed = 1.1 }, phi = { start = 0.5, speed = -2 } }
+points = { O = [0, 0] }
+[bodies.base]
+shape = { kind = "disc", mass = "m", radius = 0.1 }
+joint = { kind = "revolute", at = "O", angle = "phi/2" }
+[bodies.b]
+shape = { kind = "disc", mass = "m", radius = 0.2 }
+joint = { kind = "placed", at = ["x", "y"], angle = "phi" }
+[forces]
+free = { kind = "spring", points = ["O", "b.center"], stiffness = "k", length = "l0" }
+level = { kind = "spring", points = ["O", "b.center"], stiffness = "k", length = "l0", along = [3, 4] }
+loss = { kind = "damper", points = ["b.center", "O"], damping = "c" }
+star = { kind = "between", points = ["O", "b.center"], pull = "G*r'/r^2" }
+coil = { kind = "torsion_spring", bodies = ["base", "b"], stiffness = "kt", rest = 0.1 }
+oil = { kind = "torsion_damper", body = "b", damping = "ct" }
+[outputs]
+"""
+DUE = {
+    "pull(free)": "k*(sqrt(x^2 + y^2) - l0)",
+    "pull(level)": "k*((3*x + 4*y)/5 - l0)",
+    "pull(loss)": "c*(x*x' + y*y')/sqrt(x^2 + y^2)",
+    "pull(star)": "G*(x*x' + y*y')/sqrt(x^2 + y^2)^3",
+    "couple(coil)": "-kt*(phi/2 - 0.1)",
+    "couple(oil)": "-ct*phi'",
+}
+
+
+def test_what_acts_between_two_things_can_be_asked():
+    """Pulls by length and rate, couples by the angle of one body against the other; proven by what is declared."""
+    asked = {f"f{k}": pair for k, pair in enumerate(DUE.items())}
+    text = LINES + "".join(f'{name} = "{is_} - ({due})"\n{name}_ = "{is_}"\n' for name, (is_, due) in asked.items())
+    found = eomgen.solve(eomgen.loads(text))
+    for name in asked:
+        assert found[name].value == pytest.approx(0, abs=1e-13) and abs(found[f"{name}_"].value) > 0.1
+    assert found.certify().ok
+
+
+@pytest.mark.parametrize(
+    ("call", "message"),
+    [
+        ("pull(weight)", "unknown force between points 'weight'"),
+        ("couple(free)", "unknown force between bodies 'free'"),
+    ],
+)
+def test_what_acts_otherwise_draws_nothing_together(call, message):
+    text = LINES.replace("[forces]", "[forces]\nweight = { kind = 'gravity', acceleration = [0, -9.81] }")
+    with pytest.raises(eomgen.ModelError, match=message):
+        eomgen.loads(text + f'a = "{call}"')

@@ -61,6 +61,12 @@ def undeclared(system: System, state: State) -> str:
     return ""
 
 
+def acting(system: System, state: State, force: str) -> Any:
+    """What an element pulls [N], or turns its second body back with [N m], by its declaration at a state."""
+    (found,) = (each for each in elements_of(system) if each[0].name == force)
+    return _Acting(system, state, *found).law[0]
+
+
 def _in_joint(system: System, state: State, effort: JointEffort) -> str:
     """effort = drive - c s' - k (s - rest), V = k (s - rest)^2 / 2: s from the poses, s' from the twists of both.
 

@@ -21,6 +21,7 @@ from eomgen.mechanics.reactions.drive import with_drive_let_go
 from eomgen.model.forces.load import GeneralizedForce, PointForce
 from eomgen.model.outputs import FUNCTIONS
 from eomgen.proof.at_a_state import NumericState, differing
+from eomgen.proof.elements import acting
 from eomgen.proof.free_bodies import demand_of, multipliers_demanded
 from eomgen.proof.in_numbers import SECOND_STEP, Pushes, Way, add_push, pushes_of, way_through
 from eomgen.records import dataclass
@@ -163,6 +164,10 @@ class NearbyStates:
         for name, sign in ((effort.body, 1), (parent, -1)):
             own: Numbers = times(sign, push)
             add_push(pushes, name, *((own, ZERO) if all(map(is_zero, slide)) else (cross(place, own), own)))
+
+    def acting(self, force: str) -> Any:
+        """Of what is declared between two points, or two bodies, by the twists."""
+        return acting(self.state.equations.system, self.state.values, force)
 
     def demanded(self, coordinate: str) -> Any:
         """M a + c - Q - J^T lam of the freed coordinate, by the free bodies, at the motion as it is given."""

@@ -14,6 +14,7 @@ from eomgen.errors import DerivationError
 from eomgen.mechanics.balance.balance import refuse_placeless
 from eomgen.mechanics.bodies.composition import made_of
 from eomgen.mechanics.bodies.inertia import kinetic_energy, mass_properties
+from eomgen.mechanics.bodies.system_scene import SystemScene
 from eomgen.mechanics.equations.system import System
 from eomgen.mechanics.equations.work import generalized_forces
 from eomgen.mechanics.fields.centers import finite_center
@@ -222,6 +223,12 @@ class Quantities:
     def power(self, name: str | None = None) -> Scalar:
         """Of everything applied, of one force, or of what acts on one body [W]."""
         return power_of_loads(self.system, name)
+
+    def effort(self, force: str) -> Scalar:
+        """What draws the points of a force together [N], or turns its second body [N m]."""
+        effort = self.system.scope.model.forces[force].effort(SystemScene(self.system.motion, f"forces.{force}"))
+        assert effort is not None, "such a force was asked for"
+        return effort
 
     def generalized_force(self, coordinate: str) -> Scalar:
         """Q_k of everything applied."""

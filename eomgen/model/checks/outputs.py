@@ -99,6 +99,10 @@ def _names_in(catalog: Catalog, expression: Expression, column: int) -> tuple[st
 
 
 def _known(catalog: Catalog, kind: str) -> list[str]:
+    between = {"force between points": "points", "force between bodies": "bodies"}.get(kind)
+    if between is not None:
+        forces = catalog.table("forces").items()
+        return [name for name, part in forces if part and part.element and getattr(part.element, between)]
     tables = {
         "body": ("bodies",),
         "body or force": ("bodies", "forces"),

@@ -43,6 +43,10 @@ class Force(Part):
         """T [J] of what moves and is no body; None of a force that has none."""
         return None
 
+    def effort(self, scene: LoadContext) -> AnyScalar | None:
+        """What draws its two points together [N], or turns the second body against the first [N m]; None of others."""
+        return None
+
     def loads(self, scene: LoadContext) -> tuple[Load, ...]:
         """Forces and couples on bodies, and forces along coordinates."""
         return ()

@@ -2,17 +2,17 @@
 
 from typing import ClassVar
 
-from eomgen.model.forces.base import Force
 from eomgen.model.forces.element import Element
-from eomgen.model.forces.load import Load, LoadContext
-from eomgen.model.forces.reach import reach
-from eomgen.model.kinds import Pull, TwoPoints
+from eomgen.model.forces.load import LoadContext
+from eomgen.model.forces.reach import Reach
+from eomgen.model.forces.straight import Straight
+from eomgen.model.kinds import Pull
 from eomgen.records import dataclass
 from eomgen.symbolic.expression.spatial import AnyScalar
 
 
 @dataclass(frozen=True, kw_only=True)
-class Between(Force):
+class Between(Straight):
     """Two points pull each other with f(r, r'), r their distance; attraction positive [N].
 
     Args:
@@ -21,18 +21,16 @@ class Between(Force):
     """
 
     kind: ClassVar[str] = "between"
-    points: TwoPoints
     pull: Pull
 
     @property
     def element(self) -> Element:
         return Element(points=self.points, pull=self.pull)
 
-    def loads(self, scene: LoadContext) -> tuple[Load, ...]:
-        """A pull f(r, r')."""
-        line = reach(scene, self.points)
-        return line.pulled(scene.value_at(self.pull, {"r": line.length, "r'": line.rate}))
+    def law(self, scene: LoadContext, line: Reach) -> AnyScalar:
+        """f(r, r')"""
+        return scene.value_at(self.pull, {"r": line.length, "r'": line.rate})
 
     def potential(self, scene: LoadContext) -> AnyScalar | None:
         """V = integral of f dr where f holds r and parameters only; None where it has no closed form."""
-        return scene.primitive(self.pull, "r", reach(scene, self.points).length)
+        return scene.primitive(self.pull, "r", self.line(scene).length)

@@ -2,16 +2,17 @@
 
 from typing import ClassVar
 
-from eomgen.model.forces.base import Force
 from eomgen.model.forces.element import Element
-from eomgen.model.forces.load import Load, LoadContext
-from eomgen.model.forces.reach import reach
-from eomgen.model.kinds import Direction, LinearDamping, TwoPoints
+from eomgen.model.forces.load import LoadContext
+from eomgen.model.forces.reach import Reach
+from eomgen.model.forces.straight import Straight
+from eomgen.model.kinds import Direction, LinearDamping
 from eomgen.records import dataclass
+from eomgen.symbolic.expression.spatial import AnyScalar
 
 
 @dataclass(frozen=True, kw_only=True)
-class Damper(Force):
+class Damper(Straight):
     """A straight damper: pull c l', l the distance of its points.
 
     Args:
@@ -21,7 +22,6 @@ class Damper(Force):
     """
 
     kind: ClassVar[str] = "damper"
-    points: TwoPoints
     damping: LinearDamping
     along: Direction | None = None
 
@@ -29,7 +29,6 @@ class Damper(Force):
     def element(self) -> Element:
         return Element(points=self.points, along=self.along, damping=self.damping)
 
-    def loads(self, scene: LoadContext) -> tuple[Load, ...]:
-        """A pull c l'."""
-        line = reach(scene, self.points, self.along)
-        return line.pulled(scene.value(self.damping) * line.rate)
+    def law(self, scene: LoadContext, line: Reach) -> AnyScalar:
+        """c l'"""
+        return scene.value(self.damping) * line.rate

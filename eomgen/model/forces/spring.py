@@ -2,18 +2,18 @@
 
 from typing import ClassVar
 
-from eomgen.model.forces.base import Force
 from eomgen.model.forces.element import Element
-from eomgen.model.forces.load import Load, LoadContext
-from eomgen.model.forces.reach import reach
-from eomgen.model.kinds import Direction, LinearStiffness, NaturalLength, TwoPoints
+from eomgen.model.forces.load import LoadContext
+from eomgen.model.forces.reach import Reach
+from eomgen.model.forces.straight import Straight
+from eomgen.model.kinds import Direction, LinearStiffness, NaturalLength
 from eomgen.records import dataclass
 from eomgen.symbolic.expression.rational import Fraction
 from eomgen.symbolic.expression.spatial import AnyScalar
 
 
 @dataclass(frozen=True, kw_only=True)
-class Spring(Force):
+class Spring(Straight):
     """A straight spring: V = k (l - l0)^2 / 2, l the distance of its points.
 
     Args:
@@ -25,7 +25,6 @@ class Spring(Force):
 
     kind: ClassVar[str] = "spring"
     elastic: ClassVar[bool] = True
-    points: TwoPoints
     stiffness: LinearStiffness
     length: NaturalLength
     along: Direction | None = None
@@ -34,14 +33,13 @@ class Spring(Force):
     def element(self) -> Element:
         return Element(points=self.points, along=self.along, stiffness=self.stiffness, slack=self.length)
 
-    def loads(self, scene: LoadContext) -> tuple[Load, ...]:
-        """A pull k (l - l0)."""
-        line = reach(scene, self.points, self.along)
-        return line.pulled(scene.value(self.stiffness) * self._stretch(scene, line.length))
+    def law(self, scene: LoadContext, line: Reach) -> AnyScalar:
+        """k (l - l0)"""
+        return scene.value(self.stiffness) * self._stretch(scene, line.length)
 
     def potential(self, scene: LoadContext) -> AnyScalar | None:
         """V = k (l - l0)^2 / 2"""
-        stretch = self._stretch(scene, reach(scene, self.points, self.along).length)
+        stretch = self._stretch(scene, self.line(scene).length)
         return Fraction(1, 2) * scene.value(self.stiffness) * stretch * stretch
 
     def _stretch(self, scene: LoadContext, length: AnyScalar) -> AnyScalar:

@@ -2,16 +2,16 @@
 
 from typing import ClassVar
 
-from eomgen.model.forces.base import Force
 from eomgen.model.forces.element import Element
-from eomgen.model.forces.load import Load, LoadContext
-from eomgen.model.forces.twist import relative, turned
-from eomgen.model.kinds import AngularDamping, BodyName, TwoBodies
+from eomgen.model.forces.load import LoadContext
+from eomgen.model.forces.turning import Turning
+from eomgen.model.kinds import AngularDamping
 from eomgen.records import dataclass
+from eomgen.symbolic.expression.spatial import AnyScalar
 
 
 @dataclass(frozen=True, kw_only=True)
-class TorsionDamper(Force):
+class TorsionDamper(Turning):
     """A torsion damper: couple - c theta'.
 
     Args:
@@ -21,16 +21,12 @@ class TorsionDamper(Force):
     """
 
     kind: ClassVar[str] = "torsion_damper"
-    one_of: ClassVar[tuple[str, ...]] = ("bodies", "body")
-    bodies: TwoBodies | None = None
-    body: BodyName | None = None
     damping: AngularDamping
 
     @property
     def element(self) -> Element:
         return Element(bodies=self.bodies or (None, self.body), damping=self.damping)
 
-    def loads(self, scene: LoadContext) -> tuple[Load, ...]:
-        """A couple - c theta' on the second body, the opposite on the first."""
-        rate = relative(self.bodies, self.body, scene.angle_rate)
-        return turned(self.bodies, self.body, -scene.value(self.damping) * rate)
+    def couple(self, scene: LoadContext) -> AnyScalar:
+        """- c theta'"""
+        return -scene.value(self.damping) * self.relative(scene.angle_rate)

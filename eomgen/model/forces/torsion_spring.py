@@ -2,18 +2,17 @@
 
 from typing import ClassVar
 
-from eomgen.model.forces.base import Force
 from eomgen.model.forces.element import Element
-from eomgen.model.forces.load import Load, LoadContext
-from eomgen.model.forces.twist import relative, turned
-from eomgen.model.kinds import AngularStiffness, BodyName, RestAngle, TwoBodies
+from eomgen.model.forces.load import LoadContext
+from eomgen.model.forces.turning import Turning
+from eomgen.model.kinds import AngularStiffness, RestAngle
 from eomgen.records import dataclass
 from eomgen.symbolic.expression.rational import Fraction
 from eomgen.symbolic.expression.spatial import AnyScalar
 
 
 @dataclass(frozen=True, kw_only=True)
-class TorsionSpring(Force):
+class TorsionSpring(Turning):
     """A torsion spring: V = k (theta - rest)^2 / 2.
 
     Args:
@@ -25,9 +24,6 @@ class TorsionSpring(Force):
 
     kind: ClassVar[str] = "torsion_spring"
     elastic: ClassVar[bool] = True
-    one_of: ClassVar[tuple[str, ...]] = ("bodies", "body")
-    bodies: TwoBodies | None = None
-    body: BodyName | None = None
     stiffness: AngularStiffness
     rest: RestAngle | None = None
 
@@ -35,9 +31,9 @@ class TorsionSpring(Force):
     def element(self) -> Element:
         return Element(bodies=self.bodies or (None, self.body), stiffness=self.stiffness, slack=self.rest)
 
-    def loads(self, scene: LoadContext) -> tuple[Load, ...]:
-        """A couple - k (theta - rest) on the second body, the opposite on the first."""
-        return turned(self.bodies, self.body, -scene.value(self.stiffness) * self._twist(scene))
+    def couple(self, scene: LoadContext) -> AnyScalar:
+        """- k (theta - rest)"""
+        return -scene.value(self.stiffness) * self._twist(scene)
 
     def potential(self, scene: LoadContext) -> AnyScalar | None:
         """V = k (theta - rest)^2 / 2"""
@@ -45,4 +41,4 @@ class TorsionSpring(Force):
         return Fraction(1, 2) * scene.value(self.stiffness) * twist * twist
 
     def _twist(self, scene: LoadContext) -> AnyScalar:
-        return relative(self.bodies, self.body, scene.angle) - scene.value(self.rest)
+        return self.relative(scene.angle) - scene.value(self.rest)

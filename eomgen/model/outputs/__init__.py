@@ -6,7 +6,7 @@ from eomgen.model.outputs.along_coordinates import GENERALIZED_FORCE, MOMENTUM
 from eomgen.model.outputs.angular_momentum import ANGULAR_MOMENTUM
 from eomgen.model.outputs.base import OutputFunction
 from eomgen.model.outputs.centers import ACCELERATION_POLE, ROTATION_CENTER
-from eomgen.model.outputs.efforts import DRIVE, MULTIPLIER
+from eomgen.model.outputs.efforts import COUPLE, DRIVE, MULTIPLIER, PULL
 from eomgen.model.outputs.energies import KINETIC_ENERGY, POTENTIAL_ENERGY, POWER
 from eomgen.model.outputs.least_speed import LEAST_SPEED
 from eomgen.model.outputs.mass_of import MASS_OF
@@ -60,6 +60,8 @@ ALL: tuple[OutputFunction, ...] = (
     TENSION,
     MULTIPLIER,
     DRIVE,
+    PULL,
+    COUPLE,
     *section_forces.SECTION_FORCES,
     MASS_OF,
     INERTIA_POINT,

@@ -1,4 +1,4 @@
-"""multiplier, drive: what acts along the gap of a tie, and along a driven coordinate."""
+"""multiplier, drive, pull, couple: along the gap of a tie, a driven coordinate, a spring, a damper."""
 
 from eomgen.model.outputs.base import BALANCE, OutputFunction, name_at
 
@@ -23,4 +23,24 @@ DRIVE = OutputFunction(
     value=lambda scene, call: scene.drive(name_at(call, 0)),
     second=lambda trial, call: trial.demanded(name_at(call, 0)),
     source=BALANCE,
+)
+PULL = OutputFunction(
+    names=("pull",),
+    kinds=("force between points",),
+    least=1,
+    unit="N",
+    gives="of a spring, a damper, a `between`: what draws its points together",
+    value=lambda scene, call: scene.effort(name_at(call, 0)),
+    second=lambda trial, call: trial.acting(name_at(call, 0)),
+    moves=True,
+)
+COUPLE = OutputFunction(
+    names=("couple",),
+    kinds=("force between bodies",),
+    least=1,
+    unit="N*m",
+    gives="of a torsion spring or damper: on its second body, counter-clockwise",
+    value=lambda scene, call: scene.effort(name_at(call, 0)),
+    second=lambda trial, call: -trial.acting(name_at(call, 0)),
+    moves=True,
 )
