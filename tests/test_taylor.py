@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import ctypes
+import math
 from pathlib import Path
 
 import numpy as np
@@ -10,6 +11,7 @@ import pytest
 
 import eomgen
 from eomgen.codegen.build import compiler
+from eomgen.codegen.taylor import ALONE, LEAST, MOST, order_for
 
 MODELS = Path(__file__).parent.parent / "models"
 
@@ -106,7 +108,7 @@ def test_series_and_dop853_come_to_the_end_that_thirty_digits_give():
 
 
 def test_the_error_goes_with_the_tolerance_and_the_order_with_its_logarithm():
-    """p = 1 - ln(rtol)/2: as many steps whatever is asked, each of more terms."""
+    """As many steps whatever is asked, each of more terms: as many for each digit."""
     found = []
     for tolerance in (1e-5, 1e-8, 1e-11):
         run = eomgen.simulate(MODELS / "double_pendulum.toml", time=3, method="taylor", rtol=tolerance, atol=tolerance)
@@ -115,6 +117,16 @@ def test_the_error_goes_with_the_tolerance_and_the_order_with_its_logarithm():
     steps, terms, errors = np.array(found).T
     assert max(steps) < 1.5 * min(steps) and np.diff(terms) == pytest.approx([3.5, 3.5], abs=1.6)
     assert all(errors < np.array([1e-3, 1e-6, 1e-9])) and all(errors[1:] < errors[:-1] / 50)
+
+
+@pytest.mark.parametrize("beside", [0.0, 5.0, ALONE, 100.0])
+@pytest.mark.parametrize("rtol", [1e-3, 1e-7, 1e-10])
+def test_the_order_is_that_which_costs_least(rtol, beside):
+    """p (p + beside)/h, h = exp(ln(rtol)/p), one more than the best p; p = 1 - ln(rtol)/2 where sums are all."""
+    cost = {p: p * (p + beside) * rtol ** (-1 / p) for p in range(1, 60)}
+    best = min(cost, key=cost.__getitem__)
+    assert order_for(rtol, beside) == pytest.approx(min(MOST, max(LEAST, best + 1)), abs=1)
+    assert order_for(rtol) == min(MOST, max(LEAST, math.ceil(1 - math.log(rtol) / 2)))
 
 
 def test_a_step_ends_where_the_equations_no_longer_agree_with_the_series():

@@ -27,6 +27,7 @@ from eomgen.records import dataclass
 from eomgen.symbolic.expression.graph import Node, Scalar
 
 LEAST, MOST = 3, 20  # orders: the highest is what 1e-16 asks for
+ALONE = 24.0  # products that a coefficient costs beside its sums, where one motion is followed: measured, at equal error
 MOST_UNROLLED = 8000  # sums x order^2 that are written out for each order: they take a compiler a second
 UNROLL, INLINE = '_Pragma("GCC unroll 32")', "static inline __attribute__((always_inline))"
 _PAIRS = {"sin": ("cos", "-"), "cos": ("sin", "-"), "sinh": ("cosh", ""), "cosh": ("sinh", "")}  # and signs of rates
@@ -67,12 +68,17 @@ def series_of(program: Program, order: int) -> Series | None:
     return Series(series, along, size, found)
 
 
-def order_for(rtol: float) -> int:
-    """The order that costs least at a relative tolerance: p = 1 - ln(rtol)/2.
+def order_for(rtol: float, beside: float = 0.0) -> int:
+    """The order that costs least at a relative tolerance: 1 + p, p (p + beside) exp(-ln(rtol)/p) least.
+
+    A step goes as far as exp(ln(rtol)/p), and takes p^2 products in its sums, and beside them p times so much as
+    `beside` of them: then 1/p + 1/(p + beside) = -ln(rtol)/p^2, where nothing is beside them p = -ln(rtol)/2.
 
     Source: Jorba & Zou, Experimental Mathematics 14 (2005), 99-117.
     """
-    return min(MOST, max(LEAST, math.ceil(1 - math.log(rtol) / 2)))
+    digits = -math.log(rtol)
+    least = (digits - beside + math.hypot(digits - beside, math.sqrt(8 * beside * digits))) / 4
+    return min(MOST, max(LEAST, math.ceil(1 + least)))
 
 
 def without_series(program: Program) -> str:

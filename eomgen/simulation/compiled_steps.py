@@ -16,7 +16,7 @@ from numpy.polynomial.polynomial import polyval
 
 from eomgen.codegen.rhs import RightHandSide
 from eomgen.codegen.targets.base import Address
-from eomgen.codegen.taylor import order_for
+from eomgen.codegen.taylor import ALONE, order_for
 from eomgen.simulation import event_location
 from eomgen.simulation.constraint_drift import DriftCorrection, Rows
 from eomgen.simulation.constraint_rank import RankLookout
@@ -234,7 +234,7 @@ class CompiledSteps:
     def _expand(self) -> None:
         """From the start on steps along series."""
         m = self._m
-        m.order = order_for(m.rtol)
+        m.order = order_for(m.rtol, ALONE)
         series = self._fun.rhs.series(m.order)
         rows = 2 * (m.order + 1) * m.n
         numbers = _aligned(series.size + rows)
