@@ -23,7 +23,7 @@ from eomgen.edge import INTERRUPTED, Placed, failure, guarded, problems_of, say
 from eomgen.errors import EomgenError, UsageError
 from eomgen.records import dataclass
 from eomgen.symbolic.expression.habits import other_words
-from eomgen.symbolic.numeric.gc_pause import seldom
+from eomgen.symbolic.numeric.gc_pause import growing, seldom
 from eomgen.symbolic.numeric.work import doing, patience
 from eomgen.version import SCHEMA_VERSION
 
@@ -294,7 +294,8 @@ def write_result(
     from eomgen.verbs.outcome import shown, with_start_told
 
     def made(declared: Model, **asked: Any) -> Document:
-        document = shown(found(declared, **asked), plot=plot, certify=certify)
+        with growing():
+            document = shown(found(declared, **asked), plot=plot, certify=certify)
         return with_start_told(document, declared) if at_start else document
 
     return write_asked(made, **options)

@@ -3,13 +3,16 @@
 from __future__ import annotations
 
 from dataclasses import replace
+from fractions import Fraction
 from random import Random
 
 import pytest
 
 from eomgen.symbolic.expression.derivative import gradient, jacobian
 from eomgen.symbolic.expression.graph import Graph
-from eomgen.symbolic.numeric.evaluation import NoValue, evaluate, fifty_digits, solved_quickly
+from eomgen.symbolic.numeric import sure_digits
+from eomgen.symbolic.numeric.balls import balls
+from eomgen.symbolic.numeric.evaluation import NoValue, evaluate, fifty_digits, solved_quickly, sums_of_products
 from eomgen.symbolic.numeric.tolerances import MET_AT_50
 
 NUMBER = fifty_digits().number
@@ -19,7 +22,7 @@ BY_MPMATH = replace(fifty_digits(), quickly=None)
 def long_sum(graph: Graph):
     """A hundred terms of two symbols, their quotients, roots, sines and cosines."""
     x, y = graph.symbol("x"), graph.symbol("y")
-    total = graph.sqrt(2) * x
+    total = graph.sqrt(2) * x + (x - y) ** 3 - (2 + x * x) ** Fraction(-3, 2)
     for k in range(1, 100):
         total = total + graph.call("sin", k * x + y) * graph.call("cos", total) / (k + graph.sqrt(1 + x * x)) - y
     return total, x, y
@@ -57,6 +60,47 @@ def test_what_cancels_is_left_to_mpmath():
     state = {x: NUMBER(1) / 3, y: NUMBER(2) / 7, graph.symbol("z"): NUMBER(1) / 3}
     assert evaluate([lost], state, fifty_digits()) == evaluate([lost], state, BY_MPMATH)
     assert evaluate([total], state, fifty_digits()) != evaluate([lost], state, fifty_digits())
+
+
+@pytest.mark.parametrize("digits", [30, 120])
+def test_a_ball_holds_the_value_whichever_way_it_came(digits):
+    """|x - x'| <= r + r' of Arb's ball and ours, both narrow; what was given with a radius stays as wide."""
+    graph = Graph()
+    total, x, y = long_sum(graph)
+    narrow, arithmetic = balls(digits), replace(balls(digits), quickly=None)
+    exact = {x: narrow.number(Fraction(1, 3)), y: narrow.number(Fraction(-7, 11))}
+    wide = exact | {x: (exact[x][0], exact[x][0] * 0 + 1e-12)}
+    for state, width in ((exact, 10 ** (12 - digits)), (wide, 1e-3)):
+        (one,), (other,) = evaluate([total], state, narrow), evaluate([total], state, arithmetic)
+        assert type(one[0]) is type(other[0]) and one != other  # not by the same way
+        assert abs(one[0] - other[0]) <= one[1] + other[1] <= 2 * width * abs(one[0])
+        assert one[1] > 1e-14 or state is exact
+
+
+def test_nothing_is_said_by_balls_without_an_end():
+    """1/(x - y) at x = y: none, as by mpmath; within 1e-12 of it: anything."""
+    graph = Graph()
+    total, x, y = long_sum(graph)
+    two = balls(30).number(2)
+    for width, ends in ((0.0, "nan"), (1e-12, "inf")):
+        ((at, reach),) = evaluate([total + 1 / (x - y)], {x: (two[0], two[1] + width), y: two}, balls(30))
+        assert str(at if ends == "nan" else reach) in (ends, f"+{ends}")
+
+
+def test_sums_of_products_by_balls_are_those_by_mpmath(monkeypatch):
+    """(row x, |row| |x|), of numbers of 50 digits and of doubles; a number beyond all size is left to mpmath."""
+    rng = Random(2)
+    rows = [
+        [rng.choice((0.0, rng.uniform(-1, 1), NUMBER(rng.randint(-99, 99)) / 7)) for _ in range(7)] for _ in range(9)
+    ]
+    columns = [[NUMBER(rng.randint(-99, 99)) / 11 for _ in range(7)] for _ in range(2)]
+    quick = sums_of_products(rows, columns)
+    assert sure_digits.sums_by_balls(NUMBER(1).context, rows, columns) == quick
+    assert sure_digits.sums_by_balls(NUMBER(1).context, [*rows, [NUMBER(1).context.inf] * 7], columns) is None
+    monkeypatch.setattr(sure_digits, "HAS_BALLS", False)
+    for one, other in zip(quick, sums_of_products(rows, columns), strict=True):
+        for (sum_, size), (own, own_size) in zip(one, other, strict=True):
+            assert abs(sum_ - own) <= MET_AT_50 * size and abs(size - own_size) <= MET_AT_50 * size and size > 0
 
 
 def test_equations_by_balls_are_solved_and_singular_ones_are_not():

@@ -27,7 +27,9 @@ from eomgen.records import dataclass
 from eomgen.symbolic.expression.graph import Node, Scalar
 
 LEAST, MOST = 3, 20  # orders: the highest is what 1e-16 asks for
-ALONE = 24.0  # products that a coefficient costs beside its sums, where one motion is followed: measured, at equal error
+ALONE = (
+    24.0  # products that a coefficient costs beside its sums, where one motion is followed: measured, at equal error
+)
 MOST_UNROLLED = 8000  # sums x order^2 that are written out for each order: they take a compiler a second
 UNROLL, INLINE = '_Pragma("GCC unroll 32")', "static inline __attribute__((always_inline))"
 _PAIRS = {"sin": ("cos", "-"), "cos": ("sin", "-"), "sinh": ("cosh", ""), "cosh": ("sinh", "")}  # and signs of rates

@@ -27,7 +27,7 @@ from eomgen.proof.modes import mode_checks
 from eomgen.proof.motions_beside import Beside, Differences, DigitColumn
 from eomgen.proof.nearby import State
 from eomgen.symbolic.expression.graph import Node
-from eomgen.symbolic.numeric.evaluation import NoValue, evaluate, fifty_digits
+from eomgen.symbolic.numeric.evaluation import NoValue, evaluate, fifty_digits, sums_of_products
 from eomgen.symbolic.numeric.tolerances import (
     CARRIED,
     COMPUTED,
@@ -80,14 +80,17 @@ def _matrices(modes: Modes, differences: Differences) -> Iterator[Check]:
     if differences.is_part:
         yield _of_part(differences)
         return
-    A, B = (_in_rows(x.ravel().tolist(), x.tolist()) for x in (small.state_matrix, small.input_matrix))
     exact, tolerance = _entries(modes), DIFFERENCE_AT_50 if small.exact is not None else COMPUTED
-    wrong: dict[str, str] = {"motion": "", "state": "", "mass": ""}
+    beside, energies = [], []
     for _ in range(DIRECTIONS):
-        beside = differences.along(_random((*small.whole.coordinates, *small.whole.speeds, *small.whole.inputs), rng))
-        wrong["motion"] = wrong["motion"] or _in_equations(small, exact, beside, tolerance)
-        wrong["state"] = wrong["state"] or _in_state_form(small, A, B, beside)
-        wrong["mass"] = wrong["mass"] or _in_energy(differences, exact["M"], rng, tolerance)
+        moved = (*small.whole.coordinates, *small.whole.speeds, *small.whole.inputs)
+        beside.append(differences.along(_random(moved, rng)))
+        energies.append(differences.energy_along(_random(small.whole.speeds, rng)))
+    wrong = {
+        "motion": _in_equations(small, exact, beside, tolerance),
+        "state": _in_state_form(small, beside),
+        "mass": _in_energy(small, exact["M"], energies, tolerance),
+    }
     form = "M q'' + C q' + K q = B w" if small.is_second_order else "M u' + C u + K q = B w, q' = F q + E u"
     yield checked(f"motions beside the reference satisfy {form}", wrong["motion"], BY_DIFFERENCES)
     yield checked("they satisfy x' = A x + B w", wrong["state"], BY_DIFFERENCES)
@@ -131,7 +134,8 @@ def _numbers(small: SmallMotions, rows: Sequence[Sequence[Any]], modes: Modes | 
 def _in_rows(flat: Sequence[Any], rows: Sequence[Sequence[Any]]) -> list[list[Any]]:
     """The numbers with 50 digits, in rows as these are."""
     one = fifty_digits().number(1)
-    values = iter([one * x for x in flat])
+    zero = 0 * one
+    values = iter([one * x if x else zero for x in flat])
     return [[next(values) for _ in row] for row in rows]
 
 
@@ -147,6 +151,8 @@ def _wrong_parts(modes: Modes) -> str:
     for letter, even, odd in (("C", "D", "G"), ("K", "S", "H")):
         for i, j in product(range(len(whole[letter])), repeat=2):
             (a, b), (c, d) = ((parts[name][i][j], parts[name][j][i]) for name in (even, odd))
+            if not any((a, b, c, d, whole[letter][i][j])):
+                continue
             left = max(abs(a + c - whole[letter][i][j]), abs(a - b), abs(c + d))
             if left > tolerance * (abs(a) + abs(c)):
                 return f"entry {i + 1}, {j + 1} of {even} or {odd}"
@@ -162,48 +168,63 @@ def _random(nodes: Sequence[Node], rng: Random) -> State:
     return {x: fifty_digits().number(rng.choice((-1, 1)) * rng.randint(50, 100)) / 100 for x in nodes}
 
 
-def _in_equations(small: SmallMotions, A: Mapping[str, list[list[Any]]], at: Beside, tolerance: float) -> str:
-    u, a = (at.q1, at.q2) if small.is_second_order else (at.u, at.a)
-    for i, speed in enumerate(small.numbers.speeds):
-        pushes = [-x for x in _terms(A["B"][i], at.w)]
-        terms = [*_terms(A["M"][i], a), *_terms(A["C"][i], u), *_terms(A["K"][i], at.q), *pushes]
-        if wrong := _left(terms, tolerance, sum(map(abs, A["M"][i]))):
-            return f"the equation of {speed.name.rstrip(chr(39))}: {wrong}"
-    for i, q in enumerate(small.numbers.coordinates):
-        if wrong := _left([-at.q1[i], *_terms(A["F"][i], at.q), *_terms(A["E"][i], u)], tolerance):
-            return f"the rate of {q.name}: {wrong}"
+def _in_equations(
+    small: SmallMotions, A: Mapping[str, list[list[Any]]], beside: Sequence[Beside], tolerance: float
+) -> str:
+    """Of M a + C u + K q - B w and -q' + F q + E u the first row of which something is left, or ""."""
+    pushed = [[-x for x in row] for row in A["B"]]
+    left = [[*m, *c, *k, *b] for m, c, k, b in zip(A["M"], A["C"], A["K"], pushed, strict=True)]
+    units = [sum(map(abs, row)) for row in A["M"]]
+    balances = sums_of_products(left, [[*a, *u, *at.q, *at.w] for at, u, a in _moving(small, beside)])
+    rates = sums_of_products(
+        [[*f, *e] for f, e in zip(A["F"], A["E"], strict=True)], [[*at.q, *u] for at, u, _ in _moving(small, beside)]
+    )
+    for at, rows, also in zip(beside, balances, rates, strict=True):
+        for speed, row, unit in zip(small.numbers.speeds, rows, units, strict=True):
+            if wrong := _left(0, row, tolerance, unit):
+                return f"the equation of {speed.name.rstrip(chr(39))}: {wrong}"
+        for q, rate, row in zip(small.numbers.coordinates, at.q1, also, strict=True):
+            if wrong := _left(-rate, row, tolerance):
+                return f"the rate of {q.name}: {wrong}"
     return ""
 
 
-def _in_state_form(small: SmallMotions, A: list[list[Any]], B: list[list[Any]], at: Beside) -> str:
-    u, a = (at.q1, at.q2) if small.is_second_order else (at.u, at.a)
+def _in_state_form(small: SmallMotions, beside: Sequence[Beside]) -> str:
     names = [x.name for x in (*small.numbers.coordinates, *small.numbers.speeds)]
-    rows = zip(names, A, B, (*at.q1, *a), strict=True)
-    for name, row, push, rate in rows:
-        if wrong := _left([-rate, *_terms(row, (*at.q, *u)), *_terms(push, at.w)], COMPUTED):
-            return f"the row of {name}: {wrong}"
+    both = np.hstack([small.state_matrix, small.input_matrix]).tolist()
+    found = sums_of_products(both, [[*at.q, *u, *at.w] for at, u, _ in _moving(small, beside)])
+    for (at, _, a), rows in zip(_moving(small, beside), found, strict=True):
+        for name, rate, row in zip(names, (*at.q1, *a), rows, strict=True):
+            if wrong := _left(-rate, row, COMPUTED):
+                return f"the row of {name}: {wrong}"
     return ""
 
 
-def _in_energy(differences: Differences, M: list[list[Any]], rng: Random, tolerance: float) -> str:
-    small = differences.small
-    T, q1, u = differences.energy_along(_random(small.whole.speeds, rng))
-    d = q1 if small.is_second_order else u
-    return _left(
-        [-T, *(x * y * m for x, row in zip(d, M, strict=True) for y, m in zip(d, row, strict=True))], tolerance
-    )
+def _moving(small: SmallMotions, beside: Sequence[Beside]) -> list[tuple[Beside, DigitColumn, DigitColumn]]:
+    """Each with the speeds and their rates that the equations speak of."""
+    return [(at, at.q1, at.q2) if small.is_second_order else (at, at.u, at.a) for at in beside]
 
 
-def _terms(row: DigitColumn, x: DigitColumn) -> list[Any]:
-    """The terms of row x, but for those that are 0."""
-    return [a * b for a, b in zip(row, x, strict=True) if a]
+def _in_energy(
+    small: SmallMotions, M: list[list[Any]], energies: Sequence[tuple[Any, DigitColumn, DigitColumn]], tolerance: float
+) -> str:
+    """Of d . M d - T'' along each d what is left, or ""."""
+    along = [q1 if small.is_second_order else u for _, q1, u in energies]
+    for (T, _, _), d, rows in zip(energies, along, sums_of_products(M, along), strict=True):
+        products = [(x * y, abs(x) * size) for x, (y, size) in zip(d, rows, strict=True)]
+        if wrong := _left(-T, (sum(x for x, _ in products), sum(size for _, size in products)), tolerance):
+            return wrong
+    return ""
 
 
-def _left(terms: DigitColumn, tolerance: float, unit: Any = 1) -> str:
-    """What is left of terms that cancel one another; "" where it is rounding, of them or of a rate of one unit."""
-    left, size = sum(terms), sum(map(abs, terms))
-    return (
-        ""
-        if abs(left) <= tolerance * (size + SLOW * unit)
-        else f"{float(left):.3g} is left, of terms of {float(size):.3g}"
-    )
+def _left(other: Any, sums: tuple[Any, Any], tolerance: float, unit: Any = 1) -> str:
+    """What is left of terms that cancel one another; "" where it is rounding, of them or of a rate of one unit.
+
+    Args:
+        other: one of them.
+        sums: of the others, and of their sizes.
+    """
+    left, size = other + sums[0], abs(other) + sums[1]
+    if abs(left) <= tolerance * (size + SLOW * unit):
+        return ""
+    return f"{float(left):.3g} is left, of terms of {float(size):.3g}"

@@ -15,7 +15,7 @@ from eomgen.mechanics.small_motions.reduction import LinearEquations
 from eomgen.records import dataclass
 from eomgen.symbolic.exact.expansion import Expansion
 from eomgen.symbolic.exact.factoring import factored, square_root
-from eomgen.symbolic.exact.normal_form import simplest
+from eomgen.symbolic.exact.normal_form import simplest, simplest_sum
 from eomgen.symbolic.exact.terms import Terms, TooLarge, terms_plus
 from eomgen.symbolic.expression.derivative import substituted, symbols_of
 from eomgen.symbolic.expression.functions import over, sqrt
@@ -100,11 +100,10 @@ def polynomial_in(x: Scalar | None, s: Node, positive: Collection[Node]) -> Poly
     expansion.of(s)
     try:
         parts = coefficients(expansion.of(x), s)
-        powers = range(max(parts, default=0) + 1)
-        found = [simplest(expansion.atoms.node(parts.get(n, {})), Work.ANSWER, positive) for n in powers]
     except TooLarge:
         return None
-    return Polynomial(tuple(found))
+    powers = range(max(parts, default=0) + 1)
+    return Polynomial(tuple(simplest_sum(expansion, parts.get(n, {})) for n in powers))
 
 
 # -- frequencies ---------------------------------------------------------------------------------------------------

@@ -44,6 +44,7 @@ __all__ = [
     "readable_all",
     "simple_constants",
     "simplest",
+    "simplest_sum",
     "written_shortest",
 ]
 
@@ -256,6 +257,15 @@ def _simplest(x: Scalar, limit: int, positive: Collection[Node], most: int | Non
         return x
 
 
+def simplest_sum(expansion: Expansion, terms: Terms) -> Scalar:
+    """The same of a sum of terms, by as much work as the expansion may take."""
+    expansion.work = 0
+    try:
+        return written_shortest(expansion, terms)
+    except TooLarge:
+        return expansion.atoms.node(terms)
+
+
 def written_shortest(expansion: Expansion, terms: Terms) -> Scalar:
     """The same of a sum of terms.
 
@@ -263,7 +273,8 @@ def written_shortest(expansion: Expansion, terms: Terms) -> Scalar:
         TooLarge: it takes more work than the expansion has left.
     """
     writer = Writer(expansion)
-    forms = list(dict.fromkeys((writer.sum(terms), *quotients(expansion, writer, terms))))
+    plain = writer.sum(terms)
+    forms = list(dict.fromkeys((plain, *quotients(expansion, writer, terms, plain))))
     return rebuilt_as_written(forms[0] if len(forms) == 1 else min(forms, key=_length))
 
 
@@ -315,8 +326,12 @@ class Legibly:
         return vector_of(map(self, v))
 
 
-def quotients(expansion: Expansion, writer: Writer, terms: Terms) -> list[Scalar]:
-    """The sum as quotients without common factors: with its factors outside, with one root, and over a lone term."""
+def quotients(expansion: Expansion, writer: Writer, terms: Terms, plain: Scalar | None = None) -> list[Scalar]:
+    """The sum as quotients without common factors: with its factors outside, with one root, and over a lone term.
+
+    Args:
+        plain: the sum as it is written, where that was done.
+    """
     above, below = in_whole_numbers(writer, *reduced(expansion, terms))
     forms = [expansion.graph.div(writer.in_factors(above), writer.in_powers(below))]
     common = common_monomial(above)
@@ -327,7 +342,8 @@ def quotients(expansion: Expansion, writer: Writer, terms: Terms) -> list[Scalar
         radical = one_root(expansion, rest, below, found)
         forms += [] if radical is None else [writer.radical(radical)]
     if len(below) == 1:
-        forms.append(writer.sum(expansion.product(above, expansion.reciprocal(below))))
+        lone = expansion.product(above, expansion.reciprocal(below))
+        forms.append(writer.sum(lone) if plain is None or lone != terms else plain)
     return forms
 
 

@@ -7,7 +7,7 @@ number that is exact; r = inf where nothing can be said: 1/x with 0 in the ball 
 from __future__ import annotations
 
 from collections.abc import Callable
-from functools import cache
+from functools import cache, partial
 from typing import Any
 
 from eomgen.symbolic.expression.graph import Number
@@ -43,6 +43,8 @@ class _Balls:
 
     @property
     def arithmetic(self) -> Arithmetic:
+        from eomgen.symbolic.numeric.sure_digits import in_balls
+
         mp = self.mp
         table: dict[str, Callable[..., Ball]] = {
             "neg": lambda a: (-a[0], a[1]),
@@ -74,7 +76,8 @@ class _Balls:
         }
         guarded = {op: self._guarded(function) for op, function in table.items()}
         own: dict[str, Callable[..., Ball]] = {"select": self._selected, "pi": lambda: self._rounded(+mp.pi, 0)}
-        return Arithmetic(f"balls of {self.digits} digits", self.number, guarded | own, lambda x: self.none)
+        by_arb = partial(in_balls, mp)
+        return Arithmetic(f"balls of {self.digits} digits", self.number, guarded | own, lambda x: self.none, by_arb)
 
     @property
     def one(self) -> Ball:

@@ -323,3 +323,15 @@ def solved_quickly(rows: Sequence[Sequence[Any]]) -> list[Any] | None:
     from eomgen.symbolic.numeric.sure_digits import solved_by_balls
 
     return solved_by_balls(fifty_digits().number(1).context, rows)
+
+
+def sums_of_products(rows: Sequence[Sequence[Any]], columns: Sequence[Sequence[Any]]) -> list[list[tuple[Any, Any]]]:
+    """Of each column, of each row: (row column, |row| |column|), with 50 digits."""
+    from eomgen.symbolic.numeric.sure_digits import sums_by_balls
+
+    def both(row: Sequence[Any], column: Sequence[Any]) -> tuple[Any, Any]:
+        terms = [a * b for a, b in zip(row, column, strict=True) if a]
+        return sum(terms), sum(map(abs, terms))
+
+    found = sums_by_balls(fifty_digits().number(1).context, rows, columns) if rows and columns else []
+    return [[both(row, column) for row in rows] for column in columns] if found is None else found

@@ -9,6 +9,7 @@ from eomgen.symbolic.expression.exact_numbers import tidy
 from eomgen.symbolic.expression.graph import Node, Scalar
 from eomgen.symbolic.expression.node import SUMS, holds_op
 from eomgen.symbolic.expression.rational import Fraction
+from eomgen.symbolic.expression.traversal import order
 from eomgen.symbolic.print.decimals import decimal_of
 from eomgen.symbolic.print.layout import Factor, Product, is_base, plus_first, products_of
 
@@ -110,7 +111,7 @@ def _number_under(base: Node) -> int:
 
 def has_nested_quotient(x: Scalar) -> bool:
     """True where a sum in a quotient has quotients itself, (a + b/c)/d, functions not looked into."""
-    if not holds_op(x, "div"):
+    if not holds_op(x, "div") or not any(_is_of_sums(node) for node in order((x,))):
         return False
     stack: list[tuple[Scalar, bool]] = [(x, False)]
     seen = set()
@@ -127,3 +128,8 @@ def has_nested_quotient(x: Scalar) -> bool:
             sums = [base for base, _ in (*product.numerator, *product.denominator) if base.op in SUMS]
             stack += [(base, within or bool(product.denominator)) for base in sums]
     return False
+
+
+def _is_of_sums(x: Node) -> bool:
+    """Whether x is a product, quotient or power of which a part is a sum."""
+    return x.op in ("mul", "div", "pow") and any(type(a) is Node and a.op in SUMS for a in x.args)
