@@ -204,7 +204,6 @@ def sweep_command(where: str, wants_json: bool, output: str | None, strict: bool
 @with_form
 @click.option(
     "--data",
-    required=True,
     type=click.Path(exists=True, dir_okay=False),
     help="A CSV in SI: t, coordinates, rates (q'), accelerations (q''), inputs.",
 )
@@ -212,7 +211,7 @@ def identify_command(**options: Any) -> int:
     """Fit masses, inertias, friction to a measured motion.
 
     The base parameters by least squares, with their formulas and deviations; how well the motion tells them apart; and
-    parameters of bodies of positive density that fit.
+    parameters of bodies of positive density that fit. Without --data the groups that any motion tells apart.
     """
     from eomgen.verbs.identify import identify_document
 

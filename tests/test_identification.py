@@ -9,14 +9,17 @@ from typing import Any
 import mpmath
 import numpy as np
 import pytest
+import sympy
 from click.testing import CliRunner
 
 import eomgen
 from eomgen.cli import main
 from eomgen.errors import DerivationError, EomgenError, UsageError
-from eomgen.identification.base_parameters import sampled_rows
 from eomgen.identification.fit import noise_of
 from eomgen.identification.regressor import Regressor, regressor_of
+from eomgen.identification.tied_rows import sampled_rows
+from eomgen.model.replaced import with_values
+from eomgen.model.values import exact_parameters
 from eomgen.symbolic.exact.equality import equal_at_random_states
 from eomgen.symbolic.expression.derivative import substituted
 from tests.helpers.rx90 import PUBLISHED, rx90
@@ -81,7 +84,7 @@ joint = { kind = "revolute", at = "B", angle = "q2" }
 
 def rank_by_orthogonalization(found: Regressor) -> int:
     """The rank of Y at other states, 45 digits, the longest column first: another way than elimination."""
-    W = sampled_rows(found.system, found.rows, range(len(found.parameters)), 7)
+    W, _ = sampled_rows(found.system, found.rows, range(len(found.parameters)), 7)
     with mpmath.workdps(45):
         columns = [[mpmath.mpf(str(x)) for x in column] for column in W.T]
         columns = [[x / max(map(abs, column)) for x in column] for column in columns if max(map(abs, column)) > 1e-30]
@@ -180,6 +183,54 @@ def test_a_parallelogram_tells_three_groups():
     expected = {"mx(left)": 1, "m(coupler)": l, "mx(right)": 1}
     assert groups["mx(left)"] == pytest.approx(expected) and d
     assert groups["my(left)"] == pytest.approx({"my(left)": 1, "my(right)": 1})
+
+
+@pytest.mark.slow
+def test_a_loop_tells_its_groups_as_formulas_of_its_lengths():
+    """By hand: the coupler is two particles at its pins and a moment of inertia; slider-crank and delta robot alike."""
+    four = {g.name: g.formula for g in eomgen.regressor(MODELS / "four_bar.toml").base.groups}
+    assert four["Izz(crank)"] == "Izz(crank) - a^2/b*mx(coupler) + a^2*m(coupler)"
+    assert (
+        four["mx(rocker)"] == "mx(rocker) + c/b*mx(coupler)" and four["Izz(coupler)"] == "Izz(coupler) - b*mx(coupler)"
+    )
+    tied = eomgen.regressor(eomgen.loads(FOUR_BAR)).base
+    assert tied.arithmetic == "50 digits"
+    assert {g.name: g.formula for g in tied.groups if "coupler" in g.formula} == {
+        name: text for name, text in four.items() if "coupler" in text
+    }
+    slider = {g.name: g.formula for g in eomgen.regressor(MODELS / "slider_crank.toml").base.groups}
+    assert slider["m(piston)"] == "m(piston) + 1/l*mx(rod)"
+    delta = {g.name: g.formula for g in eomgen.regressor(MODELS / "delta_robot.toml").base.groups}
+    assert delta["Iyy(arm1)"] == "Iyy(arm1) - L^2/l^2*Iyy(forearm1) + L^2*m(forearm1) + armature(arm1)"
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("name", ["four_bar", "slider_crank", "delta_robot", "n_four_bar"])
+def test_formulas_of_groups_hold_for_other_lengths(name):
+    """Put at other lengths they are the factors that elimination in numbers finds there."""
+    model = eomgen.load(MODELS / f"{name}.toml")
+    formulas = {g.name: g.terms for g in eomgen.regressor(model).base.groups}
+    other = {p: 1.07 * float(x) for p, x in exact_parameters(model).items() if p.lower() in ("a", "b", "l", "r")}
+    assert other
+    changed = eomgen.regressor(with_values(model, other, {}).model).base
+    values = {sympy.Symbol(p): float(x) for p, x in {**exact_parameters(model), **other}.items()}
+    for group in changed.groups:
+        assert formulas[group.name].keys() == group.numbers.keys()
+        for parameter, text in formulas[group.name].items():
+            worth = float(sympy.sympify(text.replace("^", "**"), locals={str(p): p for p in values}).subs(values))
+            assert worth == pytest.approx(group.numbers[parameter], rel=1e-12)
+
+
+@pytest.mark.slow
+def test_without_data_identify_says_what_motions_tell_apart():
+    """The groups, and what no force depends on; in JSON with the factors at the model's lengths."""
+    found = CliRunner().invoke(main, ["identify", str(MODELS / "four_bar.toml"), "--json"])
+    told = json.loads(found.stdout)
+    assert found.exit_code == 0 and told["without_effect"] == ["m(crank)", "m(rocker)"]
+    assert told["base"]["mx(crank)"]["formula"] == "mx(crank) - a/b*mx(coupler) + a*m(coupler)"
+    assert told["base"]["mx(crank)"]["factors"]["m(coupler)"] == 0.4
+    text = CliRunner().invoke(main, ["identify", str(MODELS / "four_bar.toml")]).stdout
+    assert "8 base parameters of 12" in text and "Without effect: m(crank), m(rocker)." in text
 
 
 def data_of(model: Any, time: float, samples: int) -> dict[str, np.ndarray]:

@@ -18,6 +18,7 @@ from typing import Any
 
 from eomgen.errors import DerivationError
 from eomgen.identification.base_parameters import BaseParameters, base_of
+from eomgen.identification.transfers import MOMENTS, PLACES, named_entries
 from eomgen.mechanics.balance.friction import has_friction
 from eomgen.mechanics.bodies.armature import given_inertia, joint_row
 from eomgen.mechanics.bodies.inertia import mass_properties
@@ -45,8 +46,6 @@ from eomgen.symbolic.expression.spatial import (
 
 SPACE = ("Izz", "Ixx", "Ixy", "Izx", "Iyz", "mx", "my", "Iyy", "mz", "m")
 PLANE = ("Izz", "mx", "my", "m")
-PLACES = {"Ixx": (0, 0), "Iyy": (1, 1), "Izz": (2, 2), "Ixy": (0, 1), "Iyz": (1, 2), "Izx": (0, 2)}
-MOMENTS = {"mx": 0, "my": 1, "mz": 2}
 OF_JOINTS = ("armature", "damping", "stiffness")
 
 
@@ -150,11 +149,12 @@ def _bodies(system: System) -> Iterator[Column]:
         rates = [sum((b * x for b, x in zip(row, a, strict=True)), start=alpha[r]) for r, row in enumerate(B)]
         up = apply(transposed(link.pose.R), system.loads.fields)
         A = Twist(vector_of(rates[:3]), minus(vector_of(rates[3:]), up))
+        values = named_entries(own)
         for name in names:
             wrench = _force(_unit(name), A, link.twist)
             entries = (*wrench.tau, *wrench.f)
             column = tuple(sum((B[r][k] * entries[r] for r in range(6)), start=0) for k in range(len(a)))
-            yield f"{name}({link.name})", _value(own, name), column
+            yield f"{name}({link.name})", values[name], column
 
 
 def _unit(name: str) -> SpatialInertia:
@@ -167,15 +167,6 @@ def _unit(name: str) -> SpatialInertia:
     elif name in MOMENTS:
         h[MOMENTS[name]] = 1
     return SpatialInertia(int(name == "m"), vector_of(h), tuple(map(tuple, I)))  # type: ignore[arg-type]
-
-
-def _value(own: SpatialInertia, name: str) -> Scalar:
-    """A parameter of a body."""
-    if name in PLACES:
-        i, j = PLACES[name]
-        found: Scalar = own.I[i][j]
-        return found
-    return own.m if name == "m" else own.h[MOMENTS[name]]
 
 
 def _force(inertia: SpatialInertia, A: Twist, xi: Twist) -> Wrench:

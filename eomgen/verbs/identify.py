@@ -9,10 +9,11 @@ from typing import Any
 import numpy as np
 
 from eomgen.documents.document import Document, plain_document
-from eomgen.documents.statements import Lines
+from eomgen.documents.statements import Lines, prose
 from eomgen.errors import UsageError
 from eomgen.files import read
 from eomgen.identification.fit import Identified, identify
+from eomgen.identification.regressor import Regressor, regressor
 from eomgen.model.parts import Model
 
 LARGEST = 200_000_000  # bytes of a file
@@ -23,12 +24,14 @@ BIASED = (
 POOR = 100.0  # a condition number beyond which parameters are hardly told apart
 
 
-def identify_document(model: Model, *, data: str) -> Document:
-    """The parameters that fit a measured motion.
+def identify_document(model: Model, *, data: str | None = None) -> Document:
+    """The parameters that fit a measured motion; without one the groups of them that motions tell apart.
 
     Raises:
         UsageError: the file holds no samples of the coordinates.
     """
+    if data is None:
+        return _groups_told(regressor(model))
     found = identify(model, columns_of(data))
     width = max(map(len, (*found.base, *found.values)), default=0)
     poor = f" (poor: beyond {POOR:g})" if found.condition > POOR else ""
@@ -47,6 +50,28 @@ def identify_document(model: Model, *, data: str) -> Document:
     ]
     document = plain_document(model, lambda: _entries(found), Lines(tuple(lines)))
     return replace(document, notes=(*document.notes, *([BIASED] if found.biased else [])))
+
+
+def _groups_told(found: Regressor) -> Document:
+    """The base parameters of any motion."""
+    base = found.base
+    width = max((len(group.name) for group in base.groups), default=0)
+    lines = [
+        f"{len(base)} base parameters of {len(found.parameters)} parameters, as many as the rank of Y in "
+        f"tau + J^T lam = Y pi + y0 ({base.arithmetic})",
+        "",
+        *(f"    {group.name:{width}}  {group.formula}" for group in base.groups),
+        "",
+    ]
+    rest = [prose(f"Without effect: {', '.join(base.without_effect)}.")] if base.without_effect else []
+    entries = {
+        "name": found.model.name,
+        "parameters": list(found.parameters),
+        "base": {group.name: {"formula": group.formula, "factors": group.numbers} for group in base.groups},
+        "without_effect": list(base.without_effect),
+        "arithmetic": base.arithmetic,
+    }
+    return plain_document(found.model, lambda: entries, Lines(tuple(lines)), *rest)
 
 
 def _shift(found: Identified, name: str) -> str:

@@ -1,0 +1,125 @@
+"""System -> rows of Y at states that keep the ties, along the motions that these allow, with 50 digits."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from random import Random
+from typing import Any
+
+import numpy as np
+
+from eomgen.mechanics.constraints.closure import gaps_of, generic_state, movable, norms_of
+from eomgen.mechanics.equations.system import System
+from eomgen.model.values import exact_parameters
+from eomgen.symbolic.expression.derivative import jacobian
+from eomgen.symbolic.expression.node import ScalarRow, State
+from eomgen.symbolic.expression.rational import Fraction
+from eomgen.symbolic.numeric.evaluation import evaluate, fifty_digits
+from eomgen.symbolic.numeric.tolerances import FOLLOWS_AT_50
+
+MORE = 6  # beyond its columns
+FAR = (0.4,)  # from the start, of states at which columns are told apart: near to it they are nearly one
+STEPS = 3  # of Newton's method from a root with 30 digits: each doubles them
+
+
+def sampled_rows(
+    system: System, rows: Sequence[ScalarRow], columns: Sequence[int], seed: int
+) -> tuple[np.ndarray, State]:
+    """(W at generic states that keep the ties, along the motions that these allow, the last of these); 50 digits."""
+    parts: list[np.ndarray] = []
+    have = 0
+    for state, along in tied_states(system, Random(seed)):
+        parts.append(columns_along(system, rows, columns, state, along))
+        have += len(along)
+        if not len(along) or have >= len(columns) + MORE:
+            break
+    return np.vstack(parts) if have else np.zeros((0, len(columns)), dtype=object), state
+
+
+def columns_along(
+    system: System, rows: Sequence[ScalarRow], columns: Sequence[int], state: State, along: np.ndarray
+) -> np.ndarray:
+    """Columns of Y at a state along the motions that the ties allow."""
+    entries = tuple(row[j] for row in rows for j in columns)
+    Y = np.array(evaluate(entries, state, fifty_digits()), dtype=object).reshape(len(rows), len(columns))
+    found: np.ndarray = along.dot(Y)
+    return found
+
+
+def tied_states(system: System, rng: Random, *, shaken: bool = False) -> Iterator[tuple[State, np.ndarray]]:
+    """(a generic state that keeps the ties, the motions that they allow there), without end."""
+    symbols, ties = system.symbols, system.ties
+    size = len(symbols.u)
+    J = tuple(x for row in ties.J for x in row)
+    exact = {} if shaken else exact_parameters(system.scope.model)
+    given = {symbols.parameters[name]: in_50_digits(x) for name, x in exact.items()}
+    while True:
+        state = _closed_to_the_last_digit(system, generic_state(ties, rng, shaken=shaken, spreads=FAR) | given)
+        numbers = np.array(evaluate((*J, *ties.sigma), state, fifty_digits()), dtype=object)
+        there, sigma = numbers[: len(J)].reshape(-1, size), numbers[len(J) :]
+        along, u = _allowed(there, sigma, size, rng)
+        state = state | dict(zip(symbols.u, u, strict=True))
+        gamma = np.array(evaluate(ties.gamma, state, fifty_digits()), dtype=object)
+        _, a = _allowed(there, gamma, size, rng)
+        yield state | dict(zip(symbols.a, a, strict=True)), along
+
+
+def _closed_to_the_last_digit(system: System, state: State) -> State:
+    """A state whose gaps are closed, by Newton's method with 50 digits; of gaps that follow from others any."""
+    gaps, free = (*gaps_of(system.ties), *norms_of(system.ties)), movable(system.ties)
+    if not gaps:
+        return state
+    slopes = tuple(x for row in jacobian(gaps, free) for x in row)
+    for _ in range(STEPS):
+        found = np.array(evaluate((*slopes, *gaps), state, fifty_digits()), dtype=object)
+        S, phi = found[: len(slopes)].reshape(-1, len(free)), found[len(slopes) :]
+        step = _allowed(S, phi, len(free), None)[1]
+        state = state | {q: state[q] + d for q, d in zip(free, step, strict=True)}
+    return state
+
+
+def _allowed(J: np.ndarray, right: np.ndarray, size: int, rng: Random | None) -> tuple[np.ndarray, list[Any]]:
+    """(a motion that the ties allow in each row, an x with J x + right = 0, random where it is free)."""
+    number = fifty_digits().number
+    kept, K = echelon_in_digits(J, right)
+    free = [j for j in range(size) if j not in kept]
+    along = np.full((len(free), size), number(0), dtype=object)
+    for row, j in enumerate(free):
+        along[row, j] = number(1)
+        for i in kept:
+            along[row, i] = -K.get((i, j), number(0))
+    pushed = [number(Fraction(rng.randrange(-1000, 1000), 1000) if rng else 0) for _ in free]
+    x = [sum((p * row[k] for p, row in zip(pushed, along, strict=True)), start=number(0)) for k in range(size)]
+    for i in kept:
+        x[i] = x[i] - K.get((i, size), number(0))
+    return along, x
+
+
+def echelon_in_digits(W: np.ndarray, right: np.ndarray | None = None) -> tuple[list[int], dict[tuple[int, int], Any]]:
+    """As `_echelon_form`, of numbers with 50 digits; of a right side the solution, as one more column."""
+    width = W.shape[1]
+    if not len(W):
+        return [], {}
+    left = W.copy() if right is None else np.column_stack([W, right])
+    kept: list[int] = []
+    K: dict[tuple[int, int], Any] = {}
+    for j in range(width):
+        r = len(kept)
+        pivot = max(range(r, len(left)), key=lambda i: abs(left[i, j]), default=None)
+        if pivot is None or not abs(left[pivot, j]) > FOLLOWS_AT_50:
+            K |= {(kept[i], j): left[i, j] for i in range(r) if abs(left[i, j]) > FOLLOWS_AT_50}
+            continue
+        left[[r, pivot]] = left[[pivot, r]]
+        left[r] = left[r] / left[r, j]
+        for i in range(len(left)):
+            if i != r and left[i, j] != 0:
+                left[i] = left[i] - left[i, j] * left[r]
+        kept.append(j)
+    if right is not None:
+        K |= {(kept[i], width): left[i, width] for i in range(len(kept))}
+    return kept, K
+
+
+def in_50_digits(x: Any) -> Any:
+    """An exact number, or one that has as many digits already."""
+    return fifty_digits().number(x) if isinstance(x, Fraction | int) else fifty_digits().number(1) * x
