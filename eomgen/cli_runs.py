@@ -202,6 +202,7 @@ def sweep_command(where: str, wants_json: bool, output: str | None, strict: bool
 
 @VERB("identify")
 @with_form
+@CERTIFY
 @click.option(
     "--data",
     type=click.Path(exists=True, dir_okay=False),

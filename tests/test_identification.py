@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
@@ -15,7 +16,9 @@ from click.testing import CliRunner
 import eomgen
 from eomgen.cli import main
 from eomgen.errors import DerivationError, EomgenError, UsageError
+from eomgen.identification.base_parameters import Group
 from eomgen.identification.fit import noise_of
+from eomgen.identification.proof_of_groups import fit_checked
 from eomgen.identification.regressor import Regressor, regressor_of
 from eomgen.identification.tied_rows import sampled_rows
 from eomgen.model.replaced import with_values
@@ -336,3 +339,40 @@ def test_friction_of_a_contact_has_no_regressor():
     """Its normal force depends on the parameters."""
     with pytest.raises(DerivationError, match="not linear in the parameters"):
         eomgen.regressor(MODELS / "rough_incline.toml")
+
+
+def _fails(found: Regressor) -> list[str]:
+    return [check.name.split()[0] for check in found.certify().checks if check.ok is False]
+
+
+@pytest.mark.parametrize("name", ["four_bar", "arm3"])
+def test_wrong_groups_and_wrong_regressors_are_contradicted(name: str) -> None:
+    """A factor that is off, a text of another factor, a column of Y and a parameter's value: each by its own check."""
+    found = eomgen.regressor(MODELS / f"{name}.toml")
+    assert found.certify().ok
+    k, group = next((k, g) for k, g in enumerate(found.base.groups) if len(g.terms) > 1)
+    *_, last = group.terms
+    wrong = {
+        "base": Group(group.name, group.terms, {**group.numbers, last: 1.01 * group.numbers[last]}),
+        "formulas": Group(group.name, {**group.terms, last: f"-({group.terms[last]})"}, group.numbers),
+    }
+    for said, other in wrong.items():
+        groups = (*found.base.groups[:k], other, *found.base.groups[k + 1 :])
+        planted = replace(found)
+        planted.__dict__["base"] = replace(found.base, groups=groups)
+        assert said in _fails(planted)
+    rows = ((2 * found.rows[0][0], *found.rows[0][1:]), *found.rows[1:])
+    assert _fails(replace(found, rows=rows))[0] == "Y"
+    assert "Y" in _fails(replace(found, values=(found.values[0] + 1, *found.values[1:])))
+
+
+@pytest.mark.slow
+def test_a_fit_is_proven_too():
+    """That no base parameter could take more of what is left; a coefficient that is off is seen."""
+    found = eomgen.identify(eomgen.loads(TWO_LINKS), data_of(eomgen.loads(TWO_LINKS), 3, 200))
+    assert found.certify().ok and found.certify().checks[-1].name.startswith("the fit leaves nothing")
+    rng = np.random.default_rng(2)
+    W, beta = rng.normal(size=(50, 4)), np.array([1.0, -2.0, 3.0, 0.5])
+    b = W @ beta + 0.1 * rng.normal(size=50)
+    best = np.linalg.lstsq(W, b, rcond=None)[0]
+    assert fit_checked(W, b, best).ok and not fit_checked(W, b, best * (1 + 1e-6)).ok

@@ -26,10 +26,12 @@ from eomgen.codegen.program import program_of
 from eomgen.codegen.rhs import compiled, parameter_vector
 from eomgen.errors import UsageError
 from eomgen.identification.consistent import numbers_of, parameters_of
+from eomgen.identification.proof_of_groups import fit_checked
 from eomgen.identification.regressor import Regressor, regressor_of
 from eomgen.mechanics.equations.work import generalized_forces
 from eomgen.model.reader import ModelOrPath, model_at
 from eomgen.pipeline import derive
+from eomgen.proof.check import Certificate, Check
 from eomgen.records import dataclass
 from eomgen.symbolic.expression.derivative import substituted
 from eomgen.symbolic.expression.symbols import Symbols
@@ -54,6 +56,7 @@ class Identified:
         consistent_residual: the same with `values`.
         bias: of each base parameter how far noise has moved it, about, by the rates of what was measured; nothing where
             all rates were.
+        fit: whether least squares found the best.
     """
 
     regressor: Regressor
@@ -64,6 +67,11 @@ class Identified:
     residual: float
     consistent_residual: float
     bias: Mapping[str, float] = field(default_factory=dict)
+    fit: tuple[Check, ...] = ()
+
+    def certify(self) -> Certificate:
+        """The proof of the regressor and its groups, and that least squares left nothing that they could take."""
+        return self.regressor.certify() + self.fit
 
     @property
     def biased(self) -> tuple[str, ...]:
@@ -130,6 +138,7 @@ def identify(model: ModelOrPath, data: Data) -> Identified:
         float(np.sqrt(np.mean(left**2))),
         float(np.sqrt(np.mean(again**2))),
         dict(zip(formulas, shifts, strict=True)) if shifts else {},
+        (fit_checked(W, stacked.b, beta / lengths),),
     )
 
 

@@ -18,6 +18,7 @@ from typing import Any
 
 from eomgen.errors import DerivationError
 from eomgen.identification.base_parameters import BaseParameters, base_of
+from eomgen.identification.proof_of_groups import certify_regressor
 from eomgen.identification.transfers import MOMENTS, PLACES, named_entries
 from eomgen.mechanics.balance.friction import has_friction
 from eomgen.mechanics.bodies.armature import given_inertia, joint_row
@@ -28,6 +29,7 @@ from eomgen.model.forces.load import UniformField
 from eomgen.model.parts import Model
 from eomgen.model.reader import ModelOrPath
 from eomgen.pipeline import derive
+from eomgen.proof.check import Certificate
 from eomgen.records import dataclass
 from eomgen.symbolic.expression.derivative import depends_on, gradient, substituted
 from eomgen.symbolic.expression.graph import Node, Scalar, is_zero
@@ -88,6 +90,10 @@ class Regressor:
     def base(self) -> BaseParameters:
         """The groups of parameters that the forces tell apart."""
         return base_of(self.system, self.parameters, self.rows)
+
+    def certify(self) -> Certificate:
+        """The proof of Y, of the groups and of their formulas, on that of the equations of motion."""
+        return certify_regressor(self)
 
     @property
     def blocks(self) -> dict[str, tuple[ScalarRow, ...]]:

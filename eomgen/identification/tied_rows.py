@@ -10,7 +10,7 @@ import numpy as np
 
 from eomgen.mechanics.constraints.closure import gaps_of, generic_state, movable, norms_of
 from eomgen.mechanics.equations.system import System
-from eomgen.model.values import exact_parameters
+from eomgen.mechanics.initial_state.values_at_rest import values_of_parameters
 from eomgen.symbolic.expression.derivative import jacobian
 from eomgen.symbolic.expression.node import ScalarRow, State
 from eomgen.symbolic.expression.rational import Fraction
@@ -51,8 +51,7 @@ def tied_states(system: System, rng: Random, *, shaken: bool = False) -> Iterato
     symbols, ties = system.symbols, system.ties
     size = len(symbols.u)
     J = tuple(x for row in ties.J for x in row)
-    exact = {} if shaken else exact_parameters(system.scope.model)
-    given = {symbols.parameters[name]: in_50_digits(x) for name, x in exact.items()}
+    given = {} if shaken else values_of_parameters(system.scope, None)
     while True:
         state = _closed_to_the_last_digit(system, generic_state(ties, rng, shaken=shaken, spreads=FAR) | given)
         numbers = np.array(evaluate((*J, *ties.sigma), state, fifty_digits()), dtype=object)

@@ -9,6 +9,7 @@ from typing import Any
 import numpy as np
 
 from eomgen.documents.document import Document, plain_document
+from eomgen.documents.proven import proven
 from eomgen.documents.statements import Lines, prose
 from eomgen.errors import UsageError
 from eomgen.files import read
@@ -24,14 +25,15 @@ BIASED = (
 POOR = 100.0  # a condition number beyond which parameters are hardly told apart
 
 
-def identify_document(model: Model, *, data: str | None = None) -> Document:
+def identify_document(model: Model, *, data: str | None = None, certify: bool = True) -> Document:
     """The parameters that fit a measured motion; without one the groups of them that motions tell apart.
 
     Raises:
         UsageError: the file holds no samples of the coordinates.
     """
     if data is None:
-        return _groups_told(regressor(model))
+        groups = regressor(model)
+        return proven(_groups_told(groups), groups.certify() if certify else None)
     found = identify(model, columns_of(data))
     width = max(map(len, (*found.base, *found.values)), default=0)
     poor = f" (poor: beyond {POOR:g})" if found.condition > POOR else ""
@@ -49,7 +51,8 @@ def identify_document(model: Model, *, data: str | None = None) -> Document:
         *(f"    {name:{width}}  {x:.9g}" for name, x in found.values.items()),
     ]
     document = plain_document(model, lambda: _entries(found), Lines(tuple(lines)))
-    return replace(document, notes=(*document.notes, *([BIASED] if found.biased else [])))
+    document = replace(document, notes=(*document.notes, *([BIASED] if found.biased else [])))
+    return proven(document, found.certify() if certify else None)
 
 
 def _groups_told(found: Regressor) -> Document:

@@ -65,6 +65,10 @@ kind = "spring"
 points = ["O", "arm.end"]
 stiffness = "k"
 length = "l/3"
+[forces.oil]
+kind = "torsion_damper"
+bodies = ["table", "arm"]
+damping = "b/2"
 """,
     "space": """
 eomgen = 1
@@ -193,6 +197,7 @@ CALLS = {
         *("kinetic_energy()", "kinetic_energy(arm)", "potential_energy()", "potential_energy(weight)"),
         *("power()", "power(string)", "power(weight)", "power(arm)"),
         *("generalized_force(x)", "generalized_force(q)", "momentum(x)", "momentum(q)", "drive(psi)"),
+        *("pull(string)", "couple(oil)"),
         *("reaction_x(arm)", "reaction_y(arm, arm)", "reaction_couple(slide)", "mass_of(arm)"),
         *(f"principal_moment(arm.center, {n}, arm)" for n in (1, 2, 3)),
         *("inertia_point(O)", "inertia_axis(O, z, arm, slide)", "angular_momentum_z(O)"),

@@ -1,0 +1,112 @@
+"""Regressor, fit -> whether they are what they claim, by the equations of motion and by numbers that share nothing.
+
+Y pi + y0 = M a + c - Q without inputs              exactly
+Y pi = Y_base K pi                                  of any pi, at states that keep the ties, along their motions
+factor as printed, read back = its number
+W^T (b - W beta) = 0                                of the samples: nothing of what is left is along a column
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from functools import partial
+from itertools import islice
+from random import Random
+from typing import Any, Protocol
+
+import numpy as np
+
+from eomgen.certificate import certify
+from eomgen.identification.base_parameters import BaseParameters, Group
+from eomgen.identification.tied_rows import columns_along, in_50_digits, tied_states
+from eomgen.mechanics.balance.friction import equations_of_motion
+from eomgen.mechanics.equations.equations_of_motion import EquationsOfMotion
+from eomgen.mechanics.equations.system import System
+from eomgen.mechanics.initial_state.values_at_rest import values_of_parameters
+from eomgen.proof.check import Certificate, Check, Tally, attempted, checked
+from eomgen.symbolic.exact.equality import equal_at_random_states
+from eomgen.symbolic.expression.derivative import substituted
+from eomgen.symbolic.expression.expressions import parse
+from eomgen.symbolic.expression.node import ScalarRow
+from eomgen.symbolic.expression.rational import Fraction
+from eomgen.symbolic.numeric.evaluation import evaluate, fifty_digits
+from eomgen.symbolic.numeric.tolerances import COMPUTED
+
+SEED, STATES = 11, 3  # others than those at which the groups were found
+
+
+class LinearForces(Protocol):
+    """tau + J^T lam = Y pi + y0, and its groups."""
+
+    @property
+    def system(self) -> System: ...
+    @property
+    def parameters(self) -> tuple[str, ...]: ...
+    @property
+    def rows(self) -> tuple[ScalarRow, ...]: ...
+    @property
+    def tau(self) -> ScalarRow: ...
+    @property
+    def base(self) -> BaseParameters: ...
+
+
+def certify_regressor(found: LinearForces) -> Certificate:
+    """Of the regressor and its groups, on the proof of the equations of motion."""
+    equations = equations_of_motion(found.system)
+    name = "Y pi + y0 are the forces that motions take"
+    checks = [attempted(name, "prime field, or 50 digits", partial(_other_forces, found, equations))]
+    checks += _groups(found)
+    return Certificate((*certify(equations).checks, *checks))
+
+
+def _other_forces(found: LinearForces, equations: EquationsOfMotion) -> str:
+    """Y pi + y0 against M a + c - Q."""
+    symbols, rows = equations.symbols, zip(equations.M, equations.c, equations.Q, strict=True)
+    needed = tuple(sum((m * a for m, a in zip(row, symbols.a, strict=True)), start=c - Q) for row, c, Q in rows)
+    needed = substituted(needed, dict.fromkeys(symbols.inputs.values(), 0))
+    verdict = equal_at_random_states(list(zip(found.tau, needed, strict=True)))
+    return "" if verdict.equal else f"row {(verdict.culprit or 0) + 1} is another force"
+
+
+def _groups(found: LinearForces) -> Iterator[Check]:
+    """Y pi against Y_base K pi, and the texts of K."""
+    tally = Tally("base parameters give the forces that all parameters give", "50 digits, any parameters")
+    for k, (state, along) in enumerate(islice(tied_states(found.system, Random(SEED)), STATES)):
+        tally.add(f"state {k + 1}", partial(_another_force, found, state, along, Random(SEED + k)))
+    yield from tally.checks()
+    tally = Tally("formulas of base parameters, read back, give their numbers", "our grammar, 50 digits")
+    for group in found.base.groups:
+        tally.add(group.name, partial(_misread, found, group))
+    yield from tally.checks()
+
+
+def _another_force(found: LinearForces, state: Any, along: np.ndarray, rng: Random) -> str:
+    Y = columns_along(found.system, found.rows, range(len(found.parameters)), state, along)
+    pi = [in_50_digits(Fraction(rng.randrange(-999, 1000), 100)) for _ in found.parameters]
+    value = dict(zip(found.parameters, pi, strict=True))
+    base = [sum(in_50_digits(f) * value[p] for p, f in group.numbers.items()) for group in found.base.groups]
+    leads = [found.parameters.index(group.name) for group in found.base.groups]
+    for row in Y:
+        whole, short = sum(row * pi), sum(row[leads] * base)
+        size = sum(map(abs, row * pi))
+        if abs(whole - short) > COMPUTED * size:
+            return f"{float(short):.10g} for {float(whole):.10g}"
+    return ""
+
+
+def _misread(found: LinearForces, group: Group) -> str:
+    scope = found.system.scope
+    read = tuple(scope.value(parse(text)) for text in group.terms.values())
+    values = evaluate(read, values_of_parameters(scope, None), fifty_digits())
+    for (parameter, text), worth in zip(group.terms.items(), values, strict=True):
+        if abs(worth - group.numbers[parameter]) > COMPUTED * (1 + abs(worth)):
+            return f"{text} of {parameter} is {float(worth):.10g}, not {group.numbers[parameter]:.10g}"
+    return ""
+
+
+def fit_checked(W: np.ndarray, b: np.ndarray, beta: np.ndarray) -> Check:
+    """Of least squares: what is left is at right angles to every column."""
+    left, size = b - W @ beta, np.linalg.norm(W, axis=0) * (np.linalg.norm(b) + np.linalg.norm(W @ beta))
+    worst = float(np.max(np.abs(W.T @ left) / np.where(size > 0, size, 1), initial=0.0))
+    wrong = "" if worst <= COMPUTED else f"what is left of the forces lies along a column by {worst:.1e}"
+    return checked("the fit leaves nothing that a base parameter could take", wrong, "floating point, all samples")
