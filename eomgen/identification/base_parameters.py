@@ -23,7 +23,7 @@ from typing import Any
 
 import numpy as np
 
-from eomgen.identification.factors import Dependence, by_transfers
+from eomgen.identification.factors import Dependence, by_transfers, number_text
 from eomgen.identification.tied_rows import MORE, echelon_in_digits, in_50_digits, sampled_rows
 from eomgen.mechanics.equations.system import System
 from eomgen.model.values import exact_parameters
@@ -34,7 +34,7 @@ from eomgen.symbolic.expression.graph import Node, Scalar, is_zero
 from eomgen.symbolic.expression.node import ScalarRow
 from eomgen.symbolic.expression.rational import Fraction
 from eomgen.symbolic.numeric.evaluation import PRIME, PRIME_FIELD, NoMeaning, NoValue, evaluate
-from eomgen.symbolic.numeric.tolerances import FOLLOWS_AT_50, ROUNDED_AWAY, SAME_EIGENVALUE
+from eomgen.symbolic.numeric.tolerances import FOLLOWS_AT_50, ROUNDED_AWAY
 
 MOST_LENGTHS = 8  # of a formula: more have too many monomials
 
@@ -262,14 +262,9 @@ def _grouped(
         values: dict[str, float] = {leader: 1.0}
         for (k, j), value in found.K.items():
             if k == i:
-                own[names[moving[j]]] = texts.get((k, j)) or _number(float(value))
+                own[names[moving[j]]] = texts.get((k, j)) or number_text(value)
                 values[names[moving[j]]] = float(value)
         groups.append(Group(leader, own, values))
     still = tuple(name for j, name in enumerate(names) if j not in set(moving))
     seen = {parameter for group in groups for parameter in group.terms}
     return BaseParameters(tuple(groups), (*still, *(names[j] for j in moving if names[j] not in seen)), arithmetic)
-
-
-def _number(value: float) -> str:
-    near = Fraction(value).limit_denominator(1000)
-    return str(near) if abs(float(near) - value) < SAME_EIGENVALUE * max(1.0, abs(value)) else f"{value:.10g}"

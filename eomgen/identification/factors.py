@@ -123,6 +123,12 @@ class Reduced:
         return True
 
 
+def number_text(x: Any) -> str:
+    """A factor that no formula is known of."""
+    near = _plain(x)
+    return f"{float(x):.10g}" if near is None else str(near)
+
+
 def _plain(x: Any) -> Fraction | None:
     """The number with small numerator and denominator that it surely is."""
     if isinstance(x, Fraction | int):
