@@ -15,7 +15,6 @@ Numerical calculation of the base inertial parameters of robots, 1991.
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from contextlib import suppress
 from itertools import combinations_with_replacement
 from math import isqrt, prod
 from random import Random
@@ -98,34 +97,38 @@ class BaseParameters:
 def base_of(system: System, names: Sequence[str], rows: Sequence[ScalarRow], seed: int = 1) -> BaseParameters:
     """The base parameters of a regressor."""
     moving = [j for j in range(len(names)) if not all(is_zero(row[j]) for row in rows)]
-    kept: list[int] | None = None
-    arithmetic = PRIME_FIELD.name
-    formulas: dict[tuple[int, int], LengthTerms] = {}
-    if not system.ties.closing and not system.scope.quaternions:
-        with suppress(NoMeaning, NoValue, ValueError):  # a root, a sign or a curve that the field has no value of
-            kept, formulas = _in_field(system, rows, moving, seed)
-    if kept is None or (found := _numbers(system, rows, moving, seed, kept)).kept != kept:
-        arithmetic, formulas, found = "50 digits", {}, _numbers(system, rows, moving, seed)
-    here = {x.name: value for x, value in found.state.items() if x.name in system.symbols.parameters}
-    texts = {place: _polynomial(terms) for place, terms in formulas.items()}
-    same = (_agree(found.K.get(place, 0), terms, here) for place, terms in formulas.items())
-    if texts.keys() != found.K.keys() or not all(same):
-        texts = by_transfers(system, names, rows, moving, found)
-    return _grouped(names, moving, found, texts, arithmetic)
+    entries = tuple(row[j] for row in rows for j in moving)
+    kept = None if system.ties.closing or system.scope.quaternions else _kept_in_field(system, entries, moving, seed)
+    found = _numbers(system, rows, moving, seed, kept or ())
+    exact = found.kept == kept
+    if kept is not None and not exact:
+        found = _numbers(system, rows, moving, seed)
+    texts = by_transfers(system, names, rows, moving, found)
+    if exact and not texts:
+        texts = _polynomials(system, entries, found, len(moving), seed)
+    return _grouped(names, moving, found, texts, PRIME_FIELD.name if exact else "50 digits")
 
 
-def _in_field(
-    system: System, rows: Sequence[ScalarRow], moving: list[int], seed: int
-) -> tuple[list[int], dict[tuple[int, int], LengthTerms]]:
-    """(the columns that stay, the others by them where these are polynomials) by random points of the prime field."""
+def _kept_in_field(system: System, entries: ScalarRow, moving: list[int], seed: int) -> list[int] | None:
+    """The columns that stay, by random points of the prime field; None: it has no value of a root, a sign, a curve."""
     own = {system.symbols.parameters[name]: x for name, x in exact_parameters(system.scope.model).items()}
-    values = {node: Fraction(x) for node, x in own.items()}
-    entries = [rows[k][j] for k in range(len(rows)) for j in moving]
-    W = _sampled(system, substituted(tuple(entries), values), len(moving), seed)
-    kept, _ = _echelon_form(W)
+    try:
+        W = _sampled(system, substituted(entries, {x: Fraction(own[x]) for x in own}), len(moving), seed)
+    except (NoMeaning, NoValue, ValueError):
+        return None
+    return _echelon_form(W)[0]
+
+
+def _polynomials(
+    system: System, entries: ScalarRow, found: Dependence, width: int, seed: int
+) -> dict[tuple[int, int], str]:
+    """The factors as polynomials in the lengths; {} where they are none, or are not worth their numbers."""
     lengths = [node for node in system.symbols.parameters.values() if node in set(symbols_of(entries))]
     few = len(lengths) <= MOST_LENGTHS
-    return kept, _formulas(system, tuple(entries), lengths, kept, len(moving), seed) if few else {}
+    formulas = _formulas(system, entries, lengths, found.kept, width, seed) if few else {}
+    values = {x.name: value for x, value in found.state.items() if x in lengths}
+    same = (_agree(found.K.get(place, 0), terms, values) for place, terms in formulas.items())
+    return {place: _polynomial(terms) for place, terms in formulas.items()} if all(same) else {}
 
 
 def _agree(number: Any, terms: LengthTerms, values: Mapping[str, Any]) -> bool:

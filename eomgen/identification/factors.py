@@ -99,7 +99,7 @@ def _of_columns(transfers: Iterable[Transfer], place: Mapping[str, int]) -> Iter
 def _vanishes(W: np.ndarray, by: Sequence[Any]) -> bool:
     """Whether a combination of columns is 0."""
     terms = W * np.array(by, dtype=object)
-    return all(abs(sum(row)) <= FOLLOWS_AT_50 * max(map(abs, row)) for row in terms)
+    return not terms.size or max(map(abs, terms.sum(axis=1))) <= FOLLOWS_AT_50 * max(map(abs, terms.flat))
 
 
 @dataclass(frozen=True)
