@@ -418,3 +418,40 @@ def test_bodies_with_one_middle_have_their_names_at_their_rims(name: str):
         mark.of: at.spot(mark.form.at, mark)[0] for mark in pendulum.marks_of_kind("label") if mark.role == "label"
     }
     assert all(np.array_equal(kept[of], middles[of]) for of in kept)
+
+
+HUNG = """
+eomgen = 1
+space = "plane"
+parameters = { m = 2, k = 50, c = 3, g = 9.81 }
+coordinates = { y = 0 }
+points = { O = [0, 0] }
+[bodies.load]
+mass = "m"
+joint = { kind = "prismatic", at = [0, -1], axis = [0, 1], displacement = "y" }
+[forces]
+weight = { kind = "gravity", acceleration = [0, "-g"] }
+spring = { kind = "spring", points = ["O", "load.origin"], stiffness = "k", length = 0.6 }
+damper = { kind = "damper", points = ["load.origin", "O"], damping = "c" }
+"""
+
+
+def test_what_joins_the_same_places_stands_side_by_side():
+    """A spring and a damper that is named from its other end; one more; of one alone the line itself."""
+    both = eomgen.loads(HUNG)
+    assert _sides(both) == {"spring": -1, "damper": -1}  # the damper's line runs the other way: to its left is right
+    third = HUNG + 'more = { kind = "spring", points = ["O", "load.origin"], stiffness = "k", length = 0.5 }\n'
+    assert _sides(eomgen.loads(third)) == {"spring": -2, "damper": 0, "more": 2}
+    assert _sides(eomgen.loads(HUNG.partition("damper =")[0])) == {"spring": 0}
+
+
+def test_what_hangs_on_a_spring_has_no_guide():
+    """Its way is that of its weight; without the weight, or without the spring, the guide is drawn."""
+    kinds = [{mark.role for mark in eomgen.loads(text).scene().marks} for text in (
+        HUNG, HUNG.replace("weight = {", "#"), HUNG.partition("spring =")[0])]  # fmt: skip
+    assert ["track" in roles for roles in kinds] == [False, True, True]
+
+
+def _sides(model):
+    marks = model.scene().marks
+    return {mark.of: mark.form.side for mark in marks if mark.role in ("spring", "damper")}

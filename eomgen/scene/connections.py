@@ -30,9 +30,9 @@ from eomgen.scene.scene import Mark
 from eomgen.symbolic.expression.functions import function
 from eomgen.symbolic.expression.graph import is_zero
 from eomgen.symbolic.expression.rational import Fraction
-from eomgen.symbolic.expression.spatial import ZERO, Pose, Vector, apply, vector_of
+from eomgen.symbolic.expression.spatial import ZERO, Pose, Vector, apply, cross, vector_of
 
-BESIDE = 1  # of a spring and a damper between the same places, each to its side [symbol units]
+BESIDE = 1  # of springs and dampers between the same places, each to its side [symbol units]
 
 
 # -- joints ----------------------------------------------------------------------------------------
@@ -76,11 +76,21 @@ def _guided(system: System, link: BodyLink, frame: int, turns: bool, own: Vector
     below = 0 if wedge else Fraction(3, 5) if bare or block else Fraction(1, 4) if point else 0
     sprung = any(effort is not None and effort.stiffness is not None for effort in link.joint.efforts())
     found = []
-    if (not sprung or grounded) and not on_wedge:
+    if (not sprung or grounded) and not on_wedge and not _hangs(system, link, along):
         found = [Mark(TrackForm(link.before.p, along, upward if grounded else None, below), above, "track", link.name)]
     if (bare or block) and wedge is None:
         found.append(Mark(SymbolForm("slider" if turns else "block", link.point, own), frame, "body", link.name))
     return found
+
+
+def _hangs(system: System, link: BodyLink, along: Vector) -> bool:
+    """Whether a body stands or hangs on springs between points, its way along its weight: no guide is drawn then."""
+    weight = system.loads.fields
+    if all(map(is_zero, weight)) or not all(map(is_zero, cross(along, weight))):
+        return False
+    elements = (force.element for force in system.scope.model.forces.values())
+    ends = [point for x in elements if x is not None and x.stiffness is not None for point in x.points]
+    return any(system.motion.place(point)[0] == link.name for point in ends)
 
 
 def _space_joint(
@@ -125,16 +135,16 @@ def _joint_elements(system: System, link: BodyLink, frame: int, turns: bool) -> 
     return [*held, *elements(a, b, springs, dampers, link.name)]
 
 
-def elements(a: Vector, b: Vector, spring: bool, damper: bool, of: str) -> list[Mark]:
-    """A spring and a damper between two places; both stand side by side."""
+def elements(a: Vector, b: Vector, spring: bool, damper: bool, of: str, aside: int = 0) -> list[Mark]:
+    """A spring and a damper between two places, `aside` of the line; both stand side by side."""
     side = BESIDE if spring and damper else 0
-    found = [Mark(SpringForm(a, b, side), 0, "spring", of)] if spring else []
-    return [*found, *([Mark(DamperForm(a, b, -side), 0, "damper", of)] if damper else [])]
+    found = [Mark(SpringForm(a, b, aside + side), 0, "spring", of)] if spring else []
+    return [*found, *([Mark(DamperForm(a, b, aside - side), 0, "damper", of)] if damper else [])]
 
 
 def force_elements(system: System) -> list[Mark]:
     """Springs, dampers and pulls between points; a torsion spring at the joint of its second body."""
-    motion, found = system.motion, list[Mark]()
+    motion, found, sides = system.motion, list[Mark](), _sides(system)
     for name, force in system.scope.model.forces.items():
         element = force.element
         if element is None:
@@ -150,10 +160,25 @@ def force_elements(system: System) -> list[Mark]:
             free = b if places[0][0] is None else a
             grounded = [at for at, (body, _) in zip((a, b), places, strict=True) if body is None]
             found += walls(system, grounded, free, name)
-        found += elements(a, b, element.stiffness is not None, element.damping is not None, name)
+        found += elements(a, b, element.stiffness is not None, element.damping is not None, name, sides.get(name, 0))
         if element.pull is not None:
             found.append(Mark(LineForm((a, b), fine=True), 0, "spring", name))
     return found
+
+
+def _sides(system: System) -> dict[str, int]:
+    """How far to the left of its line each spring or damper stands where several join the same places."""
+    together: dict[frozenset[Any], list[tuple[str, Any]]] = {}
+    for name, force in system.scope.model.forces.items():
+        element = force.element
+        if element is not None and len(element.points) == 2 and element.pull is None:
+            ends = [system.motion.place(point) for point in element.points]
+            together.setdefault(frozenset(ends), []).append((name, ends[0]))
+    return {
+        name: (2 * k + 1 - len(beside)) * BESIDE * (1 if first == beside[0][1] else -1)
+        for beside in together.values()
+        for k, (name, first) in enumerate(beside)
+    }
 
 
 # -- ties --------------------------------------------------------------------------------------------
