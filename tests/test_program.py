@@ -4,24 +4,32 @@ from __future__ import annotations
 
 import random
 from dataclasses import replace
+from pathlib import Path
 
 import numpy as np
 import pytest
 from hand_made import cart_pole, pendulum, spring_row, symbols, tied_pendulum
 
+import eomgen
+from eomgen.codegen import layout
 from eomgen.codegen.factorization import factor_solution, operation_count
 from eomgen.codegen.kernel_reader import solve_bordered
+from eomgen.codegen.layout import stripped
 from eomgen.codegen.names import RESERVED, identifier, identifiers
 from eomgen.codegen.program import Assign, Solve, program_in_motion, program_of, right_hand_side
 from eomgen.codegen.rhs import compiled
-from eomgen.codegen.targets.c import C
+from eomgen.codegen.scheduling import scheduled, traffic
+from eomgen.codegen.targets.base import RHS
+from eomgen.codegen.targets.c import C, c_text
 from eomgen.codegen.targets.numpy import PYTHON
 from eomgen.codegen.vectors import vectors
 from eomgen.errors import DerivationError
 from eomgen.symbolic.expression.functions import cos, sin
 from eomgen.symbolic.expression.graph import Graph, is_zero
-from eomgen.symbolic.expression.traversal import operations
+from eomgen.symbolic.expression.traversal import operations, order
 from eomgen.symbolic.numeric.evaluation import FLOAT, evaluate, fifty_digits
+
+MODELS = Path(__file__).parent.parent / "models"
 
 
 def tree_mass_matrix(parents: list[int]):
@@ -143,6 +151,57 @@ def test_statements_come_after_what_they_need():
         arguments = {a for a in statement.node.args if hasattr(a, "op")}
         assert {a.args[0] if a.op == "neg" else a for a in arguments} <= known
         known.add(statement.node)
+
+
+def long_program(seed: int):
+    """(what each reads, what is read at the end) of operations on what came before, a few of them calls."""
+    rng, graph = random.Random(seed), Graph()
+    nodes = [graph.symbol(f"x{k}") for k in range(5)]
+    for _ in range(200):
+        a, b = rng.choices(nodes if rng.random() < 0.3 else nodes[-30:], k=2)
+        made = rng.choice((a + b, a * b, a - b, cos(a), a / b))
+        nodes += [made] if type(made) is type(a) else []
+    last = frozenset(nodes[-6:])
+    return {x: stripped(x.args) if x.op != "symbol" else set() for x in order(last)}, last
+
+
+@pytest.mark.parametrize("seed", range(8))
+def test_a_schedule_has_every_statement_after_what_it_needs_and_moves_less(seed):
+    """Each once; fewer loads and stores than in the order of making."""
+    made, last = long_program(seed)
+    needs = {x: needed for x, needed in made.items() if x.op != "symbol"}
+    found = scheduled(needs, last)
+    place = {x: k for k, x in enumerate(found)}
+    assert sorted(found, key=lambda x: x.index) == list(needs)
+    assert all(place[a] < place[x] for x in needs for a in needs[x] if a in place)
+    assert traffic([*(made.keys() - needs.keys()), *found], made, last) < traffic(list(made), made, last)
+
+
+def test_values_that_wait_in_registers_are_not_moved():
+    """Thirty squares that are added up, each at once: no load, no store; all squares first, then the sums: many."""
+    graph = Graph()
+    x = [graph.symbol(f"x{k}") for k in range(30)]
+    squares, total, sums = [a * a for a in x], 0, []
+    for a in squares:
+        total = total + a
+        sums.append(total)
+    last, made = {total}, {y: stripped(y.args) if y.op != "symbol" else set() for y in (*x, *squares, *sums[1:])}
+    near = [x[0], squares[0], *(z for k in range(1, 30) for z in (x[k], squares[k], sums[k]))]
+    assert traffic(near, made, last) == 0 < 30 < traffic(list(made), made, last)
+
+
+@pytest.mark.slow
+def test_a_schedule_changes_no_bit(monkeypatch):
+    """The right-hand side in C at random states, scheduled and in the order of making."""
+    program = eomgen.derive(MODELS / "arm3.toml").program
+    texts, values = [], []
+    for way in (scheduled, lambda needs, later: list(needs)):
+        monkeypatch.setattr(layout, "scheduled", way)
+        texts.append(c_text(program, "eomgen", RHS))
+        rhs = compiled(program, "c")
+        states = np.random.default_rng(1).normal(size=(20, len(program.states)))
+        values.append([rhs(0.3, x, np.arange(1.0, 1 + len(program.symbols.parameters))).tolist() for x in states])
+    assert texts[0] != texts[1] and values[0] == values[1]
 
 
 def test_what_parameters_alone_determine_is_hoisted():

@@ -7,16 +7,17 @@ reads stands in an array between them.
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import field
 from functools import cached_property
-from itertools import pairwise
+from itertools import chain, pairwise
 from typing import Any
 
 from eomgen.codegen.expressions import ExpressionWriter, used_once
 from eomgen.codegen.lowered import READ, REAL, Language, Put
 from eomgen.codegen.names import identifiers
 from eomgen.codegen.program import Assign, Program, Solve
+from eomgen.codegen.scheduling import scheduled
 from eomgen.records import dataclass
 from eomgen.symbolic.expression.graph import Node, Scalar
 
@@ -67,7 +68,28 @@ class Layout:
         """What is computed at every call before the first solve, from each to the next, and after the last."""
         statements = self.program.statements
         at = [-1, *(k for k, s in enumerate(statements) if type(s) is Solve), len(statements)]
-        return tuple(_nodes(statements[a + 1 : b]) for a, b in pairwise(at))
+        made = tuple(_nodes(statements[a + 1 : b]) for a, b in pairwise(at))
+        return self._scheduled(made) if self.language.longest is not None and not self.is_long else made
+
+    @property
+    def is_long(self) -> bool:
+        """Whether it is cut into parts."""
+        return self.language.longest is not None and len(self.moving) > self.language.longest
+
+    def _scheduled(self, stretches: Sequence[tuple[Node, ...]]) -> tuple[tuple[Node, ...], ...]:
+        """The nodes of each so that few values leave the registers; what gets no name goes with what uses it."""
+        writer, found = self.writer(), []
+        for k, stretch in enumerate(stretches):
+            named: dict[Node, list[Node]] = {}
+            unnamed: dict[Node, list[Node]] = {}
+            for x in stretch:
+                own = [y for a in x.args if type(a) is Node for y in unnamed.pop(unsigned(a), ())]
+                (named if writer.assignments([x], self.once) else unnamed)[x] = [*own, x]
+            needs = {x: stripped(a for y in group for a in y.args) for x, group in named.items()}
+            later = chain(*unnamed.values(), *stretches[k + 1 :])
+            read = stripped([*self.written, *(a for y in later for a in y.args)])
+            found.append((*(y for x in scheduled(needs, read) for y in named[x]), *chain(*unnamed.values())))
+        return tuple(found)
 
     @cached_property
     def moving(self) -> tuple[Node, ...]:
@@ -181,7 +203,7 @@ class Layout:
     @cached_property
     def parts(self) -> Parts:
         """The pieces of a long program."""
-        if self.language.longest is None or len(self.moving) <= self.language.longest:
+        if not self.is_long:
             return Parts()
         cuts = [_cut(stretch) for stretch in self.stretches]
         parts = tuple(part for cut in cuts for part in cut)
@@ -210,4 +232,10 @@ def _nodes(statements: Iterable[Any]) -> tuple[Node, ...]:
 
 def stripped(values: Iterable[Scalar]) -> set[Node]:
     """The nodes among values, without their signs."""
-    return {x.args[0] if x.op == "neg" else x for x in values if type(x) is Node}
+    return {unsigned(x) for x in values if type(x) is Node}
+
+
+def unsigned(x: Node) -> Node:
+    """x of -x."""
+    bare: Node = x.args[0] if x.op == "neg" else x
+    return bare

@@ -45,15 +45,15 @@ void cart_pole_evaluate(double t, const double *x, const double *p, const double
         acting[0] = 0.0;
     }
     const double F = acting[0];
-    const double v1 = cos(theta)*c[1];
-    const double v2 = sin(theta);
-    const double v3 = c[2]*v2;
-    const double v4 = v1*c[3];
-    const double v5 = (F + theta_dot*theta_dot*(c[1]*v2) + v3*v4)/(c[0] - v1*v4);
+    const double v1 = sin(theta);
+    const double v2 = c[2]*v1;
+    const double v3 = cos(theta)*c[1];
+    const double v4 = v3*c[3];
+    const double v5 = (F + theta_dot*theta_dot*(c[1]*v1) + v2*v4)/(c[0] - v3*v4);
     dx[0] = x_dot;
     dx[1] = theta_dot;
     dx[2] = v5;
-    dx[3] = -(v3*c[3] + v4*v5);
+    dx[3] = -(v2*c[3] + v4*v5);
 }
 
 void cart_pole_rhs(double t, const double *x, const double *p, const double *inputs, double *dx)

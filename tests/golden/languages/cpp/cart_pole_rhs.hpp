@@ -55,15 +55,15 @@ struct cart_pole_rhs {
             acting[0] = Real(0.0);
         }
         const Real F = acting[0];
-        const Real v1 = cos(theta)*c[1];
-        const Real v2 = sin(theta);
-        const Real v3 = c[2]*v2;
-        const Real v4 = v1*c[3];
-        const Real v5 = (F + theta_dot*theta_dot*(c[1]*v2) + v3*v4)/(c[0] - v1*v4);
+        const Real v1 = sin(theta);
+        const Real v2 = c[2]*v1;
+        const Real v3 = cos(theta)*c[1];
+        const Real v4 = v3*c[3];
+        const Real v5 = (F + theta_dot*theta_dot*(c[1]*v1) + v2*v4)/(c[0] - v3*v4);
         dx[0] = x_dot;
         dx[1] = theta_dot;
         dx[2] = v5;
-        dx[3] = -(v3*c[3] + v4*v5);
+        dx[3] = -(v2*c[3] + v4*v5);
     }
 
     // dx has 4 places; inputs nullptr: the model's own

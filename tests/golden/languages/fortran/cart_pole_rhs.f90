@@ -78,14 +78,14 @@ contains
             acting(0) = 0.0_dp
         end if
         F = acting(0)
-        v1 = cos(theta)*c(1)
-        v2 = sin(theta)
-        v3 = c(2)*v2
-        v4 = v1*c(3)
-        v5 = (F + theta_dot*theta_dot*(c(1)*v2) + v3*v4)/(c(0) - v1*v4)
+        v1 = sin(theta)
+        v2 = c(2)*v1
+        v3 = cos(theta)*c(1)
+        v4 = v3*c(3)
+        v5 = (F + theta_dot*theta_dot*(c(1)*v1) + v2*v4)/(c(0) - v3*v4)
         dx(0) = x_dot
         dx(1) = theta_dot
         dx(2) = v5
-        dx(3) = -(v3*c(3) + v4*v5)
+        dx(3) = -(v2*c(3) + v4*v5)
     end subroutine evaluate
 end module cart_pole_rhs

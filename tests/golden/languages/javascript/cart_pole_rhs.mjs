@@ -44,15 +44,15 @@ export function evaluate(t, x, p, c, inputs, dx = new Float64Array(4)) {
         acting[0] = 0.0;
     }
     const F = acting[0];
-    const v1 = Math.cos(theta)*c[1];
-    const v2 = Math.sin(theta);
-    const v3 = c[2]*v2;
-    const v4 = v1*c[3];
-    const v5 = (F + theta_dot*theta_dot*(c[1]*v2) + v3*v4)/(c[0] - v1*v4);
+    const v1 = Math.sin(theta);
+    const v2 = c[2]*v1;
+    const v3 = Math.cos(theta)*c[1];
+    const v4 = v3*c[3];
+    const v5 = (F + theta_dot*theta_dot*(c[1]*v1) + v2*v4)/(c[0] - v3*v4);
     dx[0] = x_dot;
     dx[1] = theta_dot;
     dx[2] = v5;
-    dx[3] = -(v3*c[3] + v4*v5);
+    dx[3] = -(v2*c[3] + v4*v5);
     return dx;
 }
 

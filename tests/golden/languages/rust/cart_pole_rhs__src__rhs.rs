@@ -43,15 +43,15 @@ pub fn evaluate(t: f64, x: &[f64], p: &[f64], c: &[f64], inputs: &[f64], dx: &mu
         acting[0] = 0.0;
     }
     let F: f64 = acting[0];
-    let v1: f64 = math::cos(theta)*c[1];
-    let v2: f64 = math::sin(theta);
-    let v3: f64 = c[2]*v2;
-    let v4: f64 = v1*c[3];
-    let v5: f64 = (F + theta_dot*theta_dot*(c[1]*v2) + v3*v4)/(c[0] - v1*v4);
+    let v1: f64 = math::sin(theta);
+    let v2: f64 = c[2]*v1;
+    let v3: f64 = math::cos(theta)*c[1];
+    let v4: f64 = v3*c[3];
+    let v5: f64 = (F + theta_dot*theta_dot*(c[1]*v1) + v2*v4)/(c[0] - v3*v4);
     dx[0] = x_dot;
     dx[1] = theta_dot;
     dx[2] = v5;
-    dx[3] = -(v3*c[3] + v4*v5);
+    dx[3] = -(v2*c[3] + v4*v5);
 }
 
 /// dx of 4 places; `inputs` none: the model's own.
