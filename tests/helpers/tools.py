@@ -32,6 +32,7 @@ NEEDS = {  # of a language the programs and packages (with a dot before them) th
     "casadi": (".casadi",),
     "numba": (".numba",),
     "fmu": (".fmpy",),
+    "julia": (".tree_sitter", ".tree_sitter_julia"),
 }
 SLOW = ("wasm", "matlab", "jax", "casadi", "numba", "fmu")  # to start, or to compile: they take part in few tests
 
