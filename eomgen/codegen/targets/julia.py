@@ -17,8 +17,8 @@ NOT_RUN = "Not run where it was made: no Julia was there."
 JULIA = Language(
     reserved=frozenset(
         "abstract baremodule begin break catch const continue do else elseif end export false finally for function "
-        "global if import in isa let local macro module mutable primitive public quote return struct true try type using "
-        "where while im pi ans eps zeros eltype promote_type Base Core Main NaN Inf Float64 Int x_names p_names "
+        "global if import in isa let local macro module mutable primitive public quote return struct true try type "
+        "using where while im pi ans eps zeros eltype promote_type Base Core Main NaN Inf Float64 Int x_names p_names "
         "input_names".split()
     ),
     functions={
