@@ -335,6 +335,13 @@ def test_noise_of_places_moves_parameters_by_about_what_is_told():
         assert 1 / 3 < found.bias[name] / off < 3
 
 
+def test_what_does_not_move_tells_nothing():
+    """A structure, and a mechanism whose only coordinate is driven."""
+    for name in ("cantilever", "scotch_yoke"):
+        with pytest.raises(DerivationError, match="nothing moves"):
+            eomgen.regressor(MODELS / f"{name}.toml")
+
+
 def test_friction_of_a_contact_has_no_regressor():
     """Its normal force depends on the parameters."""
     with pytest.raises(DerivationError, match="not linear in the parameters"):

@@ -117,13 +117,16 @@ def regressor(model: ModelOrPath) -> Regressor:
     """The regressor of a mechanism.
 
     Raises:
-        DerivationError: Coulomb friction of a tie, whose normal force is no linear function of the parameters.
+        DerivationError: Coulomb friction of a tie, whose normal force is no linear function of the parameters; nothing
+            moves.
     """
     return regressor_of(derive(model).system)
 
 
 def regressor_of(system: System) -> Regressor:
     """The same of a system."""
+    if not system.symbols.u:
+        raise DerivationError("nothing moves: no force tells a mass", mend="give a joint a coordinate that is free")
     if has_friction(system):
         raise DerivationError(
             "Coulomb friction of a contact is not linear in the parameters: its normal force depends on them",
