@@ -328,9 +328,11 @@ def linearize_command(view: str, over: str | None, **options: Any) -> int:
     if (over is not None) != (view == "locus"):
         raise click.UsageError('--view locus and --over "k=1:10:50" go together')
 
+    in_full = form_asked(options["wants_json"], options["format_"], options["output"]) == "json"
+
     def found(model: Model, **asked: Any) -> Result:
-        wanted = None if over is None else range_of(model, over)
-        return replace(linearize(model, **asked), drawn=view, over=wanted)
+        wanted, made = None if over is None else range_of(model, over), linearize(model, **asked)
+        return replace(made, modes=replace(made.modes, in_full=in_full), drawn=view, over=wanted)
 
     return write_result(found, at_start=options["about"] == "start", **options)
 

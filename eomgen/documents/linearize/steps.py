@@ -35,7 +35,7 @@ from eomgen.mechanics.small_motions.state_space import exact_state_space, with_o
 from eomgen.mechanics.small_motions.transfer import TransferFunction
 from eomgen.symbolic.expression.functions import over
 from eomgen.symbolic.expression.graph import Node, Scalar, is_zero
-from eomgen.symbolic.numeric.sure_numbers import number_of
+from eomgen.symbolic.numeric.sure_numbers import numbers_of
 from eomgen.symbolic.numeric.tolerances import COMPUTED, SOLVED
 from eomgen.symbolic.print.text import text_size, to_text
 
@@ -337,17 +337,17 @@ def _stability(modes: Modes) -> tuple[Step, ...]:
     if conditions.expressions:
         which = "all motions but those that stay as they are" if conditions.zeros else "all motions"
         statements.append(prose(f"By Routh and Hurwitz {which} {conditions.words} where these are positive:"))
-        for k, x in enumerate(conditions.expressions, start=1):
-            statements.append(Formula((Law(f"h_{k}", f"h_{{{k}}}"), _or_number(modes, x))))
+        sides = _or_numbers(modes, conditions.expressions)
+        statements += [Formula((Law(f"h_{k}", f"h_{{{k}}}"), side)) for k, side in enumerate(sides, start=1)]
     return (Step("stability", "Stability", tuple(statements)),) if statements else ()
 
 
-def _or_number(modes: Modes, x: Scalar) -> Side:
-    """A formula, or its value where it is too long to print."""
+def _or_numbers(modes: Modes, scalars: Sequence[Scalar]) -> list[Side]:
+    """Formulas, or their values where they are too long to print."""
     reference = modes.small.reference
-    if text_size(x) <= LONG or not reference.valued:
-        return _side(modes.written(x))
-    return _number(number_of(x, known_exactly(reference.system.scope)))
+    long = [x for x in scalars if reference.valued and text_size(x) > LONG]
+    values = dict(zip(long, numbers_of(long, known_exactly(reference.system.scope)), strict=True))
+    return [_number(values[x]) if x in values else _side(modes.written(x)) for x in scalars]
 
 
 def _state_space(modes: Modes) -> tuple[Step, ...]:

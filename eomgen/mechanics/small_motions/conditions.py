@@ -14,9 +14,11 @@ from eomgen.symbolic.expression.functions import over
 from eomgen.symbolic.expression.graph import Node, Number, Scalar, is_zero
 from eomgen.symbolic.numeric.evaluation import evaluate, fifty_digits
 from eomgen.symbolic.numeric.work import Work
+from eomgen.symbolic.print.text import text_size
 from eomgen.symbolic.solve import cramer
 
 MOST_CONDITIONS = 6  # degree of a polynomial whose Hurwitz determinants are written
+LONGER = 5_000  # characters of a condition, as it came, that comes to no formula which anybody prints
 MOST_EVEN = 4  # degree in s^2 of one whose coefficients are written as conditions
 
 
@@ -43,7 +45,13 @@ class Conditions:
 
 
 def stability_conditions(
-    polynomial: Polynomial, s: Node, positive: Collection[Node], trial: Mapping[Node, Any], *, conservative: bool
+    polynomial: Polynomial,
+    s: Node,
+    positive: Collection[Node],
+    trial: Mapping[Node, Any],
+    *,
+    conservative: bool,
+    in_full: bool = True,
 ) -> Conditions:
     """Of Routh and Hurwitz for each factor of p(s), in the fewer ones of Lienard and Chipart: all coefficients, every
     other determinant. Of an even factor, what makes all s^2 real and negative.
@@ -51,11 +59,12 @@ def stability_conditions(
     Args:
         trial: values of the parameters: leading coefficients keep the signs that they have there, as det M does.
         conservative: whether all s^2 are real in any case.
+        in_full: whether those of a long polynomial are brought into their shortest form too.
     Source: Gantmacher, The Theory of Matrices, vol. 2, chapter 15.
     """
     zeros = next(k for k, c in enumerate(polynomial.coefficients) if not is_zero(c))
-    factors = []
-    for factor in _polynomials(Polynomial(polynomial.coefficients[zeros:]), s, positive):
+    factors, legibly = [], in_full or not polynomial.is_long
+    for factor in _polynomials(Polynomial(polynomial.coefficients[zeros:]), s, positive, legibly):
         leading = evaluate((factor.coefficients[-1],), trial, fifty_digits())[0]
         one = factor if leading > 0 else factor.negative(positive)
         if one not in factors:
@@ -63,34 +72,36 @@ def stability_conditions(
     found = [_conditions(one, conservative) for one in factors]
     if any(x is None for x in found):
         return Conditions()
-    each = (_without_number(x, positive) for part in found for x in part or ())
+    each = (_without_number(x, positive, legibly) for part in found for x in part or ())
     expressions = dict.fromkeys(x for x in each if type(x) is Node or x <= 0)
     even = [one.is_even for one in factors]
     return Conditions(tuple(expressions), not all(even), any(even), zeros)
 
 
-def _without_number(x: Scalar, positive: Collection[Node]) -> Scalar:
+def _without_number(x: Scalar, positive: Collection[Node], legibly: bool) -> Scalar:
     """A positive multiple of x, its coefficients whole numbers without a common factor."""
     if type(x) is not Node:
         return x
     expansion, terms = Expansion(x.graph, Work.VALUE, positive), dict[Key, Number]()
     try:
         terms = expansion.of(x)
-        return written_shortest(expansion, terms_scaled(terms, 1 / content(terms)))
+        bare = terms_scaled(terms, 1 / content(terms))
+        plain = 0 if legibly else expansion.atoms.node(bare)
+        return plain if text_size(plain) > LONGER else written_shortest(expansion, bare)
     except TooLarge:
         return over(x, content(terms)) if terms else x
 
 
-def _polynomials(polynomial: Polynomial, s: Node, positive: Collection[Node]) -> Iterator[Polynomial]:
+def _polynomials(polynomial: Polynomial, s: Node, positive: Collection[Node], legibly: bool) -> Iterator[Polynomial]:
     """The factors of p(s); itself where it is too much work."""
     try:
         factors = factors_of(polynomial.at(s), s, positive)
     except TooLarge:
         yield polynomial
         return
-    node = factors.expansion.atoms.node
+    node, said = factors.expansion.atoms.node, factors.written if legibly else factors.as_it_came
     for c in factors.parts:
-        yield Polynomial(tuple(factors.written(node(c.get(k, {}))) for k in range(max(c) + 1)))
+        yield Polynomial(tuple(said(node(c.get(k, {}))) for k in range(max(c) + 1)))
 
 
 def _conditions(polynomial: Polynomial, conservative: bool) -> list[Scalar] | None:

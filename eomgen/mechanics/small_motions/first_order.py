@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
+from dataclasses import replace
 from functools import cached_property
 from random import Random
 from typing import Any
@@ -67,6 +68,14 @@ class FirstOrder:
         equations = equations_of_motion(self.system)
         refuse_massless(equations)
         return equations
+
+    def looked_at(self, *, at_rest: bool) -> FirstOrder:
+        """The same, looked at there; its equations are not derived anew."""
+        if at_rest == self.at_rest:
+            return self
+        found = replace(self, at_rest=at_rest)
+        found.__dict__["equations"] = self.equations
+        return found
 
     @cached_property
     def residual(self) -> tuple[Scalar, ...]:

@@ -160,12 +160,12 @@ def motions_beside(small: SmallMotions, wanted: Sequence[str] = ()) -> Iterator[
 
 
 def _about(first: FirstOrder, reference: ReferenceMotion, wanted: Sequence[str]) -> SmallMotions:
-    first = replace(first, at_rest=reference.at_rest)
+    first = first.looked_at(at_rest=reference.at_rest)
     choice = choice_of(first, reference, wanted)
     if not choice.u:
         raise DerivationError("the ties leave no freedom: there are no small motions")
     choice, raw, kept = _steady_equations(first, choice, reference, wanted)
-    refuse_corners(replace(first, at_rest=False), choice, reference, raw, kept)
+    refuse_corners(first.looked_at(at_rest=False), choice, reference, raw, kept)
     _refuse_fork(reference)
     refuse_singular(Reducing(first, choice, Numbers(reference.numbers)), raw)
     decided = over_coordinates(Numbers(reference.numbers), raw, kept)

@@ -50,9 +50,12 @@ class Modes:
 
     Args:
         small: the equations.
+        in_full: whether a polynomial and conditions that are too long to be printed are brought into their shortest
+            form all the same, as machines get them; else they stay as they came.
     """
 
     small: SmallMotions
+    in_full: bool = True
 
     @property
     def positive(self) -> frozenset[Node]:
@@ -66,7 +69,7 @@ class Modes:
     def polynomial(self) -> Polynomial | None:
         """det(s^2 M + s C + K); None where it is not written exactly."""
         exact = self.small.exact
-        return None if exact is None else characteristic_polynomial(exact, self.positive)
+        return None if exact is None else characteristic_polynomial(exact, self.positive, in_full=self.in_full)
 
     @cached_property
     def beside(self) -> tuple[str, ...]:
@@ -88,6 +91,7 @@ class Modes:
             self.positive,
             self.small.reference.trial,
             conservative=self.is_conservative,
+            in_full=self.in_full,
         )
 
     @cached_property

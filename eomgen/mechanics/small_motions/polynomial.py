@@ -5,7 +5,7 @@ p(s) = det [ s 1 - F,  -E ;  K,  s M + C ],      of second order  p(s) = det(s^2
 
 from __future__ import annotations
 
-from collections.abc import Callable, Collection, Iterator, Mapping
+from collections.abc import Callable, Collection, Iterable, Iterator, Mapping
 from typing import Any
 
 from eomgen.errors import DerivationError
@@ -22,11 +22,13 @@ from eomgen.symbolic.expression.functions import over, sqrt
 from eomgen.symbolic.expression.graph import Node, Scalar, is_zero
 from eomgen.symbolic.expression.node import Owner
 from eomgen.symbolic.numeric.work import Work
+from eomgen.symbolic.print.text import text_size
 from eomgen.symbolic.solve import cramer
 from eomgen.symbolic.solve.circular_equations import wave_free
 from eomgen.symbolic.solve.solving import coefficients
 
 MOST = 6  # rows of a determinant that is written out
+LONG = 24_000  # characters of a polynomial, as it came, that comes to no formula which anybody prints or solves
 
 
 @dataclass(frozen=True)
@@ -38,6 +40,11 @@ class Polynomial:
     @property
     def degree(self) -> int:
         return len(self.coefficients) - 1
+
+    @property
+    def is_long(self) -> bool:
+        """Whether its coefficients are too long for any formula."""
+        return sum(map(text_size, self.coefficients)) > LONG
 
     @property
     def is_even(self) -> bool:
@@ -67,10 +74,16 @@ def laplace_variable(equations: LinearEquations) -> Node:
     return graph_of(equations).symbol(next(name for name in ("s", "s_", "s__", "s___") if name not in taken))
 
 
-def characteristic_polynomial(equations: LinearEquations, positive: Collection[Node]) -> Polynomial | None:
-    """p(s), common factors of its coefficients kept; None where it is too much work."""
+def characteristic_polynomial(
+    equations: LinearEquations, positive: Collection[Node], *, in_full: bool = True
+) -> Polynomial | None:
+    """p(s), common factors of its coefficients kept; None where it is too much work.
+
+    Args:
+        in_full: whether it is brought into its shortest form however long it is.
+    """
     s = laplace_variable(equations)
-    return polynomial_in(_determinant(pencil_of(equations, s)), s, positive)
+    return polynomial_in(_determinant(pencil_of(equations, s)), s, positive, in_full=in_full)
 
 
 def pencil_of(e: LinearEquations, s: Node) -> Entries | None:
@@ -92,7 +105,7 @@ def _determinant(matrix: Entries | None) -> Scalar | None:
     return None if matrix is None else cramer.determinant(matrix)
 
 
-def polynomial_in(x: Scalar | None, s: Node, positive: Collection[Node]) -> Polynomial | None:
+def polynomial_in(x: Scalar | None, s: Node, positive: Collection[Node], *, in_full: bool = True) -> Polynomial | None:
     """A polynomial in s by its coefficients; None where it is too much work."""
     if x is None:
         return None
@@ -102,8 +115,16 @@ def polynomial_in(x: Scalar | None, s: Node, positive: Collection[Node]) -> Poly
         parts = coefficients(expansion.of(x), s)
     except TooLarge:
         return None
-    powers = range(max(parts, default=0) + 1)
-    return Polynomial(tuple(simplest_sum(expansion, parts.get(n, {})) for n in powers))
+    terms = [parts.get(n, {}) for n in range(max(parts, default=0) + 1)]
+    if not in_full and _stays_long(expansion, terms):
+        return Polynomial(tuple(map(expansion.atoms.node, terms)))
+    return Polynomial(tuple(simplest_sum(expansion, each) for each in terms))
+
+
+def _stays_long(expansion: Expansion, terms: Iterable[Terms]) -> bool:
+    """Whether sums are long, and no common divisor could make them short."""
+    divided = any(e < 0 and expansion.atoms.is_a(a, "sum") for each in terms for m, _ in each for a, e in m)
+    return not divided and sum(text_size(expansion.atoms.node(each)) for each in terms) > LONG
 
 
 # -- frequencies ---------------------------------------------------------------------------------------------------
@@ -145,7 +166,11 @@ class PolynomialFactors:
 
     def written(self, a: Scalar) -> Scalar:
         """In the symbols of the model."""
-        return simplest(substituted((a,), self.fresh)[0], Work.ANSWER, self.positive)
+        return simplest(self.as_it_came(a), Work.ANSWER, self.positive)
+
+    def as_it_came(self, a: Scalar) -> Scalar:
+        """The same, no shorter."""
+        return substituted((a,), self.fresh)[0]
 
 
 def factors_of(x: Scalar, s: Node, positive: Collection[Node]) -> PolynomialFactors:

@@ -6,7 +6,7 @@ import gc
 from collections.abc import Iterator
 from contextlib import contextmanager
 
-SELDOM = (200_000, 50, 100)  # objects made between two looks at the youngest; looks between two at the older
+SELDOM = (500_000, 20, 40)  # objects made between two looks at the youngest; looks between two at the older
 
 
 @contextmanager
