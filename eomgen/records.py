@@ -55,7 +55,7 @@ def _frozen(cls: type, *, kw_only: bool, eq: bool, shown: bool) -> type:
     own = cls.__dict__
     documented = own.get("__doc__") is not None  # else the library makes one of the signature
     if not documented:
-        cls.__doc__ = ""
+        cls.__doc__ = cls.__name__  # all that is said of a module's own; the library would ask for a signature
     dataclasses.dataclass(init=False, repr=False, eq=False, kw_only=kw_only)(cls)
     fields = dataclasses.fields(cls)
     found: dict[str, Any] = {"__setattr__": _refusing_to_set(cls), "__delattr__": _refusing_to_delete(cls)}
@@ -73,7 +73,7 @@ def _frozen(cls: type, *, kw_only: bool, eq: bool, shown: bool) -> type:
     for name, method in found.items():
         method.__qualname__ = f"{cls.__qualname__}.{name}"
         setattr(cls, name, method)
-    if not documented:
+    if not documented and not cls.__name__.startswith("_"):
         import inspect
 
         cls.__doc__ = cls.__name__ + str(inspect.signature(cls)).replace(" -> None", "")

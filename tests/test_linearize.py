@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+from dataclasses import replace
 from pathlib import Path
 
 import pytest
@@ -13,7 +14,9 @@ from eomgen.cli import main
 from eomgen.documents import rendered
 from eomgen.symbolic.exact.book_form import book_form
 from eomgen.symbolic.expression.expressions import parse
-from eomgen.symbolic.print.text import to_text
+from eomgen.symbolic.numeric.evaluation import evaluate, fifty_digits
+from eomgen.symbolic.numeric.tolerances import MET_AT_50
+from eomgen.symbolic.print.text import text_size, to_text
 
 pytestmark = pytest.mark.slow
 
@@ -172,3 +175,18 @@ acceleration = [0, 0, -9.81]
 """
     printed = rendered(eomgen.linearize(eomgen.loads(text)).derivation, "text")
     assert "W[s, tau] = 0\n" in printed and "()" not in printed
+
+
+def test_what_is_too_long_to_be_printed_has_its_value_however_it_is_written():
+    """Coefficients of p(s) and what must be positive, shortest and as they came, of the Whipple bicycle."""
+    shortest = eomgen.linearize(MODELS / "whipple_bicycle.toml")
+    modes, came = shortest.modes, replace(shortest.modes, in_full=False)
+    trial = modes.small.reference.trial
+    for one, other in (
+        (modes.polynomial.coefficients, came.polynomial.coefficients),
+        (modes.conditions.expressions, came.conditions.expressions),
+    ):
+        values = [evaluate(x, trial, fifty_digits()) for x in (one, other)]
+        assert all(abs(a - b) < MET_AT_50 * abs(a) for a, b in zip(*values, strict=True))
+        assert sum(map(text_size, one)) < sum(map(text_size, other))
+    assert rendered(replace(shortest, modes=came).document, "text") == rendered(shortest.document, "text")
