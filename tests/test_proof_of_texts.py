@@ -112,6 +112,17 @@ def told(document: Document) -> list[str]:
     return [check.status for check in certificate.checks if check != other]
 
 
+def test_a_couple_that_is_printed_is_read_back():
+    """couple(turn) = -F*c of a force of this kind is what is declared, another text a contradiction."""
+    found = eomgen.derive(MODELS / "beam_with_overhang.toml")
+    printed = printed_formulas(found.derivation)
+    assert ("couple(turn)", "-F*c") in printed.formulas
+    changed = replace(printed, formulas=(("couple(turn)", "F*c"),))
+    (wrong,) = (check for check in certify(found.graph, printed=changed).checks if check.status == "fails")
+    assert "couple(turn)" in wrong.detail
+    assert all(check.ok for check in certify(found.graph, printed=printed).checks)
+
+
 @pytest.mark.parametrize("letter", ["T", "V"])
 def test_an_energy_with_a_constant_part_is_a_contradiction(letter: str):
     """T = sum of (m v.v + w.I w)/2, V = - sum of f.r: no derivative, and so no equation of motion, knows a constant."""

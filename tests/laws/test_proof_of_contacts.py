@@ -11,7 +11,7 @@ import eomgen
 from eomgen.mechanics.bodies import inertia, loads
 from eomgen.model.constraints import rolling, support
 from eomgen.model.constraints.round_bodies import Nearest, RollingBall, Wheel
-from eomgen.model.forces import damper, reach
+from eomgen.model.forces import reach, straight
 from eomgen.model.forces.damper import Damper
 from eomgen.model.forces.spring import Spring
 from eomgen.model.forces.torsion_damper import TorsionDamper
@@ -205,7 +205,7 @@ ELEMENT_ERRORS = [
     (TorsionDamper, "loads", acting_once),
     (TorsionSpring, "_twist", relaxed_elsewhere),
     (Spring, "_stretch", stretched),
-    (damper, "reach", along_the_gap),
+    (straight, "reach", along_the_gap),
     (loads, "_joint_efforts", stiffer),
 ]
 

@@ -6,6 +6,7 @@ from eomgen.model.forces import load
 from eomgen.model.forces.base import Force
 from eomgen.model.kinds import AxesName, BodyName, CoupleFormula, OwnPointName
 from eomgen.records import dataclass
+from eomgen.symbolic.expression.spatial import AnyScalar
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -24,6 +25,10 @@ class CoupleForce(Force):
     couple: CoupleFormula
     axes: AxesName = "ground"
     point: OwnPointName | None = None
+
+    def effort(self, scene: load.LoadContext) -> AnyScalar | None:
+        """The couple in the plane [N m]; None in space, where it has three components."""
+        return scene.vector(self.couple)[0] if len(self.couple) == 1 else None
 
     def loads(self, scene: load.LoadContext) -> tuple[load.Load, ...]:
         axes = None if self.axes == "ground" else self.axes
