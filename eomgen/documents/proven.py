@@ -14,8 +14,7 @@ from eomgen.documents.quantity import Quantity
 from eomgen.documents.statements import Equation, Listing, Matrix, Statement, parts_of
 from eomgen.documents.text import cases_text, is_piecewise, side_text
 from eomgen.errors import ExpressionError, NumberBeyond
-from eomgen.proof.at_a_state import differing
-from eomgen.proof.check import Certificate, Check, Tally
+from eomgen.proof.check import Certificate, Check, Tally, differing
 from eomgen.symbolic.expression.derivative import symbols_of
 from eomgen.symbolic.expression.expressions import LONGEST, Expression, parse
 from eomgen.symbolic.expression.graph import Graph, Node, Scalar

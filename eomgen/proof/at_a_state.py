@@ -25,6 +25,7 @@ from eomgen.mechanics.instant.outputs import Quantities
 from eomgen.mechanics.reactions.reactions import reactions_of
 from eomgen.model.outputs import FUNCTIONS
 from eomgen.model.outputs.base import BALANCE
+from eomgen.proof.check import differing
 from eomgen.proof.in_numbers import with_inputs
 from eomgen.proof.printed import least_multipliers
 from eomgen.proof.states import TrialState
@@ -37,7 +38,7 @@ from eomgen.symbolic.expression.graph import Node, Scalar
 from eomgen.symbolic.expression.node import State
 from eomgen.symbolic.expression.rational import Fraction
 from eomgen.symbolic.numeric.evaluation import NoValue, evaluate, fifty_digits
-from eomgen.symbolic.numeric.tolerances import COMPUTED, ROUNDING, SAME_PLACE, SOLVED
+from eomgen.symbolic.numeric.tolerances import COMPUTED, ROUNDING, SAME_PLACE
 
 MOST = 3  # states at which all formulas are compared
 AWAY = 10  # times what nearby states make of it, by which a number may be off
@@ -192,13 +193,6 @@ def read_back(system: System, text: str) -> Scalar:
 
     found: Scalar = parse(text).evaluate(system.scope.names, none)
     return found
-
-
-def differing(found: float, right: float, share: float = COMPUTED) -> str:
-    """That two numbers differ by more than a share of the larger, in words; ""."""
-    if abs(found - right) <= share * max(abs(found), abs(right)) + SOLVED:
-        return ""
-    return f"{found:.10g} for {right:.10g}"
 
 
 def off_by(found: float, right: float, near: list[float]) -> str:

@@ -9,6 +9,7 @@ from typing import Any, Literal
 from eomgen.errors import EomgenError
 from eomgen.records import dataclass
 from eomgen.symbolic.numeric.evaluation import NoValue
+from eomgen.symbolic.numeric.tolerances import COMPUTED, SOLVED
 
 Status = Literal["holds", "fails", "unchecked"]
 MARKS: dict[Status, str] = {"holds": "ok  ", "fails": "FAIL", "unchecked": "?   "}
@@ -54,6 +55,13 @@ def attempted(name: str, how: str, wrong: Callable[[], str]) -> Check:
         return checked(name, wrong(), how)
     except (NoValue, ZeroDivisionError) as error:
         return unchecked(name, str(error) or "no value", how)
+
+
+def differing(found: float, right: float, share: float = COMPUTED) -> str:
+    """That two numbers differ by more than a share of the larger, in words; ""."""
+    if abs(found - right) <= share * max(abs(found), abs(right)) + SOLVED:
+        return ""
+    return f"{found:.10g} for {right:.10g}"
 
 
 def first_wrong(found: Iterable[str]) -> str:

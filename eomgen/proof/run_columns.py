@@ -9,8 +9,8 @@ import numpy as np
 
 from eomgen.codegen.reactions import determinate
 from eomgen.model.outputs import FUNCTIONS
-from eomgen.proof.at_a_state import NumericState, differing, off_by
-from eomgen.proof.check import Check, Tally, checked
+from eomgen.proof.at_a_state import NumericState, off_by
+from eomgen.proof.check import Check, Tally, checked, differing
 from eomgen.proof.emitted_code import WORK
 from eomgen.proof.second_definitions import second_definition
 from eomgen.simulation.result import Phase, Trajectory

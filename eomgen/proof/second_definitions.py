@@ -20,7 +20,8 @@ from eomgen.mechanics.instant.outputs import Quantities
 from eomgen.mechanics.reactions.drive import with_drive_let_go
 from eomgen.model.forces.load import GeneralizedForce, PointForce
 from eomgen.model.outputs import FUNCTIONS
-from eomgen.proof.at_a_state import NumericState, differing
+from eomgen.proof.at_a_state import NumericState
+from eomgen.proof.check import differing
 from eomgen.proof.elements import acting
 from eomgen.proof.free_bodies import demand_of, multipliers_demanded
 from eomgen.proof.in_numbers import SECOND_STEP, Pushes, Way, add_push, pushes_of, way_through

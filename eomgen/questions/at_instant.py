@@ -6,9 +6,6 @@ from collections.abc import Mapping
 
 from eomgen.mechanics.bodies.places import Located, places_of
 from eomgen.mechanics.equations.system import System
-from eomgen.mechanics.equilibria.loads_at_rest import holding_of
-from eomgen.mechanics.equilibria.search import all_equilibria
-from eomgen.mechanics.equilibria.static_equations import static_equations
 from eomgen.model.values import numeric_parameters
 from eomgen.questions.in_phase import PhaseEquations
 from eomgen.records import dataclass
@@ -81,6 +78,9 @@ def resting(system: System, guess: Mapping[str, float] | None = None) -> StateAt
     Raises:
         DerivationError: there is none; a contact would have to pull there.
     """
+    from eomgen.mechanics.equilibria.search import all_equilibria
+    from eomgen.mechanics.equilibria.static_equations import static_equations
+
     statics = static_equations(system)
     if statics.loaded:
         return _held(system)
@@ -96,6 +96,8 @@ def resting(system: System, guess: Mapping[str, float] | None = None) -> StateAt
 
 def _held(system: System) -> StateAtInstant:
     """The start, held by the unknowns of the loads."""
+    from eomgen.mechanics.equilibria.loads_at_rest import holding_of
+
     holding = holding_of(system)
     system = holding.statics.system
     return StateAtInstant(

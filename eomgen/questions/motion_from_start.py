@@ -10,10 +10,10 @@ import math
 from collections.abc import Mapping, Sequence
 from dataclasses import replace
 from functools import cached_property
+from typing import TYPE_CHECKING
 
 import numpy as np
 
-from eomgen.codegen.rhs import parameter_vector
 from eomgen.errors import DerivationError, EomgenError, MissingValues, RunFailed
 from eomgen.mechanics.bodies.places import Located
 from eomgen.mechanics.constraints.ties import holds_identically
@@ -24,23 +24,23 @@ from eomgen.model.fields import WrittenEquation
 from eomgen.model.parts import Model
 from eomgen.model.values import numeric_parameters
 from eomgen.questions.at_instant import StateAtInstant, carried, parameters_of, placed
-from eomgen.questions.first_instant import closed_form, reached
 from eomgen.questions.in_phase import PhaseEquations, phase_equations_of, start_of
 from eomgen.records import dataclass
 from eomgen.simulation.configuration import by_the_law, has_phases
-from eomgen.simulation.integrator import Stepping
-from eomgen.simulation.motion import Plan, through
-from eomgen.simulation.phase_change import PhaseStart, at_start
-from eomgen.simulation.phase_model import PhaseModel
-from eomgen.simulation.phase_models import PhaseModels
-from eomgen.simulation.phase_run import PhaseRun
 from eomgen.symbolic.expression.derivative import depends_on, substituted
 from eomgen.symbolic.expression.graph import Node, Scalar
 from eomgen.symbolic.numeric.evaluation import FLOAT, evaluate
 from eomgen.symbolic.numeric.tolerances import CARRIED, COMPUTED, FINE_RUN
 
+if TYPE_CHECKING:  # what runs is loaded where something runs
+    from eomgen.simulation.integrator import Stepping
+    from eomgen.simulation.phase_change import PhaseStart
+    from eomgen.simulation.phase_model import PhaseModel
+    from eomgen.simulation.phase_models import PhaseModels
+    from eomgen.simulation.phase_run import PhaseRun
+
 HORIZONS = (10.0, 100.0, 1000.0)  # s, for conditions that are met late
-FINE = Stepping(rtol=FINE_RUN, atol=FINE_RUN, most_steps=4000)
+MOST_STEPS = 4000
 
 
 @dataclass(frozen=True)
@@ -62,6 +62,9 @@ class MotionFromStart:
         """The phases of a model that has any, and values for its parameters; else None."""
         if not has_phases(self.model):
             return None
+        from eomgen.codegen.rhs import parameter_vector
+        from eomgen.simulation.phase_models import PhaseModels
+
         try:
             return PhaseModels(self.model, parameter_vector(self.model), "numpy")
         except MissingValues:
@@ -70,6 +73,8 @@ class MotionFromStart:
     @cached_property
     def _first(self) -> PhaseStart:
         """Where the phases begin."""
+        from eomgen.simulation.phase_change import at_start
+
         assert self.models is not None
         return at_start(self.models, 0.0, None, self._start_rates)
 
@@ -186,6 +191,8 @@ class MotionFromStart:
         numbers: Mapping[Node, float],
     ) -> StateAtInstant:
         """In one phase."""
+        from eomgen.questions.first_instant import reached
+
         moment = reached(phase, difference_of(phase, condition), start, numbers)
         moment = replace(moment, exact=placed(phase, moment.exact, moment.numbers))
         if self.models is not None:
@@ -241,13 +248,15 @@ class MotionFromStart:
         return {}
 
     def _run_to(self, condition: WrittenEquation) -> list[PhaseRun]:
+        from eomgen.simulation.motion import Plan, through
+
         assert self.models is not None
 
         def until(phase: PhaseModel) -> Scalar:
             return difference_of(PhaseEquations(phase.system), condition)
 
         for horizon in HORIZONS:
-            runs = list(through(self.models, self._first, Plan(horizon, FINE, None, until)))
+            runs = list(through(self.models, self._first, Plan(horizon, fine_stepping(), None, until)))
             if runs[-1].is_met:
                 return runs
             if runs[-1].run.status != "finished":
@@ -271,6 +280,13 @@ class MotionFromStart:
         return StateAtInstant(phase, exact, _numbers(phase, after.t, after.values), moment.method)
 
 
+def fine_stepping() -> Stepping:
+    """How a motion is run whose instants are then sought in closed form."""
+    from eomgen.simulation.integrator import Stepping
+
+    return Stepping(rtol=FINE_RUN, atol=FINE_RUN, most_steps=MOST_STEPS)
+
+
 def _end_of(
     phase: PhaseEquations, run: PhaseRun, ended_by: Scalar | None, start: Mapping[Node, Scalar]
 ) -> StateAtInstant:
@@ -283,6 +299,8 @@ def _end_of(
     by_time = StateAtInstant(phase, {}, numbers, "integration in time")
     if not start or ended_by is None:
         return by_time
+    from eomgen.questions.first_instant import closed_form
+
     try:
         exact, way = closed_form(phase, phase.eliminated(ended_by), start, numbers)
     except (RunFailed, DerivationError):

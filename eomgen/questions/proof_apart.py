@@ -21,8 +21,8 @@ from eomgen.mechanics.instant.outputs import Quantities
 from eomgen.mechanics.small_motions.modes import MATRICES
 from eomgen.model.outputs.base import names_of
 from eomgen.model.parts import Model, Output
-from eomgen.proof.at_a_state import differing, read_back
-from eomgen.proof.check import Check, Tally
+from eomgen.proof.at_a_state import read_back
+from eomgen.proof.check import Check, Tally, differing
 from eomgen.proof.instant import instant_checks, values_of
 from eomgen.proof.small_motions import small_motion_checks
 from eomgen.questions.velocities import state_of

@@ -27,8 +27,8 @@ from eomgen.model.fields import AtRest
 from eomgen.model.outputs import FUNCTIONS
 from eomgen.model.outputs.base import SMALL_MOTIONS
 from eomgen.model.parts import Model, Output
-from eomgen.proof.at_a_state import NumericState, differing, moving_states, off_by, place_of, read_back
-from eomgen.proof.check import Certificate, Check, Tally
+from eomgen.proof.at_a_state import NumericState, moving_states, off_by, place_of, read_back
+from eomgen.proof.check import Certificate, Check, Tally, differing
 from eomgen.proof.emitted_code import PhaseMotion, TriedState
 from eomgen.proof.parameters import other_data
 from eomgen.proof.second_definitions import second_definition

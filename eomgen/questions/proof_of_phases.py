@@ -16,7 +16,7 @@ from eomgen.model.fields import AtRest
 from eomgen.model.parts import Output
 from eomgen.questions.at_instant import StateAtInstant
 from eomgen.questions.in_phase import PhaseEquations
-from eomgen.questions.motion_from_start import FINE, MotionFromStart, difference_of
+from eomgen.questions.motion_from_start import MotionFromStart, difference_of, fine_stepping
 from eomgen.questions.run import RunProof
 from eomgen.simulation.joined import joined
 from eomgen.simulation.phase_run import PhaseRun
@@ -35,7 +35,7 @@ def wrong_way(motion: MotionFromStart, output: Output, moment: StateAtInstant) -
     if t == 0:
         return ""
     runs = motion.runs_to(output.at)
-    found = RunProof(None, motion.models.p, FINE, motion.models)(joined(motion.models, runs))
+    found = RunProof(None, motion.models.p, fine_stepping(), motion.models)(joined(motion.models, runs))
     if found.ok is None:
         raise DerivationError("the motion has phases of which nothing could be checked")
     failing = [f"{check.name}: {check.detail}" for check in found.checks if check.ok is False]

@@ -24,11 +24,10 @@ from eomgen.documents.motion_frames import (
 )
 from eomgen.documents.moving_picture import Progress, gif, mp4, on_stderr, strip
 from eomgen.documents.statements import prose
-from eomgen.documents.statics.equilibrium_result import has_freedoms
 from eomgen.documents.statics.work_steps import virtual_work_step
 from eomgen.errors import UsageError
 from eomgen.mechanics.equations.system import system_of
-from eomgen.mechanics.equilibria.static_equations import with_drives_held
+from eomgen.mechanics.equilibria.static_equations import has_freedoms, with_drives_held
 from eomgen.mechanics.statics.rest_contacts import modes_at_rest
 from eomgen.mechanics.statics.two_ways import released_in
 from eomgen.mechanics.structures.loose_motion import refuse_loose

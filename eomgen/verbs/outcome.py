@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable
 from dataclasses import replace
+from typing import TYPE_CHECKING
 
 from eomgen.documents.document import Document
 from eomgen.documents.proven import proven
@@ -13,7 +14,9 @@ from eomgen.mechanics.equations.system import system_of
 from eomgen.mechanics.initial_state.initial_state import start_of_motion
 from eomgen.mechanics.statics.contacts_at_start import contacts_at_start
 from eomgen.model.parts import Model
-from eomgen.simulation.result import Trajectory
+
+if TYPE_CHECKING:
+    from eomgen.simulation.result import Trajectory
 
 
 def shown(found: Result, *, plot: str | None = None, certify: bool = True) -> Document:

@@ -11,7 +11,6 @@ from eomgen.certificate import certify
 from eomgen.documents.document import Document, document_of
 from eomgen.documents.figures import Picture
 from eomgen.documents.kinematics.field_steps import field_payload, field_steps, kinds_step, particles_of
-from eomgen.documents.kinematics.mechanism_plot import mechanism_picture
 from eomgen.documents.kinematics.mechanism_steps import cell, how_found, in_numbers, mechanism_steps
 from eomgen.documents.kinematics.relative_steps import relative_payload, relative_steps
 from eomgen.documents.quantity import Quantity
@@ -117,6 +116,8 @@ class Kinematics(Result):
             RunFailed: it is in space.
             MissingValues: parameters without a value.
         """
+        from eomgen.documents.kinematics.mechanism_plot import mechanism_picture
+
         return mechanism_picture(self.state, () if self.kinds is None else all_centrodes(self.kinds))
 
     # -- for machines --------------------------------------------------------------------------------

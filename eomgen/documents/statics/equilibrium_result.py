@@ -16,9 +16,7 @@ from eomgen.documents.result import Result
 from eomgen.documents.setting_steps import data_step
 from eomgen.documents.statics.equilibrium_steps import equilibrium_steps
 from eomgen.errors import DerivationError, ModelError, RunFailed
-from eomgen.mechanics.constraints.freedom import freedoms
 from eomgen.mechanics.equations.system import System
-from eomgen.mechanics.equations.work import generalized_forces
 from eomgen.mechanics.equilibria.resting_reactions import ReactionsOrWhy, reactions_or_why
 from eomgen.mechanics.equilibria.search import Equilibria, Equilibrium, all_equilibria
 from eomgen.mechanics.equilibria.stability import Stability
@@ -28,7 +26,6 @@ from eomgen.model.parts import Model
 from eomgen.proof.check import Certificate, unchecked
 from eomgen.proof.resting import BY_MOTION, NOTHING_ACCELERATED, balance_check, pushes_check, resting_checks
 from eomgen.records import dataclass
-from eomgen.symbolic.expression.derivative import depends_on
 from eomgen.symbolic.expression.graph import Node, Scalar
 from eomgen.symbolic.print.text import to_text
 
@@ -99,13 +96,6 @@ class Resting(Result):
             RunFailed: there is none; the system is in space; parameters have no values.
         """
         return resting_picture(self.places)
-
-
-def has_freedoms(system: System) -> bool:
-    """Whether anything is free to find its rest: a coordinate that no tie, drive or unknown load holds."""
-    unknowns = system.symbols.unknowns.values()
-    forces = generalized_forces(system.loads)
-    return freedoms(system.ties) > 0 and not any(depends_on(x, unknowns) for x in forces)
 
 
 def resting_places(model: Model, system: System) -> Resting:

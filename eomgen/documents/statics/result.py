@@ -4,14 +4,12 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from functools import cached_property
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 from eomgen.documents.document import Document
 from eomgen.documents.figures import Picture
 from eomgen.documents.quantity import Quantity
 from eomgen.documents.result import Result
-from eomgen.documents.statics.equilibrium_result import Resting, has_freedoms, resting_places
-from eomgen.documents.statics.picture import statics_picture
 from eomgen.documents.statics.section_steps import (
     Sections,
     influence_payload,
@@ -23,7 +21,7 @@ from eomgen.documents.statics.section_steps import (
 from eomgen.documents.statics.steps import contacts_step, statics_derivation
 from eomgen.errors import UsageError
 from eomgen.mechanics.equations.system import System, system_of
-from eomgen.mechanics.equilibria.static_equations import with_drives_held
+from eomgen.mechanics.equilibria.static_equations import has_freedoms, with_drives_held
 from eomgen.mechanics.initial_state.numeric_value import known_exactly, shown_numbers
 from eomgen.mechanics.statics.influence import InfluenceLine, influence_line
 from eomgen.mechanics.statics.rest_contacts import RestCondition, conditions_of, modes_at_rest
@@ -43,6 +41,9 @@ from eomgen.symbolic.expression.graph import Scalar
 from eomgen.symbolic.numeric.tolerances import COMPUTED
 from eomgen.symbolic.numeric.work import doing
 from eomgen.symbolic.print.text import to_text
+
+if TYPE_CHECKING:
+    from eomgen.documents.statics.equilibrium_result import Resting
 
 
 @dataclass(frozen=True)
@@ -174,6 +175,8 @@ class Statics(Result):
         Raises:
             RunFailed: it is in space.
         """
+        from eomgen.documents.statics.picture import statics_picture
+
         return statics_picture(self.found, self.sections, self.influence)
 
 
@@ -238,6 +241,8 @@ def statics(
     model = model_at(model, parameters, start)
     system = system_of(model, modes_at_rest(model))
     if has_freedoms(system):
+        from eomgen.documents.statics.equilibrium_result import resting_places
+
         _refuse_for_resting(reaction=reaction, influence=influence)
         return resting_places(model, system)
     held, _ = with_drives_held(system)  # what the model drives is held where it starts

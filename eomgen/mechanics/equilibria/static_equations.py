@@ -17,9 +17,9 @@ import numpy as np
 
 from eomgen.errors import DerivationError
 from eomgen.mechanics.bodies.system_scene import start_values
+from eomgen.mechanics.constraints.freedom import freedoms
 from eomgen.mechanics.equations.system import System, system_of
 from eomgen.mechanics.equations.work import generalized_forces, powered_forces
-from eomgen.mechanics.first_integrals.closed_instant import position_equations
 from eomgen.model.contacts import rough_contacts
 from eomgen.model.part import altered
 from eomgen.model.quaternions import quaternions_of
@@ -211,11 +211,20 @@ def _given(free: System, driven: Sequence[Node]) -> dict[Node, Scalar]:
 
 def _relations(system: System, given: Mapping[Node, Scalar], q: Sequence[Node]) -> ScalarRow:
     """What the ties say of positions; constants that only the start fixes are taken from it."""
+    from eomgen.mechanics.first_integrals.closed_instant import position_equations
+
     found = substituted(tuple(position_equations(system, start_values(system.scope))), given)
     return tuple(x for x in found if depends_on(x, q))
 
 
 # -- what is held ------------------------------------------------------------------------------------
+
+
+def has_freedoms(system: System) -> bool:
+    """Whether anything is free to find its rest: a coordinate that no tie, drive or unknown load holds."""
+    unknowns = system.symbols.unknowns.values()
+    forces = generalized_forces(system.loads)
+    return freedoms(system.ties) > 0 and not any(depends_on(x, unknowns) for x in forces)
 
 
 def with_drives_held(system: System) -> tuple[System, tuple[str, ...]]:
