@@ -10,14 +10,18 @@ from contextlib import suppress
 from typing import Any, NoReturn
 
 from eomgen.cli import main
+from eomgen.symbolic.numeric.gc_pause import seldom_from_now_on
 
 
 def run() -> NoReturn:
     """The process is gone with its last word: graphs are not taken apart node by node, which takes a sixth of its time.
 
+    Nor are they looked through for cycles before.
+
     What others asked for at the end of the process is done first. Where another thread is at work, or a profiler looks
     on, all is as usual.
     """
+    seldom_from_now_on()
     code: Any = 0
     try:
         main()

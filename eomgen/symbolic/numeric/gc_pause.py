@@ -6,7 +6,7 @@ import gc
 from collections.abc import Iterator
 from contextlib import contextmanager
 
-SELDOM = (200_000, 50, 100)  # objects made between two looks at the youngest; looks between two at the older
+SELDOM = (1_000_000, 50, 100)  # objects made between two looks at the youngest; looks between two at the older
 
 
 @contextmanager
@@ -28,11 +28,16 @@ def growing() -> Iterator[None]:
             gc.enable()
 
 
+def seldom_from_now_on() -> None:
+    """One command in a process of its own: cycles are looked for, but not after every 700 objects."""
+    gc.set_threshold(*SELDOM)
+
+
 @contextmanager
 def seldom() -> Iterator[None]:
-    """One command in a process of its own: cycles are looked for, but not after every 700 objects."""
+    """One command; afterwards as before, which looks at once at all that is left, where that was oftener."""
     was = gc.get_threshold()
-    gc.set_threshold(*SELDOM)
+    seldom_from_now_on()
     try:
         yield
     finally:
