@@ -9,7 +9,15 @@ from hypothesis import given
 from random_expressions import POINT, on_graph, smooth, trigonometric, values_at, with_floats
 
 from eomgen.symbolic.exact.equality import equal_at_random_states
-from eomgen.symbolic.expression.derivative import depends_on, derivative, gradient, jacobian, substituted, tangent
+from eomgen.symbolic.expression.derivative import (
+    depends_on,
+    derivative,
+    gradient,
+    jacobian,
+    substituted,
+    tangent,
+    tangents,
+)
 from eomgen.symbolic.expression.graph import Graph, Node
 from eomgen.symbolic.numeric.evaluation import FLOAT, evaluate
 
@@ -105,6 +113,17 @@ def test_the_jacobian_is_the_same_by_rows_and_by_columns(rows):
     pairs = [(a, b) for r, e in zip(found, expected, strict=True) for a, b in zip(r, e, strict=True)]
     assert equal_at_random_states(pairs).equal
     assert [len(row) for row in found] == [3] * rows
+
+
+def test_each_of_many_tangents_is_the_one_that_is_asked_by_itself():
+    """tangents(f, x)_k = tangent(f, {x_k: 1}), the same nodes; asked again nothing is made anew."""
+    graph = Graph()
+    x, y, z = symbols = [graph.symbol(name) for name in "xyz"]
+    outputs = (x * y + graph.call("sin", z), x / y, graph.sqrt(x))
+    alone = tuple(tangent(outputs, {s: 1}) for s in symbols)
+    size = len(graph)
+    assert tangents(outputs, symbols) == alone == tuple(tangent(outputs, {s: 1}) for s in symbols)
+    assert len(graph) == size
 
 
 def test_constants_have_no_derivative():

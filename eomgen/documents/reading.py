@@ -7,7 +7,8 @@ from itertools import count
 
 from eomgen.documents.statements import Omitted
 from eomgen.records import dataclass
-from eomgen.symbolic.exact.book_form import BRACKETS, book_form
+from eomgen.symbolic.exact.book_form import book_form
+from eomgen.symbolic.exact.collected_sums import BRACKETS
 from eomgen.symbolic.exact.equality import equal_at_random_states
 from eomgen.symbolic.exact.normal_form import TooLarge, common_factor, normal_form
 from eomgen.symbolic.exact.roots import Rooted, readable_over, rooted

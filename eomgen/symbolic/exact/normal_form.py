@@ -9,6 +9,7 @@ from __future__ import annotations
 
 from collections.abc import Collection, Iterable, Sequence
 from dataclasses import field
+from typing import Any
 
 from eomgen.errors import DerivationError
 from eomgen.records import dataclass
@@ -128,17 +129,23 @@ def readable_all(
     graph, outputs = united(outputs)
     expansion = Expansion(graph, limit, positive)
     writer = Writer(expansion)
+    known: dict[Any, tuple[Scalar, int]] = graph.found(readable_all)
+    how = (limit, expansion.positive)
     written, terms = [], 0
     for x in outputs:
-        expansion.work = 0
-        try:
-            found = expansion.of(x)
-            terms += len(found)
-            if most is not None and terms > most:
-                return tuple(outputs)
-            written.append(writer.sum(found))
-        except TooLarge:
-            written.append(x)
+        if (x, how) not in known:
+            expansion.work = 0
+            try:
+                found = expansion.of(x)
+                known[x, how] = writer.sum(found), len(found)
+            except TooLarge:
+                written.append(x)
+                continue
+        form, count = known[x, how]
+        terms += count
+        if most is not None and terms > most:
+            return tuple(outputs)
+        written.append(form)
     return tuple(written)
 
 
@@ -240,7 +247,8 @@ def simplest(x: Scalar, limit: int = Work.ANSWER, positive: Collection[Node] = (
     """
     if type(x) is not Node:
         return _simplest(x, limit, positive, most)
-    known, how = x.graph.simplest, (limit, frozenset(positive), most)
+    how = (limit, frozenset(positive), most)
+    known: dict[tuple[Any, ...], Scalar] = x.graph.found(simplest)
     if (x, *how) not in known:
         found = known[x, *how] = _simplest(x, limit, positive, most)
         known.setdefault((found, *how), found)

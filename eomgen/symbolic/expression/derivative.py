@@ -7,7 +7,7 @@ evaluation order. The rules of the functions stand once, in PARTIALS.
 from __future__ import annotations
 
 from collections.abc import Callable, Collection, Container, Iterable, Mapping, Sequence
-from functools import lru_cache
+from typing import Any
 
 from eomgen.symbolic.expression.graph import Graph, Node, Scalar
 from eomgen.symbolic.expression.node import argument
@@ -15,8 +15,17 @@ from eomgen.symbolic.expression.splines import number_of_sampled, sampled_of
 from eomgen.symbolic.expression.traversal import order
 
 LONG, FEWER = 10_000, 3  # nodes that sweeps meet; how many times fewer change their way
-JACOBIANS_KEPT = 8  # of matrices that are asked again: a search for roots, and the stability there
-GRADIENTS_KEPT = 8  # of T by the rates and by the coordinates, which every route takes
+
+
+def _found_once(find: Callable[..., Any], outputs: Sequence[Scalar], *how: Any) -> Any:
+    """find(outputs, *how); the graph keeps it: of T by the rates, of the momenta in time, which every route takes."""
+    graph = next((x.graph for x in outputs if type(x) is Node), None)
+    if graph is None:
+        return find(outputs, *how)
+    known, key = graph.found(find), (tuple(outputs), *how)
+    if key not in known:
+        known[key] = find(outputs, *how)
+    return known[key]
 
 
 def tangent(outputs: Sequence[Scalar], seeds: Mapping[Node, Scalar]) -> tuple[Scalar, ...]:
@@ -28,7 +37,13 @@ def tangent(outputs: Sequence[Scalar], seeds: Mapping[Node, Scalar]) -> tuple[Sc
         outputs: scalars of one graph.
         seeds: the direction's component along each symbol; symbols that are left out stay still.
     """
-    moving = {x: rate for x, rate in seeds.items() if type(rate) is Node or rate != 0}
+    found: tuple[Scalar, ...] = _found_once(_tangent, outputs, frozenset(seeds.items()))
+    return found
+
+
+def _tangent(outputs: Sequence[Scalar], given: Collection[tuple[Node, Scalar]]) -> tuple[Scalar, ...]:
+    seeds = dict(given)
+    moving = {x: rate for x, rate in given if type(rate) is Node or rate != 0}
     return _swept(outputs, moving, order(outputs), seeds) if moving else (0,) * len(outputs)
 
 
@@ -49,6 +64,19 @@ def _swept(
     return tuple(rates.get(x, 0) if type(x) is Node else 0 for x in outputs)
 
 
+def tangents(outputs: Sequence[Scalar], symbols: Sequence[Node]) -> tuple[tuple[Scalar, ...], ...]:
+    """The derivatives of the outputs by each symbol, in a sweep for each, through what depends on it alone."""
+    nodes = order(outputs)
+    return _columns(outputs, symbols, _followers(nodes, symbols))
+
+
+def _columns(
+    outputs: Sequence[Scalar], symbols: Sequence[Node], followers: Sequence[Sequence[Node]]
+) -> tuple[tuple[Scalar, ...], ...]:
+    each = zip(symbols, followers, strict=True)
+    return tuple(_swept(outputs, {symbol: 1}, nodes, (symbol,)) for symbol, nodes in each)
+
+
 def derivative(x: Scalar, symbol: Node) -> Scalar:
     """dx/dsymbol."""
     return tangent((x,), {symbol: 1})[0]
@@ -56,12 +84,8 @@ def derivative(x: Scalar, symbol: Node) -> Scalar:
 
 def gradient(x: Scalar, symbols: Sequence[Node]) -> tuple[Scalar, ...]:
     """(dx/dsymbol for each symbol), in one sweep from the result back to the symbols."""
-    return _gradient(x, tuple(symbols))
-
-
-@lru_cache(maxsize=GRADIENTS_KEPT)
-def _gradient(x: Scalar, symbols: tuple[Node, ...]) -> tuple[Scalar, ...]:
-    return pullback((x,), (1,), symbols)
+    found: tuple[Scalar, ...] = _found_once(pullback, (x,), (1,), tuple(symbols))
+    return found
 
 
 def pullback(outputs: Sequence[Scalar], weights: Sequence[Scalar], symbols: Sequence[Node]) -> tuple[Scalar, ...]:
@@ -82,17 +106,16 @@ def pullback(outputs: Sequence[Scalar], weights: Sequence[Scalar], symbols: Sequ
 
 def jacobian(outputs: Sequence[Scalar], symbols: Sequence[Node]) -> tuple[tuple[Scalar, ...], ...]:
     """The matrix d outputs / d symbols, one row an output, by whichever sweeps are fewer, or meet far fewer nodes."""
-    return _jacobian(tuple(outputs), tuple(symbols))
+    found: tuple[tuple[Scalar, ...], ...] = _found_once(_jacobian, outputs, tuple(symbols))
+    return found
 
 
-@lru_cache(maxsize=JACOBIANS_KEPT)
-def _jacobian(outputs: tuple[Scalar, ...], symbols: tuple[Node, ...]) -> tuple[tuple[Scalar, ...], ...]:
+def _jacobian(outputs: Sequence[Scalar], symbols: Sequence[Node]) -> tuple[tuple[Scalar, ...], ...]:
     nodes = order(outputs)
     followers = _followers(nodes, symbols)
     if len(outputs) < len(symbols) or _is_shorter_backward(outputs, nodes, followers):
         return tuple(pullback((x,), (1,), symbols) for x in outputs)
-    each = zip(symbols, followers, strict=True)
-    columns = [_swept(outputs, {symbol: 1}, nodes, (symbol,)) for symbol, nodes in each]
+    columns = _columns(outputs, symbols, followers)
     return tuple(tuple(column[i] for column in columns) for i in range(len(outputs)))
 
 

@@ -64,9 +64,7 @@ class Graph:
         self.pi = self.held("pi", ())
         self._constants = {self.pi}
         self.spheres: list[tuple[Node, ...]] = []
-        self.text_sizes: dict[Node, int] = {}  # those that were asked for
-        self.lengths: dict[Node, tuple[int, int]] = {}  # as typeset, of those that were asked for
-        self.simplest: dict[tuple[Any, ...], Scalar] = {}  # of those that were asked for, with what was asked
+        self._found: dict[Any, dict[Any, Any]] = {}
 
     def __len__(self) -> int:
         return len(self._nodes)
@@ -119,6 +117,10 @@ class Graph:
         symbol = self.symbol(name)
         self._constants.add(symbol)
         return symbol
+
+    def found(self, what: Any) -> dict[Any, Any]:
+        """What was found of the nodes, to be asked again: their lengths, their derivatives; a dict for each."""
+        return self._found.setdefault(what, {})
 
     def hold_on_sphere(self, symbols: tuple[Node, ...]) -> None:
         """Symbols whose squares always add up to 1, as those of a unit quaternion: so are values chosen for them."""

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from functools import lru_cache
 
 from eomgen.errors import DerivationError
 from eomgen.symbolic.expression.exact_numbers import Number
@@ -12,6 +13,7 @@ LONGEST_FRACTION = 100  # the smallest denominator of a fraction that reads wors
 MUCH_LONGER = 2  # characters by which a decimal may be longer than its fraction
 MOST_PRINTED = 4000  # digits of a whole number: Python prints 4300
 BITS = math.log2(10)  # of a digit
+KEPT = 1000  # numbers whose decimals are kept
 SMALLEST = -4  # power of ten below which a decimal is written with its exponent: 8.464e-7
 
 
@@ -39,6 +41,7 @@ def _is_long(c: Number) -> bool:
     return max(c.numerator.bit_length(), c.denominator.bit_length()) > BITS * MOST_PRINTED
 
 
+@lru_cache(maxsize=KEPT)
 def decimal_of(c: Number) -> tuple[str, int] | None:
     """(digits, power of ten) with c = digits * 10^power exactly; None where a fraction or a whole number reads better.
 

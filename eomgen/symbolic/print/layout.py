@@ -23,6 +23,7 @@ SHORT_SUM = 40  # nodes of a sum that is looked through for what moves
 
 Term = tuple[Number, "Node | None"]
 Factor = tuple[Node, int]
+Rank = tuple[int, tuple[int, ...], str, tuple[str, ...], int]
 
 
 @dataclass(frozen=True, slots=True)
@@ -64,11 +65,14 @@ def terms(x: Scalar, named: Container[Node] = ()) -> list[Term]:
 
 def products_of(x: Scalar, named: Container[Node] = ()) -> list[Product]:
     """x as a sum of products, in the order of `terms`; k*(1 - l/r) rather than -k*(l/r - 1)."""
-    products = []
-    for c, term in terms(x, named):
-        product = factors(1 if term is None else term, named)
-        products.append(_turned(Product(c * product.coefficient, product.numerator, product.denominator), named))
-    return plus_first(products)
+    return plus_first([product_of(term, named) for term in terms(x, named)])
+
+
+def product_of(term: Term, named: Container[Node] = ()) -> Product:
+    """number * term with the sign of a factor turned where it reads better."""
+    c, node = term
+    product = factors(1 if node is None else node, named)
+    return _turned(Product(c * product.coefficient, product.numerator, product.denominator), named)
 
 
 def plus_first(products: list[Product]) -> list[Product]:
@@ -180,6 +184,13 @@ def factors(x: Scalar, named: Container[Node] = ()) -> Product:
     """
     if not isinstance(x, Node):
         return Product(x, (), ())
+    known: dict[Node, Product] = {} if named else x.graph.found(factors)
+    if x not in known:
+        known[x] = _factors(x, named)
+    return known[x]
+
+
+def _factors(x: Node, named: Container[Node]) -> Product:
     powers: dict[Node, int] = {x: 1}
     newest = [(-x.index, x)]
     bases: list[Factor] = []
@@ -202,7 +213,8 @@ def factors(x: Scalar, named: Container[Node] = ()) -> Product:
             if part not in powers:
                 heappush(newest, (-part.index, part))
             powers[part] = powers.get(part, 0) + power * exponent
-    bases.sort(key=_rank)
+    if len(bases) > 1:
+        bases.sort(key=_rank)
     above = tuple((base, power) for base, power in bases if power > 0)
     return Product(tidy(coefficient), above, tuple((base, -power) for base, power in bases if power < 0))
 
@@ -277,9 +289,16 @@ def _parts(node: Node) -> tuple[tuple[Scalar, int], ...] | None:
     return None
 
 
-def _rank(factor: Factor) -> tuple[int, tuple[int, ...], str, tuple[str, ...], int]:
+def _rank(factor: Factor) -> Rank:
     """Where a factor stands: by what it is made of, and by its age only where that is long or the same."""
     base = factor[0]
+    known: dict[Node, Rank] = base.graph.found(_rank)
+    if base not in known:
+        known[base] = _rank_of(base)
+    return known[base]
+
+
+def _rank_of(base: Node) -> Rank:
     if base.op == "symbol":
         kind = 5 if base.name.startswith("lam(") else 4 if base.name.endswith("'") else 6 if is_time(base) else 1
         return kind, (base.index,), "", (), 0

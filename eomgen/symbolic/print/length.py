@@ -102,7 +102,7 @@ def length_of(*scalars: Scalar) -> int:
 
 def _lengths(x: Node) -> dict[Node, Marks]:
     """The marks of x and of all its parts."""
-    known: dict[Node, Marks] = x.graph.lengths
+    known: dict[Node, Marks] = x.graph.found(length_of)
     plans: dict[Node, list[Product]] = {}
     stack = [x]
     while stack:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Container
 from math import gcd
+from typing import Any
 
 from eomgen.symbolic.expression.exact_numbers import tidy
 from eomgen.symbolic.expression.graph import Node, Scalar
@@ -11,7 +12,7 @@ from eomgen.symbolic.expression.node import SUMS, holds_op
 from eomgen.symbolic.expression.rational import Fraction
 from eomgen.symbolic.expression.traversal import order
 from eomgen.symbolic.print.decimals import decimal_of
-from eomgen.symbolic.print.layout import Factor, Product, is_base, plus_first, products_of
+from eomgen.symbolic.print.layout import Factor, Product, is_base, plus_first, product_of, products_of, terms
 
 TRIGONOMETRIC = frozenset("sin cos tan sinh cosh tanh".split())
 _OTHER = {"sin": "cos", "cos": "sin"}
@@ -23,9 +24,20 @@ def summands(x: Scalar, named: Container[Node] = ()) -> list[Product]:
     k*(1 - l/r) rather than -k*(l/r - 1), sqrt(14*l/3) rather than 1/3*sqrt(42*l), tan(x) rather than sin(x)/cos(x),
     and k*(b - a) rather than -k*(a - b) where that is all.
     """
-    products = [_with_tangents(p, named) for p in products_of(x, named)]
-    alone = len(products) == 1
-    return plus_first([_with_shorter_roots(_with_plus(p, named, alone=alone), named) for p in products])
+    found = terms(x, named)
+    alone = len(found) == 1
+    known: dict[Any, tuple[Product, bool]] = {} if named or type(x) is not Node else x.graph.found(summands)
+    for term in found:
+        if (term, alone) not in known:
+            product = product_of(term, named)
+            known[term, alone] = _for_people(product, named, alone=alone), product.coefficient > 0
+    products = [known[term, alone] for term in found]
+    first = next((i for i, (_, plus) in enumerate(products) if plus), 0)
+    return plus_first([product for product, _ in (products[first], *products[:first], *products[first + 1 :])])
+
+
+def _for_people(product: Product, named: Container[Node], *, alone: bool) -> Product:
+    return _with_shorter_roots(_with_plus(_with_tangents(product, named), named, alone=alone), named)
 
 
 def _with_tangents(product: Product, named: Container[Node]) -> Product:

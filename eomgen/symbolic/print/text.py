@@ -144,7 +144,7 @@ def text_size(x: Scalar) -> int:
     """At least the length of to_text(x), at the cost of the graph: nothing is printed."""
     if type(x) is not Node:
         return number_length(x)
-    sizes = x.graph.text_sizes
+    sizes: dict[Node, int] = x.graph.found(text_size)
     for node in order((x,), sizes):
         if node not in sizes:
             sizes[node] = _size(node, sizes)
