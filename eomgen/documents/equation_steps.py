@@ -16,7 +16,6 @@ from eomgen.documents.reading import (
     Shortened,
     conditions_in,
     free_names,
-    holds_roots,
     length_in_print,
     readable_value,
     shortened,
@@ -30,6 +29,7 @@ from eomgen.symbolic.exact.book_form import book_form
 from eomgen.symbolic.exact.normal_form import common_factor, readable, simple_constants
 from eomgen.symbolic.expression.derivative import depends_on, derivative, substituted
 from eomgen.symbolic.expression.graph import Graph, Node, Scalar, is_zero
+from eomgen.symbolic.expression.node import ROOT_OF_SUM, holds_op
 from eomgen.symbolic.expression.traversal import operations
 from eomgen.symbolic.numeric.work import Work
 from eomgen.symbolic.print.decimals import number_text
@@ -185,10 +185,13 @@ def _named(
 
 
 def _is_beyond_names(equations: EquationsOfMotion) -> bool:
-    """Whether no form is short enough: every operation on what moves is written at least once, an operand beside it."""
+    """Whether no form is short enough: every operation on what moves is written at least once, an operand beside it.
+
+    Roots of sums are not: a symbol stands for each.
+    """
     sides = (*(x for row in equations.M for x in row), *equations.forcing)
     moving = operations(sides, equations.symbols.parameters.values()).total
-    return 2 * moving > NAMED_LENGTH and not holds_roots(*sides)
+    return 2 * moving > NAMED_LENGTH and not any(holds_op(x, ROOT_OF_SUM) for x in sides)
 
 
 def taken_in(equations: EquationsOfMotion) -> set[str]:
