@@ -63,6 +63,17 @@ def test_what_is_indeterminate_stays_so(sure):
     assert equal_at_random_states([(solution.constants[2], c / sin(theta))]).equal
 
 
+@pytest.mark.parametrize(("pivot", "worst"), [(1, 0), ("theta", None)])
+def test_where_all_pivots_are_sure_nothing_waits_for_normal_equations(pivot, worst):
+    """Pivots of rank <= sure, one after the other: the solution is that without such a bound, and says so."""
+    g = Graph()
+    theta, a, b, c = (g.symbol(name) for name in ("theta", "a", "b", "c"))
+    rows = [{0: 2, 1: sin(theta)}, {1: pivot if pivot == 1 else cos(theta), 2: a}, {2: -3}]
+    bound, free = (system(rows, [a, b, c], 3, rank=rank, sure=sure) for sure in (1, None))
+    assert bound.worst == worst and (free.worst == 0) is (worst == 0)
+    assert (bound.constants == free.constants and bound.shares == free.shares) or worst is None
+
+
 def test_numbers_go_before_normal_equations():
     """x0 = b - c x1 stays as it is; the two rows of x1 alone are brought together."""
     g = Graph()

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import replace
+from functools import cache
 from random import Random
 from typing import Any
 
@@ -27,6 +28,7 @@ from eomgen.symbolic.solve.linear import Solution
 from eomgen.symbolic.solve.linear_systems import LinearSystem, Pivots, general_solution
 
 TRIES = 20
+SURE = 1  # the largest rank of what vanishes at no state: numbers, products of parameters that are not 0
 Combination = dict[int, Scalar]
 
 
@@ -35,7 +37,7 @@ class Indeterminate(DerivationError):
 
 
 def solution_of_balance(
-    balance: Balance, at: Mapping[Node, Scalar], sure: int | None = 1, work: int = Work.ANSWER
+    balance: Balance, at: Mapping[Node, Scalar], sure: int | None = SURE, work: int = Work.ANSWER
 ) -> Solution:
     """The reactions, and unknowns of the loads, that balance all bodies.
 
@@ -62,6 +64,7 @@ def solution_of_balance(
     parameters = frozenset(balance.system.symbols.parameters.values())
     steady = _steady_parameters(balance.system)
 
+    @cache
     def simple(a: Scalar) -> int:
         """Numbers, products of parameters that are not 0, and what may vanish at some state or for some angle."""
         return 0 if type(a) is not Node else 1 if _is_product(a, steady) else 2

@@ -12,7 +12,7 @@ from functools import cached_property
 
 from eomgen.errors import DerivationError
 from eomgen.mechanics.balance.balance import Balance, balance_of
-from eomgen.mechanics.balance.balance_solution import Combination, combined_reaction, solution_of_balance
+from eomgen.mechanics.balance.balance_solution import SURE, Combination, combined_reaction, solution_of_balance
 from eomgen.mechanics.balance.components import Component
 from eomgen.mechanics.balance.friction import push_sizes, round_symbols
 from eomgen.mechanics.balance.named_reactions import named_reactions
@@ -287,6 +287,8 @@ def reactions_of(
 ) -> Reactions:
     """Every reaction, linear in the accelerations; or at one configuration, for which everything is solved anew.
 
+    From as few equations as can be and from sure pivots alone it is the same elimination, where all pivots are sure.
+
     Args:
         at: exact scalars in place of coordinates, speeds, accelerations and t.
         short: from as few equations as can be: formulas for a reader, which may divide by what vanishes at some states.
@@ -297,7 +299,9 @@ def reactions_of(
     if at or work != Work.ANSWER:
         return _found(system, at or {}, short, work)
     if (key := (reactions_of, short)) not in system.found:
-        system.found[key] = _found(system, {}, short, work)
+        other: Reactions | None = system.found.get((reactions_of, not short))
+        alike = other is not None and other.solution.worst is not None and other.solution.worst <= SURE
+        system.found[key] = other if alike else _found(system, {}, short, work)
     found: Reactions = system.found[key]
     return found
 
@@ -311,7 +315,7 @@ def _found(system: System, at: Mapping[Node, Scalar], short: bool, work: int) ->
         return Reactions(balance, _with_sizes(system, at, sizes, work), at)
     if at:
         return Reactions(balance, solution_of_balance(balance, at, work=work), at)
-    solution = solution_of_balance(balance, {}, sure=None if short else 1)
+    solution = solution_of_balance(balance, {}, sure=None if short else SURE)
     refuse_unheld(balance, solution)
     return Reactions(balance, solution, {})
 

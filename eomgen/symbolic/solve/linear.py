@@ -11,6 +11,7 @@ which for equations without contradiction have the same solution, and with W = A
 
 from __future__ import annotations
 
+from collections import Counter
 from collections.abc import Callable, Collection, Iterable, Mapping, Sequence
 from typing import Any
 
@@ -37,12 +38,14 @@ class Solution:
         shares: the coefficients of the free unknowns, {} where x_j is determined.
         free: the unknowns that stay free: as many as the equations leave undetermined.
         left: right sides of the rows in which no unknown is left: they must vanish.
+        worst: the largest rank of a pivot; None where some pivots came late, or none was sure.
     """
 
     constants: dict[int, Scalar]
     shares: dict[int, dict[int, Scalar]]
     free: tuple[int, ...]
     left: tuple[Scalar, ...]
+    worst: int | None = None
 
     def determined(self, j: int) -> bool:
         """Whether unknown j has one value only."""
@@ -127,11 +130,14 @@ def sparse_solution(system: LinearSystem, pivots: Pivots) -> Solution:
             pivots.tolerance,
             worst=(sure, True),
         )
+    waits = bool(late) or (sure is not None and any(line.entries for line in lines))
+    if sure is not None:
         _normal(lines, order, system.values)
     _eliminate(lines, order, lambda line, j, x: ((j in late) + (not tested(line, j)), rank(x)), pivots.tolerance)
     free = tuple(j for j in range(system.unknowns) if j not in {pivot for pivot, _ in order})
     constants, shares = _substituted(order, free, pivots.tolerance)
-    return Solution(constants, shares, free, tuple(line.right for line in lines))
+    worst = None if waits else max((rank(line.entries[j]) for j, line in order), default=0)
+    return Solution(constants, shares, free, tuple(line.right for line in lines), worst)
 
 
 def _lines(system: LinearSystem, pivots: Pivots) -> list[_Line]:
@@ -172,30 +178,33 @@ def _eliminate(
     worst: tuple[int, int] | None = None,
 ) -> None:
     """Move lines, each with the unknown that it is solved for, into `order`, as long as there are pivots."""
-    while (found := _pivot(lines, rank)) is not None:
+    many = Counter(j for line in lines for j in line.entries)  # lines that hold an unknown
+    while (found := _pivot(lines, many, rank)) is not None:
         check_patience()
-        line, j = found
+        k, j = found
+        line = lines[k]
         if worst is not None and rank(line, j, line.entries[j]) > worst:
             return
-        lines.remove(line)
+        del lines[k]
         order.append((j, line))
-        for other in lines:
+        many.subtract(list(line.entries))
+        for other in lines if many[j] else ():
             if j in other.entries:
+                many.subtract(list(other.entries))
                 _subtract(other, line, j, tolerance)
+                many.update(list(other.entries))
 
 
-def _pivot(lines: list[_Line], rank: Callable[[_Line, int, Scalar], tuple[int, int]]) -> tuple[_Line, int] | None:
-    """The entry of the least rank by which the next unknown is eliminated; of those the one that fills in least."""
-    many: dict[int, int] = {}
-    for line in lines:
-        for j in line.entries:
-            many[j] = many.get(j, 0) + 1
+def _pivot(
+    lines: list[_Line], many: Mapping[int, int], rank: Callable[[_Line, int, Scalar], tuple[int, int]]
+) -> tuple[int, int] | None:
+    """(line, unknown) of the entry of least rank, by which the next one is eliminated; of those that fills in least."""
     best, found = None, None
-    for line in lines:
+    for k, line in enumerate(lines):
         for j, entry in line.entries.items():
             this = (*rank(line, j, entry), (len(line.entries) - 1) * (many[j] - 1))
             if best is None or this < best:
-                best, found = this, (line, j)
+                best, found = this, (k, j)
                 if this == (0, 0, 0):
                     return found
     return found

@@ -83,8 +83,11 @@ def without_common_factors(
     entries = {(i, j): monomial(x) for i, row in enumerate(rows) for j, x in row.items()}
     by_row: dict[int, SymbolPowers] = {}
     by_column: dict[int, SymbolPowers] = {}
+    own = {atom for entry in entries.values() for atom in entry.powers}
+    own = {atom for atom in own if frozenset(sure).issuperset(symbols_of((atom,)))}
+    for_rows = set(filter(steady, own))
     for _ in range(SWEEPS):
-        taken = _taken(entries, 0, by_row, sure, steady) + _taken(entries, 1, by_column, sure)
+        taken = _taken(entries, 0, by_row, for_rows) + _taken(entries, 1, by_column, own)
         if not taken:
             break
     r = {i: PowerProduct(1, powers).scalar() for i, powers in by_row.items()}
@@ -136,20 +139,17 @@ def _taken(
     entries: dict[tuple[int, int], PowerProduct],
     which: int,
     factors: dict[int, SymbolPowers],
-    sure: Collection[Node],
-    steady: Callable[[Node], bool] = lambda _: True,
+    own: Collection[Node],
 ) -> int:
-    """Take the common powers out of every row (which = 0) or column (1); how many there were."""
+    """Take the common powers of such atoms out of every row (which = 0) or column (1); how many there were."""
     lines: dict[int, list[PowerProduct]] = {}
     for place, entry in entries.items():
         lines.setdefault(place[which], []).append(entry)
     count = 0
     for k, line in lines.items():
-        for atom, e in _common(line, sure).items():
-            if not steady(atom):
-                continue
-            own = factors.setdefault(k, {})
-            own[atom] = own.get(atom, 0) + e
+        for atom, e in _common(line, own).items():
+            taken = factors.setdefault(k, {})
+            taken[atom] = taken.get(atom, 0) + e
             for entry in line:
                 entry.powers[atom] = entry.powers.get(atom, 0) - e
                 if not entry.powers[atom]:
@@ -158,9 +158,9 @@ def _taken(
     return count
 
 
-def _common(line: list[PowerProduct], sure: Collection[Node]) -> SymbolPowers:
-    """The powers that all monomials of a line hold."""
-    atoms = {atom for entry in line for atom in entry.powers if set(symbols_of((atom,))) <= set(sure)}
+def _common(line: list[PowerProduct], own: Collection[Node]) -> SymbolPowers:
+    """The powers of such atoms that all monomials of a line hold."""
+    atoms = dict.fromkeys(atom for entry in line for atom in entry.powers if atom in own)
     least = {atom: min(entry.powers.get(atom, 0) for entry in line) for atom in atoms}
     most = {atom: max(entry.powers.get(atom, 0) for entry in line) for atom in atoms}
     return {atom: least[atom] if least[atom] > 0 else most[atom] for atom in atoms if least[atom] > 0 or most[atom] < 0}
