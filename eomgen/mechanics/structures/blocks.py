@@ -62,8 +62,9 @@ def blocks_of(plan: VelocityPlan) -> tuple[RigidBlock, ...]:
             groups.append(_Group([part]))
         else:
             group.parts.append(part)
-    nodes = _nodes_of(plan)
-    for member in _moving_members(plan):
+    members = _moving_members(plan)
+    nodes = _nodes_of(plan, members)
+    for member in members:
         group = next((g for g in groups if all(g.carries(node, nodes(node)) for node in member[2])), None)
         if group is not None:
             group.parts.append(_member(plan, member, ()))
@@ -153,9 +154,8 @@ class _Group:
 
 def _members(plan: VelocityPlan) -> Iterable[_Part]:
     """The moving members in the plane that keep their length."""
-    nodes = _nodes_of(plan)
     for member in _moving_members(plan):
-        if numbers := _numbers_of(*map(nodes, member[2])):
+        if numbers := _numbers_of(*map(_nodes_of(plan, [member]), member[2])):
             yield _member(plan, member, numbers)
 
 
@@ -171,9 +171,9 @@ def _member(plan: VelocityPlan, member: Member, numbers: Sequence[Any]) -> _Part
     return _Part((), ((truss, name),), numbers, partial(_of_ends, plan, ends))
 
 
-def _nodes_of(plan: VelocityPlan) -> Callable[[str], NodeNumbers]:
-    """node -> (vx, vy, x, y) with 50 digits, of the nodes of moving members, all found in one go"""
-    names = dict.fromkeys(node for _, _, ends in _moving_members(plan) for node in ends)
+def _nodes_of(plan: VelocityPlan, members: Sequence[Member]) -> Callable[[str], NodeNumbers]:
+    """node -> (vx, vy, x, y) with 50 digits, of the nodes of these members, all found in one go"""
+    names = dict.fromkeys(node for _, _, ends in members for node in ends)
     flat = iter(plan.numbers([x for name in names for x in _of_node(plan, name)]))
     known = {name: tuple(next(flat) for _ in range(4)) for name in names}
     return known.__getitem__

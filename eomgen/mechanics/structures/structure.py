@@ -28,9 +28,9 @@ from eomgen.mechanics.structures.velocity_plan import VelocityPlan
 from eomgen.model.forces.load import BodyPoint
 from eomgen.records import dataclass
 from eomgen.symbolic.exact.normal_form import readable_all
-from eomgen.symbolic.expression.derivative import derivative, substituted, tangent
+from eomgen.symbolic.expression.derivative import derivative, substituted, tangent, tangents
 from eomgen.symbolic.expression.graph import Node, Scalar, is_zero
-from eomgen.symbolic.expression.node import State
+from eomgen.symbolic.expression.node import ScalarRow, State
 from eomgen.symbolic.expression.spatial import Vector
 from eomgen.symbolic.numeric.dense import sparse_rank
 from eomgen.symbolic.numeric.evaluation import digits_at, evaluate, fifty_digits
@@ -165,9 +165,10 @@ class Structure:
         if not self.determines(combination):
             names = ", ".join(self.names[j] for j in combination)
             raise DerivationError(f"{names} released, nothing can move: the other reactions hold the bodies without it")
+        if [*combination.values()] == [1]:
+            return self._plan(self._columns[next(iter(combination))])
         deltas = self._solved.deltas
-        xi = tangent(self._solved.velocities, {deltas[j]: k for j, k in combination.items()})
-        return self._plan(xi)
+        return self._plan(tangent(self._solved.velocities, {deltas[j]: k for j, k in combination.items()}))
 
     def index(self, name: str) -> int:
         """The row of a reaction or unknown by its name.
@@ -183,6 +184,11 @@ class Structure:
             velocities[body][direction] = value
         rows = tuple(tuple(six) for six in velocities)
         return VelocityPlan(self.system, self.at, self._solved.parameters, rows, self._places, self._known)
+
+    @cached_property
+    def _columns(self) -> tuple[ScalarRow, ...]:
+        """Of each row the velocities that a velocity 1 along it alone takes."""
+        return tangents(self._solved.velocities, self._solved.deltas)
 
     @cached_property
     def _places(self) -> dict[BodyPoint, Vector]:

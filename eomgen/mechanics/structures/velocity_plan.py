@@ -168,11 +168,14 @@ class VelocityPlan:
 
     def vanishes(self, scalars: Sequence[Scalar], beside: Sequence[Scalar] = (1,)) -> bool:
         """Whether all of them are 0, beside what they are multiples of."""
-        if not all(is_zero(x) for x in scalars if type(x) is not Node):
+        nodes = [x for x in scalars if type(x) is Node]
+        if len(nodes) < len(scalars) and not all(is_zero(x) for x in scalars if type(x) is not Node):
             return False
+        if not nodes:
+            return True
         known = beside if not any(type(x) is Node for x in beside) else self.numbers(beside)
         size = max(map(abs, known), default=0)
-        return all(abs(x) <= ZERO_AT_50 * size for x in self.numbers([x for x in scalars if type(x) is Node]))
+        return all(abs(x) <= ZERO_AT_50 * size for x in self.numbers(nodes))
 
     def numbers(self, scalars: Sequence[Scalar]) -> list[Any]:
         """What scalars are worth at these parameters, with 50 digits."""
