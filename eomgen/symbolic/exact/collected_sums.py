@@ -19,11 +19,11 @@ from eomgen.symbolic.exact.sum_parts import (
     SumPart,
     SumParts,
     doubled,
-    grouped,
+    grouped_by,
     in_tangents_of,
     is_negative,
+    negated,
     times_powers,
-    turned,
     without_common,
 )
 from eomgen.symbolic.exact.writing import Writer
@@ -46,17 +46,17 @@ MERGED = 6  # marks that one coefficient of several accelerations and rates must
 MOST_SHARED = 3  # factors that several terms of a sum hold, of which each is tried outside of them
 MOST_TRIED = 150  # sums that are formed for one scalar in search of shorter ones
 
-Form = TypeVar("Form")
+_Form = TypeVar("_Form")
 
 
-def _once(form: Callable[[CollectedSums, SumParts], Form]) -> Callable[[CollectedSums, SumParts], Form]:
+def _once(form: Callable[[CollectedSums, SumParts], _Form]) -> Callable[[CollectedSums, SumParts], _Form]:
     """What one form of a sum is, found once for each sum."""
 
-    def found(book: CollectedSums, parts: SumParts) -> Form:
+    def found(book: CollectedSums, parts: SumParts) -> _Form:
         key = (form, *parts)
         if key not in book.known:
             book.known[key] = form(book, parts)
-        known: Form = book.known[key]
+        known: _Form = book.known[key]
         return known
 
     return found
@@ -109,12 +109,12 @@ class CollectedSums:
                 number = tidy(number * Fraction(part[0][0]) ** e)
         factors = [(part, e) for part, e in factors if len(part) > 1 or part[0][1]]
         minus = number * (-1) ** sum(e for part, e in factors if is_negative(part)) < 0
-        written = [(turned(part) if is_negative(part) else part, e) for part, e in factors]
+        written = [(negated(part) if is_negative(part) else part, e) for part, e in factors]
         if minus:
             mixed = [k for k, (part, e) in enumerate(written) if e % 2 and any(c < 0 for c, _ in part)]
             if mixed:
                 part, e = written[mixed[0]]
-                written[mixed[0]] = (turned(part), e)
+                written[mixed[0]] = (negated(part), e)
                 minus = False
         sign, size = (-1 if minus else 1), abs(Fraction(number))
         apart = self._product(self._term(sign * size, common), written)
@@ -141,7 +141,7 @@ class CollectedSums:
         """The sum with one term for each product of what accelerates and turns, each coefficient at its shortest."""
         if len(parts) < 2:
             return self.sum(parts)
-        groups = grouped(parts, self._is_kinetic)
+        groups = grouped_by(parts, self._is_kinetic)
         if not any(groups):
             return self._still(parts)
         apart = self.added([self._with(key, part) for key, part in groups.items()])
@@ -170,8 +170,8 @@ class CollectedSums:
 
     def _by_coefficients(self, parts: SumParts) -> Scalar | None:
         """coefficient*(what moves), each sum of what moves once: m*b*(sin(a)*(p'' + q'') + cos(a)*(p' + q')^2)."""
-        parameters = grouped(parts, lambda base: not self._moves(base))
-        groups = parameters if len(parameters) > 1 else grouped(parts, lambda base: not self._is_kinetic(base))
+        parameters = grouped_by(parts, lambda base: not self._moves(base))
+        groups = parameters if len(parameters) > 1 else grouped_by(parts, lambda base: not self._is_kinetic(base))
         if not 1 < len(groups) < len(parts):
             return None
         sums: dict[tuple[Powers, tuple[SumPart, ...]], SumParts] = {}
@@ -201,7 +201,7 @@ class CollectedSums:
             return apart
         forms = []
         for chosen in (self._moves, self._is_root):
-            groups = grouped(parts, chosen)
+            groups = grouped_by(parts, chosen)
             if 1 < len(groups) < len(parts):
                 forms.append(self.added([self._with(key, part) for key, part in groups.items()]))
         if len(parts) > 2:

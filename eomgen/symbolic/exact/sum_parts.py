@@ -1,4 +1,4 @@
-"""A sum as a list of parts, each a number times powers: what they have in common, and how they are grouped.
+"""A sum as a list of parts, each a number times powers: what they have in common, and how they are grouped_by.
 
 part = c * product of base^exponent,   base: an atom of an expansion, or the sine or cosine of an angle
 """
@@ -35,12 +35,12 @@ def is_negative(parts: SumParts) -> bool:
     return all(c < 0 for c, _ in parts)
 
 
-def turned(parts: SumParts) -> SumParts:
+def negated(parts: SumParts) -> SumParts:
     """Minus the sum."""
     return [(-c, powers) for c, powers in parts]
 
 
-def grouped(parts: SumParts, chosen: Callable[[Base], bool]) -> dict[Powers, SumParts]:
+def grouped_by(parts: SumParts, chosen: Callable[[Base], bool]) -> dict[Powers, SumParts]:
     """The terms by the product of their chosen bases, without it; in the order in which it is first met."""
     groups: dict[Powers, SumParts] = {}
     for c, powers in parts:
