@@ -1,4 +1,4 @@
-"""A sum as a list of parts, each a number times powers: what they have in common, and how they are grouped_by.
+"""A sum as a list of parts, each a number times powers: what they have in common, and how they are grouped.
 
 part = c * product of base^exponent,   base: an atom of an expansion, or the sine or cosine of an angle
 """
