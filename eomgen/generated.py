@@ -123,6 +123,7 @@ class Generated:
         unfinished = ["matrices: friction hangs on the reactions"] if self.equations.graph.friction else []
         open_ties = "what puts the ties back as they open by the errors of many steps (--baumgarte lets them pull)"
         drifts = self.integrator and any(not row.identical for row in self.equations.graph.system.ties.rows)
+        unfinished += ["jacobian: nothing moves"] if self.slopes and self.jacobian is None else []
         return (*(note for note in (self.note, open_ties * drifts) if note), *left, *unfinished)
 
     @cached_property
@@ -142,8 +143,8 @@ class Generated:
 
     @cached_property
     def jacobian(self) -> Emitted | None:
-        """The slopes of the right-hand side, described; None where they are not asked for."""
-        if not self.slopes:
+        """The slopes of the right-hand side, described; None where they are not asked for, or nothing moves."""
+        if not self.slopes or not self.equations.graph.symbols.q:
             return None
         found = self.equations.slopes
         program, told = self._blocks(found.blocks, JACOBIAN, found.motion, found.solves)

@@ -16,6 +16,7 @@ import numpy as np
 from eomgen.codegen.program import right_hand_side
 from eomgen.codegen.rhs import RightHandSide, compiled
 from eomgen.errors import DerivationError
+from eomgen.mechanics.bodies.loads import weights
 from eomgen.mechanics.constraints.closure import of_50_digits as precise
 from eomgen.mechanics.equations.accelerations import exact_accelerations
 from eomgen.mechanics.equations.articulated import with_accelerations
@@ -26,7 +27,7 @@ from eomgen.mechanics.reactions.reactions import reactions_of
 from eomgen.model.outputs import FUNCTIONS
 from eomgen.model.outputs.base import BALANCE
 from eomgen.proof.check import differing
-from eomgen.proof.in_numbers import with_inputs
+from eomgen.proof.in_numbers import pushes_of, with_inputs
 from eomgen.proof.printed import least_multipliers
 from eomgen.proof.states import TrialState
 from eomgen.proof.trials import Trials, refuse_noise
@@ -120,8 +121,16 @@ class NumericState:
         """What doubles may leave of reactions that are small beside the forces [N, N m]; 0 of what asks none."""
         if not any(FUNCTIONS[call.name].source == BALANCE for call in formula.calls):
             return 0.0
-        forces = evaluate(tuple(self.equations.forcing), self.values, fifty_digits())
+        forces = evaluate(tuple(self.equations.forcing), self.values, fifty_digits()) or self._applied
         return ROUNDING * max((abs(float(x)) for x in forces), default=0.0)
+
+    @property
+    def _applied(self) -> list[Any]:
+        """What is applied to each body of a structure, forces and moments about the ground's origin."""
+        loads = self.equations.system.loads
+        placed = [load for force in loads.applied for load in force.loads]
+        pushes = pushes_of(self.equations.system.motion, self.values, (*placed, *weights(loads)))
+        return [x for moment, force in pushes.values() for x in (*moment, *force)]
 
     @property
     def t(self) -> float:

@@ -225,9 +225,14 @@ class Quantities:
         return power_of_loads(self.system, name)
 
     def effort(self, force: str) -> Scalar:
-        """What draws the points of a force together [N], or turns its second body [N m]."""
+        """What draws the points of a force together [N], or turns its second body [N m].
+
+        Raises:
+            DerivationError: it acts otherwise.
+        """
         effort = self.system.scope.model.forces[force].effort(SystemScene(self.system.motion, f"forces.{force}"))
-        assert effort is not None, "such a force was asked for"
+        if effort is None:
+            raise DerivationError(f"force '{force}' acts neither between two points nor between two bodies")
         return effort
 
     def generalized_force(self, coordinate: str) -> Scalar:

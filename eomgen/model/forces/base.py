@@ -44,7 +44,7 @@ class Force(Part):
         return None
 
     def effort(self, scene: LoadContext) -> AnyScalar | None:
-        """What draws its two points together [N], or turns the second body against the first [N m]; None of others."""
+        """What draws its two points together [N], or turns its (second) body [N m]; None of others."""
         return None
 
     def loads(self, scene: LoadContext) -> tuple[Load, ...]:
