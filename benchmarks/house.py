@@ -19,7 +19,8 @@ LATER = {  # what was built after the house was laid out, by what it is for: pat
     "other languages, series, lanes": "codegen/targets/[d-z]*.py codegen/targets/beside.py "
     "codegen/targets/branch_free.py codegen/targets/casadi.py codegen/targets/cpp.py "
     "codegen/targets/c_integrator.py codegen/targets/c_lanes.py "
-    "codegen/taylor.py codegen/batching.py codegen/matrices.py codegen/given_motion.py codegen/single_precision.py",
+    "codegen/taylor.py codegen/series.py codegen/batching.py codegen/matrices.py codegen/given_motion.py "
+    "codegen/single_precision.py",
     "robots and other programs": "robots/ exported.py verbs/importing.py verbs/exporting.py",
     "many runs, sweeps, parameters": "sweeps/ sensitivities/ identification/ questions/many_runs.py "
     "questions/simulator.py questions/controlled.py questions/of_a_run.py verbs/sweep.py verbs/identify.py",

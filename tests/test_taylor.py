@@ -11,7 +11,7 @@ import pytest
 
 import eomgen
 from eomgen.codegen.build import compiler
-from eomgen.codegen.taylor import ALONE, LEAST, MOST, order_for
+from eomgen.codegen.series import ALONE, LEAST, MOST, order_for
 
 MODELS = Path(__file__).parent.parent / "models"
 

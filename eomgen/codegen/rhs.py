@@ -12,11 +12,12 @@ import numpy as np
 
 from eomgen.codegen.batching import ProgramInLanes
 from eomgen.codegen.program import Program
+from eomgen.codegen.series import Series, series_of
 from eomgen.codegen.spheres import spheres_of
 from eomgen.codegen.targets import ALL
 from eomgen.codegen.targets.base import RHS, Address, Functions, Target
 from eomgen.codegen.targets.c import c_together
-from eomgen.codegen.taylor import Series, series_of, without_series
+from eomgen.codegen.taylor import without_series
 from eomgen.errors import RunFailed, ToolMissing, UsageError
 from eomgen.model.parts import Model
 from eomgen.model.replaced import with_values

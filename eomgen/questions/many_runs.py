@@ -17,7 +17,8 @@ import numpy as np
 
 from eomgen.codegen.batching import STATUS, Asked, Batch, FoundRuns
 from eomgen.codegen.rhs import parameter_vector
-from eomgen.codegen.taylor import order_for, without_series
+from eomgen.codegen.series import order_for
+from eomgen.codegen.taylor import without_series
 from eomgen.errors import EomgenError, ExpressionError, RunFailed, ToolMissing, UsageError
 from eomgen.mechanics.initial_state.initial_state import start_of_motion
 from eomgen.model.findings import nearest

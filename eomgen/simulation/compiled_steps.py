@@ -15,8 +15,8 @@ import numpy as np
 from numpy.polynomial.polynomial import polyval
 
 from eomgen.codegen.rhs import RightHandSide
+from eomgen.codegen.series import ALONE, order_for
 from eomgen.codegen.targets.base import Address
-from eomgen.codegen.taylor import ALONE, order_for
 from eomgen.simulation import event_location
 from eomgen.simulation.constraint_drift import DriftCorrection, Rows
 from eomgen.simulation.constraint_rank import RankLookout
