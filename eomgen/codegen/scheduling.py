@@ -9,7 +9,7 @@ among them. What is computed is the same, bit for bit.
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence, Set
+from collections.abc import Callable, Mapping, Sequence, Set
 from heapq import heapify, heappop, heappush
 
 from eomgen.symbolic.expression.graph import Node
@@ -32,7 +32,7 @@ def scheduled(needs: Needs, later: Set[Node]) -> Sequence[Node]:
     made = {x: set[Node]() for x in sorted(symbols, key=lambda x: x.index)} | {
         x: {a for a in needed if a in needs or a in symbols} for x, needed in needs.items()
     }
-    orders = [list(made), *(_close_together(made, weight) for weight in WEIGHTS)]
+    orders = [list(made), *(_close_together(made, of, weight) for of in (_mean, max) for weight in WEIGHTS)]
     best = min(orders, key=lambda order: traffic(order, made, later))
     return [x for x in best if x in needs]
 
@@ -46,8 +46,16 @@ def _users(needs: Needs) -> dict[Node, list[Node]]:
     return found
 
 
-def _close_together(needs: Needs, weight: float) -> list[Node]:
-    """What calls take, then each as soon as its arguments are there, those of the newest first."""
+def _mean(places: Sequence[int]) -> float:
+    return sum(places) / len(places)
+
+
+def _close_together(needs: Needs, of: Callable[[Sequence[int]], float], weight: float) -> list[Node]:
+    """What calls take, then each as soon as its arguments are there, those of the newest first.
+
+    Args:
+        of: the places of the arguments, how new they are.
+    """
     rank, early = {x: k for k, x in enumerate(needs)}, set[Node]()
     for x in reversed(list(needs)):
         if x in early or x.op not in INSTRUCTIONS:
@@ -58,7 +66,7 @@ def _close_together(needs: Needs, weight: float) -> list[Node]:
     def lateness(x: Node) -> tuple[bool, float, int]:
         if x in early:
             return False, 0.0, rank[x]
-        newest = sum(place[a] + 1 for a in needs[x]) / max(1, len(needs[x]))
+        newest = of([place[a] + 1 for a in needs[x]] or [0])
         return True, weight * rank[x] - (1 - weight) * newest, rank[x]
 
     ready = [(*lateness(x), x) for x, count in left.items() if not count]
