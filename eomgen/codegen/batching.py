@@ -6,7 +6,6 @@ import ctypes
 import functools
 import threading
 from collections.abc import Callable, Mapping, Sequence
-from concurrent.futures import ThreadPoolExecutor, wait
 from functools import partial
 from itertools import pairwise
 from typing import Any
@@ -200,6 +199,8 @@ def pieces_of(count: int, parts: int) -> list[tuple[int, int]]:
 
 def in_threads(work: Sequence[Callable[[threading.Event], None]], check: Callable[[], None]) -> None:
     """Each piece of work in a thread of its own; what `check` raises, called now and then, sets their event."""
+    from concurrent.futures import ThreadPoolExecutor, wait
+
     stop = threading.Event()
     with ThreadPoolExecutor(len(work)) as pool:
         begun = [pool.submit(each, stop) for each in work]

@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-import csv
-import html
 import io
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import field
@@ -246,6 +244,8 @@ class Trajectory:
         Raises:
             WriteFailed: the file cannot be written; what was there before is then still there.
         """
+        import csv
+
         columns = self.columns()
         text = io.StringIO()
         writer = csv.writer(text, lineterminator="\n")
@@ -327,6 +327,8 @@ class Trajectory:
         return f"<trajectory of {names}: {len(self.t)} instants. {self.summary()}>"
 
     def _repr_html_(self) -> str:
+        import html
+
         shown: list[int] = sorted({round(i * (len(self.t) - 1) / 5) for i in range(6)}) if len(self.t) else []
         columns = self.columns()
         head = "".join(f"<th>{html.escape(name)}</th>" for name in columns)

@@ -7,7 +7,6 @@ from __future__ import annotations
 
 from dataclasses import replace
 from functools import cache
-from importlib import resources
 
 from eomgen.codegen import build
 from eomgen.codegen.expressions import ATOM, RankedText, ranked_number
@@ -45,6 +44,8 @@ LANES: Language = replace(
 @cache
 def text_of(name: str) -> str:
     """One of the fixed texts that lie beside this package's modules."""
+    from importlib import resources
+
     return resources.files("eomgen.codegen").joinpath(name).read_text(encoding="utf-8")
 
 
