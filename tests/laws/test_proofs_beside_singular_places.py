@@ -148,3 +148,33 @@ def test_a_string_is_not_proven_where_it_would_be_too_long():
     joint = { kind = "prismatic", axis = [1, 0], displacement = "X" }
     """
     assert failing(eomgen.derive(eomgen.loads(PLANE + text)).certify()) == []
+
+
+@pytest.mark.parametrize(("k", "kind"), [("m*9.81*b/(a*h)", "indifferent"), ("1.01*m*9.81*b/(a*h)", "stable")])
+def test_a_spring_of_zero_length_may_hold_an_arm_in_every_place(k: str, kind: str) -> None:
+    """LaCoste 1934: k a h = m g b; one per cent more, and two places of rest are left, as the formula says."""
+    found = eomgen.statics(eomgen.loads(LACOSTE.replace("K", k)))
+    assert found.certify().ok
+    places = found.found.found
+    if kind == "indifferent":
+        assert [q.name for q in found.found.indifferent] == ["p"] and len(places) == 1
+        assert [q.name for q, _ in found.found.statics.nowhere] == ["p"]
+    else:
+        assert len(places) == 2 and not found.found.indifferent
+    assert kind in {place.stability.kind for place in places}
+
+
+LACOSTE = """
+eomgen = 1
+space = "plane"
+parameters = { m = 0.5, b = 0.3, h = 0.2, a = 0.25, k = "K" }
+coordinates = { p = 0.1 }
+points = { O = [0, 0], T = [0, "h"] }
+bodies.arm.mass = "m"
+bodies.arm.inertia = 0.001
+bodies.arm.center = ["b", 0]
+bodies.arm.points = { s = ["a", 0] }
+bodies.arm.joint = { kind = "revolute", angle = "p" }
+forces.spring = { kind = "spring", points = ["T", "arm.s"], stiffness = "k", length = 0 }
+forces.weight = { kind = "gravity", acceleration = [0, -9.81] }
+"""

@@ -39,8 +39,9 @@ def equilibrium_steps(found: Equilibria, reactions: ReactionsOrWhy | None) -> tu
 
 def rest_balance_step(statics: StaticEquations, reader: Reader) -> Step:
     """That the virtual work vanishes for every displacement: the equations."""
+    empty = _nowhere(reader, statics)
     if not statics.q:
-        return Step("balance", "Balance at rest", (prose("No force changes with the place."),))
+        return Step("balance", "Balance at rest", empty or (prose("No force changes with the place."),))
     law = REST_WITH_TIES if statics.lam else REST
     words = "At rest the virtual work of all forces vanishes for every displacement"
     words += ", those of the ties included: " if statics.lam else ": "
@@ -52,7 +53,18 @@ def rest_balance_step(statics: StaticEquations, reader: Reader) -> Step:
     ties = [Formula((reader.shown(x), 0)) for x in statics.phi[:own]]
     ties += [Formula((x + 1, 1)) for x in statics.phi[own:]]  # of quaternions, which are read with it
     between = [prose("The ties hold the coordinates by")] if ties else []
-    return Step("balance", "Balance at rest", (*held, prose(words, law, "."), *forces, *between, *ties))
+    return Step("balance", "Balance at rest", (*held, prose(words, law, "."), *forces, *between, *ties, *empty))
+
+
+def _nowhere(reader: Reader, statics: StaticEquations) -> tuple[Statement, ...]:
+    """The forces that the values of the parameters make vanish wherever the system is."""
+    if not statics.nowhere:
+        return ()
+    pairs = [(Name("Q", by=q), force) for q, force in statics.nowhere]
+    return (
+        prose("The values of the parameters make vanish, wherever the system is:"),
+        *page(reader, pairs, then=(0,)),
+    )
 
 
 def _all_forces(reader: Reader, statics: StaticEquations) -> tuple[Statement, ...]:

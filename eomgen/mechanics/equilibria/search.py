@@ -158,7 +158,7 @@ def _search(statics: StaticEquations, guess: Mapping[str, float] | None) -> _Sea
     if statics.loaded:
         what = f"the forces hold the unknown '{statics.loaded[0].name}': it is what holds the system where it starts"
         raise DerivationError(what, f"unknowns.{statics.loaded[0].name}", "give it a value to seek places of rest")
-    return _Search(statics, dict(guess or {}))
+    return _Search(statics.at_the_values(), dict(guess or {}))
 
 
 @dataclass(frozen=True)

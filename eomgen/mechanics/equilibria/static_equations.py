@@ -24,12 +24,14 @@ from eomgen.model.contacts import rough_contacts
 from eomgen.model.part import altered
 from eomgen.model.quaternions import quaternions_of
 from eomgen.model.table import Table
+from eomgen.model.values import exact_parameters
 from eomgen.records import dataclass
 from eomgen.symbolic.exact.normal_form import readable_all
 from eomgen.symbolic.expression.derivative import depends_on, substituted
 from eomgen.symbolic.expression.expressions import as_expression
 from eomgen.symbolic.expression.graph import Node, Scalar, is_zero
 from eomgen.symbolic.expression.node import ScalarRow, State
+from eomgen.symbolic.expression.rational import Fraction
 from eomgen.symbolic.expression.traversal import order
 from eomgen.symbolic.numeric.evaluation import FLOAT, evaluate
 from eomgen.symbolic.numeric.work import Work
@@ -53,6 +55,7 @@ class StaticEquations:
         phi: relations between the coordinates.
         norms: how many of the rows of J, the last ones, are those of the norms of quaternions.
         beside: what balances along coordinates that need not be sought, as no equation depends on them.
+        nowhere: (coordinate, force along it) of the forces that the values of the parameters make vanish everywhere.
     """
 
     system: System
@@ -66,6 +69,7 @@ class StaticEquations:
     phi: ScalarRow
     norms: int = 0
     beside: ScalarRow = ()
+    nowhere: tuple[tuple[Node, Scalar], ...] = ()
 
     @cached_property
     def forces(self) -> ScalarRow:
@@ -94,6 +98,16 @@ class StaticEquations:
         """The unknowns of the model that stand in the forces."""
         unknowns = self.system.symbols.unknowns.values()
         return tuple(x for x in unknowns if any(depends_on(force, (x,)) for force in self.Q))
+
+    def at_the_values(self) -> StaticEquations:
+        """The same where a force is 0 that vanishes everywhere for the model's values of the parameters."""
+        scope = self.system.scope
+        known = {scope.symbols.parameters[name]: x for name, x in exact_parameters(scope.model).items()}
+        values = {node: Fraction(x) for node, x in known.items() if isinstance(x, Fraction | int)}
+        sought = [k for k, force in enumerate(self.Q) if not is_zero(force) and depends_on(force, values)]
+        empty = [k for k in sought if vanishes(substituted((self.Q[k],), values)[0])]
+        Q = tuple(0 if k in empty else force for k, force in enumerate(self.Q))
+        return replace(self, Q=Q, nowhere=tuple((self.q[k], self.Q[k]) for k in empty)) if empty else self
 
     def without(self, dropped: Collection[Node]) -> StaticEquations:
         """The same over the other coordinates, which alone stand in the equations.
