@@ -26,7 +26,7 @@ from eomgen.model.quaternions import quaternions_of
 from eomgen.model.table import Table
 from eomgen.model.values import exact_parameters
 from eomgen.records import dataclass
-from eomgen.symbolic.exact.normal_form import readable_all
+from eomgen.symbolic.exact.normal_form import readable_all, simplest
 from eomgen.symbolic.expression.derivative import depends_on, substituted
 from eomgen.symbolic.expression.expressions import as_expression
 from eomgen.symbolic.expression.graph import Node, Scalar, is_zero
@@ -105,7 +105,7 @@ class StaticEquations:
         known = {scope.symbols.parameters[name]: x for name, x in exact_parameters(scope.model).items()}
         values = {node: Fraction(x) for node, x in known.items() if isinstance(x, Fraction | int)}
         sought = [k for k, force in enumerate(self.Q) if not is_zero(force) and depends_on(force, values)]
-        empty = [k for k in sought if vanishes(substituted((self.Q[k],), values)[0])]
+        empty = [k for k in sought if is_zero(simplest(substituted((self.Q[k],), values)[0], Work.VALUE))]
         Q = tuple(0 if k in empty else force for k, force in enumerate(self.Q))
         return replace(self, Q=Q, nowhere=tuple((self.q[k], self.Q[k]) for k in empty)) if empty else self
 
