@@ -20,6 +20,7 @@ from eomgen.symbolic.numeric.evaluation import (
     NoMeaning,
     NoValue,
     evaluate,
+    evaluate_once,
     fifty_digits,
 )
 
@@ -120,6 +121,18 @@ def test_a_value_that_is_given_for_an_inner_node_is_used(graph):
     """sin(x) = 2 where it is said so; x is then not needed."""
     s = graph.call("sin", graph.symbol("x"))
     assert evaluate([s * s], {s: 2}, RATIONAL) == [4]
+
+
+def test_a_value_found_once_is_that_of_a_plan(graph):
+    """Without a plan: the same numbers, an inner node that is given is used, what has no value is refused alike."""
+    x, y = graph.symbol("x"), graph.symbol("y")
+    inner = graph.call("sin", x * y)
+    outputs, state = (3, inner, inner * x / (x - y) - 2), {x: 5, y: 7, inner: 11}
+    nodes = order(outputs)
+    assert evaluate_once(outputs, nodes, state, PRIME_FIELD) == evaluate(outputs, state, PRIME_FIELD)
+    for found in (evaluate_once, lambda outputs, _, *how: evaluate(outputs, *how)):
+        with pytest.raises(NoValue):
+            found(outputs, nodes, state | {y: 5}, PRIME_FIELD)
 
 
 def test_numbers_pass_through(graph):

@@ -25,6 +25,7 @@ from eomgen.symbolic.numeric.evaluation import (
     NoMeaning,
     NoValue,
     evaluate,
+    evaluate_once,
     fifty_digits,
 )
 
@@ -272,7 +273,7 @@ def _valued(flat: Sequence[Scalar], nodes: Sequence[Node], rng: Random) -> tuple
     for _ in range(TRIES):
         try:
             state = _exact_state(nodes, rng, PRIME_FIELD)
-            return state, evaluate(flat, state.values, PRIME_FIELD)
+            return state, evaluate_once(flat, nodes, state.values, PRIME_FIELD)
         except NoMeaning:
             raise
         except (NoValue, ValueError):  # ValueError: 1 + tau^2 has no inverse

@@ -7,6 +7,7 @@ import operator
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from functools import cache, lru_cache
 from functools import partial as partial_of
+from itertools import chain, count
 from typing import Any
 
 from eomgen.errors import DerivationError
@@ -80,6 +81,25 @@ def evaluate(outputs: Sequence[Scalar], values: Mapping[Node, Any], arithmetic: 
     return [known[i] for i in way.outputs]
 
 
+def evaluate_once(
+    outputs: Sequence[Scalar], nodes: Sequence[Node], values: Mapping[Node, Any], arithmetic: Arithmetic
+) -> list[Any]:
+    """The same for a state or two, for which no plan is made.
+
+    Args:
+        nodes: all that the outputs need, arguments before results; values of their symbols are given.
+    """
+    check_patience()
+    number, functions, known = arithmetic.number, arithmetic.functions, dict(values)
+    for x in nodes:
+        if x not in known:
+            try:
+                known[x] = functions[x.op](*[known[a] if type(a) is Node else number(a) for a in x.args])
+            except (ValueError, ZeroDivisionError, OverflowError):
+                known[x] = arithmetic.failed(x)
+    return [known[x] if type(x) is Node else number(x) for x in outputs]
+
+
 def floats_of(values: Iterable[Any]) -> list[float]:
     """Numbers of many digits as floats.
 
@@ -111,16 +131,16 @@ class _Way:
 @lru_cache(maxsize=WAYS_KEPT)
 def _way(outputs: tuple[Scalar, ...], given: frozenset[Node]) -> _Way:
     """The way to the outputs, which is the same for all values."""
-    nodes = order(outputs, given)
-    symbols = tuple(x for x in nodes if x.op == "symbol")
-    known = tuple(x for x in nodes if x in given)
-    computed = [x for x in nodes if x.op != "symbol" and x not in given]
-    numbers = dict.fromkeys(a for x in computed for a in x.args if type(a) is not Node)
-    constants = tuple(numbers | dict.fromkeys(x for x in outputs if type(x) is not Node))
-    place: dict[Scalar, int] = {x: i for i, x in enumerate((*constants, *symbols, *known, *computed))}
-    at = place.__getitem__
+    symbols: list[Node] = []
+    known: list[Node] = []
+    computed: list[Node] = []
+    for x in order(outputs, given):
+        (known if x in given else symbols if x.op == "symbol" else computed).append(x)
+    numbers = {a for x in computed for a in x.args if type(a) is not Node}
+    constants = tuple(numbers.union(x for x in outputs if type(x) is not Node))
+    at = dict(zip(chain(constants, symbols, known, computed), count(), strict=False)).__getitem__
     steps = tuple([(x, x.op, tuple(map(at, x.args))) for x in computed])
-    return _Way(constants, symbols, known, steps, tuple(place[x] for x in outputs))
+    return _Way(constants, tuple(symbols), tuple(known), steps, tuple(map(at, outputs)))
 
 
 # -- the arithmetics ------------------------------------------------------------------------------
