@@ -93,9 +93,9 @@ class Reader:
         """
         held = [symbol for symbol in order((x,)) if symbol in self.roots]
         try:
-            if len(normal_form(x, Work.ENTRY).terms) > WAVES:
+            if held and len(normal_form(x, Work.ENTRY).terms) > WAVES:
                 return None
-            short = readable_over(x, held, Work.ENTRY) if held else book_form(x)
+            short = readable_over(x, held, Work.ENTRY) if held else book_form(x, most=WAVES)
         except TooLarge:
             return None
         if self.gathers and not held:

@@ -39,15 +39,20 @@ LONGEST = 3000  # characters of a quotient that is written anew
 AGAIN = 3  # times that a quotient is written anew, until it stays as it is
 
 
-def book_form(x: Scalar, limit: int = Work.ENTRY, positive: Collection[Node] = ()) -> Scalar:
+def book_form(
+    x: Scalar, limit: int = Work.ENTRY, positive: Collection[Node] = (), *, most: int | None = None
+) -> Scalar:
     """x as the author of a textbook prints it; x itself where that takes more than `limit` products of terms.
 
     Args:
         positive: symbols that stand for positive numbers.
+        most: terms of what is written.
+    Raises:
+        TooLarge: more than `most` terms, where that is given, or more work to count them.
     """
     if type(x) is not Node:
         return x
-    form, settled = _written(x, limit, positive)
+    form, settled = _written(x, limit, positive, most=most)
     if settled or text_size(form) > LONGEST:
         return form
     found, texts = [form], [to_text(form)]
@@ -62,10 +67,17 @@ def book_form(x: Scalar, limit: int = Work.ENTRY, positive: Collection[Node] = (
     return found[-1]
 
 
-def _written(x: Scalar, limit: int, positive: Collection[Node]) -> tuple[Scalar, bool]:
+def _written(x: Scalar, limit: int, positive: Collection[Node], *, most: int | None = None) -> tuple[Scalar, bool]:
     """(the shortest of its forms, whether it is that of the function and not of how the sum was parted)."""
     try:
         expansion, (found,) = expanded((x,), limit, positive)
+    except TooLarge:
+        if most is not None:
+            raise
+        return x, True
+    if most is not None and len(found) > most:
+        raise TooLarge(f"a sum of more than {most} terms")
+    try:
         terms = {key: found[key] for key in sorted(found)}  # whatever was written before
         writer = Writer(expansion)
         book = CollectedSums(expansion, writer)
