@@ -15,6 +15,7 @@ from eomgen.judge.causes import causes_of
 from eomgen.judge.comparison import Comparison, excess
 from eomgen.judge.decision import is_zero_everywhere
 from eomgen.judge.implied import Instant, implied_by, simplest_explanation
+from eomgen.judge.mends import Mends
 from eomgen.judge.reading import HandEquation
 from eomgen.judge.terms import LONG
 from eomgen.judge.verdict import RIGHT, UNDECIDED, WRONG, Cause, Verdict
@@ -82,7 +83,9 @@ def _wrong(case: Case, written: HandEquation, kind: str, at: Instant, left: Answ
     """Both sides have values, and these differ: by what the author put into the equations, or in the answer itself."""
     difference = f"{left.value - right.value:.6g}" if left.value is not None and right.value is not None else ""
     causes: tuple[Cause, ...] = ()
-    target, found = simplest_explanation(implied_by(case, written, kind, at, left, right))
+    true = case.exact(left)
+    mends = [] if true is None or len(written.left.code) != 1 else [Mends(case, written, kind, true=true)]
+    target, found = simplest_explanation(implied_by(case, written, kind, at, left, right), mends)
     clash = case.clash(written)
     if found and not (clash and len(found[0].shares) > 1):
         causes = causes_of(case, found, moving=False)

@@ -24,7 +24,7 @@ from eomgen.model.catalog import Catalog
 from eomgen.model.dimensions import inferred
 from eomgen.model.forces.load import Couple, Load, PointForce, UniformField
 from eomgen.records import dataclass
-from eomgen.symbolic.expression.derivative import depends_on_any, gradient, jacobian, substituted, tangent
+from eomgen.symbolic.expression.derivative import depends_on_any, gradient, jacobian, substituted, symbols_of, tangent
 from eomgen.symbolic.expression.dimensions import Dimension
 from eomgen.symbolic.expression.functions import inner
 from eomgen.symbolic.expression.graph import Node, Scalar, is_zero
@@ -56,6 +56,16 @@ class Contribution:
     kind: str = ""
     load: Load | None = None
     row: ScalarRow | None = None
+
+    @property
+    def held(self) -> frozenset[Node]:
+        """The symbols in it."""
+        acts: Sequence[Scalar] = ()
+        if isinstance(self.load, PointForce):
+            acts = (*self.load.force, *self.load.place[1])
+        elif isinstance(self.load, Couple):
+            acts = self.load.couple
+        return frozenset(symbols_of((self.T, self.V, *self.Q, *(self.row or ()), *acts)))
 
 
 @dataclass(frozen=True)

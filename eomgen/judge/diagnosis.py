@@ -389,8 +389,8 @@ class Search:
         if np.allclose(np.abs(sigma), 1, rtol=CARRIED):
             return ("", 0.0) if sigma[0] > 0 else ("opposite", TURNED)
         if np.allclose(sigma, sigma[0], rtol=CARRIED):
-            simple = _simple(float(sigma[0])) is not None
-            return "constant", 1.2 if simple else 2.0
+            known = simple_factor(float(sigma[0])) is not None
+            return "constant", 1.2 if known else 2.0
         return "function", 1.0 if np.mean(sigma) > 0 else 1.3
 
 
@@ -420,13 +420,13 @@ def _share(corruption: Corruption, y: float, often: Sequence[Fraction | int]) ->
     for name, (number, _) in UNITS.items():
         if abs(1 + y - number) < SAME_EIGENVALUE * number:
             return Share(corruption, Fraction(1), name)
-    factor = _simple(1 + y)
+    factor = simple_factor(1 + y)
     if corruption.name == WHOLE and factor is not None and max(abs(factor.numerator), factor.denominator) > WELL_KNOWN:
         return None
     return None if factor is None or factor == 1 else Share(corruption, factor)
 
 
-def _simple(x: float) -> Fraction | None:
+def simple_factor(x: float) -> Fraction | None:
     if not np.isfinite(x) or abs(x) > SIMPLE:
         return None
     near = Fraction(x).limit_denominator(SIMPLE)

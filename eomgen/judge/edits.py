@@ -126,7 +126,7 @@ class Edits:
                 name = term_text(f)
                 for other in _other_powers(k):
                     if other != k and (len(powers) > 1 or other != 0):
-                        yield "factor", x * _power(f, other - k), wrong_power(name, k, other), EXCHANGED
+                        yield "factor", x * power(f, other - k), wrong_power(name, k, other), EXCHANGED
                 yield from _other_waves(x, f, k)
             yield from _in_parallel(x, powers)
             for p, q in self._ratios(powers):
@@ -151,13 +151,13 @@ class Edits:
 
 def _of_ratio(x: Node, p: Node, q: Node, k: Fraction) -> Iterator[tuple[str, Scalar, str, float]]:
     ratio, name = over(p, q), f"{p.name}/{q.name}"
-    yield "factor", x * _power(ratio, -k), f"the ratio {name} is missing", EXCHANGED
-    yield "factor", x * _power(ratio, -2 * k), f"the ratio {name} is turned over: {q.name}/{p.name} stands there", TERMS
+    yield "factor", x * power(ratio, -k), f"the ratio {name} is missing", EXCHANGED
+    yield "factor", x * power(ratio, -2 * k), f"the ratio {name} is turned over: {q.name}/{p.name} stands there", TERMS
     for other in dict.fromkeys((k - 1, k + 1, 2 * k, k / 2)):
         if other > 0 and other != k:
             told = (f"({name})" + (f"^{n}" if n != 1 else "") for n in (other, k))
             there, meant = told
-            yield "factor", x * _power(ratio, other - k), f"{there} stands where {meant} is meant", EXCHANGED
+            yield "factor", x * power(ratio, other - k), f"{there} stands where {meant} is meant", EXCHANGED
 
 
 def _other_powers(k: Fraction) -> tuple[Fraction, ...]:
@@ -173,7 +173,7 @@ def _other_waves(x: Node, f: Node, k: Fraction) -> Iterator[tuple[str, Scalar, s
         if op != f.op and not is_zero(other):
             told = f"{op} stands for {f.op}({term_text(f.args[0])})"
             told += ": the angle is taken from the other axis" if "tan" not in (op, f.op) else ""
-            yield "wrong_axis", x * _power(over(other, f), k), told, TERMS
+            yield "wrong_axis", x * power(over(other, f), k), told, TERMS
 
 
 def powers_of(x: Scalar) -> Powers:
@@ -199,14 +199,15 @@ def powers_of(x: Scalar) -> Powers:
     return {f: k for f, k in found.items() if k}
 
 
-def _power(x: Scalar, k: Fraction) -> Scalar:
+def power(x: Scalar, k: Fraction) -> Scalar:
+    """x^k, k a multiple of 1/2."""
     if type(x) is not Node:
         return x
     if k.denominator == 1:
         n = int(k)
         return x**n if n >= 0 else over(1, x**-n)
     root: Scalar = x.graph.sqrt(x)
-    return _power(root, 2 * k)
+    return power(root, 2 * k)
 
 
 def wrong_power(name: str, k: Fraction, other: Fraction) -> str:
@@ -214,10 +215,13 @@ def wrong_power(name: str, k: Fraction, other: Fraction) -> str:
     name = f"({name})" if any(c in name for c in " +-*/") and not name.endswith(")") else name
     if other == 0:
         return f"a factor {name} is missing" if k > 0 else f"a division by {name} is missing"
+    if k == 0:
+        return f"a factor {_with_power(name, other)} is too many" if other > 0 else f"a division by {_with_power(name, -other)} is too many"
     there, meant = (_with_power(name, abs(x)) for x in (other, k))
     if k * other > 0:
         root = ": a root is missing" if k.denominator == 2 and other.denominator == 1 else ""
-        return f"{there} stands where {meant} is meant{root}"
+        square = ": the square is missing" if abs(k) == 2 and abs(other) == 1 else ""
+        return f"{there} stands where {meant} is meant{root}{square}"
     does, should = ("multiplies", "divide") if other > 0 else ("divides", "multiply")
     return f"{there} {does} where {meant} should {should}"
 

@@ -16,7 +16,7 @@ from contextlib import suppress
 from dataclasses import replace
 from functools import cached_property
 from itertools import chain
-from typing import TypeVar
+from typing import Protocol, TypeVar
 
 import numpy as np
 
@@ -150,21 +150,35 @@ def implied_by(
         yield again
 
 
-Compared = TypeVar("Compared", Implied, Comparison, Implied | Comparison)
+
+class Explainable(Protocol):
+    """What explanations are sought of."""
+
+    def explained(self, number: int) -> list[Explanation]:
+        """Those by so many mistakes."""
 
 
-def simplest_explanation(targets: Iterable[Compared]) -> tuple[Compared | None, list[Explanation]]:
-    """The comparison that is explained by the fewest mistakes, with its explanations: the first that is believed."""
+Compared = TypeVar("Compared", bound=Explainable)
+
+
+def simplest_explanation(
+    targets: Iterable[Compared], mends: Iterable[Compared] = ()
+) -> tuple[Compared | None, list[Explanation]]:
+    """The comparison that is explained by the fewest mistakes, with its explanations: the first that is believed.
+
+    Args:
+        mends: looked at where no one mistake of the others is believed.
+    """
     known = tuple(targets)
     best: tuple[Compared | None, list[Explanation]] = None, []
     for number in range(1, MOST_MISTAKES + 1):
-        for target in known:
+        for target in chain(known, mends if number == 1 else ()):
+            if best[1] and best[1][0].cost < (number * BELIEVED if any(target is x for x in known) else FAR_FETCHED):
+                break
             with suppress(DerivationError):
                 found = target.explained(number)
                 if found and (not best[1] or found[0].cost < best[1][0].cost):
                     best = target, found
-            if best[1] and best[1][0].cost < number * BELIEVED:
-                break
         if best[1] and best[1][0].cost < FAR_FETCHED + (number - 1) * PLAINEST:
             break
     return best

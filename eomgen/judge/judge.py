@@ -16,6 +16,7 @@ from eomgen.judge.course import course_of
 from eomgen.judge.decision import is_zero_everywhere
 from eomgen.judge.diagnosis import FAR_FETCHED
 from eomgen.judge.implied import Instant, implied_by_course, implied_by_rest, simplest_explanation
+from eomgen.judge.mends import Mends
 from eomgen.judge.kinds import FUNCTION_KINDS, KINDS, kind_of_equation
 from eomgen.judge.reading import HandEquation
 from eomgen.judge.renaming import Renaming, renamings, turnings
@@ -251,7 +252,7 @@ class Judge:
         targets = targets_of(case, written, kind, scalar, also)
         if not also:
             targets = loosened_targets(case, written, kind) + targets
-        target, explanations = simplest_explanation(targets)
+        target, explanations = simplest_explanation(targets, [] if also else [Mends(case, written, kind)])
         if not explanations and (begun := case.as_begun) is not None:
             with suppress(EomgenError):
                 also_ = targets_of(begun, written, kind, begun.value(written.difference, also), also)
