@@ -19,9 +19,9 @@ from eomgen.errors import ExpressionError, UsageError
 from eomgen.judge.alphabet import vocabulary
 from eomgen.judge.case import Case
 from eomgen.judge.diagnosis import fitting, in_other_units, samples_of
-from eomgen.judge.edits import powers_of
 from eomgen.judge.handwriting import transcript
 from eomgen.judge.judge import Judge
+from eomgen.judge.terms import powers_of
 from eomgen.symbolic.expression.graph import Graph
 from eomgen.symbolic.expression.rational import Fraction
 from eomgen.symbolic.print.text import to_text
@@ -270,8 +270,10 @@ def test_the_size_of_a_unit_makes_nothing_right(mass):
 
 @pytest.mark.slow
 def test_own_names_mean_what_the_file_says():
-    """Under its own name a coordinate is not turned round: the sign of a weight would be right upside down."""
+    """Under its own name a coordinate is not turned: a weight's sign would be right upside down, sine be cosine."""
     assert verdict("simple_pendulum", "l*theta'' = g*sin(theta)").verdict == "wrong"
+    (cause,) = verdict("double_pendulum", "vx(arm2.end) = l1*sin(theta1)*theta1' + l2*sin(theta2)*theta2'").causes
+    assert cause.kind == "wrong_axis" and "theta1 + pi/2 and theta2 + pi/2" in cause.text
     found = verdict("simple_pendulum", "l*phi'' = g*sin(phi)")
     assert found.verdict == "right" and "pi" in found.substitution["phi"]
 
@@ -431,10 +433,10 @@ def test_what_holds_in_its_own_domain_is_right(model, equation, up_to):
 
 @pytest.mark.slow
 def test_mistakes_from_the_literature_are_wrong_and_mostly_named():
-    """In equations of motion and in answers: wrong, but for angles that are told to be another axis's; 3 in 4 named."""
+    """In equations of motion and in answers: wrong; 4 in 5 named."""
     some = random.Random(2).sample(wrong_answers(), 40)
     found = [(x, x.verdict()) for x in some]
-    assert [x.text for x, each in found if each.verdict != "wrong" and not each.substitution] == []
+    assert [x.text for x, each in found if each.verdict != "wrong"] == []
     assert sum(x.is_named(each) for x, each in found) >= 0.8 * len(some)
 
 

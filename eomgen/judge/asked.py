@@ -7,6 +7,7 @@ of the values of the file, and is right if it is rounded rightly.
 from __future__ import annotations
 
 import re
+from contextlib import suppress
 from dataclasses import replace
 
 from eomgen.errors import EomgenError, ExpressionError
@@ -23,6 +24,7 @@ from eomgen.model.replaced import with_values
 from eomgen.model.values import exact_parameters
 from eomgen.questions.answers import Answer
 from eomgen.symbolic.numeric.tolerances import COMPUTED
+from eomgen.symbolic.print.text import to_text
 
 
 def asked(case: Case, written: HandEquation, kind: str, at: Instant) -> Verdict:
@@ -38,7 +40,10 @@ def asked(case: Case, written: HandEquation, kind: str, at: Instant) -> Verdict:
     try:
         left, right = case.sides(written, at)
     except ExpressionError as error:
-        if case.clash(written):
+        clash, sides = case.clash(written), _one_by_one(case, written, at)
+        if sides is not None:
+            return _wrong(case, written, kind, at, *sides)
+        if clash:
             return Verdict(written.given, kind, WRONG, causes=(Cause("unit", error.what, quantity="the dimensions"),))
         raise
     open_ = next((each for each in (left, right) if not each.answered), None)
@@ -56,6 +61,16 @@ def asked(case: Case, written: HandEquation, kind: str, at: Instant) -> Verdict:
                 return Verdict(written.given, kind, RIGHT, "the values of the file")
             return _by_numbers(case, written, kind, at)
     return _wrong(case, written, kind, at, left, right)
+
+
+def _one_by_one(case: Case, written: HandEquation, at: Instant) -> tuple[Answer, Answer] | None:
+    """The answer on the left, and on the right a formula of parameters that has no value; None: it is none."""
+    if written.right.calls or not written.right.names <= {*case.model.parameters, "pi"}:
+        return None
+    with suppress(EomgenError):
+        left = case.sides(replace(written, right=written.left), at)[0]
+        return left, Answer(unit=left.unit, exact=to_text(case.value(written.right)))
+    return None
 
 
 def _by_numbers(case: Case, written: HandEquation, kind: str, at: Instant) -> Verdict:

@@ -13,7 +13,7 @@ import numpy as np
 from eomgen.errors import DerivationError, ExpressionError
 from eomgen.judge.case import Case
 from eomgen.judge.causes import other_calls
-from eomgen.judge.corruption import PIECES, TERMS, Corruption
+from eomgen.judge.corruption import PIECES, SHARED, TERMS, Corruption
 from eomgen.judge.decision import combination, is_zero_everywhere, linear_row
 from eomgen.judge.diagnosis import WHOLE, Explanation, Samples, Search, explained, fitting, in_other_units, samples_of
 from eomgen.judge.inertias import Inertias
@@ -152,7 +152,7 @@ class Comparison:
             except ExpressionError:
                 continue
             text = f"it is {call} that stands there, and {self.call} that is asked"
-            yield Corruption(str(self.call), "wrong_point", (other - self.rows[0],), 1, open=False, text=text)
+            yield Corruption(str(self.call), "wrong_point", (other - self.rows[0],), SHARED, open=False, text=text)
 
     @cached_property
     def extra(self) -> tuple[Corruption, ...]:

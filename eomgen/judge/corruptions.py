@@ -22,10 +22,13 @@ from eomgen.judge.terms import terms_of
 from eomgen.judge.wrong_points import changes_of_places
 from eomgen.judge.wrong_terms import Term, WrongTerms
 from eomgen.mechanics.bodies.inertia import HALF, body_energies, mass_properties
+from eomgen.mechanics.bodies.kinematics import Motion, parent_of, velocity_of
+from eomgen.model.forces.load import BodyPoint
 from eomgen.records import dataclass
 from eomgen.symbolic.expression.derivative import depends_on, gradient, substituted, symbols_of
 from eomgen.symbolic.expression.graph import Node, Scalar, is_zero
 from eomgen.symbolic.expression.node import ScalarRow
+from eomgen.symbolic.expression.spatial import Vector, dot, minus
 
 MOST = 3000  # corruptions of one equation
 MOST_SPEEDS = 12  # of a model whose products of speeds are looked at one by one
@@ -244,3 +247,27 @@ class Corruptions:
                 name = f"the product {u.name}*{w.name} in the square of the velocity of {part.body}"
                 row = self.rows(replace(part, T=mixed, V=0, Q=(), row=None))
                 yield Corruption(name, "factor", row, SHARED, part.body)
+            if part.kind == "translation" and part.body in self.parts.operator.base.motion.index:
+                yield from self._relative(part)
+
+    def _relative(self, part: Contribution) -> Iterator[Corruption]:
+        """The product of the velocity of a point and of that beside it: m v_P . (v_C - v_P)."""
+        motion = self.parts.operator.base.motion
+        mass = mass_properties(motion.scope, part.body)
+        v, seen = velocity_of(motion, (part.body, mass.com)), list[Vector]()
+        above = parent_of(motion.scope.model, part.body)
+        places = [(part.body, r) for r in motion.points[part.body].values()]
+        places += [(above, r) for r in motion.points[above].values()] if above is not None else []
+        for place in places:
+            w = velocity_of(motion, place)
+            product = mass.m * dot(w, minus(v, w))
+            if w not in seen and not is_zero(product):
+                seen.append(w)
+                name = f"the product of the velocities of {_named(motion, place)} and of {part.body} relative to it"
+                row = self.rows(replace(part, T=product, V=0, Q=(), row=None))
+                yield Corruption(name, "factor", row, SHARED, part.body)
+
+
+def _named(motion: Motion, place: BodyPoint) -> str:
+    """The name of a point of a body."""
+    return next(f"{place[0]}.{name}" for name, r in motion.points[place[0] or ""].items() if r == place[1])

@@ -116,11 +116,18 @@ class Samples:
 
     def of(self, scalars: Sequence[Scalar]) -> np.ndarray:
         """The scalars there, (len(scalars), places, variants)."""
+        return self.flat(scalars).reshape(len(scalars), self.places, VARIANTS)
+
+    def flat(self, scalars: Sequence[Scalar]) -> np.ndarray:
+        """The scalars at all states in one row, (len(scalars), places * variants)."""
         size = self.places * VARIANTS
         with np.errstate(all="ignore"):
             found = evaluate(tuple(scalars), self.values, ARRAYS)
-        flat = np.array([np.broadcast_to(np.asarray(x, dtype=float), (size,)) for x in found]).reshape(len(found), size)
-        return flat.reshape(len(found), self.places, VARIANTS)
+        return np.array([np.broadcast_to(np.asarray(x, dtype=float), (size,)) for x in found]).reshape(len(found), size)
+
+    def with_values(self, known: Mapping[Node, np.ndarray]) -> Samples:
+        """The same states with these values of some symbols."""
+        return Samples({**self.values, **known}, self.places)
 
 
 def samples_of(

@@ -15,7 +15,7 @@ from itertools import chain
 
 from eomgen.errors import DerivationError
 from eomgen.judge.corruption import EXCHANGED, ODD, TERMS
-from eomgen.judge.terms import LONG, all_turned, angles_in, term_text, turned_angles
+from eomgen.judge.terms import LONG, Powers, all_turned, angles_in, is_product, powers_of, term_text, turned_angles
 from eomgen.records import dataclass
 from eomgen.symbolic.exact.normal_form import legible
 from eomgen.symbolic.expression.derivative import substituted, symbols_of
@@ -29,7 +29,6 @@ from eomgen.symbolic.numeric.work import Work
 MOST_PLACES = 80  # nodes of a formula that are looked at
 SHOWN = 60  # characters of a place that is told
 WAVES = ("sin", "cos", "tan")
-Powers = dict[Node, Fraction]
 
 
 @dataclass(frozen=True)
@@ -103,9 +102,10 @@ class Edits:
             yield Edit(kind, (other,), text, rank)
         angles = angles_in((term,))
         for angle in angles:
-            for kind, mapping, what in turned_angles(angle):
+            for kind, mapping, what in turned_angles(angle, (term,)):
                 with suppress(DerivationError):
-                    yield Edit(kind, substituted((term,), mapping), what.format(term_text(angle)), TERMS)
+                    rank = EXCHANGED if kind == "factor" else TERMS
+                    yield Edit(kind, substituted((term,), mapping), what.format(term_text(angle)), rank)
         if len(angles) > 1:
             for kind, mapping, what in all_turned(angles):
                 with suppress(DerivationError):
@@ -128,6 +128,7 @@ class Edits:
                     if other != k and (len(powers) > 1 or other != 0):
                         yield "factor", x * power(f, other - k), wrong_power(name, k, other), EXCHANGED
                 yield from _other_waves(x, f, k)
+                yield from _of_square(x, f, k)
             yield from _in_parallel(x, powers)
             for p, q in self._ratios(powers):
                 yield from _of_ratio(x, p, q, powers[p])
@@ -176,29 +177,6 @@ def _other_waves(x: Node, f: Node, k: Fraction) -> Iterator[tuple[str, Scalar, s
             yield "wrong_axis", x * power(over(other, f), k), told, TERMS
 
 
-def powers_of(x: Scalar) -> Powers:
-    """A product as {factor: power}, its number apart; of a root of a product with halves."""
-    found: Powers = {}
-
-    def gather(y: Scalar, k: Fraction) -> None:
-        if type(y) is not Node:
-            return
-        if y.op == "neg":
-            gather(y.args[0], k)
-        elif y.op in ("mul", "div"):
-            gather(y.args[0], k)
-            gather(y.args[1], k if y.op == "mul" else -k)
-        elif y.op == "pow" and type(y.args[1]) is not Node:
-            gather(y.args[0], k * Fraction(y.args[1]))
-        elif y.op == "sqrt":
-            gather(y.args[0], k / 2)
-        else:
-            found[y] = found.get(y, Fraction(0)) + k
-
-    gather(x, Fraction(1))
-    return {f: k for f, k in found.items() if k}
-
-
 def power(x: Scalar, k: Fraction) -> Scalar:
     """x^k, k a multiple of 1/2."""
     if type(x) is not Node:
@@ -216,7 +194,11 @@ def wrong_power(name: str, k: Fraction, other: Fraction) -> str:
     if other == 0:
         return f"a factor {name} is missing" if k > 0 else f"a division by {name} is missing"
     if k == 0:
-        return f"a factor {_with_power(name, other)} is too many" if other > 0 else f"a division by {_with_power(name, -other)} is too many"
+        return (
+            f"a factor {_with_power(name, other)} is too many"
+            if other > 0
+            else f"a division by {_with_power(name, -other)} is too many"
+        )
     there, meant = (_with_power(name, abs(x)) for x in (other, k))
     if k * other > 0:
         root = ": a root is missing" if k.denominator == 2 and other.denominator == 1 else ""
@@ -230,6 +212,15 @@ def _with_power(name: str, k: Fraction) -> str:
     if k == 1:
         return name
     return f"sqrt({name})" if k == Fraction(1, 2) else f"{name}^{k}" if k.denominator == 1 else f"{name}^({k})"
+
+
+def _of_square(x: Node, f: Node, k: Fraction) -> Iterator[tuple[str, Scalar, str, float]]:
+    """The squares of the terms for the square of their sum."""
+    terms = linear_terms(f) if k == 2 and f.op in ("add", "sub") else {}
+    if len(terms) > 1:
+        squares = sum((c * c * (1 if t is None else t * t) for t, c in terms.items()), start=0)
+        told = f"of the square of {term_text(f)} the product is missing: the squares of its terms alone stand there"
+        yield "missing_term", over(x * squares, f * f), told, TERMS
 
 
 # -- sums ----------------------------------------------------------------------------------------
@@ -251,8 +242,8 @@ def _of_sum(x: Node) -> Iterator[tuple[str, Scalar, str, float]]:
     terms = linear_terms(x)
     parts: list[Scalar] = [c * node if node is not None else c for node, c in terms.items()]
     for t in parts:
-        name = term_text(t)
-        yield "missing_term", x - t, f"the term {name} is missing", TERMS
+        name, what = term_text(t), "product" if is_product(t, parts) else "term"
+        yield "missing_term", x - t, f"the {what} {name} is missing", TERMS
         yield "sign", x - 2 * t, f"the sign of the term {name} is wrong", TERMS
         yield "factor", x + t, f"the term {name} stands with the factor 2", ODD
         yield "factor", x - over(t, 2), f"the term {name} stands with the factor 1/2", ODD

@@ -16,13 +16,13 @@ from contextlib import suppress
 from dataclasses import replace
 from functools import cached_property
 from itertools import chain
-from typing import Protocol, TypeVar
+from typing import Protocol
 
 import numpy as np
 
 from eomgen.errors import DerivationError, EomgenError, ExpressionError
 from eomgen.judge.case import Case
-from eomgen.judge.comparison import Comparison
+from eomgen.judge.comparison import Comparison, excess
 from eomgen.judge.corruption import Corruption
 from eomgen.judge.decision import is_zero_everywhere
 from eomgen.judge.diagnosis import (
@@ -108,6 +108,10 @@ class Implied:
         resisting = (found[n + 1], found[n + 2 :][fits])
         return (Search(None, found[0], found[1 : n + 1][fits], known, 0, resisting=resisting),)
 
+    def difference(self, explanation: Explanation) -> str:
+        """What is left of the model's equation."""
+        return excess(self.case, self.left)
+
     def proves(self, explanation: Explanation) -> bool:
         """Whether the answer satisfies the model's equation with these mistakes, exactly."""
         pi = self.case.system.scope.graph.pi
@@ -150,35 +154,35 @@ def implied_by(
         yield again
 
 
-
 class Explainable(Protocol):
     """What explanations are sought of."""
 
     def explained(self, number: int) -> list[Explanation]:
         """Those by so many mistakes."""
 
-
-Compared = TypeVar("Compared", bound=Explainable)
+    def difference(self, explanation: Explanation) -> str:
+        """What is too much on the left."""
 
 
 def simplest_explanation(
-    targets: Iterable[Compared], mends: Iterable[Compared] = ()
-) -> tuple[Compared | None, list[Explanation]]:
+    targets: Iterable[Explainable], mends: Iterable[Explainable] = ()
+) -> tuple[Explainable | None, list[Explanation]]:
     """The comparison that is explained by the fewest mistakes, with its explanations: the first that is believed.
 
     Args:
         mends: looked at where no one mistake of the others is believed.
     """
-    known = tuple(targets)
-    best: tuple[Compared | None, list[Explanation]] = None, []
+    best: tuple[Explainable | None, list[Explanation]] = None, []
+    known, own = tuple(targets), tuple(mends)
     for number in range(1, MOST_MISTAKES + 1):
-        for target in chain(known, mends if number == 1 else ()):
-            if best[1] and best[1][0].cost < (number * BELIEVED if any(target is x for x in known) else FAR_FETCHED):
-                break
-            with suppress(DerivationError):
-                found = target.explained(number)
-                if found and (not best[1] or found[0].cost < best[1][0].cost):
-                    best = target, found
+        for some, believed in ((known, number * BELIEVED), (own if number == 1 else (), FAR_FETCHED)):
+            for target in some if not best[1] or some is known or best[1][0].cost >= believed else ():
+                with suppress(DerivationError):
+                    found = target.explained(number)
+                    if found and (not best[1] or found[0].cost < best[1][0].cost):
+                        best = target, found
+                if best[1] and best[1][0].cost < believed:
+                    break
         if best[1] and best[1][0].cost < FAR_FETCHED + (number - 1) * PLAINEST:
             break
     return best

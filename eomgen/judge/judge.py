@@ -14,12 +14,11 @@ from eomgen.judge.causes import causes_of
 from eomgen.judge.comparison import excess
 from eomgen.judge.course import course_of
 from eomgen.judge.decision import is_zero_everywhere
-from eomgen.judge.diagnosis import FAR_FETCHED
 from eomgen.judge.implied import Instant, implied_by_course, implied_by_rest, simplest_explanation
-from eomgen.judge.mends import Mends
 from eomgen.judge.kinds import FUNCTION_KINDS, KINDS, kind_of_equation
+from eomgen.judge.mends import Mends
 from eomgen.judge.reading import HandEquation
-from eomgen.judge.renaming import Renaming, renamings, turnings
+from eomgen.judge.renaming import OtherAxis, Renaming, renamings
 from eomgen.judge.rest import is_of_rest
 from eomgen.judge.right import (
     CONSTANT,
@@ -116,8 +115,14 @@ class Judge:
         for place in case.places_of_rest if in_balance is None else ():
             if is_zero_everywhere(case.system, *substituted((scalar,), place)).holds:
                 return Verdict(written.given, "equilibrium", RIGHT)
+        dependent = {name for name, q in case.model.coordinates.items() if q.dependent}
+        if dependent & written.names:
+            of_ties = self._wrong(written, "equilibrium", scalar)
+            if not case.system.symbols.u or of_ties.causes[0].kind != "other":
+                return of_ties
         target = implied_by_rest(case, written)
-        _, why = simplest_explanation([target] if target is not None else [])
+        mends = [Mends(case, written, "equilibrium", place) for place in case.places_of_rest]
+        _, why = simplest_explanation([target] if target is not None else [], mends)
         if why:
             difference = excess(case, target.left) if target is not None else ""
             causes = causes_of(case, why, moving=False)
@@ -241,7 +246,7 @@ class Judge:
         return Verdict(written.given, kind, WRONG, difference=difference, causes=(cause,))
 
     def _wrong(self, written: HandEquation, kind: str, scalar: Scalar, also: Meanings | None = None) -> Verdict:
-        """Why an equation is wrong; or that another way to count a coordinate makes it right."""
+        """Why an equation is wrong."""
         case = self.case
         found = truth_of(case, scalar, kind)
         if found.why and not (found.why == CONSTANT and written.calls):
@@ -252,16 +257,13 @@ class Judge:
         targets = targets_of(case, written, kind, scalar, also)
         if not also:
             targets = loosened_targets(case, written, kind) + targets
-        target, explanations = simplest_explanation(targets, [] if also else [Mends(case, written, kind)])
+        target, explanations = simplest_explanation(
+            targets, [] if also else [OtherAxis(case, written, kind), Mends(case, written, kind)]
+        )
         if not explanations and (begun := case.as_begun) is not None:
             with suppress(EomgenError):
                 also_ = targets_of(begun, written, kind, begun.value(written.difference, also), also)
                 target, explanations = simplest_explanation(also_)
-        turned = None
-        if not explanations or len(explanations[0].shares) > 1 or explanations[0].cost >= FAR_FETCHED:
-            turned = None if also else self._turned(written, kind)
-        if turned is not None:
-            return turned
         if explanations and target is not None:
             causes = causes_of(case, explanations, moving=kind in ("motion", "acceleration", "reaction", "law"))
             return Verdict(written.given, kind, WRONG, difference=target.difference(explanations[0]), causes=causes)
@@ -269,15 +271,6 @@ class Judge:
         text = f"the sides differ by {difference}" if difference else "the sides differ"
         cause = Cause("other", f"{text}{touched}", term=difference)
         return Verdict(written.given, kind, WRONG, difference=difference, causes=(cause,))
-
-    def _turned(self, written: HandEquation, kind: str) -> Verdict | None:
-        """Right where coordinates are counted from elsewhere, all of them in the same way."""
-        case = self.case
-        for renaming in turnings(case, written):
-            found = truth_of(case, case.value(written.difference, renaming.values), kind)
-            if found.holds:
-                return Verdict(written.given, kind, RIGHT, found.up_to, renaming.told)
-        return None
 
     def _without_reactions(self, written: HandEquation, kind: str, also: Meanings | None) -> Verdict | None:
         """Right without the reactions that stand in it: these are left in."""

@@ -5,20 +5,22 @@ from __future__ import annotations
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import replace
 from itertools import islice, permutations, product
-from typing import TYPE_CHECKING
 
+from eomgen.judge.case import Case
+from eomgen.judge.corruption import TERMS, Corruption
+from eomgen.judge.diagnosis import PLAINEST, Explanation, Share
 from eomgen.judge.reading import HandEquation
+from eomgen.judge.right import truth_of
+from eomgen.judge.substitutions import ANGLES
+from eomgen.judge.terms import short_text
 from eomgen.model.catalog import Catalog
 from eomgen.model.dimensions import inferred
 from eomgen.records import dataclass
 from eomgen.symbolic.expression.functions import over
 from eomgen.symbolic.expression.graph import Node, Scalar, is_zero
+from eomgen.symbolic.expression.rational import Fraction
 from eomgen.symbolic.print.text import to_text
 
-if TYPE_CHECKING:
-    from eomgen.judge.case import Case
-
-ANGLES = ("1", "rad", "")  # dimensions of angles
 MOST = 600  # ways to read names that are not the model's
 
 
@@ -56,19 +58,47 @@ def renamings(case: Case, written: HandEquation, unknown: Sequence[str]) -> Iter
                 yield replace(_renaming(case, ways), near=near, guessed=guessed)
 
 
-def turnings(case: Case, written: HandEquation) -> Iterator[Renaming]:
-    """The model's own angles counted from the other axis, one of them or all alike.
+@dataclass(frozen=True)
+class OtherAxis:
+    """An equation that is right where the model's own angles are counted from the other axis, one or all alike.
 
     Nothing else is tried under the model's own names: a sign that is wrong would be right in the other direction.
     """
-    used = [q for q in case.model.coordinates if {q, f"{q}'", f"{q}''"} & written.names]
-    angles = [q for q in used if _dimension(case, q) in ANGLES]
-    quarter = over(case.system.scope.graph.pi, 2)
-    for shift in (quarter, -quarter):
-        if len(angles) > 1:
-            yield _renaming(case, {q: (q, 1, shift) for q in angles})
-        for q in angles:
-            yield _renaming(case, {q: (q, 1, shift)})
+
+    case: Case
+    written: HandEquation
+    kind: str
+
+    def explained(self, number: int) -> list[Explanation]:
+        """The angles that are counted from elsewhere."""
+        case = self.case
+        for renaming in self._renamings() if number == 1 else ():
+            if truth_of(case, case.value(self.written.difference, renaming.values), self.kind).holds:
+                names, values = (" and ".join(some) for some in (renaming.told, renaming.told.values()))
+                text = (
+                    f"sin and cos are exchanged: {names} counted from the other axis, where it is right with {values}"
+                )
+                row = (case.value(self.written.difference),)
+                corruption = Corruption(
+                    f"from where {names} is counted", "wrong_axis", row, TERMS, open=False, text=text
+                )
+                return [Explanation((Share(corruption, Fraction(1)),), 0, PLAINEST + TERMS)]
+        return []
+
+    def difference(self, explanation: Explanation) -> str:
+        """What is too much on the left."""
+        return short_text(explanation.shares[0].corruption.rows[0], self.case.system.scope.positive)
+
+    def _renamings(self) -> Iterator[Renaming]:
+        case, names = self.case, self.written.names
+        used = [q for q in case.model.coordinates if {q, f"{q}'", f"{q}''"} & names]
+        angles = [q for q in used if _dimension(case, q) in ANGLES]
+        quarter = over(case.system.scope.graph.pi, 2)
+        for shift in (quarter, -quarter):
+            if len(angles) > 1:
+                yield _renaming(case, {q: (q, 1, shift) for q in angles})
+            for q in angles:
+                yield _renaming(case, {q: (q, 1, shift)})
 
 
 def _choices(names: Sequence[str], among: Sequence[str]) -> Iterator[tuple[str, ...]]:

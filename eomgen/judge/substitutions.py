@@ -7,10 +7,11 @@ for absolute; a parameter left out, with the wrong sign or factor, or another of
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import replace
 
 from eomgen.errors import DerivationError
 from eomgen.judge.contributions import Contribution, Contributions
-from eomgen.judge.corruption import EXCHANGED, ODD, PLACED, SHARED, TERMS
+from eomgen.judge.corruption import EXCHANGED, ODD, PLACED, SHARED, SHORTER, TERMS
 from eomgen.judge.terms import angles_in, term_text, turned_angles, wrong_parameters
 from eomgen.judge.wrong_points import Altered
 from eomgen.records import dataclass
@@ -18,15 +19,17 @@ from eomgen.symbolic.expression.derivative import substituted, symbols_of
 from eomgen.symbolic.expression.graph import Node, Scalar, is_zero
 
 EVERYTHING = "everything"
+ANGLES = ("1", "rad", "")  # dimensions of angles
 
 
 def substitutions_in(parts: Contributions, whole: Sequence[Contribution]) -> Iterator[Altered]:
     """Every substitution in every contribution, in all of one body, and in everything."""
-    groups = _groups(whole)
-    search = _Substitutions(parts)
+    groups, search = _groups(whole), _Substitutions(parts)
     for what in (search.angles, search.motions, search.parameters):
         for part in groups:
-            yield from what(part)
+            together = not any(part is each for each in whole)
+            for found in what(part):
+                yield replace(found, rank=max(found.rank, SHARED + SHORTER)) if together else found
 
 
 @dataclass(frozen=True)
@@ -46,17 +49,15 @@ class _Substitutions:
 
     def angles(self, part: Contribution) -> Iterator[Altered]:
         """Sines and cosines of one angle."""
-        for angle in angles_in((part.T, part.V, *part.Q)):
+        formulas = (part.T, part.V, *part.Q)
+        for angle in angles_in(formulas):
             told = term_text(angle)
-            for kind, mapping, what in turned_angles(angle):
+            for kind, mapping, what in turned_angles(angle, formulas):
                 rank = PLACED if is_zero(part.T) else EXCHANGED
-                rank = (
-                    ODD
-                    if part.name == EVERYTHING
-                    else max(rank, TERMS)
-                    if kind in ("factor", "approximation")
-                    else rank
-                )
+                if part.name == EVERYTHING or what.endswith("as zero"):
+                    rank = ODD
+                elif kind in ("factor", "approximation"):
+                    rank = max(rank, TERMS if kind == "approximation" else EXCHANGED)
                 yield from self._change(part, kind, mapping, f"in {part.name} {what.format(told)}", rank)
 
     def motions(self, part: Contribution) -> Iterator[Altered]:
@@ -107,7 +108,8 @@ class _Substitutions:
             x, y = next(iter(mapping.items()))
             length = kind == "factor" and str(self.parts.dimensions.get(x.name)) == "m"
             if kind != "wrong_quantity" or (type(y) is Node and self._alike(y.name, x.name)):
-                rank = EXCHANGED + 1 if kind == "factor" else EXCHANGED
+                angle = kind == "missing_term" and str(self.parts.dimensions.get(x.name)) in ANGLES
+                rank = ODD if kind == "factor" or angle else EXCHANGED
                 yield from self._change(
                     part, "wrong_point" if length else kind, mapping, f"in {part.name} {what}", rank
                 )

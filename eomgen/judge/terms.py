@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Sequence
+from itertools import combinations
 
 from eomgen.symbolic.exact.expansion import Expansion
 from eomgen.symbolic.exact.normal_form import TooLarge, legible, readable
@@ -11,6 +12,7 @@ from eomgen.symbolic.expression.derivative import substituted
 from eomgen.symbolic.expression.functions import over
 from eomgen.symbolic.expression.graph import Node, Scalar
 from eomgen.symbolic.expression.node import linear_terms
+from eomgen.symbolic.expression.rational import Fraction
 from eomgen.symbolic.expression.traversal import order
 from eomgen.symbolic.numeric.work import Work
 from eomgen.symbolic.print.text import readable_text
@@ -40,6 +42,18 @@ def short_text(x: Scalar, positive: frozenset[Node]) -> str:
     return text if len(text) <= LONG else ""
 
 
+def is_product(t: Scalar, others: Sequence[Scalar]) -> bool:
+    """Whether a term is what the square of a sum has beside its squares: t^2 = 4 a b, a cosine of an angle apart."""
+    if type(t) is not Node:
+        return False
+    square = powers_of(t * t)
+    for a, b in combinations([x for x in others if type(x) is Node and x is not t], 2):
+        left = powers_of(over(t * t, a * b))
+        if square and all(f.op in ("sin", "cos") for f in left):
+            return True
+    return False
+
+
 def term_text(x: Scalar) -> str:
     """A term or an angle as a text."""
     return readable_text(readable(x, Work.FORMULA)) or "that is too long to be shown"
@@ -60,6 +74,32 @@ def wrong_parameters(held: Iterable[Node], known: Sequence[Node]) -> Iterator[tu
                     yield "wrong_quantity", {x: y, y: x}, f"{x.name} and {y.name} are exchanged"
 
 
+Powers = dict[Node, Fraction]
+
+
+def powers_of(x: Scalar) -> Powers:
+    """A product as {factor: power}, its number apart; of a root of a product with halves."""
+    found: Powers = {}
+
+    def gather(y: Scalar, k: Fraction) -> None:
+        if type(y) is not Node:
+            return
+        if y.op == "neg":
+            gather(y.args[0], k)
+        elif y.op in ("mul", "div"):
+            gather(y.args[0], k)
+            gather(y.args[1], k if y.op == "mul" else -k)
+        elif y.op == "pow" and type(y.args[1]) is not Node:
+            gather(y.args[0], k * Fraction(y.args[1]))
+        elif y.op == "sqrt":
+            gather(y.args[0], k / 2)
+        else:
+            found[y] = found.get(y, Fraction(0)) + k
+
+    gather(x, Fraction(1))
+    return {f: k for f, k in found.items() if k}
+
+
 # -- angles ------------------------------------------------------------------------------------------
 
 
@@ -69,8 +109,20 @@ def angles_in(scalars: Sequence[Scalar]) -> list[Node]:
     return list(dict.fromkeys(x for x in found if type(x) is Node))
 
 
-def turned_angles(angle: Node) -> Iterator[tuple[str, dict[Node, Scalar], str]]:
-    """What may happen to an angle: (kind of the cause, what replaces sine and cosine, in words)."""
+def turned_angles(angle: Node, scalars: Sequence[Scalar]) -> Iterator[tuple[str, dict[Node, Scalar], str]]:
+    """What may happen to an angle in scalars: (kind of the cause, what replaces sine and cosine, in words).
+
+    What replaces one of them alone comes first; where the other does not stand there, no more is told.
+    """
+    held, seen = {x for x in order(scalars) if x.op in ("sin", "cos")}, list[dict[Node, Scalar]]()
+    for kind, mapping, what in sorted(_turned(angle), key=lambda each: len(each[1])):
+        there = {x: y for x, y in mapping.items() if x in held}
+        if there and there not in seen:
+            seen.append(there)
+            yield kind, there, what
+
+
+def _turned(angle: Node) -> Iterator[tuple[str, dict[Node, Scalar], str]]:
     graph = angle.graph
     sin, cos = graph.held("sin", (angle,)), graph.held("cos", (angle,))
     yield "wrong_axis", {sin: cos, cos: sin}, "sin and cos of {0} are exchanged: the angle is taken from the other axis"
@@ -86,7 +138,7 @@ def turned_angles(angle: Node) -> Iterator[tuple[str, dict[Node, Scalar], str]]:
         yield "unit", mapping, f"{{0}} is taken in {how}"
     yield "factor", {cos: 1}, "cos({0}) is left out"
     yield "approximation", {sin: angle, cos: 1}, "sin({0}) and cos({0}) are those of a small angle"
-    yield "approximation", {sin: angle}, "sin({0}) is replaced by the angle"
+    yield "approximation", {sin: angle}, "sin({0}) is replaced by the angle, as if it were small"
     yield "approximation", {sin: 0, cos: 1}, "{0} is taken as zero"
     yield "factor", {sin: 1}, "sin({0}) is left out"
     terms = linear_terms(angle)

@@ -37,9 +37,10 @@ SHAPES = (  # I / (m r^2)
 def other_shapes(scope: Scope, body: str) -> Iterator[tuple[Fraction, str]]:
     """How many times the moment of inertia of a body is that of another shape with its mass and size, in the plane."""
     own = _coefficient(scope, body)
+    rod = scope.model.bodies[body].shape is not None and getattr(scope.model.bodies[body].shape, "kind", "") == "rod"
     for coefficient, what in SHAPES if own is not None else ():
         share, length = own  # type: ignore[misc]
-        if coefficient != share:
+        if coefficient != share and rod == what.startswith("a rod"):
             mass = mass_properties(scope, body).m
             taken, true = (term_text(c * mass * length * length) for c in (coefficient, share))
             text = f"in the rotation of {body} the moment of inertia is that of {what}, {taken}, where it is {true}"
@@ -156,6 +157,8 @@ class _Places:
     def _mass(self, where: str, r: Vector, translation: Scalar) -> Iterator[Altered]:
         """The mass centre at another point, in the kinetic energy alone and in all."""
         T = self._moving(r) - translation
+        if is_zero(T + translation):
+            return  # it stands still: nothing of it is left
         if not is_zero(self.energy.rotation):
             text = f"the mass of {self.body} is taken as if all of it were at {where}"
             yield self._change(f"the kinetic energy of {self.body}", text, T - self.energy.rotation)

@@ -8,7 +8,7 @@ from contextlib import suppress
 from eomgen.errors import DerivationError
 from eomgen.judge.corruption import EXCHANGED, ODD, TERMS, Corruption
 from eomgen.judge.edits import Edits
-from eomgen.judge.terms import angles_in, term_text, terms_of, turned_angles, wrong_parameters
+from eomgen.judge.terms import angles_in, is_product, term_text, terms_of, turned_angles, wrong_parameters
 from eomgen.records import dataclass
 from eomgen.symbolic.expression.derivative import depends_on, substituted, symbols_of
 from eomgen.symbolic.expression.graph import Node, Scalar
@@ -44,10 +44,11 @@ class WrongTerms:
             terms = terms_of(row, frozenset(self.edits.positive))
             for term in terms:
                 if (k, term) not in known:
-                    yield from self._of_term(term, k, len(rows), alone=len(terms) == 1)
+                    yield from self._of_term(term, k, len(rows), terms)
 
-    def _of_term(self, term: Scalar, k: int, number: int, *, alone: bool) -> Iterator[Corruption]:
-        name = f"the term {term_text(term)}"
+    def _of_term(self, term: Scalar, k: int, number: int, terms: Sequence[Scalar]) -> Iterator[Corruption]:
+        alone = len(terms) == 1
+        name = f"the {'product' if is_product(term, terms) else 'term'} {term_text(term)}"
         name = f"{name} of {self.owner}" if self.owner and not alone else self.owner or name
         if not alone:
             squared = [u for u in self.rates if depends_on(term, (u,))]
@@ -74,7 +75,7 @@ class WrongTerms:
             if type(whole) is not Node:
                 continue
             for angle in angles_in((whole,)):
-                for kind, mapping, what in turned_angles(angle):
+                for kind, mapping, what in turned_angles(angle, (whole,)):
                     told = what.format(term_text(angle))
                     yield from self._replaced("everything", whole, kind, mapping, told, EXCHANGED, k, len(rows))
             for kind, mapping, what in wrong_parameters(symbols_of((whole,)), self.parameters):
