@@ -10,7 +10,7 @@ import re
 from contextlib import suppress
 from dataclasses import replace
 
-from eomgen.errors import EomgenError, ExpressionError
+from eomgen.errors import DerivationError, EomgenError, ExpressionError
 from eomgen.judge.case import Case
 from eomgen.judge.causes import causes_of
 from eomgen.judge.comparison import Comparison, excess
@@ -39,7 +39,7 @@ def asked(case: Case, written: HandEquation, kind: str, at: Instant) -> Verdict:
         raise ExpressionError(f"unknown name '{unknown[0]}'", column, length=len(unknown[0]))
     try:
         left, right = case.sides(written, at)
-    except ExpressionError as error:
+    except (ExpressionError, DerivationError) as error:
         clash, sides = case.clash(written), _one_by_one(case, written, at)
         if sides is not None:
             return _wrong(case, written, kind, at, *sides)

@@ -85,14 +85,12 @@ class Authored:
         names = _Occurrences(scope.names, scope.graph.pi)
 
         def called(call: Call) -> Scalar:
-            if self.true is not None:
-                return names.of(str(call), self.true)
             return names.of(str(call), self.case.value(Expression(str(call), (("call", call),), (0,))))
 
-        left, right = (side.evaluate(names, called) for side in (self.written.left, self.written.right))
-        if self.true is not None and type(left) is Node:
-            names.meant[left] = self.true
-        return left, right, names.meant
+        right = self.written.right.evaluate(names, called)
+        if self.true is not None:
+            return names.of(self.written.left.text, self.true), right, names.meant
+        return self.written.left.evaluate(names, called), right, names.meant
 
     @cached_property
     def difference(self) -> Scalar:
@@ -120,9 +118,8 @@ class Authored:
         found = samples_of(case.system, tuple(self.meant.values()), on_ties=tied, places=places)
         if found is None or self.is_still:
             return found
-        if self.kind == "law" and case.speeds is not None:
-            own = found.of(tuple(case.speeds.values()))
-            found = found.with_values(dict(zip(case.speeds, own.reshape(len(own), -1), strict=True)))
+        speeds = (case.speeds or case.by_momenta or {}) if self.kind == "law" else {}
+        found = found.with_values(dict(zip(speeds, found.flat(tuple(speeds.values())), strict=True)))
         return found if case.equations is None else self._moving(found)
 
     def _moving(self, found: Samples) -> Samples:
@@ -165,10 +162,13 @@ class Authored:
         if np.count_nonzero(there) < LEAST_STATES:
             return
         values = dict(zip(self.meant, flat[:n, there], strict=True))
-        products, nodes = Products(self._atoms, flat[n:, there]), order((difference,))
+        usable = [k for k, row in enumerate(flat[n:, there]) if np.all(np.isfinite(row) & (row != 0))]
+        products = Products(tuple(self._atoms[k] for k in usable), flat[n:, there][usable])
+        nodes = order((difference,))
         factors = {x for y in nodes if y.op in ("mul", "div", "neg") for x in y.args}
         forced = [x for x, meant in self.meant.items() if meant in self.case.system.symbols.a]
-        for node in [x for x in nodes if x is not difference][:MOST_PLACES]:
+        whole = {difference, *(difference.args if difference.op == "neg" else ())}
+        for node in [x for x in nodes if x not in whole][:MOST_PLACES]:
             found = _needed(difference, node, values)
             if found is None:
                 continue
@@ -177,7 +177,8 @@ class Authored:
             else:
                 known = products.changes(node, *found, inner=node in factors, forced=depends_on(node, forced))
             for each in known:
-                yield node, each
+                if each.kind != "extra_term" or node not in self._sides[:2]:
+                    yield node, each
 
 
 def _needed(difference: Node, node: Node, values: Mapping[Node, np.ndarray]) -> tuple[np.ndarray, np.ndarray] | None:

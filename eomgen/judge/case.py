@@ -148,7 +148,7 @@ class Case:
         """Where all coordinates rest, as far as that has a closed form."""
         named = {q.name: q for q in self.system.symbols.q}
         found = [place.exact for place in self._equilibria if place.is_exact]
-        return tuple({named[q.name]: self.own(x) for q, x in place.items()} for place in found)
+        return tuple({named[q.name]: self.own(x) for q, x in place.items() if q.name in named} for place in found)
 
     def own(self, x: Scalar) -> Scalar:
         """A scalar of another system of the model over the symbols of this one."""

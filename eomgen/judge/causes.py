@@ -76,7 +76,13 @@ def cause_of(case: Case, share: Share, row: int, *, told: bool = True, moving: b
         if moving and told and whole == "factor" and _is_coriolis(case, rows):
             whole = "coriolis"
         kind, text = _of_factor(whole, corruption.name, x, share.unit, term)
-    return Cause(kind, text, term, corruption.body, corruption.force, corruption.name)
+    body, force = corruption.body, corruption.force
+    is_term = corruption.name.startswith(("the term ", "the product "))
+    if told and not body and not force and is_term and kind != "extra_term":
+        held = case.parts.holding(sum((x for x in rows if not is_zero(x)), start=0))
+        if len(held) == 1:
+            body, force, text = held[0].body, held[0].force, f"{text} ({held[0].name})"
+    return Cause(kind, text, term, body, force, corruption.name)
 
 
 def _of_factor(kind: str, name: str, x: Fraction, unit: str, term: str) -> tuple[str, str]:

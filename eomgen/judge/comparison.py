@@ -13,7 +13,7 @@ import numpy as np
 from eomgen.errors import DerivationError, ExpressionError
 from eomgen.judge.case import Case
 from eomgen.judge.causes import other_calls
-from eomgen.judge.corruption import PIECES, SHARED, TERMS, Corruption
+from eomgen.judge.corruption import PIECES, SHARED, SHORTER, TERMS, Corruption
 from eomgen.judge.decision import combination, is_zero_everywhere, linear_row
 from eomgen.judge.diagnosis import WHOLE, Explanation, Samples, Search, explained, fitting, in_other_units, samples_of
 from eomgen.judge.inertias import Inertias
@@ -84,7 +84,9 @@ class Comparison:
             if self.call is not None and FUNCTION_KINDS.get(self.call.name) == "inertia":
                 structural += Inertias(self.case, self.call).corruptions
         if not self._is_equation:
-            structural.append(Corruption(WHOLE, "factor", self.rows, 1))
+            asked = self.call
+            what = "it" if asked is None else str(asked) if asked.args else f"the {asked.name.replace('_', ' ')}"
+            structural.append(Corruption(f"{WHOLE} {what}", "factor", self.rows, 1))
         if self._is_long:
             return tuple(structural)
         concerned, known = self._concerned, tuple(system.symbols.parameters.values())
@@ -140,9 +142,9 @@ class Comparison:
         for name, some in classes if u or a else ():
             with suppress(DerivationError):
                 (left,) = substituted((value,), dict.fromkeys(some, 0))
-                yield Corruption(name, "factor", (value - left,), 2)
+                yield Corruption(name, "factor", (value - left,), SHARED + 2 * SHORTER)
                 if len(some) == len(u) + len(a):
-                    yield Corruption("all that is there at rest", "factor", (left,), 2)
+                    yield Corruption("all that is there at rest", "factor", (left,), SHARED + 2 * SHORTER)
 
     def _other_arguments(self) -> Iterator[Corruption]:
         """The same function of another point, body or tie."""
@@ -269,7 +271,7 @@ class Comparison:
         for part, whole in permutations(gone, 2):
             if part.rank >= PIECES and whole.name.removeprefix("the ") in part.name:
                 return False
-            if part.rank == TERMS and whole.rank < TERMS:
+            if whole.rank < TERMS and PIECES <= part.rank:
                 positive = self.case.system.scope.positive
                 held = [x for row in whole.rows for x in terms_of(row, positive)]
                 if any(x in held for row in part.rows for x in terms_of(row, positive)):

@@ -31,6 +31,8 @@ from eomgen.symbolic.expression.graph import Node, Scalar, is_zero
 from eomgen.symbolic.expression.node import ScalarRow
 from eomgen.symbolic.expression.spatial import dot, times
 
+FEW = 2  # contributions that are named together
+
 
 @dataclass(frozen=True)
 class Contribution:
@@ -158,6 +160,20 @@ class Contributions:
     def elementary(self) -> tuple[Contribution, ...]:
         """Bodies' energies and forces, one by one."""
         return (*self._kinetic(), *self._forces(), *self._others())
+
+    def holding(self, x: Scalar, what: str = "") -> tuple[Contribution, ...]:
+        """The few contributions of whose constants x is made: those of the one that fewest hold, of all if there are.
+
+        Args:
+            what: of those with a share of this energy, "T" or "V"; "" of all.
+        """
+        symbols = self.system.symbols
+        constants = {*symbols.parameters.values(), *symbols.inputs.values()}
+        known = [part for part in self.elementary if not what or not is_zero(getattr(part, what))]
+        holders = [[part for part in known if y in part.held] for y in symbols_of((x,)) if y in constants]
+        few = min(holders, key=len, default=[])
+        found = [part for part in few if all(part in some for some in holders)] or few
+        return tuple(found) if len(found) <= FEW else ()
 
     def _kinetic(self) -> list[Contribution]:
         motion, found = self.operator.base.motion, []

@@ -25,7 +25,14 @@ from eomgen.mechanics.bodies.inertia import HALF, body_energies, mass_properties
 from eomgen.mechanics.bodies.kinematics import Motion, parent_of, velocity_of
 from eomgen.model.forces.load import BodyPoint
 from eomgen.records import dataclass
-from eomgen.symbolic.expression.derivative import depends_on, gradient, substituted, symbols_of
+from eomgen.symbolic.expression.derivative import (
+    depends_on,
+    depends_on_any,
+    gradient,
+    jacobian,
+    substituted,
+    symbols_of,
+)
 from eomgen.symbolic.expression.graph import Node, Scalar, is_zero
 from eomgen.symbolic.expression.node import ScalarRow
 from eomgen.symbolic.expression.spatial import Vector, dot, minus
@@ -97,6 +104,7 @@ class Corruptions:
                 name, squares = " and ".join(part.name for part in members), not is_zero(members[0].T)
                 yield Corruption(name, "factor", self._sum(members), SHORTER, squares=squares)
         yield from self._about_axes()
+        yield from self._ways()
         yield from self._together()
         if self.what == "motion":
             yield from self._pieces()
@@ -151,6 +159,24 @@ class Corruptions:
                     rows = self.rows(changed(by))
                     yield Corruption(part.name, each.kind, rows, each.rank, part.body, part.force, False, text)
 
+    def _ways(self) -> Iterator[Corruption]:
+        """Bodies that move on one way together, twice or half as far: T by the square, what acts on them once."""
+        motion, groups = self.parts.operator.base.motion, dict[Vector, list[str]]()
+        for link in motion.links:
+            v = velocity_of(motion, (link.name, mass_properties(motion.scope, link.name).com))
+            steady = not depends_on_any(
+                [x for row in jacobian(v, motion.scope.symbols.u) for x in row], motion.scope.symbols.q
+            )
+            if steady and not all(map(is_zero, v)):
+                groups.setdefault(v, []).append(link.name)
+        for bodies in groups.values():
+            mine = [part for part in self.whole if part.body in bodies and part.kind in ("translation", "weight")]
+            for factor, how in ((2, "twice"), (HALF, "half")) if len({part.kind for part in mine}) == 2 else ():
+                parts = [replace(part, T=(factor * factor - 1) * part.T, V=(factor - 1) * part.V) for part in mine]
+                text = f"{' and '.join(bodies)} would move {how} as far as meant, in the velocity and in the height"
+                rows = self._sum(parts)
+                yield Corruption(f"how far {bodies[0]} moves", "factor", rows, SHARED, bodies[0], open=False, text=text)
+
     def _about_axes(self) -> Iterator[Corruption]:
         """The rotations of bodies in space about their principal axes, those with equal moments together."""
         motion, mine = (
@@ -195,6 +221,7 @@ class Corruptions:
             key = tuple(part.name for part in members)
             if len(members) > 1 and key not in seen:
                 seen.add(key)
+                name = f"{name} ({', '.join(part.body for part in members)})" if name == "all rotations" else name
                 squares = all(not is_zero(part.T) for part in members)
                 yield Corruption(name, "factor", self._sum(members), SHARED, body, force, squares=squares)
 
@@ -222,7 +249,8 @@ class Corruptions:
             slopes = [gradient(value, a) for value in accelerated]
             for k, x in enumerate(a):
                 row = tuple(each[k] * x for each in slopes)
-                yield Corruption(f"the term with {x.name} of the {of}", "factor", row, PIECES, part.body)
+                name = f"the term with {x.name} of the {of}"
+                yield Corruption(name, "factor", row, PIECES, part.body, squares=True)
             first = [gradient(value, u) for value in moving] if len(u) <= MOST_SPEEDS else []
             for i, j in [*combinations(range(len(u)), 2), *((k, k) for k in range(len(u)))] if first else ():
                 row = tuple(gradient(row[i], (u[j],))[0] * u[i] * u[j] * (1 if i != j else HALF) for row in first)

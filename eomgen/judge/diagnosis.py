@@ -33,7 +33,7 @@ BELIEVED = 12.5  # the cost of one mistake up to which nothing else is looked at
 FAR_FETCHED = 16.0  # the cost of one mistake from which on something else is rather believed
 PLAINEST = 10.0  # the cost of the most believable mistake
 WELL_KNOWN = 4  # the largest numerator and denominator by which somebody takes all of an answer wrongly
-WHOLE = "the whole"  # what is asked, as one contribution
+WHOLE = "the whole of"  # what is asked, as one contribution
 PLACES, VARIANTS = 5, 8  # configurations, and speeds and accelerations at each
 SIMPLE = 12  # the largest numerator and denominator of a factor that somebody wrote by mistake
 ALIKE = 7  # digits to which directions are compared before pairs are sought
@@ -419,7 +419,7 @@ def _share(corruption: Corruption, y: float, often: Sequence[Fraction | int]) ->
     Args:
         often: how often a change may be there.
     """
-    if corruption.name == WHOLE and abs(1 + y) < SAME_EIGENVALUE:
+    if corruption.name.startswith(WHOLE) and abs(1 + y) < SAME_EIGENVALUE:
         return None  # something else would have to be there in its place
     if not corruption.open:
         times = next((x for x in often if x and abs(y - x) < SAME_EIGENVALUE), None)
@@ -428,16 +428,21 @@ def _share(corruption: Corruption, y: float, often: Sequence[Fraction | int]) ->
         if abs(1 + y - number) < SAME_EIGENVALUE * number:
             return Share(corruption, Fraction(1), name)
     factor = simple_factor(1 + y)
-    if corruption.name == WHOLE and factor is not None and max(abs(factor.numerator), factor.denominator) > WELL_KNOWN:
+    if (
+        corruption.name.startswith(WHOLE)
+        and factor is not None
+        and max(abs(factor.numerator), factor.denominator) > WELL_KNOWN
+    ):
         return None
     return None if factor is None or factor == 1 else Share(corruption, factor)
 
 
-def simple_factor(x: float) -> Fraction | None:
-    if not np.isfinite(x) or abs(x) > SIMPLE:
+def simple_factor(x: float, largest: int = SIMPLE) -> Fraction | None:
+    """The fraction that x is, where it is one of small numbers."""
+    if not np.isfinite(x) or abs(x) > largest:
         return None
-    near = Fraction(x).limit_denominator(SIMPLE)
-    return near if abs(float(near) - x) < SAME_EIGENVALUE and abs(near.numerator) <= SIMPLE * 2 else None
+    near = Fraction(x).limit_denominator(largest)
+    return near if abs(float(near) - x) < SAME_EIGENVALUE and abs(near.numerator) <= largest * 2 else None
 
 
 def _cost(share: Share) -> float:

@@ -243,7 +243,8 @@ def _of_sum(x: Node) -> Iterator[tuple[str, Scalar, str, float]]:
     parts: list[Scalar] = [c * node if node is not None else c for node, c in terms.items()]
     for t in parts:
         name, what = term_text(t), "product" if is_product(t, parts) else "term"
-        yield "missing_term", x - t, f"the {what} {name} is missing", TERMS
-        yield "sign", x - 2 * t, f"the sign of the term {name} is wrong", TERMS
+        rank = TERMS if len(name) <= SHOWN else ODD
+        yield "missing_term", x - t, f"the {what} {name} is missing", rank
+        yield "sign", x - 2 * t, f"the sign of the term {name} is wrong", rank
         yield "factor", x + t, f"the term {name} stands with the factor 2", ODD
         yield "factor", x - over(t, 2), f"the term {name} stands with the factor 1/2", ODD

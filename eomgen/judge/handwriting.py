@@ -468,6 +468,11 @@ class _Reader:
         if found is None:
             index = re.sub(r"\W", "_", index)
             found = letters + (index if index[:1].isdigit() or not index else f"_{index}")
+        arguments = _REFERENCES.match(self.text, self.at)
+        if found in self.known.functions - self.known.names and arguments and not dots:
+            self.at = arguments.end()
+            self.put(found + re.sub(r"\s", "", arguments.group()), "call", start)
+            return
         of_time = _OF_TIME.match(self.text, self.at)
         if of_time and (found in self.known.names or found not in self.known.functions):
             self.at = of_time.end()

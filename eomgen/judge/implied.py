@@ -71,6 +71,7 @@ class PutIn:
 
 
 Instant = WrittenEquation | AtRest | None
+MOST_DEAR = {1: 20.0, 2: 6.5, 3: 3.5}  # how much less than the plainest each mistake of so many is believed at most
 STATES_OF_VALUES = 12  # sets of values of the parameters at which an answer is compared
 
 
@@ -165,20 +166,24 @@ class Explainable(Protocol):
 
 
 def simplest_explanation(
-    targets: Iterable[Explainable], mends: Iterable[Explainable] = ()
+    targets: Iterable[Explainable], mends: Iterable[Explainable] = (), *, soon: bool = False
 ) -> tuple[Explainable | None, list[Explanation]]:
     """The comparison that is explained by the fewest mistakes, with its explanations: the first that is believed.
 
     Args:
         mends: looked at where no one mistake of the others is believed.
+        soon: already where none is plain: the author wrote no equation of motion.
     """
     best: tuple[Explainable | None, list[Explanation]] = None, []
     known, own = tuple(targets), tuple(mends)
     for number in range(1, MOST_MISTAKES + 1):
-        for some, believed in ((known, number * BELIEVED), (own if number == 1 else (), FAR_FETCHED)):
+        for some, believed in (
+            (known, number * BELIEVED),
+            (own if number == 1 else (), BELIEVED if soon else FAR_FETCHED),
+        ):
             for target in some if not best[1] or some is known or best[1][0].cost >= believed else ():
                 with suppress(DerivationError):
-                    found = target.explained(number)
+                    found = [x for x in target.explained(number) if x.cost <= number * (PLAINEST + MOST_DEAR[number])]
                     if found and (not best[1] or found[0].cost < best[1][0].cost):
                         best = target, found
                 if best[1] and best[1][0].cost < believed:

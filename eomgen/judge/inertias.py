@@ -65,7 +65,7 @@ class Inertias:
         yield Corruption(name, "factor", (whole,), PLAIN, body)
         parts = (
             (f"the moment of inertia of {body} about its own mass centre", own),
-            (f"the term m d^2 of {body} (Steiner)", swept),
+            (f"the term m d^2 of {body} (Steiner, parallel axes)", swept),
         )
         for told, part in parts if not is_zero(own) and not is_zero(swept) else ():
             yield Corruption(told, "factor", (part,), PLAIN, body)

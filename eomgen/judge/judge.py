@@ -14,7 +14,7 @@ from eomgen.judge.causes import causes_of
 from eomgen.judge.comparison import excess
 from eomgen.judge.course import course_of
 from eomgen.judge.decision import is_zero_everywhere
-from eomgen.judge.implied import Instant, implied_by_course, implied_by_rest, simplest_explanation
+from eomgen.judge.implied import Explainable, Instant, implied_by_course, implied_by_rest, simplest_explanation
 from eomgen.judge.kinds import FUNCTION_KINDS, KINDS, kind_of_equation
 from eomgen.judge.mends import Mends
 from eomgen.judge.reading import HandEquation
@@ -121,7 +121,10 @@ class Judge:
             if not case.system.symbols.u or of_ties.causes[0].kind != "other":
                 return of_ties
         target = implied_by_rest(case, written)
-        mends = [Mends(case, written, "equilibrium", place) for place in case.places_of_rest]
+        places = case.places_of_rest
+        if any(is_zero_everywhere(case.system, *substituted((scalar,), place)).holds for place in places):
+            places = ()  # it is right there: what is wrong is that it holds elsewhere, too
+        mends = [Mends(case, written, "equilibrium", place) for place in places]
         _, why = simplest_explanation([target] if target is not None else [], mends)
         if why:
             difference = excess(case, target.left) if target is not None else ""
@@ -201,6 +204,8 @@ class Judge:
             if verdict is not None:
                 return verdict
         if near is None:
+            if kind in ("law", "energy") and not moving and not written.calls:
+                return self._wrong(written, kind, case.value(written.difference, free), free)
             raise _unknown_names(case, written, unknown)
         wrong = self._wrong(written, kind, case.value(written.difference, near.values), near.values)
         return replace(wrong, substitution=near.told)
@@ -250,16 +255,19 @@ class Judge:
         case = self.case
         found = truth_of(case, scalar, kind)
         if found.why and not (found.why == CONSTANT and written.calls):
-            return self._not(written, kind, found, scalar)
+            mend = Mends(case, written, kind).explained(1) if found.why == CONSTANT and not also else []
+            if not mend:
+                return self._not(written, kind, found, scalar)
+            causes = causes_of(case, mend, moving=False)
+            return Verdict(written.given, kind, WRONG, difference=excess(case, scalar), causes=causes)
         left = self._without_reactions(written, kind, also)
         if left is not None:
             return left
         targets = targets_of(case, written, kind, scalar, also)
         if not also:
             targets = loosened_targets(case, written, kind) + targets
-        target, explanations = simplest_explanation(
-            targets, [] if also else [OtherAxis(case, written, kind), Mends(case, written, kind)]
-        )
+        own: list[Explainable] = [] if also else [OtherAxis(case, written, kind), Mends(case, written, kind)]
+        target, explanations = simplest_explanation(targets, own, soon=kind == "law" and not case.system.ties.rows)
         if not explanations and (begun := case.as_begun) is not None:
             with suppress(EomgenError):
                 also_ = targets_of(begun, written, kind, begun.value(written.difference, also), also)

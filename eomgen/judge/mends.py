@@ -14,7 +14,7 @@ import numpy as np
 from eomgen.errors import EomgenError
 from eomgen.judge.authored import Authored
 from eomgen.judge.case import Case
-from eomgen.judge.contributions import Contribution
+from eomgen.judge.contributions import FEW, Contribution
 from eomgen.judge.corruption import Corruption
 from eomgen.judge.decision import is_zero_everywhere
 from eomgen.judge.diagnosis import PLAINEST, Explanation, Share
@@ -32,7 +32,7 @@ from eomgen.symbolic.expression.traversal import order
 
 MOST_TRIED = 6  # changes that are proven before it is given up
 SHORT = 60  # characters of a place that is told
-MOST_PAIRS, MOST_OWNERS = 2000, 2  # terms that are compared; contributions that are named
+MOST_PAIRS = 2000  # of terms that are compared
 ENERGIES = {"kinetic_energy": "T", "potential_energy": "V"}
 
 
@@ -63,8 +63,8 @@ class Mends:
         with suppress(EomgenError, np.linalg.LinAlgError):
             found = [] if number > 1 else list(self._author.changes())
             found.sort(key=lambda each: (each[1].cost, len(self._text(each[0])) + len(self._text(each[1].to))))
-            for node, change in found[:MOST_TRIED]:
-                explanation = self._explanation(node, change)
+            for node, amended in found[:MOST_TRIED]:
+                explanation = self._explanation(node, amended)
                 if explanation is not None:
                     return [explanation]
         return []
@@ -78,38 +78,40 @@ class Mends:
         """By what the sides differ, of what is told."""
         return {}
 
-    def _explanation(self, node: Node, change: Amended) -> Explanation | None:
+    def _explanation(self, node: Node, amended: Amended) -> Explanation | None:
         """The change, where it makes the equation right, exactly."""
         difference, case = self._author.difference, self.case
-        (mended,) = substituted((difference,), {node: change.to})
+        (mended,) = substituted((difference,), {node: amended.to})
         right, wrong = substituted((mended, difference), self._author.meant)
         still = self._author.is_still
         found = is_zero_everywhere(case.system, right) if still else truth_of(case, right, self.kind)
         if not found.holds:
             return None
-        share = self._share(node, change, mended)
+        share = self._share(node, amended, mended)
         self._by[share] = wrong - right
-        return Explanation((share,), 0, PLAINEST + change.cost)
+        return Explanation((share,), 0, PLAINEST + amended.cost)
 
     # -- what is told ----------------------------------------------------------------------------
 
-    def _share(self, node: Node, change: Amended, mended: Scalar) -> Share:
+    def _share(self, node: Node, amended: Amended, mended: Scalar) -> Share:
         product, term = self._around(node)
-        there, should = (self._author.plain(x) for x in (product, substituted((product,), {node: change.to})[0]))
-        owners = self._owners(mended, self._author.plain(substituted((term,), {node: change.to})[0]))
+        there, should = (self._author.plain(x) for x in (product, substituted((product,), {node: amended.to})[0]))
+        term = product if product is not node else term
+        around = self._author.plain(substituted((term,), {node: amended.to})[0]) if is_zero(should) else should
+        owners = self._owners(mended, around)
         named = " and ".join(part.name for part in owners)
         body, force = (owners[0].body, owners[0].force) if len(owners) == 1 else ("", "")
         (ratio,) = (0,) if is_zero(should) else self.case.edits.written((over(there, should),))
         if type(ratio) is not Node and ratio not in (0, 1):
             rates = [x for x in symbols_of((there,)) if x.name.endswith("'")]
             name, kind = named or f"the term {self._text(product)}", "coriolis" if len(rates) == 2 else "factor"
-            return Share(Corruption(name, kind, (should,), change.cost, body, force), Fraction(ratio))
+            return Share(Corruption(name, kind, (should,), amended.cost, body, force), Fraction(ratio))
         where = "" if term is node or len(self._text(term)) > SHORT else f"the term {self._text(term)}"
-        told = self._told(self._author.plain(node), self._author.plain(change.to), there)
+        told = self._told(self._author.plain(node), self._author.plain(amended.to), there)
         place = ", ".join(filter(None, (named, where)))
         text = f"in {place}{',' if named and where else ''} {told}" if place else told
         row = (there if is_zero(should) else should,)
-        corruption = Corruption(place or told, change.kind, row, change.cost, body, force, open=False, text=text)
+        corruption = Corruption(place or told, amended.kind, row, amended.cost, body, force, open=False, text=text)
         return Share(corruption, Fraction(1))
 
     def _around(self, node: Node) -> tuple[Node, Node]:
@@ -153,14 +155,9 @@ class Mends:
             called = {x: 0 for x in self._author.meant if x.name.endswith(")")}
             sides = substituted((mended, self._author.difference), {**self._author.meant, **called})
             found = self._of_terms(what, *sides)
-        if not 0 < len(found) <= MOST_OWNERS:
-            constants = {*case.system.symbols.parameters.values(), *case.system.symbols.inputs.values()}
-            known = [part for part in case.parts.elementary if what == "motion" or not is_zero(getattr(part, what))]
-            holders = [[part for part in known if x in part.held] for x in symbols_of((around,)) if x in constants]
-            few = min(filter(None, holders), key=len, default=[])
-            together = [part for part in few if all(part in some for some in holders)]
-            found = {part.name: part for part in together or few}
-        return tuple(found.values()) if len(found) <= MOST_OWNERS else ()
+        if 0 < len(found) <= FEW:
+            return tuple(found.values())
+        return case.parts.holding(around, what.replace("motion", ""))
 
     def _of_terms(self, what: str, right: Scalar, wrong: Scalar) -> dict[str, Contribution]:
         """Those of which a term is what the change makes, where most of the equation is made of such terms."""
@@ -175,9 +172,10 @@ class Mends:
             ratios = values[: len(mine), None] / values[None, len(mine) :]
         keys = [[tuple(f"{x:.6g}" for x in ratio) for ratio in row] for row in ratios]
         ((common, often),) = Counter(key for row in keys for key in row).most_common(1)
-        return {
-            part.name: part
+        matched = {
+            term: [part for (part, _), key in zip(theirs, row, strict=True) if key == common]
             for term, row in zip(mine, keys, strict=True)
-            for (part, _), key in zip(theirs, row, strict=True)
-            if key == common and 2 * often > len(mine) and term not in before
         }
+        if 2 * often <= len(mine) or not any(matched[term] for term in mine if term in before):
+            return {}  # the equation is not made of such terms, or all of them differ
+        return {part.name: part for term in mine if term not in before for part in matched[term]}

@@ -21,6 +21,7 @@ from eomgen.symbolic.numeric.tolerances import CARRIED, COMPUTED
 
 SIGN, NUMBER, PRODUCT, LONGER = 2.5, 2.7, 3.0, 4.5  # how much less than the plainest mistake each is believed
 ELSEWHERE, BESIDE, A_RATE = 0.5, 0.7, 1.0  # of a product in its place; beside it; of a rate that is left out
+SQUARES = (Fraction(9), Fraction(16), Fraction(1, 9), Fraction(1, 16))  # numbers of which people take twice a power
 _EXPONENTS = (  # of two names: powers, how much less they are believed
     *(((k, -k), PRODUCT) for k in (1, -1)),
     *(((k, -k), PRODUCT + ELSEWHERE) for k in (2, -2)),
@@ -70,7 +71,7 @@ class Products:
         powers = np.array(rows)
         with np.errstate(all="ignore"):
             sizes = np.exp(powers @ np.log(np.abs(self.values)))
-            negative = (powers % 2 == 1) @ (self.values < 0)
+            negative = (powers % 2 == 1).astype(int) @ (self.values < 0).astype(int)
         return powers, np.array(costs), np.where(negative % 2 == 1, -sizes, sizes)
 
     def changes(self, node: Node, own: np.ndarray, needed: np.ndarray, *, inner: bool, forced: bool) -> list[Amended]:
@@ -107,8 +108,8 @@ class Products:
         first = ratios[:, :1]
         good = np.all(np.abs(ratios - first) <= CARRIED * np.abs(first), axis=1) & (np.abs(first[:, 0]) > 0)
         for k in np.flatnonzero(good):
-            c = simple_factor(float(first[k, 0]))
-            if c and max(abs(c.numerator), c.denominator) <= WELL_KNOWN:
+            c = simple_factor(float(first[k, 0]), WELL_KNOWN**2)
+            if c and (max(abs(c.numerator), c.denominator) <= WELL_KNOWN or c in SQUARES):
                 yield int(k), c
 
     def _cost(self, k: int, c: Fraction) -> float:

@@ -17,13 +17,16 @@ from eomgen.judge.corruption import PLACED, PLAIN, SHARED, Corruption
 from eomgen.judge.wrong_terms import WrongTerms
 from eomgen.model.forces.base import Force
 from eomgen.model.forces.couple import CoupleForce
+from eomgen.model.forces.distributed import Distributed
+from eomgen.model.forces.force import PointForce as AtPoint
 from eomgen.model.forces.load import PointForce, SpreadLoad
 from eomgen.model.parts import Coordinate, Model
 from eomgen.model.table import Table
-from eomgen.symbolic.expression.expressions import Expression
-from eomgen.symbolic.expression.graph import Scalar, is_zero
+from eomgen.symbolic.expression.expressions import Expression, parse
+from eomgen.symbolic.expression.graph import Node, Scalar, is_zero
 from eomgen.symbolic.expression.rational import Fraction
 from eomgen.symbolic.expression.spatial import Vector, cross, minus, vector_of
+from eomgen.symbolic.print.text import to_text
 
 MOST_LOADS = 30  # of a model that are left out, one by one
 SHARES = (  # of a line: where the resultant of a load along it is thought to be
@@ -44,19 +47,24 @@ def replays(case: Case, own: Scalar, asked: Callable[[Case], Scalar | None]) -> 
         asked: the value of a case, over the symbols of the given one; None: it has none.
     """
     model = replace(case.model, outputs=Table())
-    for name, text, parts in (*_without_forces(model), *_held(model)):
+    for name, text, parts in (*_without_forces(model), *_spread_otherwise(model), *_held(model)):
         try:
             value = asked(replace(case, model=replace(model, **parts)))
         except (EomgenError, AssertionError, KeyError, StopIteration):
             continue  # such a model has no answer
         if value is None or is_zero(value - own):
             continue
-        if name and not model.coordinates:  # a structure: loads add up
+        if text.startswith("the line load"):
+            yield Corruption(text, "wrong_quantity", (value - own,), SHARED, "", name, open=False, text=text)
+        elif name and not model.coordinates:  # a structure: loads add up
             yield from _of_load(case, name, own - value)
         else:
-            yield Corruption(text, "missing_term", (value - own,), SHARED, "", name, open=False, text=text)
-    if not model.coordinates and model.space == "plane":
-        yield from _at_other_places(case, asked)
+            rank = SHARED if name else SHARED + 1
+            yield Corruption(text, "missing_term", (value - own,), rank, "", name, open=False, text=text)
+    if not model.coordinates:
+        yield from _of_weights(case, asked)
+        if model.space == "plane":
+            yield from _at_other_places(case, asked)
 
 
 def _of_load(case: Case, force: str, does: Scalar) -> Iterator[Corruption]:
@@ -69,6 +77,17 @@ def _of_load(case: Case, force: str, does: Scalar) -> Iterator[Corruption]:
         yield Corruption(name, each.kind, (each.to[0] - share[0],), each.rank, "", force, False, text)
     parameters = tuple(case.system.symbols.parameters.values())
     yield from WrongTerms(case.edits, parameters, (), name, "", force).in_rows(share)
+
+
+def _of_weights(case: Case, asked: Callable[[Case], Scalar | None]) -> Iterator[Corruption]:
+    """What the weight of each body does, where several have one."""
+    mine = [part for part in case.parts.elementary if part.kind == "weight" and isinstance(part.load, PointForce)]
+    for part in mine if 1 < len(mine) <= MOST_LOADS else ():
+        assert isinstance(part.load, PointForce)
+        weight = tuple(parse(to_text(x)) if type(x) is Node else Expression.number(x) for x in part.load.force)
+        does = _of_force_alone(case, AtPoint(point=f"{part.body}.center", force=weight), asked)
+        if not is_zero(does):
+            yield Corruption(part.name, "factor", (does,), PLAIN, part.body, part.force)
 
 
 def _at_other_places(case: Case, asked: Callable[[Case], Scalar | None]) -> Iterator[Corruption]:
@@ -91,9 +110,13 @@ def _at_other_places(case: Case, asked: Callable[[Case], Scalar | None]) -> Iter
 
 def _of_unit_couple(case: Case, body: str, asked: Callable[[Case], Scalar | None]) -> Scalar:
     """What is asked, of the structure with a couple of 1 on a body alone; 0: it has no answer."""
-    turn: Force = CoupleForce(body=body, couple=(Expression.number(1),))
+    return _of_force_alone(case, CoupleForce(body=body, couple=(Expression.number(1),)), asked)
+
+
+def _of_force_alone(case: Case, force: Force, asked: Callable[[Case], Scalar | None]) -> Scalar:
+    """What is asked, of the structure with one force alone; 0: it has no answer."""
     with suppress(EomgenError):
-        value = asked(replace(case, model=replace(case.model, outputs=Table(), forces=Table({"turn": turn}))))
+        value = asked(replace(case, model=replace(case.model, outputs=Table(), forces=Table({"alone": force}))))
         return 0 if value is None else value
     return 0
 
@@ -115,6 +138,20 @@ def _without_forces(model: Model) -> Iterator[tuple[str, str, Parts]]:
     for name in model.forces if len(model.forces) <= MOST_LOADS else ():
         forces = {other: force for other, force in model.forces.items() if other != name}
         yield name, f"the force {name} is missing", {"forces": Table(forces)}
+
+
+def _spread_otherwise(model: Model) -> Iterator[tuple[str, str, Parts]]:
+    """The model with each load that grows along its line spread evenly, or growing the other way."""
+    for name, force in model.forces.items():
+        if isinstance(force, Distributed) and force.intensities is not None:
+            start, end = force.intensities
+            for how, other in (
+                ("evenly", (end, end)),
+                ("evenly", (start, start)),
+                ("growing the other way", (end, start)),
+            ):
+                forces = {**model.forces, name: replace(force, intensities=other)}
+                yield name, f"the line load {name} is taken as spread {how}", {"forces": Table(forces)}
 
 
 def _held(model: Model) -> Iterator[tuple[str, str, Parts]]:

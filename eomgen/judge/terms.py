@@ -126,8 +126,9 @@ def _turned(angle: Node) -> Iterator[tuple[str, dict[Node, Scalar], str]]:
     graph = angle.graph
     sin, cos = graph.held("sin", (angle,)), graph.held("cos", (angle,))
     yield "wrong_axis", {sin: cos, cos: sin}, "sin and cos of {0} are exchanged: the angle is taken from the other axis"
-    yield "wrong_axis", {sin: cos, cos: -sin}, "{0} is taken from the other axis"
-    yield "wrong_axis", {sin: -cos, cos: sin}, "{0} is taken from the other axis"
+    axis = "{0} is taken from the other axis"
+    yield "wrong_axis", {sin: cos, cos: -sin}, f"cos stands for sin, sin with the opposite sign for cos: {axis}"
+    yield "wrong_axis", {sin: -cos, cos: sin}, f"sin stands for cos, cos with the opposite sign for sin: {axis}"
     yield "wrong_axis", {sin: cos}, "cos stands for sin({0}): the angle is taken from the other axis"
     yield "wrong_axis", {cos: sin}, "sin stands for cos({0}): the angle is taken from the other axis"
     yield "sign", {sin: -sin}, "the sign of sin({0}) is wrong"
@@ -138,7 +139,7 @@ def _turned(angle: Node) -> Iterator[tuple[str, dict[Node, Scalar], str]]:
         yield "unit", mapping, f"{{0}} is taken in {how}"
     yield "factor", {cos: 1}, "cos({0}) is left out"
     yield "approximation", {sin: angle, cos: 1}, "sin({0}) and cos({0}) are those of a small angle"
-    yield "approximation", {sin: angle}, "sin({0}) is replaced by the angle, as if it were small"
+    yield "approximation", {sin: angle}, "sin({0}) is replaced by the angle, as that of a small angle"
     yield "approximation", {sin: 0, cos: 1}, "{0} is taken as zero"
     yield "factor", {sin: 1}, "sin({0}) is left out"
     terms = linear_terms(angle)

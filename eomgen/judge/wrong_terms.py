@@ -79,7 +79,8 @@ class WrongTerms:
                     told = what.format(term_text(angle))
                     yield from self._replaced("everything", whole, kind, mapping, told, EXCHANGED, k, len(rows))
             for kind, mapping, what in wrong_parameters(symbols_of((whole,)), self.parameters):
-                yield from self._replaced("everything", whole, kind, mapping, what, EXCHANGED, k, len(rows))
+                rank = EXCHANGED if kind == "wrong_quantity" else ODD
+                yield from self._replaced("everything", whole, kind, mapping, what, rank, k, len(rows))
 
     def _replaced(
         self, name: str, x: Scalar, kind: str, mapping: Mapping[Node, Scalar], what: str, rank: float, k: int, n: int

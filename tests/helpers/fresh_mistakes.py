@@ -44,7 +44,12 @@ def told(judge: Judge, text: str, options: dict[str, str]) -> tuple[str, str]:
 
 
 def is_named(causes: str, groups: list[list[str]]) -> bool:
-    """Whether a word of each group is told; `-` stands for what nobody could say."""
+    """Whether a word of each group is told; `-` stands for what nobody could say.
+
+    Words without capitals are looked for in any: R - r is meant by r - r, Steiner by steiner.
+    """
+    if not any(c.isupper() for group in groups for word in group for c in word):
+        causes = f"{causes} {causes.lower()}"
     return causes != "" and groups not in ([], [["-"]]) and all(any(w in causes for w in g) for g in groups)
 
 
