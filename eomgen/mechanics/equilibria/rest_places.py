@@ -14,7 +14,7 @@ from eomgen.mechanics.equilibria.guesses import unit_of_length
 from eomgen.mechanics.equilibria.static_equations import StaticEquations
 from eomgen.records import dataclass
 from eomgen.symbolic.exact.normal_form import readable
-from eomgen.symbolic.expression.derivative import depends_on, jacobian, substituted
+from eomgen.symbolic.expression.derivative import depends_on, depends_on_any, jacobian, substituted, symbols_of
 from eomgen.symbolic.expression.graph import Node, Scalar, is_zero
 from eomgen.symbolic.expression.rational import Fraction
 from eomgen.symbolic.expression.traversal import order
@@ -144,7 +144,7 @@ class _Search:
     @property
     def _is_linear(self) -> bool:
         slopes = [x for row in jacobian(self.statics.equations, self.statics.unknowns) for x in row]
-        return not any(depends_on(x, self.statics.unknowns) for x in slopes)
+        return not depends_on_any(slopes, self.statics.unknowns)
 
     def _linear(self) -> Places:
         """Linear equations have one solution, where they are regular."""
@@ -204,7 +204,7 @@ class _Search:
     def _angles(self) -> frozenset[Node]:
         """Coordinates in the argument of a sine or cosine."""
         waves = [node for node in order(self.statics.equations) if node.op in ("sin", "cos")]
-        return frozenset(q for q in self.statics.q if any(depends_on(node, (q,)) for node in waves))
+        return frozenset(symbols_of(waves)).intersection(self.statics.q)
 
     @property
     def _range(self) -> tuple[np.ndarray, np.ndarray]:

@@ -33,7 +33,7 @@ from eomgen.mechanics.initial_state.numeric_value import known_exactly, shown_nu
 from eomgen.mechanics.initial_state.values_at_rest import values_of_parameters
 from eomgen.model.values import exact_parameters
 from eomgen.records import dataclass
-from eomgen.symbolic.expression.derivative import depends_on
+from eomgen.symbolic.expression.derivative import depends_on_any
 from eomgen.symbolic.expression.graph import Node, Scalar
 from eomgen.symbolic.expression.node import State
 from eomgen.symbolic.expression.rational import Fraction
@@ -213,7 +213,7 @@ class _Search:
         """Whether all parameters that matter have values."""
         known = exact_parameters(self.system.scope.model)
         needed = [x for name, x in self.system.symbols.parameters.items() if name not in known]
-        return not any(depends_on(x, needed) for x in (*self.whole.equations, *self._fixed.values()))
+        return not depends_on_any((*self.whole.equations, *self._fixed.values()), needed)
 
     @cached_property
     def values(self) -> dict[Node, Any]:

@@ -27,7 +27,7 @@ from eomgen.model.table import Table
 from eomgen.model.values import exact_parameters
 from eomgen.records import dataclass
 from eomgen.symbolic.exact.normal_form import readable_all, simplest
-from eomgen.symbolic.expression.derivative import depends_on, substituted
+from eomgen.symbolic.expression.derivative import depends_on, depends_on_any, substituted, symbols_of
 from eomgen.symbolic.expression.expressions import as_expression
 from eomgen.symbolic.expression.graph import Node, Scalar, is_zero
 from eomgen.symbolic.expression.node import ScalarRow, State
@@ -91,13 +91,14 @@ class StaticEquations:
     @property
     def indifferent(self) -> tuple[Node, ...]:
         """Coordinates that no equation holds: any place of theirs will do."""
-        return tuple(q for q in self.q if not any(depends_on(x, (q,)) for x in self.equations))
+        held = frozenset(symbols_of(self.equations))
+        return tuple(q for q in self.q if q not in held)
 
     @property
     def loaded(self) -> tuple[Node, ...]:
         """The unknowns of the model that stand in the forces."""
-        unknowns = self.system.symbols.unknowns.values()
-        return tuple(x for x in unknowns if any(depends_on(force, (x,)) for force in self.Q))
+        held = frozenset(symbols_of(self.Q))
+        return tuple(x for x in self.system.symbols.unknowns.values() if x in held)
 
     def at_the_values(self) -> StaticEquations:
         """The same where a force is 0 that vanishes everywhere for the model's values of the parameters."""
@@ -118,7 +119,7 @@ class StaticEquations:
         beside = []
         for q, force in zip(self.q, self.forces, strict=True):
             if q in dropped and not is_zero(force) and not vanishes(force):
-                if not any(depends_on(force, (x,)) for x in self.unknowns):
+                if not depends_on(force, self.unknowns):
                     raise DerivationError(
                         f"nothing balances the force along '{q.name}': it is at rest nowhere", f"coordinates.{q.name}"
                     )
@@ -238,7 +239,7 @@ def has_freedoms(system: System) -> bool:
     """Whether anything is free to find its rest: a coordinate that no tie, drive or unknown load holds."""
     unknowns = system.symbols.unknowns.values()
     forces = generalized_forces(system.loads)
-    return freedoms(system.ties) > 0 and not any(depends_on(x, unknowns) for x in forces)
+    return freedoms(system.ties) > 0 and not depends_on_any(forces, unknowns)
 
 
 def with_drives_held(system: System) -> tuple[System, tuple[str, ...]]:

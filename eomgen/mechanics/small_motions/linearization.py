@@ -44,7 +44,7 @@ from eomgen.mechanics.small_motions.steady_family import family_of
 from eomgen.model.unknowns import refuse_motion
 from eomgen.model.values import exact_parameters
 from eomgen.records import dataclass
-from eomgen.symbolic.expression.derivative import depends_on
+from eomgen.symbolic.expression.derivative import depends_on_any
 from eomgen.symbolic.expression.graph import Node
 from eomgen.symbolic.expression.traversal import operations
 from eomgen.symbolic.numeric.evaluation import NoValue
@@ -100,7 +100,7 @@ class SmallMotions:
         """Whether forces change with t about a place of rest: they are taken as they are at t = 0."""
         equations = self.first.equations
         rows = (*equations.forcing, *equations.gamma, *equations.sigma)
-        return self.reference.at_rest and any(depends_on(x, (self.first.system.symbols.t,)) for x in rows)
+        return self.reference.at_rest and depends_on_any(rows, (self.first.system.symbols.t,))
 
     @cached_property
     def state_matrix(self) -> np.ndarray:

@@ -17,7 +17,7 @@ from eomgen.mechanics.small_motions.forms import carrying, floats, seen_beside_o
 from eomgen.mechanics.small_motions.reduction import LinearEquations, Reducing, unsettled
 from eomgen.mechanics.small_motions.reference import ReferenceMotion
 from eomgen.mechanics.small_motions.spin_axes import over_turns, spinning, turned_on
-from eomgen.symbolic.expression.derivative import depends_on
+from eomgen.symbolic.expression.derivative import depends_on_any
 from eomgen.symbolic.expression.graph import Node
 from eomgen.symbolic.expression.traversal import order
 from eomgen.symbolic.numeric import dense
@@ -109,7 +109,7 @@ def _unsteady(
     """How coordinates and t move on to later states, where the equations are others at one of these; else none."""
     moving, t, graph = reference.moving, first.system.symbols.t, first.equations
     unit = 1 / max((abs(rate) for rate in moving.values()), default=1)
-    timed = any(depends_on(x, (t,)) for x in (*graph.forcing, *graph.gamma, *graph.sigma))
+    timed = depends_on_any((*graph.forcing, *graph.gamma, *graph.sigma), (t,))
     times = (*TIMES, *LATER) if timed else TIMES
     shifts = [{x: rate * unit * time for x, rate in {**moving, t: 1}.items()} for time in times]
     turns = spinning(reference, choice)

@@ -154,14 +154,9 @@ def symbols_of(outputs: Iterable[Scalar]) -> tuple[Node, ...]:
 
 
 def depends_on_any(scalars: Iterable[Scalar], symbols: Collection[Node]) -> bool:
-    """True where one of the symbols (or nodes) occurs in one of them."""
-    return any(depends_on(x, symbols) for x in scalars)
-
-
-def depends_on(x: Scalar, symbols: Iterable[Node]) -> bool:
-    """True where one of the symbols (or nodes) occurs in x."""
+    """True where one of the symbols (or nodes) occurs in one of them: what they share is looked through once."""
     symbols = frozenset(symbols)
-    stack: list[Scalar] = [x]
+    stack: list[Scalar] = [*scalars]
     seen: set[Node] = set()
     while stack:
         y = stack.pop()
@@ -173,6 +168,11 @@ def depends_on(x: Scalar, symbols: Iterable[Node]) -> bool:
         if y.op != "symbol":
             stack += y.args
     return False
+
+
+def depends_on(x: Scalar, symbols: Collection[Node]) -> bool:
+    """True where one of the symbols (or nodes) occurs in x."""
+    return depends_on_any((x,), symbols)
 
 
 def _dependents(nodes: Sequence[Node], symbols: frozenset[Node]) -> list[Node]:
