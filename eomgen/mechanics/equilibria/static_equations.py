@@ -11,6 +11,7 @@ from __future__ import annotations
 from collections.abc import Collection, Mapping, Sequence
 from dataclasses import replace
 from functools import cached_property
+from random import Random
 from typing import Any
 
 import numpy as np
@@ -33,7 +34,8 @@ from eomgen.symbolic.expression.graph import Node, Scalar, is_zero
 from eomgen.symbolic.expression.node import ScalarRow, State
 from eomgen.symbolic.expression.rational import Fraction
 from eomgen.symbolic.expression.traversal import order
-from eomgen.symbolic.numeric.evaluation import FLOAT, evaluate
+from eomgen.symbolic.numeric.evaluation import FLOAT, NoValue, evaluate, fifty_digits
+from eomgen.symbolic.numeric.tolerances import ZERO_AT_50
 from eomgen.symbolic.numeric.work import Work
 from eomgen.symbolic.print.text import to_text
 from eomgen.symbolic.solve.solving import vanishes
@@ -106,6 +108,13 @@ class StaticEquations:
         known = {scope.symbols.parameters[name]: x for name, x in exact_parameters(scope.model).items()}
         values = {node: Fraction(x) for node, x in known.items() if isinstance(x, Fraction | int)}
         sought = [k for k, force in enumerate(self.Q) if not is_zero(force) and depends_on(force, values)]
+        digits, rng = fifty_digits(), Random(5)
+        there = {x: digits.number(Fraction(rng.randint(50, 99), 97)) for x in symbols_of(self.Q)}
+        try:  # what has a value at one place does not vanish everywhere
+            at = evaluate(self.Q, there | {x: digits.number(v) for x, v in values.items()}, digits)
+        except (NoValue, ZeroDivisionError):
+            at = [0] * len(self.Q)
+        sought = [k for k in sought if abs(at[k]) <= ZERO_AT_50]
         empty = [k for k in sought if is_zero(simplest(substituted((self.Q[k],), values)[0], Work.VALUE))]
         Q = tuple(0 if k in empty else force for k, force in enumerate(self.Q))
         return replace(self, Q=Q, nowhere=tuple((self.q[k], self.Q[k]) for k in empty)) if empty else self
