@@ -645,3 +645,49 @@ def test_thirty_freedoms_are_explained_by_the_row_concerned():
     with cpu_limit(5):
         found = eomgen.verify(eomgen.loads("\n".join(text)), "m*x5'' + k*(x5 - x4) - k*(x5 - x6) = 0")
     assert kinds(found) == ["sign"] and found.causes[0].body == "b6"
+
+
+TIED = """
+eomgen = 1
+space = "plane"
+parameters = { m = 2, R = { value = 0.3, positive = true }, e = "4*R/(3*pi)", k = "20*m/R", a = 0.2 }
+coordinates = { x = { dependent = true, start = 0 }, phi = 0.4, y = { motion = "a*sin(3*t)" } }
+[bodies.wheel]
+shape = { kind = "disc", mass = "m", radius = "R" }
+joint = { kind = "placed", at = ["x", "R"], angle = "-phi" }
+[bodies.lift]
+shape = { kind = "particle", mass = "m" }
+joint = { kind = "placed", at = [0, "y"] }
+[constraints.contact]
+kind = "equation"
+rate = "x' - R*phi'"
+[forces.spring]
+kind = "spring"
+points = ["O", "wheel.center"]
+stiffness = "k"
+length = 0
+along = [1, 0]
+[points]
+O = [0, "R"]
+"""
+
+
+@pytest.mark.parametrize(
+    ("equation", "up_to"),
+    [
+        ("3/2*m*R*phi'' + 20*m/R*x = 0", "k"),
+        ("3/2*m*R*phi'' + k*x = 0", ""),
+        ("x'' = R*phi''", "the ties"),
+        ("y'' = -9*a*sin(3*t)", "the given motion of y"),
+        ("frequency(1)^2 = 2*k/(3*m)", ""),
+        ("frequency(1)^2 = 40/(3*R)", ""),
+        ("frequency(1)^2 = 160/(9*pi*e)", ""),
+    ],
+)
+def test_what_follows_from_the_file_is_right(equation, up_to):
+    """Parameters that are formulas of others, ties once more differentiated, given motions."""
+    model = eomgen.loads(TIED)
+    found = eomgen.verify(model, equation)
+    assert found.verdict == "right" and up_to in found.up_to
+    left, right = equation.split(" = ")
+    assert eomgen.verify(model, f"{left} = {right} + {left}/100").verdict == "wrong"

@@ -76,7 +76,8 @@ def _one_by_one(case: Case, written: HandEquation, at: Instant) -> tuple[Answer,
 def _by_numbers(case: Case, written: HandEquation, kind: str, at: Instant) -> Verdict:
     """Whether sides that are equal in numbers are so with other values of the parameters, too."""
     tried = 0
-    own = {name: x for name, x in exact_parameters(case.model).items() if name in case.model.parameters}
+    parts = case.model.parameters  # those that are formulas of others follow them
+    own = {name: x for name, x in exact_parameters(case.model).items() if name in parts and not parts[name].formula}
     for shares in ((1.07, 0.95, 1.02), (0.94, 1.05, 0.99)):
         values = {n: float(x) * shares[k % 3] * (1 + k / 300) for k, (n, x) in enumerate(own.items())}
         try:

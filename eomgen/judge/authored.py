@@ -82,7 +82,7 @@ class Authored:
     def _sides(self) -> tuple[Scalar, Scalar, Mapping[Node, Scalar]]:
         """Both sides over occurrences, and what these stand for."""
         scope = self.case.system.scope
-        names = _Occurrences(scope.names, scope.graph.pi)
+        names = _Occurrences(self.case.names, scope.graph.pi)
 
         def called(call: Call) -> Scalar:
             return names.of(str(call), self.case.value(Expression(str(call), (("call", call),), (0,))))

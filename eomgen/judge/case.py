@@ -22,6 +22,7 @@ from eomgen.mechanics.first_integrals.speeds_from_momenta import relations_of
 from eomgen.mechanics.instant.outputs import Quantities
 from eomgen.mechanics.statics.contacts_at_start import contacts_at_start
 from eomgen.model.fields import AtRest, WrittenEquation
+from eomgen.model.part import leaves_of
 from eomgen.model.parts import Model, Output
 from eomgen.model.table import Table
 from eomgen.questions import answers
@@ -222,7 +223,16 @@ class Case:
         Raises:
             ExpressionError: an unknown name or function.
         """
-        return self.evaluated(expression, {**self.system.scope.names, **(also or {})}, self.called)
+        return self.evaluated(expression, {**self.names, **(also or {})}, self.called)
+
+    @cached_property
+    def names(self) -> Mapping[str, Scalar]:
+        """What names stand for; a parameter that stands nowhere in the model but is a formula of others is that."""
+        scope, parts = self.system.scope, self.model.parameters
+        leaves = (leaf for leaf in leaves_of(self.model, ()) if leaf.path[0] not in ("parameters", "outputs"))
+        used = {name for leaf in leaves if isinstance(leaf.value, Expression) for name in leaf.value.names}
+        formulas = {name: part.formula for name, part in parts.items() if name not in used}
+        return {**scope.names, **{name: scope.value(formula) for name, formula in formulas.items() if formula}}
 
     def evaluated(
         self, expression: Expression, names: Mapping[str, Scalar], called: Callable[[Call], Scalar]

@@ -25,9 +25,11 @@ from eomgen.judge.right import (
     IDENTITY,
     SIGNLESS,
     Decided,
+    by_what_is_given,
     on_one_side,
     says_nothing,
     truth_of,
+    with_definitions,
     with_values_of_file,
 )
 from eomgen.judge.targets import Meanings, loosened_targets, targets_of
@@ -144,9 +146,14 @@ class Judge:
         found = truth_of(case, scalar, kind)
         if found.why == IDENTITY and any(FUNCTION_KINDS.get(call.name) == "reaction" for call in written.calls):
             found = Decided(True, "the balance of forces")
+        elif found.why == IDENTITY:
+            found = by_what_is_given(case, written) or found
         if not found.holds and not found.why:
             found = (
-                with_values_of_file(case, written, kind, scalar) or on_one_side(case, written, kind, scalar) or found
+                with_definitions(case, kind, scalar)
+                or with_values_of_file(case, written, kind, scalar)
+                or on_one_side(case, written, kind, scalar)
+                or found
             )
         if not found.holds and (begun := case.as_begun) is not None:
             with suppress(EomgenError):

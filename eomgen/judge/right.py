@@ -197,6 +197,27 @@ def with_values_of_file(case: Case, written: HandEquation, kind: str, scalar: Sc
     return Decided(True, f"the values of the file: {told}")
 
 
+def with_definitions(case: Case, kind: str, scalar: Scalar) -> Decided | None:
+    """Right where parameters are replaced by the formulas that the file gives for them."""
+    scope = case.system.scope
+    formulas = {name: formula for name, part in case.model.parameters.items() if (formula := part.formula)}
+    known = {scope.symbols.parameters[name]: scope.value(formula) for name, formula in formulas.items()}
+    for _ in known:  # formulas of formulas
+        known = dict(zip(known, substituted(tuple(known.values()), known), strict=True))
+    used = [x for x in known if depends_on_one((scalar, *case.rows), x)]
+    if not used or not _holds_with(case, kind, scalar, known):
+        return None
+    return Decided(True, f"what the file says of {', '.join(x.name for x in used)}")
+
+
+def by_what_is_given(case: Case, written: HandEquation) -> Decided | None:
+    """Right where it follows from the ties, or from given motions, of coordinates that hang on others or on time."""
+    parts = {name.rstrip("'"): case.model.coordinates.get(name.rstrip("'")) for name in written.names}
+    given = [f"the given motion of {name}" for name, part in parts.items() if part is not None and part.driven]
+    tied = ["the ties"] if any(part is not None and part.dependent for part in parts.values()) else []
+    return Decided(True, " and ".join([*tied, *given])) if tied or given else None
+
+
 def _holds_with(case: Case, kind: str, scalar: Scalar, known: Mapping[Node, Scalar]) -> bool:
     """Whether it holds where nodes are replaced, in the equations of the case too."""
     (plain, *rows) = substituted((scalar, *case.rows, *case.closing), known)

@@ -39,7 +39,7 @@ def targets_of(case: Case, written: HandEquation, kind: str, scalar: Scalar, als
         return [Comparison(case, scalar, (0,), "")] if calls else []
     (call,) = calls
     symbol = case.system.scope.graph.symbol(f"({call})")
-    left = case.evaluated(written.difference, {**case.system.scope.names, **(also or {})}, lambda _: symbol)
+    left = case.evaluated(written.difference, {**case.names, **(also or {})}, lambda _: symbol)
     slope = derivative(left, symbol)
     if depends_on(slope, (symbol,)) or is_zero(slope):
         return []

@@ -74,6 +74,11 @@ class Parameter(Part):
     positive: Flag = False
     symbol: SymbolField | None = None
 
+    @property
+    def formula(self) -> Expression | None:
+        """The formula of other parameters that it is; None of a number."""
+        return self.value if self.value is not None and self.value.names - {"pi"} else None
+
 
 @dataclass(frozen=True, kw_only=True)
 class Coordinate(Part):
