@@ -16,7 +16,7 @@ from eomgen.symbolic.numeric.gc_pause import SELDOM
 os.environ.setdefault("EOMGEN_PATIENCE", "none")  # no test hangs on how busy the machine is
 os.environ.setdefault("EOMGEN_FRESH", "1")  # tests patch laws: nothing is told again that was derived without them
 
-gc.set_threshold(*SELDOM)  # as every command does
+gc.set_threshold(*SELDOM)
 
 ZERO = b"\0after"
 

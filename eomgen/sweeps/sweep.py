@@ -322,8 +322,8 @@ def swept(plan: SweepPlan, *, workers: int = 1, executor: Any = None, out: str |
     finally:
         pool.close()
         if folder is not None:
-            _write_tables(found, folder)
             ledger.settle()
+            _write_tables(found, folder)
     return found
 
 
