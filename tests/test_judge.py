@@ -650,7 +650,7 @@ def test_thirty_freedoms_are_explained_by_the_row_concerned():
 TIED = """
 eomgen = 1
 space = "plane"
-parameters = { m = 2, R = { value = 0.3, positive = true }, e = "4*R/(3*pi)", k = "20*m/R", a = 0.2 }
+parameters = { m = 2, R = { value = 0.3, positive = true }, e = "4*R/(3*pi)", e2 = "3*e", k = "20*m/R", a = 0.2 }
 coordinates = { x = { dependent = true, start = 0 }, phi = 0.4, y = { motion = "a*sin(3*t)" } }
 [bodies.wheel]
 shape = { kind = "disc", mass = "m", radius = "R" }
@@ -682,6 +682,7 @@ O = [0, "R"]
         ("frequency(1)^2 = 2*k/(3*m)", ""),
         ("frequency(1)^2 = 40/(3*R)", ""),
         ("frequency(1)^2 = 160/(9*pi*e)", ""),
+        ("T = 3/4*m*R^2*phi'^2 + m*y'^2/2 + e2 - 3*e", ""),
     ],
 )
 def test_what_follows_from_the_file_is_right(equation, up_to):

@@ -11,6 +11,7 @@ from contextlib import suppress
 from dataclasses import replace
 
 from eomgen.errors import DerivationError, EomgenError, ExpressionError
+from eomgen.judge.authored import Authored
 from eomgen.judge.case import Case
 from eomgen.judge.causes import causes_of
 from eomgen.judge.comparison import Comparison, excess
@@ -100,7 +101,7 @@ def _wrong(case: Case, written: HandEquation, kind: str, at: Instant, left: Answ
     difference = f"{left.value - right.value:.6g}" if left.value is not None and right.value is not None else ""
     causes: tuple[Cause, ...] = ()
     true = case.exact(left)
-    mends = [] if true is None or len(written.left.code) != 1 else [Mends(case, written, kind, true=true)]
+    mends = [] if true is None or len(written.left.code) != 1 else [Mends(Authored(case, written, kind, true=true))]
     target, found = simplest_explanation(implied_by(case, written, kind, at, left, right), mends)
     clash = case.clash(written)
     if found and not (clash and len(found[0].shares) > 1):

@@ -228,11 +228,19 @@ class Case:
     @cached_property
     def names(self) -> Mapping[str, Scalar]:
         """What names stand for; a parameter that stands nowhere in the model but is a formula of others is that."""
-        scope, parts = self.system.scope, self.model.parameters
         leaves = (leaf for leaf in leaves_of(self.model, ()) if leaf.path[0] not in ("parameters", "outputs"))
         used = {name for leaf in leaves if isinstance(leaf.value, Expression) for name in leaf.value.names}
-        formulas = {name: part.formula for name, part in parts.items() if name not in used}
-        return {**scope.names, **{name: scope.value(formula) for name, formula in formulas.items() if formula}}
+        return {**self.system.scope.names, **{x.name: y for x, y in self.definitions.items() if x.name not in used}}
+
+    @cached_property
+    def definitions(self) -> dict[Node, Scalar]:
+        """Of each parameter that the file gives by a formula what it is by those given in numbers."""
+        scope, parts = self.system.scope, self.model.parameters
+        formulas = {name: formula for name, part in parts.items() if (formula := part.formula)}
+        known = {scope.symbols.parameters[name]: scope.value(formula) for name, formula in formulas.items()}
+        for _ in known:  # formulas of formulas
+            known = dict(zip(known, substituted(tuple(known.values()), known), strict=True))
+        return known
 
     def evaluated(
         self, expression: Expression, names: Mapping[str, Scalar], called: Callable[[Call], Scalar]

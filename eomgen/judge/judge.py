@@ -9,6 +9,7 @@ from typing import Any
 
 from eomgen.errors import DerivationError, EomgenError, ExpressionError, MissingValues, RunFailed, UsageError
 from eomgen.judge.asked import asked
+from eomgen.judge.authored import Authored
 from eomgen.judge.case import Case
 from eomgen.judge.causes import causes_of
 from eomgen.judge.comparison import excess
@@ -126,7 +127,7 @@ class Judge:
         places = case.places_of_rest
         if any(is_zero_everywhere(case.system, *substituted((scalar,), place)).holds for place in places):
             places = ()  # it is right there: what is wrong is that it holds elsewhere, too
-        mends = [Mends(case, written, "equilibrium", place) for place in places]
+        mends = [Mends(Authored(case, written, "equilibrium", place)) for place in places]
         _, why = simplest_explanation([target] if target is not None else [], mends)
         if why:
             difference = excess(case, target.left) if target is not None else ""
@@ -262,7 +263,7 @@ class Judge:
         case = self.case
         found = truth_of(case, scalar, kind)
         if found.why and not (found.why == CONSTANT and written.calls):
-            mend = Mends(case, written, kind).explained(1) if found.why == CONSTANT and not also else []
+            mend = Mends(Authored(case, written, kind)).explained(1) if found.why == CONSTANT and not also else []
             if not mend:
                 return self._not(written, kind, found, scalar)
             causes = causes_of(case, mend, moving=False)
@@ -273,7 +274,7 @@ class Judge:
         targets = targets_of(case, written, kind, scalar, also)
         if not also:
             targets = loosened_targets(case, written, kind) + targets
-        own: list[Explainable] = [] if also else [OtherAxis(case, written, kind), Mends(case, written, kind)]
+        own: list[Explainable] = [] if also else [OtherAxis(case, written, kind), Mends(Authored(case, written, kind))]
         target, explanations = simplest_explanation(targets, own, soon=kind == "law" and not case.system.ties.rows)
         if not explanations and (begun := case.as_begun) is not None:
             with suppress(EomgenError):

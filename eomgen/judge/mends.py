@@ -4,23 +4,20 @@ from __future__ import annotations
 
 import math
 from collections import Counter
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 from contextlib import suppress
-from dataclasses import field
 from functools import cached_property
 
 import numpy as np
 
 from eomgen.errors import EomgenError
 from eomgen.judge.authored import Authored
-from eomgen.judge.case import Case
 from eomgen.judge.contributions import FEW, Contribution
 from eomgen.judge.corruption import Corruption
 from eomgen.judge.decision import is_zero_everywhere
 from eomgen.judge.diagnosis import PLAINEST, Explanation, Share
 from eomgen.judge.edits import power, wrong_power
 from eomgen.judge.products import Amended
-from eomgen.judge.reading import HandEquation
 from eomgen.judge.right import truth_of
 from eomgen.judge.terms import powers_of, short_text, term_text, terms_of
 from eomgen.records import dataclass
@@ -38,30 +35,14 @@ ENERGIES = {"kinetic_energy": "T", "potential_energy": "V"}
 
 @dataclass(frozen=True)
 class Mends:
-    """An equation of somebody that one change would make right.
+    """An equation of somebody that one change would make right."""
 
-    Args:
-        case: the model.
-        written: the equation.
-        kind: what it is about.
-        place: coordinates at the place of which it speaks; {} in every motion.
-        true: the true value of what stands alone on the left; None: it follows from the state.
-    """
-
-    case: Case
-    written: HandEquation
-    kind: str
-    place: Mapping[Node, Scalar] = field(default_factory=dict)
-    true: Scalar | None = None
-
-    @cached_property
-    def _author(self) -> Authored:
-        return Authored(self.case, self.written, self.kind, self.place, self.true)
+    author: Authored
 
     def explained(self, number: int) -> list[Explanation]:
         """The simplest change that makes it right."""
         with suppress(EomgenError, np.linalg.LinAlgError):
-            found = [] if number > 1 else list(self._author.changes())
+            found = [] if number > 1 else list(self.author.changes())
             found.sort(key=lambda each: (each[1].cost, len(self._text(each[0])) + len(self._text(each[1].to))))
             for node, amended in found[:MOST_TRIED]:
                 explanation = self._explanation(node, amended)
@@ -71,7 +52,7 @@ class Mends:
 
     def difference(self, explanation: Explanation) -> str:
         """What is too much on the left."""
-        return short_text(self._by[explanation.shares[0]], self.case.system.scope.positive)
+        return short_text(self._by[explanation.shares[0]], self.author.case.system.scope.positive)
 
     @cached_property
     def _by(self) -> dict[Share, Scalar]:
@@ -80,11 +61,11 @@ class Mends:
 
     def _explanation(self, node: Node, amended: Amended) -> Explanation | None:
         """The change, where it makes the equation right, exactly."""
-        difference, case = self._author.difference, self.case
+        difference, case = self.author.difference, self.author.case
         (mended,) = substituted((difference,), {node: amended.to})
-        right, wrong = substituted((mended, difference), self._author.meant)
-        still = self._author.is_still
-        found = is_zero_everywhere(case.system, right) if still else truth_of(case, right, self.kind)
+        right, wrong = substituted((mended, difference), self.author.meant)
+        still = self.author.is_still
+        found = is_zero_everywhere(case.system, right) if still else truth_of(case, right, self.author.kind)
         if not found.holds:
             return None
         share = self._share(node, amended, mended)
@@ -95,19 +76,19 @@ class Mends:
 
     def _share(self, node: Node, amended: Amended, mended: Scalar) -> Share:
         product, term = self._around(node)
-        there, should = (self._author.plain(x) for x in (product, substituted((product,), {node: amended.to})[0]))
+        there, should = (self.author.plain(x) for x in (product, substituted((product,), {node: amended.to})[0]))
         term = product if product is not node else term
-        around = self._author.plain(substituted((term,), {node: amended.to})[0]) if is_zero(should) else should
+        around = self.author.plain(substituted((term,), {node: amended.to})[0]) if is_zero(should) else should
         owners = self._owners(mended, around)
         named = " and ".join(part.name for part in owners)
         body, force = (owners[0].body, owners[0].force) if len(owners) == 1 else ("", "")
-        (ratio,) = (0,) if is_zero(should) else self.case.edits.written((over(there, should),))
+        (ratio,) = (0,) if is_zero(should) else self.author.case.edits.written((over(there, should),))
         if type(ratio) is not Node and ratio not in (0, 1):
             rates = [x for x in symbols_of((there,)) if x.name.endswith("'")]
             name, kind = named or f"the term {self._text(product)}", "coriolis" if len(rates) == 2 else "factor"
             return Share(Corruption(name, kind, (should,), amended.cost, body, force), Fraction(ratio))
         where = "" if term is node or len(self._text(term)) > SHORT else f"the term {self._text(term)}"
-        told = self._told(self._author.plain(node), self._author.plain(amended.to), there)
+        told = self._told(self.author.plain(node), self.author.plain(amended.to), there)
         place = ", ".join(filter(None, (named, where)))
         text = f"in {place}{',' if named and where else ''} {told}" if place else told
         row = (there if is_zero(should) else should,)
@@ -118,8 +99,8 @@ class Mends:
         """The product, and the term that is told, in which a node stands."""
         product = term = node
         in_sum = False
-        for x in order((self._author.difference,)):
-            if x is not node and x is not self._author.difference and node in order((x,)):
+        for x in order((self.author.difference,)):
+            if x is not node and x is not self.author.difference and node in order((x,)):
                 in_sum = in_sum or x.op in ("add", "sub")
                 product = product if in_sum else x
                 if x.op not in ("add", "sub") and len(self._text(x)) <= SHORT:
@@ -127,13 +108,13 @@ class Mends:
         return product, product if term is node else term
 
     def _text(self, x: Scalar) -> str:
-        return short_text(self._author.plain(x), self.case.system.scope.positive)
+        return short_text(self.author.plain(x), self.author.case.system.scope.positive)
 
     def _told(self, there: Scalar, should: Scalar, around: Scalar) -> str:
         """What is wrong where one thing stands and another is meant, in a product."""
         if is_zero(should):
             return f"{term_text(there)} does not belong there"
-        (ratio,), held = self.case.edits.written((over(should, there),)), powers_of(around)
+        (ratio,), held = self.author.case.edits.written((over(should, there),)), powers_of(around)
         powers = powers_of(ratio)
         number = over(ratio, math.prod((power(x, k) for x, k in powers.items()), start=1))
         if number in (1, -1):
@@ -148,12 +129,12 @@ class Mends:
 
     def _owners(self, mended: Scalar, around: Scalar) -> Sequence[Contribution]:
         """The contributions in which the change is made: those whose terms, or else names, are the ones meant."""
-        case, names = self.case, {call.name for call in self.written.calls}
+        case, names = self.author.case, {call.name for call in self.author.written.calls}
         what = next((letter for name, letter in ENERGIES.items() if {name} == names), "motion")
         found: dict[str, Contribution] = {}
-        if what != "motion" or (self.kind == "motion" and not names):
-            called = {x: 0 for x in self._author.meant if x.name.endswith(")")}
-            sides = substituted((mended, self._author.difference), {**self._author.meant, **called})
+        if what != "motion" or (self.author.kind == "motion" and not names):
+            called = {x: 0 for x in self.author.meant if x.name.endswith(")")}
+            sides = substituted((mended, self.author.difference), {**self.author.meant, **called})
             found = self._of_terms(what, *sides)
         if 0 < len(found) <= FEW:
             return tuple(found.values())
@@ -161,9 +142,9 @@ class Mends:
 
     def _of_terms(self, what: str, right: Scalar, wrong: Scalar) -> dict[str, Contribution]:
         """Those of which a term is what the change makes, where most of the equation is made of such terms."""
-        samples, positive = self._author.samples, self.case.system.scope.positive
+        samples, positive = self.author.samples, self.author.case.system.scope.positive
         mine, before = terms_of(right, positive), terms_of(wrong, positive)
-        known = self.case.corruptions(what)
+        known = self.author.case.corruptions(what)
         theirs = [(part, x) for part in known.whole for row in known.rows(part) for x in terms_of(row, positive)]
         if samples is None or not mine or not theirs or len(mine) * len(theirs) > MOST_PAIRS:
             return {}

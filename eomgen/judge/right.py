@@ -199,11 +199,7 @@ def with_values_of_file(case: Case, written: HandEquation, kind: str, scalar: Sc
 
 def with_definitions(case: Case, kind: str, scalar: Scalar) -> Decided | None:
     """Right where parameters are replaced by the formulas that the file gives for them."""
-    scope = case.system.scope
-    formulas = {name: formula for name, part in case.model.parameters.items() if (formula := part.formula)}
-    known = {scope.symbols.parameters[name]: scope.value(formula) for name, formula in formulas.items()}
-    for _ in known:  # formulas of formulas
-        known = dict(zip(known, substituted(tuple(known.values()), known), strict=True))
+    known = case.definitions
     used = [x for x in known if depends_on_one((scalar, *case.rows), x)]
     if not used or not _holds_with(case, kind, scalar, known):
         return None
