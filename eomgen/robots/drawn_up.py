@@ -163,6 +163,12 @@ def signed_sum(terms: Iterable[tuple[Decimal, str]], constant: Decimal = ZERO, *
     return " ".join(pieces) or "0"
 
 
+def gap(one: str, terms: Iterable[tuple[Decimal, str]], constant: Decimal = ZERO, *, weighed: bool = False) -> str:
+    """one + terms + constant, which a tie holds at 0; `weighed` where not all have one unit: q - 1*s for 1 rad/m."""
+    rest = signed_sum(terms, constant, weighed=weighed)
+    return one if rest == "0" else f"{one} - {rest[1:]}" if rest[0] == "-" else f"{one} + {rest}"
+
+
 def without_empty(tables: Mapping[str, Any]) -> Entries:
     """The tables that hold something."""
     return {key: value for key, value in tables.items() if value not in ({}, None, [])}

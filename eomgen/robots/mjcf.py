@@ -9,11 +9,11 @@ angular velocity in the body's axes, as here.
 from __future__ import annotations
 
 import importlib
+from collections.abc import Mapping
 from decimal import Decimal
 from pathlib import Path
 from typing import Any
 
-from eomgen.errors import ModelError, ToolMissing
 from eomgen.robots.drawn_up import (
     Entries,
     Imported,
@@ -24,7 +24,9 @@ from eomgen.robots.drawn_up import (
     signed_sum,
     without_empty,
 )
-from eomgen.robots.mjcf_acting import equalities, motors, tendons
+from eomgen.robots.mjcf_acting import equalities, tendons
+from eomgen.robots.mjcf_files import compiled, spec_of
+from eomgen.robots.mjcf_motors import motors
 from eomgen.robots.mjcf_reading import BALL, FREE, HINGE, CompiledRobot, turn_by
 from eomgen.robots.numbers import (
     ZERO,
@@ -47,45 +49,25 @@ def mjcf(path: Path) -> Imported:
         ToolMissing: MuJoCo is not installed.
         ModelError: MuJoCo cannot read it; it says why.
     """
-    return _tables(CompiledRobot(_switched(spec_of(path).compile()), path.stem))
+    return _tables(CompiledRobot(_switched(compiled(spec_of(path))), path.stem))
 
 
-def _switched(compiled: Any) -> Any:
-    """The compiled model without what its flags switch off."""
+def _switched(m: Any) -> Any:
+    """A compiled model without what its flags switch off."""
     mujoco: Any = importlib.import_module("mujoco")
-    m, off = compiled, mujoco.mjtDisableBit
+    springs, dampers = (m.jnt_stiffness, m.tendon_stiffness), (m.dof_damping, m.tendon_damping)
     for flag, values in (
-        (off.mjDSBL_GRAVITY, (m.opt.gravity,)),
-        (off.mjDSBL_SPRING, (m.jnt_stiffness, m.tendon_stiffness)),
-        (off.mjDSBL_DAMPER, (m.dof_damping, m.tendon_damping)),
-        (off.mjDSBL_EQUALITY | off.mjDSBL_CONSTRAINT, (m.eq_active0,)),
-        (off.mjDSBL_ACTUATION, (m.actuator_gainprm, m.actuator_biasprm)),
+        ("GRAVITY", (m.opt.gravity,)),
+        ("SPRING", springs),
+        ("DAMPER", dampers),
+        ("PASSIVE", springs + dampers),  # so before MuJoCo 3.4
+        ("EQUALITY", (m.eq_active0,)),
+        ("CONSTRAINT", (m.eq_active0,)),
     ):
-        if m.opt.disableflags & int(flag):
+        if m.opt.disableflags & int(getattr(mujoco.mjtDisableBit, f"mjDSBL_{flag}", 0)):
             for each in values:
                 each[:] = 0
     return m
-
-
-def spec_of(path: Path) -> Any:
-    """A file as MuJoCo reads it, without what needs files of pictures.
-
-    Raises:
-        ToolMissing: MuJoCo is not installed.
-        ModelError: MuJoCo cannot read it; it says why.
-    """
-    try:
-        mujoco: Any = importlib.import_module("mujoco")
-    except ImportError as error:
-        raise ToolMissing("MJCF is read by MuJoCo, which is not installed", mend="pip install mujoco") from error
-    try:
-        spec = mujoco.MjSpec.from_file(str(path))
-        spec.compiler.fusestatic = False
-        spec.compile()
-    except ValueError as error:
-        why = " ".join(str(error).split())
-        raise ModelError(f"MuJoCo cannot read it: {why}", str(path), "mend the file") from error
-    return spec
 
 
 def _tables(r: CompiledRobot) -> Imported:
@@ -142,13 +124,13 @@ def _body(r: CompiledRobot, k: int) -> None:
     if [m.jnt_type[j] for j in joints] == [FREE]:
         seat, turn = Seat(None), tuple(decimal_of_double(x) for x in m.body_quat[k])
         moved = [free_joint(r.found, r.joint[joints[0]], r.names, place, turn)]
-        _in_space(r, joints[0])
+        _in_space(r, joints[0], moved[0].keys)
     else:
         moved = [_joint(r, j) for j in joints]
     r.found["bodies"] |= hung(name, body, seat, moved, r.bodies)
     if m.body_mocapid[k] >= 0:
         r.leave("motion of a mocap body", [name], "it stands still here")
-    if m.body_gravcomp[k]:
+    if m.body_gravcomp[k] and mass:
         _held_up(r, name, k)
 
 
@@ -156,8 +138,8 @@ def _joint(r: CompiledRobot, j: int) -> Moved:
     m, q = r.m, r.joint[j]
     pivot = decimals(decimal_of_double(x) for x in m.jnt_pos[j])
     if m.jnt_type[j] == BALL:
-        _in_space(r, j)
         keys = {"kind": "spherical", **turned_freely(r.found, q, r.names)}
+        _in_space(r, j, keys)
         return Moved(keys, pivot, q)
     turns = m.jnt_type[j] == HINGE
     unit = "rad" if turns else "m"
@@ -194,22 +176,27 @@ def _efforts(r: CompiledRobot, j: int, reference: Decimal) -> Entries:
         keys["damping"] = decimal_of_double(m.dof_damping[d])
     if rotor := decimal_of_double(m.dof_armature[d]) + r.rotors.get(j, ZERO):
         keys["armature"] = rotor
-    if any(m.jnt_stiffnesspoly[j]) or any(m.dof_dampingpoly[d]):
+    if any([*r.numbers(["jnt_stiffnesspoly", "jnt_springyield"], j), *r.numbers(["dof_dampingpoly"], d)]):
         r.leave("springs and dampers that are not linear", [q])
+    if m.jnt_actfrclimited[j]:
+        low, high = m.jnt_actfrcrange[j]
+        r.leave("limits of motors", [f"all at {q} ({low:g} to {high:g})"], "an input has none")
     if m.dof_frictionloss[d]:
         r.leave("frictionloss", [q], 'of Coulomb in a joint; sliding it is "... - f*sign(rate)", and cannot stick')
     return keys
 
 
-def _in_space(r: CompiledRobot, j: int) -> None:
-    """What a free or a ball joint has beside its freedom: dampers; springs, friction and rotors are left out."""
+def _in_space(r: CompiledRobot, j: int, keys: Mapping[str, Any]) -> None:
+    """What a free or a ball joint has beside its freedom: dampers; springs, friction, rotors, limits are left out."""
     m, q, d = r.m, r.joint[j], int(r.m.jnt_dofadr[j])
-    free = m.jnt_type[j] == FREE
-    dofs = slice(d, d + (6 if free else 3))
+    places = keys.get("position", [])
+    dofs = slice(d, d + len(places) + 3)
     kinds = {
         "springs": [m.jnt_stiffness[j]],
         "friction": m.dof_frictionloss[dofs],
         "armature": m.dof_armature[dofs],
+        "limits": [m.jnt_limited[j]],
+        "dampers that are not linear": r.numbers(["dof_dampingpoly"], dofs),
     }
     for what, values in kinds.items():
         if any(values):
@@ -218,9 +205,9 @@ def _in_space(r: CompiledRobot, j: int) -> None:
         return
     body, damping = int(m.jnt_bodyid[j]), [decimal_of_double(x) for x in m.dof_damping[dofs]]
     name, parent = r.body[body], r.body[int(m.body_parentid[body])]
-    rates = [*(f"{q}_{x}'" for x in "xyz"[: 3 * free]), *(f"{q}_w{x}" for x in "xyz")]
+    rates = [*(f"{x}'" for x in places), *keys["omega"]]
     against = [signed_sum([(-c, rate)], weighed=True) for c, rate in zip(damping, rates, strict=True)]
-    if free:
+    if places:
         drag = {"kind": "force", "point": f"{name}.origin", "force": against[:3]}
         r.found["forces"][r.forces.new(f"{q}_drag")] = drag
     couple = {"kind": "couple", "body": name, "couple": against[-3:], "axes": name}
@@ -254,6 +241,8 @@ def _rest(r: CompiledRobot) -> None:
     drawn = [m.geom(g).name or f"geom{g}" for g in range(m.ngeom)]
     r.leave("geoms that touch", touching, "no contact is declared by a shape: see [constraints]")
     r.leave("geoms that are drawn", [name for name in drawn if name not in touching], "pictures only")
+    pairs = [f"{drawn[m.pair_geom1[k]]} and {drawn[m.pair_geom2[k]]}" for k in range(m.npair)]
+    r.leave("pairs of geoms that touch", pairs, "no contact is declared by a shape: see [constraints]")
     if m.opt.density or m.opt.viscosity:
         r.leave("fluid", [f"density {m.opt.density:g}, viscosity {m.opt.viscosity:g}"], "say its forces by [forces]")
     for what, size, why in (

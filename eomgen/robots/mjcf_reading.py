@@ -7,18 +7,21 @@ from dataclasses import field
 from decimal import Decimal
 from typing import Any
 
-from eomgen.model.joints.orientation import rotation_of
+import numpy as np
+
 from eomgen.records import dataclass
 from eomgen.robots.drawn_up import (
     Entries,
     LegalNames,
     in_file,
+    signed_sum,
 )
 from eomgen.robots.numbers import (
     ZERO,
     Nine,
     decimal_of_double,
     turn_of,
+    turned_by,
 )
 from eomgen.symbolic.expression.spatial import IDENTITY
 
@@ -68,11 +71,24 @@ class CompiledRobot:
             return None
         return [(decimal_of_double(m.wrap_prm[i]), self.joint[int(m.wrap_objid[i])]) for i in wraps]
 
+    def units(self, coordinates: Iterable[str]) -> set[str]:
+        """What they count, once each."""
+        return {self.found["coordinates"][q]["unit"] for q in coordinates}
+
+    def sum_of(self, length: list[tuple[Decimal, str]], constant: Decimal = ZERO, *, rate: bool = False) -> str:
+        """A length that is a sum of joints', or its rate."""
+        terms = [(factor, f"{q}'" if rate else q) for factor, q in length]
+        return signed_sum(terms, constant, weighed=len(self.units(q for _, q in length)) > 1)
+
+    def numbers(self, fields: Iterable[str], k: int | slice) -> list[float]:
+        """What fields of the compiled model say of its k-th thing; nothing of those that an older MuJoCo lacks."""
+        given = (getattr(self.m, field, None) for field in fields)
+        return [float(x) for values in given if values is not None for x in np.ravel(values[k])]
+
 
 def turn_by(quaternion: Any) -> tuple[Nine, list[Entries]]:
     """A quaternion as a rotation and as turns of a model file."""
     e = [Decimal(float(x)) for x in quaternion]
     length = sum((x * x for x in e), ZERO).sqrt()
-    unit = tuple(x / length for x in e)
-    turns = turn_of(unit)
-    return (rotation_of("quaternion", unit) if turns else IDENTITY), turns
+    turns = turn_of([x / length for x in e])
+    return (turned_by(e) if turns else IDENTITY), turns

@@ -9,6 +9,7 @@ from typing import Any
 
 import mpmath
 
+from eomgen.model.joints.orientation import rotation_of
 from eomgen.symbolic.expression.rational import Fraction
 from eomgen.symbolic.expression.spatial import IDENTITY, product, rotation, transposed
 from eomgen.symbolic.numeric.tolerances import ROUNDED_AWAY, SAME_TURN
@@ -94,6 +95,19 @@ def roll_pitch_yaw(angles: Triple) -> tuple[Nine, list[dict[str, Any]]]:
             R = product(R, turning(decimals(axis), angle))
             turns.append({"axis": list(axis), "angle": angle_text(angle)})
     return R, turns
+
+
+def in_radians(degrees: Decimal) -> Decimal:
+    """An angle, by DIGITS."""
+    with mpmath.workdps(DIGITS + 5):
+        return Decimal(mpmath.nstr(mpmath.mpf(str(degrees)) * mpmath.pi / 180, DIGITS))
+
+
+def turned_by(quaternion: Sequence[Decimal]) -> Nine:
+    """The rotation of a quaternion of any length, scalar first."""
+    length = sum((x * x for x in quaternion), ZERO).sqrt()
+    R: Nine = rotation_of("quaternion", tuple(x / length for x in quaternion))
+    return R
 
 
 def quaternion_of(R: Nine) -> tuple[Decimal, Decimal, Decimal, Decimal]:

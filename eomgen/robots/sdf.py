@@ -18,8 +18,19 @@ from eomgen.errors import ModelError
 from eomgen.files import read
 from eomgen.model.findings import nearest
 from eomgen.records import dataclass
-from eomgen.robots.drawn_up import Entries, Imported, LegalNames, Moved, Seat, hung, in_file, signed_sum, without_empty
-from eomgen.robots.numbers import ORIGIN, decimals, inertia_in, quaternion_of, roll_pitch_yaw, six, tensor_of, turn_of
+from eomgen.robots.drawn_up import Entries, Imported, LegalNames, Moved, Seat, gap, hung, in_file, without_empty
+from eomgen.robots.numbers import (
+    ORIGIN,
+    decimals,
+    in_radians,
+    inertia_in,
+    quaternion_of,
+    roll_pitch_yaw,
+    six,
+    tensor_of,
+    turn_of,
+    turned_by,
+)
 from eomgen.robots.urdf import LEFT_OUT, by_name, free_joint, left_out, turned_freely, with_mass
 from eomgen.robots.xml_tree import XmlElement, xml_tree
 from eomgen.symbolic.expression.spatial import IDENTITY, Pose, apply
@@ -68,7 +79,7 @@ def sdf(data: bytes, name: str) -> Imported:
 
 
 def _included(include: XmlElement, files: tuple[str, ...]) -> tuple[bool, XmlElement, tuple[str, ...]]:
-    """The model of the file that an <include> names, beside this file or above; <name> and <static> are the include's.
+    """The model of the file that an <include> names, beside it or above; <name>, <static>, <pose> are the include's.
 
     Args:
         files: that include one another, this last.
@@ -87,10 +98,11 @@ def _included(include: XmlElement, files: tuple[str, ...]) -> tuple[bool, XmlEle
     model = root.one("model")
     if model is None:
         raise ModelError("the file holds no <model>", root.where, "include one with a model")
-    title, static = include.one("name"), include.one("static")
-    attributes = model.attributes if title is None else {**model.attributes, "name": title.text}
-    kept = [child for child in model.children if static is None or child.tag != "static"]
-    made = XmlElement("model", attributes, model.where, [*([] if static is None else [static]), *kept], seen=True)
+    title, own = include.one("name"), [x for x in (include.one("static"), include.one("pose")) if x is not None]
+    attributes = dict(model.attributes) if title is None else {**model.attributes, "name": title.text}
+    attributes |= {key: x for key, x in include.attributes.items() if key == "placement_frame"}
+    kept = [child for child in model.children if child.tag not in {x.tag for x in own}]
+    made = XmlElement("model", attributes, model.where, [*own, *kept], seen=True)
     return _version(root) < (1, 5), made, (*files, str(found))
 
 
@@ -101,7 +113,7 @@ def _merge(model: XmlElement, files: tuple[str, ...]) -> None:
             include.seen = True
             _, other, through = _included(include, files)
             _merge(other, through)
-            model.children += [child for child in other.children if child.tag != "static"]
+            model.children += [child for child in other.children if child.tag not in ("static", "pose")]
 
 
 def _version(root: XmlElement) -> tuple[int, ...]:
@@ -116,6 +128,8 @@ class _Reading:
     Args:
         old: an axis is given in the model's axes.
         above: of each link the joint by which it hangs.
+        coordinate, second: of each joint the name of its coordinate, and of that of a second axis.
+        weightless: bodies on which gravity does not act.
     """
 
     model: XmlElement
@@ -128,6 +142,8 @@ class _Reading:
     bodies: LegalNames = field(default_factory=LegalNames)
     body: dict[str, str] = field(default_factory=dict)
     coordinate: dict[str, str] = field(default_factory=dict)
+    second: dict[str, str] = field(default_factory=dict)
+    weightless: set[str] = field(default_factory=set)
     found: Entries = field(default_factory=dict)
 
     @classmethod
@@ -148,6 +164,11 @@ class _Reading:
                     raise ModelError(f"joint '{name}' names a link that there is not: '{link}'", joint.where, mend)
         made.body = {link: made.bodies.new(link, "link") for link in made.links}
         made.coordinate = {name: made.names.new(name, "q") for name in made.joints}
+        made.second = {
+            name: made.names.new(f"{made.coordinate[name]}_2")
+            for name, joint in joints.items()
+            if joint.attributes.get("type") in TWO_AXES
+        }
         return made
 
     def tables(self, gravity: Any) -> Entries:
@@ -164,14 +185,34 @@ class _Reading:
             weight["acceleration"], parameters = list(gravity), {}
         name = self.model.get("name") or "robot"
         head = {"eomgen": 1, "name": name, "space": "space"}
-        forces = {"forces": {"weight": weight}} if any(gravity) else {}
+        if self.weightless:
+            weight["bodies"] = [
+                x for x, body in self.found["bodies"].items() if "mass" in body and x not in self.weightless
+            ]
+        forces = {"forces": {"weight": weight}} if any(gravity) and weight.get("bodies") != [] else {}
         return {**head, **without_empty({"parameters": parameters, **self.found}), **forces}
 
     def _end(self, joint: XmlElement, tag: str) -> str:
+        """The link that a joint names, or that a frame is attached to which it names."""
+        return self._link_of(self._named(joint, tag))
+
+    def _named(self, joint: XmlElement, tag: str) -> str:
         found = joint.one(tag)
         if found is None:
             raise ModelError(f"<joint> has no <{tag}>", joint.where, "give one")
         return found.text
+
+    def _link_of(self, name: str, below: tuple[str, ...] = ()) -> str:
+        """The link with which a frame moves: a link's own, a joint's child, what a frame is attached to."""
+        if name in below:
+            raise ModelError(f"frame '{name}' is attached to itself", self.model.where, "mend attached_to")
+        if name == "__model__" and self.links:
+            return self.model.get("canonical_link") or next(iter(self.links))
+        if name in self.frames and name not in self.links:
+            return self._link_of(self.frames[name].get("attached_to") or "__model__", (*below, name))
+        if name in self.joints and name not in self.links and below:
+            return self._link_of(self._named(self.joints[name], "child"), (*below, name))
+        return name
 
     def _ordered(self) -> list[str]:
         """Each link after that on which it hangs."""
@@ -194,8 +235,10 @@ class _Reading:
 
     def _pose(self, name: str, below: tuple[str, ...] = ()) -> Pose:
         """Of a link, joint or frame in the model's axes."""
-        if name in ("__model__", "", "world"):
+        if name in ("__model__", ""):
             return Pose(IDENTITY, ORIGIN)
+        if name == "world":
+            return self._placed().inverse()
         element = self.links.get(name) or self.joints.get(name) or self.frames.get(name)
         if element is None or name in below:
             what = "is relative to itself" if name in below else "there is not"
@@ -203,12 +246,22 @@ class _Reading:
         pose = element.one("pose")
         base = "__model__"
         if element.tag == "joint":
-            base = self._end(element, "child")
+            base = self._named(element, "child")
         elif element.tag == "frame":
             base = element.get("attached_to") or base
         if pose is not None:
             base = pose.get("relative_to") or base
         return self._pose(base, (*below, name)).then(own_pose(pose))
+
+    def _placed(self) -> Pose:
+        """Of the model in the world: of its own frame, or of the one by which it is placed."""
+        pose = next((child for child in self.model.children if child.tag == "pose"), None)
+        if pose is not None and pose.attributes.get("relative_to", "world") != "world":
+            return Pose(IDENTITY, ORIGIN)  # to what is not imported: it is told among what is left out
+        frame = self.model.get("placement_frame") or "__model__"
+        if pose is not None:
+            pose.seen = True
+        return own_pose(pose).then(self._pose(frame).inverse())
 
     # links and joints
 
@@ -216,6 +269,9 @@ class _Reading:
         name, element = self.body[raw], self.links[raw]
         body: Entries = {"about": f"link {raw}"} if name != raw else {}
         body |= _massive(element.one("inertial"))
+        gravity = element.one("gravity")
+        if gravity is not None and gravity.text in ("false", "0"):
+            self.weightless.add(name)
         joint = self.joints.get(self.above.get(raw, ""))
         parent = "world" if joint is None else self._end(joint, "parent")
         apart = self._pose(parent).inverse().then(self._pose(raw))
@@ -246,7 +302,7 @@ class _Reading:
         element = joint.one(tag)
         if element is None:
             raise ModelError(f"joint '{raw}' has no <{tag}>", joint.where, "give one")
-        q = self.coordinate[raw] if tag == "axis" else self.names.new(f"{self.coordinate[raw]}_2")
+        q = self.coordinate[raw] if tag == "axis" else self.second[raw]
         unit = ONE_AXIS.get(kind, "rad")
         about = [f"joint {raw}"] if q != raw else []
         keys: Entries = {"kind": {"m": "prismatic"}.get(unit, "screw" if kind == "screw" else "revolute")}
@@ -316,46 +372,55 @@ class _Reading:
 
     def _mimic(self, q: str, mimic: XmlElement) -> bool:
         """q = multiplier (other - reference) + offset; whether that other is there."""
-        other = self.coordinate.get(mimic.attributes.get("joint", ""))
-        if other is None:
+        leader = mimic.attributes.get("joint", "")
+        known = self.second if mimic.attributes.get("axis") == "axis2" else self.coordinate
+        kind = self.joints[leader].get("type") if leader in known else None
+        other = known.get(leader)
+        if other is None or kind not in (*ONE_AXIS, *TWO_AXES):
             return False
         mimic.get("joint"), mimic.get("axis")
         tags = {tag: mimic.one(tag) for tag in ("multiplier", "offset", "reference")}
         factor, offset, reference = (Decimal(0) if x is None else x.value()[0] for x in tags.values())
         constant = offset - factor * reference
-        gap = signed_sum([(Decimal(1), q), (-factor, other)], -constant)
+        same = ONE_AXIS.get(str(kind), "rad") == self.found["coordinates"][q]["unit"]
         if constant:
             self.found["coordinates"][q]["start"] = constant
-        self.found["constraints"][self.bodies.new(f"mimic_{q}")] = {"kind": "equation", "gap": gap}
+        self.found["constraints"][self.bodies.new(f"mimic_{q}")] = {
+            "kind": "equation",
+            "gap": gap(q, [(-factor, other)], -constant, weighed=not same),
+        }
         return True
 
 
 def own_pose(pose: XmlElement | None) -> Pose:
-    """What a <pose> says, x y z roll pitch yaw."""
+    """What a <pose> says: x y z roll pitch yaw, or x y z and a quaternion, scalar last."""
     if pose is None or not pose.text:
         return Pose(IDENTITY, ORIGIN)
+    if pose.get("rotation_format") == "quat_xyzw":
+        *place, x, y, z, w = pose.value(7)
+        if not any((x, y, z, w)):
+            raise ModelError("a quaternion of length 0", pose.where, "give one of length 1")
+        return Pose(turned_by((w, x, y, z)), decimals(place))
     numbers = pose.value(6)
-    if pose.get("degrees") in ("true", "1"):
-        raise ModelError("a pose in degrees is not imported", pose.where, "give its angles in radians")
-    R, _ = roll_pitch_yaw(decimals(numbers[3:]))
-    return Pose(R, decimals(numbers[:3]))
+    angles = decimals(map(in_radians, numbers[3:]) if pose.get("degrees") in ("true", "1") else numbers[3:])
+    return Pose(roll_pitch_yaw(angles)[0], decimals(numbers[:3]))
 
 
 def _massive(inertial: XmlElement | None) -> Entries:
-    """Mass, centre and inertia of a link, turned into its axes."""
-    if inertial is None:
-        return {}
-    pose, mass, tensor = own_pose(inertial.one("pose")), inertial.one("mass"), inertial.one("inertia")
+    """Mass, centre and inertia of a link, turned into its axes; 1 kg and 1 kg*m^2 where the file does not say."""
+    pose, mass, tensor = (None if inertial is None else inertial.one(tag) for tag in ("pose", "mass", "inertia"))
+    frame = own_pose(pose)
     kilograms = Decimal(1) if mass is None else mass.value()[0]
     if kilograms < 0:
-        raise ModelError(f"a negative mass: {kilograms}", inertial.where, "give a mass of 0 or more")
+        where = "" if mass is None else mass.where
+        raise ModelError(f"a negative mass: {kilograms}", where, "give a mass of 0 or more")
     entries = {"ixx": Decimal(1), "iyy": Decimal(1), "izz": Decimal(1), "ixy": Decimal(0), "iyz": Decimal(0)}
     entries["ixz"] = Decimal(0)
     for key in entries if tensor is not None else ():
         element = None if tensor is None else tensor.one(key)
         if element is not None:
             entries[key] = element.value()[0]
-    return with_mass({"mass": kilograms}, pose.p, six(inertia_in(pose.R, tensor_of(*entries.values()))))
+    return with_mass({"mass": kilograms}, frame.p, six(inertia_in(frame.R, tensor_of(*entries.values()))))
 
 
 def _finite(element: XmlElement) -> Decimal | None:

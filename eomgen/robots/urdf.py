@@ -22,9 +22,9 @@ from eomgen.robots.drawn_up import (
     LegalNames,
     Moved,
     Seat,
+    gap,
     hung,
     in_file,
-    signed_sum,
     without_empty,
 )
 from eomgen.robots.numbers import ORIGIN, ZERO, Nine, Triple, decimals, inertia_in, roll_pitch_yaw, six, tensor_of
@@ -40,7 +40,8 @@ LEFT_OUT = {  # what has no counterpart, and why
     "collision": "no contact is declared by a shape: see [constraints]",
     "gazebo": "settings of a simulator",
     "sensor": "not mechanics; outputs ask for what is measured",
-    "joint of <mimic>": "no joint that moves is called so",
+    "joint of <mimic>": "no joint about or along one axis is called so",
+    "name of <joint>": "no joint that moves by one axis is called so",
     "calibration": "not mechanics",
     "safety_controller": "limits of a controller",
     "ros2_control": "settings of a controller",
@@ -190,7 +191,10 @@ class _Reading:
             transmission.get("name")
             transmission.get("type"), transmission.one("type")  # whatever carries it over, the input acts at the joint
             for joint in transmission.all("joint"):
-                named.add(joint.get("name") or "")
+                raw = joint.get("name") or ""
+                named.add(raw)
+                if raw not in self.coordinate:
+                    joint.read.discard("name")
             for actuator in transmission.all("actuator"):
                 actuator.get("name")
         own = {name for name, joint in self.joints.items() if joint.one("mimic") is None}
@@ -249,20 +253,23 @@ class _Reading:
         if (dynamics := joint.one("dynamics")) is not None:
             if (damping := dynamics.number("damping", "0")) != 0:
                 keys["damping"] = damping
-            if Decimal(dynamics.attributes.get("friction", "0") or "0") == 0:
-                dynamics.get("friction")
+            if dynamics.number("friction", "0") != 0:
+                dynamics.read.discard("friction")
         return Moved(keys, name=q)
 
     def _mimic(self, found: Entries, raw: str, mimic: XmlElement) -> None:
         q, other = self.coordinate[raw], mimic.need("joint")
-        if other not in self.coordinate:  # some files have it so: it is told among what is left out
+        leader = self.joints.get(other)
+        unit = None if leader is None else ONE_AXIS.get(_need_kind(leader))
+        if unit is None:  # some files have it so: it is told among what is left out
             mimic.read.discard("joint")
             return
         factor, offset = mimic.number("multiplier", "1"), mimic.number("offset", "0")
         if offset:
             found["coordinates"][q]["start"] = offset
-        gap = signed_sum([(Decimal(1), q), (-factor, self.coordinate[other])], -offset)
-        found["constraints"][self.bodies.new(f"mimic_{q}")] = {"kind": "equation", "gap": gap}
+        same = unit == found["coordinates"][q]["unit"]
+        follows = gap(q, [(-factor, self.coordinate[other])], -offset, weighed=not same)
+        found["constraints"][self.bodies.new(f"mimic_{q}")] = {"kind": "equation", "gap": follows}
 
     def _planar(self, found: Entries, raw: str, normal: Triple) -> list[Moved]:
         """Two slides across the normal and a turn about it."""
