@@ -1,12 +1,15 @@
 """The Solve of a program where loops with pivots cannot run: matrices, for languages that trace their functions.
 
-A = M + J^T J with rows and columns of one size, S = J A^-1 J^T + little, then what is left is solved for once more, and
-again: where rows follow from others their multipliers share the force, and a is right all the same.
+A = M + J^T J with rows and columns of one size, S = J A^-1 J^T + ease, then what is left is solved for once more, and
+again: where rows follow from others their multipliers share the force, and a is right all the same. Each round takes
+(s/(s + ease))^POWER of what is left along an eigenvector of J A^-1 J^T, s its eigenvalue: nearly nothing of rows that
+follow from others but for rounding or an open gap, nearly all of a row that is barely one of its own.
 """
 
 from eomgen.symbolic.numeric.tolerances import DEPENDENT_EASE, TINIEST
 
-ROUNDS = 4  # what is left of lam after each is less by the ease: the eigenvalues of S lie between 0 and 1
+ROUNDS = 6  # after each (POWER*ease/s) of lam is left
+POWER = 3
 
 FACTORS = f'''
 def solve_factors(M, J, L, weight, mobility, Y, S, order):
@@ -33,7 +36,10 @@ def solve_by(M, J, L, weight, mobility, Y, S, order, f, g):
     for _ in range({ROUNDS}):
         left, open_ = right - M @ a + J.T @ lam, gap - J @ a
         more = _solved(A, left + J.T @ open_)
-        pull = _solved(S, open_ - J @ more)
+        pull = open_ - J @ more
+        for _ in range({POWER - 1}):
+            pull = pull - {DEPENDENT_EASE!r}*_solved(S, pull)
+        pull = _solved(S, pull)
         a, lam = a + more + _solved(A, J.T @ pull), lam + pull + open_
     f[:] = [a[i, 0]*d[i] for i in range(n)]
     g[:] = [lam[m, 0]*sizes[m] for m in range(k)]
