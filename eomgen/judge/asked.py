@@ -9,9 +9,11 @@ from __future__ import annotations
 import re
 from contextlib import suppress
 from dataclasses import replace
+from itertools import chain
 
 from eomgen.errors import DerivationError, EomgenError, ExpressionError
 from eomgen.judge.authored import Authored
+from eomgen.judge.balances import Balances, asks_reactions
 from eomgen.judge.case import Case
 from eomgen.judge.causes import causes_of
 from eomgen.judge.comparison import Comparison, excess
@@ -24,6 +26,8 @@ from eomgen.judge.verdict import RIGHT, UNDECIDED, WRONG, Cause, Verdict
 from eomgen.model.replaced import with_values
 from eomgen.model.values import exact_parameters
 from eomgen.questions.answers import Answer
+from eomgen.symbolic.expression.expressions import parse
+from eomgen.symbolic.expression.graph import Node, Scalar
 from eomgen.symbolic.numeric.tolerances import COMPUTED
 from eomgen.symbolic.print.text import to_text
 
@@ -102,7 +106,14 @@ def _wrong(case: Case, written: HandEquation, kind: str, at: Instant, left: Answ
     causes: tuple[Cause, ...] = ()
     true = case.exact(left)
     mends = [] if true is None or len(written.left.code) != 1 else [Mends(Authored(case, written, kind, true=true))]
-    target, found = simplest_explanation(implied_by(case, written, kind, at, left, right), mends)
+    place = _place(case, written, at) if kind == "statics" or asks_reactions(written) else None
+    balances = (
+        ()
+        if place is None
+        else tuple(Balances(case, written, finely, place) for finely in (False, True)[: 1 if place else 2])
+    )
+    implied = chain(balances[:1], implied_by(case, written, kind, at, left, right), balances[1:])
+    target, found = simplest_explanation(implied, mends)
     clash = case.clash(written)
     if found and not (clash and len(found[0].shares) > 1):
         causes = causes_of(case, found, moving=False)
@@ -121,6 +132,21 @@ def _wrong(case: Case, written: HandEquation, kind: str, at: Instant, left: Answ
     if it_is:
         causes = (*causes[:-1], replace(causes[-1], text=f"{causes[-1].text}; {it_is}"))
     return Verdict(written.given, kind, WRONG, difference=difference, causes=causes)
+
+
+def _place(case: Case, written: HandEquation, at: Instant) -> dict[Node, Scalar] | None:
+    """Coordinates, speeds, accelerations at an instant; {} without them; None where they have no closed form."""
+    found = dict[Node, Scalar]()
+    for x in (*case.system.symbols.q, *case.system.symbols.u):
+        with suppress(EomgenError):
+            name = parse(x.name)
+            value = case.exact(case.sides(replace(written, left=name, right=name), at)[0])
+            found |= {} if value is None else {x: value}
+        if x not in found:
+            return None
+    with suppress(EomgenError):
+        return dict(case.phase.complete(found)) if found else {}
+    return None
 
 
 def _rounding(written: HandEquation) -> float | None:

@@ -462,9 +462,15 @@ def _cost(share: Share) -> float:
     return cost + next((more for known, more in USUAL if size in known), UNUSUAL)
 
 
-def explained(searches: Sequence[Search], proves: Callable[[Explanation], bool], number: int) -> list[Explanation]:
+def explained(
+    searches: Sequence[Search],
+    proves: Callable[[Explanation], bool],
+    number: int,
+    is_believable: Callable[[Explanation], bool] = lambda _: True,
+) -> list[Explanation]:
     """The cheapest explanation by so many mistakes that is proven, then the others; [] where none was found."""
-    found = sorted((x for search in searches for x in search.explanations(number)), key=lambda x: x.cost)
+    found = [x for search in searches for x in search.explanations(number) if is_believable(x)]
+    found.sort(key=lambda x: (x.cost, -sum(share.factor == 0 for share in x.shares)))
     for k, each in enumerate(found[:PROVEN]):
         if proves(each):
             return [each, *found[:k], *found[k + 1 :]]

@@ -372,9 +372,9 @@ def _squared_speed(case: Case, written: HandEquation, author: Scalar, place: Map
     u = case.system.symbols.u[0]
     try:
         asked = case.value(written.left)
-    except ExpressionError:
+        (square,) = substituted((asked * asked,), place)
+    except (ExpressionError, DerivationError):  # it has no value there: it is no speed
         return None
-    (square,) = substituted((asked * asked,), place)
     second = derivative(derivative(square, u), u)
     (still,) = substituted((square,), {u: 0})
     if depends_on(second, (u, *case.system.symbols.a)) or is_zero(second):

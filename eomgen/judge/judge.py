@@ -12,7 +12,7 @@ from eomgen.judge.asked import asked
 from eomgen.judge.authored import Authored
 from eomgen.judge.case import Case
 from eomgen.judge.causes import causes_of
-from eomgen.judge.comparison import excess
+from eomgen.judge.comparison import Comparison, excess
 from eomgen.judge.course import course_of
 from eomgen.judge.decision import is_zero_everywhere
 from eomgen.judge.implied import Explainable, Instant, implied_by_course, implied_by_rest, simplest_explanation
@@ -273,7 +273,7 @@ class Judge:
             return left
         targets = targets_of(case, written, kind, scalar, also)
         if not also:
-            targets = loosened_targets(case, written, kind) + targets
+            targets = [*loosened_targets(case, written, kind), *targets]
         own: list[Explainable] = [] if also else [OtherAxis(case, written, kind), Mends(Authored(case, written, kind))]
         target, explanations = simplest_explanation(targets, own, soon=kind == "law" and not case.system.ties.rows)
         if not explanations and (begun := case.as_begun) is not None:
@@ -283,7 +283,8 @@ class Judge:
         if explanations and target is not None:
             causes = causes_of(case, explanations, moving=kind in ("motion", "acceleration", "reaction", "law"))
             return Verdict(written.given, kind, WRONG, difference=target.difference(explanations[0]), causes=causes)
-        difference, touched = targets[-1].unexplained() if targets else (excess(case, scalar), "")
+        values = [each for each in targets if isinstance(each, Comparison)]
+        difference, touched = values[-1].unexplained() if values else (excess(case, scalar), "")
         text = f"the sides differ by {difference}" if difference else "the sides differ"
         cause = Cause("other", f"{text}{touched}", term=difference)
         return Verdict(written.given, kind, WRONG, difference=difference, causes=(cause,))

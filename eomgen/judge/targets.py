@@ -6,8 +6,10 @@ from collections.abc import Mapping
 from contextlib import suppress
 
 from eomgen.errors import DerivationError, EomgenError
+from eomgen.judge.balances import Balances, asks_reactions
 from eomgen.judge.case import Case
 from eomgen.judge.comparison import Comparison
+from eomgen.judge.implied import Explainable
 from eomgen.judge.reading import HandEquation
 from eomgen.judge.replays import replays
 from eomgen.judge.right import directions_at_start, signs_at_start, sizes_in
@@ -22,8 +24,19 @@ MOST_BODIES = 10  # of a model whose reactions are derived anew
 _WHAT = {"kinetic_energy": "T", "potential_energy": "V", "generalized_force": "Q"}
 
 
-def targets_of(case: Case, written: HandEquation, kind: str, scalar: Scalar, also: Meanings | None) -> list[Comparison]:
+def targets_of(
+    case: Case, written: HandEquation, kind: str, scalar: Scalar, also: Meanings | None
+) -> list[Explainable]:
     """What an equation is compared with, the most telling first."""
+    if kind in ("reaction", "motion") and not also and asks_reactions(written):
+        begun = case.as_begun or case  # it slides as the author says, not by the sign of a speed
+        balances = (Balances(begun, written), Balances(begun, written, finely=True))
+        return [balances[0], *_values_of(case, written, kind, scalar, also), balances[1]]
+    return [*_values_of(case, written, kind, scalar, also)]
+
+
+def _values_of(case: Case, written: HandEquation, kind: str, scalar: Scalar, also: Meanings | None) -> list[Comparison]:
+    """Its values and the equations of motion."""
     calls = set(written.calls)
     if kind == "motion" or (kind in ("law", "energy") and not calls):
         if not case.rows or not depends_on(scalar, (*case.system.symbols.u, *case.forced)):
@@ -91,7 +104,7 @@ def loosened_targets(case: Case, written: HandEquation, kind: str) -> list[Compa
             rows = loose.tied_rates[depends_on(scalar, a)]
             found = [Comparison(loose, scalar, rows, "ties")]
         if written.calls or not any(x.dependent for x in coordinates.values()):
-            found += targets_of(loose, written, kind, scalar, None)
+            found += _values_of(loose, written, kind, scalar, None)
         known = {x: 0 for x in a if x.name in case.steady}
         return [x.with_known(known) for x in found]
     return []

@@ -1,0 +1,10 @@
+right | B_y = q*a/4 + H*h/(2*a)
+right | A_x = q*a^2/(4*h) - H/2
+lever | B_y = q*a/2 + H*h/(2*a) | load+lever,acts at,place,resultant
+missing | B_y = q*a/4 | wind+missing
+missing | A_x = q*a^2/(4*h) + H/2 | wind+missing
+missing | A_x = 3*q*a^2/(4*h) - H/2 | load+missing
+size | A_y = 7*q*a/4 - H*h/(2*a) | load+factor 2,twice,2*a,size
+sign | C_y = q*a/4 + H*h/(2*a) | sign,opposite
+sign | B_y = q*a/4 - H*h/(2*a) | wind+sign
+missing | C_x = q*a^2/(4*h) - H/2 | wind+missing

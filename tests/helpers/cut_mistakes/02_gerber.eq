@@ -1,0 +1,10 @@
+right | M_A = P*a + 2*q*a^2
+right | B_y = q*a
+missing | M_A = P*a | hinge,reaction_y(G),G+missing
+missing | M_A = P*a + 6*q*a^2 | reaction_n(B),support B,of B+missing
+missing | A_y = P + 2*q*a | reaction_n(B),support B,of B+missing
+lever | B_y = 2*q*a | load+lever,acts at,place,resultant
+missing | B_y = P/4 + 3*q*a/2 | couple+missing
+lever | M_A = 2*P*a + 2*q*a^2 | P1+lever,acts at,place
+size | B_y = q*a/2 | load+factor 1/2,half,size
+sign | A_y = P - q*a | G,reaction_y(G),load+sign

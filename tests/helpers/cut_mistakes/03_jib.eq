@@ -1,0 +1,10 @@
+right | S = (G/2 + Q)*cos(alpha)/sin(alpha)
+exchanged | S = (G/2 + Q)*tan(alpha) | axis,sin,cos,tan,exchanged,lever
+lever | S = (G + Q)*cos(alpha)/sin(alpha) | own+lever,acts at,place,twice,factor 2
+missing | S = Q*cos(alpha)/sin(alpha) | own+missing
+full | S = (G/2 + Q)*cos(alpha) | rope+lever,full,sin
+missing | A_y = Q | own+missing
+extra | A_y = G + Q + S | rope,tension
+full | S = (G/2 + Q)/sin(alpha) | cos(alpha),lever,full,distance
+missing | A_x = 0 | rope+missing
+component | A_x = (G/2 + Q)*cos(alpha)^2/sin(alpha) | rope+cos,component,full,sin

@@ -1,0 +1,11 @@
+right | N_B = (m*g/2 + 3*Q/4)/tan(alpha)
+right | F = N_B
+missing | N_B = m*g/(2*tan(alpha)) | person+missing
+missing | N_B = 3*Q/(4*tan(alpha)) | weight+missing
+place | N_B = (m*g/2 + Q)/tan(alpha) | person+lever,acts at,place
+exchanged | N_B = (m*g/2 + 3*Q/4)*tan(alpha) | axis,sin,cos,tan,exchanged,lever
+full | N_B = (m*g/2 + 3*Q/4)*cos(alpha) | wall+lever,full,sin
+missing | N_A = m*g | person+missing
+sign | F = -(m*g/2 + 3*Q/4)/tan(alpha) | sign,opposite
+place | F = (m*g + 3*Q/4)/tan(alpha) | weight+lever,acts at,place,factor 2
+half | N_B = (m*g/2 + Q/2)/tan(alpha) | person+lever,acts at,place,middle,factor 2/3

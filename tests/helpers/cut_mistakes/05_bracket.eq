@@ -1,0 +1,14 @@
+right | lower = -4*P*a/h
+right | diagonal = 3*P*sqrt(a^2 + h^2)/h
+missing | lower = -2*P*a/h | P1,P2+missing
+lever | lower = -3*P*a/h | P1+lever,acts at,place
+missing | diagonal = P*sqrt(a^2 + h^2)/h | P2,C-D+missing
+missing | diagonal = 2*P*sqrt(a^2 + h^2)/h | P1,D-E+missing
+exchanged | diagonal = 3*P*sqrt(a^2 + h^2)/a | B-D,diagonal+component,sin,cos,axis,exchanged,direction
+exchanged | upper = P*h/a | axis,component,lever,exchanged,sin,direction
+sign | outer = P*sqrt(a^2 + h^2)/h | sign,opposite
+full | outer = -P | D-E+component,full,direction
+missing | N_A = 2*P*a/h | P1,P2+missing
+missing | B_y = P | P2+missing
+sign | lower = 4*P*a/h | sign,opposite
+extra | post = -3*P | P1,D-E

@@ -1,0 +1,9 @@
+right | S = G*sin(alpha)/cos(beta)
+right | N = G*cos(alpha) - S*sin(beta)
+missing | N = G*cos(alpha) | rope+missing
+sign | N = G*cos(alpha) + S*sin(beta) | rope+sign
+full | S = G*sin(alpha) | rope+component,full,cos(beta)
+exchanged | S = G*cos(alpha)/cos(beta) | weight+axis,exchanged,sin,cos,component
+component | N = G - S*sin(beta) | weight+component,full,cos(alpha)
+exchanged | N = G*cos(alpha) - S*cos(beta) | rope+axis,exchanged,sin,cos,component
+exchanged | S = G*sin(alpha)/sin(beta) | rope+axis,exchanged,sin,cos,component

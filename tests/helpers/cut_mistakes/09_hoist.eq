@@ -1,0 +1,11 @@
+right | S1 = m1*(g - x'')
+right | S1 = m1*g*(2*m2 + M/2)/(m1 + m2 + M/2)
+missing | S1 = m1*g | one,motion,x+missing
+sign | S2 = m2*(g - x'') | two+sign
+sign | S1 = m1*(g + x'') | one+sign
+missing | B = S1 + S2 | disc+missing
+missing | S2 = S1 | disc+missing
+static | B = (m1 + m2 + M)*g | motion,translation,acceler,one,two+missing
+other | S2 = m1*(g + x'') | m1,m2
+factor | S1 - S2 = M*r*x'' | disc,r
+missing | S2 = m2*x'' | weight+missing

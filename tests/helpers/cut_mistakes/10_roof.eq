@@ -1,0 +1,14 @@
+right | B_y = 5*F/4 - W*h/(4*a)
+right | S_CE = (F - 2*A_y)*sqrt(a^2 + h^2)/(2*h)
+missing | B_y = 5*F/4 | wind+missing
+sign | B_y = 5*F/4 + W*h/(4*a) | wind+sign
+lever | B_y = 3*F/2 - W*h/(4*a) | F1+lever,acts at,place,factor
+missing | S_CE = -A_y*sqrt(a^2 + h^2)/h | F1+missing
+lever | S_CE = (F - A_y)*sqrt(a^2 + h^2)/(2*h) | A_y,reaction_y(A)+lever,acts,factor,half
+missing | S_AD = A_y*a/h | A_x,reaction_x(A)+missing
+component | S_AC = -A_y | A-C,S_AC+component,full,factor
+exchanged | S_AC = -A_y*sqrt(a^2 + h^2)/a | A-C,S_AC+component,sin,cos
+exchanged | S_DB = B_y*h/a | component,sin,cos,lever,turned over,ratio
+sign | S_GB = B_y*sqrt(a^2 + h^2)/h | sign
+missing | A_y = 2*F - B_y | F1+missing
+missing | A_y = F - B_y | F2+missing

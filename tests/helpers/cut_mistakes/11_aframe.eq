@@ -1,0 +1,14 @@
+right | B_y = G/2 - 3*h*F/(8*b)
+right | S = 2*b*B_y/h - F/2
+missing | B_y = G/2 | push+missing
+lever | B_y = G/2 - h*F/(4*b) | push+lever,acts at,place,factor 2/3
+sign | B_y = G/2 + 3*h*F/(8*b) | push+sign
+missing | S = 2*b*B_y/h | push+missing
+sign | S = 2*b*B_y/h + F/2 | push+sign
+lever | S = b*B_y/h - F/4 | bar+lever,factor,acts,distance
+lever | S = 2*b*B_y/h - 3*F/2 | push+lever,acts,factor 3
+missing | A_x = 0 | push+missing
+missing | A_y = B_y | G,top
+sign | C_y = B_y | sign
+missing | C_x = F | bar,S+missing
+component | S = B_y*b/h - F/2 | reaction_n(B)+lever,acts,factor 1/2

@@ -1,0 +1,13 @@
+right | S = Q*r/R
+right | O_y = Q + m*g + S*sin(beta)
+turned | S = Q*R/r | lever,ratio,turned,r and R
+lever | S = Q | lever,acts,r,R
+missing | O_y = Q + S*sin(beta) | weight+missing
+sign | O_y = Q + m*g - S*sin(beta) | rope+sign
+exchanged | O_y = Q + m*g + S*cos(beta) | rope+sin,cos,axis,component
+full | O_x = S | rope+component,full,cos
+exchanged | O_x = Q*r*sin(beta)/R | rope+sin,cos,axis,component
+missing | O_y = m*g + S*sin(beta) | hung+missing
+missing | O_x = 0 | rope+missing
+sign | O_x = -S*cos(beta) | sign
+missing | O_y = Q + m*g | rope+missing

@@ -1,0 +1,15 @@
+right | B_y = q*l/18 + 2*F/3
+right | M_m = A_y*l/2 - q*l^2/9
+lever | B_y = q*l/9 + 2*F/3 | load+lever,acts,factor 2
+size | B_y = q*l/6 + 2*F/3 | load+factor 3,size,lever,l
+lever | B_y = q*l/18 + F/3 | force+lever,acts,factor 1/2
+missing | M_D = 0 | B,reaction_n+missing
+missing | M_D = A_y*2*l/3 | load+missing
+lever | M_m = A_y*l/2 - q*l^2/6 | load+lever,acts
+whole | M_m = A_y*l/2 - q*l^2/8 | load
+missing | V_m = A_y | load+missing
+extra | V_m = A_y - q*l/3 - F | force+counted,does not,elsewhere
+half | M_C = A_y*l/3 - q*l^2/9 | load+lever,factor 2,acts,half
+sign | M_m = A_y*l/2 + q*l^2/9 | load+sign
+missing | M_C = 2*l/3*B_y | force+missing
+size | V_m = A_y - q*l/2 | load

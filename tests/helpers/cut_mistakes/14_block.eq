@@ -1,0 +1,11 @@
+right | N = m*g*cos(alpha) + F*sin(alpha)
+right | T = m*g*sin(alpha) - F*cos(alpha)
+missing | N = m*g*cos(alpha) | push+missing
+sign | N = m*g*cos(alpha) - F*sin(alpha) | push+sign
+exchanged | N = m*g*sin(alpha) + F*sin(alpha) | weight+sin,cos,axis
+full | T = m*g*sin(alpha) - F | push+component,full,cos
+missing | T = m*g*sin(alpha) | push+missing
+sign | T = m*g*sin(alpha) + F*cos(alpha) | push+sign
+exchanged | N = m*g*cos(alpha) + F*cos(alpha) | push+sin,cos,axis
+full | N = m*g + F*sin(alpha) | weight+component,full,cos
+exchanged | T = m*g*cos(alpha) - F*sin(alpha) | sin,cos,axis

@@ -1,0 +1,10 @@
+right | along = -(m + M)*g*cos(phi) - (m/2 + M)*l*phi'^2
+right | across = (m + M)*g*sin(phi) + (m/2 + M)*l*phi''
+missing | along = -(m + M)*g*cos(phi) - m/2*l*phi'^2 | bead+missing
+missing | along = -(m + M)*g*cos(phi) | inertia,phi'^2,speed+missing
+sign | along = -(m + M)*g*cos(phi) + (m/2 + M)*l*phi'^2 | inertia,phi'^2,speed+sign
+lever | along = -(m + M)*g*cos(phi) - (m + M)*l*phi'^2 | rod
+missing | along = -m*g*cos(phi) - (m/2 + M)*l*phi'^2 | bead+missing
+exchanged | along = -(m + M)*g*sin(phi) - (m/2 + M)*l*phi'^2 | sin,cos
+missing | across = (m + M)*g*sin(phi) | inertia,phi'',acceler+missing
+power | along = -(m + M)*g*cos(phi) - (m/2 + M)*l*phi' | phi'

@@ -1,0 +1,11 @@
+right | S = -(G + 2*Q)*sqrt(a^2 + b^2)/b
+right | A_y = -Q
+exchanged | S = -(G + 2*Q)*sqrt(a^2 + b^2)/a | strut+sin,cos,lever,component
+full | S = -(G + 2*Q) | strut+full,whole,distance,component,lever
+missing | S = -2*Q*sqrt(a^2 + b^2)/b | own+missing
+lever | S = -(G + Q)*sqrt(a^2 + b^2)/b | load+lever,acts,factor 1/2,half
+sign | A_y = G + Q - S*b/sqrt(a^2 + b^2) | strut+sign
+missing | A_y = G + Q | strut+missing
+exchanged | A_x = S*b/sqrt(a^2 + b^2) | strut+sin,cos,component
+full | A_x = S | strut+full,component
+lever | S = -(2*G + 2*Q)*sqrt(a^2 + b^2)/b | own+lever,acts,factor 2,twice

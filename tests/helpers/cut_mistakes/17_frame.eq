@@ -1,0 +1,13 @@
+right | M_A = F*h/2 + q*l^2/6 - M0
+lever | M_A = F*h/2 + q*l^2/3 - M0 | load+lever,acts,two thirds
+size | M_A = F*h/2 + q*l^2/3 - M0 | load+lever,factor 2,acts
+middle | M_A = F*h/2 + q*l^2/4 - M0 | load+middle,acts,lever
+uniform | M_A = F*h/2 + q*l^2/2 - M0 | load
+missing | M_A = F*h/2 + q*l^2/6 | turn+missing
+sign | M_A = F*h/2 + q*l^2/6 + M0 | turn+sign
+sign | M_A = -F*h/2 + q*l^2/6 - M0 | push+sign
+lever | M_A = F*h + q*l^2/6 - M0 | push+lever,acts,factor 2
+missing | M_A = q*l^2/6 - M0 | push+missing
+size | A_y = q*l | load+factor 2
+sign | A_x = F | sign
+missing | A_x = 0 | push+missing

@@ -1,0 +1,13 @@
+right | N = P - W*a*sin(gamma)/(a + b)
+exchanged | N = P - W*a*cos(gamma)/(a + b) | rope+sin,cos,lever
+full | N = P - W*a/(a + b) | rope+full,whole,component,sin
+sign | N = P + W*a*sin(gamma)/(a + b) | rope+sign
+missing | N = P | rope+missing
+lever | N = P - W*b*sin(gamma)/(a + b) | rope+lever,acts,b stands,a and b
+lever | N = P - W*sin(gamma) | rope+lever,acts
+lever | N = P*b/(a + b) - W*a*sin(gamma)/(a + b) | load+lever,acts,b stands
+missing | O_y = P - N | rope+missing
+full | O_x = -W | rope+full,component,cos
+exchanged | O_x = -W*sin(gamma) | rope+sin,cos
+sign | O_y = P - N + W*sin(gamma) | rope+sign
+missing | O_y = -W*sin(gamma) | load,stop

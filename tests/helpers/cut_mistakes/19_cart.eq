@@ -1,0 +1,11 @@
+right | S = m2*(g - x'')
+right | S = m1*x'' + mu*m1*g
+missing | S = m2*g | inertia,acceler,x''+missing
+missing | S = m1*x'' | friction+missing
+sign | S = m2*(g + x'') | inertia,acceler,x''+sign
+sign | S = m1*x'' - mu*m1*g | friction+sign
+missing | S = m1*m2*g/(m1 + m2) | friction
+factor | S = m1*x'' + mu*m1*g/2 | friction,weight,mu+factor 1/2,half
+wrong | S = m1*x'' + mu*m2*g | m2,m1
+sign | N = -m1*g | sign
+missing | S = mu*m1*g | inertia,acceler,x''+missing

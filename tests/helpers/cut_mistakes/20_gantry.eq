@@ -1,0 +1,13 @@
+right | S_AC = H*c/b
+right | S_BD = -2*c*H/b - V
+missing | S_BD = -2*c*H/b | V1+missing
+lever | S_BD = -c*H/b - V | H1+lever,acts,factor 1/2
+lever | S_AC = 2*H*c/b | H1+lever,acts,factor 2
+sign | S_BD = 2*c*H/b - V | H1+sign
+exchanged | S_AD = H*sqrt(b^2 + c^2)/c | A-D+sin,cos,component,axis
+full | S_AD = H | A-D+full,component
+sign | S_AD = -H*sqrt(b^2 + c^2)/b | sign
+extra | S_AC = H*c/b - V | V1+counted,acts,elsewhere,lever
+missing | S_EF = 0 | H1+missing
+missing | S_DF = -V | C-F,S_CF+missing
+missing | S_CD = 0 | missing
