@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import gc
 import os
+import shutil
 from collections.abc import Iterator
 from pathlib import Path
 from typing import NoReturn
@@ -14,6 +15,8 @@ from quick_set import is_slow
 from eomgen.symbolic.numeric.gc_pause import SELDOM
 
 os.environ.setdefault("EOMGEN_PATIENCE", "none")  # no test hangs on how busy the machine is
+if shutil.which("cc"):  # a third of all tests' time went into optimizing what runs for milliseconds
+    os.environ.setdefault("CC", "cc -O0")
 os.environ.setdefault("EOMGEN_FRESH", "1")  # tests patch laws: nothing is told again that was derived without them
 
 gc.set_threshold(*SELDOM)

@@ -195,3 +195,9 @@ def test_the_environment_chooses_the_compiler(tmp_path, monkeypatch, own_cache):
     assert compiled(right_hand_side(pendulum())).target == "numpy"
     monkeypatch.setenv("CC", "no-such-compiler")
     assert build.compiler() is None
+
+
+@pytest.mark.parametrize(("given", "expected"), [("cc", ("-O2",)), ("cc -O0", ()), ("cc -O3 -g", ())])
+def test_the_environment_says_how_far_is_optimized(given, expected, monkeypatch):
+    monkeypatch.setenv("CC", given)
+    assert tuple(x for x in build.C.flags_of("", False) if x.startswith("-O")) == expected

@@ -46,6 +46,17 @@ def test_what_was_made_in_a_rest_is_not_looked_through_at_its_end():
     assert gc.isenabled() and not seen and more
 
 
+def test_rests_that_overlap_end_with_the_last():
+    """Of two that begin and end crosswise, as those of threads do, the collector works again behind both."""
+    one, other = growing(), growing()
+    one.__enter__()
+    other.__enter__()
+    one.__exit__(None, None, None)
+    assert not gc.isenabled()
+    other.__exit__(None, None, None)
+    assert gc.isenabled()
+
+
 def test_a_ring_that_is_left_behind_is_found_by_the_next_full_look():
     with growing():
         ring = weakref.ref(Ring())

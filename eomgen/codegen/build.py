@@ -79,7 +79,9 @@ class Compiler:
         raise ToolMissing(f"no {self.language} compiler", mend=self.mend)
 
     def flags_of(self, text: str, quickly: bool) -> tuple[str, ...]:
-        """The flags for a text."""
+        """The flags for a text; how far it is optimized the environment's command line may say: CC="cc -O3"."""
+        if any(word.startswith("-O") for word in self.command()[1:]):
+            return self.flags
         return (*self.flags, *(self.once if quickly else self.usual if len(text) < LONG_TEXT else self.long))
 
 

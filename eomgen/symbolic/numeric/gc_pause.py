@@ -5,8 +5,36 @@ from __future__ import annotations
 import gc
 from collections.abc import Iterator
 from contextlib import contextmanager
+from threading import Lock
 
 SELDOM = (1_000_000, 50, 100)  # objects made between two looks at the youngest; looks between two at the older
+
+
+class _Rests:
+    """How many rests are under way, in whatever threads, and whether the collector worked before the first."""
+
+    def __init__(self) -> None:
+        self.lock, self.number, self.worked = Lock(), 0, False
+
+    def begin(self) -> None:
+        with self.lock:
+            if not self.number:
+                self.worked = gc.isenabled()
+                gc.disable()
+            self.number += 1
+
+    def end(self) -> None:
+        with self.lock:
+            self.number -= 1
+            if self.number or not self.worked:
+                return
+            if not gc.get_freeze_count():  # else somebody keeps objects of his own apart
+                gc.freeze()  # what is young
+                gc.unfreeze()  # is old
+            gc.enable()
+
+
+_RESTS = _Rests()
 
 
 @contextmanager
@@ -14,18 +42,13 @@ def growing() -> Iterator[None]:
     """Expressions are made, and all of them stay: to look for cycles among them takes longer than to make them.
 
     Python's own counting of references goes on; what hangs in a ring is found later, among what is old: to look at once
-    through all that was made took a tenth of a command.
+    through all that was made took a tenth of a command. Where threads rest at once the last to end wakes the collector.
     """
-    was = gc.isenabled()
-    gc.disable()
+    _RESTS.begin()
     try:
         yield
     finally:
-        if was:
-            if not gc.get_freeze_count():  # else somebody keeps objects of his own apart
-                gc.freeze()  # what is young
-                gc.unfreeze()  # is old
-            gc.enable()
+        _RESTS.end()
 
 
 def seldom_from_now_on() -> None:
