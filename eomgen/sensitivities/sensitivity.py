@@ -44,13 +44,14 @@ from eomgen.sensitivities.differences import checks_of
 from eomgen.simulation.integrate import instants_of
 from eomgen.symbolic.exact.book_form import book_form
 from eomgen.symbolic.exact.normal_form import legible
-from eomgen.symbolic.expression.derivative import substituted, tangent
+from eomgen.symbolic.expression.derivative import jacobian, substituted, tangent
 from eomgen.symbolic.expression.expressions import Call, Expression, single_call
 from eomgen.symbolic.expression.graph import Node, Scalar
 from eomgen.symbolic.expression.rational import Fraction
 from eomgen.symbolic.expression.typed import Typed, seconds
 from eomgen.symbolic.expression.units import Unit, parse_unit
-from eomgen.symbolic.numeric.evaluation import evaluate, fifty_digits
+from eomgen.symbolic.numeric.evaluation import evaluate, fifty_digits, floats_of
+from eomgen.symbolic.numeric.tolerances import RANK_NEARBY
 from eomgen.symbolic.numeric.work import Work, doing
 from eomgen.symbolic.print.text import LONGEST_RESULT, readable_text, text_size
 
@@ -351,6 +352,8 @@ class _Asking:
         reference = self.small.small.reference
         phase = PhaseEquations(reference.system)
         changed = self._changed(name, phase)
+        if not changed and not self._rests_alone:
+            raise DerivationError("it may rest in many places beside one another, of which the start tells one")
         seeds = ParameterSlopes(self.small.small, changed).seeds if changed else {}
         value, slope = ChangingState(phase, reference.numbers, seeds).formula(formula)
         known = {x: y for x, y in reference.exact.items() if type(y) is not float}
@@ -358,6 +361,17 @@ class _Asking:
         if closed is None or not reference.is_exact or not changed:
             return value, slope, None
         return value, slope, tangent(substituted((closed,), known), changed)[0]
+
+    @cached_property
+    def _rests_alone(self) -> bool:
+        """Whether the ties and the forces let it rest nowhere beside the place where it does."""
+        K, reference = self.small.K, self.small.small.reference
+        ties = [row.velocity for row in reference.system.ties.closing]
+        u = reference.system.symbols.u
+        flat = floats_of(evaluate([x for row in jacobian(ties, u) for x in row], reference.numbers, fifty_digits()))
+        J = np.array(flat).reshape(len(ties), len(u))
+        free = len(u) - (np.linalg.matrix_rank(J, RANK_NEARBY) if ties else 0)
+        return bool(K.shape == (free, free) and np.linalg.matrix_rank(K) == free)
 
     def _of_small_motions(self, formula: Expression, name: str) -> Derived:
         """A formula of frequencies and entries of M, C and K."""

@@ -38,9 +38,9 @@ def integrated_system(system: System) -> System:
     """The system that is integrated: every coordinate with a rate of its own, where `dependent` rates may be 0/0.
 
     At a dead centre of the dependent coordinates u_d = A u_i + b divides by 0; M a + c = Q + J^T lam, J a + gamma = 0
-    over all rates does not, as long as the rows of J are independent.
+    over all rates does not, as long as the rows of J are independent. Speeds that the model declares stay as they are.
     """
-    if system.free is None or system.declared:
+    if system.free is None or system.scope.model.speeds:
         return system
     return system.free if singular_blocks(system.elimination, system.scope) else system
 

@@ -475,3 +475,37 @@ def test_accelerations_do_not_stand_in_a_velocity_tie():
     """A tie of velocities is linear in rates and speeds; their derivatives are named for what they are."""
     with pytest.raises(ModelError, match=r"\"?'v'' \(an acceleration\) cannot stand in the rate of constraint 'edge'"):
         eomgen.loads(SLEIGH.replace("RATE", "v' - 1"))
+
+
+SLIDING = """eomgen = 1
+space = "plane"
+parameters = { m = 1, g = 9.81 }
+coordinates = { x = { start = 0.5 SPEED }, phi = { dependent = true, near = 0.5 } }
+SPEEDS
+[bodies.slider]
+shape = { kind = "particle", mass = "m" }
+joint = { kind = "prismatic", axis = [1, 0], displacement = "x" }
+[bodies.rod]
+shape = { kind = "rod", mass = "m", length = 1 }
+joint = { kind = "revolute", on = "slider", angle = "phi" }
+[constraints.wall]
+kind = "support"
+point = "rod.end"
+normal = [1, 0]
+at = [0, 0]
+[forces.weight]
+kind = "gravity"
+acceleration = [0, "-g"]
+[outputs]
+fast = "phi'"
+"""
+
+
+def test_declared_speeds_beside_dependent_coordinates_move_as_rates_do():
+    """u = 2 x' and phi by a tie, through two dead centres: the motion of x' alone."""
+    speeds = eomgen.loads(SLIDING.replace("SPEEDS", """speeds.u = { rate = "2*x'", start = 3 }""").replace("SPEED", ""))
+    rates = eomgen.loads(SLIDING.replace("SPEEDS", "").replace("SPEED", ", speed = 1.5"))
+    one, other = (eomgen.simulate(model, time=1.5) for model in (speeds, rates))
+    assert one.status == other.status == "finished" and "2 singular positions" in repr(one)
+    assert np.allclose(one["x"], other["x"], atol=1e-7) and np.allclose(one["u"], 2 * other["x'"], atol=1e-6)
+    assert np.allclose(one.outputs["fast"], other.outputs["fast"], atol=1e-6)

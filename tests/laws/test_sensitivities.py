@@ -232,6 +232,47 @@ def test_two_equal_frequencies_have_no_derivative():
     assert "several motions" in (found["frequency(1)", "k"].message or "")
 
 
+SLEIGH = """
+eomgen = 1
+space = "plane"
+parameters = { m = 2, J = 0.3, a = 0.2 }
+coordinates = { x = { speed = 1 }, y = 0, th = { start = 0.4, speed = 0.5 } }
+[bodies.sled]
+mass = "m"
+inertia = "J"
+center = ["a", 0]
+joint = { kind = "planar", x = "x", y = "y", angle = "th" }
+[constraints]
+blade = { kind = "skate", point = "sled.origin", along = [1, 0] }
+[outputs]
+v = "speed(sled.center)"
+"""
+
+
+def test_a_start_that_ties_have_moved_has_no_slope_of_what_moved_it():
+    """Rates that a knife edge does not allow become others, by M: dv/dJ is not 0, and not told; 0 where y' follows."""
+    moved = eomgen.sensitivity(eomgen.loads(SLEIGH.replace("y = 0,", "y = { speed = 1 },")), "v", "J")
+    assert "how the start changes" in (moved["v", "J"].message or "")
+    assert eomgen.sensitivity(eomgen.loads(SLEIGH), "v", "J").matrix[0, 0] == 0
+
+
+def test_a_corner_has_no_slope():
+    """sign(x') and min at a start where they jump or turn; beside it they have."""
+    model = eomgen.loads(UNDAMPED)
+    for formula in ("sign(x')", "min(x, L/4)*k", "abs(x - 0.1)"):
+        name = "x'" if "'" in formula else "x"
+        assert "a corner or a jump" in (eomgen.sensitivity(model, formula, name)[formula, name].message or "")
+        there = eomgen.sensitivity(model, formula, name, start={"x": 0.2, "x'": 0.3})
+        assert there.matrix[0, 0] == {"sign(x')": 0, "min(x, L/4)*k": 0}.get(formula, 1)
+
+
+def test_a_place_of_rest_among_others_has_no_slope_by_the_start():
+    """Of a sled that rests anywhere: dx/dx is 1 and not 0, and not told; of a block on a spring it is 0."""
+    found = eomgen.sensitivity(eomgen.loads(SLEIGH), "x at equilibrium", ("x", "m"))
+    assert "many places" in (found["x at equilibrium", "x"].message or "") and found.matrix[0, 1] == 0
+    assert eomgen.sensitivity(eomgen.loads(UNDAMPED), "x at equilibrium", "x").matrix[0, 0] == 0
+
+
 @pytest.mark.slow
 def test_a_sweep_asks_for_derivatives():
     """ "d(frequency(1))/d(k)" and "d(last(x))/d(k)" at every run: dw/dk = w/2k, and that of a single call."""

@@ -61,13 +61,15 @@ def start_seeds(system: System, numbers: Mapping[Node, Any], seeds: Seeds, own: 
     gaps = [row.gap for row in rows if row.gap is not None]
     sought = fixed_by_position(system)
     silent = [q for q in symbols.q if q in sought or (q.name != own and is_guess(scope.model, q.name))]
-    dq = _kept(gaps, at(gaps, {**seeds, **dq}), silent, dq, numbers, own or "the parameter")
+    what = own or "the parameter"
+    dq = _kept(gaps, at(gaps, {**seeds, **dq}), silent, dq, numbers, what, _moved(begun, symbols.q, numbers))
     speeds = start_speeds(system)
     du = dict(zip(symbols.u, map(Fraction, at([speeds[u] for u in symbols.u], {**seeds, **dq})), strict=True))
     du |= {u: Fraction(1) for u in symbols.u if u.name == own}
     rates = [row.velocity for row in system.ties.closing]
     silent = [u for u in symbols.u if u.name != own and is_guess(scope.model, u.name)]
-    du = _kept(rates, at(rates, {**seeds, **dq, **du}), silent, du, numbers, own or "the parameter")
+    left = at(rates, {**seeds, **dq, **du})
+    du = _kept(rates, left, silent, du, numbers, what, _moved(speeds, symbols.u, numbers))
     return dq | du
 
 
@@ -78,19 +80,30 @@ def _kept(
     seeds: dict[Node, Fraction],
     numbers: Mapping[Node, Any],
     what: str,
+    moved: Sequence[Node],
 ) -> dict[Node, Fraction]:
     """The changes with which scalars stay 0: those that nobody gives follow.
 
+    Args:
+        moved: what stands elsewhere than it was said to, so that the scalars are 0: it must be what follows.
     Raises:
         DerivationError: these do not do, or may do so in several ways.
     """
-    if not np.any(np.abs(left) > CARRIED):
+    if not moved and not np.any(np.abs(left) > CARRIED):
         return seeds
     flat = evaluate([x for row in jacobian(scalars, silent) for x in row], numbers, fifty_digits())
     A = np.array(floats_of(flat)).reshape(len(scalars), len(silent))
     step, _, rank, _ = np.linalg.lstsq(A, -np.array(left), rcond=RANK)
-    if rank < len(silent) or np.max(abs(A @ step + left)) > CARRIED * np.max(np.abs(left)):
+    several = rank < np.count_nonzero(np.any(A, axis=0)) or not {*moved} <= {*silent}
+    if several or np.max(abs(A @ step + left)) > CARRIED * max(1.0, np.max(np.abs(left))):
         raise DerivationError(
             f"the ties do not say how the start changes with {what}", mend="declare the others as dependent"
         )
     return seeds | {x: seeds[x] + Fraction(d) for x, d in zip(silent, step.tolist(), strict=True)}
+
+
+def _moved(said: Mapping[Node, Scalar], variables: Sequence[Node], numbers: Mapping[Node, Any]) -> list[Node]:
+    """Which of them start elsewhere than the model says: where the ties hold."""
+    found = floats_of(evaluate([said[x] for x in variables], numbers, fifty_digits()))
+    own = [float(numbers[x]) for x in variables]
+    return [x for x, a, b in zip(variables, found, own, strict=True) if abs(a - b) > CARRIED * max(1.0, abs(b))]

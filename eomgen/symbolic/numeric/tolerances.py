@@ -46,6 +46,7 @@ DEPENDENT_EASE = 1e-10  # of J A^-1 J^T, added to its diagonal where no pivot ma
 NEARLY_SINGULAR = 1e-5  # at a place that is known to half of the digits only, or where ties resist too little
 BRANCHES_MEET = 1e-4  # of the largest singular value: two branches meet so near that neither is told from the other
 WIDE_SPECTRUM = 1e-4  # of the smallest eigenvalue against the largest, below which more digits are used
+BESIDE = 1e-14  # of a change: how far beside a state that is known in doubles a corner is looked for
 DEGENERATE = 1e-6  # of a determinant, length or diagonal entry that a description divides by
 
 # Places, instants and shapes.
