@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 import pytest
 import sympy as sm
-from sympy.physics.mechanics import KanesMethod, LagrangesMethod, dynamicsymbols
+from sympy.physics.mechanics import KanesMethod, LagrangesMethod, Particle, Point, ReferenceFrame, dynamicsymbols
 
 import eomgen
 from eomgen.errors import DerivationError, UsageError
@@ -119,3 +119,30 @@ def test_equations_go_to_sympy_as_they_are(name):
     assert np.allclose(numbers[2].ravel(), expected[:n], rtol=1e-12, atol=1e-12)
     solved = np.linalg.lstsq(numbers[0], numbers[1].ravel(), rcond=None)[0][:nu]
     assert np.allclose(solved, expected[n:], rtol=1e-9, atol=1e-9)
+
+
+def test_a_rate_that_stands_in_another_speed_is_a_declared_speed_too():
+    """u1 = q1', u2 = q1' + q2' (Kane & Levinson, 4.7, forces in rates): u' of two rods as sympy has them, 1e-12."""
+    q1, q2, u1, u2 = dynamicsymbols("q1 q2 u1 u2")
+    l, m, sigma, delta = sm.symbols("l m sigma delta")
+    N, P, Q = ReferenceFrame("N"), Point("P"), Point("Q")
+    A, B = (N.orientnew(name, "Axis", (q, N.z)) for name, q in (("A", q1), ("B", q2)))
+    P.set_vel(N, l * q1.diff() * A.y)
+    Q.set_vel(N, l * q1.diff() * A.y + l * q2.diff() * B.y)
+    bodies = [Particle("p", P, m), Particle("q", Q, m)]
+    couple = (sigma * q2 + delta * q2.diff()) * N.z
+    kinematic = [u1 - q1.diff(), u2 - (q1.diff() + q2.diff())]
+    method = KanesMethod(N, [q1, q2], [u1, u2], kd_eqs=kinematic, bodies=bodies, forcelist=[(A, couple), (B, -couple)])
+    model = eomgen.from_sympy(method)
+    assert {name: speed.rate.text for name, speed in model.speeds.items()} == {"u1": "q1'", "u2": "q1' + q2'"}
+    numbers, found = random_state(model, 3)
+    expected = accelerations_by_sympy(method, numbers)
+    assert [found[u] for u in ("u1'", "u2'")] == pytest.approx([expected[x] for x in ("q1''", "u2'")], rel=1e-12)
+
+
+def test_what_is_too_long_for_a_model_file_is_said_to_be():
+    """How long, and what helps; no place in a file that nobody wrote."""
+    q = dynamicsymbols("q")
+    long = sum(sm.Symbol(f"a{k}") * sm.sin(k * q) for k in range(1, 1200))
+    with pytest.raises(DerivationError, match=r"characters to write, of which a model file may have 10000"):
+        eomgen.from_sympy(LagrangesMethod(q.diff() ** 2 / 2 - long, [q]))

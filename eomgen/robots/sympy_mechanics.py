@@ -148,15 +148,16 @@ class _Energies:
                 own = dynamicsymbols(f"{u.func.__name__}_0")
                 self.q.append(own)
                 kinematic.append(own.diff(t) - u)
-        rates = speeds_as_rates(self.q, formed.u, kinematic)
-        self.words = Words(self.q, formed.u, rates)
-        declared = [u for u in formed.u if u not in rates]
         solved = sympy.solve(kinematic, list(formed.u), dict=True) if formed.u else [{}]
         if not solved or len(solved[0]) != len(formed.u):
             raise DerivationError(
                 "the kinematic equations do not give every speed", mend="give one for each coordinate"
             )
-        self.speeds = {u: solved[0][u] for u in declared}
+        rates = speeds_as_rates(self.q, formed.u, kinematic)
+        combined = [solved[0][u] for u in formed.u if u not in rates]  # what stands in one is no speed by itself
+        rates = {u: q for u, q in rates.items() if not any(x.has(q.diff(t)) for x in combined)}
+        self.words = Words(self.q, formed.u, rates)
+        self.speeds = {u: solved[0][u] for u in formed.u if u not in rates}
 
     def tables(self) -> Entries:
         formed, words = self.formed, self.words

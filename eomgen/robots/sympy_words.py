@@ -16,6 +16,7 @@ from eomgen.errors import DerivationError
 from eomgen.records import dataclass
 from eomgen.robots.drawn_up import LegalNames
 from eomgen.symbolic.exact.normal_form import simplest
+from eomgen.symbolic.expression.expressions import LONGEST
 from eomgen.symbolic.expression.graph import Graph, Node, Scalar
 from eomgen.symbolic.expression.rational import Fraction, fraction_of
 from eomgen.symbolic.numeric.work import Work
@@ -115,8 +116,15 @@ def with_rationals(expression: Any) -> Any:
 
 
 def file_texts(scalars: Sequence[Scalar]) -> list[Any]:
-    """Scalars as they stand in a model file, numbers as decimals where they end."""
+    """Scalars as they stand in a model file, numbers as decimals where they end.
+
+    Raises:
+        DerivationError: one is longer than a model file may have it.
+    """
     shortest = [min((simplest(x, Work.FORMULA), x), key=text_size) for x in scalars]
+    if (size := max(map(text_size, shortest), default=0)) > LONGEST:
+        what = f"an energy or a force takes some {size} characters to write, of which a model file may have {LONGEST}"
+        raise DerivationError(what, mend="give sympy's System its joints, or sympy shorter frames and velocities")
     return [to_text(x) if (value := _decimal(x)) is None else value for x in shortest]
 
 

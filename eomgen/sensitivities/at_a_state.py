@@ -48,7 +48,7 @@ class ChangingState:
             DerivationError: one of them, or a force, has a corner or a jump there.
         """
         symbols = self.phase.system.symbols
-        numbers, seeds, held = self.numbers, self.seeds, ()
+        numbers, seeds, held = self.numbers, self.seeds, tuple[Scalar, ...]()
         if any(depends_on(x, (*symbols.a, *symbols.lam)) for x in scalars):
             (numbers, seeds), held = self._moving, self._rows
         _refuse_corners((*scalars, *held), numbers, seeds)

@@ -177,6 +177,24 @@ def test_the_language_s_own_test_agrees_with_the_symbols(target, tmp_path):
     assert OWN_TESTS[target](tmp_path) == ""
 
 
+STANDS = """
+eomgen = 1
+space = "plane"
+parameters = { q = 100, L = 2 }
+bodies.beam.points = { A = [0, 0], B = ["2*L", 0] }
+forces.q = { kind = "force", point = "beam.B", force = [0, "-q"] }
+constraints.A = { kind = "clamp", point = "beam.A" }
+outputs.M = "reaction_couple(A)"
+"""
+
+
+@marked(("c", "cpp", "fortran", "numpy"))
+def test_what_does_not_move_has_code_whose_own_test_compiles(target, tmp_path):
+    """No state, no rate: strictest compilers take loops over nothing."""
+    files.write_all(tmp_path, eomgen.generate(eomgen.loads(STANDS), (target,), name="stands").texts)
+    assert OWN_TESTS[target](tmp_path) == ""
+
+
 @marked(name for name in OWN_TESTS if name != "fmu")
 def test_the_language_s_own_test_notices_a_wrong_sign(target, tmp_path):
     """The sign of one sum in the right-hand side turned: the test fails, and not because it cannot be read."""

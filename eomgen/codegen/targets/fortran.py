@@ -176,7 +176,7 @@ program {main}_test
 contains
     subroutine check(t, x, {a}p, inputs, right, tolerance)
         real(dp), intent(in) :: t, x(:), {a_list}p(:), inputs(:), right(:), tolerance
-        real(dp) :: found({outputs}), largest
+        real(dp) :: found(size(right)), largest
         integer :: k
         found = 0
         vector = vector + 1

@@ -25,7 +25,7 @@ program cart_pole_rhs_test
 contains
     subroutine check(t, x, p, inputs, right, tolerance)
         real(dp), intent(in) :: t, x(:), p(:), inputs(:), right(:), tolerance
-        real(dp) :: found(4), largest
+        real(dp) :: found(size(right)), largest
         integer :: k
         found = 0
         vector = vector + 1
