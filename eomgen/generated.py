@@ -32,7 +32,7 @@ from eomgen.codegen.targets.base import (
     Role,
     TestVector,
 )
-from eomgen.codegen.targets.c_integrator import integrator_files
+from eomgen.codegen.targets.c_integrator import RUN_USE, integrator_files
 from eomgen.codegen.vectors import vectors
 from eomgen.equations import Equations
 from eomgen.errors import DerivationError, RunFailed, ToolMissing, UsageError, visible
@@ -206,7 +206,8 @@ class Generated:
         return self._texts(self.emitted)
 
     def _texts(self, emitted: Sequence[Emitted]) -> dict[str, FileContent]:
-        texts = texts_of(self.stem, emitted, targets=self.targets, notes=self.notes)
+        uses = {"c": [RUN_USE]} if self.integrator else {}
+        texts = texts_of(self.stem, emitted, targets=self.targets, notes=self.notes, uses=uses)
         found = texts | {f"{self._folder('c')}{name}": text for name, text in self._integrator.items()}
         return {path: visible(text) if isinstance(text, str) else text for path, text in found.items()}
 

@@ -70,6 +70,17 @@ def test_values_and_starts_are_given_by_name(tmp_path):
 
 @pytest.mark.slow
 @needs_compiler
+def test_the_line_of_the_readme_makes_a_motion(tmp_path):
+    """As it stands there: compiled, run, a row for each instant."""
+    eomgen.generate(MODELS / "double_pendulum.toml", name="it", integrator=True).write(tmp_path)
+    line = next(x.strip() for x in (tmp_path / "README.md").read_text().splitlines() if "_run.c" in x)
+    subprocess.run(line, shell=True, cwd=tmp_path, check=True)
+    rows = (tmp_path / "motion.csv").read_text().splitlines()
+    assert len(rows) == 102 and rows[-1].startswith("10,")
+
+
+@pytest.mark.slow
+@needs_compiler
 def test_two_runs_at_once_do_not_know_of_one_another(tmp_path):
     """Interleaved step by step they give what each gives alone; nothing is allocated."""
     eomgen.generate(MODELS / "double_pendulum.toml", name="it", integrator=True).write(tmp_path)

@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 import json
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
+from types import MappingProxyType
 
 from eomgen.codegen.names import identifier
 from eomgen.codegen.program import Program
@@ -14,7 +15,12 @@ from eomgen.version import SCHEMA_VERSION
 
 
 def texts_of(
-    name: str, emitted: Sequence[Emitted], *, targets: Sequence[str], notes: Sequence[str] = ()
+    name: str,
+    emitted: Sequence[Emitted],
+    *,
+    targets: Sequence[str],
+    notes: Sequence[str] = (),
+    uses: Mapping[str, Sequence[str]] = MappingProxyType({}),
 ) -> dict[str, FileContent]:
     """{path: content}: NAME_rhs.c, NAME_rhs.h (or the target's own), the same of the others, README, test_vectors.json.
 
@@ -23,21 +29,27 @@ def texts_of(
         emitted: the right-hand side first, then reactions and whatever else is asked for.
         targets: names of languages, "c" or "numpy"; the files of one lie in the directory, of several each in its own.
         notes: what is not in the code, and why, a line each.
+        uses: by language, how files are used that lie beside its own.
     """
     answers, stem = vectors_text(emitted), identifier(name)
     texts: dict[str, FileContent] = {}
     for target in map(target_named, dict.fromkeys(targets)):
         folder = "" if len(set(targets)) == 1 else f"{target.name}/"
         files = target.files(stem, emitted)
-        files |= {"README.md": readme(target, stem, emitted, notes), "test_vectors.json": answers}
+        files |= {
+            "README.md": readme(target, stem, emitted, notes, uses.get(target.name, ())),
+            "test_vectors.json": answers,
+        }
         texts |= {f"{folder}{file}": text for file, text in files.items()}
     return texts
 
 
-def readme(target: Target, stem: str, emitted: Sequence[Emitted], notes: Sequence[str]) -> str:
+def readme(
+    target: Target, stem: str, emitted: Sequence[Emitted], notes: Sequence[str], uses: Sequence[str] = ()
+) -> str:
     """What lies beside it: the functions, the order of their arguments, how they are used and tested."""
     lines = [f"# {stem}: {target.about}", ""]
-    for line in target.use:
+    for line in (*target.use, *uses):
         lines.append(f"    {line.format(stem=stem)}")
     for program, told in emitted:
         if not target.writes(told.role):

@@ -42,6 +42,10 @@ void {stem}_at({stem}_run *run, double t, double *x);
 """
 
 
+RUN_USE = "cc -O2 -D{stem}_MAIN {stem}_run.c {stem}_rhs.c -lm -o {stem}_run && ./{stem}_run --time=10 > motion.csv"
+"""how the program is made and run"""
+
+
 def integrator_files(
     stem: str, program: Program, start: Sequence[float] | None, values: Sequence[float] | None, rtol: float
 ) -> dict[str, str]:
