@@ -166,7 +166,10 @@ class _Writing:
             )
         (factor,) = self.numbers(gradient(link.s[0], (own[0],)), where)
         uses = [each.name for each in self.system.motion.links if depends_on_any(each.s, own[:1])]
-        if abs(abs(factor) - 1) > ROUNDING or len(uses) > 1:
+        if abs(abs(factor) - 1) > ROUNDING:
+            what = f"URDF has no joint that goes {factor:g} times its coordinate: '{own[0].name}'"
+            raise DerivationError(what, where, "give it a coordinate of its own, and an `equation` between the two")
+        if len(uses) > 1:
             raise DerivationError(f"URDF has one joint for a coordinate: '{own[0].name}'", where, "give each its own")
         (w, v) = link.S[0]
         turning, sliding = self.numbers(w, where), self.numbers(v, where)
@@ -242,7 +245,8 @@ class _Writing:
         model = self.system.scope.model
         acting = [name for name, part in model.inputs.items() if _is_given(part.value)]
         starts = [name for name, part in model.coordinates.items() if _is_given(part.start) or _is_given(part.speed)]
-        for what, names in (("values of inputs", acting), ("start values", starts)):
+        given = [name for name, part in model.coordinates.items() if part.driven]
+        for what, names in (("values of inputs", acting), ("start values", starts), ("given motions", given)):
             if names:
                 self.left.setdefault(what, []).extend(names)
 

@@ -10,7 +10,8 @@ import numpy as np
 import pytest
 
 import eomgen
-from eomgen.errors import ModelError
+from eomgen.errors import DerivationError, ModelError
+from eomgen.exported import urdf_of
 from eomgen.robots.drawn_up import LegalNames
 from eomgen.robots.mjcf_reading import CompiledRobot
 from eomgen.symbolic.numeric.evaluation import FLOAT, evaluate
@@ -254,3 +255,15 @@ def test_a_joint_may_mimic_the_second_axis_of_another(tmp_path):
       <axis2><xyz>0 1 0</xyz></axis2></joint></model></sdf>"""
     model = robot(tmp_path, text, "sdf").model
     assert model.constraints["mimic_p"].gap.text == "p - 1*u_2" and model.bodies["b"].joint.angle.text == "u_2"
+
+
+def test_export_lists_motions_that_are_given_and_refuses_a_factor_by_its_name():
+    """A driven hinge is a hinge that nothing drives there; one that turns twice its coordinate is none."""
+    text = """eomgen = 1
+space = "space"
+coordinates = { q = { motion = "0.1*t" } }
+bodies.a = { mass = 1, inertia = [1, 1, 1], joint = { kind = "revolute", angle = "ANGLE" } }"""
+    told = {each.what: each.where for each in urdf_of(eomgen.loads(text.replace("ANGLE", "q - 1"))).left_out}
+    assert told["given motions"] == ("q",)
+    with pytest.raises(DerivationError, match="no joint that goes 2 times its coordinate: 'q'"):
+        urdf_of(eomgen.loads(text.replace("ANGLE", "2*q")))
