@@ -116,9 +116,7 @@ def _wrong(case: Case, written: HandEquation, kind: str, at: Instant, left: Answ
     target, found = simplest_explanation(implied, mends)
     clash = case.clash(written)
     if found and not (clash and len(found[0].shares) > 1):
-        causes = causes_of(case, found, moving=False)
-        if isinstance(target, Comparison) and target.squared:
-            causes = tuple(replace(cause, text=f"under the root {cause.text}") for cause in causes)
+        causes = causes_of(case, found, moving=False, rooted=isinstance(target, Comparison) and target.squared)
     elif clash:
         causes = (Cause("unit", clash, quantity="the dimensions"),)
     true, author = (case.exact(each) for each in (left, right))

@@ -21,6 +21,8 @@ from eomgen.mechanics.first_integrals.speeds import rates_of
 from eomgen.mechanics.first_integrals.speeds_from_momenta import relations_of
 from eomgen.mechanics.instant.outputs import Quantities
 from eomgen.mechanics.statics.contacts_at_start import contacts_at_start
+from eomgen.model.catalog import Catalog
+from eomgen.model.dimensions import inferred
 from eomgen.model.fields import AtRest, WrittenEquation
 from eomgen.model.part import leaves_of
 from eomgen.model.parts import Model, Output
@@ -102,6 +104,13 @@ class Case:
         """The accelerations of driven coordinates that are 0."""
         names = self.system.scope.names
         return frozenset(f"{q}''" for q, x in self.model.coordinates.items() if x.driven and is_zero(names[f"{q}''"]))
+
+    @cached_property
+    def laws_of_time(self) -> dict[Node, Scalar]:
+        """Of each coordinate that is driven as a function of time that function."""
+        scope, coordinates = self.system.scope, self.model.coordinates
+        motions = {q: coordinates[q.name].motion for q in self.system.symbols.q}
+        return {q: scope.value(law) for q, law in motions.items() if law is not None}
 
     @cached_property
     def tied_rates(self) -> tuple[ScalarRow, ScalarRow]:
@@ -261,10 +270,17 @@ class Case:
                 else f"'{call}' names nothing of the model"
             )
             raise ExpressionError(what, max(call.column, 0), getattr(error, "mend", ""), len(call.name)) from error
-        symbols = self.system.symbols.unknowns
-        held = [p for p in symbols.values() if depends_on(found, (p,))]
+        return self.solved(found)
+
+    def solved(self, x: Scalar) -> Scalar:
+        """With what the unknowns of the model are.
+
+        Raises:
+            DerivationError: the balance does not fix one.
+        """
+        held = [p for p in self.system.symbols.unknowns.values() if depends_on(x, (p,))]
         known = {p: self.quantities.reactions.unknown(p.name) for p in held}
-        return substituted((found,), known)[0] if held else found
+        return substituted((x,), known)[0] if held else x
 
     def called_by(self, call: Call) -> Callable[[Case], Scalar]:
         """The same function of another case, as a function of its state over the symbols of this one."""
@@ -366,11 +382,11 @@ class Case:
 
     def clash(self, written: HandEquation) -> str:
         """What is wrong with the dimensions, in words; ""."""
-        try:
-            _asking(self.model, {"asked": Output(value=written.difference)})
-        except ExpressionError as error:
-            return error.what
-        return ""
+        names = inferred(Catalog(self.model, ())).names
+        left, right = names.walk(), names.walk()
+        needed = left.of(written.left)
+        right.of(written.right, needed=needed)
+        return next((clash.what for clash in (*left.clashes, *right.clashes)), "")
 
 
 def _asking(model: Model, outputs: Mapping[str, Output]) -> Model:

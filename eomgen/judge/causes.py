@@ -22,19 +22,32 @@ if TYPE_CHECKING:
     from eomgen.judge.case import Case
 
 
-def causes_of(case: Case, found: Sequence[Explanation], *, moving: bool) -> tuple[Cause, ...]:
+def causes_of(case: Case, found: Sequence[Explanation], *, moving: bool, rooted: bool = False) -> tuple[Cause, ...]:
     """The causes of the first explanation; the kinds of others with as many mistakes beside them.
 
     Args:
         moving: it is about accelerations: products of two speeds are Coriolis terms.
+        rooted: what is compared is the square of what was asked.
     """
     best = found[0]
     causes = _joined(case, best, [cause_of(case, share, best.row, moving=moving) for share in best.shares])
     others = [e for e in found[1:] if len(e.shares) == len(best.shares)]
     if len(causes) == 1:
-        kinds = dict.fromkeys(cause_of(case, e.shares[0], e.row, told=False, moving=moving).kind for e in others)
-        causes[0] = replace(causes[0], others=tuple(kind for kind in kinds if kind != causes[0].kind))
-    return tuple(causes)
+        also = [cause_of(case, e.shares[0], e.row, moving=moving) for e in others]
+        kinds = dict.fromkeys(x.kind for x in also)
+        another = next((x for x in also if _is_another(causes[0], x)), None)
+        causes[0] = replace(
+            causes[0],
+            others=tuple(kind for kind in kinds if kind != causes[0].kind),
+            or_else="" if another is None else another.text,
+        )
+    return tuple(replace(x, text=f"under the root {x.text}") for x in causes) if rooted else tuple(causes)
+
+
+def _is_another(one: Cause, other: Cause) -> bool:
+    """Whether two causes are of different things, not two sentences of one."""
+    ends = {x.text.rpartition(", ")[2] for x in (one, other)}  # "is missing"
+    return one.kind != other.kind and one.quantity != other.quantity and len(ends) == 2
 
 
 def _joined(case: Case, found: Explanation, causes: list[Cause]) -> list[Cause]:
@@ -78,10 +91,12 @@ def cause_of(case: Case, share: Share, row: int, *, told: bool = True, moving: b
         kind, text = _of_factor(whole, corruption.name, x, share.unit, term)
     body, force = corruption.body, corruption.force
     is_term = corruption.name.startswith(("the term ", "the product "))
-    if told and not body and not force and is_term and kind != "extra_term":
-        held = case.parts.holding(sum((x for x in rows if not is_zero(x)), start=0))
+    if told and not body and not force and is_term:
+        total = sum((x for x in rows if not is_zero(x)), start=0)
+        held = case.parts.holding(total, "T" if depends_on(total, case.system.symbols.a) else "")
         if len(held) == 1:
-            body, force, text = held[0].body, held[0].force, f"{text} ({held[0].name})"
+            whose = f": it is a term of {held[0].name}" if kind == "extra_term" else f" ({held[0].name})"
+            body, force, text = held[0].body, held[0].force, f"{text}{whose}"
     return Cause(kind, text, term, body, force, corruption.name)
 
 

@@ -28,6 +28,7 @@ from eomgen.symbolic.expression.graph import Node, Scalar, is_zero
 from eomgen.symbolic.expression.node import ScalarRow
 from eomgen.symbolic.expression.traversal import operations
 from eomgen.symbolic.numeric.tolerances import CARRIED
+from eomgen.symbolic.solve.cramer import determinant
 
 LONGEST = 3000  # operations of equations that are looked at term by term
 EXTRA = 5.6  # rank of a term of the author that does not belong there
@@ -48,6 +49,7 @@ class Comparison:
         more: what may be wrong, in place of what is known of such a value.
         squared: the value is the square of what is asked: its mistakes stand under a root.
         sizes: what roots and sizes |x| are at the start, where the author wrote x.
+        near: of linearized rows the place; {} of others.
     """
 
     case: Case
@@ -59,6 +61,7 @@ class Comparison:
     more: Callable[[], Iterable[Corruption]] | None = None
     squared: bool = False
     sizes: Mapping[Node, Scalar] = field(default_factory=dict)
+    near: Mapping[Node, Scalar] = field(default_factory=dict)
 
     def with_known(self, known: Mapping[Node, Scalar]) -> Comparison:
         """The same where nodes have values."""
@@ -76,8 +79,12 @@ class Comparison:
             pass
         elif self.what:
             structural += self._structural()
+            if self.what == "motion" and self.case.closing:
+                structural += self._of_ties()
             if self.sizes:
                 structural = [replace(x, rows=substituted(x.rows, self.sizes)) for x in structural]
+            if self.near:
+                structural = list(_linearized(structural, self.near))
         else:
             structural += self._other_arguments()
             structural += self._classes()
@@ -101,7 +108,7 @@ class Comparison:
     @property
     def _known_terms(self) -> Collection[Term]:
         """Terms that are looked at as those of a contribution."""
-        known = self.what and self.what not in ("ties", "Q") and not self.sizes
+        known = self.what and self.what not in ("ties", "Q") and not self.sizes and not self.near
         return self.case.corruptions(self.what, self.of).terms if known else ()
 
     @property
@@ -131,6 +138,26 @@ class Comparison:
                 yield each
             elif self.of[0] in speeds:
                 yield replace(each, rows=(each.rows[speeds.index(self.of[0])],))
+
+    def _of_ties(self) -> Iterator[Corruption]:
+        """What is forgotten of ties differentiated twice to eliminate accelerations: gamma of J a + gamma = 0."""
+        e, ties = self.case.equations, self.case.system.ties.closing
+        assert e is not None
+        gone = [j for j, a in enumerate(e.symbols.a) if not depends_on(self.scalar, (a,))]
+        if len(gone) != len(e.J) or len(gone) > 2:
+            return
+        J = [[row[j] for j in gone] for row in e.J]
+        det = determinant(J)
+        if is_zero(det):
+            return
+        adjugate = [[1]] if len(J) == 1 else [[J[1][1], -J[0][1]], [-J[1][0], J[0][0]]]
+        for i, (tie, gamma) in enumerate(zip(ties, e.gamma, strict=True)):
+            terms = terms_of(gamma, self.case.system.scope.positive)
+            for part in (*terms, *([gamma] if len(terms) > 1 else [])):
+                by = [-over(line[i] * part, det) for line in adjugate]
+                rows = tuple(sum((M[j] * x for j, x in zip(gone, by, strict=True)), start=0) for M in e.M)
+                what = f"the term {term_text(part)}" if part is not gamma else "all that holds products of speeds"
+                yield Corruption(f"{what} in the tie {tie.tie} differentiated twice", "factor", rows, PIECES)
 
     def _classes(self) -> Iterator[Corruption]:
         """What of a value accelerations do, what speeds, what is there at rest."""
@@ -266,7 +293,13 @@ class Comparison:
         return bool(case.follows(scalar, rows).holds)
 
     def _is_consistent(self, explanation: Explanation) -> bool:
-        """Whether nothing is missing twice: a term of its own, or a part of a body's kinetic energy, and all of it."""
+        """Whether nothing is missing twice: a term of its own, or a part of a body's kinetic energy, and all of it.
+
+        Nor has all of it a number for its factor beside another number of a part.
+        """
+        factors = [(x.corruption.name.startswith(WHOLE), x.factor) for x in explanation.shares if x.corruption.open]
+        if any(whole and abs(x) != 1 for whole, x in factors) and any(x and not whole for whole, x in factors):
+            return False
         gone = [share.corruption for share in explanation.shares if share.corruption.open and share.factor == 0]
         for part, whole in permutations(gone, 2):
             if part.rank >= PIECES and whole.name.removeprefix("the ") in part.name:
@@ -318,6 +351,26 @@ def changed_answers(case: Case, answer: ScalarRow) -> Iterator[Corruption]:
     for each in case.edits.of_answer(answer):
         by = tuple(x - y for x, y in zip(each.to, answer, strict=True))
         yield Corruption(each.text, each.kind, by, each.rank, open=False, text=f"in the answer {each.text}")
+
+
+def linearized(rows: ScalarRow, place: Mapping[Node, Scalar]) -> ScalarRow:
+    """Rows to the first order beside a place.
+
+    Raises:
+        DerivationError: one has no value there.
+    """
+    moving = tuple(place)
+    found = []
+    for row in rows:
+        still, *slopes = substituted((row, *gradient(row, moving)), place)
+        found.append(sum((s * (x - place[x]) for s, x in zip(slopes, moving, strict=True)), start=still))
+    return tuple(found)
+
+
+def _linearized(known: Iterable[Corruption], place: Mapping[Node, Scalar]) -> Iterator[Corruption]:
+    for each in known:
+        with suppress(DerivationError):
+            yield replace(each, rows=linearized(each.rows, place))
 
 
 def excess(case: Case, scalar: Scalar) -> str:

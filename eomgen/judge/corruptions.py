@@ -33,12 +33,16 @@ from eomgen.symbolic.expression.derivative import (
     substituted,
     symbols_of,
 )
+from eomgen.symbolic.expression.functions import over
 from eomgen.symbolic.expression.graph import Node, Scalar, is_zero
 from eomgen.symbolic.expression.node import ScalarRow
 from eomgen.symbolic.expression.spatial import Vector, dot, minus
 
 MOST = 3000  # corruptions of one equation
 MOST_SPEEDS = 12  # of a model whose products of speeds are looked at one by one
+GROUPS = ("all rotations", "the whole potential energy", "all that is applied")  # whose members are told
+MOST_TOLD = 3  # members of a group that are told
+WAYS = ((2, "twice"), (HALF, "half"), (4, "four times"), (HALF * HALF, "a quarter"))  # how far something moves
 MOST_NODES = 100_000  # of expressions that are made for them
 
 
@@ -170,12 +174,25 @@ class Corruptions:
             if steady and not all(map(is_zero, v)):
                 groups.setdefault(v, []).append(link.name)
         for bodies in groups.values():
-            mine = [part for part in self.whole if part.body in bodies and part.kind in ("translation", "weight")]
-            for factor, how in ((2, "twice"), (HALF, "half")) if len({part.kind for part in mine}) == 2 else ():
-                parts = [replace(part, T=(factor * factor - 1) * part.T, V=(factor - 1) * part.V) for part in mine]
-                text = f"{' and '.join(bodies)} would move {how} as far as meant, in the velocity and in the height"
-                rows = self._sum(parts)
-                yield Corruption(f"how far {bodies[0]} moves", "factor", rows, SHARED, bodies[0], open=False, text=text)
+            straight = [part for part in self.whole if part.body in bodies and part.kind in ("translation", "weight")]
+            turning = [part for part in self.whole if part.body in bodies and part.kind == "rotation"]
+            for mine in (straight, [*straight, *turning]) if turning else (straight,):
+                yield from self._far(bodies, mine)
+
+    def _far(self, bodies: Sequence[str], mine: Sequence[Contribution]) -> Iterator[Corruption]:
+        """Bodies that move twice or half as far, in all that is given of them, and in one kind of it."""
+        kinds = [part.kind for part in mine]
+        rotate = " and turn" if "rotation" in kinds else ""
+        for factor, how in WAYS if {"translation", "weight"} <= {*kinds} else ():
+            parts = [replace(part, T=(factor * factor - 1) * part.T, V=(factor - 1) * part.V) for part in mine]
+            text = f"{' and '.join(bodies)} would move{rotate} {how} as far as meant, in the velocity and in the height"
+            rows = self._sum(parts)
+            yield Corruption(f"how far {bodies[0]} moves", "factor", rows, SHARED, bodies[0], open=False, text=text)
+        for kind in ("translation", "weight") if not rotate else ():
+            some = [part for part in mine if part.kind == kind]
+            if len(some) > 1:
+                name, squares = " and ".join(part.name for part in some), kind == "translation"
+                yield Corruption(name, "factor", self._sum(some), SHARED, squares=squares)
 
     def _about_axes(self) -> Iterator[Corruption]:
         """The rotations of bodies in space about their principal axes, those with equal moments together."""
@@ -221,9 +238,22 @@ class Corruptions:
             key = tuple(part.name for part in members)
             if len(members) > 1 and key not in seen:
                 seen.add(key)
-                name = f"{name} ({', '.join(part.body for part in members)})" if name == "all rotations" else name
+                whose = ", ".join(part.body if part.kind == "rotation" else part.name for part in members)
+                told = f"{name} ({whose})" if name in GROUPS and len(members) <= MOST_TOLD else name
                 squares = all(not is_zero(part.T) for part in members)
-                yield Corruption(name, "factor", self._sum(members), SHARED, body, force, squares=squares)
+                rows = self._sum(members)
+                yield Corruption(told, "factor", rows, SHARED, body, force, squares=squares)
+                yield from self._weights_for_masses(name, members, rows)
+
+    def _weights_for_masses(self, name: str, members: Sequence[Contribution], rows: ScalarRow) -> Iterator[Corruption]:
+        """m g where m is meant in all that is moved, m where m g is meant in all weights."""
+        moving = all(not is_zero(part.T) for part in members)
+        falling = [x for x in self.parts.edits.also if str(self.parts.dimensions.get(x.name)) == "m/s^2"]
+        for g in falling if moving or all(part.kind == "weight" for part in members) else ():
+            by = tuple((row * g if moving else over(row, g)) - row for row in rows)
+            text = f"weights stand for masses: a factor {g.name} is too many"
+            text = text if moving else f"masses stand for weights: a factor {g.name} is missing"
+            yield Corruption(name, "factor", by, SHARED, open=False, text=f"in {name} {text}")
 
     def _sum(self, members: Sequence[Contribution]) -> ScalarRow:
         rows = [self.rows(part) for part in members]

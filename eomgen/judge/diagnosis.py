@@ -52,6 +52,9 @@ USUAL = (  # factors that people write by mistake, and how much less each is bel
 UNUSUAL = 9.0  # of other factors
 TURNED = 0.3  # of an equation whose sides are exchanged
 MIXED = 6.0  # how much less a combination of equations is believed than one of them
+NEARLY = 2.0  # by how much less an explanation may be believed that is told beside the first
+MOST_NEAR = 6  # of these are proven
+INSTEAD = 2.0  # how much less it is believed that something unknown stands in the place of a contribution
 UNITS = {  # factors of wrong units: as a number, as a scalar of pi, in words
     "pi/180": (np.pi / 180, (Fraction(1, 180), 1)),
     "180/pi": (180 / np.pi, (Fraction(180), -1)),
@@ -372,7 +375,9 @@ class Search:
             if not np.all(np.abs(left) > CARRIED * np.abs(whole)):
                 return None
         scaled, dear = self._scale(C, y)
-        cost = sum(map(_cost, shares)) + dear + (MIXED if self.row < 0 else 0)
+        gone = any(x.corruption.open and not x.unit and x.factor == 0 for x in shares)
+        instead = INSTEAD if gone and any(x.corruption.kind == "extra_term" for x in shares) else 0
+        cost = sum(map(cost_of, shares)) + dear + instead + (MIXED if self.row < 0 else 0)
         return Explanation(tuple(shares), self.row, cost, scaled)
 
     def _is_there(self, own: Sequence[bool], C: np.ndarray, y: np.ndarray) -> bool:
@@ -445,7 +450,7 @@ def simple_factor(x: float, largest: int = SIMPLE) -> Fraction | None:
     return near if abs(float(near) - x) < SAME_EIGENVALUE and abs(near.numerator) <= largest * 2 else None
 
 
-def _cost(share: Share) -> float:
+def cost_of(share: Share) -> float:
     """How much has to be believed of one mistake."""
     cost = PLAINEST + share.corruption.rank
     if share.unit:
@@ -468,10 +473,11 @@ def explained(
     number: int,
     is_believable: Callable[[Explanation], bool] = lambda _: True,
 ) -> list[Explanation]:
-    """The cheapest explanation by so many mistakes that is proven, then the others; [] where none was found."""
+    """The cheapest explanation by so many mistakes that is proven, then others nearly as good; [] where none is."""
     found = [x for search in searches for x in search.explanations(number) if is_believable(x)]
     found.sort(key=lambda x: (x.cost, -sum(share.factor == 0 for share in x.shares)))
     for k, each in enumerate(found[:PROVEN]):
         if proves(each):
-            return [each, *found[:k], *found[k + 1 :]]
+            near = [x for x in found[k + 1 :] if x.cost <= each.cost + NEARLY][:MOST_NEAR]
+            return [each, *(x for x in near if proves(x))]
     return []

@@ -158,7 +158,8 @@ def _of_ratio(x: Node, p: Node, q: Node, k: Fraction) -> Iterator[tuple[str, Sca
         if other > 0 and other != k:
             told = (f"({name})" + (f"^{n}" if n != 1 else "") for n in (other, k))
             there, meant = told
-            yield "factor", x * power(ratio, other - k), f"{there} stands where {meant} is meant", EXCHANGED
+            square = ": the square is missing" if 2 * other == k else ""
+            yield "factor", x * power(ratio, other - k), f"{there} stands where {meant} is meant{square}", EXCHANGED
 
 
 def _other_powers(k: Fraction) -> tuple[Fraction, ...]:

@@ -23,12 +23,13 @@ import numpy as np
 from eomgen.errors import DerivationError, EomgenError, ExpressionError
 from eomgen.judge.case import Case
 from eomgen.judge.comparison import Comparison, excess
-from eomgen.judge.corruption import Corruption
+from eomgen.judge.corruption import SHARED, Corruption
 from eomgen.judge.decision import is_zero_everywhere
 from eomgen.judge.diagnosis import (
     BELIEVED,
     FAR_FETCHED,
     MOST_MISTAKES,
+    NEARLY,
     PLAINEST,
     Explanation,
     Search,
@@ -37,6 +38,7 @@ from eomgen.judge.diagnosis import (
     in_other_units,
     samples_of,
 )
+from eomgen.judge.frequencies import MOST_FREEDOMS, GivenFrequency
 from eomgen.judge.reading import HandEquation
 from eomgen.judge.replays import replays
 from eomgen.judge.wrong_terms import WrongTerms
@@ -44,7 +46,7 @@ from eomgen.model.fields import AtRest, WrittenEquation
 from eomgen.questions.answers import Answer
 from eomgen.records import dataclass
 from eomgen.symbolic.expression.derivative import depends_on, derivative, substituted
-from eomgen.symbolic.expression.expressions import Call, Reference
+from eomgen.symbolic.expression.expressions import Call, Expression, Reference
 from eomgen.symbolic.expression.functions import over
 from eomgen.symbolic.expression.graph import Node, Scalar, is_zero
 from eomgen.symbolic.expression.node import ScalarRow
@@ -122,7 +124,7 @@ class Implied:
 
 def implied_by(
     case: Case, written: HandEquation, kind: str, at: Instant, true: Answer, author: Answer
-) -> Iterator[Implied | Comparison]:
+) -> Iterator[Implied | Comparison | GivenFrequency]:
     """What an answer may be compared with, the most telling first.
 
     Args:
@@ -131,18 +133,39 @@ def implied_by(
     own, other = case.exact(true), case.exact(author)
     if other is None:
         return
-    for put in _puttings(case, written, kind, at, author):
-        with suppress(EomgenError):
-            found = _implied(put)
-            if found is not None:
-                yield found
-    if own is None:
-        return
+    with suppress(DerivationError):  # a putting has no value
+        for put in _puttings(case, written, kind, at, author):
+            with suppress(EomgenError):
+                found = _implied(put)
+                if found is not None:
+                    yield found
+    if own is not None:
+        yield from _beside_answer(case, written, kind, at, own, other)
+    alone = len(written.left.code) == 1 and kind == "frequency" and not case.closing and case.system.free is None
+    if alone and 1 < len(case.rows) <= MOST_FREEDOMS:
+        yield GivenFrequency(case, other, dict(([{}, *case.places_of_rest])[-1]))
+
+
+def _beside_answer(
+    case: Case, written: HandEquation, kind: str, at: Instant, own: Scalar, other: Scalar
+) -> Iterator[Comparison]:
+    """What somebody's value is compared with, beside the true one."""
+    call = written.left.calls[0] if len(written.left.code) == 1 and written.left.calls else None
 
     def answered(of: Case) -> Scalar | None:
-        return case.exact(of.sides(written, at)[0])
+        if kind != "frequency" or call is None or len(of.system.symbols.u) == len(case.system.symbols.u):
+            return case.exact(of.sides(written, at)[0])
+        for number in range(1, len(of.system.symbols.u) + 1):  # fewer ones are counted otherwise
+            numbered = replace(call, args=(Expression.number(number),))
+            left = Expression(str(call), (("call", numbered),), (0,))
+            value = case.exact(of.sides(replace(written, left=left), at)[0])
+            if value is not None and is_zero_everywhere(case.system, value - other).holds:
+                return value
+        return None
 
-    call = written.left.calls[0] if len(written.left.code) == 1 and written.left.calls else None
+    if isinstance(at, WrittenEquation) and len(case.system.symbols.u) == 1:
+        moving = Comparison(case, other - own, (own,), "", more=lambda: _of_motion(case, written, at, own))
+        yield moving
     again = Comparison(case, other - own, (own,), "", more=lambda: replays(case, own, answered))
     if kind == "frequency":
         yield Comparison(case, other - own, (own,), "", more=lambda: _of_entry(case, call, own))
@@ -175,6 +198,7 @@ def simplest_explanation(
         soon: already where none is plain: the author wrote no equation of motion.
     """
     best: tuple[Explainable | None, list[Explanation]] = None, []
+    beside: list[Explanation] = []
     known, own = tuple(targets), tuple(mends)
     for number in range(1, MOST_MISTAKES + 1):
         for some, believed in (
@@ -185,12 +209,14 @@ def simplest_explanation(
                 with suppress(DerivationError):
                     found = [x for x in target.explained(number) if x.cost <= number * (PLAINEST + MOST_DEAR[number])]
                     if found and (not best[1] or found[0].cost < best[1][0].cost):
-                        best = target, found
+                        best, found = (target, found), best[1]
+                    beside += found
                 if best[1] and best[1][0].cost < believed:
                     break
         if best[1] and best[1][0].cost < FAR_FETCHED + (number - 1) * PLAINEST:
             break
-    return best
+    near = [x for x in beside if x.cost <= best[1][0].cost + NEARLY]
+    return best[0], [*best[1], *sorted(near, key=lambda x: x.cost)]
 
 
 def implied_by_course(case: Case, known: Mapping[Node, Scalar]) -> Implied | None:
@@ -286,6 +312,23 @@ def _puttings(case: Case, written: HandEquation, kind: str, at: Instant, author:
             yield from _at_instant(begun, written, at, moment)
 
 
+def _of_motion(case: Case, written: HandEquation, at: WrittenEquation, own: Scalar) -> Iterator[Corruption]:
+    """Of a value at a place what is there at rest, and what the speed makes of it."""
+    begun = case.as_begun or case
+    (u,) = begun.system.symbols.u
+    q = next(x for x in begun.system.symbols.q if x.name == u.name.removesuffix("'"))
+    with suppress(DerivationError, ExpressionError):
+        if at.left.text == q.name and begun.start:
+            place = dict(zip((q, u), substituted((begun.value(at.right), 0), begun.start), strict=True))
+            value = begun.value(written.left)
+            if depends_on(value, (u, *begun.forced)):
+                still = begun.phase.simple(begun.phase.eliminated(value)) if depends_on(value, begun.forced) else value
+                still = case.own(substituted((still,), place)[0])
+                if not is_zero(still):
+                    yield Corruption("all that is there at rest", "factor", (still,), SHARED)
+                    yield Corruption("all that the speed does", "factor", (own - still,), SHARED)
+
+
 def _of_entry(case: Case, call: Call | None, own: Scalar) -> Iterator[Corruption]:
     """What may be wrong with an entry of M, C or K: in the slope of the equation that it is of."""
     symbols, names = case.system.symbols, [x.name for x in call.args if isinstance(x, Reference)] if call else []
@@ -368,19 +411,22 @@ def _at_instant(case: Case, written: HandEquation, at: WrittenEquation, author: 
 
 
 def _squared_speed(case: Case, written: HandEquation, author: Scalar, place: Mapping[Node, Scalar]) -> Scalar | None:
-    """u^2, where what is asked is a speed, c u or |c u|."""
+    """u^2, where what is asked is a speed, c u or |c u|, or depends on its square alone, as the force on what turns."""
     u = case.system.symbols.u[0]
     try:
         asked = case.value(written.left)
-        (square,) = substituted((asked * asked,), place)
-    except (ExpressionError, DerivationError):  # it has no value there: it is no speed
+        if depends_on(asked, case.forced):
+            asked = case.phase.simple(case.phase.eliminated(asked))
+        plain, square = substituted((asked, asked * asked), place)
+    except (ExpressionError, DerivationError):
         return None
-    second = derivative(derivative(square, u), u)
-    (still,) = substituted((square,), {u: 0})
-    if depends_on(second, (u, *case.system.symbols.a)) or is_zero(second):
-        if not is_zero_everywhere(case.system, *(derivative(second, x) for x in (u, *case.system.symbols.a))).holds:
-            return None
-        (second,) = substituted((second,), {u: 1})
-    if is_zero(second) or not is_zero_everywhere(case.system, still).holds:
-        return None
-    return over(2 * author * author, second)
+    for value, given in ((plain, author), (square, author * author)):
+        first = derivative(value, u)
+        second, (still, steady) = derivative(first, u), substituted((value, first), {u: 0})
+        if is_zero(second) or (value is square and not is_zero_everywhere(case.system, still).holds):
+            continue
+        if is_zero_everywhere(case.system, steady, *(derivative(second, x) for x in (u, *case.system.symbols.a))).holds:
+            (second,) = substituted((second,), {u: 1})
+            found = over(2 * (given - still), second)
+            return None if is_zero_everywhere(case.system, found).holds else found  # it does not move: no energy
+    return None

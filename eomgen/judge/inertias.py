@@ -12,16 +12,20 @@ from contextlib import suppress
 from dataclasses import replace
 from functools import cached_property
 
-from eomgen.errors import DerivationError, ExpressionError
+from eomgen.errors import DerivationError, EomgenError, ExpressionError
 from eomgen.judge.case import Case
 from eomgen.judge.corruption import EXCHANGED, PLACED, PLAIN, Corruption
 from eomgen.judge.terms import wrong_parameters
 from eomgen.judge.wrong_points import other_shapes
+from eomgen.mechanics.bodies.composition import made_of
 from eomgen.mechanics.bodies.inertia import mass_properties
+from eomgen.model.composite import PlacedPiece
+from eomgen.model.table import Table
 from eomgen.records import dataclass
 from eomgen.symbolic.expression.derivative import substituted, symbols_of
-from eomgen.symbolic.expression.expressions import Call, Reference
+from eomgen.symbolic.expression.expressions import Call, Reference, parse
 from eomgen.symbolic.expression.graph import Scalar, is_zero
+from eomgen.symbolic.print.text import to_text
 
 
 @dataclass(frozen=True)
@@ -52,36 +56,56 @@ class Inertias:
         known = self._named or tuple(self.case.model.bodies)
         return tuple(b for b in known if not is_zero(mass_properties(self.case.system.scope, b).m))
 
-    def _asked(self, body: str, point: str = "") -> Scalar:
-        """Of one body, about another point where one is given."""
+    def _asked(self, body: str, point: str = "", piece: PlacedPiece | None = None) -> Scalar:
+        """Of one body, about another point where one is given; of one of its pieces alone."""
         args = [x for x in self.call.args if not (isinstance(x, Reference) and x.name in self._named)]
         if point:
             args[0] = Reference(point)
-        return self.case.called(replace(self.call, args=(*args, Reference(body))))
+        call = replace(self.call, args=(*args, Reference(body)))
+        if piece is None:
+            return self.case.called(call)
+        shape = replace(piece.piece.shape, mass=parse(to_text(piece.mass.m)))
+        alone = replace(self.case.model.bodies[body], mass=None, parts=(replace(piece.piece, hole=False, shape=shape),))
+        bodies = Table({**self.case.model.bodies, body: alone})
+        model = replace(self.case.model, bodies=bodies, outputs=Table())
+        return piece.sign * self.case.own(replace(self.case, model=model).called(call))
 
     def _of(self, body: str) -> Iterator[Corruption]:
+        pieces = made_of(self.case.system.scope, body).pieces if self.case.model.bodies[body].parts else ()
+        for number, piece in enumerate(pieces, start=1) if self._point != f"{body}.center" else ():
+            kind = f"the hole, a {piece.piece.shape.kind}" if piece.piece.hole else piece.piece.shape.kind
+            with suppress(EomgenError):
+                whole, own = (self._asked(body, point, piece) for point in ("", f"{body}.center"))
+                yield from self._of_part(f"part {number} of {body} ({kind})", body, whole, own)
         whole, own = self._asked(body), self._asked(body, f"{body}.center")
-        name, swept = f"the moment of inertia of {body}", whole - own
-        yield Corruption(name, "factor", (whole,), PLAIN, body)
-        parts = (
-            (f"the moment of inertia of {body} about its own mass centre", own),
-            (f"the term m d^2 of {body} (Steiner, parallel axes)", swept),
-        )
-        for told, part in parts if not is_zero(own) and not is_zero(swept) else ():
-            yield Corruption(told, "factor", (part,), PLAIN, body)
+        yield from self._of_part(body, body, whole, own, together=not pieces)
         for ratio, text in other_shapes(self.case.system.scope, body):
-            yield self._changed(name, "factor", (ratio - 1) * own, text, body)
+            yield self._changed(f"the moment of inertia of {body}", "factor", (ratio - 1) * own, text, body)
+        yield from self._about_others(body, whole, own)
+
+    def _of_part(
+        self, part: str, body: str, whole: Scalar, own: Scalar, *, together: bool = True
+    ) -> Iterator[Corruption]:
+        """What may be wrong with that of a body or of a piece of it: about its mass centre, and Steiner's term."""
+        name, swept = f"the moment of inertia of {part}", whole - own
+        if together:
+            yield Corruption(name, "factor", (whole,), PLAIN, body)
+        parts = (
+            (f"the moment of inertia of {part} about its own mass centre", own),
+            (f"the term m d^2 of {part} (Steiner, parallel axes)", swept),
+        )
+        for told, share in parts if not is_zero(own) and not is_zero(swept) else ():
+            yield Corruption(told, "factor", (share,), PLAIN, body)
         known = tuple(self.case.system.symbols.parameters.values())
-        for told, part in parts:
-            (formula,) = self.case.edits.written((part,))
+        for told, share in parts:
+            (formula,) = self.case.edits.written((share,))
             for each in self.case.edits.of((formula,)):
                 text = f"in {told} {each.text}"
                 yield replace(self._changed(told, each.kind, each.to[0] - formula, text, body), rank=each.rank)
-            for kind, mapping, what in wrong_parameters(symbols_of((part,)), known):
+            for kind, mapping, what in wrong_parameters(symbols_of((share,)), known):
                 with suppress(DerivationError):
-                    by = substituted((part,), mapping)[0] - part
+                    by = substituted((share,), mapping)[0] - share
                     yield replace(self._changed(told, kind, by, f"in {told} {what}", body), rank=EXCHANGED)
-        yield from self._about_others(body, whole, own)
 
     def _about_others(self, body: str, whole: Scalar, own: Scalar) -> Iterator[Corruption]:
         """About another point than is asked; Steiner's term on top of what is not about the mass centre."""

@@ -13,6 +13,7 @@ from eomgen.judge.authored import Authored
 from eomgen.judge.case import Case
 from eomgen.judge.causes import causes_of
 from eomgen.judge.comparison import Comparison, excess
+from eomgen.judge.conserved import not_conserved
 from eomgen.judge.course import course_of
 from eomgen.judge.decision import is_zero_everywhere
 from eomgen.judge.implied import Explainable, Instant, implied_by_course, implied_by_rest, simplest_explanation
@@ -26,6 +27,7 @@ from eomgen.judge.right import (
     IDENTITY,
     SIGNLESS,
     Decided,
+    by_balance,
     by_what_is_given,
     on_one_side,
     says_nothing,
@@ -33,6 +35,7 @@ from eomgen.judge.right import (
     with_definitions,
     with_values_of_file,
 )
+from eomgen.judge.small import small_motions
 from eomgen.judge.targets import Meanings, loosened_targets, targets_of
 from eomgen.judge.verdict import RIGHT, UNDECIDED, WRONG, Cause, Verdict
 from eomgen.model.fields import AtRest
@@ -151,7 +154,8 @@ class Judge:
             found = by_what_is_given(case, written) or found
         if not found.holds and not found.why:
             found = (
-                with_definitions(case, kind, scalar)
+                by_balance(case, kind, scalar)
+                or with_definitions(case, kind, scalar)
                 or with_values_of_file(case, written, kind, scalar)
                 or on_one_side(case, written, kind, scalar)
                 or found
@@ -167,7 +171,11 @@ class Judge:
             return Verdict(written.given, kind, RIGHT, found.up_to)
         if found.holds is None:
             return Verdict(written.given, kind, UNDECIDED, reason=found.up_to or "no state of the model decides it")
-        return self._wrong(written, kind, scalar)
+        solved: dict[str, Scalar] = {}
+        with suppress(DerivationError):
+            unknowns = case.system.symbols.unknowns if written.calls else {}
+            solved = {name: case.solved(x) for name, x in unknowns.items() if depends_on(scalar, (x,))}
+        return self._wrong(written, kind, case.value(written.difference, solved) if solved else scalar, solved)
 
     def _course(self, written: HandEquation, constants: Meanings | None = None) -> Verdict | None:
         """Of a coordinate as a function of time; None: it is something else."""
@@ -205,7 +213,7 @@ class Judge:
                 found = on_one_side(case, written, kind, scalar) or found
             if found.holds and not (renaming.guessed and found.up_to.endswith("the ties")):
                 return Verdict(written.given, kind, RIGHT, found.up_to, renaming.told)
-        free = {name: case.system.scope.graph.symbol(f"({name})") for name in unknown}
+        free = {name: case.system.scope.graph.symbol(name) for name in unknown}
         moving = any(f"{name}'" in written.names for name in unknown)
         with suppress(ExpressionError):
             verdict = None if moving else self._with_constants(written, kind, free)
@@ -274,19 +282,30 @@ class Judge:
         targets = targets_of(case, written, kind, scalar, also)
         if not also:
             targets = [*loosened_targets(case, written, kind), *targets]
+        laws = case.laws_of_time if depends_on(scalar, (case.system.symbols.t,)) else {}
+        targets = [each.with_known(laws) if laws and isinstance(each, Comparison) else each for each in targets]
+        values = [each for each in targets if isinstance(each, Comparison)]
+        known: list[Explainable] = [*targets, *(small for each in values for small in small_motions(each))]
         own: list[Explainable] = [] if also else [OtherAxis(case, written, kind), Mends(Authored(case, written, kind))]
-        target, explanations = simplest_explanation(targets, own, soon=kind == "law" and not case.system.ties.rows)
+        target, explanations = simplest_explanation(known, own, soon=kind == "law" and not case.system.ties.rows)
         if not explanations and (begun := case.as_begun) is not None:
             with suppress(EomgenError):
                 also_ = targets_of(begun, written, kind, begun.value(written.difference, also), also)
                 target, explanations = simplest_explanation(also_)
+        if kind in ("law", "energy") and (also or not explanations):
+            changes = not_conserved(case, scalar)
+            if changes is not None:
+                return Verdict(written.given, kind, WRONG, difference=excess(case, scalar), causes=(changes,))
         if explanations and target is not None:
-            causes = causes_of(case, explanations, moving=kind in ("motion", "acceleration", "reaction", "law"))
+            moving = kind in ("motion", "acceleration", "reaction", "law")
+            rooted = isinstance(target, Comparison) and target.squared
+            causes = causes_of(case, explanations, moving=moving, rooted=rooted)
             return Verdict(written.given, kind, WRONG, difference=target.difference(explanations[0]), causes=causes)
-        values = [each for each in targets if isinstance(each, Comparison)]
         difference, touched = values[-1].unexplained() if values else (excess(case, scalar), "")
         text = f"the sides differ by {difference}" if difference else "the sides differ"
         cause = Cause("other", f"{text}{touched}", term=difference)
+        if clash := case.clash(written):
+            cause = Cause("unit", clash, term=difference, quantity="the dimensions")
         return Verdict(written.given, kind, WRONG, difference=difference, causes=(cause,))
 
     def _without_reactions(self, written: HandEquation, kind: str, also: Meanings | None) -> Verdict | None:

@@ -135,8 +135,13 @@ class Reading:
             for each in named_reactions(balance_of(self.system)):
                 function, _, arguments = each.name.removesuffix(")").partition("(")
                 label = function.removeprefix("reaction_")
-                if "," not in arguments and not label.startswith("couple_"):
-                    yield reaction_name(label, each.owner), Call(function, (Reference(arguments),))
+                owner, _, number = arguments.partition(", ")
+                strand = (Expression.number(int(number)),) if label == "tension" and number.isdigit() else ()
+                if (strand or not number) and not label.startswith("couple_"):
+                    call = Call(function, (Reference(owner), *strand))
+                    yield reaction_name(label, each.owner, number), call
+                    if label == "tension" and not strand:
+                        yield reaction_name(label, each.owner, "1"), call
         joints = {name: body.joint.symbol for name, body in model.bodies.items() if body.joint is not None}
         owners = {**dict.fromkeys(model.constraints), **joints}
         for name, symbol in owners.items():

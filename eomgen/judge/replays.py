@@ -13,6 +13,7 @@ from typing import Any
 
 from eomgen.errors import EomgenError
 from eomgen.judge.case import Case
+from eomgen.judge.contributions import FEW
 from eomgen.judge.corruption import PLAIN, SHARED, Corruption
 from eomgen.judge.wrong_terms import WrongTerms
 from eomgen.model.forces.base import Force
@@ -101,9 +102,17 @@ def _held(model: Model) -> Iterator[tuple[str, str, Parts]]:
         return
     for names in ([free] if free else []) + ([[name] for name in free] if len(free) > 1 else []):
         held = {name: _standing(q) if name in names else q for name, q in model.coordinates.items()}
+        moved = _moved_by(model, names[0]) if len(names) == 1 else []
         what = "everything that moves" if names == free else names[0]
+        what = f"{what} ({', '.join(moved)})" if 0 < len(moved) <= FEW else what
         text = f"what the motion of {what} does is missing: it is as if {what} stood still"
         yield "", text, {"coordinates": Table(held)}
+
+
+def _moved_by(model: Model, coordinate: str) -> list[str]:
+    """The bodies whose joints are moved by a coordinate, or placed with it."""
+    joints = {name: body.joint for name, body in model.bodies.items() if body.joint is not None}
+    return [name for name, x in joints.items() if any(coordinate in s.names for s in x.variables(model.space))]
 
 
 def _standing(q: Coordinate) -> Coordinate:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
+from contextlib import suppress
 from itertools import product
 
 from eomgen.errors import DerivationError
@@ -204,6 +205,15 @@ def with_definitions(case: Case, kind: str, scalar: Scalar) -> Decided | None:
     if not used or not _holds_with(case, kind, scalar, known):
         return None
     return Decided(True, f"what the file says of {', '.join(x.name for x in used)}")
+
+
+def by_balance(case: Case, kind: str, scalar: Scalar) -> Decided | None:
+    """Right where the unknowns of the model are what balance makes them."""
+    held = [name for name, x in case.system.symbols.unknowns.items() if depends_on(scalar, (x,))]
+    with suppress(DerivationError):
+        if held and truth_of(case, case.solved(scalar), kind).holds:
+            return Decided(True, f"what balance says of {', '.join(held)}")
+    return None
 
 
 def by_what_is_given(case: Case, written: HandEquation) -> Decided | None:

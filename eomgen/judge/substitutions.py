@@ -16,6 +16,7 @@ from eomgen.judge.terms import angles_in, term_text, turned_angles, wrong_parame
 from eomgen.judge.wrong_points import Altered
 from eomgen.records import dataclass
 from eomgen.symbolic.expression.derivative import substituted, symbols_of
+from eomgen.symbolic.expression.functions import over
 from eomgen.symbolic.expression.graph import Node, Scalar, is_zero
 
 EVERYTHING = "everything"
@@ -113,6 +114,9 @@ class _Substitutions:
                 yield from self._change(
                     part, "wrong_point" if length else kind, mapping, f"in {part.name} {what}", rank
                 )
+        for x in (x for x in known if str(self.parts.dimensions.get(x.name)) == "1"):
+            what = f"in {part.name} {x.name} is turned over: 1/{x.name} stands where {x.name} is meant"
+            yield from self._change(part, "factor", {x: over(1, x)}, what, EXCHANGED)
 
     def _alike(self, a: str, b: str) -> bool:
         """Whether two names stand for the same kind of quantity."""

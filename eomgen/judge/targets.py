@@ -17,6 +17,7 @@ from eomgen.symbolic.expression.derivative import depends_on, derivative, substi
 from eomgen.symbolic.expression.expressions import Reference
 from eomgen.symbolic.expression.functions import over
 from eomgen.symbolic.expression.graph import Scalar, is_zero
+from eomgen.symbolic.expression.traversal import order
 
 Meanings = Mapping[str, Scalar]
 MOST_FORMS = 6  # of a value that is compared in others than its own
@@ -49,7 +50,7 @@ def _values_of(case: Case, written: HandEquation, kind: str, scalar: Scalar, als
             Comparison(case, each, rows, "motion", sizes=sizes) for each in substituted((*of_law, scalar), sizes)
         ]
     if len(calls) != 1:
-        return [Comparison(case, scalar, (0,), "")] if calls else []
+        return _sums(case, written, scalar) if calls else []
     (call,) = calls
     symbol = case.system.scope.graph.symbol(f"({call})")
     left = case.evaluated(written.difference, {**case.names, **(also or {})}, lambda _: symbol)
@@ -71,10 +72,25 @@ def _values_of(case: Case, written: HandEquation, kind: str, scalar: Scalar, als
             true = so
     elif kind == "reaction":
         found += [Comparison(case, author - x, (x,), "", call, of) for x in _in_names_of(case, author, true)]
+    if any(x.op == "sqrt" for x in order((author, true))) and not depends_on(true, moving):
+        found.append(Comparison(case, author * author - true * true, (true * true,), "", squared=True))
     if kind == "reaction" and len(case.model.bodies) <= MOST_BODIES:
         found.append(
             Comparison(case, author - true, (true,), "", more=lambda: replays(case, true, case.called_by(call)))
         )
+    return found
+
+
+def _sums(case: Case, written: HandEquation, scalar: Scalar) -> list[Comparison]:
+    """Several functions: where all stand on one side, the other is the author's value of what is there."""
+    author, of = (written.right, written.left) if not written.right.calls else (written.left, written.right)
+    if author.calls:
+        return [Comparison(case, scalar, (0,), "")]
+    true, theirs = case.value(of), case.value(author)
+    found = [Comparison(case, theirs - true, (true,), "")]
+    with suppress(EomgenError):
+        so = case.phase.simple(case.phase.eliminated(true)) if depends_on(true, case.forced) else true
+        found = [Comparison(case, theirs - so, (so,), "")] if not depends_on(theirs, case.forced) else found
     return found
 
 

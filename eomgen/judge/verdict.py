@@ -27,6 +27,7 @@ class Cause:
         body, force: whose it is, "".
         quantity: what it concerns, in words: for a hint that does not tell all.
         others: kinds that would explain it as well.
+        or_else: another sentence that would, and is believed nearly as readily; "".
     """
 
     kind: str
@@ -36,6 +37,7 @@ class Cause:
     force: str = ""
     quantity: str = ""
     others: tuple[str, ...] = ()
+    or_else: str = ""
 
     def as_dict(self) -> dict[str, Any]:
         return {
@@ -45,12 +47,18 @@ class Cause:
             "force": self.force or None,
             "text": self.text,
             "other_kinds": list(self.others),
+            "or_else": self.or_else or None,
         }
+
+    @property
+    def lines(self) -> tuple[str, ...]:
+        """The sentence, and the other one."""
+        return (self.text, f"or else: {self.or_else}") if self.or_else else (self.text,)
 
     def hint(self, level: int) -> str:
         """1: where to look; 2: which quantity; 3: all of it."""
         if level >= 3:
-            return self.text
+            return " ".join(self.lines)
         place = self.body or self.force
         if level == 2:
             return (
@@ -135,7 +143,7 @@ class Verdict:
         if self.reason:
             found.append(f"    {self.reason}")
         if hint is None or hint >= 3:
-            found += [f"    {cause.text}" for cause in self.causes]
+            found += [f"    {line}" for cause in self.causes for line in cause.lines]
             if self.difference:
                 found.append(f"    too much on the left: {self.difference}")
         elif self.causes:

@@ -4,8 +4,8 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
 
-from eomgen.judge.contributions import Contribution, Contributions
-from eomgen.judge.corruption import PLACED, SHARED
+from eomgen.judge.contributions import FEW, Contribution, Contributions
+from eomgen.judge.corruption import PLACED, SHARED, SHORTER
 from eomgen.judge.terms import LONG, term_text
 from eomgen.mechanics.bodies.inertia import HALF, BodyEnergy, body_energies, mass_properties
 from eomgen.mechanics.bodies.kinematics import velocity_of
@@ -20,7 +20,7 @@ from eomgen.symbolic.expression.expressions import Expression
 from eomgen.symbolic.expression.functions import over
 from eomgen.symbolic.expression.graph import Node, Scalar, is_zero
 from eomgen.symbolic.expression.rational import Fraction
-from eomgen.symbolic.expression.spatial import Vector, cross, dot, minus, vector_of
+from eomgen.symbolic.expression.spatial import Vector, apply, cross, dot, minus, plus, transposed, vector_of
 from eomgen.symbolic.numeric.work import Work
 
 SHAPES = (  # I / (m r^2)
@@ -120,6 +120,30 @@ class _Places:
                 yield self._change(f"the length of {self.body}", text, T, self._raised(r), SHARED)
         for part in self.mine:
             yield from self._other_place(part, places)
+        yield from self._relative()
+
+    def _relative(self) -> Iterator[Altered]:
+        """The motion relative to the body on which this one hangs, in the place of its own."""
+        motion = self.parts.operator.base.motion
+        link = motion.link(self.body) if self.body in motion.index else None
+        if link is None or link.parent < 0:
+            return
+        carrier, place = motion.links[link.parent], link.pose.point(self.mass.com)
+        turned, arm = transposed(carrier.pose.R), minus(place, carrier.pose.p)
+        carried = apply(carrier.pose.R, plus(carrier.twist.v, cross(carrier.twist.w, apply(turned, arm))))
+        v = minus(self.energy.velocity, carried)
+        w = minus(self.energy.spin, apply(transposed(link.pose.R), apply(carrier.pose.R, carrier.twist.w)))
+        translation, rotation = HALF * self.mass.m * dot(v, v), HALF * dot(w, apply(self.mass.I, w))
+        held = symbols_of((*carried, *carrier.twist.w))
+        rates = [u.name for u in motion.scope.symbols.u if u in held]
+        which = f" ({', '.join(rates)})" if 0 < len(rates) <= FEW else ""
+        for of, what, T in (
+            ("translation", "velocity", translation - self.energy.translation),
+            ("rotation", "angular velocity", rotation - self.energy.rotation),
+        ):
+            text = f"in the {of} of {self.body} what the motion of {carrier.name}{which} does is missing: its {what}"
+            text = f"{text} relative to {carrier.name} stands for the absolute one"
+            yield Altered(f"the {of} of {self.body}", "missing_term", text, self._part(T), SHARED - SHORTER)
 
     def _others(self) -> dict[str, Vector]:
         """The points of the body that are not its mass centre, each once."""

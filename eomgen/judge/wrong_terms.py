@@ -67,6 +67,9 @@ class WrongTerms:
                 if w is not u:
                     what = f"{w.name} stands where {u.name} is meant"
                     yield from self._replaced(name, term, "wrong_quantity", {u: w}, what, ODD, k, number)
+                    for other, of in ((u + w, "it is no relative one"), (u - w, "it is a relative one")):
+                        what = f"{term_text(other)} stands where {u.name} is meant: {of}"
+                        yield from self._replaced(name, term, "wrong_quantity", {u: other}, what, ODD, k, number)
 
     def throughout(self, rows: Sequence[Scalar]) -> Iterator[Corruption]:
         """What may be wrong in a row wherever it stands: angles, and parameters."""

@@ -36,13 +36,16 @@ def lines(path: Path) -> Iterator[tuple[str, str, list[list[str]], dict[str, str
 
 
 def told(judge: Judge, text: str, options: dict[str, str]) -> tuple[str, str]:
-    """(verdict, the causes that are named); the verdict is `refused` where there is none."""
+    """(verdict, the causes that are named, and what would explain it as well); `refused` where there is no verdict."""
+    if "from_rest" in options:
+        judge = Judge(Case(judge.case.model, at_rest=True))
     try:
-        found = judge.verdict(text, **options)
+        found = judge.verdict(text, **{name: x for name, x in options.items() if name != "from_rest"})
     except EomgenError as error:
         return "refused", str(error)
     named = [cause for cause in found.causes if cause.kind != "other"]
-    return found.verdict, "; ".join(f"[{x.kind}] {x.text} ({x.term})" for x in named)
+    texts = [f"[{x.kind}] {x.text} ({x.term})" for x in named] + [f"or else: {x.or_else}" for x in named if x.or_else]
+    return found.verdict, "; ".join(texts)
 
 
 def is_named(causes: str, groups: list[list[str]]) -> bool:
@@ -64,6 +67,7 @@ def main(part: str = "all", folder: str = "fresh_mistakes") -> int:
         for kind, text, groups, options in lines(path.with_suffix(".eq")):
             verdict, causes = told(judge, text, options)
             named = kind != "right" and verdict == "wrong" and is_named(causes, groups)
+            first = named and is_named(causes.partition("; or else: ")[0], groups)
             if kind == "right":
                 count["right"] += 1
                 count["accepted"] += verdict == "right"
@@ -72,6 +76,7 @@ def main(part: str = "all", folder: str = "fresh_mistakes") -> int:
                 count["told wrong"] += verdict == "wrong"
                 count["taken for right"] += verdict == "right"
                 count["cause named"] += named
+                count["in the first sentence"] += first
                 count["another cause told"] += verdict == "wrong" and causes != "" and not named
             sought = "" if named or kind == "right" else f"\n    not named: {' + '.join(map(' or '.join, groups))}"
             print(f"{verdict:10} {path.stem} [{kind}] {text}\n    {causes}{sought}", flush=True)
