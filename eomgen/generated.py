@@ -13,7 +13,7 @@ from eomgen import files, pipeline
 from eomgen.certificate import certify
 from eomgen.codegen.files import texts_of
 from eomgen.codegen.matrices import Blocks, entries_of, matrices_of, program_of_blocks
-from eomgen.codegen.names import identifier
+from eomgen.codegen.names import stem_of
 from eomgen.codegen.program import Program, Solve, program_of
 from eomgen.codegen.rhs import RightHandSide, target_named
 from eomgen.codegen.single_precision import single_error, single_vectors
@@ -216,7 +216,7 @@ class Generated:
         if not self.integrator:
             return {}
         x0, p0 = (None if each is None else each.tolist() for each in (self._start.x0, self._start.p0))
-        return integrator_files(identifier(self.stem), self.motion[0], x0, p0, SINGLE if self.float32 else RUN)
+        return integrator_files(stem_of(self.stem), self.motion[0], x0, p0, SINGLE if self.float32 else RUN)
 
     def write(self, directory: str | Path) -> list[Path]:
         """The files, all of them or none.
@@ -265,7 +265,7 @@ class Generated:
     def _single(self, target: str, emitted: Emitted) -> Check:
         """The text in single precision, run, against the vectors and the tolerances that stand beside it."""
         program, told = emitted
-        stem, single = identifier(self.stem), target_named(target).single
+        stem, single = stem_of(self.stem), target_named(target).single
         assert single is not None
         how, texts = "the code in single precision, run", _inside(self.texts, self._folder(target))
         what = f"{told.role.main(stem)} in single precision ({target}) is as near as its tolerances say"
@@ -297,7 +297,7 @@ class Generated:
     def _written(self, target: str, emitted: Emitted) -> Written:
         program, told = emitted
         texts = _inside(self._in_doubles if self.float32 else self.texts, self._folder(target))
-        return Written(target, texts, program, identifier(self.stem), told.role, told.vectors)
+        return Written(target, texts, program, stem_of(self.stem), told.role, told.vectors)
 
     @cached_property
     def _start(self) -> RightHandSide:

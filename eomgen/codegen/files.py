@@ -6,7 +6,7 @@ import json
 from collections.abc import Mapping, Sequence
 from types import MappingProxyType
 
-from eomgen.codegen.names import identifier
+from eomgen.codegen.names import stem_of
 from eomgen.codegen.program import Program
 from eomgen.codegen.rhs import target_named
 from eomgen.codegen.targets.base import RHS, Description, Emitted, FileContent, Target
@@ -31,7 +31,7 @@ def texts_of(
         notes: what is not in the code, and why, a line each.
         uses: by language, how files are used that lie beside its own.
     """
-    answers, stem = vectors_text(emitted), identifier(name)
+    answers, stem = vectors_text(emitted), stem_of(name)
     texts: dict[str, FileContent] = {}
     for target in map(target_named, dict.fromkeys(targets)):
         folder = "" if len(set(targets)) == 1 else f"{target.name}/"

@@ -24,6 +24,7 @@ LOCAL = re.compile(
 
 
 LONGEST = 31  # what is no longer every language takes
+LONGEST_STEM = 48  # Fortran and MATLAB take 63, `_regressor_test` after it
 
 
 def identifiers(
@@ -54,6 +55,11 @@ def identifier(name: str) -> str:
     """The letters, digits and underscores nearest to a name: 'ω₁' -> 'omega1', 'arm-7' -> 'arm_7'."""
     word = "".join(_plain(letter) for letter in unicodedata.normalize("NFKC", name))
     return f"n{word}" if not word or word[0].isdigit() else word
+
+
+def stem_of(name: str) -> str:
+    """What files and functions of a model are called by, with `_rhs` and the like after it."""
+    return identifier(name)[:LONGEST_STEM]
 
 
 def _plain(letter: str) -> str:

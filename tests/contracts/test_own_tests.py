@@ -177,6 +177,14 @@ def test_the_language_s_own_test_agrees_with_the_symbols(target, tmp_path):
     assert OWN_TESTS[target](tmp_path) == ""
 
 
+@marked(("fortran", "matlab", "c"))
+def test_a_model_whose_name_is_longer_than_a_language_takes_has_code(target, tmp_path):
+    """63 letters with what stands after the name: files and functions are called by the first 48 of it."""
+    made = eomgen.generate(MODELS / "simple_pendulum.toml", (target,), name="p" * 60, jacobian=True)
+    files.write_all(tmp_path, made.texts)
+    assert OWN_TESTS[target](tmp_path) == "" and made.certify().ok
+
+
 STANDS = """
 eomgen = 1
 space = "plane"
