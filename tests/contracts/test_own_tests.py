@@ -185,6 +185,27 @@ def test_a_model_whose_name_is_longer_than_a_language_takes_has_code(target, tmp
     assert OWN_TESTS[target](tmp_path) == "" and made.certify().ok
 
 
+STICKS = """
+eomgen = 1
+space = "plane"
+parameters = { m = 1, g = 9.81 }
+coordinates = { x = { speed = 0.3 } }
+bodies.block = { shape = { kind = "particle", mass = "m" }, joint = { kind = "placed", at = ["x", 0] } }
+constraints.floor = { kind = "support", point = "block.center", normal = [0, 1], friction = 0.3 }
+forces.weight = { kind = "gravity", acceleration = [0, "-g"] }
+"""
+
+
+@marked(("fmu",))
+def test_the_own_test_of_what_comes_to_stick_simulates_as_far_as_it_slides(target, tmp_path):
+    """A block that stands after 0.10 s: a solver without events cannot go on, and the test is of what comes before."""
+    files.write_all(tmp_path, eomgen.generate(eomgen.loads(STICKS), (target,), name="sticks").texts)
+    assert OWN_TESTS[target](tmp_path) == ""
+    assert "(0.2, 0.1, 0.05, 0.02)" in next(tmp_path.glob("test_*.py")).read_text()
+    files.write_all(tmp_path / "two", eomgen.generate(MODELS / "cart_pole.toml", (target,), name="cart").texts)
+    assert "(0.2,)" in next((tmp_path / "two").glob("test_*.py")).read_text()
+
+
 STANDS = """
 eomgen = 1
 space = "plane"
