@@ -146,3 +146,17 @@ def test_what_is_too_long_for_a_model_file_is_said_to_be():
     long = sum(sm.Symbol(f"a{k}") * sm.sin(k * q) for k in range(1, 1200))
     with pytest.raises(DerivationError, match=r"characters to write, of which a model file may have 10000"):
         eomgen.from_sympy(LagrangesMethod(q.diff() ** 2 / 2 - long, [q]))
+
+
+def test_a_parameter_that_is_called_like_a_coordinate_or_an_input_is_another_thing():
+    """Symbol("q") beside q(t), Symbol("F") beside F(t): q'' = (F(t) F - q)/q of T = q q'^2/2, V = q^2/2."""
+    q, F = dynamicsymbols("q F")
+    N = ReferenceFrame("N")
+    P = Point("P")
+    P.set_vel(N, q.diff() * N.x)
+    L = sm.Symbol("q") * q.diff() ** 2 / 2 - q**2 / 2
+    model = eomgen.from_sympy(LagrangesMethod(L, [q], forcelist=[(P, F * sm.Symbol("F") * N.x)], frame=N))
+    assert set(model.parameters) == {"q_2", "F_2"} and set(model.inputs) == {"F"}
+    rhs = eomgen.derive(model).rhs("numpy")
+    p = [{"q_2": 2.0, "F_2": 3.0}[name] for name in model.parameters]
+    assert rhs(0.0, [0.5, 0.0], p, [7.0])[1] == pytest.approx((7 * 3 - 0.5) / 2)

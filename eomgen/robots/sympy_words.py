@@ -71,18 +71,16 @@ class Words:
         """
         t = dynamicsymbols._t
         expression = sympy.sympify(expression, strict=True)
-        known = {x: sympy.Symbol(name) for x, name in self.moving.items()} | {t: sympy.Symbol("t")}
-        expression = expression.xreplace(known)
-        for rate in sorted(expression.atoms(sympy.Derivative), key=str):
+        moving = {x: sympy.Symbol(name) for x, name in self.moving.items()} | {t: sympy.Symbol("t")}
+        standing = expression.xreplace(moving)
+        for rate in sorted(standing.atoms(sympy.Derivative), key=str):
             what = f"the rate {rate} of a given function of time stands in the equations"
             raise DerivationError(what, mend="make it a coordinate, and give that its `motion` in the model")
-        met: dict[Any, Any] = {
-            x: sympy.Symbol(self._input(x)) for x in _sorted(expression.atoms(sympy.core.function.AppliedUndef))
-        }
-        expression = expression.xreplace(met)
-        own = {*self.nodes}
-        met = {x: sympy.Symbol(self._parameter(x)) for x in _sorted(expression.free_symbols) if x.name not in own}
-        return scalar_from_sympy(with_rationals(expression.xreplace(met)), self.nodes)
+        functions = expression.atoms(sympy.core.function.AppliedUndef) - moving.keys()
+        known = moving | {x: sympy.Symbol(self._input(x)) for x in _sorted(functions)}
+        parameters = expression.free_symbols - {t}  # before anything else is called as they are
+        known |= {x: sympy.Symbol(self._parameter(x)) for x in _sorted(parameters)}
+        return scalar_from_sympy(with_rationals(expression.xreplace(known)), self.nodes)
 
     def _input(self, function: Any) -> str:
         """Raises: DerivationError: it is no function of time alone."""
