@@ -267,3 +267,20 @@ bodies.a = { mass = 1, inertia = [1, 1, 1], joint = { kind = "revolute", angle =
     assert told["given motions"] == ("q",)
     with pytest.raises(DerivationError, match="no joint that goes 2 times its coordinate: 'q'"):
         urdf_of(eomgen.loads(text.replace("ANGLE", "2*q")))
+
+
+def test_what_a_world_includes_stands_where_the_include_says(tmp_path):
+    """<pose> and placement_frame of an <include> as of the model itself; a pose in a frame of the world is left out."""
+    (tmp_path / "m.sdf").write_text(sdf_text(pose="<pose>9 9 9 0 0 0</pose>"))
+    place = "<pose>1 2 3 0 .5 0</pose>"
+    head = '<sdf version="1.9"><world name="w"><include placement_frame="b"><uri>m.sdf</uri>'
+    found = robot(tmp_path, f"{head}{place}</include></world></sdf>", "sdf")
+    own = robot(tmp_path, sdf_text(attributes='placement_frame="b"', pose=place), "sdf")
+    assert found.model.bodies == own.model.bodies
+    assert not any("placement_frame" in each.what for each in found.left_out)
+    there = place.replace("<pose>", "<pose relative_to='x'>")
+    other = robot(tmp_path, f"{head}{there}</include></world></sdf>", "sdf")
+    assert (
+        "pose (line 1)" in {each.what: each.where for each in other.left_out}["pose"]
+        and other.model.bodies["a"].joint.at is None
+    )

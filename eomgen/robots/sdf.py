@@ -100,7 +100,8 @@ def _included(include: XmlElement, files: tuple[str, ...]) -> tuple[bool, XmlEle
         raise ModelError("the file holds no <model>", root.where, "include one with a model")
     title, own = include.one("name"), [x for x in (include.one("static"), include.one("pose")) if x is not None]
     attributes = dict(model.attributes) if title is None else {**model.attributes, "name": title.text}
-    attributes |= {key: x for key, x in include.attributes.items() if key == "placement_frame"}
+    if frame := include.get("placement_frame"):
+        attributes["placement_frame"] = frame
     kept = [child for child in model.children if child.tag not in {x.tag for x in own}]
     made = XmlElement("model", attributes, model.where, [*own, *kept], seen=True)
     return _version(root) < (1, 5), made, (*files, str(found))
@@ -257,7 +258,8 @@ class _Reading:
         """Of the model in the world: of its own frame, or of the one by which it is placed."""
         pose = next((child for child in self.model.children if child.tag == "pose"), None)
         if pose is not None and pose.attributes.get("relative_to", "world") != "world":
-            return Pose(IDENTITY, ORIGIN)  # to what is not imported: it is told among what is left out
+            pose.seen = False  # to what is not imported: it is told among what is left out
+            return Pose(IDENTITY, ORIGIN)
         frame = self.model.get("placement_frame") or "__model__"
         if pose is not None:
             pose.seen = True
