@@ -6,6 +6,8 @@ import importlib
 from decimal import Decimal
 from typing import Any
 
+import numpy as np
+
 from eomgen.robots.drawn_up import in_file, signed_sum
 from eomgen.robots.mjcf_reading import HINGE, SLIDE, CompiledRobot, turn_by
 from eomgen.robots.numbers import decimal_of_double, decimals
@@ -53,6 +55,7 @@ def _linear(r: CompiledRobot, k: int, at_site: bool) -> bool:
     """Whether a law is gain w + bias, linear in the length and its rate; the rate of a site has no name in a file."""
     m = r.m
     known = m.actuator_gaintype[k] in (FIXED, AFFINE) and m.actuator_biastype[k] in (0, AFFINE)
+    known = known and bool(np.isfinite([*m.actuator_gainprm[k][:3], *m.actuator_biasprm[k][:3]]).all())
     bent = any(r.numbers(["actuator_dampingpoly"], k))
     by_rate = [m.actuator_gainprm[k][2] * m.actuator_gaintype[k], m.actuator_biasprm[k][2] * m.actuator_biastype[k]]
     return bool(known) and not bent and not (at_site and any([*by_rate, *r.numbers(["actuator_damping"], k)]))
