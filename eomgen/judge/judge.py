@@ -18,6 +18,7 @@ from eomgen.judge.course import course_of
 from eomgen.judge.decision import is_zero_everywhere
 from eomgen.judge.implied import Explainable, Instant, implied_by_course, implied_by_rest, simplest_explanation
 from eomgen.judge.kinds import FUNCTION_KINDS, KINDS, kind_of_equation
+from eomgen.judge.left_out import left_out
 from eomgen.judge.mends import Mends
 from eomgen.judge.reading import HandEquation
 from eomgen.judge.renaming import OtherAxis, Renaming, renamings
@@ -286,6 +287,8 @@ class Judge:
         targets = [each.with_known(laws) if laws and isinstance(each, Comparison) else each for each in targets]
         values = [each for each in targets if isinstance(each, Comparison)]
         known: list[Explainable] = [*targets, *(small for each in values for small in small_motions(each))]
+        if kind == "motion" and not written.calls and not also:
+            known += left_out(case, scalar)
         own: list[Explainable] = [] if also else [OtherAxis(case, written, kind), Mends(Authored(case, written, kind))]
         target, explanations = simplest_explanation(known, own, soon=kind == "law" and not case.system.ties.rows)
         if not explanations and (begun := case.as_begun) is not None:
