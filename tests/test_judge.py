@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 import random
+from pathlib import Path
 
 import numpy as np
 import pytest
@@ -510,6 +511,85 @@ def test_the_derivation_is_replayed_with_one_thing_wrong(model, equation, kind, 
     """What stood still or was left out on the way to an answer; the energy theorem; slopes at rest; another place."""
     (cause,) = verdict(model, equation).causes
     assert (not kind or cause.kind == kind) and told in cause.text
+
+
+STRANGERS = Path(__file__).parent / "helpers" / "unseen_mistakes"
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize(
+    ("model", "equation", "words"),
+    [
+        # linearized, and a mistake beside it
+        ("04_rocking_half_disc", r"(\frac32R^2 - 2Re)\ddot\theta = g e\,\theta", ["small motion", "weight of half"]),
+        ("32_quarter_car", r"m\ddot z + c\dot z + kz = cY\cos(wt) + kY\sin(wt) + kl_0 - mg", ["factor w is missing"]),
+        (
+            "20_block_drawn_up",
+            r"(m_A g + m_B g + m_D g/2)\ddot x = m_B g - m_A g(\sin\alpha + \mu\cos\alpha)",
+            ["weights"],
+        ),
+        ("22_geared_hoist", "(J1 + (J2 + m rho^2) n^2) phi'' = tau - m g rho n", ["n is turned over"]),
+        ("28_satellite_booms", "(J + 2*m*r^2)*theta'^2 = C", ["energy", "not constant", "drives r does work"]),
+        ("26_edge_mill", r"w_run = b\dot\psi/r", ["under the root", "psi'^2 is missing"]),
+        ("40_plate_with_hole", "J_O = m*(b^2 + h^2)/12 - mh*r^2/2", ["Steiner", "part 2", "hole"]),
+        ("10_roller_on_cart", "frequency(2) = sqrt(2*k/(3*m))", ["as if x (cart, cylinder) stood still"]),
+        ("53_triatomic", "frequency(3) = sqrt(k/m + k/M)", ["middle stands with the factor 2"]),
+        ("41_bead_on_wire", "(1 + x^2/p^2)*x'' + g*x/p = 0", ["tie wire differentiated twice", "is missing"]),
+        ("30_doubled_cord", "(mA + mB/4)*x'' = mB*g/2 - mu*mA*g", ["move a quarter as far"]),
+        ("60_box_on_two_links", "T1 + T2 = m*g*sin(theta) - m*l*theta'^2", ["inertia force", "sin and cos"]),
+        ("44_mass_on_turntable", "T = m*(x'^2 + y'^2)/2 + m*w*(x^2 + y^2)/2", ["no sum"]),
+        # either ... or
+        (
+            "01_clock_pendulum",
+            "(m*l^2/12 + M*l^2 + M*R^2/2)*theta'' = -(m/2 + M)*g*l*sin(theta) - kt*theta",
+            ["or else", "Steiner"],
+        ),
+    ],
+)
+def test_the_thought_behind_a_mistake_is_told(model, equation, words):
+    """What somebody did who derived it so: in equations, energies, frequencies and reactions of a stranger."""
+    found = eomgen.verify(STRANGERS / f"{model}.toml", equation)
+    told = " ".join(line for cause in found.causes for line in cause.lines)
+    assert found.verdict == "wrong" and all(word in told for word in words), told
+
+
+ROLLING = """
+eomgen = 1
+space = "plane"
+[parameters]
+m = { value = 2, positive = true }
+r = { value = 0.1, positive = true }
+R = { value = 0.6, positive = true }
+theta0 = { value = 0.5, positive = true }
+g = { value = 9.81, positive = true }
+[coordinates]
+theta = { start = "theta0" }
+[bodies.roller]
+shape = { kind = "disc", mass = "m", radius = "r" }
+joint = { kind = "placed", at = ["(R - r)*sin(theta)", "-(R - r)*cos(theta)"], angle = "-(R - r)*theta/r" }
+[constraints.trough]
+kind = "rolling"
+body = "roller"
+circle = { at = [0, 0], radius = "R", inside = true }
+[forces.weight]
+kind = "gravity"
+acceleration = [0, "-g"]
+"""
+
+
+@pytest.mark.slow
+def test_what_an_energy_forgot_is_told_by_the_force_at_an_instant():
+    """N = m g + m v^2/(R - r) with v of a particle: the rotation is missing in the energy theorem."""
+    model, more = eomgen.loads(ROLLING), {"at": "theta = 0", "from_rest": True}
+    assert eomgen.verify(model, "reaction_n(trough) = m*g*(7 - 4*cos(theta0))/3", **more)
+    (cause,) = eomgen.verify(model, "reaction_n(trough) = m*g*(3 - 2*cos(theta0))", **more).causes
+    assert "the rotation of roller" in cause.text and "is missing" in cause.text
+
+
+def test_an_equation_of_a_body_without_what_holds_it_is_told():
+    """m k^2 x''/R = -F r about the centre: friction is left out of the balance of moments."""
+    (cause,) = eomgen.verify(STRANGERS / "05_spool_pulled.toml", "m*kG^2*x''/R = -F*r").causes
+    assert "balance of moments about spool" in cause.text and "reaction_t(floor)" in cause.text
 
 
 @pytest.mark.slow

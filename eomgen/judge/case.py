@@ -383,7 +383,7 @@ class Case:
     def clash(self, written: HandEquation) -> str:
         """What is wrong with the dimensions, in words; ""."""
         names = inferred(Catalog(self.model, ())).names
-        left, right = names.walk(), names.walk()
+        left, right = (replace(names.walk(), strict=True) for _ in range(2))
         needed = left.of(written.left)
         right.of(written.right, needed=needed)
         return next((clash.what for clash in (*left.clashes, *right.clashes)), "")
