@@ -553,6 +553,21 @@ def test_the_thought_behind_a_mistake_is_told(model, equation, words):
     assert found.verdict == "wrong" and all(word in told for word in words), told
 
 
+@pytest.mark.slow
+@pytest.mark.parametrize(
+    ("model", "equation", "words"),
+    [
+        ("02_pulley_spring", "x = m*g/k*(1 - cos(k/(m + M/2)*t))", "the root is missing"),
+        ("19_drag", "x = m*v0/c*(1 - exp(-c*t))", "a division by m is missing"),
+        ("19_drag", "x = m*v0/c*(2 - exp(-c*t/m))", "at the start x is m*v0/c, and not 0"),
+    ],
+)
+def test_a_wrong_course_is_told_by_the_one_place_that_makes_it_right(model, equation, words):
+    """Put into the equations of motion and the start, with another value at each place of it."""
+    found = eomgen.verify(STRANGERS.parent / "fresh_mistakes" / f"{model}.toml", equation)
+    assert found.verdict == "wrong" and words in found.causes[0].text, found
+
+
 ROLLING = """
 eomgen = 1
 space = "plane"

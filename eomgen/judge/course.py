@@ -2,15 +2,23 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping
 
+from eomgen.errors import DerivationError
 from eomgen.judge.case import Case
 from eomgen.judge.decision import is_zero_everywhere
 from eomgen.judge.reading import HandEquation
+from eomgen.judge.terms import short_text, term_text
+from eomgen.judge.verdict import Cause
 from eomgen.records import dataclass
 from eomgen.symbolic.expression.derivative import depends_on, derivative, substituted
+from eomgen.symbolic.expression.functions import over
 from eomgen.symbolic.expression.graph import Node, Scalar
 from eomgen.symbolic.expression.node import ScalarRow
+from eomgen.symbolic.expression.rational import Fraction
+from eomgen.symbolic.expression.traversal import order
+
+MOST_PLACES = 14  # of a course that are changed
 
 
 @dataclass(frozen=True)
@@ -43,8 +51,12 @@ def course_of(case: Case, written: HandEquation, constants: Mapping[str, Scalar]
         return None
     if coordinates[name.removesuffix("'")].driven:
         return None
-    symbols, scope = case.system.symbols, case.system.scope
-    x, known = case.value(written.right, constants), dict[Node, Scalar]()
+    return _put_in(case, name, case.value(written.right, constants), any_start=bool(constants))
+
+
+def _put_in(case: Case, name: str, x: Scalar, *, any_start: bool) -> Course | None:
+    """A coordinate or its rate, by its name, as a function of time put into the equations of motion."""
+    symbols, scope, known = case.system.symbols, case.system.scope, dict[Node, Scalar]()
     for rate in (name, f"{name}'", f"{name}''")[: 3 - name.count("'")]:
         node = scope.names[rate]
         if type(node) is Node and node.op == "symbol":
@@ -52,7 +64,7 @@ def course_of(case: Case, written: HandEquation, constants: Mapping[str, Scalar]
         x = derivative(x, symbols.t)
     given = tuple(scope.names[x.name] - value for x, value in known.items() if not x.name.endswith("''"))
     start = substituted(given, {**case.start, symbols.t: 0})
-    begins = bool(constants or not case.start or is_zero_everywhere(case.system, *start).holds)
+    begins = any_start or not case.start or bool(is_zero_everywhere(case.system, *start).holds)
     others = [x for x in (*symbols.q, *symbols.u) if x not in known]
     if not case.rows:
         return None
@@ -66,3 +78,53 @@ def course_of(case: Case, written: HandEquation, constants: Mapping[str, Scalar]
     if not mine and name.endswith("'"):
         return None  # its coordinate stands in the equations: this is no course
     return Course(known, mine, is_zero_everywhere(case.system, *mine).holds if mine else None, begins)
+
+
+def of_the_start(case: Case, course: Course) -> str:
+    """What differs at the start, in words: x is 0 there, and not x0."""
+    told, at = [], {case.system.symbols.t: 0}
+    for x, value in course.known.items():
+        if x in case.start and not x.name.endswith("''"):
+            mine, own = substituted((value, case.start[x]), at)
+            if not is_zero_everywhere(case.system, mine - own).holds:
+                texts = (short_text(y, case.system.scope.positive) or "another one" for y in (mine, own))
+                told.append("{} is {}, and not {}".format(x.name, *texts))
+    return " and ".join(told)
+
+
+def mended(case: Case, written: HandEquation, constants: Mapping[str, Scalar]) -> Cause | None:
+    """The one place of a course that is wrong: with another value there the equations of motion hold, and the start."""
+    name, x = written.left.code[0][1], case.value(written.right, constants)
+    places = [node for node in order((x,)) if node is not x and depends_on(node, tuple(_constants(case)))]
+    for node in [x, *places][:MOST_PLACES] if type(x) is Node else ():
+        for to, kind, told in _others(case, node):
+            try:
+                course = _put_in(case, name, substituted((x,), {node: to})[0], any_start=bool(constants))
+            except DerivationError:
+                continue
+            if course is not None and course.holds and course.begins:
+                there, meant = term_text(node), term_text(to)
+                text = f"in the course {there} stands where {meant} is meant{told}"
+                return Cause(kind, text, there, quantity="the course")
+    return None
+
+
+def _constants(case: Case) -> tuple[Node, ...]:
+    return (*case.system.symbols.parameters.values(), case.system.symbols.t)
+
+
+def _others(case: Case, node: Node) -> Iterator[tuple[Scalar, str, str]]:
+    """What may be meant in the place of a node: (that, kind of the cause, more words)."""
+    graph = node.graph
+    yield graph.sqrt(node), "factor", ": the root is missing"
+    yield node * node, "factor", ": a root is too many"
+    yield -node, "sign", ": the sign is wrong"
+    for k in (Fraction(2), Fraction(1, 2)):
+        yield k * node, "factor", ""
+    if node.op in ("sin", "cos"):
+        yield graph.call("cos" if node.op == "sin" else "sin", node.args[0]), "wrong_axis", ""
+    yield over(1, node), "factor", ": it is turned over"
+    yield 1 - node, "missing_term", ""
+    for p in case.system.symbols.parameters.values():
+        yield node * p, "factor", f": a factor {p.name} is missing"
+        yield over(node, p), "factor", f": a division by {p.name} is missing"

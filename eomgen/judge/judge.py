@@ -14,8 +14,9 @@ from eomgen.judge.case import Case
 from eomgen.judge.causes import causes_of
 from eomgen.judge.comparison import Comparison, excess
 from eomgen.judge.conserved import not_conserved
-from eomgen.judge.course import course_of
+from eomgen.judge.course import course_of, mended, of_the_start
 from eomgen.judge.decision import is_zero_everywhere
+from eomgen.judge.diagnosis import BELIEVED
 from eomgen.judge.implied import Explainable, Instant, implied_by_course, implied_by_rest, simplest_explanation
 from eomgen.judge.kinds import FUNCTION_KINDS, KINDS, kind_of_equation
 from eomgen.judge.left_out import left_out
@@ -189,16 +190,23 @@ class Judge:
         if course.holds and course.begins:
             told = f"any start, with {', '.join(constants)} constant" if constants else "the motion from the start"
             return Verdict(written.given, "law", RIGHT, told)
-        what = "the equations of motion do not hold with it" if not course.holds else "the start is another one"
         rest = "" if course.holds else excess(case, course.left[0] if len(course.left) == 1 else 0)
         target = implied_by_course(case, course.known) if not course.holds else None
         found = simplest_explanation([target] if target is not None else [])[1]
-        if found:
+        if found and found[0].cost < BELIEVED:
             causes = causes_of(case, found, moving=False)
-            return Verdict(written.given, "law", WRONG, difference=rest, causes=causes)
-        quantity = "the start" if course.holds else "the equation of motion"
-        cause = Cause("other", f"{what}: put in, there is left {rest}" if rest else what, quantity=quantity)
-        return Verdict(written.given, "law", WRONG, difference=rest, causes=(cause,))
+        elif (mend := mended(case, written, constants or {})) is not None:
+            causes = (mend,)
+        elif found:
+            causes = causes_of(case, found, moving=False)
+        elif course.holds:
+            text = f"the equations of motion hold with it, but at the start {of_the_start(case, course)}"
+            causes = (Cause("wrong_quantity", text, quantity="the start"),)
+        else:
+            text = "the equations of motion do not hold with it"
+            text = f"{text}: put in, there is left {rest}" if rest else text
+            causes = (Cause("other", text, quantity="the equation of motion"),)
+        return Verdict(written.given, "law", WRONG, difference=rest, causes=causes)
 
     # -- other names ---------------------------------------------------------------------------------
 
