@@ -19,7 +19,6 @@ from eomgen.judge.decision import is_zero_everywhere
 from eomgen.judge.diagnosis import BELIEVED
 from eomgen.judge.implied import Explainable, Instant, implied_by_course, implied_by_rest, simplest_explanation
 from eomgen.judge.kinds import FUNCTION_KINDS, KINDS, kind_of_equation
-from eomgen.judge.left_out import left_out
 from eomgen.judge.mends import Mends
 from eomgen.judge.reading import HandEquation
 from eomgen.judge.renaming import OtherAxis, Renaming, renamings
@@ -39,6 +38,7 @@ from eomgen.judge.right import (
 )
 from eomgen.judge.small import small_motions
 from eomgen.judge.targets import Meanings, loosened_targets, targets_of
+from eomgen.judge.unsupported import unsupported
 from eomgen.judge.verdict import RIGHT, UNDECIDED, WRONG, Cause, Verdict
 from eomgen.model.fields import AtRest
 from eomgen.model.reader import ModelOrPath, model_at
@@ -296,7 +296,7 @@ class Judge:
         values = [each for each in targets if isinstance(each, Comparison)]
         known: list[Explainable] = [*targets, *(small for each in values for small in small_motions(each))]
         if kind == "motion" and not written.calls and not also:
-            known += left_out(case, scalar)
+            known += unsupported(case, scalar)
         own: list[Explainable] = [] if also else [OtherAxis(case, written, kind), Mends(Authored(case, written, kind))]
         target, explanations = simplest_explanation(known, own, soon=kind == "law" and not case.system.ties.rows)
         if not explanations and (begun := case.as_begun) is not None:

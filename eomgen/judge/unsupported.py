@@ -33,7 +33,7 @@ MOST_LEFT_OUT = 2  # reactions in one balance
 
 
 @dataclass(frozen=True)
-class LeftOut:
+class Unsupported:
     """The balances of which an equation of somebody may be one, without the reactions in them.
 
     Args:
@@ -123,7 +123,7 @@ class LeftOut:
         return Share(Corruption(name, "factor", (item.value,), SHARED, body, item.acting.force), Fraction(0))
 
 
-def left_out(case: Case, scalar: Scalar) -> Iterator[LeftOut]:
+def unsupported(case: Case, scalar: Scalar) -> Iterator[Unsupported]:
     """Of an equation with accelerations, where nothing closes."""
     if not case.closing and case.system.free is None and depends_on(scalar, case.system.symbols.a):
-        yield LeftOut(case, scalar)
+        yield Unsupported(case, scalar)
