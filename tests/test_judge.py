@@ -502,7 +502,7 @@ def test_what_is_wrong_by_little_is_wrong():
         ),
         ("half_car", "stiffness(y, theta) = k_f*l_f + k_r*l_r", "sign", "the force rear"),
         ("bead_on_turning_hoop", "sin(theta) = g/(R*omega^2)", "wrong_axis", "theta"),
-        ("gerber_beam", "reaction_y(B) = 15*p*a", "missing_term", "moments about C of AC the force on_AC"),
+        ("gerber_beam", "reaction_y(B) = 15*p*a", "missing_term", "on_AC in the balance of moments about C of AC"),
         ("seeds/ch13_p3", "inertia_point(O) = m_bar*l^2/3 + m_ring*(R^2 + r^2)/2", "missing_term", "Steiner"),
         ("cart_pole", "(M + m)*x'' = m*l/2*(cos(theta)*theta'' - sin(theta)*theta'^2) + F*cos(theta)", "", "F"),
     ],

@@ -57,6 +57,7 @@ class ActingForce:
         symbol: of a component of a reaction.
         spread: of a line load where it is.
         kind: "reaction", "load" or "inertia".
+        follows: it is friction by that component.
     """
 
     name: str
@@ -65,6 +66,7 @@ class ActingForce:
     symbol: Node | None = None
     spread: tuple[SpreadLoad, ...] = ()
     kind: str = "load"
+    follows: bool = False
 
     def on(self, parts: frozenset[int]) -> tuple[PlacedPush, ...]:
         """What it does to them together; () of an inner force."""
@@ -88,7 +90,7 @@ def _reactions(system: System) -> Iterator[ActingForce]:
         yield ActingForce(_in_words(c), _pushes(system, c.effects, symbol), c.owner, symbol, kind="reaction")
         if c.friction_effects:
             pushes = _pushes(system, c.friction_effects, symbol)
-            yield ActingForce(f"the friction of {c.owner}", pushes, c.owner, symbol, kind="reaction")
+            yield ActingForce(f"the friction of {c.owner}", pushes, c.owner, symbol, (), "reaction", follows=True)
 
 
 def _in_words(c: Component) -> str:

@@ -23,7 +23,7 @@ from eomgen.judge.comparison import excess
 from eomgen.judge.corruption import SHARED, Corruption
 from eomgen.judge.cut_beams import cut_beam
 from eomgen.judge.decision import is_zero_everywhere
-from eomgen.judge.diagnosis import USUAL, WHOLE, Explanation, Samples, Search, Share, explained
+from eomgen.judge.diagnosis import FAR_FETCHED, USUAL, WHOLE, Explanation, Samples, Search, Share, explained
 from eomgen.judge.free_bodies import CutBalance, FreeBodies
 from eomgen.judge.kinds import FUNCTION_KINDS
 from eomgen.judge.reading import MULTIPLIER, HandEquation
@@ -44,12 +44,23 @@ OBLIQUE = 0.6  # the same, along or across a member of a truss
 SISTER = 1.2  # the same, where a couple is asked, and it is the force there
 LARGER = 0.15  # the same, for each body beside the first; for the whole and parts of trusses once
 FINEST = 2.5  # the same, of a balance whose items are looked at place by place
+TURNED = 0.01  # how much less something else is believed of an item than that it was forgotten
 SHORT = 40  # characters of a factor that is told
 
 
 def asks_reactions(written: HandEquation) -> bool:
     """Whether reactions stand in an equation."""
     return any(FUNCTION_KINDS.get(call.name) == "reaction" for call in written.calls)
+
+
+@dataclass(frozen=True)
+class InBalance:
+    """In what a change is made: the sum of all items, the item, whether that is asked, how many others there are."""
+
+    left: Scalar
+    value: Scalar
+    is_asked: bool
+    others: int
 
 
 @dataclass(frozen=True)
@@ -73,14 +84,14 @@ class Balances:
         if self.finely and number > 1:
             return []
         with suppress(EomgenError):
-            found = explained(self._searches, self.proves, number, self._is_believable)
-            return [replace(x, shares=tuple(map(self._told, x.shares))) for x in found[:1]] + found[1:]
+            found = explained(self._searches, self.proves, number, self._dearer)
+            return [replace(x, shares=tuple(map(self._told, x.shares))) for x in found]
         return []
 
     def _told(self, share: Share) -> Share:
         """A share with the factor by which the true item differs from what stands there, where that is short."""
         corruption, (row,) = share.corruption, share.corruption.rows
-        value = self._wholes[corruption][1]
+        value = self._wholes[corruption].value
         if not corruption.text.endswith((FULL, DISTANT)):
             return share
         positive = self.case.system.scope.positive
@@ -91,12 +102,15 @@ class Balances:
         self._wholes[told] = self._wholes[corruption]
         return replace(share, corruption=told)
 
-    def _is_believable(self, explanation: Explanation) -> bool:
-        """Whether its factors are usual ones, and nothing of which the author speaks is missing."""
+    def _dearer(self, explanation: Explanation) -> float:
+        """Infinity where a factor is unusual, or what the author speaks of is missing, or all else is."""
         open_ = [share for share in explanation.shares if share.corruption.open and not share.unit]
-        asked = [share for share in open_ if any(depends_on(x, self._asked[0]) for x in share.corruption.rows)]
+        gone = [self._wholes[share.corruption] for share in open_ if share.factor == 0]
         usual = {abs(share.factor) for share in open_} <= {0, *(x for some, _ in USUAL for x in some)}
-        return usual and all(share.factor != 0 for share in asked)
+        left = len(gone) < 2 or len(gone) < gone[0].others
+        near = not self.finely or explanation.cost < FAR_FETCHED
+        possible = near and usual and left and not any(each.is_asked for each in gone)
+        return TURNED * (len(explanation.shares) - len(gone)) if possible else float("inf")
 
     def difference(self, explanation: Explanation) -> str:
         """What is left of the balance."""
@@ -114,11 +128,11 @@ class Balances:
 
     def _left(self, explanation: Explanation) -> Scalar:
         """The sum of the items."""
-        return self._wholes[explanation.shares[0].corruption][0]
+        return self._wholes[explanation.shares[0].corruption].left
 
     @cached_property
-    def _wholes(self) -> dict[Corruption, tuple[Scalar, Scalar]]:
-        """Of each change the sum of the items, and the item."""
+    def _wholes(self) -> dict[Corruption, InBalance]:
+        """Of each change in what it is made."""
         return {}
 
     # -- what is asked -----------------------------------------------------------------------------------
@@ -218,7 +232,7 @@ class Balances:
         if true is None:
             return None
         whole = Corruption(f"{WHOLE} {asked.name}", "factor", (true,), SHARED - 1)
-        self._wholes[whole] = (true - asked, true)
+        self._wholes[whole] = InBalance(true - asked, true, False, 1)
         numbers = self._samples.of([true - asked, true])
         return Search(None, numbers[0], numbers[1:], [whole], 0)
 
@@ -229,7 +243,8 @@ class Balances:
         sizes = np.abs(self._before.flat(values)).max(axis=1, initial=0)
         there = sizes > CARRIED * sizes.max(initial=0)
         items = [
-            Item(*x, *y, asked == (x[0].symbol,)) for x, y in zip(seen, zip(values, there, strict=True), strict=True)
+            Item(each, pushes, value, is_there, each.symbol in asked and not each.follows)
+            for (each, pushes), value, is_there in zip(seen, values, there, strict=True)
         ]
         known = {item.acting.symbol for item in items if item.there and item.acting.symbol is not None}
         if not known & {*asked} or not known <= {*asked, *self._asked[2]}:
@@ -237,15 +252,16 @@ class Balances:
         dear = self._dearness(free, cut, items, known - {*asked})
         if self.finely and dear > FINEST:
             return None
-        wrong, whole = WrongItems(self.case, free, cut, self._samples), sum((item.value for item in items), start=0)
-        none: Scalar = 0
-        found = [] if self.finely else [(none, each) for each in wrong.strangers]
+        wrong, left = WrongItems(self.case, free, cut, self._samples, len(asked) == 1), sum(values, start=0)
+        others = sum(item.there and not item.is_asked for item in items)
+        apart = wrong.throughout(left) if self.finely else wrong.strangers
+        found = [(each, InBalance(left, 0, False, others)) for each in apart]
         for item in items:
             changes = wrong.changes(item) if not self.finely else wrong.edits(item) if item.there else ()
-            found += [(item.value, each) for each in changes]
-        corruptions = [replace(each, rank=each.rank + dear) for _, each in found]
-        self._wholes.update({x: (whole, value) for x, (value, _) in zip(corruptions, found, strict=True)})
-        numbers = self._samples.of([whole, *(each.rows[0] for each in corruptions)])
+            found += [(each, InBalance(left, item.value, item.is_asked, others)) for each in changes]
+        corruptions = [replace(each, rank=each.rank + dear) for each, _ in found]
+        self._wholes.update(zip(corruptions, (whole for _, whole in found), strict=True))
+        numbers = self._samples.of([left, *(each.rows[0] for each in corruptions)])
         return Search(None, numbers[0], numbers[1:], corruptions, 0)
 
     def _dearness(self, free: FreeBodies, cut: CutBalance, items: list[Item], known: set[Node]) -> float:

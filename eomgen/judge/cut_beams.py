@@ -80,12 +80,12 @@ def cut_beam(quantities: Quantities, call: Call, acting: Sequence[ActingForce], 
     for each in acting:
         found.append(replace(each, pushes=(*each.pushes, *cutting.pushes(each, i))))
     ways = (
-        ("forces along the beam", t, None),
-        ("forces across the beam", n, None),
+        ("forces along the beam at the section", t, None),
+        ("forces across the beam at the section", n, None),
         ("moments about the section", None, place),
     )
     cuts = tuple(
-        CutBalance(frozenset((p,)), f"the balance of {told} of the part of {body} {of} it", along, about)
+        CutBalance(frozenset((p,)), f"the balance of {told} of {body} (the part {of} it)", along, about)
         for p, of in ((part, "before"), (part + 1, "after"))
         for told, along, about in ways
     )

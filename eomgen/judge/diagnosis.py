@@ -471,11 +471,15 @@ def explained(
     searches: Sequence[Search],
     proves: Callable[[Explanation], bool],
     number: int,
-    is_believable: Callable[[Explanation], bool] = lambda _: True,
+    dearer: Callable[[Explanation], float] = lambda _: 0.0,
 ) -> list[Explanation]:
-    """The cheapest explanation by so many mistakes that is proven, then others nearly as good; [] where none is."""
-    found = [x for search in searches for x in search.explanations(number) if is_believable(x)]
-    found.sort(key=lambda x: (x.cost, -sum(share.factor == 0 for share in x.shares)))
+    """The cheapest explanation by so many mistakes that is proven, then others nearly as good; [] where none is.
+
+    Args:
+        dearer: how much less than by its cost one is believed; infinity: not at all.
+    """
+    known = ((x.cost + dearer(x), x) for search in searches for x in search.explanations(number))
+    found = [x for cost, x in sorted(known, key=lambda each: each[0]) if cost < np.inf]
     for k, each in enumerate(found[:PROVEN]):
         if proves(each):
             near = [x for x in found[k + 1 :] if x.cost <= each.cost + NEARLY][:MOST_NEAR]

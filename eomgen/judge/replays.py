@@ -7,7 +7,6 @@ takes the other for a structure at rest. So whatever was solved for on the way i
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator
-from contextlib import suppress
 from dataclasses import replace
 from typing import Any
 
@@ -16,14 +15,10 @@ from eomgen.judge.case import Case
 from eomgen.judge.contributions import FEW
 from eomgen.judge.corruption import PLAIN, SHARED, Corruption
 from eomgen.judge.wrong_terms import WrongTerms
-from eomgen.model.forces.base import Force
-from eomgen.model.forces.force import PointForce as AtPoint
-from eomgen.model.forces.load import PointForce
 from eomgen.model.parts import Coordinate, Model
 from eomgen.model.table import Table
-from eomgen.symbolic.expression.expressions import Expression, parse
-from eomgen.symbolic.expression.graph import Node, Scalar, is_zero
-from eomgen.symbolic.print.text import to_text
+from eomgen.symbolic.expression.expressions import Expression
+from eomgen.symbolic.expression.graph import Scalar, is_zero
 
 MOST_LOADS = 30  # of a model that are left out, one by one
 MOST_HELD = 6  # coordinates of a model that are held, one by one
@@ -49,8 +44,6 @@ def replays(case: Case, own: Scalar, asked: Callable[[Case], Scalar | None]) -> 
         else:
             rank = SHARED if name else SHARED + 1
             yield Corruption(text, "missing_term", (value - own,), rank, "", name, open=False, text=text)
-    if not model.coordinates:
-        yield from _of_weights(case, asked)
 
 
 def _of_load(case: Case, force: str, does: Scalar) -> Iterator[Corruption]:
@@ -64,25 +57,6 @@ def _of_load(case: Case, force: str, does: Scalar) -> Iterator[Corruption]:
         yield Corruption(name, each.kind, (each.to[0] - share[0],), each.rank, "", force, False, text)
     parameters = tuple(case.system.symbols.parameters.values())
     yield from WrongTerms(case.edits, parameters, (), name, "", force).in_rows(share)
-
-
-def _of_weights(case: Case, asked: Callable[[Case], Scalar | None]) -> Iterator[Corruption]:
-    """What the weight of each body does, where several have one."""
-    mine = [part for part in case.parts.elementary if part.kind == "weight" and isinstance(part.load, PointForce)]
-    for part in mine if 1 < len(mine) <= MOST_LOADS else ():
-        assert isinstance(part.load, PointForce)
-        weight = tuple(parse(to_text(x)) if type(x) is Node else Expression.number(x) for x in part.load.force)
-        does = _of_force_alone(case, AtPoint(point=f"{part.body}.center", force=weight), asked)
-        if not is_zero(does):
-            yield Corruption(part.name, "factor", (does,), PLAIN, part.body, part.force)
-
-
-def _of_force_alone(case: Case, force: Force, asked: Callable[[Case], Scalar | None]) -> Scalar:
-    """What is asked, of the structure with one force alone; 0: it has no answer."""
-    with suppress(EomgenError):
-        value = asked(replace(case, model=replace(case.model, outputs=Table(), forces=Table({"alone": force}))))
-        return 0 if value is None else value
-    return 0
 
 
 Parts = dict[str, Any]  # of a model, in place of its own

@@ -47,14 +47,14 @@ class Item:
 
     Args:
         there: whether that is something.
-        is_only: it is what is asked, and nothing else is.
+        is_asked: it is of what the author speaks.
     """
 
     acting: ActingForce
     pushes: tuple[PlacedPush, ...]
     value: Scalar
     there: bool
-    is_only: bool
+    is_asked: bool
 
 
 @dataclass(frozen=True)
@@ -74,22 +74,24 @@ class WrongItems:
 
     Args:
         samples: states with the reactions, where values are compared.
+        alone: one reaction is asked alone.
     """
 
     case: Case
     free: FreeBodies
     cut: CutBalance
     samples: Samples = field(repr=False)
+    alone: bool = False
 
     def changes(self, item: Item) -> Iterator[Corruption]:
         """Of an item, as a vector at its place."""
-        what, pushes = f"in {self.cut.name} {item.acting.name}", item.pushes
-        if item.there and not item.is_only:
+        what, pushes = f"{item.acting.name} in {self.cut.name}", item.pushes
+        if item.there and not (item.is_asked and self.alone):
             yield self._of(item.acting, what, pushes[0], item.value, PLAIN)
         positive = self.case.system.scope.positive
         terms = terms_of(item.value, positive) if item.acting.kind == "inertia" else ()
         for term in terms if len(terms) > 1 else ():
-            name = f"in {self.cut.name} the term {term_text(term)} of {item.acting.name}"
+            name = f"the term {term_text(term)} of {what}"
             yield self._of(item.acting, name, pushes[0], term, PLAIN + SHORTER)
         several = len({push.place for push in pushes if not push.is_couple}) > 1
         for push in pushes:
@@ -186,7 +188,7 @@ class WrongItems:
             told = "is counted, and is an inner force" if inner else "is counted, and acts elsewhere"
             others = mine if inner else () if each.kind != "load" else self._beyond(each) if mine else each.pushes
             for push in others:
-                what, by = f"in {self.cut.name} {each.name}", self.cut.value(push)
+                what, by = f"{each.name} in {self.cut.name}", self.cut.value(push)
                 yield self._of(each, what, push, by, TERMS if inner else PIECES, "extra_term", told)
 
     def _beyond(self, each: ActingForce) -> tuple[PlacedPush, ...]:
@@ -196,15 +198,22 @@ class WrongItems:
             push for push in each.pushes if min(self.cut.parts) >= cut and cut <= push.part not in self.cut.parts
         )
 
+    def throughout(self, left: Scalar) -> Iterator[Corruption]:
+        """Of the whole balance: angles from the other axes, names that are exchanged."""
+        parameters = tuple(self.case.system.symbols.parameters.values())
+        for each in WrongTerms(self.case.edits, parameters, ()).throughout((left,)):
+            text = each.text.replace("in everything", f"in {self.cut.name}", 1)
+            yield replace(each, name=self.cut.name, text=text, rank=each.rank + SINGLE)
+
     def edits(self, item: Item) -> Iterator[Corruption]:
         """Of an item, as a formula; of a reaction what it is multiplied by."""
-        what, edits, push = f"{self.cut.name} {item.acting.name}", self.case.edits, item.pushes[0]
+        what, edits, push = f"{item.acting.name} in {self.cut.name}", self.case.edits, item.pushes[0]
         symbol = item.acting.symbol
         k: Scalar = 1 if symbol is None else symbol
         formula = item.value if symbol is None else derivative(item.value, symbol)
         for edit in edits.of((formula,)):
             by = k * (edit.to[0] - formula)
-            yield self._of(item.acting, f"in {what}:", push, by, edit.rank - SINGLE, edit.kind, edit.text)
+            yield self._of(item.acting, f"{what}:", push, by, edit.rank - SINGLE, edit.kind, edit.text)
         parameters = tuple(self.case.system.symbols.parameters.values())
         body = self.free.system.motion.links[push.body].name
         for wrong in WrongTerms(edits, parameters, (), what, body, item.acting.force).in_rows((formula,)):

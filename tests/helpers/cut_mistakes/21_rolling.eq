@@ -1,0 +1,13 @@
+right | T = -m*s''/2
+right | T = m*s'' - F + m*g*sin(alpha)
+right | N = m*g*cos(alpha)
+factor | T = -m*s'' | inertia couple,rotation+factor 2
+missing | T = m*s'' - F | weight+missing
+exchanged | T = m*s'' - F + m*g*cos(alpha) | weight+sin,cos
+missing | T = -F + m*g*sin(alpha) | inertia+missing
+sign | T = m*s'' + F + m*g*sin(alpha) | pull+sign
+exchanged | N = m*g*sin(alpha) | weight+sin,cos
+full | N = m*g | weight+full,component,cos
+sign | T = m*s''/2 | sign
+missing | T = m*s'' + m*g*sin(alpha) | pull+missing
+full | T = m*s'' - F + m*g | weight+full,component,sin

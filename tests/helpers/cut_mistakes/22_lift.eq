@@ -1,0 +1,11 @@
+right | S1 = m1*(g + R*phi'')
+missing | S1 = m1*g | inertia,phi''+missing
+sign | S1 = m1*(g - R*phi'') | inertia,phi''+sign
+radius | S1 = m1*(g + r*phi'') | R,r+stands
+missing | J*phi'' = M0 - S1*R | rope2,S2+missing
+sign | J*phi'' = M0 - S1*R - S2*r | rope2+sign
+missing | J*phi'' = S2*r - S1*R | motor+missing
+exchanged | J*phi'' = M0 - S1*r + S2*R | lever,r,R
+missing | B = S1 + S2 | weight of drum+missing
+missing | B = mD*g + S1 | rope2+missing
+two | S2 = m2*r*phi'' | weight+missing+sign
