@@ -94,7 +94,7 @@ class Comparison:
             asked = self.call
             what = "it" if asked is None else str(asked) if asked.args else f"the {asked.name.replace('_', ' ')}"
             structural.append(Corruption(f"{WHOLE} {what}", "factor", self.rows, 1))
-        if self._is_long:
+        if self.is_long:
             return tuple(structural)
         concerned, known = self._concerned, tuple(system.symbols.parameters.values())
         held = {*symbols_of((self.scalar, *concerned))}
@@ -125,7 +125,7 @@ class Comparison:
         return self.what in ("motion", "ties", "energy")
 
     @cached_property
-    def _is_long(self) -> bool:
+    def is_long(self) -> bool:
         """Whether nobody would look at it term by term."""
         return operations((self.scalar, *self.rows)).total > LONGEST
 
@@ -186,7 +186,7 @@ class Comparison:
     @cached_property
     def extra(self) -> tuple[Corruption, ...]:
         """The author's own terms, each of which may be one too many."""
-        if self._is_long:
+        if self.is_long:
             return ()
         own = self.scalar if self._is_equation else self.scalar + self.rows[0]
         known = set() if self._is_equation else set(terms_of(self.rows[0], self.case.system.scope.positive))
@@ -330,7 +330,7 @@ class Comparison:
     def unexplained(self) -> tuple[str, str]:
         """(the difference, beside which equation), where nothing explains it."""
         case = self.case
-        if self._is_long:
+        if self.is_long:
             return "", ""
         if self.what != "motion":
             return excess(case, self.scalar), ""

@@ -21,6 +21,7 @@ from eomgen.symbolic.expression.node import ScalarRow
 from eomgen.symbolic.expression.rational import Fraction
 
 NAME = "the whole equation"
+MOST_FREEDOMS = 4  # of a system whose equations are linearized with all that may be wrong in them
 RANK = TERMS + 2 * SHORTER
 
 
@@ -57,9 +58,9 @@ def small_motions(whole: Comparison) -> Iterator[InSmallMotions]:
     """The comparisons with linearized equations of an equation that is linear, where the model's are not."""
     symbols = whole.case.system.symbols
     moving = (*symbols.q, *symbols.u, *symbols.a)
-    if whole.what != "motion" or whole.case.closing or not _is_linear((whole.scalar,), moving):
+    if whole.what != "motion" or whole.case.closing or len(whole.rows) > MOST_FREEDOMS or whole.is_long:
         return
-    if _is_linear(whole.rows, moving):
+    if not _is_linear((whole.scalar,), moving) or _is_linear(whole.rows, moving):
         return
     still = dict.fromkeys(moving, 0)
     places = [{**still, **place} for place in ({}, *whole.case.places_of_rest)]
