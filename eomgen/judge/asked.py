@@ -18,6 +18,7 @@ from eomgen.judge.case import Case
 from eomgen.judge.causes import causes_of
 from eomgen.judge.comparison import Comparison, excess
 from eomgen.judge.decision import is_zero_everywhere
+from eomgen.judge.diagnosis import BELIEVED, PLAINEST
 from eomgen.judge.implied import Instant, implied_by, simplest_explanation
 from eomgen.judge.mends import Mends
 from eomgen.judge.reading import HandEquation
@@ -30,6 +31,8 @@ from eomgen.symbolic.expression.expressions import parse
 from eomgen.symbolic.expression.graph import Node, Scalar
 from eomgen.symbolic.numeric.tolerances import COMPUTED
 from eomgen.symbolic.print.text import to_text
+
+SURE = PLAINEST + 0.5  # the cost of a mistake in a balance up to which nothing else is looked at
 
 
 def asked(case: Case, written: HandEquation, kind: str, at: Instant) -> Verdict:
@@ -113,7 +116,7 @@ def _wrong(case: Case, written: HandEquation, kind: str, at: Instant, left: Answ
         else tuple(Balances(case, written, finely, place) for finely in (False, True)[: 1 if place else 2])
     )
     implied = chain(balances[:1], implied_by(case, written, kind, at, left, right), balances[1:])
-    target, found = simplest_explanation(implied, mends)
+    target, found = simplest_explanation(implied, mends, at_once=SURE if balances else BELIEVED)
     clash = case.clash(written)
     if found and not (clash and len(found[0].shares) > 1):
         causes = causes_of(case, found, moving=False, rooted=isinstance(target, Comparison) and target.squared)

@@ -8,10 +8,11 @@ component of it is taken, or its full size; its lever arm is another one; it is 
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping
 from contextlib import suppress
 from dataclasses import field, replace
 from functools import cached_property
+from itertools import chain, product
 
 import numpy as np
 
@@ -19,7 +20,7 @@ from eomgen.errors import EomgenError
 from eomgen.judge.acting import symbols_of_reactions, what_acts
 from eomgen.judge.authored import Authored
 from eomgen.judge.case import Case
-from eomgen.judge.comparison import excess
+from eomgen.judge.comparison import EXTRA, excess
 from eomgen.judge.corruption import SHARED, Corruption
 from eomgen.judge.cut_beams import cut_beam
 from eomgen.judge.decision import is_zero_everywhere
@@ -27,7 +28,7 @@ from eomgen.judge.diagnosis import FAR_FETCHED, USUAL, WHOLE, Explanation, Sampl
 from eomgen.judge.free_bodies import CutBalance, FreeBodies
 from eomgen.judge.kinds import FUNCTION_KINDS
 from eomgen.judge.reading import MULTIPLIER, HandEquation
-from eomgen.judge.terms import short_text
+from eomgen.judge.terms import short_text, term_text, terms_of
 from eomgen.judge.wrong_items import DISTANT, FULL, Item, WrongItems
 from eomgen.mechanics.instant.outputs import Quantities
 from eomgen.mechanics.reactions.reactions import Reactions
@@ -45,6 +46,7 @@ SISTER = 1.2  # the same, where a couple is asked, and it is the force there
 LARGER = 0.15  # the same, for each body beside the first; for the whole and parts of trusses once
 FINEST = 2.5  # the same, of a balance whose items are looked at place by place
 TURNED = 0.01  # how much less something else is believed of an item than that it was forgotten
+MOST_TERMS = 8  # of an equation, each of which may be too many
 SHORT = 40  # characters of a factor that is told
 
 
@@ -171,18 +173,28 @@ class Balances:
         return {x: values[j] for j, x in enumerate(mine) if determined(j)} | self._sections
 
     @cached_property
-    def _asked(self) -> tuple[tuple[Node, ...], dict[Node, Scalar], dict[Node, Scalar]]:
-        """(the reactions of the author's equation, one of them by it, true values of the others)."""
+    def _mine(self) -> tuple[Node, ...]:
+        """The reactions, and the unknowns of loads."""
+        balance = self._reactions.by_components[0].balance
+        return (*symbols_of_reactions(balance), *balance.unknowns)
+
+    @cached_property
+    def _scalar(self) -> Scalar:
+        """The author's left side minus his right side, over the reactions."""
         case, (by_components, symbols) = self.case, self._reactions.by_components
-        balance, functions = by_components.balance, Quantities(case.system, self.place, by_components)
-        mine = (*symbols_of_reactions(balance), *balance.unknowns)
+        functions = Quantities(case.system, self.place, by_components)
 
         def called(call: Call) -> Scalar:
             return case.system.scope.graph.symbol(str(call)) if call.name in KINDS else functions.value(call)
 
         scalar = case.evaluated(self.written.difference, case.names, called)
-        (scalar,) = substituted((scalar,), dict(zip(symbols, mine, strict=True)))
-        asked = tuple(x for x in (*mine, *self._sections) if depends_on(scalar, (x,)))
+        return substituted((scalar,), dict(zip(symbols, self._mine, strict=True)))[0]
+
+    @cached_property
+    def _asked(self) -> tuple[tuple[Node, ...], dict[Node, Scalar], dict[Node, Scalar]]:
+        """(the reactions of the author's equation, one of them by it, true values of the others)."""
+        scalar = self._scalar
+        asked = tuple(x for x in (*self._mine, *self._sections) if depends_on(scalar, (x,)))
         true = {x: value for x, value in self._values.items() if x not in asked}
         for x in asked:
             slope = derivative(scalar, x)
@@ -223,6 +235,7 @@ class Balances:
         if self._free is None or not self._asked[0]:
             return ()
         found = [self._of_whole(*self._asked[0])] if not self.finely and len(self._asked[0]) == 1 else []
+        found += [self._at_limit(self._free)] if not self.finely else []
         found += [self._search(self._free, cut) for cut in self._free.cuts(self._asked[0])]
         return tuple(search for search in found if search is not None)
 
@@ -235,6 +248,38 @@ class Balances:
         self._wholes[whole] = InBalance(true - asked, true, False, 1)
         numbers = self._samples.of([true - asked, true])
         return Search(None, numbers[0], numbers[1:], [whole], 0)
+
+    def _at_limit(self, free: FreeBodies) -> Search | None:
+        """Friction that is taken as large as it can be, mu N, where balance needs another; None: there is none."""
+        ((asked, _),) = self._asked[1].items()
+        true, owners = self._values.get(asked), {each.symbol: each.force for each in free.acting}
+        dimensions = self.case.parts.dimensions
+        numbers = [x for x in self.case.edits.also if not (d := dimensions.get(x.name)) or d.unknowns]
+        others = [x for x, owner in owners.items() if x is not None and x is not asked and owner == owners.get(asked)]
+        if true is None or not numbers or not others:
+            return None
+        known = {x: x if x in self._asked[0] else self._values.get(x, x) for x in others}
+        limits = []
+        for mu, x, k in product(numbers, others, (1, -1)):
+            for friction, normal, value in ((asked, x, mu * known[x]), (x, asked, over(known[x], mu))):
+                text = (
+                    f"{friction.name} is taken at its limit, {mu.name}*{normal.name}: at rest it is what balance needs"
+                )
+                row = (k * value - true,)
+                limits.append(Corruption(friction.name, "wrong_formula", row, SHARED, open=False, text=text))
+        self._wholes.update(dict.fromkeys(limits, InBalance(true - asked, true, False, 1)))
+        values = self._samples.of([true - asked, *(each.rows[0] for each in limits)])
+        return Search(None, values[0], values[1:], limits, 0)
+
+    def _extra(self, cut: CutBalance, left: Scalar) -> Iterator[Corruption]:
+        """The author's own terms, each of which may be none of this balance."""
+        ((x, _),) = self._asked[1].items()
+        ours, slope = derivative(left, x), derivative(self._scalar, x)
+        terms = terms_of(self._scalar, frozenset(self.case.system.scope.positive)) if not is_zero(ours) else ()
+        for term in terms if 2 < len(terms) <= MOST_TERMS else ():
+            if not depends_on(term, (x,)):
+                text = f"the term {term_text(term)} does not belong in {cut.name}"
+                yield Corruption(text, "extra_term", (over(term * ours, slope),), EXTRA, open=False, text=text)
 
     def _search(self, free: FreeBodies, cut: CutBalance) -> Search | None:
         """One balance in numbers; None: nothing that is asked stands in it, or more than is known."""
@@ -254,7 +299,7 @@ class Balances:
             return None
         wrong, left = WrongItems(self.case, free, cut, self._samples, len(asked) == 1), sum(values, start=0)
         others = sum(item.there and not item.is_asked for item in items)
-        apart = wrong.throughout(left) if self.finely else wrong.strangers
+        apart = wrong.throughout(left) if self.finely else chain(wrong.strangers, self._extra(cut, left))
         found = [(each, InBalance(left, 0, False, others)) for each in apart]
         for item in items:
             changes = wrong.changes(item) if not self.finely else wrong.edits(item) if item.there else ()

@@ -88,7 +88,9 @@ def cause_of(case: Case, share: Share, row: int, *, told: bool = True, moving: b
         whole = corruption.kind if moving else "factor"
         if moving and told and whole == "factor" and _is_coriolis(case, rows):
             whole = "coriolis"
-        kind, text = _of_factor(whole, corruption.name, x, share.unit, term)
+        speeds = whole == "coriolis" and corruption.name.startswith("all that holds speeds")
+        name = "the Coriolis term" if speeds else corruption.name
+        kind, text = _of_factor(whole, name, x, share.unit, term)
     body, force = corruption.body, corruption.force
     is_term = corruption.name.startswith(("the term ", "the product "))
     if told and not body and not force and is_term:
@@ -118,10 +120,11 @@ def _of_factor(kind: str, name: str, x: Fraction, unit: str, term: str) -> tuple
 def _is_coriolis(case: Case, rows: Sequence[Scalar]) -> bool:
     """Whether the rows are products of different speeds alone: nothing is left of them where only one moves."""
     symbols = case.system.symbols
+    rows = case.edits.written(tuple(rows))
     if depends_on_any(rows, case.forced) or not depends_on_any(rows, symbols.u):
         return False
     alone = [x for u in symbols.u for x in substituted(tuple(rows), {w: 0 for w in symbols.u if w is not u})]
-    return bool(is_zero_everywhere(case.system, *alone).holds)
+    return all(map(is_zero, alone)) or bool(is_zero_everywhere(case.system, *alone).holds)
 
 
 def other_calls(case: Case, call: Call) -> Iterator[Call]:

@@ -189,20 +189,21 @@ class Explainable(Protocol):
 
 
 def simplest_explanation(
-    targets: Iterable[Explainable], mends: Iterable[Explainable] = (), *, soon: bool = False
+    targets: Iterable[Explainable], mends: Iterable[Explainable] = (), *, soon: bool = False, at_once: float = BELIEVED
 ) -> tuple[Explainable | None, list[Explanation]]:
     """The comparison that is explained by the fewest mistakes, with its explanations: the first that is believed.
 
     Args:
         mends: looked at where no one mistake of the others is believed.
         soon: already where none is plain: the author wrote no equation of motion.
+        at_once: the cost of a mistake up to which no further comparison is looked at.
     """
     best: tuple[Explainable | None, list[Explanation]] = None, []
     beside: list[Explanation] = []
     known, own = tuple(targets), tuple(mends)
     for number in range(1, MOST_MISTAKES + 1):
         for some, believed in (
-            (known, number * BELIEVED),
+            (known, number * at_once),
             (own if number == 1 else (), BELIEVED if soon else FAR_FETCHED),
         ):
             for target in some if not best[1] or some is known or best[1][0].cost >= believed else ():
@@ -210,7 +211,7 @@ def simplest_explanation(
                     found = [x for x in target.explained(number) if x.cost <= number * (PLAINEST + MOST_DEAR[number])]
                     if found and (not best[1] or found[0].cost < best[1][0].cost):
                         best, found = (target, found), best[1]
-                    beside += found
+                    beside += found if not isinstance(target, Comparison) or not target.squared else []
                 if best[1] and best[1][0].cost < believed:
                     break
         if best[1] and best[1][0].cost < FAR_FETCHED + (number - 1) * PLAINEST:

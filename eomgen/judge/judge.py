@@ -86,7 +86,7 @@ class Judge:
         written = self.case.reading.read(equation)
         known = kind or kind_of_equation(written, self.case.model)
         try:
-            return self._judged(written, known, _instant(self.case, at))
+            return self._judged(written, known, _instant(self.case, at)).in_letters(written.letters)
         except (DerivationError, RunFailed, MissingValues) as error:
             return Verdict(written.given, known, UNDECIDED, reason=error.what)
 

@@ -9,7 +9,7 @@ from __future__ import annotations
 import re
 from collections.abc import Callable, Iterator, Mapping
 from contextlib import suppress
-from dataclasses import replace
+from dataclasses import field, replace
 from functools import cached_property
 from typing import Any
 
@@ -40,11 +40,13 @@ class HandEquation:
     Args:
         given: as it was written.
         left, right: its sides, letters replaced by the functions that they stand for.
+        letters: those in it that stand for one function, by its text.
     """
 
     given: str
     left: Expression
     right: Expression
+    letters: Mapping[str, str] = field(default_factory=dict)
 
     @property
     def difference(self) -> Expression:
@@ -163,7 +165,9 @@ class Reading:
             given = text_of_sympy(given)
         left, right = self._sides(given)
         left = self._alone(left, right)
-        return HandEquation(given, self._meant(left), self._meant(right))
+        used = {name: formula for name, formula in self.letters.items() if name in left.names | right.names}
+        letters = {str(x.calls[0]): name for name, x in used.items() if len(x.code) == 1 and x.calls}
+        return HandEquation(given, self._meant(left), self._meant(right), letters)
 
     def _alone(self, left: Expression, right: Expression) -> Expression:
         """A letter alone on the left that the model does not have.

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import field
+from dataclasses import field, replace
 from typing import Any
 
 from eomgen.documents.document import Document
@@ -113,6 +113,18 @@ class Verdict:
     @property
     def exit_code(self) -> int:
         return EXIT_CODES[self.verdict]
+
+    def in_letters(self, letters: Mapping[str, str]) -> Verdict:
+        """The same, functions by the letters that the author has for them: N_B for reaction_n(B)."""
+
+        def told(text: str) -> str:
+            for function, letter in letters.items():
+                text = text.replace(function, letter)
+            return text
+
+        causes = (replace(x, text=told(x.text), term=told(x.term), or_else=told(x.or_else)) for x in self.causes)
+        causes = (replace(x, quantity=told(x.quantity)) for x in causes)
+        return replace(self, difference=told(self.difference), causes=tuple(causes)) if letters else self
 
     def hint(self, level: int = 3) -> str:
         """What helps the author: 1 where to look, 2 at which quantity, 3 the cause."""
