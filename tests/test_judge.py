@@ -538,6 +538,13 @@ STRANGERS = Path(__file__).parent / "helpers" / "unseen_mistakes"
         ("30_doubled_cord", "(mA + mB/4)*x'' = mB*g/2 - mu*mA*g", ["move a quarter as far"]),
         ("60_box_on_two_links", "T1 + T2 = m*g*sin(theta) - m*l*theta'^2", ["inertia force", "sin and cos"]),
         ("44_mass_on_turntable", "T = m*(x'^2 + y'^2)/2 + m*w*(x^2 + y^2)/2", ["no sum"]),
+        ("../blind_mistakes/35_ladder_at_rest", "reaction_t(floor) = mu*N_floor", ["at its limit, mu*N_floor"]),
+        ("../blind_mistakes/35_ladder_at_rest", "N_floor + mu*N_wall = G + W", ["mu*N_wall does not belong"]),
+        (
+            "../blind_mistakes/45_sleeve_on_swinging_bar",
+            "ay(sleeve.center, ground, bar) = r*theta'' + r'*theta'",
+            ["Coriolis"],
+        ),
         # either ... or
         (
             "01_clock_pendulum",

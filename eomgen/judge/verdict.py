@@ -115,11 +115,16 @@ class Verdict:
         return EXIT_CODES[self.verdict]
 
     def in_letters(self, letters: Mapping[str, str]) -> Verdict:
-        """The same, functions by the letters that the author has for them: N_B for reaction_n(B)."""
+        """The same, functions by the letters that the author has for them: N_B for reaction_n(B).
+
+        Where a letter does not say of what it is, the first in a sentence does: the tension S (cable).
+        """
 
         def told(text: str) -> str:
             for function, letter in letters.items():
-                text = text.replace(function, letter)
+                of = function.partition("(")[2].removesuffix(")")
+                whole = letter if of in letter else f"{letter} ({of})"
+                text = text.replace(f" {function}", f" {whole}", 1).replace(function, letter)
             return text
 
         causes = (replace(x, text=told(x.text), term=told(x.term), or_else=told(x.or_else)) for x in self.causes)

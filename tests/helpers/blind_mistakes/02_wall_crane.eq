@@ -1,0 +1,7 @@
+arm_not_perpendicular | tension(cable)*L = G*L/2 + W*a | cable,tension,T_cable,rope+arm,lever,distance,point,place,where it acts,position,moment,sine,cosine,sin(,cos(,sin and cos,component,axis,projection,resolved,projected,angle,direction,across,along
+own_weight | tension(cable)*L*sin(alpha) = W*a | G,own weight,weight,boom+missing,left out,leaves out,forgotten,forgot,absent,omitted,without,neglect,ignored,not counted,not taken,not there,lacks,lacking,dropped,factor 0,times 0,is not in,does not occur,lost,drop
+hinge_force | tension(cable)*sin(alpha) = G + W | A_y,at A,hinge,pin,reaction+missing,left out,leaves out,forgotten,forgot,absent,omitted,without,neglect,ignored,not counted,not taken,not there,lacks,lacking,dropped,factor 0,times 0,is not in,does not occur,lost,drop
+sin_cos | T_{\mathrm{cable}} \cos(\alpha) L - \frac{G L}{2} - W a = 0 | cable,tension,T_cable+sine,cosine,sin(,cos(,sin and cos,component,axis,projection,resolved,projected,angle,direction,across,along
+two_weight_sign | A_x = -(G*L + W*a)/(L*tan(alpha)) | G,own weight,weight,boom+arm,lever,distance,point,place,where it acts,position,moment,factor,twice,two times,doubled,double,times 2,2 times,counted 2,too much,too large,its end,tip+sign,opposite,reversed,wrong way,other way,other direction,wrong direction,other side,turned round,against
+right | A_x*L*tan(alpha) = G*L/2 + W*a
+right | A_y = \frac{G}{2} + W\left(1-\frac{a}{L}\right)

@@ -1,0 +1,7 @@
+one_strand | tension(rope) = G + Q | rope,tension,strand,T_rope+missing,left out,leaves out,forgotten,forgot,absent,omitted,without,neglect,ignored,not counted,not taken,not there,lacks,lacking,dropped,factor 0,times 0,is not in,does not occur,lost,drop,factor,half,halved,1/2,times 0.5,too little,too small,factor,twice,two times,doubled,double,times 2,2 times,counted 2,too much,too large,one strand,second,once,one of
+rope_on_man | reaction_y(seat) = G | rope,tension,strand,T_rope+missing,left out,leaves out,forgotten,forgot,absent,omitted,without,neglect,ignored,not counted,not taken,not there,lacks,lacking,dropped,factor 0,times 0,is not in,does not occur,lost,drop
+chair_weight | T_rope = G/2 | Q,chair,weight+missing,left out,leaves out,forgotten,forgot,absent,omitted,without,neglect,ignored,not counted,not taken,not there,lacks,lacking,dropped,factor 0,times 0,is not in,does not occur,lost,drop
+third_law | tension(rope) + reaction_y(seat) = Q | seat,reaction,man+sign,opposite,reversed,wrong way,other way,other direction,wrong direction,other side,turned round,against,third law,action
+two_man | reaction_y(seat) = G + (G + Q) | rope,tension,strand,T_rope+sign,opposite,reversed,wrong way,other way,other direction,wrong direction,other side,turned round,against+factor,twice,two times,doubled,double,times 2,2 times,counted 2,too much,too large,factor,once,half
+right | tension(rope) = 475
+right | reaction_y(seat) = G - tension(rope)

@@ -1,0 +1,7 @@
+thread_side | (m + J/R^2)*x'' = F*(1 + r/R) | thread,F*,couple,moment+sign,opposite,reversed,wrong way,other way,other direction,wrong direction,other side,turned round,against,arm,lever,distance,point,place,where it acts,position,moment
+centre_without_friction | J*x'' = -F*r*R | friction,floor,F_floor,reaction_t+missing,left out,leaves out,forgotten,forgot,absent,omitted,without,neglect,ignored,not counted,not taken,not there,lacks,lacking,dropped,factor 0,times 0,is not in,does not occur,lost,drop
+way_of_the_thread | (m + J/R^2)*x'^2/2 = F*x | thread,F*,work,couple,moment+missing,left out,leaves out,forgotten,forgot,absent,omitted,without,neglect,ignored,not counted,not taken,not there,lacks,lacking,dropped,factor 0,times 0,is not in,does not occur,lost,drop,work,displacement,path,velocity,way,point,factor,lever,arm
+spin_by_inner_radius | T = \frac{m \dot x^2}{2} + \frac{J \dot x^2}{2 r^2} | spool,rotation,spin,angular,omega,rolling+radius,r instead,R instead,r^2,factor
+parallel_axis | \frac{J \ddot x}{R} = F (R - r) | spool,mass,inertia,parallel,steiner,translat,m*+missing,left out,leaves out,forgotten,forgot,absent,omitted,without,neglect,ignored,not counted,not taken,not there,lacks,lacking,dropped,factor 0,times 0,is not in,does not occur,lost,drop,parallel,steiner,centre,center,contact
+right | x'' = F*R*(R - r)/(J + m*R^2)
+right | reaction_t(floor) = -F*(J + m*R*r)/(J + m*R^2)

@@ -1,0 +1,7 @@
+spring_arm_once | (m*L^2 + M*L^2/3)*theta'' + c*b^2*cos(theta)^2*theta' + k*a*sin(theta)*cos(theta) + (m + M/2)*g*L*sin(theta) = 0 | spring,k*+arm,lever,distance,point,place,where it acts,position,moment,power,dimension,unit,a^2,instead,wrong,factor,replaced
+dashpot_arm | \left(m L^2 + \frac{M L^2}{3}\right) \ddot\theta + c b L \cos^2(\theta) \dot\theta + k a^2 \sin(\theta) \cos\theta + \left(m + \frac{M}{2}\right) g L \sin\theta = 0 | dashpot,damper,damping,c*+arm,lever,distance,point,place,where it acts,position,moment,length,instead,wrong,factor,replaced
+gravity_twice | (m*L^2 + M*L^2/3)*theta'' + c*b^2*cos(theta)^2*theta' + k*a^2*sin(theta)*cos(theta) + 2*(m + M/2)*g*L*sin(theta) = 0 | gravity,weight,m*g,g*L+factor,twice,two times,doubled,double,times 2,2 times,counted 2,too much,too large
+half_of_spring | V = k a^2 \sin^2\theta + \left(m + \frac{M}{2}\right) g L (1 - \cos\theta) | spring,k*+factor,half,halved,1/2,times 0.5,too little,too small,factor,twice,two times,doubled,double,times 2,2 times,counted 2,too much,too large
+damping_sign | Q(theta) = -(m + M/2)*g*L*sin(theta) - k*a^2*sin(theta)*cos(theta) + c*b^2*cos(theta)^2*theta' | dashpot,damper,damping,c*+sign,opposite,reversed,wrong way,other way,other direction,wrong direction,other side,turned round,against,drive
+right | T = (m + M/3)*L^2*theta'^2/2
+right | \left(m + \frac{M}{3}\right) L^2 \ddot\theta = -\left[c b^2 \cos^2\theta\,\dot\theta + \frac{k a^2}{2}\sin 2\theta + \left(m + \frac{M}{2}\right) g L \sin\theta\right]

@@ -1,0 +1,7 @@
+omega_once | (M + m)*y'' + c*y' + k*y = m*e*omega*sin(omega*t) - (M + m)*g | omega,rotor,eccentric,unbalance,centrifugal,centripetal,m*e,inertia+power,square,dimension,unit,omega^2,instead,wrong,factor,replaced
+mass_once | M \ddot y + c \dot y + k y = m e \omega^2 \sin(\omega t) - (M + m) g | m*,mass,rotor,eccentric,unbalance+missing,left out,leaves out,forgotten,forgot,absent,omitted,without,neglect,ignored,not counted,not taken,not there,lacks,lacking,dropped,factor 0,times 0,is not in,does not occur,lost,drop
+rpm | (M + m)*y'' + c*y' + k*y = m*e*1500^2*sin(1500*t) - (M + m)*g | rpm,unit,rad/s,1500,omega,conver
+relative_speed | T = \frac{M \dot y^2}{2} + \frac{m e^2 \omega^2}{2} | rotor,eccentric,unbalance,machine,y'+relative,absolute,missing,left out,leaves out,forgotten,forgot,absent,omitted,without,neglect,ignored,not counted,not taken,not there,lacks,lacking,dropped,factor 0,times 0,is not in,does not occur,lost,drop,velocity
+two_weight_cosine | (M + m)*y'' + c*y' + k*y = m*e*omega^2*cos(omega*t) | weight,gravity,m*g,g*+missing,left out,leaves out,forgotten,forgot,absent,omitted,without,neglect,ignored,not counted,not taken,not there,lacks,lacking,dropped,factor 0,times 0,is not in,does not occur,lost,drop+sine,cosine,sin(,cos(,sin and cos,component,axis,projection,resolved,projected,angle,direction,across,along,phase
+right | T = (M + m)*y'^2/2 + m*e*omega*cos(omega*t)*y' + m*e^2*omega^2/2
+right | (M + m)(\ddot y + g) + c \dot y + k y = m e \omega^2 \sin(\omega t)

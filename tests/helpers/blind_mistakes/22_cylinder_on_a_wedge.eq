@@ -1,0 +1,7 @@
+relative_velocity | T = \frac{M \dot x^2}{2} + \frac{3}{4} m \dot s^2 | cylinder,velocity,x',wedge+relative,absolute,missing,left out,leaves out,forgotten,forgot,absent,omitted,without,neglect,ignored,not counted,not taken,not there,lacks,lacking,dropped,factor 0,times 0,is not in,does not occur,lost,drop
+no_rotation | \ddot s + \ddot x \cos\alpha = g \sin\alpha | rotation,inertia,spin,roll,cylinder,friction+missing,left out,leaves out,forgotten,forgot,absent,omitted,without,neglect,ignored,not counted,not taken,not there,lacks,lacking,dropped,factor 0,times 0,is not in,does not occur,lost,drop,slide,particle
+cylinder_momentum | momentum(x) = M*x' + m*s'*cos(alpha) | cylinder,m*x',mass,inertia,transport,relative+missing,left out,leaves out,forgotten,forgot,absent,omitted,without,neglect,ignored,not counted,not taken,not there,lacks,lacking,dropped,factor 0,times 0,is not in,does not occur,lost,drop,relative,absolute
+sin_cos | vx(cylinder.center) = x' + s'*sin(alpha) | sine,cosine,sin(,cos(,sin and cos,component,axis,projection,resolved,projected,angle,direction,across,along
+normal_of_fixed_wedge | reaction_n(contact) = m*g*cos(alpha) | x'',wedge,inertia,acceleration,transport+missing,left out,leaves out,forgotten,forgot,absent,omitted,without,neglect,ignored,not counted,not taken,not there,lacks,lacking,dropped,factor 0,times 0,is not in,does not occur,lost,drop,rest,fixed
+right | (M + m)*x' + m*cos(alpha)*s' = 0
+right | \ddot s = \frac{2(M+m) g \sin\alpha}{3(M+m) - 2 m \cos^2\alpha}

@@ -1,0 +1,7 @@
+velocity_term_lost | (m*l^2/3 + M*l^2*cos(theta)^2)*theta'' - m*g*l/2*sin(theta) + F*l*cos(theta) = 0 | theta'^2,velocity,rate,square,slide,centripetal,centrifugal,quadratic+missing,forgot,left out,omitted,lacks,no part,neglect,ignored,constant,derivative,differentiat,without,absent,not contain,not counted,lost,dropped,overlooked
+bar_about_centre_only | (m*l^2/12 + M*l^2*cos(theta)^2)*theta'' - M*l^2*sin(theta)*cos(theta)*theta'^2 - m*g*l/2*sin(theta) + F*l*cos(theta) = 0 | bar+inertia,Steiner,translation,centre,center,factor,moment of inertia,1/12,kinetic,times too,too large,too small,too much,too little
+no_dT_dtheta | (m*l^2/3 + M*l^2*cos(theta)^2)*theta'' - 2*M*l^2*sin(theta)*cos(theta)*theta'^2 - m*g*l/2*sin(theta) + F*l*cos(theta) = 0 | theta'^2,velocity,rate,square,slide,dT/d,derivative,centripetal,centrifugal,quadratic+missing,forgot,left out,omitted,lacks,no part,neglect,ignored,factor,twice,double,dT/d,partial,half,without,absent,not contain,not counted,lost,dropped,overlooked,times too,too large,too small,too much,too little
+derivative_of_sine | vx(slide.center) = l*theta'*sin(theta) | slide,velocity,vx,bar.end,speed,derivative+sin,cos,derivative,swap,component,differentiat
+bar_moves_as_its_end | N_{wall} - F = (m + M) l (\ddot\theta \cos\theta - \dot\theta^2 \sin\theta) | bar+half,centre,center,factor,l/2,acceleration,end,point,times too,too large,too small,too much,too little
+right | N_wall - F = (m/2 + M)*l*(theta''*cos(theta) - theta'^2*sin(theta))
+right | T = l^2*theta'^2*(2*m + 3*M + 3*M*cos(2*theta))/12

@@ -1,0 +1,7 @@
+fixed_pivot | phi'' = -g/l*sin(phi) | x'',trolley,acceleration,pivot,support,coupling+missing,forgot,left out,omitted,lacks,no part,neglect,ignored,fixed,rest,without,absent,not contain,not counted,lost,dropped,overlooked
+no_centripetal | (M + m) \ddot{x} + m l \ddot{\phi} \cos\phi + k x = 0 | phi'^2,centripetal,centrifugal,velocity,square,normal,rate+missing,forgot,left out,omitted,lacks,no part,neglect,ignored,without,absent,not contain,not counted,lost,dropped,overlooked
+energies_uncoupled | T = (M + m)*x'^2/2 + m*l^2*phi'^2/2 | x'*phi',coupling,product,cross,mixed,velocity,load,cos(phi)+missing,forgot,left out,omitted,lacks,no part,neglect,ignored,without,absent,not contain,not counted,lost,dropped,overlooked
+two_sign_and_centripetal | (M + m)*x'' - m*l*phi''*cos(phi) + k*x = 0 | phi'',phi'^2,centripetal,centrifugal,velocity,square,load,tangential,coupling+sign,direction,opposite,missing,forgot,left out,omitted,lacks,no part,neglect,ignored,without,absent,not contain,not counted,lost,dropped,overlooked,wrong way,reversed,other way,minus,wrong sense
+rod_force_static | reaction_n(trolley) = M*g + m*g*cos(phi)^2 | acceleration,centripetal,centrifugal,inertia,phi'^2,motion,x'',load+missing,forgot,left out,omitted,lacks,no part,neglect,ignored,static,at rest,not in it,balance,equilibrium,without,absent,not contain,not counted,lost,dropped,overlooked
+right | x''*cos(phi) + l*phi'' = -g*sin(phi)
+right | M*x'' + k*x = m*(l*phi'^2 + g*cos(phi))*sin(phi) - m*x''*sin(phi)^2

@@ -1,0 +1,7 @@
+wedge_at_rest | \frac{3}{2} m \ddot{s} = m g \sin\alpha | X'',wedge,acceleration,coupling,inertia+missing,forgot,left out,omitted,lacks,no part,neglect,ignored,fixed,rest,without,absent,not contain,not counted,lost,dropped,overlooked
+normal_force_of_fixed_slope | N_slope = m*g*cos(alpha) | X'',wedge,acceleration,inertia,motion+missing,forgot,left out,omitted,lacks,no part,neglect,ignored,fixed,rest,static,without,absent,not contain,not counted,lost,dropped,overlooked
+no_rotation | m*s'' + m*X''*cos(alpha) = m*g*sin(alpha) | rotat,inertia,turn,roll,friction,moment of inertia+missing,forgot,left out,omitted,lacks,no part,neglect,ignored,factor,3/2,without,absent,not contain,not counted,lost,dropped,overlooked,times too,too large,too small,too much,too little
+relative_as_absolute | M*X'' + m*s''*cos(alpha) = 0 | X'',wedge,disc,momentum,relative,transport,velocity,acceleration+relative,absolute,missing,carried,transport,without,absent,not contain,not counted,lost,dropped,overlooked
+two_rotation_and_sign | m*s'' - m*X''*cos(alpha) = m*g*sin(alpha) | rotat,inertia,turn,roll,X'',wedge,moment of inertia+missing,forgot,left out,omitted,lacks,no part,neglect,ignored,sign,direction,opposite,factor,3/2,without,absent,not contain,not counted,lost,dropped,overlooked,wrong way,reversed,other way,minus,wrong sense,times too,too large,too small,too much,too little
+right | s'' = 2*(M + m)*g*sin(alpha)/(3*(M + m) - 2*m*cos(alpha)^2)
+right | T = (M + m)/2*X'^2 + m*X'*s'*cos(alpha) + 3/4*m*s'^2
