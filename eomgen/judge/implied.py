@@ -258,6 +258,21 @@ def implied_by_rest(case: Case, written: HandEquation) -> Implied | None:
     return None
 
 
+def beside_rest(case: Case, scalar: Scalar) -> list[Comparison]:
+    """An equation of what does not move, beside the model's: with one mistake it is that, or its opposite."""
+    still = dict.fromkeys((*case.system.symbols.u, *case.system.symbols.a), 0)
+    if len(case.rows) != 1 or case.closing:
+        return []
+    rows = substituted(case.rows, still)
+
+    def wrong() -> Iterator[Corruption]:
+        for each in case.corruptions("motion").all:
+            with suppress(DerivationError):  # it has no value there
+                yield replace(each, rows=substituted(each.rows, still))
+
+    return [Comparison(case, k * scalar - rows[0], rows, "", more=wrong) for k in (1, -1)]
+
+
 def _implied(put: PutIn) -> Implied | None:
     """The one equation of the model and its corruptions, with an answer put in."""
     case, known = put.case, put.case.corruptions(put.what)

@@ -17,7 +17,14 @@ from eomgen.judge.conserved import not_conserved
 from eomgen.judge.course import course_of, mended, of_the_start
 from eomgen.judge.decision import is_zero_everywhere
 from eomgen.judge.diagnosis import BELIEVED
-from eomgen.judge.implied import Explainable, Instant, implied_by_course, implied_by_rest, simplest_explanation
+from eomgen.judge.implied import (
+    Explainable,
+    Instant,
+    beside_rest,
+    implied_by_course,
+    implied_by_rest,
+    simplest_explanation,
+)
 from eomgen.judge.kinds import FUNCTION_KINDS, KINDS, kind_of_equation
 from eomgen.judge.mends import Mends
 from eomgen.judge.reading import HandEquation
@@ -46,7 +53,7 @@ from eomgen.model.replaced import equation_typed
 from eomgen.records import dataclass
 from eomgen.simulation.configuration import paths_of
 from eomgen.symbolic.expression.derivative import depends_on, substituted
-from eomgen.symbolic.expression.graph import Node, Scalar
+from eomgen.symbolic.expression.graph import Node, Scalar, is_zero
 from eomgen.symbolic.numeric.work import doing
 
 
@@ -133,7 +140,7 @@ class Judge:
         if any(is_zero_everywhere(case.system, *substituted((scalar,), place)).holds for place in places):
             places = ()  # it is right there: what is wrong is that it holds elsewhere, too
         mends = [Mends(Authored(case, written, "equilibrium", place)) for place in places]
-        _, why = simplest_explanation([target] if target is not None else [], mends)
+        _, why = simplest_explanation([*([target] if target else []), *beside_rest(case, scalar)], mends)
         if why:
             difference = excess(case, target.left) if target is not None else ""
             causes = causes_of(case, why, moving=False)
@@ -276,7 +283,16 @@ class Judge:
         return Verdict(written.given, kind, WRONG, difference=difference, causes=(cause,))
 
     def _wrong(self, written: HandEquation, kind: str, scalar: Scalar, also: Meanings | None = None) -> Verdict:
-        """Why an equation is wrong."""
+        """Why an equation is wrong; that it is, where nothing of why has a value."""
+        try:
+            return self._explained(written, kind, scalar, also)
+        except DerivationError:
+            difference = excess(self.case, scalar)
+            text = f"the sides differ by {difference}" if difference else "the sides differ"
+            return Verdict(written.given, kind, WRONG, difference=difference, causes=(Cause("other", text),))
+
+    def _explained(self, written: HandEquation, kind: str, scalar: Scalar, also: Meanings | None) -> Verdict:
+        """The same, with the mistake that makes it so."""
         case = self.case
         found = truth_of(case, scalar, kind)
         if found.why and not (found.why == CONSTANT and written.calls):
@@ -315,7 +331,12 @@ class Judge:
         difference, touched = values[-1].unexplained() if values else (excess(case, scalar), "")
         text = f"the sides differ by {difference}" if difference else "the sides differ"
         cause = Cause("other", f"{text}{touched}", term=difference)
-        if clash := case.clash(written):
+        nothing = [x for x in values if not x.what and not is_zero(x.rows[0]) and is_zero(x.scalar + x.rows[0])]
+        if nothing and (there := excess(case, nothing[0].rows[0])):
+            cause = Cause(
+                "missing_term", f"it is not 0, but {there}: all of it is missing", there, quantity="whether it is 0"
+            )
+        elif clash := case.clash(written):
             cause = Cause("unit", clash, term=difference, quantity="the dimensions")
         return Verdict(written.given, kind, WRONG, difference=difference, causes=(cause,))
 

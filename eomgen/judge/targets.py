@@ -56,7 +56,7 @@ def _values_of(case: Case, written: HandEquation, kind: str, scalar: Scalar, als
     left = case.evaluated(written.difference, {**case.names, **(also or {})}, lambda _: symbol)
     slope = derivative(left, symbol)
     if depends_on(slope, (symbol,)) or is_zero(slope):
-        return []
+        return [] if is_zero(slope) else _sums(case, written, scalar)
     (rest,) = substituted((left,), {symbol: 0})
     author, true = over(-rest, slope), case.called(call)
     sizes = sizes_in(case, written, author - true)
@@ -65,13 +65,15 @@ def _values_of(case: Case, written: HandEquation, kind: str, scalar: Scalar, als
     of = tuple(x.name for x in call.args if isinstance(x, Reference))
     found = [Comparison(case, author - true, (true,), _WHAT.get(call.name, ""), call, of)]
     moving = (*case.system.symbols.a, *case.system.symbols.lam)
+    if kind == "reaction":
+        found += [Comparison(case, author - x, (x,), "", call, of) for x in _in_names_of(case, author, true)]
     if depends_on(true, moving) and not depends_on(author, moving):
         with suppress(EomgenError):
             so = case.phase.simple(case.phase.eliminated(true))
+            if sizes := sizes_in(case, written, author - so):
+                so = case.phase.simple(substituted((so,), {**sizes, **signs_at_start(case, sizes)})[0])
             found.append(Comparison(case, author - so, (so,), "", call, of))
             true = so
-    elif kind == "reaction":
-        found += [Comparison(case, author - x, (x,), "", call, of) for x in _in_names_of(case, author, true)]
     if any(x.op == "sqrt" for x in order((author, true))) and not depends_on(true, moving):
         found.append(Comparison(case, author * author - true * true, (true * true,), "", squared=True))
     if kind == "reaction" and len(case.model.bodies) <= MOST_BODIES:
@@ -102,8 +104,9 @@ def _in_names_of(case: Case, author: Scalar, true: Scalar) -> list[Scalar]:
             for x in {*symbols_of((row,))} & {*symbols_of((form,))} - mine:
                 ours, slope = (derivative(each, x) for each in (row, form))
                 if not depends_on(ours, (x,)) and not depends_on(slope, (x,)) and not is_zero(slope):
-                    other = case.phase.simple(form - over(slope, ours) * row)
-                    forms += [other] if other not in forms else []
+                    with suppress(DerivationError):  # it has no value there
+                        other = case.phase.simple(form - over(slope, ours) * row)
+                        forms += [other] if other not in forms else []
     return forms[1:]
 
 
