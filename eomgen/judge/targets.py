@@ -65,8 +65,7 @@ def _values_of(case: Case, written: HandEquation, kind: str, scalar: Scalar, als
     of = tuple(x.name for x in call.args if isinstance(x, Reference))
     found = [Comparison(case, author - true, (true,), _WHAT.get(call.name, ""), call, of)]
     moving = (*case.system.symbols.a, *case.system.symbols.lam)
-    if kind == "reaction":
-        found += [Comparison(case, author - x, (x,), "", call, of) for x in _in_names_of(case, author, true)]
+    forms = _in_names_of(case, author, true) if kind == "reaction" else []
     if depends_on(true, moving) and not depends_on(author, moving):
         with suppress(EomgenError):
             so = case.phase.simple(case.phase.eliminated(true))
@@ -74,6 +73,7 @@ def _values_of(case: Case, written: HandEquation, kind: str, scalar: Scalar, als
                 so = case.phase.simple(substituted((so,), {**sizes, **signs_at_start(case, sizes)})[0])
             found.append(Comparison(case, author - so, (so,), "", call, of))
             true = so
+    found += [Comparison(case, author - x, (x,), "", call, of) for x in forms]
     if any(x.op == "sqrt" for x in order((author, true))) and not depends_on(true, moving):
         found.append(Comparison(case, author * author - true * true, (true * true,), "", squared=True))
     if kind == "reaction" and len(case.model.bodies) <= MOST_BODIES:

@@ -215,7 +215,8 @@ def test_an_interrupted_run_keeps_what_it_has(number, tmp_path):
     """Exit code 130; the file holds whole rows up to the instant that the message names; --json is JSON."""
 
     def soon():
-        """The signal comes at the 300th step, however fast the machine is."""
+        """The signal comes at the 300th step, however fast the machine is, under nohup too."""
+        signal.signal(number, signal.SIG_DFL if number != signal.SIGINT else signal.default_int_handler)
         steps, asked = itertools.count(1), integrator.check_patience
 
         def counted():

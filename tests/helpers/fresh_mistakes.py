@@ -8,7 +8,7 @@ looked at when the judge was mended afterwards (2026-11-23), of those of even nu
     python tests/helpers/fresh_mistakes.py all textbook_mistakes    # of another folder: 60 of textbooks, 2026-11-26
     python tests/helpers/fresh_mistakes.py all cut_mistakes         # 210 in balances of what is cut free, 2026-11-27
     python tests/helpers/fresh_mistakes.py odd unseen_mistakes      # 150 of a stranger, 2026-11-27; even: 150 more
-    python tests/helpers/fresh_mistakes.py even blind_mistakes      # 125 of two more, not looked at; odd: looked at
+    python tests/helpers/fresh_mistakes.py even blind_mistakes      # 125 of two more, first judged at the end of all
 """
 
 from __future__ import annotations
