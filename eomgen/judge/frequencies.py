@@ -10,6 +10,7 @@ from __future__ import annotations
 
 from contextlib import suppress
 from functools import cached_property
+from itertools import islice
 
 import numpy as np
 
@@ -18,7 +19,7 @@ from eomgen.judge.case import Case
 from eomgen.judge.comparison import excess
 from eomgen.judge.corruption import TERMS, Corruption
 from eomgen.judge.decision import is_zero_everywhere
-from eomgen.judge.diagnosis import USUAL, Explanation, Share, cost_of, samples_of
+from eomgen.judge.diagnosis import MOST_NEAR, USUAL, Explanation, Share, cost_of, samples_of
 from eomgen.records import dataclass
 from eomgen.symbolic.expression.derivative import gradient, substituted
 from eomgen.symbolic.expression.graph import Node, Scalar, is_zero
@@ -49,9 +50,9 @@ class GivenFrequency:
     place: dict[Node, Scalar]
 
     def explained(self, number: int) -> list[Explanation]:
-        """The one mistake with which it is a frequency."""
+        """Single mistakes with which it is a frequency, the most believable first, each proven."""
         found = sorted(self._fitting, key=lambda each: each.cost) if number == 1 else []
-        return next(([each, *found[k + 1 :]] for k, each in enumerate(found) if self._proves(each)), [])
+        return list(islice(filter(self._proves, found), MOST_NEAR))
 
     def difference(self, explanation: Explanation) -> str:
         """What of the determinant does not vanish."""

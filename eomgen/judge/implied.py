@@ -164,8 +164,7 @@ def _beside_answer(
         return None
 
     if isinstance(at, WrittenEquation) and len(case.system.symbols.u) == 1:
-        moving = Comparison(case, other - own, (own,), "", more=lambda: _of_motion(case, written, at, own))
-        yield moving
+        yield Comparison(case, other - own, (own,), "", more=lambda: _of_motion(case, written, at, own))
     again = Comparison(case, other - own, (own,), "", more=lambda: replays(case, own, answered))
     if kind == "frequency":
         yield Comparison(case, other - own, (own,), "", more=lambda: _of_entry(case, call, own))

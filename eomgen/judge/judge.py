@@ -288,8 +288,7 @@ class Judge:
             return self._explained(written, kind, scalar, also)
         except DerivationError:
             difference = excess(self.case, scalar)
-            text = f"the sides differ by {difference}" if difference else "the sides differ"
-            return Verdict(written.given, kind, WRONG, difference=difference, causes=(Cause("other", text),))
+            return Verdict(written.given, kind, WRONG, difference=difference, causes=(_apart(difference),))
 
     def _explained(self, written: HandEquation, kind: str, scalar: Scalar, also: Meanings | None) -> Verdict:
         """The same, with the mistake that makes it so."""
@@ -329,8 +328,7 @@ class Judge:
             causes = causes_of(case, explanations, moving=moving, rooted=rooted)
             return Verdict(written.given, kind, WRONG, difference=target.difference(explanations[0]), causes=causes)
         difference, touched = values[-1].unexplained() if values else (excess(case, scalar), "")
-        text = f"the sides differ by {difference}" if difference else "the sides differ"
-        cause = Cause("other", f"{text}{touched}", term=difference)
+        cause = _apart(difference, touched)
         nothing = [x for x in values if not x.what and not is_zero(x.rows[0]) and is_zero(x.scalar + x.rows[0])]
         if nothing and (there := excess(case, nothing[0].rows[0])):
             cause = Cause(
@@ -353,6 +351,12 @@ class Judge:
         told = ", ".join(map(str, left_in))
         cause = Cause("constraint_force", _left_in(told), told, force=told, quantity=told)
         return Verdict(written.given, kind, WRONG, difference=told, causes=(cause,))
+
+
+def _apart(difference: str, beside: str = "") -> Cause:
+    """That the sides differ, where nothing says why."""
+    text = f"the sides differ by {difference}" if difference else "the sides differ"
+    return Cause("other", f"{text}{beside}", term=difference)
 
 
 def _left_in(force: str) -> str:
