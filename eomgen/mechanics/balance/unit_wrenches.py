@@ -5,6 +5,7 @@ The axes are the ground's in the plane, the body's own in space.
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from functools import cached_property
 
 from eomgen.mechanics.bodies.inertia import mass_properties
@@ -134,15 +135,34 @@ def _armatures(motion: Motion, link: BodyLink) -> list[tuple[int, Scalar]]:
 
 
 def scaled_axes(axes: Axes, body: str, variable: int, magnitude: Scalar) -> tuple[Vector, Vector]:
-    """(force, couple) along a joint's variable that do the work magnitude * s', child's axes."""
+    """(force, couple) along a joint's variable that do the work magnitude * s', child's axes, and none on its others.
+
+    They lie in the span of the joint's axes: d_k . S_j = 1 of j = k, else 0.
+    """
     w, v = axes.motion.link(body).S[variable]
-    if not all(is_zero(x) for x in w):
-        return ZERO, times(_over_square(magnitude, w), w)
-    return times(_over_square(magnitude, v), v), ZERO
+    turning = not all(is_zero(x) for x in w)
+    others = [
+        column[0 if turning else 1]
+        for j, column in enumerate(axes.motion.link(body).S)
+        if j != variable and turning != all(is_zero(x) for x in column[0])
+    ]
+    push = _without_work(magnitude, w if turning else v, others)
+    return (ZERO, push) if turning else (push, ZERO)
 
 
-def _over_square(magnitude: Scalar, n: Vector) -> Scalar:
-    square = dot(n, n)
+def _without_work(magnitude: Scalar, n: Vector, others: Sequence[Vector]) -> Vector:
+    """The vector d in the span of n and the others with d . n = magnitude that is normal to the others."""
+    if all(is_zero(dot(n, other)) for other in others):
+        return times(_over(magnitude, dot(n, n)), n)
+    if len(others) == 1:
+        (other,) = others
+        d = minus(times(dot(other, other), n), times(dot(n, other), other))
+    else:
+        d = cross(others[0], others[1])
+    return times(_over(magnitude, dot(n, d)), d)
+
+
+def _over(magnitude: Scalar, square: Scalar) -> Scalar:
     return magnitude if type(square) is int and square == 1 else over(magnitude, square)
 
 
