@@ -53,7 +53,10 @@ def rest_balance_step(statics: StaticEquations, reader: Reader) -> Step:
     ties = [Formula((reader.shown(x), 0)) for x in statics.phi[:own]]
     ties += [Formula((x + 1, 1)) for x in statics.phi[own:]]  # of quaternions, which are read with it
     between = [prose("The ties hold the coordinates by")] if ties else []
-    return Step("balance", "Balance at rest", (*held, prose(words, law, "."), *forces, *between, *ties, *empty))
+    rates = [Formula((reader.shown(x), 0)) for x in statics.sigma]
+    still = [prose("The constraints of velocities leave, where no speed is,")] if rates else []
+    lines = (*held, prose(words, law, "."), *forces, *between, *ties, *still, *rates, *empty)
+    return Step("balance", "Balance at rest", lines)
 
 
 def _nowhere(reader: Reader, statics: StaticEquations) -> tuple[Statement, ...]:

@@ -19,6 +19,7 @@ from eomgen.mechanics.bodies.kinematics import BodyLink
 from eomgen.mechanics.bodies.loads import weights
 from eomgen.mechanics.constraints.ties import holds_identically, slide_power
 from eomgen.mechanics.equations.system import System
+from eomgen.mechanics.equations.work import generalized_forces
 from eomgen.model.driven import driven_coordinates, driving_ties
 from eomgen.model.forces.load import PointForce
 from eomgen.model.unknowns import in_loads
@@ -143,7 +144,8 @@ def _refuse_placeless_forces(system: System) -> None:
 
 def _refuse_placeless_ties(system: System) -> None:
     drives = {tie for ties in driving_ties(system.scope.model).values() for tie in ties}  # whose place is a joint
-    for row in (row for row in system.ties.rows if row.tie not in drives):
+    idle = _idle_rows(system)
+    for row in (row for row in system.ties.rows if row.tie not in drives and row.label not in idle):
         points = (push for push in row.pushes if isinstance(push, PointForce))
         slide = sum((slide_power(system.motion, push) for push in points), start=0)
         own = 0 if is_zero(row.direct) else row.direct - slide  # a row of material points sees no slide
@@ -155,6 +157,32 @@ def _refuse_placeless_ties(system: System) -> None:
             )
         if row.pushes and _pushes_along(system, row.direct):
             raise _moved_inside(f"the tie '{row.tie}'", f"constraints.{row.tie}")
+
+
+def _idle_rows(system: System) -> set[str]:
+    """The labels of rows without bodies that push nothing: z' = r - x, where z moves no body and no force acts along it.
+
+    Along such a coordinate the row alone acts: lam = 0.
+    """
+    if all(row.pushes for row in system.ties.rows):
+        return set()
+    free = system.free or system
+    Q = generalized_forces(free.loads)
+    moved = [any(not is_zero(B[i][k]) for B in free.motion.B for i in range(6)) for k in range(len(Q))]
+    alone = [k for k, force in enumerate(Q) if is_zero(force) and not moved[k]]
+    left = {row.label: line for row, line in zip(free.ties.closing, free.ties.J, strict=True)}
+    found: set[str] = set()
+    while more := {
+        label
+        for label, line in left.items()
+        if any(
+            not is_zero(line[k]) and all(is_zero(other[k]) for name, other in left.items() if name != label)
+            for k in alone
+        )
+    }:
+        found |= more
+        left = {label: line for label, line in left.items() if label not in more}
+    return found
 
 
 def _pushes_along(system: System, power: Scalar) -> bool:

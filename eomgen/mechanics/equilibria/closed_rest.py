@@ -95,12 +95,13 @@ class ClosedForms:
         """(equations, unknowns, what is known): the ties from coordinates at simple places, or all equations."""
         statics = self.statics
         left = tuple(q for q in statics.q if q not in simple)
-        if simple and statics.phi and len(left) <= len(statics.phi):
-            yield statics.phi, left, simple
+        relations = (*statics.phi, *statics.sigma)
+        if simple and relations and len(left) <= len(relations):
+            yield relations, left, simple
         size = sum(text_size(x) for x in statics.equations)
         if simple and len(left) <= MOST_EXACT and size <= LONGEST:
             yield statics.equations, (*left, *statics.lam), simple
-        linear = sum(any(_is_number(d) for d in gradient(x, statics.q)) for x in statics.phi)
+        linear = sum(any(_is_number(d) for d in gradient(x, statics.q)) for x in relations)
         if _entangled(statics) - linear <= MOST_EXACT and size <= LONGEST:
             yield statics.equations, statics.unknowns, {}
 
@@ -124,12 +125,12 @@ class ClosedForms:
         """The state with its multipliers where all equations hold there exactly; None where they do not."""
         statics = self.statics
         try:
-            phi = substituted(statics.phi, q)
+            relations = substituted((*statics.phi, *statics.sigma), q)
             rows = [substituted(tuple(row[k] for row in statics.J), q) for k in range(len(statics.q))]
             rows += [substituted(row, q) for row in jacobian(statics.beside, statics.lam)]
             alone = substituted(statics.beside, dict.fromkeys(statics.lam, 0))
             right = tuple(-x for x in substituted((*statics.Q, *alone), q))
-            if not all(map(_is_nothing, phi)):
+            if not all(map(_is_nothing, relations)):
                 return None
             entries = readable_all([x for row in rows for x in row], Work.VALUE) if rows and statics.lam else ()
             n = len(statics.lam)

@@ -157,14 +157,14 @@ class _Search:
         """As many equations as coordinates, free of multipliers: the forces; with one freedom left by ties, that the
         force has no part along it, det [Q; J] = 0; None where there are none."""
         statics = self.statics
-        n = len(statics.q)
+        n, relations = len(statics.q), (*statics.phi, *statics.sigma)
         if statics.beside:
             return None
         if not statics.J:
-            return statics.Q if not statics.phi else None
-        if len(statics.J) == len(statics.phi) == n - 1:
+            return statics.Q if not relations else None
+        if len(statics.J) == len(relations) == n - 1:
             determinant = cramer.determinant((statics.Q, *statics.J))
-            return (readable(determinant, Work.VALUE), *statics.phi)
+            return (readable(determinant, Work.VALUE), *relations)
         return None
 
     def _isolated(self, equations: tuple[Scalar, ...]) -> Places:

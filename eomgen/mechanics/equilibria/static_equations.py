@@ -1,8 +1,9 @@
 """System -> Static equations: what vanishes where the system is at rest, and stays so.
 
-    Q + J^T lam = 0,   phi = 0        at u = 0, t = 0, driven coordinates held where they start
+    Q + J^T lam = 0,   phi = 0,   sigma = 0        at u = 0, t = 0, driven coordinates held where they start
 
-over all coordinates that are not driven, dependent ones among them. Relations between positions that a velocity row
+over all coordinates that are not driven, dependent ones among them. sigma is what a velocity row J u + sigma = 0 asks
+for at rest: of z' = r - x that x = r. Relations between positions that a velocity row
 gives by itself (a wheel that rolls) are taken from the start. The norm of a quaternion, e . e = 1, is one more tie.
 """
 
@@ -55,6 +56,7 @@ class StaticEquations:
         Q: generalized force along each of q, and `unbalanced` the part of it that has no potential.
         J: of each closing row its coefficients, lam its multiplier.
         phi: relations between the coordinates.
+        sigma: what velocity rows leave where no speed is: a tie that runs on at any place has none at which it rests.
         norms: how many of the rows of J, the last ones, are those of the norms of quaternions.
         beside: what balances along coordinates that need not be sought, as no equation depends on them.
         nowhere: (coordinate, force along it) of the forces that the values of the parameters make vanish everywhere.
@@ -69,6 +71,7 @@ class StaticEquations:
     J: tuple[ScalarRow, ...]
     lam: tuple[Node, ...]
     phi: ScalarRow
+    sigma: ScalarRow = ()
     norms: int = 0
     beside: ScalarRow = ()
     nowhere: tuple[tuple[Node, Scalar], ...] = ()
@@ -84,7 +87,7 @@ class StaticEquations:
     @property
     def equations(self) -> ScalarRow:
         """All that vanishes."""
-        return (*self.forces, *self.beside, *self.phi)
+        return (*self.forces, *self.beside, *self.phi, *self.sigma)
 
     @property
     def unknowns(self) -> tuple[Node, ...]:
@@ -151,7 +154,9 @@ class StaticEquations:
         """The same over the other coordinates, those named held at a place; the forces along them balance too."""
         kept = [k for k, q in enumerate(self.q) if q not in at]
         beside = [force for q, force in zip(self.q, self.forces, strict=True) if q in at]
-        Q, unbalanced, phi, others = (substituted(x, at) for x in (self.Q, self.unbalanced, self.phi, self.beside))
+        Q, unbalanced, phi, sigma, others = (
+            substituted(x, at) for x in (self.Q, self.unbalanced, self.phi, self.sigma, self.beside)
+        )
         rows = [substituted(row, at) for row in self.J]
         more = tuple(x for x in substituted(tuple(beside), at) if not is_zero(x))
         return replace(
@@ -160,6 +165,7 @@ class StaticEquations:
             Q=tuple(Q[k] for k in kept),
             unbalanced=tuple(unbalanced[k] for k in kept),
             phi=phi,
+            sigma=sigma,
             beside=(*others, *more),
             J=tuple(tuple(row[k] for k in kept) for row in rows),
         )
@@ -167,9 +173,11 @@ class StaticEquations:
     def measured(self, unit: State) -> StaticEquations:
         """The same where each of these coordinates stands for itself over its unit."""
         at = {q: q * x for q, x in unit.items()}
-        Q, unbalanced, phi, beside = (substituted(x, at) for x in (self.Q, self.unbalanced, self.phi, self.beside))
+        Q, unbalanced, phi, sigma, beside = (
+            substituted(x, at) for x in (self.Q, self.unbalanced, self.phi, self.sigma, self.beside)
+        )
         rows = tuple(substituted(row, at) for row in self.J)
-        return replace(self, Q=Q, unbalanced=unbalanced, phi=phi, beside=beside, J=rows)
+        return replace(self, Q=Q, unbalanced=unbalanced, phi=phi, sigma=sigma, beside=beside, J=rows)
 
     def slopes(self, rows: Sequence[ScalarRow], q: np.ndarray, values: Mapping[Node, float]) -> np.ndarray:
         """Entries as numbers at a place."""
@@ -182,7 +190,8 @@ def static_equations(system: System) -> StaticEquations:
     """The equations of the system at rest, its drives held.
 
     Raises:
-        DerivationError: dry friction, by which rest is possible in many places; a drive that turns steadily.
+        DerivationError: dry friction, by which rest is possible in many places; a drive that turns steadily; a tie that
+            runs on wherever the system is.
     """
     _refuse_dry_friction(system)
     system, held = with_drives_held(system)
@@ -197,7 +206,10 @@ def static_equations(system: System) -> StaticEquations:
     Q = substituted(forces, given)
     unbalanced = substituted(powered_forces(free.loads), given)
     phi = _relations(system, given, q)
-    Q, unbalanced, phi = (readable_all(x, Work.FORMULA, most=MOST_TERMS) if x else () for x in (Q, unbalanced, phi))
+    sigma = _left_at_rest(free, given, q)
+    Q, unbalanced, phi, sigma = (
+        readable_all(x, Work.FORMULA, most=MOST_TERMS) if x else () for x in (Q, unbalanced, phi, sigma)
+    )
     lam = free.symbols.lam
     kept = [i for i, row in enumerate(rows) if not all(map(is_zero, row))]
     statics = StaticEquations(
@@ -210,6 +222,7 @@ def static_equations(system: System) -> StaticEquations:
         tuple(rows[i] for i in kept),
         tuple(lam[i] for i in kept),
         tuple(x for x in phi if not is_zero(x)),
+        tuple(x for x in sigma if not is_zero(x)),
     )
     return with_norms(statics)
 
@@ -239,6 +252,21 @@ def _relations(system: System, given: Mapping[Node, Scalar], q: Sequence[Node]) 
 
     found = substituted(tuple(position_equations(system, start_values(system.scope))), given)
     return tuple(x for x in found if depends_on(x, q))
+
+
+def _left_at_rest(free: System, given: Mapping[Node, Scalar], q: Sequence[Node]) -> ScalarRow:
+    """sigma of the rows of velocities at rest; a row of positions keeps time as it is at the start.
+
+    Raises:
+        DerivationError: a row that no place satisfies at rest.
+    """
+    rows = [row for row in free.ties.closing if row.gap is None]
+    left = substituted(tuple(row.velocity for row in rows), given)
+    for row, x in zip(rows, left, strict=True):
+        if not depends_on(x, q) and not is_zero(x) and not vanishes(x):
+            what = f"'{row.tie}' runs on wherever the system is, and nothing is at rest beside it"
+            raise DerivationError(what, f"constraints.{row.tie}", 'seek a steady motion: linearize --about steady')
+    return tuple(x for x in left if depends_on(x, q))
 
 
 # -- what is held ------------------------------------------------------------------------------------
