@@ -120,7 +120,9 @@ class _Place:
         if not along:
             return Stability(INDIFFERENT, "the ties leave no freedom")
         if statics.sigma:
-            return Stability("undecided", "constraints of velocities move on beside it; linearize tells what comes back")
+            return Stability(
+                "undecided", "constraints of velocities move on beside it; linearize tells what comes back"
+            )
         nodes = tuple(statics.q[k] for k in along)
         K = self._exact_K(along) if self.known and len(along) <= MOST_EXACT else None
         shown: StiffnessRows = K if K is not None else _as_exact(self._numeric_K(J, along), self._size_of_terms)

@@ -265,7 +265,7 @@ def _left_at_rest(free: System, given: Mapping[Node, Scalar], q: Sequence[Node])
     for row, x in zip(rows, left, strict=True):
         if not depends_on(x, q) and not is_zero(x) and not vanishes(x):
             what = f"'{row.tie}' runs on wherever the system is, and nothing is at rest beside it"
-            raise DerivationError(what, f"constraints.{row.tie}", 'seek a steady motion: linearize --about steady')
+            raise DerivationError(what, f"constraints.{row.tie}", "seek a steady motion: linearize --about steady")
     return tuple(x for x in left if depends_on(x, q))
 
 
