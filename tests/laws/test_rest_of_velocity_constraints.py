@@ -91,7 +91,7 @@ def test_an_integrator_rests_where_its_error_vanishes(free):
 
 
 def test_an_integrator_carries_no_reaction():
-    """lam = 0 of z' = r - q, where z moves no body:  F_y = m y_C'' + m g at the start, q = 0, q'' = 3 (kp r - m g l/2)"""
+    """lam = 0 of z' = r - q, where z moves no body:  F_y = m y_C'' + m g at q = 0, q'' = 3 (kp r - m g l/2)"""
     found = eomgen.reactions(eomgen.loads(ARM.replace("FREE", "dependent = true")))["reaction_y(arm)"]
     assert float(found.value) == pytest.approx(9.81 + 3 * (40 * 0.7 - 9.81 / 2) / 2)
 

@@ -160,7 +160,7 @@ def _refuse_placeless_ties(system: System) -> None:
 
 
 def _idle_rows(system: System) -> set[str]:
-    """The labels of rows without bodies that push nothing: z' = r - x, where z moves no body and no force acts along it.
+    """The labels of rows without bodies that push nothing: z' = r - x, where z moves no body and nothing pushes it.
 
     Along such a coordinate the row alone acts: lam = 0.
     """
