@@ -81,7 +81,8 @@ def examples_command(wants_json: bool, output: str | None) -> int:
 @JSON
 @click.option("-o", "--output", type=click.Path(dir_okay=False), help="The model file, .toml.  [default: stdout]")
 @click.option("--floating", is_flag=True, help="Of URDF: nothing holds the base; else it is fixed to the ground.")
-def import_command(file: str, wants_json: bool, output: str | None, floating: bool) -> int:
+@click.option("--model", "model", metavar="NAME", help="Of SDF with several models: which; else the first that moves.")
+def import_command(file: str, wants_json: bool, output: str | None, floating: bool, model: str | None) -> int:
     """Make a model file of a robot's URDF, MJCF or SDF.
 
     Bodies, joints, inertias, dampers, motors as inputs, joints that mimic others as constraints, limits as remarks.
@@ -90,7 +91,7 @@ def import_command(file: str, wants_json: bool, output: str | None, floating: bo
     from eomgen.verbs.importing import import_document, refuse_other_endings
 
     refuse_other_endings(output)
-    document = import_document(file, output=output, floating=floating)
+    document = import_document(file, output=output, floating=floating, model=model)
     return deliver(document, form_asked(wants_json, None))
 
 

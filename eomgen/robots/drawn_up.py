@@ -26,6 +26,48 @@ REMARKS = {  # what an import tells in a coordinate's or a body's remark, and an
     "velocity": rf"\bat most {_FIGURE} (?:rad|m)/s",
 }
 Entries = dict[str, Any]
+NO_COUNTERPART = "eomgen has no counterpart"
+SLIDING = 'torque or force of the joint, with "- f*tanh(rate/small)": it slides, and creeps where it would stick'
+IN_SPACE = "a [forces] `couple` in axes of the body, by its quaternion and `omega`"
+LAW = "a formula with max and min in the motor's force"
+NEAREST = {  # what of a model comes nearest to a thing that changes the motion and has no counterpart
+    "collision": "`rolling` or `support` in [constraints]; a push by max(0, depth) in [forces]",
+    "geoms that touch": "`rolling` or `support` in [constraints]; a push by max(0, depth) in [forces]",
+    "pairs of geoms that touch": "`rolling` or `support` in [constraints]; a push by max(0, depth) in [forces]",
+    "friction": SLIDING,
+    "frictionloss": SLIDING,
+    "motion of a mocap body": "a `motion` of coordinates of a joint",
+    "springs and dampers that are not linear": "the law as the joint's torque or force",
+    "springs of free and ball joints": IN_SPACE,
+    "friction of free and ball joints": IN_SPACE,
+    "limits of free and ball joints": IN_SPACE,
+    "dampers that are not linear of free and ball joints": IN_SPACE,
+    "limits of motors": LAW,
+    "limits of tendons": "a `potential` of max(0, length - limit)^2",
+    "limits of joints": "a `potential` of max(0, q - limit)^2, or a one-sided tie",
+    "limit": "a `potential` of max(0, q - limit)^2, or a one-sided tie",
+    "filters of motors": "an activation that the caller computes; a coordinate with its own rate",
+    "delays of motors": "an input that comes later",
+    "inputs of motors": "none is needed",
+    "motors that are no linear laws": "the law as a force in [forces], with an input of [inputs]",
+    "motors by plugins": "the law as a force in [forces], with an input of [inputs]",
+    "tendons through places": "`spring`, `link`, `string` between points",
+    "fluid": "a `force` by the velocities of points, a `kinetic` energy of added mass",
+    "softness of equalities": "a `spring` and a `damper` in place of the tie",
+    "equalities of other kinds": "an `equation` between coordinates and places in [constraints]",
+    "flexible bodies": "bodies on joints with stiffness",
+    "plugin": "the law as a force in [forces]",
+    "plugins": "the law as a force in [forces]",
+    "model": "eomgen import FILE --model NAME",
+    "include": "put the file beside this one, and import again",
+    "joint": "both models within one <model>",
+    "fluid_added_mass": "a `kinetic` energy in [forces]",
+    "drake:rotor_inertia": "the `armature` of a joint, ratio^2*J",
+    "joint of <mimic>": "an `equation` in [constraints]",
+    "drake:joint": "a joint in the body's table",
+    "mimic": "an `equation` in [constraints]",
+    "transmission": "the joint's `armature` and input",
+}
 
 
 @dataclass(frozen=True)
@@ -36,18 +78,26 @@ class LeftOut:
         what: their sort: "collision".
         where: each of them.
         why: why there is none, or how a model says it.
+        nearest: what of a model comes nearest to it; None where no motion depends on it.
     """
 
     what: str
     where: tuple[str, ...]
     why: str
+    nearest: str | None = None
 
     def __str__(self) -> str:
         listed = ", ".join(dict.fromkeys(self.where))
-        return f"{self.what} ({self.why}): {listed}" if listed else f"{self.what} ({self.why})"
+        told = f"{self.what} ({self.why}): {listed}" if listed else f"{self.what} ({self.why})"
+        return f"{told}; nearest: {self.nearest}" if self.nearest else told
 
     def as_dict(self) -> dict[str, Any]:
-        return {"what": self.what, "where": list(self.where), "why": self.why}
+        return {"what": self.what, "where": list(self.where), "why": self.why, "nearest": self.nearest}
+
+
+def left(what: str, where: Iterable[str], why: str = NO_COUNTERPART) -> LeftOut:
+    """A thing of a robot's file that is left out, with what comes nearest to it."""
+    return LeftOut(what, tuple(where), why, NEAREST.get(what))
 
 
 @dataclass(frozen=True)

@@ -6,7 +6,7 @@ import re
 from decimal import localcontext
 from pathlib import Path
 
-from eomgen.errors import ModelError
+from eomgen.errors import ModelError, UsageError
 from eomgen.files import read
 from eomgen.model.parts import Model
 from eomgen.model.reader import loads
@@ -14,7 +14,8 @@ from eomgen.records import dataclass
 from eomgen.robots.drawn_up import Imported, LeftOut
 from eomgen.robots.mjcf import mjcf
 from eomgen.robots.numbers import EXACTLY
-from eomgen.robots.sdf import LARGEST, sdf
+from eomgen.robots.sdf import sdf
+from eomgen.robots.sdf_models import LARGEST
 from eomgen.robots.toml_text import toml_text
 from eomgen.robots.urdf import urdf
 
@@ -37,11 +38,12 @@ class ImportedRobot:
     left_out: tuple[LeftOut, ...]
 
 
-def imported(path: str | Path, *, floating: bool = False) -> ImportedRobot:
+def imported(path: str | Path, *, floating: bool = False, model: str | None = None) -> ImportedRobot:
     """The robot in a file: URDF, SDF, or MJCF (by the extra `[mujoco]`).
 
     Args:
         floating: of URDF: nothing holds the base; else it is fixed to the ground.
+        model: of SDF: the name of the model, of several; None: the first that moves.
     Raises:
         ModelError: it cannot be read, is no robot, or one that is none for eomgen.
     """
@@ -51,30 +53,33 @@ def imported(path: str | Path, *, floating: bool = False) -> ImportedRobot:
     except OSError as error:
         raise ModelError(f"cannot be read: {error.strerror or error}", str(path), "check the path") from error
     with localcontext(EXACTLY):
-        found = _tables(path, data, floating)
+        found = _tables(path, data, floating, model)
     after = [f"left out: {each}" for each in found.left_out]
     text = toml_text(found.tables, [f"Imported from {path.name}."], after)
     return ImportedRobot(text, loads(text, path.with_suffix(".toml").name, path.stem), found.left_out)
 
 
-def import_robot(path: str | Path, *, floating: bool = False) -> Model:
+def import_robot(path: str | Path, *, floating: bool = False, model: str | None = None) -> Model:
     """The model of a robot in a file of another program; `imported` has its text and what was left out.
 
     Args:
         floating: of URDF: nothing holds the base; else it is fixed to the ground.
+        model: of SDF: the name of the model, of several; None: the first that moves.
     Raises:
         ModelError: it cannot be read, is no robot, or one that is none for eomgen.
     """
-    return imported(path, floating=floating).model
+    return imported(path, floating=floating, model=model).model
 
 
-def _tables(path: Path, data: bytes, floating: bool) -> Imported:
+def _tables(path: Path, data: bytes, floating: bool, model: str | None) -> Imported:
     """By what the root of the file says."""
     root = ROOT.search(COMMENT.sub(b"", data))
+    if model is not None and (root is None or root[1] != b"sdf"):
+        raise UsageError("only SDF files have several models to choose from", mend="leave --model out")
     if root is not None and root[1] == b"mujoco":
         return mjcf(path)
     if root is not None and root[1] == b"sdf":
-        return sdf(data, str(path))
+        return sdf(data, str(path), model)
     if root is not None and root[1] == b"mujocoinclude":
         raise ModelError("a part of an MJCF file", f"{path}:1:1", "import the file with <mujoco> that includes it")
     return urdf(data, str(path), floating=floating)

@@ -11,6 +11,7 @@ import numpy as np
 
 from eomgen.records import dataclass
 from eomgen.robots.drawn_up import (
+    NO_COUNTERPART,
     Entries,
     LegalNames,
     in_file,
@@ -47,7 +48,7 @@ class CompiledRobot:
     rotors: dict[int, Decimal] = field(default_factory=dict)
     points: dict[int, Entries] = field(default_factory=dict)
 
-    def leave(self, what: str, where: Iterable[str], why: str = "eomgen has no counterpart") -> None:
+    def leave(self, what: str, where: Iterable[str], why: str = NO_COUNTERPART) -> None:
         if where := list(where):
             self.left.setdefault((what, why), []).extend(where)
 

@@ -7,31 +7,19 @@ is free, unless the model is static.
 
 from __future__ import annotations
 
-import re
 from collections.abc import Mapping
 from dataclasses import field
 from decimal import Decimal
-from pathlib import Path
 from typing import Any
 
 from eomgen.errors import ModelError
-from eomgen.files import read
 from eomgen.model.findings import nearest
 from eomgen.records import dataclass
-from eomgen.robots.drawn_up import Entries, Imported, LegalNames, Moved, Seat, gap, hung, in_file, without_empty
-from eomgen.robots.numbers import (
-    ORIGIN,
-    decimals,
-    in_radians,
-    inertia_in,
-    quaternion_of,
-    roll_pitch_yaw,
-    six,
-    tensor_of,
-    turn_of,
-    turned_by,
-)
-from eomgen.robots.urdf import LEFT_OUT, by_name, free_joint, left_out, turned_freely, with_mass
+from eomgen.robots.drawn_up import Entries, Imported, LegalNames, Moved, Seat, gap, hung, in_file, left, without_empty
+from eomgen.robots.numbers import ORIGIN, ZERO, computed, decimals, quaternion_of, turn_of
+from eomgen.robots.sdf_masses import YES, link_masses, own_pose
+from eomgen.robots.sdf_models import FlatModel, SdfChoice, choices, chosen
+from eomgen.robots.urdf import LEFT_OUT, by_name, free_joint, left_out, turned_freely
 from eomgen.robots.xml_tree import XmlElement, xml_tree
 from eomgen.symbolic.expression.spatial import IDENTITY, Pose, apply
 
@@ -39,87 +27,68 @@ ONE_AXIS = {"revolute": "rad", "continuous": "rad", "prismatic": "m", "screw": "
 TWO_AXES = ("universal", "revolute2")
 KINDS = (*ONE_AXIS, *TWO_AXES, "fixed", "ball")
 ENDLESS = Decimal(10) ** 15  # a limit beyond it is none
-LARGEST = 20_000_000  # bytes of a file
 STANDARD = "0 0 -9.8"  # gravity, where the file says nothing
 WHY = LEFT_OUT | {
     "plugin": "code of a simulator",
     "physics": "settings of a simulator",
     "self_collide": "no contact is declared by a shape: see [constraints]",
-    "include": "a model within a model: merge it, or put its links here",
-    "model": "models within a model: import each by itself",
+    "include": "a model whose file is not there",
+    "joint": "between models of a world",
 }
 
 
-def sdf(data: bytes, name: str) -> Imported:
-    """The tables of a model, or of the first one of a world.
+def sdf(data: bytes, name: str, wanted: str | None = None) -> Imported:
+    """The tables of a model: of the only one of a file, of the one that is wanted, else of the first that moves.
 
     Args:
         name: stands for the file in messages.
+        wanted: the model's name.
     Raises:
-        ModelError: no model, or one whose links are no tree.
+        ModelError: no model, none of the name, or one whose links are no tree.
     """
     root = xml_tree(data, name)
-    old = _version(root) < (1, 5)
-    world = root.one("world")
-    top = root if world is None else world
-    top.get("name")
-    model = top.one("model")
-    files: tuple[str, ...] = (str(Path(name).resolve()),)
-    if model is None:
-        include = top.one("include")
-        if include is None:
-            raise ModelError("the file holds no <model>", root.where, "name an SDF file with one")
-        old, model, files = _included(include, files)
-        include.children.append(model)  # what nobody reads of it is left out
-    _merge(model, files)
-    gravity = None if world is None else world.one("gravity")
-    acceleration = gravity.value(3) if gravity is not None else decimals(STANDARD.split())
-    found = _Reading.of(model, old).tables(acceleration)
-    return Imported(found, left_out(root, WHY))
+    every = choices(root, name)
+    if not every:
+        raise ModelError("the file holds no <model>", root.where, "name an SDF file with one")
+    choice, found = _first_that_moves(every) if wanted is None else _tables(chosen(every, wanted, root))
+    others = [each for each in every if each is not choice]
+    names = [each.name for each in others]
+    for each in others:
+        each.element.seen = True
+        each.element.children, each.element.read = [], {*each.element.attributes}
+    told = [left("model", names, "another of the file's models")] if others else []
+    return Imported(found, (*told, *left_out(root, WHY)))
 
 
-def _included(include: XmlElement, files: tuple[str, ...]) -> tuple[bool, XmlElement, tuple[str, ...]]:
-    """The model of the file that an <include> names, beside it or above; <name>, <static>, <pose> are the include's.
+def _first_that_moves(every: list[SdfChoice]) -> tuple[SdfChoice, Entries]:
+    """The first model that moves, else the first that is there; an include of a file that is not there is passed by.
 
-    Args:
-        files: that include one another, this last.
-    Returns:
-        whether axes are given in the model's; the model; the files, its own among them.
+    Raises:
+        ModelError: of the first one, where nothing can be read.
     """
-    uri = include.one("uri")
-    where = re.sub(r"^(model|file|package)://", "", "" if uri is None else uri.text)
-    places = [folder / where for folder in Path(files[-1]).parents]
-    found = next((x for place in places for x in (place, place / "model.sdf") if where and x.is_file()), None)
-    if found is None:
-        raise ModelError(f"no file is there for '{where}'", include.where, "put it into this folder, or one above it")
-    if str(found) in files:
-        raise ModelError(f"'{where}' includes itself", include.where, "take one <include> out")
-    root = xml_tree(read(found, LARGEST), str(found))
-    model = root.one("model")
-    if model is None:
-        raise ModelError("the file holds no <model>", root.where, "include one with a model")
-    title, own = include.one("name"), [x for x in (include.one("static"), include.one("pose")) if x is not None]
-    attributes = dict(model.attributes) if title is None else {**model.attributes, "name": title.text}
-    if frame := include.get("placement_frame"):
-        attributes["placement_frame"] = frame
-    kept = [child for child in model.children if child.tag not in {x.tag for x in own}]
-    made = XmlElement("model", attributes, model.where, [*own, *kept], seen=True)
-    return _version(root) < (1, 5), made, (*files, str(found))
+    first: tuple[SdfChoice, Entries] | None = None
+    missing: ModelError | None = None
+    for choice in every:
+        try:
+            found = _tables(choice)
+        except ModelError as error:
+            if choice.element.tag == "model":
+                raise
+            missing = missing or error
+            continue
+        if found[1].get("coordinates"):
+            return found
+        first = first or found
+    if first is None:
+        assert missing is not None
+        raise missing
+    return first
 
 
-def _merge(model: XmlElement, files: tuple[str, ...]) -> None:
-    """Links, joints and frames of the files that are merged into a model, which stand where the model's own do."""
-    for include in [child for child in model.children if child.tag == "include" and not child.one("pose")]:
-        if include.get("merge") in ("true", "1"):
-            include.seen = True
-            _, other, through = _included(include, files)
-            _merge(other, through)
-            model.children += [child for child in other.children if child.tag not in ("static", "pose")]
-
-
-def _version(root: XmlElement) -> tuple[int, ...]:
-    text = root.get("version", "1.10") or "1.10"
-    return tuple(int(part) for part in text.split(".") if part.isdigit())
+def _tables(choice: SdfChoice) -> tuple[SdfChoice, Entries]:
+    gravity = choice.gravity
+    acceleration = gravity.value(3) if gravity is not None else decimals(STANDARD.split())
+    return choice, _Reading.of(choice.flat()).tables(acceleration)
 
 
 @dataclass
@@ -127,17 +96,15 @@ class _Reading:
     """A model's elements, by name, and what is made of them.
 
     Args:
-        old: an axis is given in the model's axes.
         above: of each link the joint by which it hangs.
         coordinate, second: of each joint the name of its coordinate, and of that of a second axis.
         weightless: bodies on which gravity does not act.
     """
 
-    model: XmlElement
+    flat: FlatModel
     links: Mapping[str, XmlElement]
     joints: Mapping[str, XmlElement]
     frames: Mapping[str, XmlElement]
-    old: bool
     above: dict[str, str] = field(default_factory=dict)
     names: LegalNames = field(default_factory=LegalNames)
     bodies: LegalNames = field(default_factory=LegalNames)
@@ -148,9 +115,9 @@ class _Reading:
     found: Entries = field(default_factory=dict)
 
     @classmethod
-    def of(cls, model: XmlElement, old: bool) -> _Reading:
-        links, joints, frames = (by_name(model, tag) for tag in ("link", "joint", "frame"))
-        made = cls(model, links, joints, frames, old)
+    def of(cls, flat: FlatModel) -> _Reading:
+        links, joints, frames = (by_name(flat.model, tag) for tag in ("link", "joint", "frame"))
+        made = cls(flat, links, joints, {**flat.nested, **frames})
         for name, joint in made.joints.items():
             parent, child = made._end(joint, "parent"), made._end(joint, "child")
             if child == "world":
@@ -172,11 +139,15 @@ class _Reading:
         }
         return made
 
+    @property
+    def model(self) -> XmlElement:
+        return self.flat.model
+
     def tables(self, gravity: Any) -> Entries:
         keys = ("coordinates", "speeds", "inputs", "bodies", "constraints")
         self.found = {key: {} for key in keys}
         static = self.model.one("static")
-        fixed = static is not None and static.text in ("true", "1")
+        fixed = static is not None and static.text in YES
         for link in self._ordered():
             self._link(link, fixed)
         g = self.names.new("g")
@@ -209,8 +180,11 @@ class _Reading:
             raise ModelError(f"frame '{name}' is attached to itself", self.model.where, "mend attached_to")
         if name == "__model__" and self.links:
             return self.model.get("canonical_link") or next(iter(self.links))
+        if name in self.flat.canonical and name not in self.links:
+            return self.flat.canonical[name]
         if name in self.frames and name not in self.links:
-            return self._link_of(self.frames[name].get("attached_to") or "__model__", (*below, name))
+            frame = self.frames[name]
+            return self._link_of(frame.get("attached_to") or self.flat.scope_of(frame).frame, (*below, name))
         if name in self.joints and name not in self.links and below:
             return self._link_of(self._named(self.joints[name], "child"), (*below, name))
         return name
@@ -234,9 +208,9 @@ class _Reading:
 
     # poses
 
-    def _pose(self, name: str, below: tuple[str, ...] = ()) -> Pose:
-        """Of a link, joint or frame in the model's axes."""
-        if name in ("__model__", ""):
+    def _pose(self, name: str, below: tuple[str, ...] = (), stop: str = "__model__") -> Pose:
+        """Of a link, joint or frame in the model's axes, or in those of a frame to which it counts."""
+        if name in ("__model__", "", stop):
             return Pose(IDENTITY, ORIGIN)
         if name == "world":
             return self._placed().inverse()
@@ -245,14 +219,25 @@ class _Reading:
             what = "is relative to itself" if name in below else "there is not"
             raise ModelError(f"a pose names a frame that {what}: '{name}'", self.model.where, "mend relative_to")
         pose = element.one("pose")
-        base = "__model__"
+        base = self.flat.scope_of(element).frame
         if element.tag == "joint":
             base = self._named(element, "child")
         elif element.tag == "frame":
             base = element.get("attached_to") or base
         if pose is not None:
             base = pose.get("relative_to") or base
-        return self._pose(base, (*below, name)).then(own_pose(pose))
+        found = self._pose(base, (*below, name), stop).then(own_pose(pose))
+        if element.tag == "model" and (placed := element.get("placement_frame")):
+            return found.then(self._pose(placed, (name,), name).inverse())
+        return found
+
+    def _in_link(self, collision: XmlElement, link: str) -> Pose:
+        """Where a collision of a link is in it."""
+        pose = next((child for child in collision.children if child.tag == "pose"), None)
+        other = None if pose is None else pose.attributes.get("relative_to")
+        if not other or other == link:
+            return own_pose(pose)
+        return self._pose(link).inverse().then(self._pose(other)).then(own_pose(pose))
 
     def _placed(self) -> Pose:
         """Of the model in the world: of its own frame, or of the one by which it is placed."""
@@ -270,7 +255,10 @@ class _Reading:
     def _link(self, raw: str, fixed: bool) -> None:
         name, element = self.body[raw], self.links[raw]
         body: Entries = {"about": f"link {raw}"} if name != raw else {}
-        body |= _massive(element.one("inertial"))
+        files = self.flat.scope_of(element).files
+        inertial = element.one("inertial")
+        if not (fixed and inertial is not None and inertial.get("auto") in YES):  # of what stands no mass is asked
+            body |= link_masses(element, lambda shape: self._in_link(shape, raw), files)
         gravity = element.one("gravity")
         if gravity is not None and gravity.text in ("false", "0"):
             self.weightless.add(name)
@@ -323,7 +311,19 @@ class _Reading:
             self.found["inputs"][effort] = {"value": 0, "unit": "N" if unit == "m" else "N*m"}
             keys["force" if unit == "m" else "torque"] = effort
         keys |= self._dynamics(element.one("dynamics"))
+        if kind in ONE_AXIS and (rotor := self._rotor(joint, element)):
+            keys["armature"] = rotor
         return Moved(keys, at.p, q)
+
+    def _rotor(self, joint: XmlElement, axis: XmlElement) -> Decimal:
+        """ratio^2 J of the rotor behind a gear; of a joint without a motor it is told among what is left out."""
+        limit = axis.one("limit")
+        effort = None if limit is None else limit.one("effort")
+        if effort is not None and _finite(effort) == 0:
+            return ZERO
+        inertia, ratio = (joint.one(f"drake:{tag}") for tag in ("rotor_inertia", "gear_ratio"))
+        turns = Decimal(1) if ratio is None else ratio.value()[0]
+        return ZERO if inertia is None else computed(turns * turns * inertia.value()[0])
 
     def _axis(self, element: XmlElement, joint: XmlElement, at: Pose, child: str) -> list[Decimal]:
         """The axis in the child's axes."""
@@ -333,10 +333,11 @@ class _Reading:
             raise ModelError("an axis has no direction", element.where, "give three numbers, not all 0")
         frame = None if xyz is None else xyz.get("expressed_in")
         flag = element.one("use_parent_model_frame")
-        if flag is not None and flag.text in ("true", "1"):
-            frame = "__model__"
-        if frame is None and self.old and flag is None:
-            frame = "__model__"
+        own = self.flat.scope_of(joint)
+        if flag is not None and flag.text in YES:
+            frame = own.frame
+        if frame is None and own.old and flag is None:
+            frame = own.frame
         if frame is None:
             return in_file(apply(at.R, axis))
         R = self._pose(child).inverse().then(self._pose(frame)).R
@@ -392,37 +393,6 @@ class _Reading:
             "gap": gap(q, [(-factor, other)], -constant, weighed=not same),
         }
         return True
-
-
-def own_pose(pose: XmlElement | None) -> Pose:
-    """What a <pose> says: x y z roll pitch yaw, or x y z and a quaternion, scalar last."""
-    if pose is None or not pose.text:
-        return Pose(IDENTITY, ORIGIN)
-    if pose.get("rotation_format") == "quat_xyzw":
-        *place, x, y, z, w = pose.value(7)
-        if not any((x, y, z, w)):
-            raise ModelError("a quaternion of length 0", pose.where, "give one of length 1")
-        return Pose(turned_by((w, x, y, z)), decimals(place))
-    numbers = pose.value(6)
-    angles = decimals(map(in_radians, numbers[3:]) if pose.get("degrees") in ("true", "1") else numbers[3:])
-    return Pose(roll_pitch_yaw(angles)[0], decimals(numbers[:3]))
-
-
-def _massive(inertial: XmlElement | None) -> Entries:
-    """Mass, centre and inertia of a link, turned into its axes; 1 kg and 1 kg*m^2 where the file does not say."""
-    pose, mass, tensor = (None if inertial is None else inertial.one(tag) for tag in ("pose", "mass", "inertia"))
-    frame = own_pose(pose)
-    kilograms = Decimal(1) if mass is None else mass.value()[0]
-    if kilograms < 0:
-        where = "" if mass is None else mass.where
-        raise ModelError(f"a negative mass: {kilograms}", where, "give a mass of 0 or more")
-    entries = {"ixx": Decimal(1), "iyy": Decimal(1), "izz": Decimal(1), "ixy": Decimal(0), "iyz": Decimal(0)}
-    entries["ixz"] = Decimal(0)
-    for key in entries if tensor is not None else ():
-        element = None if tensor is None else tensor.one(key)
-        if element is not None:
-            entries[key] = element.value()[0]
-    return with_mass({"mass": kilograms}, frame.p, six(inertia_in(frame.R, tensor_of(*entries.values()))))
 
 
 def _finite(element: XmlElement) -> Decimal | None:

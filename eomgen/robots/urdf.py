@@ -7,6 +7,7 @@ is x. A joint that mimics another is one of its own, with the equation between t
 from __future__ import annotations
 
 from collections.abc import Mapping
+from dataclasses import field
 from decimal import Decimal
 from typing import Any
 
@@ -15,6 +16,7 @@ from eomgen.model.checks.triangle import possible
 from eomgen.model.findings import nearest
 from eomgen.records import dataclass
 from eomgen.robots.drawn_up import (
+    NO_COUNTERPART,
     UNLIMITED,
     Entries,
     Imported,
@@ -25,9 +27,21 @@ from eomgen.robots.drawn_up import (
     gap,
     hung,
     in_file,
+    left,
     without_empty,
 )
-from eomgen.robots.numbers import ORIGIN, ZERO, Nine, Triple, decimals, inertia_in, roll_pitch_yaw, six, tensor_of
+from eomgen.robots.numbers import (
+    ORIGIN,
+    ZERO,
+    Nine,
+    Triple,
+    computed,
+    decimals,
+    inertia_in,
+    roll_pitch_yaw,
+    six,
+    tensor_of,
+)
 from eomgen.robots.xml_tree import XmlElement, xml_tree
 from eomgen.symbolic.expression.spatial import IDENTITY, cross
 from eomgen.symbolic.numeric.tolerances import NOT_NEGATIVE
@@ -47,9 +61,13 @@ LEFT_OUT = {  # what has no counterpart, and why
     "ros2_control": "settings of a controller",
     "mechanicalReduction": "the input acts at the joint",
     "hardwareInterface": "settings of a controller",
-    "friction": 'of Coulomb in a joint; sliding it is torque = "... - friction*sign(rate)", which cannot stick',
+    "drake:rotor_inertia": "no joint about or along one axis is driven by it",
+    "drake:gear_ratio": "no joint about or along one axis is driven by it",
+    "friction": "of Coulomb in a joint",
 }
 LEFT_OUT |= {f"{key} of <inertia>": "below zero by rounding: 0" for key in ("ixx", "iyy", "izz")}
+SPEAKING = ("include", "joint")  # elements that are told by their own names, not by those of what holds them
+WORLD = "world"  # a parent that is no link is the ground
 GRAVITY = {"kind": "gravity", "acceleration": [0, 0, "-g"]}
 
 
@@ -120,6 +138,7 @@ class _Reading:
     Args:
         above: of each link the joint by which it hangs.
         coordinates, bodies: the legal names, of joints and of links.
+        rotors: by joint, what motors behind gears add to its inertia.
     """
 
     robot: XmlElement
@@ -130,6 +149,7 @@ class _Reading:
     bodies: LegalNames
     body: Mapping[str, str]
     coordinate: Mapping[str, str]
+    rotors: dict[str, Decimal] = field(default_factory=dict)
 
     @classmethod
     def of(cls, robot: XmlElement) -> _Reading:
@@ -141,7 +161,7 @@ class _Reading:
         for name, joint in joints.items():
             for end in ("parent", "child"):
                 link = _need(joint, end).need("link")
-                if link not in links:
+                if link not in links and not (end == "parent" and link == WORLD):
                     mend = nearest(link, links) or f"one of {', '.join(links)}"
                     raise ModelError(f"joint '{name}' names a link that there is not: '{link}'", joint.where, mend)
             child = _need(joint, "child").need("link")
@@ -157,7 +177,8 @@ class _Reading:
     def tables(self, floating: bool) -> Imported:
         title = self.robot.get("name") or "robot"
         roots = [link for link in self.links if link not in self.above]
-        ordered = [link for root in roots for link in self._below(root)]
+        grounds = [WORLD] if WORLD not in self.links else []
+        ordered = [link for root in (*grounds, *roots) for link in self._below(root) if link in self.links]
         if len(ordered) != len(self.links):
             lost = next(link for link in self.links if link not in ordered)
             raise ModelError(f"link '{lost}' hangs in a ring of joints", self.links[lost].where, "URDF is of trees")
@@ -197,8 +218,18 @@ class _Reading:
                     joint.read.discard("name")
             for actuator in transmission.all("actuator"):
                 actuator.get("name")
+                self._rotor(transmission, actuator)
         own = {name for name, joint in self.joints.items() if joint.one("mimic") is None}
         return (named & own) or own
+
+    def _rotor(self, transmission: XmlElement, actuator: XmlElement) -> None:
+        """The rotor behind a gear, where one joint of one axis is driven: ratio^2 J; else it is told as left out."""
+        raw = [joint.get("name") or "" for joint in transmission.all("joint")]
+        if len(raw) == 1 and raw[0] in self.coordinate and _need_kind(self.joints[raw[0]]) in ONE_AXIS:
+            inertia, ratio = (actuator.one(f"drake:{tag}") for tag in ("rotor_inertia", "gear_ratio"))
+            turns = Decimal(1) if ratio is None else ratio.number("value")
+            own = ZERO if inertia is None else inertia.number("value")
+            self.rotors[raw[0]] = self.rotors.get(raw[0], ZERO) + turns * turns * own
 
     def _add(self, found: Entries, link: str, free: bool, driven: set[str]) -> None:
         """A link, its joint, and what that brings."""
@@ -214,7 +245,7 @@ class _Reading:
         raw = self.above[link]
         joint = self.joints[raw]
         at, R, turns = origin_of(joint.one("origin"))
-        seat = Seat(self.body[_need(joint, "parent").need("link")], at, R, turns)
+        seat = Seat(self.body.get(_need(joint, "parent").need("link")), at, R, turns)
         found["bodies"] |= hung(name, body, seat, self._joints(found, raw, joint, raw in driven), self.bodies)
 
     def _joints(self, found: Entries, raw: str, joint: XmlElement, driven: bool) -> list[Moved]:
@@ -250,6 +281,8 @@ class _Reading:
             effort = self.names.new(f"{'tau' if turns else 'F'}_{q}")
             found["inputs"][effort] = {"value": 0, "unit": "N*m" if turns else "N"}
             keys["torque" if turns else "force"] = effort
+        if rotor := self.rotors.get(raw):
+            keys["armature"] = computed(rotor)
         if (dynamics := joint.one("dynamics")) is not None:
             if (damping := dynamics.number("damping", "0")) != 0:
                 keys["damping"] = damping
@@ -315,12 +348,14 @@ def left_out(root: XmlElement, why: Mapping[str, str]) -> tuple[LeftOut, ...]:
     groups: dict[str, list[str]] = {}
 
     def named(element: XmlElement) -> str:
-        name = element.attributes.get("name") or element.attributes.get("reference")
+        within = next((child.text for tag in ("name", "uri") for child in element.children if child.tag == tag), "")
+        name = element.attributes.get("name") or element.attributes.get("reference") or within
         return f"{element.tag} {name}" if name else f"{element.tag} (line {element.where.split(':')[-2]})"
 
     def walk(element: XmlElement, above: str) -> None:
         if not element.seen:
-            groups.setdefault(element.tag, []).append(above if element.tag in why and above else named(element))
+            own = element.tag in SPEAKING or element.tag not in why or not above
+            groups.setdefault(element.tag, []).append(named(element) if own else above)
             return
         for key in element.attributes:
             if key not in element.read and not key.startswith("xmlns"):
@@ -330,8 +365,7 @@ def left_out(root: XmlElement, why: Mapping[str, str]) -> tuple[LeftOut, ...]:
             walk(child, named(element) if element.attributes.get("name") and element is not root else above)
 
     walk(root, "")
-    known = "eomgen has no counterpart"
-    return tuple(LeftOut(what, tuple(where), why.get(what, known)) for what, where in groups.items())
+    return tuple(left(what, where, why.get(what, NO_COUNTERPART)) for what, where in groups.items())
 
 
 def _limits(raw: str, q: str, joint: XmlElement, unit: str) -> Entries:

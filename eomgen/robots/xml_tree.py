@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import codecs
 from collections.abc import Callable, Iterator, Mapping
 from dataclasses import field
 from decimal import Decimal, InvalidOperation
@@ -10,6 +11,7 @@ from xml.parsers import expat
 from eomgen.errors import ModelError
 from eomgen.records import dataclass
 from eomgen.robots.numbers import Triple
+from eomgen.symbolic.expression.tokens import LARGEST_EXPONENT, MOST_DIGITS
 
 DEEPEST = 200  # elements one within the other
 
@@ -90,6 +92,10 @@ class XmlElement:
             found = tuple(Decimal(word) for word in (text or "").split())
         except InvalidOperation:
             found = ()
+        beyond = next((x for x in found if x.is_finite() and x and not _is_double(x)), None)
+        if beyond is not None:
+            what = f"a number beyond what is computed with in <{self.tag}>: {(text or '').strip()[:30]}"
+            raise ModelError(what, self.where, f"at most {LARGEST_EXPONENT} digits, and as many zeros")
         if len(found) != size or not all(x.is_finite() for x in found):
             needed = "a number is" if size == 1 else f"{size} numbers are"
             place = f"'{key}' of <{self.tag}>" if key else f"<{self.tag}>"
@@ -97,18 +103,26 @@ class XmlElement:
         return found
 
 
+def _is_double(x: Decimal) -> bool:
+    return abs(x.adjusted()) <= LARGEST_EXPONENT and len(x.as_tuple().digits) <= MOST_DIGITS
+
+
 def xml_tree(data: bytes, name: str) -> XmlElement:
-    """The root of an XML text. A document type is refused: entities can blow up a text, and no robot needs them.
+    """The root of an XML text; blank lines may stand before it.
+
+    A document type is refused: entities can blow up a text, and no robot needs them.
 
     Raises:
         ModelError: no well-formed XML, or one with a document type.
     """
     parser = expat.ParserCreate()
+    begun = data.removeprefix(codecs.BOM_UTF8).lstrip()
+    before = data[: len(data) - len(begun)].count(b"\n")
     top = XmlElement("", {}, name, seen=True)
     open_: list[XmlElement] = [top]
 
     def here() -> str:
-        return f"{name}:{parser.CurrentLineNumber}:{parser.CurrentColumnNumber + 1}"
+        return f"{name}:{before + parser.CurrentLineNumber}:{parser.CurrentColumnNumber + 1}"
 
     def start(tag: str, attributes: dict[str, str]) -> None:
         if len(open_) > DEEPEST:
@@ -137,9 +151,9 @@ def xml_tree(data: bytes, name: str) -> XmlElement:
         setattr(parser, key, handler)
     parser.buffer_text = True
     try:
-        parser.Parse(data, True)
+        parser.Parse(begun, True)
     except expat.ExpatError as error:
-        where = f"{name}:{error.lineno}:{error.offset + 1}"
+        where = f"{name}:{before + error.lineno}:{error.offset + 1}"
         raise ModelError(f"no well-formed XML: {expat.ErrorString(error.code)}", where, "mend the file") from error
     root = top.children[0]
     root.seen = True

@@ -22,25 +22,27 @@ def refuse_other_endings(output: str | None) -> None:
         raise UsageError(f"'{output}' is no name for a model file: the ending is .toml", mend="name it so")
 
 
-def import_document(file: str, *, output: str | None = None, floating: bool = False) -> Document:
+def import_document(
+    file: str, *, output: str | None = None, floating: bool = False, model: str | None = None
+) -> Document:
     """The model file, written where that is asked; what of the robot's file has no counterpart in it.
 
     Raises:
         ModelError: no robot can be read from the file.
         WriteFailed: it cannot be written.
     """
-    robot = imported(file, floating=floating)
-    model, left_out = robot.model, [each.as_dict() for each in robot.left_out]
+    robot = imported(file, floating=floating, model=model)
+    made, left_out = robot.model, [each.as_dict() for each in robot.left_out]
     if output is not None:
         files.write(output, robot.text)
     entries = {
-        "name": model.name,
+        "name": made.name,
         "file": output,
         "text": None if output else robot.text,
-        "bodies": list(model.bodies),
-        "coordinates": list(model.coordinates),
-        "inputs": list(model.inputs),
-        "constraints": list(model.constraints),
+        "bodies": list(made.bodies),
+        "coordinates": list(made.coordinates),
+        "inputs": list(made.inputs),
+        "constraints": list(made.constraints),
         "left_out": left_out,
     }
     document = lines_document(lambda: entries, *([output] if output else robot.text.splitlines()))
