@@ -95,7 +95,7 @@ class LeftOut:
         return {"what": self.what, "where": list(self.where), "why": self.why, "nearest": self.nearest}
 
 
-def left(what: str, where: Iterable[str], why: str = NO_COUNTERPART) -> LeftOut:
+def told_left(what: str, where: Iterable[str], why: str = NO_COUNTERPART) -> LeftOut:
     """A thing of a robot's file that is left out, with what comes nearest to it."""
     return LeftOut(what, tuple(where), why, NEAREST.get(what))
 

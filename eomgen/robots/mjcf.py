@@ -20,8 +20,8 @@ from eomgen.robots.drawn_up import (
     Moved,
     Seat,
     hung,
-    left,
     signed_sum,
+    told_left,
     without_empty,
 )
 from eomgen.robots.mjcf_acting import equalities, tendons
@@ -96,7 +96,7 @@ def _tables(r: CompiledRobot) -> Imported:
         weight = {"kind": "gravity", "acceleration": acceleration}
         r.found["forces"] = {"weight": weight, **r.found["forces"]}
     head = {"eomgen": 1, "name": r.title, "space": "space"}
-    left_out = tuple(left(what, where, why) for (what, why), where in r.left.items())
+    left_out = tuple(told_left(what, where, why) for (what, why), where in r.left.items())
     return Imported({**head, **without_empty({"parameters": parameters, **r.found})}, left_out)
 
 

@@ -15,10 +15,21 @@ from typing import Any
 from eomgen.errors import ModelError
 from eomgen.model.findings import nearest
 from eomgen.records import dataclass
-from eomgen.robots.drawn_up import Entries, Imported, LegalNames, Moved, Seat, gap, hung, in_file, left, without_empty
+from eomgen.robots.drawn_up import (
+    Entries,
+    Imported,
+    LegalNames,
+    Moved,
+    Seat,
+    gap,
+    hung,
+    in_file,
+    told_left,
+    without_empty,
+)
 from eomgen.robots.numbers import ORIGIN, ZERO, computed, decimals, quaternion_of, turn_of
 from eomgen.robots.sdf_masses import YES, link_masses, own_pose
-from eomgen.robots.sdf_models import FlatModel, SdfChoice, choices, chosen
+from eomgen.robots.sdf_models import FlatModel, SdfChoice, choice_named, choices
 from eomgen.robots.urdf import LEFT_OUT, by_name, free_joint, left_out, turned_freely
 from eomgen.robots.xml_tree import XmlElement, xml_tree
 from eomgen.symbolic.expression.spatial import IDENTITY, Pose, apply
@@ -50,13 +61,13 @@ def sdf(data: bytes, name: str, wanted: str | None = None) -> Imported:
     every = choices(root, name)
     if not every:
         raise ModelError("the file holds no <model>", root.where, "name an SDF file with one")
-    choice, found = _first_that_moves(every) if wanted is None else _tables(chosen(every, wanted, root))
+    choice, found = _first_that_moves(every) if wanted is None else _tables(choice_named(every, wanted, root))
     others = [each for each in every if each is not choice]
     names = [each.name for each in others]
     for each in others:
         each.element.seen = True
         each.element.children, each.element.read = [], {*each.element.attributes}
-    told = [left("model", names, "another of the file's models")] if others else []
+    told = [told_left("model", names, "another of the file's models")] if others else []
     return Imported(found, (*told, *left_out(root, WHY)))
 
 

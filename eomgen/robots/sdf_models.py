@@ -112,7 +112,7 @@ def choices(root: XmlElement, file: str) -> list[SdfChoice]:
     return found
 
 
-def chosen(choices: list[SdfChoice], name: str, root: XmlElement) -> SdfChoice:
+def choice_named(choices: list[SdfChoice], name: str, root: XmlElement) -> SdfChoice:
     """The model of a name.
 
     Raises:

@@ -27,7 +27,7 @@ from eomgen.robots.drawn_up import (
     gap,
     hung,
     in_file,
-    left,
+    told_left,
     without_empty,
 )
 from eomgen.robots.numbers import (
@@ -365,7 +365,7 @@ def left_out(root: XmlElement, why: Mapping[str, str]) -> tuple[LeftOut, ...]:
             walk(child, named(element) if element.attributes.get("name") and element is not root else above)
 
     walk(root, "")
-    return tuple(left(what, where, why.get(what, NO_COUNTERPART)) for what, where in groups.items())
+    return tuple(told_left(what, where, why.get(what, NO_COUNTERPART)) for what, where in groups.items())
 
 
 def _limits(raw: str, q: str, joint: XmlElement, unit: str) -> Entries:
