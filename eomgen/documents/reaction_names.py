@@ -135,6 +135,17 @@ def reaction_symbol(given: ReactionSymbols | None, label: str, more: Sequence[st
     return Symbol(label, LETTERS[kind], ",".join([given.letter.tex, *index]))
 
 
+def own_symbol(balance: Balance, named: NamedReaction) -> Symbol | None:
+    """The symbol that a joint or a tie gives a reaction of its own; None of sums, and where it gives none."""
+    if len(named.combination) != 1 or not is_zero(named.given):
+        return None
+    ((j, factor),) = named.combination.items()
+    component = balance.components[j]
+    if type(factor) is Node or factor != 1:
+        return None
+    return _declared(balance, component, component.label, _more(balance, component))
+
+
 def _declared(balance: Balance, component: Component, label: str, more: tuple[str, ...]) -> Symbol | None:
     """The symbol of a component, or of its friction along a direction, where its joint or tie gives one."""
     model = balance.system.scope.model

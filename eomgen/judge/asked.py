@@ -7,6 +7,7 @@ of the values of the file, and is right if it is rounded rightly.
 from __future__ import annotations
 
 import re
+from collections.abc import Sequence
 from contextlib import suppress
 from dataclasses import replace
 from itertools import chain
@@ -21,14 +22,14 @@ from eomgen.judge.decision import is_zero_everywhere
 from eomgen.judge.diagnosis import BELIEVED, PLAINEST
 from eomgen.judge.implied import Instant, implied_by, simplest_explanation
 from eomgen.judge.mends import Mends
-from eomgen.judge.reading import HandEquation
+from eomgen.judge.reading import FREQUENCY, HandEquation
 from eomgen.judge.terms import LONG
 from eomgen.judge.verdict import RIGHT, UNDECIDED, WRONG, Cause, Verdict
 from eomgen.model.replaced import with_values
 from eomgen.model.values import exact_parameters
 from eomgen.questions.answers import Answer
-from eomgen.symbolic.expression.expressions import parse
-from eomgen.symbolic.expression.graph import Node, Scalar
+from eomgen.symbolic.expression.expressions import Expression, parse
+from eomgen.symbolic.expression.graph import Node, Scalar, is_zero
 from eomgen.symbolic.numeric.tolerances import COMPUTED
 from eomgen.symbolic.print.text import to_text
 
@@ -36,15 +37,50 @@ SURE = PLAINEST + 0.5  # the cost of a mistake in a balance up to which nothing 
 
 
 def asked(case: Case, written: HandEquation, kind: str, at: Instant) -> Verdict:
-    """The verdict on an equation about an instant, rest, small motions or a structure.
+    """The verdict on an equation about an instant, rest, small motions or a structure."""
+    if unknown := case.unknown_names(written):
+        return of_unknown(case, written, kind, unknown)
+    if kind == "frequency" and FREQUENCY.match(written.left.text):
+        return _of_letter(case, written, at)
+    return _answered(case, written, kind, at)
 
-    Raises:
-        ExpressionError: a name that the model does not have.
-    """
-    unknown = case.unknown_names(written)
-    if unknown:
-        column = max(written.given.find(unknown[0]), 0)
-        raise ExpressionError(f"unknown name '{unknown[0]}'", column, length=len(unknown[0]))
+
+def _of_letter(case: Case, written: HandEquation, at: Instant) -> Verdict:
+    """Of a frequency by its letter: motions of the whole, whose frequency is 0, are not counted by everybody."""
+    ((_, call), *_) = written.left.code
+    number, whole = int(call.args[0].text), _motions_of_the_whole(case, written, at)
+    if not whole:
+        return _answered(case, written, "frequency", at)
+    told = "the motions of the whole, whose frequency is 0, not counted"
+    ways = [("", written), (told, _with_frequency(written, number + whole))]
+    verdicts = []
+    for up_to, each in ways if number > whole else reversed(ways):
+        verdicts.append(found := _answered(case, each, "frequency", at))
+        if found:
+            return replace(found, up_to=" and ".join(filter(None, (up_to, found.up_to))))
+    return verdicts[0]
+
+
+def _motions_of_the_whole(case: Case, written: HandEquation, at: Instant) -> int:
+    """How many frequencies are 0."""
+    for whole in range(len(case.system.symbols.u)):
+        each = _with_frequency(written, whole + 1)
+        (value, _) = case.sides(replace(each, right=each.left), at)
+        exact = case.exact(value)
+        if value.value != 0 if exact is None else not is_zero(exact):
+            return whole
+    return 0
+
+
+def _with_frequency(written: HandEquation, number: int) -> HandEquation:
+    """The same of another frequency."""
+    (kind, call), *rest = written.left.code
+    numbered = (kind, replace(call, args=(Expression.number(number),)))
+    return replace(written, left=Expression(written.left.text, (numbered, *rest), written.left.columns))
+
+
+def _answered(case: Case, written: HandEquation, kind: str, at: Instant) -> Verdict:
+    """The verdict by what the solver of outputs answers."""
     try:
         left, right = case.sides(written, at)
     except (ExpressionError, DerivationError) as error:
@@ -69,6 +105,14 @@ def asked(case: Case, written: HandEquation, kind: str, at: Instant) -> Verdict:
                 return Verdict(written.given, kind, RIGHT, "the values of the file")
             return _by_numbers(case, written, kind, at)
     return _wrong(case, written, kind, at, left, right)
+
+
+def of_unknown(case: Case, written: HandEquation, kind: str, unknown: Sequence[str]) -> Verdict:
+    """The verdict where names mean nothing: it is undecided."""
+    names = ", ".join(f"'{name}'" for name in unknown)
+    known = ", ".join(name for name in case.system.scope.names if "'" not in name and name not in ("t", "pi"))
+    reason = f"unknown {'name' if len(unknown) == 1 else 'names'} {names}; the model has {known}"
+    return Verdict(written.given, kind, UNDECIDED, reason=reason, unknown=tuple(unknown))
 
 
 def _one_by_one(case: Case, written: HandEquation, at: Instant) -> tuple[Answer, Answer] | None:

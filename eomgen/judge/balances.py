@@ -20,7 +20,7 @@ from eomgen.errors import EomgenError
 from eomgen.judge.acting import symbols_of_reactions, what_acts
 from eomgen.judge.authored import Authored
 from eomgen.judge.case import Case
-from eomgen.judge.comparison import EXTRA, excess
+from eomgen.judge.comparison import EXTRA
 from eomgen.judge.corruption import SHARED, Corruption
 from eomgen.judge.cut_beams import cut_beam
 from eomgen.judge.decision import is_zero_everywhere
@@ -115,8 +115,8 @@ class Balances:
         return TURNED * (len(explanation.shares) - len(gone)) if possible else float("inf")
 
     def difference(self, explanation: Explanation) -> str:
-        """What is left of the balance."""
-        return excess(self.case, self._left(explanation))
+        """What the author's sides differ by; the balance itself holds whatever the reactions are."""
+        return remainder(self.case, self.case.value(self.written.difference))
 
     def proves(self, explanation: Explanation) -> bool:
         """Whether the balance holds with these mistakes, the answer put in, exactly."""

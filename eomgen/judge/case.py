@@ -33,7 +33,7 @@ from eomgen.questions.in_phase import PhaseEquations, start_of
 from eomgen.questions.motion_from_start import MotionFromStart
 from eomgen.records import dataclass
 from eomgen.simulation.configuration import has_phases
-from eomgen.symbolic.expression.derivative import depends_on, substituted
+from eomgen.symbolic.expression.derivative import depends_on, derivative, substituted
 from eomgen.symbolic.expression.expressions import Call, Expression, Reference, parse
 from eomgen.symbolic.expression.functions import inner
 from eomgen.symbolic.expression.graph import Node, Scalar, is_zero
@@ -305,6 +305,18 @@ class Case:
     def forced(self) -> tuple[Node, ...]:
         """Accelerations and multipliers, in which equations of motion are linear."""
         return (*self.system.symbols.a, *self.system.symbols.lam)
+
+    def leading(self, row: Scalar, absent: ScalarRow = ()) -> Node | None:
+        """The first acceleration or multiplier that a row really holds: its coefficient is not 0 everywhere.
+
+        Args:
+            absent: rows that do not hold it; None: there is none.
+        """
+        for x in self.forced:
+            held = depends_on(row, (x,)) and not is_zero_everywhere(self.system, derivative(row, x)).holds
+            if held and is_zero_everywhere(self.system, *(derivative(each, x) for each in absent)).holds:
+                return x
+        return None
 
     def follows(self, scalar: Scalar, rows: ScalarRow | None = None) -> Follows:
         """Whether a scalar is_zero_everywhere by the equations of motion and the ties.

@@ -10,7 +10,7 @@ from itertools import permutations
 
 import numpy as np
 
-from eomgen.errors import DerivationError, ExpressionError
+from eomgen.errors import DerivationError, ExpressionError, ModelError
 from eomgen.judge.case import Case
 from eomgen.judge.causes import other_calls
 from eomgen.judge.corruption import PIECES, SHARED, SHORTER, TERMS, Corruption
@@ -337,8 +337,8 @@ class Comparison:
         best = min(self.searches, key=lambda search: search.misfit, default=None)
         if best is not None and best.row < 0:
             return excess(case, case.phase.eliminated(self.scalar)), ""
-        a = next((x for x in case.system.symbols.a if best and depends_on(self.rows[best.row], (x,))), None)
-        if best is None or a is None or is_zero(derivative(self.scalar, a)):
+        a = None if best is None else case.leading(self.rows[best.row])
+        if best is None or a is None or is_zero_everywhere(case.system, derivative(self.scalar, a)).holds:
             return excess(case, self.scalar), ""
         row, name = self.rows[best.row], case.system.symbols.u[best.row].name.removesuffix("'")
         factor = over(derivative(self.scalar, a), derivative(row, a))
@@ -374,5 +374,14 @@ def _linearized(known: Iterable[Corruption], place: Mapping[Node, Scalar]) -> It
 
 
 def excess(case: Case, scalar: Scalar) -> str:
-    """A difference as a text; "" where nobody would read it."""
-    return short_text(scalar, case.system.scope.positive)
+    """A difference as a text; "" where nobody would read it, and of what vanishes everywhere: that is no difference."""
+    text = short_text(scalar, case.system.scope.positive)
+    return "" if text and is_zero_everywhere(case.system, scalar).holds else text
+
+
+def remainder(case: Case, scalar: Scalar) -> str:
+    """What the motion leaves of a wrong equation, left minus right: with its accelerations or without, the shorter."""
+    texts = [excess(case, scalar)]
+    with suppress(DerivationError, ModelError):
+        texts += [excess(case, case.phase.simple(case.phase.eliminated(scalar)))] if texts[0] else []
+    return min(filter(None, texts), key=len, default="")

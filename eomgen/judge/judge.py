@@ -2,17 +2,18 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Mapping
 from contextlib import suppress
 from dataclasses import replace
 from typing import Any
 
 from eomgen.errors import DerivationError, EomgenError, ExpressionError, MissingValues, RunFailed, UsageError
-from eomgen.judge.asked import asked
+from eomgen.judge.asked import asked, of_unknown
 from eomgen.judge.authored import Authored
 from eomgen.judge.case import Case
 from eomgen.judge.causes import causes_of
-from eomgen.judge.comparison import Comparison, excess
+from eomgen.judge.comparison import Comparison, excess, remainder
 from eomgen.judge.conserved import not_conserved
 from eomgen.judge.course import course_of, mended, of_the_start
 from eomgen.judge.decision import is_zero_everywhere
@@ -72,6 +73,10 @@ def verify(
     """
     model = model_at(model)
     return Judge(Case(model, bool(from_rest))).verdict(equation, at=at, kind=kind)
+
+
+CONSTANT_LETTER = re.compile(r"(?:[CcEHhK]|const)_?[0-9]?")
+"""what an author calls his own constant: of a law that is wrong with it no other letter is taken for one"""
 
 
 @dataclass(frozen=True)
@@ -236,9 +241,10 @@ class Judge:
             if verdict is not None:
                 return verdict
         if near is None:
-            if kind in ("law", "energy") and not moving and not written.calls:
+            known = not moving and not written.calls and all(map(CONSTANT_LETTER.fullmatch, unknown))
+            if known and kind in ("law", "energy"):
                 return self._wrong(written, kind, case.value(written.difference, free), free)
-            raise _unknown_names(case, written, unknown)
+            return of_unknown(case, written, kind, unknown)
         wrong = self._wrong(written, kind, case.value(written.difference, near.values), near.values)
         return replace(wrong, substitution=near.told)
 
@@ -326,8 +332,10 @@ class Judge:
             moving = kind in ("motion", "acceleration", "reaction", "law")
             rooted = isinstance(target, Comparison) and target.squared
             causes = causes_of(case, explanations, moving=moving, rooted=rooted)
-            return Verdict(written.given, kind, WRONG, difference=target.difference(explanations[0]), causes=causes)
-        difference, touched = values[-1].unexplained() if values else (excess(case, scalar), "")
+            difference = target.difference(explanations[0]) or remainder(case, scalar)
+            return Verdict(written.given, kind, WRONG, difference=difference, causes=causes)
+        difference, touched = values[-1].unexplained() if values else ("", "")
+        difference = difference or remainder(case, scalar)
         cause = _apart(difference, touched)
         nothing = [x for x in values if not x.what and not is_zero(x.rows[0]) and is_zero(x.scalar + x.rows[0])]
         if nothing and (there := excess(case, nothing[0].rows[0])):
@@ -361,13 +369,6 @@ def _apart(difference: str, beside: str = "") -> Cause:
 
 def _left_in(force: str) -> str:
     return f"the force {force} of a constraint is left in: it does no work along the coordinate, and must drop out"
-
-
-def _unknown_names(case: Case, written: HandEquation, unknown: list[str]) -> ExpressionError:
-    names = ", ".join(f"'{name}'" for name in unknown)
-    known = ", ".join(name for name in case.system.scope.names if "'" not in name and name not in ("t", "pi"))
-    what = f"unknown {'name' if len(unknown) == 1 else 'names'} {names}"
-    return ExpressionError(what, max(written.given.find(unknown[0]), 0), f"the model has {known}", len(unknown[0]))
 
 
 def _instant(case: Case, at: Any) -> Instant:

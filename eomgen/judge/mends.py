@@ -12,6 +12,7 @@ import numpy as np
 
 from eomgen.errors import EomgenError
 from eomgen.judge.authored import Authored
+from eomgen.judge.comparison import excess
 from eomgen.judge.contributions import FEW, Contribution
 from eomgen.judge.corruption import Corruption
 from eomgen.judge.decision import is_zero_everywhere
@@ -52,7 +53,7 @@ class Mends:
 
     def difference(self, explanation: Explanation) -> str:
         """What is too much on the left."""
-        return short_text(self._by[explanation.shares[0]], self.author.case.system.scope.positive)
+        return excess(self.author.case, self._by[explanation.shares[0]])
 
     @cached_property
     def _by(self) -> dict[Share, Scalar]:

@@ -14,22 +14,24 @@ from functools import cached_property
 from typing import Any
 
 from eomgen.documents.latex_names import notation_of
-from eomgen.documents.reaction_names import reaction_name
+from eomgen.documents.reaction_names import own_symbol, reaction_name
 from eomgen.errors import DerivationError, ExpressionError
 from eomgen.judge.alphabet import Vocabulary, vocabulary
 from eomgen.judge.handwriting import RATE, Transcript, transcript
 from eomgen.mechanics.balance.balance import balance_of
-from eomgen.mechanics.balance.named_reactions import named_reactions
+from eomgen.mechanics.balance.named_reactions import NamedReaction, named_reactions
 from eomgen.mechanics.equations.system import System
 from eomgen.model.outputs import FUNCTIONS
 from eomgen.records import dataclass
 from eomgen.symbolic.expression.expressions import Call, Expression, Reference, parse, parse_equation
 from eomgen.symbolic.expression.formula import Instruction
 from eomgen.symbolic.expression.graph import Scalar
+from eomgen.symbolic.print.symbols import Symbol
 
 LETTERS = {"T": "kinetic_energy", "V": "potential_energy", "Q": "generalized_force", "p": "momentum"}
 """letter -> the function that it stands for"""
-_FREQUENCY = re.compile("omega(?:_?([0-9n]))?")
+FREQUENCY = re.compile("omega(?:_?([0-9n]))?")
+"""the letter of a frequency of small motions"""
 MULTIPLIER = "lam"  # of a closing row: lam(tie, 1)
 
 
@@ -115,9 +117,13 @@ class Reading:
 
     @cached_property
     def letters(self) -> dict[str, Expression]:
-        """Names that stand for formulas: outputs of the file, T, V, L, letters of reactions and inertias, B_x, J_O."""
+        """Names that stand for formulas, the first that says so: outputs of the file, symbols that it declares for
+        reactions, T, V, L, letters of reactions and inertias, B_x, J_O.
+        """
         model, own = self.system.scope.model, self.system.scope.names
         found = {name: output.value for name, output in model.outputs.items() if output.at is None and not output.from_}
+        for letter, call in self._declared_letters():
+            found.setdefault(letter, _called(call.name, *call.args))
         T, V = (_called(LETTERS[letter]) for letter in ("T", "V"))
         for letter, formula in (("T", T), ("V", V), ("L", T - V)):
             found.setdefault(letter, formula)
@@ -130,20 +136,35 @@ class Reading:
         found |= {f"{letter}_{x}": _called("inertia_point", Reference(x)) for x in points for letter in "JI"} | found
         return {letter: formula for letter, formula in found.items() if letter not in own}
 
-    def _reactions(self) -> Iterator[tuple[str, Call]]:
-        """Letters of reactions and multipliers, and the function that each stands for."""
-        model = self.system.scope.model
+    @cached_property
+    def _named(self) -> tuple[tuple[NamedReaction, Call, str], ...]:
+        """(a reaction that can be asked by itself, how, the number of its strand or ""); none where nothing is held."""
+        found = []
         with suppress(DerivationError):
             for each in named_reactions(balance_of(self.system)):
                 function, _, arguments = each.name.removesuffix(")").partition("(")
-                label = function.removeprefix("reaction_")
                 owner, _, number = arguments.partition(", ")
-                strand = (Expression.number(int(number)),) if label == "tension" and number.isdigit() else ()
-                if (strand or not number) and not label.startswith("couple_"):
-                    call = Call(function, (Reference(owner), *strand))
-                    yield reaction_name(label, each.owner, number), call
-                    if label == "tension" and not strand:
-                        yield reaction_name(label, each.owner, "1"), call
+                strand = (Expression.number(int(number)),) if function == "tension" and number.isdigit() else ()
+                if strand or not number:
+                    found.append((each, Call(function, (Reference(owner), *strand)), number))
+        return tuple(found)
+
+    def _declared_letters(self) -> Iterator[tuple[str, Call]]:
+        """The symbols that joints and ties give their reactions, as plain names, and what each stands for."""
+        for each, call, _ in self._named:
+            symbol = own_symbol(balance_of(self.system), each)
+            if symbol is not None:
+                yield plain_name(symbol), call
+
+    def _reactions(self) -> Iterator[tuple[str, Call]]:
+        """Letters of reactions and multipliers, and the function that each stands for."""
+        model = self.system.scope.model
+        for each, call, number in self._named:
+            label = call.name.removeprefix("reaction_")
+            if not label.startswith("couple_"):
+                yield reaction_name(label, each.owner, number), call
+                if label == "tension" and not number:
+                    yield reaction_name(label, each.owner, "1"), call
         joints = {name: body.joint.symbol for name, body in model.bodies.items() if body.joint is not None}
         owners = {**dict.fromkeys(model.constraints), **joints}
         for name, symbol in owners.items():
@@ -180,7 +201,7 @@ class Reading:
         rest = left.code[1:]
         if letter in names or letter in self.letters or rest not in ((), (("number", 2), ("^", None))):
             return left
-        found = _FREQUENCY.fullmatch(letter)
+        found = FREQUENCY.fullmatch(letter)
         if found is not None and not moving:
             number = Expression.number(int(found[1]) if (found[1] or "").isdigit() and found[1] != "0" else 1)
             return Expression(left.text, (("call", Call("frequency", (number,))), *rest), (0, *(-1 for _ in rest)))
@@ -253,6 +274,12 @@ class Reading:
                 code.append((kind, what))
         columns = side.columns if len(code) == len(side.code) else (-1,) * len(code)
         return Expression(side.text, tuple(code), columns)
+
+
+def plain_name(symbol: Symbol) -> str:
+    """A symbol as a name of the text grammar: F_{\\mathrm{S}} is F_S."""
+    pieces = (re.sub(r"\\(?:mathrm|text|mathit|mathbf|mathsf)\b|[^\w]", "", x) for x in (symbol.base, symbol.below))
+    return "_".join(filter(None, pieces))
 
 
 def _called(name: str, *args: Any) -> Expression:

@@ -7,12 +7,12 @@ from dataclasses import replace
 from itertools import islice, permutations, product
 
 from eomgen.judge.case import Case
+from eomgen.judge.comparison import excess
 from eomgen.judge.corruption import TERMS, Corruption
 from eomgen.judge.diagnosis import PLAINEST, Explanation, Share
 from eomgen.judge.reading import HandEquation
 from eomgen.judge.right import truth_of
 from eomgen.judge.substitutions import ANGLES
-from eomgen.judge.terms import short_text
 from eomgen.model.catalog import Catalog
 from eomgen.model.dimensions import inferred
 from eomgen.records import dataclass
@@ -31,7 +31,7 @@ class Renaming:
     Args:
         values: of each name, with its primes, the scalar.
         told: of each name without primes the text: {phi: "theta - pi/2"}.
-        near: whether every name looks like what it stands for, or moves as it does.
+        near: whether every name is spelt as what it stands for, but for case and marks, or moves as it does.
         guessed: a name that does not move stands for a coordinate: where ties hold that at 0, it says nothing.
     """
 
@@ -52,7 +52,7 @@ def renamings(case: Case, written: HandEquation, unknown: Sequence[str]) -> Iter
             named = dict(zip((*moving, *still), (*places, *constants), strict=True))
             shifts = [list(_turns(case, of)) if of in case.model.coordinates else [(1, 0)] for of in named.values()]
             for chosen in islice(product(*shifts), MOST):
-                near = all(name in moving or _distance(name, of) <= 1 for name, of in named.items())
+                near = all(name in moving or _distance(name, of) < 1 for name, of in named.items())
                 ways = {name: (of, *how) for (name, of), how in zip(named.items(), chosen, strict=True)}
                 guessed = any(of in case.model.coordinates and name not in moving for name, of in named.items())
                 yield replace(_renaming(case, ways), near=near, guessed=guessed)
@@ -87,7 +87,7 @@ class OtherAxis:
 
     def difference(self, explanation: Explanation) -> str:
         """What is too much on the left."""
-        return short_text(explanation.shares[0].corruption.rows[0], self.case.system.scope.positive)
+        return excess(self.case, explanation.shares[0].corruption.rows[0])
 
     def _renamings(self) -> Iterator[Renaming]:
         case, names = self.case, self.written.names

@@ -18,7 +18,8 @@ from eomgen.symbolic.expression.derivative import depends_on, derivative, gradie
 from eomgen.symbolic.expression.exact_numbers import exact
 from eomgen.symbolic.expression.formula import Call
 from eomgen.symbolic.expression.functions import over
-from eomgen.symbolic.expression.graph import Node, Scalar, is_zero
+from eomgen.symbolic.expression.graph import Node, Scalar
+from eomgen.symbolic.expression.node import ScalarRow
 from eomgen.symbolic.expression.traversal import order
 from eomgen.symbolic.numeric.evaluation import FLOAT, NoValue, evaluate
 from eomgen.symbolic.numeric.work import Work
@@ -117,7 +118,8 @@ def _told(case: Case, scalar: Scalar, kind: str, rows: Sequence[int], on_ties: b
     elif len(names) > 1:
         found.append(f"a combination of the equations of {', '.join(names)}")
     elif names:
-        factor = _factor(case, scalar, next(k for k in rows if k < n))
+        tied = on_ties or any(k >= n for k in rows)
+        factor = _factor(case, scalar, next(k for k in rows if k < n), case.closing if tied else ())
         found += [f"the factor {factor}"] if factor else []
     if on_ties or any(k >= n for k in rows):
         found.append("the ties")
@@ -144,15 +146,17 @@ def _has_other_solutions(case: Case, scalar: Scalar) -> Decided | None:
     return None
 
 
-def _factor(case: Case, scalar: Scalar, row: int) -> str:
-    """What the author multiplied the equation by; "" where that is 1."""
-    a = next((x for x in case.system.symbols.a if depends_on(case.rows[row], (x,))), None)
-    if a is None:
+def _factor(case: Case, scalar: Scalar, row: int, closing: ScalarRow) -> str:
+    """What the author multiplied the equation by; "" where that is 1.
+
+    Args:
+        closing: rows of the ties that were added to it: of what stands in none of them the slopes are compared.
+    """
+    x = case.leading(case.rows[row], closing)
+    if x is None:
         return ""
-    below = derivative(case.rows[row], a)
-    if is_zero(below):
-        return ""
-    factor = legible(over(derivative(scalar, a), below), Work.FORMULA, case.system.scope.positive, LONG)
+    quotient = over(derivative(scalar, x), derivative(case.rows[row], x))
+    factor = legible(quotient, Work.FORMULA, case.system.scope.positive, LONG)
     return "" if type(factor) is not Node and factor == 1 else readable_text(factor) or "of the state"
 
 

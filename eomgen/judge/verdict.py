@@ -12,6 +12,7 @@ from eomgen.records import dataclass
 
 RIGHT, WRONG, UNDECIDED = "right", "wrong", "undecided"
 EXIT_CODES = {RIGHT: 0, WRONG: 5, UNDECIDED: 3}
+UNREADABLE = 2  # an equation that cannot be read, or whose names mean nothing
 LEVELS = (1, 2, 3)
 
 
@@ -96,6 +97,7 @@ class Verdict:
         difference: left minus right that is too much, in the names of the model; "".
         causes: why it is wrong.
         reason: why it is undecided, in words.
+        unknown: names in it that mean nothing; where there are some it is undecided.
     """
 
     given: str
@@ -106,13 +108,14 @@ class Verdict:
     difference: str = ""
     causes: tuple[Cause, ...] = ()
     reason: str = ""
+    unknown: tuple[str, ...] = ()
 
     def __bool__(self) -> bool:
         return self.verdict == RIGHT
 
     @property
     def exit_code(self) -> int:
-        return EXIT_CODES[self.verdict]
+        return UNREADABLE if self.unknown else EXIT_CODES[self.verdict]
 
     def in_letters(self, letters: Mapping[str, str]) -> Verdict:
         """The same, functions by the letters that the author has for them: N_B for reaction_n(B).
@@ -149,7 +152,8 @@ class Verdict:
         }
         if hint is not None and hint < 3 and self.verdict == WRONG:
             told |= {"difference": None, "causes": []}
-        return told | ({"reason": self.reason} if self.reason else {})
+        more: dict[str, Any] = {"unknown": list(self.unknown)} if self.unknown else {}
+        return told | more | ({"reason": self.reason} if self.reason else {})
 
     def lines(self, hint: int | None = None) -> tuple[str, ...]:
         """As people read it."""

@@ -15,7 +15,7 @@ from eomgen.documents.statements import Lines
 from eomgen.errors import ExpressionError, UsageError
 from eomgen.judge.case import Case
 from eomgen.judge.judge import Judge
-from eomgen.judge.verdict import EXIT_CODES, RIGHT, UNDECIDED, WRONG, Verdict
+from eomgen.judge.verdict import EXIT_CODES, RIGHT, UNDECIDED, UNREADABLE, WRONG, Verdict
 from eomgen.model.fields import AtRest, WrittenEquation
 from eomgen.model.parts import Model
 from eomgen.model.replaced import with_values
@@ -23,7 +23,6 @@ from eomgen.proof.check import Certificate
 from eomgen.records import dataclass
 
 LARGEST = 1_000_000  # bytes of a file of answers
-UNREADABLE = 2
 
 
 @dataclass(frozen=True)
