@@ -20,7 +20,7 @@ from eomgen.errors import EomgenError
 from eomgen.judge.acting import symbols_of_reactions, what_acts
 from eomgen.judge.authored import Authored
 from eomgen.judge.case import Case
-from eomgen.judge.comparison import EXTRA
+from eomgen.judge.comparison import EXTRA, remainder
 from eomgen.judge.corruption import SHARED, Corruption
 from eomgen.judge.cut_beams import cut_beam
 from eomgen.judge.decision import is_zero_everywhere
