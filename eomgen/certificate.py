@@ -62,6 +62,7 @@ def certify(
         *trials.threads(),
         *trials.kept_ties(),
         *trials.elements(),
+        *trials.declared(),
         *trials.energies(),
         *trials.balance(),
     ]

@@ -3,8 +3,8 @@
     l = |r_2 - r_1| (or n . (r_2 - r_1)),  l' = n . (v_2 - v_1);   theta between the axes of both, theta' = w_2 - w_1
     T = k (l - l_0) + c l' + f(l, l')      on the first along n, on the second the opposite;   V = k (l - l_0)^2 / 2
 
-Places and axes are those of the poses, velocities those of the twists. An angle is known but for whole turns. The laws'
-own lengths, rates, stretches and loads are what is proven.
+Places and axes are those of the poses, velocities those of the twists. An angle has the whole turns of its body.
+The laws' own lengths, rates, stretches and loads are what is proven.
 """
 
 from __future__ import annotations
@@ -53,7 +53,7 @@ def undeclared(system: System, state: State) -> str:
         NoValue: something has no value there.
     """
     for applied, element in elements_of(system):
-        if wrong := _Acting(system, state, applied, element).wrong:
+        if wrong := ActingElement(system, state, element).wrong(applied):
             return f"forces.{applied.name} {wrong}"
     for effort in system.loads.efforts:
         if wrong := _in_joint(system, state, effort):
@@ -63,8 +63,8 @@ def undeclared(system: System, state: State) -> str:
 
 def acting(system: System, state: State, force: str) -> Any:
     """What an element pulls [N], or turns its second body back with [N m], by its declaration at a state."""
-    (found,) = (each for each in elements_of(system) if each[0].name == force)
-    return _Acting(system, state, *found).law[0]
+    (element,) = (each for applied, each in elements_of(system) if applied.name == force)
+    return ActingElement(system, state, element).law[0]
 
 
 def _in_joint(system: System, state: State, effort: JointEffort) -> str:
@@ -74,8 +74,8 @@ def _in_joint(system: System, state: State, effort: JointEffort) -> str:
         NoValue: the joint turns about several axes, of which no pose tells the angles.
     """
     link, scope = system.motion.link(effort.body), system.scope
-    law = link.joint.efforts()[effort.variable]
-    declared = tuple(map(scope.value, (law.drive, law.damping, law.stiffness, law.rest)))
+    law = link.joint.pushes()[effort.variable]
+    declared = tuple(map(scope.value, (law.push, law.damping, law.stiffness, law.rest)))
     drive, c, k, rest, stated, V = evaluate((*declared, effort.effort, effort.potential), state, fifty_digits())
     s, rate = _joint_motion(system, state, link, effort.variable)
     stretch = s - rest
@@ -131,25 +131,25 @@ def _by_whole_turns(angle: Any, other: Any) -> Any:
 
 
 @dataclass(frozen=True)
-class _Acting(InNumbers):
+class ActingElement(InNumbers):
     """One element at one state."""
 
-    applied: Applied
     element: Element
 
-    @property
-    def wrong(self) -> str:
+    def wrong(self, applied: Applied) -> str:
+        """What of its loads and its energy is otherwise."""
         pull, energy = self.law
         reach: Any = 1 + max(map(abs, (x for end in self.ends for x in end)), default=0)
-        if body := pushed_otherwise(self.stated, self.of_pull(pull), (1 + abs(pull)) * reach):
+        stated = pushes_of(self.motion, self.state, applied.loads)
+        if body := pushed_otherwise(stated, self.of_pull(pull), (1 + abs(pull)) * reach):
             return f"pushes '{body}' otherwise than its length and rate say"
-        if energy is not None and self.applied.potential is not None:
-            return _energy(self.at((self.applied.potential,))[0], energy)
+        if energy is not None and applied.potential is not None:
+            return _energy(self.at((applied.potential,))[0], energy)
         return ""
 
     @cached_property
     def scene(self) -> SystemScene:
-        return SystemScene(self.motion, f"forces.{self.applied.name}")
+        return SystemScene(self.motion)
 
     # -- geometry --------------------------------------------------------------------------------------------
 
@@ -175,12 +175,13 @@ class _Acting(InNumbers):
         return dot(minus(self.ends[1], self.ends[0]), n), dot(minus(speeds[1], speeds[0]), n)
 
     def _turned(self, body: str | None) -> tuple[Any, Any]:
-        """(the angle of its axes, its spin) about z."""
+        """(the angle of its axes, by the whole turns that the body has made; its spin) about z."""
         if body is None:
             return 0, 0
         link = self.motion.link(body)
         c, s, w = self.at((link.pose.R[0][0], link.pose.R[1][0], link.twist.w[2]))
-        return c.context.atan2(s, c), w
+        angle = c.context.atan2(s, c)
+        return angle if link.angle is None else _by_whole_turns(angle, self.one(link.angle)), w
 
     # -- the law ---------------------------------------------------------------------------------------------
 
@@ -192,7 +193,7 @@ class _Acting(InNumbers):
         length, rate = self.measured
         pull, energy = c * rate, None
         if element.stiffness is not None:
-            stretch = self._counted(length - self._slack, k)
+            stretch = length - self._slack
             pull, energy = pull + k * stretch, k * stretch * stretch / 2
         if element.pull is not None:
             r, r1 = (scope.graph.symbol(f"({name})") for name in ("r", "r'"))
@@ -209,19 +210,7 @@ class _Acting(InNumbers):
         apart = self.vector([self.scene.start(x) for x in minus(second, first)])
         return dot(apart, direction_at(apart) if self.element.along is None else self.direction)
 
-    def _counted(self, stretch: Any, k: Any) -> Any:
-        """An angle by as many whole turns as are in the couple that acts."""
-        if self.element.points or k == 0:
-            return stretch
-        on_second: Any = -self.stated[str(self.element.bodies[1])][0][2] / k
-        return _by_whole_turns(stretch, on_second)
-
     # -- what acts -------------------------------------------------------------------------------------------
-
-    @cached_property
-    def stated(self) -> Pushes:
-        """By the loads."""
-        return pushes_of(self.motion, self.state, self.applied.loads)
 
     def of_pull(self, pull: Any) -> Pushes:
         """By the law."""

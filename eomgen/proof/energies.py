@@ -1,22 +1,21 @@
 """System, state -> whether T and V are those of its bodies: their constant parts, which no equation of motion knows.
 
-    T = sum of (m v_C . v_C + w . I w)/2 by the twists,      V = - sum of f . r_C for weights f, and what else has one
+    T = sum of (m v_C . v_C + w . I w)/2 by the twists,      V = - sum of m g . r_C, and what else has one
 
-Rotors in joints and energies that are given stand in T as they are stated, springs and given potentials in V.
+Rotors, springs of joints and given energies are taken from their fields.
 """
 
 from __future__ import annotations
 
 from collections.abc import Iterator
 
-from eomgen.mechanics.bodies.armature import given_energy
-from eomgen.mechanics.bodies.inertia import HALF, armature_energy, mass_properties
+from eomgen.mechanics.bodies.inertia import HALF, mass_properties
 from eomgen.mechanics.equations.equations_of_motion import EquationsOfMotion
 from eomgen.mechanics.equations.system import System
-from eomgen.model.forces.load import BodyPoint, PointForce, UniformField
+from eomgen.model.forces.element import GivenEnergy, PushOfMass
 from eomgen.symbolic.expression.graph import Scalar
 from eomgen.symbolic.expression.node import State
-from eomgen.symbolic.expression.spatial import Vector, apply, dot, times
+from eomgen.symbolic.expression.spatial import apply, dot
 from eomgen.symbolic.numeric.evaluation import evaluate, fifty_digits
 from eomgen.symbolic.numeric.tolerances import ZERO_AT_50
 
@@ -35,31 +34,38 @@ def other_energies(equations: EquationsOfMotion, state: State) -> str:
 
 
 def _of_motion(system: System) -> Iterator[Scalar]:
-    yield given_energy(system.scope)
+    scope = system.scope
+    for force in scope.model.forces.values():
+        yield from (scope.value(act.kinetic) for act in force.acts if isinstance(act, GivenEnergy))
     for link in system.motion.links:
-        mass, w = mass_properties(system.scope, link.name), link.twist.w
+        mass, w = mass_properties(scope, link.name), link.twist.w
         v = link.twist.at(mass.com).v
         yield HALF * mass.m * dot(v, v)
         yield HALF * dot(w, apply(mass.I, w))
-        yield armature_energy(system.motion, link)
+        for push in () if link.joint is None else link.joint.pushes():
+            rate = scope.time_derivative((scope.value(push.way),))[0]
+            yield HALF * scope.value(push.armature) * rate * rate
 
 
 def _of_places(system: System) -> Iterator[Scalar]:
-    forces = system.scope.model.forces
+    """Of weights and given energies as they are declared; springs' and pulls' own are looked at by themselves."""
+    scope = system.scope
     for applied in system.loads.applied:
-        if applied.potential is not None and forces[applied.name].by_mass:
-            for load in applied.loads:
-                yield from (-dot(f, system.motion.position(place)) for place, f in _weights(system, load))
-        elif applied.potential is not None:
-            yield applied.potential
-    yield from (effort.potential for effort in system.loads.efforts)
+        for act in scope.model.forces[applied.name].acts:
+            if isinstance(act, PushOfMass):
+                yield from _of_weights(system, act)
+            elif isinstance(act, GivenEnergy):
+                yield scope.value(act.potential)
+            elif applied.potential is not None:
+                yield applied.potential
+    for link in system.motion.links:
+        for push in () if link.joint is None else link.joint.pushes():
+            stretch = scope.value(push.way) - scope.value(push.rest)
+            yield HALF * scope.value(push.stiffness) * stretch * stretch
 
 
-def _weights(system: System, load: object) -> Iterator[tuple[BodyPoint, Vector]]:
-    """(mass centre, force) of what acts by mass."""
-    if isinstance(load, PointForce):
-        yield load.place, load.force
-    elif isinstance(load, UniformField):
-        for link in system.motion.links:
-            mass = mass_properties(system.scope, link.name)
-            yield (link.name, mass.com), times(mass.m, load.acceleration)
+def _of_weights(system: System, act: PushOfMass) -> Iterator[Scalar]:
+    g = system.scope.vector(act.acceleration)
+    for name in act.bodies or [link.name for link in system.motion.links]:
+        mass = mass_properties(system.scope, name)
+        yield -mass.m * dot(g, system.motion.position((name, mass.com)))

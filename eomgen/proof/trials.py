@@ -23,6 +23,7 @@ from eomgen.mechanics.reactions.equilibrium import imbalance
 from eomgen.mechanics.reactions.reactions import reactions_of
 from eomgen.proof.check import Check, checked, unchecked
 from eomgen.proof.contact_geometry import apart, meetings_of
+from eomgen.proof.declared_work import acting_otherwise, working_otherwise
 from eomgen.proof.elements import elements_of, undeclared
 from eomgen.proof.energies import other_energies
 from eomgen.proof.free_bodies import Demand, demand_of
@@ -34,7 +35,7 @@ from eomgen.proof.states import States, in_doubles
 from eomgen.proof.strands import strung_otherwise, threads_of
 from eomgen.records import dataclass
 from eomgen.symbolic.expression.functions import inner
-from eomgen.symbolic.expression.graph import Scalar
+from eomgen.symbolic.expression.graph import Scalar, is_zero
 from eomgen.symbolic.expression.node import State
 from eomgen.symbolic.expression.rational import Fraction
 from eomgen.symbolic.expression.spatial import apply, dot, matrix_of, transposed, vector_of
@@ -311,6 +312,14 @@ class Trials:
         if elements_of(self.equations.system) or self.equations.system.loads.efforts:
             name = "springs, dampers and drives act as they are declared, equal and opposite"
             yield self._at_states(name, "50 digits", lambda state: undeclared(self.equations.system, state))
+
+    def declared(self) -> Iterable[Check]:
+        """What is applied acts, and does the work, that is declared; none where nothing is applied."""
+        e = self.equations
+        if e.system.loads.applied or e.system.loads.efforts or not all(map(is_zero, e.Q)):
+            name = "all that is applied pushes, and does the virtual work, that its fields declare"
+            check = lambda state: acting_otherwise(e.system, state) or working_otherwise(e, state)  # noqa: E731
+            yield self._at_states(name, "differences at 50 digits", check)
 
     def energies(self) -> Iterable[Check]:
         """A contradiction where T or V has a part too much or too little, a constant even; else nothing."""

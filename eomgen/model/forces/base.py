@@ -5,7 +5,7 @@ from typing import ClassVar
 
 from eomgen.model.catalog import Catalog
 from eomgen.model.findings import Finding
-from eomgen.model.forces.element import Element
+from eomgen.model.forces.element import Act, Element
 from eomgen.model.forces.load import Load, LoadContext, SpreadLoad
 from eomgen.model.part import Part
 from eomgen.model.positions import DocumentPath
@@ -37,6 +37,11 @@ class Force(Part):
     def element(self) -> Element | None:
         """What it is between two points or two bodies; None for what acts otherwise."""
         return None
+
+    @property
+    def acts(self) -> tuple[Act, ...]:
+        """What it does, as it is declared: the proof's way, beside `loads`."""
+        return () if self.element is None else (self.element,)
 
     @property
     def kinetic(self) -> Expression | None:

@@ -4,6 +4,7 @@ from typing import ClassVar
 
 from eomgen.model.forces import load
 from eomgen.model.forces.base import Force
+from eomgen.model.forces.element import Act, CoupleOn
 from eomgen.model.kinds import AxesName, BodyName, CoupleFormula, OwnPointName
 from eomgen.records import dataclass
 from eomgen.symbolic.expression.spatial import AnyScalar
@@ -29,6 +30,10 @@ class CoupleForce(Force):
     def effort(self, scene: load.LoadContext) -> AnyScalar | None:
         """The couple in the plane [N m]; None in space, where it has three components."""
         return scene.vector(self.couple)[0] if len(self.couple) == 1 else None
+
+    @property
+    def acts(self) -> tuple[Act, ...]:
+        return (CoupleOn(self.body, self.couple, self.axes),)
 
     def loads(self, scene: load.LoadContext) -> tuple[load.Load, ...]:
         axes = None if self.axes == "ground" else self.axes

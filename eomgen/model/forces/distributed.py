@@ -4,6 +4,7 @@ from typing import ClassVar
 
 from eomgen.errors import ModelError
 from eomgen.model.forces.base import Force
+from eomgen.model.forces.element import Act, PushAlongLine
 from eomgen.model.forces.load import Load, LoadContext, PointForce, SpreadLoad
 from eomgen.model.kinds import BodyName, LineLoad, TwoLineLoads, TwoOwnPoints
 from eomgen.records import dataclass
@@ -30,6 +31,11 @@ class Distributed(Force):
     between: TwoOwnPoints
     intensity: LineLoad | None = None
     intensities: TwoLineLoads | None = None
+
+    @property
+    def acts(self) -> tuple[Act, ...]:
+        q = self.intensities if self.intensity is None else (self.intensity, self.intensity)
+        return () if q is None else (PushAlongLine(self.body, tuple(self.between), q),)
 
     def loads(self, scene: LoadContext) -> tuple[Load, ...]:
         """Forces (2 q_A + q_B) L / 6 at A and (q_A + 2 q_B) L / 6 at B: the same resultant and moment as the load."""

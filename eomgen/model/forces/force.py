@@ -4,6 +4,7 @@ from typing import ClassVar
 
 from eomgen.model.forces import load
 from eomgen.model.forces.base import Force
+from eomgen.model.forces.element import Act, PushAt
 from eomgen.model.kinds import AxesName, ForceVector, PointName
 from eomgen.records import dataclass
 
@@ -22,6 +23,10 @@ class PointForce(Force):
     point: PointName
     force: ForceVector
     axes: AxesName = "ground"
+
+    @property
+    def acts(self) -> tuple[Act, ...]:
+        return (PushAt(self.point, self.force, self.axes),)
 
     def loads(self, scene: load.LoadContext) -> tuple[load.Load, ...]:
         axes = None if self.axes == "ground" else self.axes

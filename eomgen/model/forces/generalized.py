@@ -3,6 +3,7 @@
 from typing import ClassVar
 
 from eomgen.model.forces.base import Force
+from eomgen.model.forces.element import Act, PushOnCoordinate
 from eomgen.model.forces.load import GeneralizedForce, Load, LoadContext
 from eomgen.model.kinds import CoordinateName, WorkingForce
 from eomgen.records import dataclass
@@ -20,6 +21,10 @@ class Generalized(Force):
     kind: ClassVar[str] = "generalized"
     coordinate: CoordinateName
     value: WorkingForce
+
+    @property
+    def acts(self) -> tuple[Act, ...]:
+        return (PushOnCoordinate(self.coordinate, self.value),)
 
     def loads(self, scene: LoadContext) -> tuple[Load, ...]:
         return (GeneralizedForce(self.coordinate, scene.value(self.value)),)

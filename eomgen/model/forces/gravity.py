@@ -3,6 +3,7 @@
 from typing import ClassVar
 
 from eomgen.model.forces.base import Force
+from eomgen.model.forces.element import Act, PushOfMass
 from eomgen.model.forces.load import Load, LoadContext, PointForce, UniformField
 from eomgen.model.kinds import Acceleration, Bodies, Flag
 from eomgen.records import dataclass
@@ -24,6 +25,10 @@ class Gravity(Force):
     acceleration: Acceleration
     bodies: Bodies | None = None
     axis_down: Flag = False
+
+    @property
+    def acts(self) -> tuple[Act, ...]:
+        return (PushOfMass(self.acceleration, self.bodies),)
 
     def loads(self, scene: LoadContext) -> tuple[Load, ...]:
         """A uniform field, or m g at the mass centre of each named body."""

@@ -3,6 +3,7 @@
 from typing import ClassVar
 
 from eomgen.model.forces.base import Force
+from eomgen.model.forces.element import Act, GivenEnergy
 from eomgen.model.kinds import MotionEnergy
 from eomgen.records import dataclass
 from eomgen.symbolic.expression.expressions import Expression
@@ -22,6 +23,10 @@ class Kinetic(Force):
     kind: ClassVar[str] = "kinetic"
     placeless: ClassVar[bool] = True
     energy: MotionEnergy
+
+    @property
+    def acts(self) -> tuple[Act, ...]:
+        return (GivenEnergy(kinetic=self.energy),)
 
     @property
     def kinetic(self) -> Expression:

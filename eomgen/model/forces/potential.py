@@ -3,6 +3,7 @@
 from typing import ClassVar
 
 from eomgen.model.forces.base import Force
+from eomgen.model.forces.element import Act, GivenEnergy
 from eomgen.model.forces.load import LoadContext
 from eomgen.model.kinds import Energy
 from eomgen.records import dataclass
@@ -20,6 +21,10 @@ class Potential(Force):
     kind: ClassVar[str] = "potential"
     placeless: ClassVar[bool] = True
     energy: Energy
+
+    @property
+    def acts(self) -> tuple[Act, ...]:
+        return (GivenEnergy(potential=self.energy),)
 
     def potential(self, scene: LoadContext) -> AnyScalar | None:
         return scene.value(self.energy)

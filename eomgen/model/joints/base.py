@@ -12,7 +12,7 @@ from eomgen.errors import NotYet
 from eomgen.model.catalog import Catalog
 from eomgen.model.containers import ListRule
 from eomgen.model.findings import Finding
-from eomgen.model.joints.moves import Move
+from eomgen.model.joints.moves import Move, PushAlong
 from eomgen.model.kinds import ConstantAngle, MovingGroundPlace, OwnPointName, SeatName, SpaceDirection, ValueOf
 from eomgen.model.part import Part, PartRule
 from eomgen.model.positions import DocumentPath
@@ -133,6 +133,10 @@ class Joint(Part):
 
     def efforts(self) -> tuple[Effort | None, ...]:
         """Drive, spring, damper and rotor of each variable, in the order of s."""
+        return ()
+
+    def pushes(self) -> tuple[PushAlong, ...]:
+        """What acts along its variables, as it is declared: the proof's way, beside `efforts`."""
         return ()
 
     def _not_yet(self) -> NotYet:

@@ -4,7 +4,7 @@ from typing import Any, ClassVar
 
 from eomgen.model.joints.axis import AxisJoint
 from eomgen.model.joints.base import Effort, Z, unit, vector
-from eomgen.model.joints.moves import Move, SlideAlong, TurnAbout
+from eomgen.model.joints.moves import Move, PushAlong, SlideAlong, TurnAbout
 from eomgen.model.kinds import Angle, Displacement, ForceFormula, SpaceDirection, Torque, ValueOf
 from eomgen.records import dataclass
 from eomgen.symbolic.expression.expressions import Expression
@@ -46,3 +46,7 @@ class Cylindrical(AxisJoint):
 
     def efforts(self) -> tuple[Effort | None, ...]:
         return (Effort(self.force), Effort(self.torque))
+
+    def pushes(self) -> tuple[PushAlong, ...]:
+        along, about = self.displacement, self.angle
+        return (PushAlong(way=along, push=self.force), PushAlong(way=about, push=self.torque))

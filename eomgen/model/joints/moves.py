@@ -46,3 +46,18 @@ class WayAlongPieces:
 
 
 Move = SlideAlong | TurnAbout | QuaternionTurn | WayAlongPieces
+
+
+@dataclass(frozen=True)
+class PushAlong:
+    """What acts along a way or an angle that a joint makes, on the child and opposite on the parent; None: nothing.
+
+    push - stiffness (way - rest) - damping way', and armature way'^2 / 2 of kinetic energy.
+    """
+
+    way: Any
+    push: Any = None
+    stiffness: Any = None
+    damping: Any = None
+    rest: Any = None
+    armature: Any = None

@@ -4,7 +4,7 @@ from typing import Any, ClassVar
 
 from eomgen.model.joints.axis import AxisJoint
 from eomgen.model.joints.base import Effort, Scalars, Z, unit, vector
-from eomgen.model.joints.moves import Move, SlideAlong, TurnAbout
+from eomgen.model.joints.moves import Move, PushAlong, SlideAlong, TurnAbout
 from eomgen.model.kinds import (
     ConstantAngle,
     Direction,
@@ -69,3 +69,15 @@ class Prismatic(AxisJoint):
 
     def efforts(self) -> tuple[Effort | None, ...]:
         return (Effort(self.force, self.stiffness, self.damping, self.rest, self.armature),)
+
+    def pushes(self) -> tuple[PushAlong, ...]:
+        return (
+            PushAlong(
+                way=self.displacement,
+                push=self.force,
+                stiffness=self.stiffness,
+                damping=self.damping,
+                rest=self.rest,
+                armature=self.armature,
+            ),
+        )

@@ -4,7 +4,7 @@ from typing import Any, ClassVar
 
 from eomgen.model.joints.axis import AxisJoint
 from eomgen.model.joints.base import Effort, Z, unit, vector
-from eomgen.model.joints.moves import Move, TurnAbout
+from eomgen.model.joints.moves import Move, PushAlong, TurnAbout
 from eomgen.model.kinds import (
     Angle,
     AngularDamping,
@@ -57,3 +57,15 @@ class Revolute(AxisJoint):
 
     def efforts(self) -> tuple[Effort | None, ...]:
         return (Effort(self.torque, self.stiffness, self.damping, self.rest, self.armature),)
+
+    def pushes(self) -> tuple[PushAlong, ...]:
+        return (
+            PushAlong(
+                way=self.angle,
+                push=self.torque,
+                stiffness=self.stiffness,
+                damping=self.damping,
+                rest=self.rest,
+                armature=self.armature,
+            ),
+        )

@@ -5,7 +5,7 @@ from typing import Annotated, Any, ClassVar
 from eomgen.model.fields import FormulaRule
 from eomgen.model.joints.axis import AxisJoint
 from eomgen.model.joints.base import Effort, Z, unit, vector
-from eomgen.model.joints.moves import Move, SlideAlong, TurnAbout
+from eomgen.model.joints.moves import Move, PushAlong, SlideAlong, TurnAbout
 from eomgen.model.kinds import (
     Angle,
     AngularDamping,
@@ -65,3 +65,15 @@ class Screw(AxisJoint):
 
     def efforts(self) -> tuple[Effort | None, ...]:
         return (Effort(self.torque, self.stiffness, self.damping, self.rest, self.armature),)
+
+    def pushes(self) -> tuple[PushAlong, ...]:
+        return (
+            PushAlong(
+                way=self.angle,
+                push=self.torque,
+                stiffness=self.stiffness,
+                damping=self.damping,
+                rest=self.rest,
+                armature=self.armature,
+            ),
+        )
