@@ -11,7 +11,7 @@ from eomgen.records import dataclass
 from eomgen.symbolic.expression.expressions import Expression, as_expression
 from eomgen.symbolic.expression.rational import Fraction
 from eomgen.symbolic.expression.scalar_operations import is_exact
-from eomgen.symbolic.expression.splines import ENDS, WAYS, Sampled, spline_of
+from eomgen.symbolic.expression.splines import ENDS, WAYS, DeclaredSamples, Sampled, spline_of
 
 MOST = 10_000  # samples of one function: more make code that is long to compile
 KEYS = ("samples", "between", "ends")
@@ -44,7 +44,8 @@ class TimeLawRule(FormulaRule):
             return None
         times, values = zip(*pairs, strict=True)
         text = f"{way} through {len(pairs)} samples from {_short(times[0])} to {_short(times[-1])} s"
-        return Expression.through_samples(Sampled("f(t)", spline_of(times, values, way, ends)), text)
+        function = spline_of(times, values, way, ends)
+        return Expression.through_samples(Sampled("f(t)", function, 0, DeclaredSamples(times, values, way, ends)), text)
 
     def schema(self, definitions: dict[str, Any]) -> dict[str, Any]:
         pair = {"type": "array", "items": {"type": "number"}, "minItems": 2, "maxItems": 2}

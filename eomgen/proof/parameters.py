@@ -11,13 +11,15 @@ from eomgen.mechanics.initial_state.values_at_rest import values_of_parameters
 from eomgen.model.values import exact_parameters
 from eomgen.proof.check import Check, checked
 from eomgen.proof.masses import other_masses
+from eomgen.proof.sampled_functions import other_functions
 from eomgen.symbolic.numeric.tolerances import COMPUTED
 
 
 def other_data(motion: Motion) -> Iterator[Check]:
-    """A contradiction where parameters or bodies' masses are not those of the file; else nothing."""
+    """A contradiction where parameters or bodies' masses are not those of the file; whether samples hold."""
     yield from other_parameters(motion.scope)
     yield from other_masses(motion)
+    yield from other_functions(motion.scope.model)
 
 
 def other_parameters(scope: Scope) -> Iterator[Check]:

@@ -12,7 +12,7 @@ from __future__ import annotations
 
 from bisect import bisect_right
 from collections.abc import Callable, Sequence
-from dataclasses import replace
+from dataclasses import field, replace
 from functools import cache
 from hashlib import blake2b
 from itertools import pairwise
@@ -108,17 +108,35 @@ class Spline:
 
 
 @dataclass(frozen=True, slots=True)
+class DeclaredSamples:
+    """Samples as they were given, and the way between them: what proofs look at.
+
+    Args:
+        way, ends: of `spline_of`.
+        factor: by which the values have been multiplied since.
+    """
+
+    times: SplineRow
+    values: SplineRow
+    way: str
+    ends: str
+    factor: Fraction = Fraction(1)
+
+
+@dataclass(frozen=True, slots=True)
 class Sampled:
     """A function through samples, which the graph holds as one operation on t.
 
     Args:
         name: as it is printed: theta', a rate that is given.
         spline: its values over pi^pi_power.
+        declared: the samples; None of its rate and its integral.
     """
 
     name: str
     spline: Spline
     pi_power: int = 0
+    declared: DeclaredSamples | None = field(default=None, compare=False, repr=False)
 
     def derivative(self) -> Sampled:
         return Sampled(f"{self.name}'", self.spline.derivative(), self.pi_power)
@@ -129,13 +147,14 @@ class Sampled:
 
     def raised(self, by: Fraction) -> Sampled:
         """With a number added, where there is no pi in it."""
-        return replace(self, spline=self.spline.raised(by))
+        return replace(self, spline=self.spline.raised(by), declared=None)
 
     def named(self, name: str) -> Sampled:
         return replace(self, name=name)
 
     def scaled(self, factor: Fraction, pi_power: int) -> Sampled:
-        return Sampled(self.name, self.spline.scaled(factor), self.pi_power + pi_power)
+        given = self.declared and replace(self.declared, factor=self.declared.factor * factor)
+        return Sampled(self.name, self.spline.scaled(factor), self.pi_power + pi_power, given)
 
     def at(self, t: Any, number: Callable[[Fraction], Any], pi: Any) -> Any:
         """The value at a number; pi is one of its kind."""
