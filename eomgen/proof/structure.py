@@ -30,6 +30,7 @@ from eomgen.mechanics.structures.blocks import RigidBlock, blocks_of, members_of
 from eomgen.mechanics.structures.velocity_plan import VelocityPlan
 from eomgen.proof.check import Check, attempted, checked, first_wrong
 from eomgen.proof.declared_work import acting_otherwise
+from eomgen.proof.named_axes import named_otherwise
 from eomgen.records import dataclass
 from eomgen.symbolic.expression.derivative import symbols_of
 from eomgen.symbolic.expression.expressions import single_call
@@ -56,6 +57,8 @@ def structure_checks(
     proof = _Proof(found)
     name = "every body, every pair and the whole are in balance"
     yield attempted(name, IN_NUMBERS, lambda: imbalance(found.balance, proof.state, Random(7)))
+    name = "reactions that are named by x, y and z are those along the ground's axes"
+    yield attempted(name, "50 digits", lambda: named_otherwise(found.balance.balance, proof.state))
     if found.structure.system.loads.applied:
         name = "all that is applied pushes as its fields declare"
         yield attempted(name, "50 digits", lambda: acting_otherwise(found.structure.system, proof.state))

@@ -30,6 +30,7 @@ from eomgen.proof.free_bodies import Demand, demand_of
 from eomgen.proof.in_numbers import FINER_STEP, STEP, way_through
 from eomgen.proof.joint_places import misplaced
 from eomgen.proof.kept_ties import open_at_start, rows_that_stay
+from eomgen.proof.named_axes import named_otherwise
 from eomgen.proof.printed import Printed, ReadBack
 from eomgen.proof.states import States, in_doubles
 from eomgen.proof.strands import strung_otherwise, threads_of
@@ -358,6 +359,8 @@ class Trials:
 
         if reactions.components:
             yield self._at_states("every body is in balance with its reactions", "floating point", check)
+            name = "reactions that are named by x, y and z are those along the ground's axes"
+            yield self._at_states(name, "50 digits", lambda at: named_otherwise(reactions.balance, self._moving(at)))
 
     def code(self, rhs: RightHandSide) -> Check:
         """The emitted code returns the symbols' numbers, at states that are numbers of double precision."""

@@ -1,0 +1,86 @@
+"""Balance, state -> whether reactions that are named by x, y and z are those along the ground's axes, in numbers.
+
+    reaction_x|y|z(owner) = R f,   reaction_couple_x|y|z(owner) = R n,      R and the sums of f and n of one body
+
+Components take random values: a name is linear in them. R is that of the pose of the body at the state; what a component
+does to a body stands in the axes of its equations, which the balance of the whole in ground axes looks at.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from random import Random
+from typing import Any
+
+from eomgen.mechanics.balance.balance import Balance
+from eomgen.mechanics.balance.named_reactions import NamedReaction, named_reactions
+from eomgen.mechanics.balance.unit_wrenches import Effect, efforts_of
+from eomgen.proof.in_numbers import InNumbers
+from eomgen.records import dataclass
+from eomgen.symbolic.expression.node import State
+from eomgen.symbolic.numeric.evaluation import fifty_digits
+from eomgen.symbolic.numeric.tolerances import ZERO_AT_50
+
+ALONG = {f"reaction_{couple}{axis}": (couple, k) for couple in ("", "couple_") for k, axis in enumerate("xyz")}
+
+
+def named_otherwise(balance: Balance, state: State) -> str:
+    """Which reaction is not along the axis of the ground by which it is called; "" where all are.
+
+    Raises:
+        NoValue: something has no value there.
+    """
+    proof = _Named(balance.system, state, balance)
+    for named in named_reactions(balance):
+        function, _, rest = named.name.partition("(")
+        if function in ALONG and named.combination:
+            couple, k = ALONG[function]
+            stated, size = proof.stated(named)
+            due = proof.due(named.owner, rest.removesuffix(")"), couple)
+            if due is not None and abs(stated - due[k]) > ZERO_AT_50 * (1 + size + sum(map(abs, due))):
+                return f"{named.name} is not along the ground's {'xyz'[k]}"
+    return ""
+
+
+@dataclass(frozen=True)
+class _Named(InNumbers):
+    balance: Balance
+
+    @property
+    def values(self) -> list[Any]:
+        """Of every component, at random."""
+        rng = Random(17)
+        return [fifty_digits().number(rng.randint(20, 90)) / 7 for _ in self.balance.components]
+
+    def stated(self, named: NamedReaction) -> tuple[Any, Any]:
+        """(what it comes to, of terms of which size)"""
+        *factors, given = self.at((*named.combination.values(), named.given))
+        x = self.values
+        terms = [given, *(k * x[j] for j, k in zip(named.combination, factors, strict=True))]
+        return sum(terms, start=0), sum(map(abs, terms))
+
+    def due(self, owner: str, place: str, couple: str) -> Any:
+        """The force, or couple, on the body of which the name speaks, ground axes; None where it speaks of none."""
+        mine = [(j, c) for j, c in enumerate(self.balance.components) if c.owner == owner]
+        held = [c for _, c in mine if c.kind != "drive"]
+        side = place.removeprefix(owner).removeprefix(".")
+        if not held:
+            return None
+        links = self.motion.index
+        on = links[side] if side else held[0].effects[0].link
+        total: Any = (0, 0, 0)
+        for j, component in mine:
+            effects = (*component.effects, *component.friction_effects)
+            total = tuple(x + y for x, y in zip(total, self._turned(on, effects, couple, self.values[j]), strict=True))
+        efforts = efforts_of(self.system, owner) if owner in links and not side else []
+        return tuple(x + y for x, y in zip(total, self._turned(on, efforts, couple, 1), strict=True))
+
+    def _turned(self, on: int, effects: Iterable[Effect], couple: str, share: Any) -> Any:
+        """A share of what effects do to one body together, turned by the pose of the body."""
+        total = [0 * fifty_digits().number(1)] * 3
+        for effect in (each for each in effects if each.link == on):
+            own = self.at(effect.couple if couple else effect.force)
+            total = [x + share * y for x, y in zip(total, own, strict=True)]
+        if self.system.scope.model.space == "plane":
+            return tuple(total)
+        return self.carried(self.motion.links[on].name, (total[0], total[1], total[2]), direction=True)
