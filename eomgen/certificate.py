@@ -55,7 +55,7 @@ def certify(
         checks.append(trials.eliminated_rows())
     checks.append(trials.free_bodies())
     if has_friction(equations.system):
-        checks.append(trials.friction())
+        checks += [trials.friction(), *trials.pushes()]
     checks += [
         *trials.tensors(),
         *trials.contacts(),

@@ -2,8 +2,8 @@
 
     reaction_x|y|z(owner) = R f,   reaction_couple_x|y|z(owner) = R n,      R and the sums of f and n of one body
 
-Components take random values: a name is linear in them. R is that of the pose of the body at the state; what a component
-does to a body stands in the axes of its equations, which the balance of the whole in ground axes looks at.
+Components take random values: a name is linear in them. R is that of the pose of the body at the state; what a
+component does to a body stands in the axes of its equations, which the balance of the whole in ground axes looks at.
 """
 
 from __future__ import annotations

@@ -105,7 +105,7 @@ class States:
         moving = frozenset((symbols.t, *symbols.q, *symbols.u, *symbols.inputs.values()))
         return switches_of(self.scalars, moving)
 
-    def _inside(self, state: State) -> bool:
+    def inside(self, state: State) -> bool:
         """Whether the state lies between no two pieces."""
         return all(switch.piece(state) is not None for switch in self.switches)
 
@@ -120,7 +120,7 @@ class States:
 
     def _if_inside(self, state: State) -> Iterator[TrialState]:
         try:
-            if self._inside(state):
+            if self.inside(state):
                 yield TrialState(state, " (at the start)")
         except (NoValue, ZeroDivisionError):
             return
@@ -151,7 +151,7 @@ class States:
                 if found is None:
                     continue
                 place = self._closed(found, switch, j)
-                if place is None or not self._inside(place.state):
+                if place is None or not self.inside(place.state):
                     continue
                 visited |= {(i, s.piece(place.state) or 0) for i, s in enumerate(self.switches)}
             except (NoValue, ZeroDivisionError):
@@ -174,6 +174,11 @@ class States:
         for _ in range(TRIES):
             state, remark = closed_state(self.system, rng)
             yield TrialState(state, remark)
+
+
+def own_start(system: System) -> State | None:
+    """The model at its own start, with its own numbers, these drawn where there are none; None: it does not hold."""
+    return _own_state(system, Random(5))
 
 
 def _own_state(system: System, rng: Random) -> State | None:

@@ -21,18 +21,19 @@ from eomgen.mechanics.equations.equations_of_motion import EquationsOfMotion
 from eomgen.mechanics.equations.system import System
 from eomgen.mechanics.reactions.equilibrium import imbalance
 from eomgen.mechanics.reactions.reactions import reactions_of
-from eomgen.proof.check import Check, checked, unchecked
+from eomgen.proof.check import Check, attempted, checked, unchecked
 from eomgen.proof.contact_geometry import apart, meetings_of
 from eomgen.proof.declared_work import acting_otherwise, working_otherwise
 from eomgen.proof.elements import elements_of, undeclared
 from eomgen.proof.energies import other_energies
 from eomgen.proof.free_bodies import Demand, demand_of
+from eomgen.proof.friction_laws import other_friction, pushing_otherwise
 from eomgen.proof.in_numbers import FINER_STEP, STEP, way_through
 from eomgen.proof.joint_places import misplaced
 from eomgen.proof.kept_ties import open_at_start, rows_that_stay
 from eomgen.proof.named_axes import named_otherwise
 from eomgen.proof.printed import Printed, ReadBack
-from eomgen.proof.states import States, in_doubles
+from eomgen.proof.states import States, in_doubles, own_start
 from eomgen.proof.strands import strung_otherwise, threads_of
 from eomgen.records import dataclass
 from eomgen.symbolic.expression.functions import inner
@@ -245,6 +246,8 @@ class Trials:
         laws = _laws_of_round(self.equations.system) if push_sizes(self.equations.system) else []
 
         def check(state: State) -> str:
+            if wrong := other_friction(self.equations.system, state):
+                return wrong
             for name, law in laws:
                 if not self._holds(law, state):
                     return f"the friction of '{name}' is not that of its normal force"
@@ -259,6 +262,17 @@ class Trials:
             return ""
 
         return self._at_states("friction takes power from what slides", "50 digits", check, moving=True)
+
+    def pushes(self) -> Iterable[Check]:
+        """A contradiction where friction is taken with another sign of N than the start has; else nothing."""
+        start = own_start(self.equations.system)
+        if start is not None and self.states.inside(start):
+            found = attempted(
+                "friction at the start is that of the contacts' own pushes",
+                "50 digits",
+                lambda: pushing_otherwise(self.equations, start, self._moving),
+            )
+            yield from (found,) if found.status == "fails" else ()
 
     def _holds(self, law: tuple[Scalar, ...], state: State) -> bool:
         """F = factor sqrt(N_1^2 + N_2^2) with the accelerations of the equations of motion."""
