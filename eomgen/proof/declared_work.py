@@ -53,16 +53,13 @@ def acting_otherwise(system: System, state: State) -> str:
         NoValue: something has no value there.
     """
     proof = _Declared(system, state)
-    everything: list[Act] = []
     for applied in system.loads.applied:
-        acts = system.scope.model.forces[applied.name].acts
-        everything += acts
         if any(isinstance(load, UniformField) for load in applied.loads):
             continue
-        due = proof.pushes(acts)
+        due = proof.pushes(system.scope.model.forces[applied.name].acts)
         if body := pushed_otherwise(pushes_of(system.motion, state, applied.loads), due, _size(due)):
             return f"forces.{applied.name} pushes '{body}' otherwise than it is declared"
-    due = proof.pushes(everything)
+    due = proof.pushes(proof.acts)
     stated = pushes_of(system.motion, state, (*system.loads.placed, *weights(system.loads)))
     if body := pushed_otherwise(stated, due, _size(due)):
         return f"all forces together push '{body}' otherwise than they are declared"
@@ -118,13 +115,13 @@ class _Declared(InNumbers):
 
     def works(self, way: Way) -> list[Any]:
         """Of every act and every joint, along a way."""
-        terms = [term for act in self._acts for term in self._terms(act)]
+        terms = [term for act in self.acts for term in self._terms(act)]
         terms += [term for push in self._in_joints for term in self._of_joint(push)]
         rates = way.rates([moving for moving, _ in terms])
         return [k * x for (_, k), x in zip(terms, rates, strict=True)]
 
     @property
-    def _acts(self) -> Iterator[Act]:
+    def acts(self) -> Iterator[Act]:
         for force in self.system.scope.model.forces.values():
             yield from force.acts
 

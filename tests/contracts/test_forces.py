@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from fractions import Fraction
 
 import numpy as np
@@ -15,9 +16,10 @@ from eomgen.mechanics.bodies.loads import Loads, body_wrench, in_ground_axes, jo
 from eomgen.mechanics.bodies.system_scene import SystemScene
 from eomgen.mechanics.equations.system import System
 from eomgen.mechanics.equations.work import effort_row, force_row, from_potential, generalized_forces, load_row, summed
-from eomgen.mechanics.formulations import projection
+from eomgen.mechanics.formulations import projection, recursive
 from eomgen.model.forces import ALL
 from eomgen.model.forces.load import Couple, PointForce, UniformField
+from eomgen.proof.declared_work import acting_otherwise, working_otherwise
 from eomgen.symbolic.expression.derivative import gradient
 from eomgen.symbolic.expression.expressions import parse
 from eomgen.symbolic.expression.graph import Scalar
@@ -209,6 +211,20 @@ def test_the_potential_and_the_work_of_the_loads_agree(kind, space, fields):
         assert force.placeless or kind not in ("gravity", "spring", "torsion_spring")
         return
     assert equal(from_potential(system.motion, force.potential), work_row(system.loads, force))
+
+
+@built
+def test_every_force_says_what_it_does_to_the_proof_too(kind, space, fields):
+    """`acts` are not empty, and do the work of its loads: Q . d of the whole system."""
+    system = system_with(kind, space, fields)
+    assert system.scope.model.forces["F"].acts
+    equations = recursive.assembled_by_recursion(system)
+    state = state_of(system)
+    assert not acting_otherwise(system, state) and not working_otherwise(equations, state)
+    if kind != "kinetic":
+        others = replace(system.loads, applied=tuple(f for f in system.loads.applied if f.name != "F"))
+        less = recursive.assembled_by_recursion(replace(system, loads=others))
+        assert working_otherwise(less, state)
 
 
 @built
