@@ -167,9 +167,9 @@ def delivery_of(document: Document, form: str, *, strict: bool = False) -> Deliv
         strict: warnings end in exit 1.
     """
     from eomgen.documents import rendered
-    from eomgen.documents.proven import proven_for_machines
+    from eomgen.documents.proven import proven_as
 
-    document = proven_for_machines(document) if form == "json" else document
+    document = proven_as(document, form)
     taken = [f"taken: {each}" for each in document.taken]
     lines = (*taken, *document.notes, *(f"warning: {each}" for each in document.warnings), document.wrong)
     return Delivery(rendered(document, form), tuple(filter(None, lines)), _code(document, strict))
@@ -200,12 +200,13 @@ def deliver_several(
     A model that is wrong is told, and the next one follows.
     """
     from eomgen.documents import rendered
+    from eomgen.documents.proven import proven_as
 
     code, results = 0, []
     for path in paths:
         try:
             with reading(path) as declared:
-                document = made(declared)
+                document = proven_as(made(declared), form)
             results.append(rendered(document, form))
             code = max(code, _code(document, strict))
             for problem in document.warnings:

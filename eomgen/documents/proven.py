@@ -9,8 +9,10 @@ from functools import partial
 from random import Random
 from typing import Any
 
+from eomgen.documents import rendered
 from eomgen.documents.document import Document, quantities_of
 from eomgen.documents.quantity import Quantity
+from eomgen.documents.read_back import page_read_back
 from eomgen.documents.statements import Equation, Listing, Matrix, Statement, parts_of
 from eomgen.documents.text import cases_text, is_piecewise, side_text
 from eomgen.errors import ExpressionError, NumberBeyond
@@ -49,6 +51,17 @@ def proven_for_machines(document: Document) -> Document:
     certificate = _joined(document.certificate, tally.checks())
     found = {**entries, "certificate": certificate.as_dict()}
     return replace(document, certificate=certificate, entries=lambda: found)
+
+
+def proven_as(document: Document, form: str) -> Document:
+    """The document with a proof of the page that is made of it, read back, where it has one."""
+    if form == "json":
+        return proven_for_machines(document)
+    if document.certificate is None:
+        return document
+    bare = replace(document, certificate=None)
+    more = page_read_back(bare, rendered(bare, form), form)
+    return replace(document, certificate=_joined(document.certificate, more))
 
 
 def _joined(certificate: Certificate, more: Iterable[Check]) -> Certificate:

@@ -34,6 +34,7 @@ class Work(IntEnum):
     ANSWER = 50_000  # one value that the user asked for by name, or a question whose answer decides what is true
 
 
+READ_BACK = 30_000  # commands, numbers and letters of the formulas of one page that are read back
 LARGEST_OF_50_DIGITS = 20_000  # in bits, of what a function is taken at with 50 digits; doubles end at 1024
 
 

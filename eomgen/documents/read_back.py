@@ -1,0 +1,553 @@
+"""A document and the page that was made of it -> whether the page, read back, says what the document holds.
+
+The page is read by a reader of its own. What is compared is what stands there: every formula in numbers, every entry of
+a table under its head, every word, in their order; not how it was made.
+"""
+
+from __future__ import annotations
+
+import re
+import unicodedata
+from collections.abc import Iterable, Iterator, Mapping, Sequence
+from dataclasses import field
+from functools import cached_property
+from random import Random
+from typing import Any
+
+from eomgen.documents.document import Document
+from eomgen.documents.latex_names import Notation
+from eomgen.documents.quantity import Quantity
+from eomgen.documents.statements import (
+    Cell,
+    Code,
+    Entry,
+    Formula,
+    Found,
+    Grid,
+    Law,
+    Lines,
+    Listing,
+    Matrix,
+    Name,
+    Omitted,
+    Partial,
+    Piece,
+    Prose,
+    Rate,
+    Side,
+    Statement,
+    Table,
+    parts_of,
+)
+from eomgen.errors import ExpressionError
+from eomgen.proof.check import Check, checked, differing, unchecked
+from eomgen.proof.pages_read import PAGES, Block, Line, said_by, spoken, unlike_words
+from eomgen.proof.typeset import Letters, Tokens, Tree, sides_of, symbols_in, tokens_of, typeset, worth
+from eomgen.records import dataclass
+from eomgen.symbolic.expression.expressions import LONGEST, parse
+from eomgen.symbolic.expression.graph import Graph, Node, Scalar
+from eomgen.symbolic.expression.splines import sampled_of
+from eomgen.symbolic.expression.traversal import order
+from eomgen.symbolic.numeric.evaluation import NoValue, evaluate, fifty_digits
+from eomgen.symbolic.numeric.tolerances import COMPUTED, ZERO_AT_50
+from eomgen.symbolic.numeric.work import READ_BACK
+
+NAME = "the page, read back, says what was found"
+HOW = "a reader of its own, 50 digits"
+SHOWN = 60  # characters of what is told
+TRIES = 12  # random states, for one at which a formula has a value
+_NUMBER = re.compile(r"-?\d+(?:\.\d+)?(?:e[-+]?\d+)?")
+
+
+class Unlike(Exception):
+    """What stands on a page is not what the document holds."""
+
+
+@dataclass(frozen=True)
+class Wanted:
+    """What a block of a page is to say.
+
+    Args:
+        kind: as that of the block.
+        pieces: of a heading and a paragraph.
+        sides: of a formula.
+        rows: of a table, its head first.
+        lines: what stands as it is.
+    """
+
+    kind: str
+    pieces: tuple[Piece, ...] = ()
+    sides: tuple[Side | Quantity, ...] = ()
+    rows: tuple[tuple[Cell, ...], ...] = ()
+    lines: tuple[str, ...] = ()
+
+
+def page_read_back(document: Document, text: str, form: str) -> Iterator[Check]:
+    """Whether a page says what its document holds; nothing of a form that nobody reads.
+
+    Args:
+        text: the page, without its proof.
+    """
+    if form not in PAGES:
+        return
+    comparison = Comparison(document)
+    wanted = list(_wanted(document, form))
+    blocks = list(PAGES[form](text))
+    try:
+        comparison.of_all(wanted, blocks)
+        comparison.of_values()
+    except Unlike as error:
+        yield checked(NAME, str(error), HOW)
+        return
+    yield Check(NAME, "holds", HOW, f"of {len(wanted)}")
+    for why, names in comparison.left.items():
+        yield unchecked(NAME, f"{', '.join(names[:3])}{', ...' if len(names) > 3 else ''}: {why}", HOW)
+
+
+def _wanted(document: Document, form: str) -> Iterator[Wanted]:
+    """What a page is to say, in order."""
+    if document.distrust:
+        yield Wanted("words", (document.distrust,))
+    yield Wanted("heading", (document.title,))
+    if document.about:
+        yield Wanted("words", (document.about,))
+    if document.source:
+        yield Wanted("words", (f"Source: {document.source}.",))
+    for step in document.steps:
+        if step.title:
+            yield Wanted("heading", (step.title,))
+        for statement in step.statements:
+            yield from _of_statement(statement)
+
+
+def _of_statement(statement: Statement) -> Iterator[Wanted]:
+    if isinstance(statement, Prose):
+        if any(not isinstance(piece, str) or piece.strip() for piece in statement.pieces):
+            yield Wanted("words", statement.pieces)
+    elif isinstance(statement, Formula):
+        yield Wanted("formula", sides=statement.sides)
+    elif isinstance(statement, Lines):
+        yield Wanted("lines", lines=statement.lines)
+    elif isinstance(statement, Listing):
+        for row in statement.rows:
+            yield from _of_row(row)
+    else:
+        grid = statement if isinstance(statement, Grid) else _columns(statement)
+        yield Wanted("table", rows=(grid.head, *grid.rows))
+
+
+def _of_row(row: Found) -> Iterator[Wanted]:
+    found = row.quantity
+    way, message = (f"[{found.method}]" if found.method else ""), (f"({found.message})" if found.message else "")
+    yield Wanted("words", (row.name, f": {row.words}" if row.words else "", way, message))
+    if found.exact is not None or found.value is not None:
+        yield Wanted("formula", sides=(found,))
+
+
+def _columns(table: Table) -> Grid:
+    """The columns of a table in which something stands."""
+    rows = [(row.symbol, row.meaning, row.unit, row.value) for row in table.rows]
+    kept = [k for k in range(len(table.head)) if any(row[k] != "" for row in rows)]
+    return Grid(tuple(table.head[k] for k in kept), tuple(tuple(row[k] for k in kept) for row in rows))
+
+
+@dataclass
+class Comparison:
+    """What is compared of one document.
+
+    Args:
+        values: what is compared in numbers: (where, what stands there, what it is to be).
+        left: {why: what could not be compared}.
+        named: quantities that have a letter, by what stands there, and the other way round.
+        read: how much was read so far.
+    """
+
+    document: Document
+    values: list[tuple[str, Tree, Scalar]] = field(default_factory=list)
+    left: dict[str, list[str]] = field(default_factory=dict)
+    named: dict[Any, Any] = field(default_factory=dict)
+    read: int = 0
+
+    @cached_property
+    def notation(self) -> Notation:
+        """How its symbols are set."""
+        return self.document.notation.told_apart(_names_in(self.document))
+
+    @cached_property
+    def letters(self) -> Letters:
+        """The letters of the document, as it declares them."""
+        names = _names_in(self.document)
+        letters = Letters({(bare := name.rstrip("'")): self.notation.latex(bare) for name in names}, tuple(names))
+        if letters.alike:
+            raise Unlike(f"nobody can tell apart {letters.alike[0]}")
+        return letters
+
+    def of_all(self, wanted: Sequence[Wanted], blocks: Sequence[Block]) -> None:
+        """Each thing on the page against what is to stand there.
+
+        Raises:
+            Unlike: something else stands there.
+        """
+        if len(wanted) != len(blocks):
+            kinds = next((k for k, (w, b) in enumerate(zip(wanted, blocks, strict=False)) if w.kind != b.kind), -1)
+            where = f", {_told(wanted[kinds])} is not where it belongs" if 0 <= kinds < len(wanted) else ""
+            raise Unlike(f"{len(blocks)} things stand on the page for {len(wanted)}{where}")
+        for want, block in zip(wanted, blocks, strict=True):
+            if want.kind != block.kind:
+                raise Unlike(f"where {_told(want)} belongs stands a {block.kind}")
+            self._of_one(want, block)
+
+    def _of_one(self, want: Wanted, block: Block) -> None:
+        if want.kind in ("heading", "words"):
+            self._pieces(want.pieces, block.words, _told(want))
+        elif want.kind == "formula":
+            self._formula(want, block)
+        elif want.kind == "lines":
+            if spoken("".join(want.lines)) != spoken("".join(block.lines)):
+                raise Unlike(f"other lines than {_told(want)}")
+        else:
+            self._table(want, block)
+
+    def _table(self, want: Wanted, block: Block) -> None:
+        if len(want.rows) != len(block.rows):
+            raise Unlike(f"a table of {len(block.rows)} lines for {len(want.rows)} below {_told(want)}")
+        for cells, row in zip(want.rows, block.rows, strict=True):
+            if len(cells) != len(row):
+                raise Unlike(f"{len(row)} columns for {len(cells)} below {_told(want)}")
+            for head, cell, line in zip(want.rows[0], cells, row, strict=True):
+                self._cell(cell, line, f"{_said(cells[0])}, {_said(head)}")
+
+    def _cell(self, cell: Cell, line: Line, where: str) -> None:
+        if not isinstance(cell, str):
+            self._pieces((cell,), line, where)
+        elif _NUMBER.fullmatch(cell) and len(line) == 1 and line[0].tex:
+            self._number(line[0].tex, float(cell), where)
+        else:
+            self._pieces((cell,), line, where)
+
+    def _number(self, tex: str, right: float, where: str) -> None:
+        found = float(worth(self._tree(tokens_of(tex), where), {}, fifty_digits()))
+        if wrong := differing(found, right):
+            raise Unlike(f"{where}: {wrong}")
+
+    def _pieces(self, pieces: Iterable[Piece | Side], line: Line, where: str) -> None:
+        """Words and formulas of a line."""
+        k = 0
+        for piece in pieces:
+            if isinstance(piece, (str, Code)):
+                said = unlike_words(line[k:], piece if isinstance(piece, str) else piece.text)
+                if said is None:
+                    stands = "".join(part.character or f"${part.tex}$" for part in line[k : k + SHOWN])
+                    raise Unlike(f"{where}: '{stands}' for '{_said(piece)[:SHOWN]}'")
+                k += said
+                continue
+            if k == len(line) or not line[k].tex:
+                raise Unlike(f"{where}: no formula for {_said(piece)}")
+            self._sides((piece,), sides_of(tokens_of(line[k].tex)), where)
+            k += 1
+        if k != len(line):
+            raise Unlike(f"{where}: more stands there")
+
+    def _formula(self, want: Wanted, block: Block) -> None:
+        self.read += sum(map(len, block.sides))
+        if self.read > READ_BACK:
+            self.left.setdefault("the page is too long to be read back whole", []).append(_told(want))
+            return
+        if isinstance(want.sides[0], Quantity):
+            self._quantity(want.sides[0], list(block.sides), _told(want))
+        else:
+            self._sides(want.sides, list(block.sides), _told(want))
+
+    def _quantity(self, found: Quantity, sides: list[Tokens], where: str) -> None:
+        """exact = number unit"""
+        if found.exact is not None:
+            if not sides:
+                raise Unlike(f"{where}: nothing stands there")
+            self._text(found.exact, sides.pop(0), where)
+        if found.value is not None:
+            if not sides:
+                raise Unlike(f"{where}: no number stands there")
+            tokens = sides.pop(0)
+            cut = tokens.index(r"\text") if r"\text" in tokens else len(tokens)
+            number = float(worth(self._tree(tokens[:cut], where), {}, fifty_digits()))
+            unit = spoken("".join(x for x in tokens[cut + 2 : -1] if x not in "${}").replace(r"\cdot", "·"))
+            if wrong := differing(number, float(found.value)):
+                raise Unlike(f"{where}: {wrong}")
+            if unit != spoken(found.unit or ""):
+                raise Unlike(f"{where}: '{unit}' for {found.unit}")
+        if sides:
+            raise Unlike(f"{where}: more stands there")
+
+    def _sides(self, wanted: Iterable[Side | Quantity], sides: list[Tokens], where: str) -> None:
+        sides = list(sides)
+        for side in wanted:
+            count = len(sides_of(tokens_of(side.latex))) if isinstance(side, Law) else 1
+            if len(sides) < count:
+                raise Unlike(f"{where}: {_said(side)} is missing")
+            tokens, sides = sides[:count], sides[count:]
+            if isinstance(side, Law):
+                self._law(side, tokens, where)
+            else:
+                self._side(side, tokens[0], where)
+        if sides:
+            raise Unlike(f"{where}: more stands there")
+
+    def _side(self, side: Side | Quantity, tokens: Tokens, where: str) -> None:
+        if isinstance(side, (Name, Entry, Partial, Rate)):
+            self._named(side, tokens, where)
+        elif isinstance(side, Matrix):
+            self._matrix(side, tokens, where)
+        elif isinstance(side, Omitted):
+            if str(side.operations) not in tokens:
+                raise Unlike(f"{where}: another count than {side.operations} operations")
+        else:
+            self.values.append((where, self._tree(tokens, where), side))
+
+    def _tree(self, tokens: Tokens, where: str) -> Tree:
+        try:
+            return typeset(tokens, self.letters)
+        except ExpressionError as error:
+            raise Unlike(f"{where}: {error.what}") from error
+
+    def _text(self, text: str, tokens: Tokens, where: str) -> None:
+        """What a text of the grammar says."""
+        if len(text) > LONGEST:
+            self.left.setdefault("too long to be read back", []).append(where)
+            return
+        graph = Graph()
+        expression = parse(text, longest=len(text))
+        symbols = {name: graph.symbol(name) for kind, name in expression.code if kind == "name"}
+        self.values.append((where, self._tree(tokens, where), expression.evaluate(symbols | {"pi": graph.pi})))
+
+    def _law(self, law: Law, sides: list[Tokens], where: str) -> None:
+        """A general law as it stands; where its text is a formula of symbols it is that."""
+        if sides != sides_of(tokens_of(law.latex)):
+            raise Unlike(f"{where}: '{''.join(sides[0])}' for {law.text}")
+        if _digits(law.text) != _digits(law.latex):
+            raise Unlike(f"{where}: '{law.latex}' for {law.text}")
+        try:
+            expression = parse(law.text)
+            names = [name for kind, name in expression.code if kind == "name" and name != "pi"]
+            bare = {name: self.notation.latex(name) for name in names}
+            tree = typeset(sides[0], Letters(bare, tuple(bare)))
+        except ExpressionError:  # a law that is no formula of numbers
+            return
+        graph = Graph()
+        symbols = {name: graph.symbol(name) for name in bare}
+        self.values.append((where, tree, expression.evaluate(symbols | {"pi": graph.pi})))
+
+    def _matrix(self, matrix: Matrix, tokens: Tokens, where: str) -> None:
+        inside = tokens[len(_begin("pmatrix", r"\begin")) : -len(_begin("pmatrix", r"\end"))]
+        rows = [_split(row, "&") for row in _split(inside, r"\\")]
+        if [len(row) for row in rows] != [len(row) for row in matrix.rows]:
+            raise Unlike(f"{where}: a matrix of other rows or columns")
+        for row, entries in zip(rows, matrix.rows, strict=True):
+            for entry, side in zip(row, entries, strict=True):
+                self._sides((side,), sides_of(entry), where)
+
+    def _named(self, side: Name | Entry | Partial | Rate, tokens: Tokens, where: str) -> None:
+        """A quantity by its letter: what looks like it is it, and a derivative is by what it is to be."""
+        tex = " ".join(tokens)
+        if isinstance(side, Rate) and isinstance(side.of, Node):
+            self._symbol(f"{side.of.name}'", tokens, where)
+            return
+        if isinstance(side, Partial):
+            begins = tokens[:1] == ("-",)
+            if begins != (side.sign < 0):
+                raise Unlike(f"{where}: the other sign for {_said(side)}")
+            below = tokens[_after_partial(tokens[begins:], where) + begins :]
+            self._symbol(side.by.name, below[2:-1], where)
+        elif isinstance(side, Entry):
+            row, column = _split(tokens[3:-1], ",")[:2] if tokens[-1:] == ("}",) else ((), ())
+            self._symbol(side.row.name, row, where)
+            self._symbol(side.column.name, column, where)
+        if isinstance(side, Name):
+            self._name(side, tokens, where)
+        for key, value in ((("tex", tex), side), (("side", side), tex)):
+            if self.named.setdefault(key, value) != value:
+                raise Unlike(f"{where}: '{tex}' stands for {_said(side)} and for another quantity")
+
+    def _name(self, side: Name, tokens: Tokens, where: str) -> None:
+        """Its exponent, the coordinate that it belongs to, and whose it is."""
+        raised = tokens[-4:-2] == ("^", "{") and tokens[-2].isdigit()
+        if (tokens[-2] if raised else "1") != str(side.power):
+            raise Unlike(f"{where}: another power of {_said(side)}")
+        index = tokens[tokens.index("_") + 2 : -4 if raised else None] if "_" in tokens else ()
+        if side.by is not None and not any(self._is(side.by.name, part) for part in _split(index[:-1], ",")):
+            raise Unlike(f"{where}: '{''.join(tokens)}' for {_said(side)} of {side.by.name}")
+        whose = side.of.removesuffix(".center")
+        if whose and whose.partition(".")[0] not in self.notation.indices and not _spells(index, whose):
+            raise Unlike(f"{where}: '{''.join(tokens)}' for {_said(side)} of {side.of}")
+
+    def _is(self, name: str, tokens: Tokens) -> bool:
+        try:
+            return typeset(tokens, self.letters) == ("symbol", name)
+        except ExpressionError:
+            return False
+
+    def _symbol(self, name: str, tokens: Tokens, where: str) -> None:
+        found = self._tree(tokens, where)
+        if found != ("symbol", name):
+            raise Unlike(f"{where}: '{''.join(tokens)}' for {name}")
+
+    def of_values(self) -> None:
+        """What stands there in numbers, against what it is to be, at random values of the symbols.
+
+        Raises:
+            Unlike: it is another number.
+        """
+        random, arithmetic = Random(0), fifty_digits()
+        names = {name for _, tree, meant in self.values for name in (*symbols_in(tree), *_leaves(meant))}
+        todo = self.values
+        for _ in range(TRIES):
+            state = {name: arithmetic.number(random.randint(1, 997)) / 499 for name in sorted(names)}
+            todo = list(_valueless(todo, state))
+            if not todo:
+                return
+        self.left.setdefault("at none of the states tried it has a value", []).extend(where for where, *_ in todo)
+
+
+Compared = tuple[str, Tree, Scalar]
+
+
+def _valueless(todo: Sequence[Compared], state: Mapping[str, Any]) -> Iterator[Compared]:
+    """What has no value at a state.
+
+    Raises:
+        Unlike: what stands on the page is another number there.
+    """
+    for each, right in zip(todo, _rights([meant for *_, meant in todo], state), strict=True):
+        where, tree, _ = each
+        try:
+            found = worth(tree, state, fifty_digits())
+        except NoValue:
+            yield each
+            continue
+        if right != right:
+            yield each
+        elif abs(found - right) > COMPUTED * (abs(found) + abs(right)) + ZERO_AT_50:
+            raise Unlike(f"{where}: {float(found):.10g} stands there for {float(right):.10g}")
+
+
+def _rights(scalars: Sequence[Scalar], state: Mapping[str, Any]) -> list[Any]:
+    """What scalars are worth, those of each graph together; nan where one has no value."""
+    arithmetic = fifty_digits(partial=True)
+    found = [arithmetic.number(x) if type(x) is not Node else None for x in scalars]
+    graphs: dict[Any, list[int]] = {}
+    for k, x in enumerate(scalars):
+        if type(x) is Node:
+            graphs.setdefault(x.graph, []).append(k)
+    for places in graphs.values():
+        own = [scalars[k] for k in places]
+        values = {x: state[name] for name, x in _leaf_nodes(own)}
+        for k, value in zip(places, evaluate(own, values, arithmetic), strict=True):
+            found[k] = value
+    return found
+
+
+def _leaf_nodes(scalars: Iterable[Scalar]) -> Iterator[tuple[str, Node]]:
+    """What stands in formulas by its name: symbols, and functions of time given by samples."""
+    for x in order(tuple(scalars)):
+        if x.op == "symbol":
+            yield x.name, x
+        elif x.op == "sampled":
+            yield sampled_of(x.args[1]).name, x
+
+
+def _leaves(x: Scalar) -> list[str]:
+    return [name for name, _ in _leaf_nodes((x,))] if type(x) is Node else []
+
+
+def _names_in(document: Document) -> list[str]:
+    """The names of all symbols that stand in the formulas of a document, each once, in their order."""
+    found: dict[str, None] = {}
+    for statement in (statement for step in document.steps for statement in step.statements):
+        if isinstance(statement, Listing):
+            for row in statement.rows:
+                if row.quantity.exact is not None:
+                    code = parse(row.quantity.exact, longest=len(row.quantity.exact)).code
+                    found |= {name: None for kind, name in code if kind == "name" and name != "pi"}
+        for part in parts_of(statement):
+            found |= dict.fromkeys(_names_of(part))
+    return list(found)
+
+
+def _names_of(part: Any) -> list[str]:
+    if isinstance(part, Node):
+        return _leaves(part)
+    if isinstance(part, Name):
+        return _names_of(part.by)
+    if isinstance(part, Entry):
+        return [part.row.name, part.column.name]
+    if isinstance(part, Partial):
+        return [*_names_of(part.of), part.by.name]
+    if isinstance(part, Matrix):
+        return [name for row in part.rows for entry in row for name in _names_of(entry)]
+    if isinstance(part, Rate):
+        return [f"{part.of.name}'"] if isinstance(part.of, Node) else _names_of(part.of)
+    return []
+
+
+def _digits(text: str) -> list[str]:
+    """The numbers of a text in their order, 2e-05 as 2 10 5."""
+    return [x.lstrip("0") for x in re.findall(r"\d+(?:\.\d+)?", re.sub(r"(?<=\d)e[-+]?(?=\d)", " 10 ", text))]
+
+
+def _told(wanted: Wanted) -> str:
+    """What is wanted, for a message."""
+    pieces = wanted.pieces or wanted.sides or (wanted.rows[0] if wanted.rows else ()) or wanted.lines[:1]
+    return f"'{' '.join(map(_said, pieces))[:SHOWN]}'"
+
+
+def _said(piece: Any) -> str:
+    """A piece, for a message."""
+    if isinstance(piece, (Code, Law)):
+        return piece.text
+    if isinstance(piece, Node):
+        return piece.name if piece.op == "symbol" else "a formula"
+    if isinstance(piece, Quantity):
+        return piece.exact or piece.number
+    return str(piece) if isinstance(piece, str) else getattr(piece, "letter", type(piece).__name__.lower())
+
+
+def _split(tokens: Tokens, between: str) -> list[Tokens]:
+    """What stands between, braces and brackets not looked into."""
+    found: list[list[str]] = [[]]
+    depth = 0
+    for x in tokens:
+        depth += (x in "{(" or x == r"\begin") - (x in "})" or x == r"\end")
+        if x == between and not depth:
+            found.append([])
+        else:
+            found[-1].append(x)
+    return [tuple(part) for part in found]
+
+
+def _spells(tokens: Tokens, name: str) -> bool:
+    """Whether the letters of an index are those of a name."""
+    said = "".join(spoken(said_by(x)) or x for x in tokens if x not in (r"\mathrm", r"\,"))
+    return _alone(name) in _alone(said)
+
+
+def _alone(text: str) -> str:
+    """Its letters and digits; a Greek letter by its name."""
+    named = "".join(unicodedata.name(c).rpartition(" ")[2].lower() if "GREEK" in unicodedata.name(c, "") else c for c in text)
+    return "".join(c for c in named if c.isalnum()).lower()
+
+
+def _begin(kind: str, command: str) -> Tokens:
+    return (command, "{", *kind, "}")
+
+
+def _after_partial(tokens: Tokens, where: str) -> int:
+    r"""Where the lower half of \frac{\partial T}{\partial q} begins, at its brace."""
+    if tokens[:2] != (r"\frac", "{"):
+        raise Unlike(f"{where}: no derivative stands there")
+    depth = 0
+    for k, x in enumerate(tokens[1:], start=1):
+        depth += (x == "{") - (x == "}")
+        if not depth:
+            break
+    if tokens[k + 1 : k + 3] != ("{", r"\partial"):
+        raise Unlike(f"{where}: no derivative stands there")
+    return k + 1
