@@ -5,14 +5,12 @@ from __future__ import annotations
 from functools import cache
 
 import pytest
-from click.testing import CliRunner
 
 import eomgen
-from eomgen.cli import main
 from eomgen.documents import rendered
 from eomgen.documents.document import Document
 from eomgen.documents.read_back import page_read_back
-from eomgen.proof.typeset import Letters, tokens_of, typeset, worth
+from eomgen.proof.typeset import SetLetters, tokens_of, typeset, worth
 from eomgen.symbolic.numeric.evaluation import FLOAT
 
 SWING = """
@@ -93,7 +91,7 @@ def test_a_change_of_a_page_is_seen(form: str, change: str):
 
 def test_typeset_formulas_are_read_as_a_person_reads_them():
     r"""- a \sin^{2} 2 x \cos x + \frac{b}{c} \big/ (1 + e^{-x})"""
-    letters = Letters({"a": "a", "b": "b", "x": "x", "c": "c_{1}", "y": "y"}, ("a", "b", "x", "c", "y", "y''"))
+    letters = SetLetters({"a": "a", "b": "b", "x": "x", "c": "c_{1}", "y": "y"}, ("a", "b", "x", "c", "y", "y''"))
     values = {"a": 2.0, "b": 3.0, "x": 0.7, "c": 5.0, "y": 0.1, "y''": 4.0}
 
     def read(tex: str) -> float:

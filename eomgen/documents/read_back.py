@@ -41,8 +41,18 @@ from eomgen.documents.statements import (
 )
 from eomgen.errors import ExpressionError
 from eomgen.proof.check import Check, checked, differing, unchecked
-from eomgen.proof.pages_read import PAGES, Block, Line, said_by, spoken, unlike_words
-from eomgen.proof.typeset import Letters, Tokens, Tree, sides_of, symbols_in, tokens_of, typeset, worth
+from eomgen.proof.pages_read import PAGES, PageBlock, PageLine, said_by, spoken, unlike_words
+from eomgen.proof.typeset import (
+    SetLetters,
+    Tokens,
+    Tree,
+    between_equals,
+    closing_brace,
+    names_of_tree,
+    tokens_of,
+    typeset,
+    worth,
+)
 from eomgen.records import dataclass
 from eomgen.symbolic.expression.expressions import LONGEST, parse
 from eomgen.symbolic.expression.graph import Graph, Node, Scalar
@@ -90,7 +100,7 @@ def page_read_back(document: Document, text: str, form: str) -> Iterator[Check]:
     """
     if form not in PAGES:
         return
-    comparison = Comparison(document)
+    comparison = PageComparison(document)
     wanted = list(_wanted(document, form))
     blocks = list(PAGES[form](text))
     try:
@@ -152,7 +162,7 @@ def _columns(table: Table) -> Grid:
 
 
 @dataclass
-class Comparison:
+class PageComparison:
     """What is compared of one document.
 
     Args:
@@ -174,15 +184,15 @@ class Comparison:
         return self.document.notation.told_apart(_names_in(self.document))
 
     @cached_property
-    def letters(self) -> Letters:
+    def letters(self) -> SetLetters:
         """The letters of the document, as it declares them."""
         names = _names_in(self.document)
-        letters = Letters({(bare := name.rstrip("'")): self.notation.latex(bare) for name in names}, tuple(names))
+        letters = SetLetters({(bare := name.rstrip("'")): self.notation.latex(bare) for name in names}, tuple(names))
         if letters.alike:
             raise Unlike(f"nobody can tell apart {letters.alike[0]}")
         return letters
 
-    def of_all(self, wanted: Sequence[Wanted], blocks: Sequence[Block]) -> None:
+    def of_all(self, wanted: Sequence[Wanted], blocks: Sequence[PageBlock]) -> None:
         """Each thing on the page against what is to stand there.
 
         Raises:
@@ -197,7 +207,7 @@ class Comparison:
                 raise Unlike(f"where {_told(want)} belongs stands a {block.kind}")
             self._of_one(want, block)
 
-    def _of_one(self, want: Wanted, block: Block) -> None:
+    def _of_one(self, want: Wanted, block: PageBlock) -> None:
         if want.kind in ("heading", "words"):
             self._pieces(want.pieces, block.words, _told(want))
         elif want.kind == "formula":
@@ -208,7 +218,7 @@ class Comparison:
         else:
             self._table(want, block)
 
-    def _table(self, want: Wanted, block: Block) -> None:
+    def _table(self, want: Wanted, block: PageBlock) -> None:
         if len(want.rows) != len(block.rows):
             raise Unlike(f"a table of {len(block.rows)} lines for {len(want.rows)} below {_told(want)}")
         for cells, row in zip(want.rows, block.rows, strict=True):
@@ -217,7 +227,7 @@ class Comparison:
             for head, cell, line in zip(want.rows[0], cells, row, strict=True):
                 self._cell(cell, line, f"{_said(cells[0])}, {_said(head)}")
 
-    def _cell(self, cell: Cell, line: Line, where: str) -> None:
+    def _cell(self, cell: Cell, line: PageLine, where: str) -> None:
         if not isinstance(cell, str):
             self._pieces((cell,), line, where)
         elif _NUMBER.fullmatch(cell) and len(line) == 1 and line[0].tex:
@@ -230,7 +240,7 @@ class Comparison:
         if wrong := differing(found, right):
             raise Unlike(f"{where}: {wrong}")
 
-    def _pieces(self, pieces: Iterable[Piece | Side], line: Line, where: str) -> None:
+    def _pieces(self, pieces: Iterable[Piece | Side], line: PageLine, where: str) -> None:
         """Words and formulas of a line."""
         k = 0
         for piece in pieces:
@@ -243,12 +253,12 @@ class Comparison:
                 continue
             if k == len(line) or not line[k].tex:
                 raise Unlike(f"{where}: no formula for {_said(piece)}")
-            self._sides((piece,), sides_of(tokens_of(line[k].tex)), where)
+            self._sides((piece,), between_equals(tokens_of(line[k].tex)), where)
             k += 1
         if k != len(line):
             raise Unlike(f"{where}: more stands there")
 
-    def _formula(self, want: Wanted, block: Block) -> None:
+    def _formula(self, want: Wanted, block: PageBlock) -> None:
         self.read += sum(map(len, block.sides))
         if self.read > READ_BACK:
             self.left.setdefault("the page is too long to be read back whole", []).append(_told(want))
@@ -281,18 +291,20 @@ class Comparison:
     def _sides(self, wanted: Iterable[Side | Quantity], sides: list[Tokens], where: str) -> None:
         sides = list(sides)
         for side in wanted:
-            count = len(sides_of(tokens_of(side.latex))) if isinstance(side, Law) else 1
+            count = len(between_equals(tokens_of(side.latex))) if isinstance(side, Law) else 1
             if len(sides) < count:
                 raise Unlike(f"{where}: {_said(side)} is missing")
             tokens, sides = sides[:count], sides[count:]
             if isinstance(side, Law):
                 self._law(side, tokens, where)
-            else:
+            elif not isinstance(side, Quantity):
                 self._side(side, tokens[0], where)
         if sides:
             raise Unlike(f"{where}: more stands there")
 
-    def _side(self, side: Side | Quantity, tokens: Tokens, where: str) -> None:
+    def _side(
+        self, side: Name | Entry | Partial | Rate | Omitted | Matrix | Scalar, tokens: Tokens, where: str
+    ) -> None:
         if isinstance(side, (Name, Entry, Partial, Rate)):
             self._named(side, tokens, where)
         elif isinstance(side, Matrix):
@@ -321,7 +333,7 @@ class Comparison:
 
     def _law(self, law: Law, sides: list[Tokens], where: str) -> None:
         """A general law as it stands; where its text is a formula of symbols it is that."""
-        if sides != sides_of(tokens_of(law.latex)):
+        if sides != between_equals(tokens_of(law.latex)):
             raise Unlike(f"{where}: '{''.join(sides[0])}' for {law.text}")
         if _digits(law.text) != _digits(law.latex):
             raise Unlike(f"{where}: '{law.latex}' for {law.text}")
@@ -329,7 +341,7 @@ class Comparison:
             expression = parse(law.text)
             names = [name for kind, name in expression.code if kind == "name" and name != "pi"]
             bare = {name: self.notation.latex(name) for name in names}
-            tree = typeset(sides[0], Letters(bare, tuple(bare)))
+            tree = typeset(sides[0], SetLetters(bare, tuple(bare)))
         except ExpressionError:  # a law that is no formula of numbers
             return
         graph = Graph()
@@ -343,7 +355,7 @@ class Comparison:
             raise Unlike(f"{where}: a matrix of other rows or columns")
         for row, entries in zip(rows, matrix.rows, strict=True):
             for entry, side in zip(row, entries, strict=True):
-                self._sides((side,), sides_of(entry), where)
+                self._sides((side,), between_equals(entry), where)
 
     def _named(self, side: Name | Entry | Partial | Rate, tokens: Tokens, where: str) -> None:
         """A quantity by its letter: what looks like it is it, and a derivative is by what it is to be."""
@@ -397,7 +409,7 @@ class Comparison:
             Unlike: it is another number.
         """
         random, arithmetic = Random(0), fifty_digits()
-        names = {name for _, tree, meant in self.values for name in (*symbols_in(tree), *_leaves(meant))}
+        names = {name for _, tree, meant in self.values for name in (*names_of_tree(tree), *_leaves(meant))}
         todo = self.values
         for _ in range(TRIES):
             state = {name: arithmetic.number(random.randint(1, 997)) / 499 for name in sorted(names)}
@@ -407,10 +419,10 @@ class Comparison:
         self.left.setdefault("at none of the states tried it has a value", []).extend(where for where, *_ in todo)
 
 
-Compared = tuple[str, Tree, Scalar]
+InNumbers = tuple[str, Tree, Scalar]
 
 
-def _valueless(todo: Sequence[Compared], state: Mapping[str, Any]) -> Iterator[Compared]:
+def _valueless(todo: Sequence[InNumbers], state: Mapping[str, Any]) -> Iterator[InNumbers]:
     """What has no value at a state.
 
     Raises:
@@ -531,7 +543,9 @@ def _spells(tokens: Tokens, name: str) -> bool:
 
 def _alone(text: str) -> str:
     """Its letters and digits; a Greek letter by its name."""
-    named = "".join(unicodedata.name(c).rpartition(" ")[2].lower() if "GREEK" in unicodedata.name(c, "") else c for c in text)
+    named = "".join(
+        unicodedata.name(c).rpartition(" ")[2].lower() if "GREEK" in unicodedata.name(c, "") else c for c in text
+    )
     return "".join(c for c in named if c.isalnum()).lower()
 
 
@@ -543,11 +557,7 @@ def _after_partial(tokens: Tokens, where: str) -> int:
     r"""Where the lower half of \frac{\partial T}{\partial q} begins, at its brace."""
     if tokens[:2] != (r"\frac", "{"):
         raise Unlike(f"{where}: no derivative stands there")
-    depth = 0
-    for k, x in enumerate(tokens[1:], start=1):
-        depth += (x == "{") - (x == "}")
-        if not depth:
-            break
+    k = closing_brace(tokens, 1)
     if tokens[k + 1 : k + 3] != ("{", r"\partial"):
         raise Unlike(f"{where}: no derivative stands there")
     return k + 1

@@ -9,11 +9,13 @@ import re
 import unicodedata
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 
-from eomgen.proof.typeset import Tokens, sides_of, tokens_of
+from eomgen.proof.typeset import Tokens, between_equals, tokens_of
 from eomgen.records import dataclass
 
 GREEK = "alpha beta gamma delta zeta eta theta iota kappa lambda mu nu xi pi rho sigma tau upsilon phi chi psi omega"
-_CHARACTERS = {rf"\{x}": unicodedata.lookup(f"GREEK SMALL LETTER {x.replace('lambda', 'lamda')}") for x in GREEK.split()}
+_CHARACTERS = {
+    rf"\{x}": unicodedata.lookup(f"GREEK SMALL LETTER {x.replace('lambda', 'lamda')}") for x in GREEK.split()
+}
 _CHARACTERS |= {
     rf"\{x.title()}": unicodedata.lookup(f"GREEK CAPITAL LETTER {x.replace('lambda', 'lamda')}") for x in GREEK.split()
 }
@@ -35,7 +37,7 @@ _HEAD_ENDS = re.compile(r" \\\\ \\hline \\noalign\{\\vskip 3pt\}(?: \\endhead)?(
 
 
 @dataclass(frozen=True)
-class Part:
+class PagePart:
     """A character of a page, or a formula between dollars.
 
     Args:
@@ -46,11 +48,11 @@ class Part:
     tex: str = ""
 
 
-Line = tuple[Part, ...]
+PageLine = tuple[PagePart, ...]
 
 
 @dataclass(frozen=True)
-class Block:
+class PageBlock:
     """One thing that stands on a page.
 
     Args:
@@ -62,14 +64,14 @@ class Block:
     """
 
     kind: str
-    words: Line = ()
+    words: PageLine = ()
     sides: tuple[Tokens, ...] = ()
-    rows: tuple[tuple[Line, ...], ...] = ()
+    rows: tuple[tuple[PageLine, ...], ...] = ()
     lines: tuple[str, ...] = ()
 
 
 def spoken(text: str) -> str:
-    """Words as they are compared: without blanks and brackets, exponents as digits, products by a dot, in one coding."""
+    """Words as they are compared: without blanks and brackets, exponents as digits, a dot for a product."""
     return "".join(unicodedata.normalize("NFKC", text).translate(_GROUPING).split())
 
 
@@ -79,7 +81,7 @@ def said_by(tex: str) -> str:
     return raised[1] if raised else _CHARACTERS.get(tex, "")
 
 
-def latex_page(text: str) -> Iterator[Block]:
+def latex_page(text: str) -> Iterator[PageBlock]:
     """What stands on a page of LaTeX."""
     body = text.partition("\\begin{document}\n")[2].rpartition("\\end{document}")[0]
     lines = body.split("\n")
@@ -89,20 +91,20 @@ def latex_page(text: str) -> Iterator[Block]:
             continue
         heading = _HEADING.fullmatch(line)
         if heading is not None:
-            yield Block("heading", latex_line(heading[1]))
+            yield PageBlock("heading", latex_line(heading[1]))
         elif line == r"\[\begin{aligned}":
             yield from displayed("\n".join(_until(lines, r"\end{aligned}\]")))
         elif line == r"\begin{verbatim}":
-            yield Block("lines", lines=tuple(_until(lines, r"\end{verbatim}")))
+            yield PageBlock("lines", lines=tuple(_until(lines, r"\end{verbatim}")))
         elif kind := _TABLE.match(line):
             head, _, rest = _parted("\n".join(_until(lines, rf"\end{{{kind[1]}}}")))
             rows = [head, *(row.removesuffix(r" \\") for row in rest.split("\n") if row)]
-            yield Block("table", rows=tuple(tuple(map(latex_line, _cells(row, "&"))) for row in rows))
+            yield PageBlock("table", rows=tuple(tuple(map(latex_line, _cells(row, "&"))) for row in rows))
         else:
             paragraph = [line]
             while lines and lines[0] and not lines[0].startswith(_BEGINS):
                 paragraph.append(lines.pop(0))
-            yield Block("words", latex_line("\n".join(paragraph)))
+            yield PageBlock("words", latex_line("\n".join(paragraph)))
 
 
 def _until(lines: list[str], end: str) -> Iterator[str]:
@@ -119,22 +121,22 @@ def _parted(table: str) -> tuple[str, str, str]:
     return (table, "", "") if end is None else (table[: end.start()], end[0], table[end.end() :])
 
 
-def markdown_page(text: str) -> Iterator[Block]:
+def markdown_page(text: str) -> Iterator[PageBlock]:
     """What stands on a page of Markdown."""
     for fenced, block in _markdown_blocks(text):
         if fenced:
-            yield Block("lines", lines=tuple(block.split("\n")))
+            yield PageBlock("lines", lines=tuple(block.split("\n")))
         elif block.startswith("$$\n"):
             inside = block.removeprefix("$$\n\\begin{aligned}\n").removesuffix("\n\\end{aligned}\n$$")
             yield from displayed(inside)
         elif block.startswith("#"):
-            yield Block("heading", markdown_line(block.lstrip("#")))
+            yield PageBlock("heading", markdown_line(block.lstrip("#")))
         elif block.startswith("| "):
             head, _, *rows = block.split("\n")
             cells = [_cells(row.strip()[1:-1], "|") for row in (head, *rows)]
-            yield Block("table", rows=tuple(tuple(map(markdown_line, row)) for row in cells))
+            yield PageBlock("table", rows=tuple(tuple(map(markdown_line, row)) for row in cells))
         else:
-            yield Block("words", markdown_line(block))
+            yield PageBlock("words", markdown_line(block))
 
 
 def _markdown_blocks(text: str) -> Iterator[tuple[bool, str]]:
@@ -146,7 +148,7 @@ def _markdown_blocks(text: str) -> Iterator[tuple[bool, str]]:
             yield from ((False, block.strip("\n")) for block in re.split(r"\n{2,}", part) if block.strip())
 
 
-def displayed(rows: str) -> Iterator[Block]:
+def displayed(rows: str) -> Iterator[PageBlock]:
     r"""The formulas of an aligned block: a row that begins with &\quad or &= goes on with the one before it."""
     formulas: list[list[str]] = []
     for row in rows.split(" \\\\\n"):
@@ -158,7 +160,7 @@ def displayed(rows: str) -> Iterator[Block]:
         else:
             formulas.append([bare])
     for formula in formulas:
-        yield Block("formula", sides=tuple(sides_of(tokens_of(" ".join(formula)))))
+        yield PageBlock("formula", sides=tuple(between_equals(tokens_of(" ".join(formula)))))
 
 
 def _cells(row: str, between: str) -> list[str]:
@@ -176,26 +178,26 @@ def _cells(row: str, between: str) -> list[str]:
     return found
 
 
-def latex_line(text: str) -> Line:
+def latex_line(text: str) -> PageLine:
     """Words of LaTeX, escapes undone."""
     return tuple(_line(text, _latex_character))
 
 
-def markdown_line(text: str) -> Line:
+def markdown_line(text: str) -> PageLine:
     """Words of Markdown, escapes undone."""
     return tuple(_line(text, _markdown_character))
 
 
-def _line(text: str, character: Callable[[str, int], tuple[str, int]]) -> Iterator[Part]:
+def _line(text: str, character: Callable[[str, int], tuple[str, int]]) -> Iterator[PagePart]:
     k = 0
     while k < len(text):
         if text[k] == "$":
             end = _formula_ends(text, k + 1)
-            yield Part(tex=text[k + 1 : end].strip())
+            yield PagePart(tex=text[k + 1 : end].strip())
             k = end + 1
             continue
         found, k = character(text, k)
-        yield from (Part(x) for x in spoken(found))
+        yield from (PagePart(x) for x in spoken(found))
 
 
 def _formula_ends(text: str, k: int) -> int:
@@ -234,10 +236,10 @@ def _markdown_character(text: str, k: int) -> tuple[str, int]:
     return "" if text.startswith("**", k) else text[k], k + 1 + text.startswith("**", k)
 
 
-PAGES: Mapping[str, Callable[[str], Iterable[Block]]] = {"latex": latex_page, "markdown": markdown_page}
+PAGES: Mapping[str, Callable[[str], Iterable[PageBlock]]] = {"latex": latex_page, "markdown": markdown_page}
 
 
-def unlike_words(found: Sequence[Part], wanted: str) -> int | None:
+def unlike_words(found: Sequence[PagePart], wanted: str) -> int | None:
     """How many of the parts say these words; None where they say others."""
     rest, k = spoken(wanted), 0
     while rest:

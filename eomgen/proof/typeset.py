@@ -39,7 +39,7 @@ def tokens_of(tex: str) -> Tokens:
     return tuple("|" if x == r"\vert" else x for x in _TOKEN.findall(tex))
 
 
-def sides_of(tokens: Tokens) -> list[Tokens]:
+def between_equals(tokens: Tokens) -> list[Tokens]:
     """What stands between the equality signs, brackets and braces not looked into."""
     found: list[list[str]] = [[]]
     depth = 0
@@ -53,7 +53,7 @@ def sides_of(tokens: Tokens) -> list[Tokens]:
 
 
 @dataclass(frozen=True)
-class Letters:
+class SetLetters:
     """How symbols are set.
 
     Args:
@@ -99,13 +99,13 @@ def _undotted(tokens: Tokens) -> tuple[Tokens, int]:
     r"""\ddot{x}_{1} as x_{1} with two dots."""
     dots = 0
     while len(tokens) > 2 and tokens[0] in _DOTS and tokens[1] == "{":
-        end = _closing(tokens, 1)
+        end = closing_brace(tokens, 1)
         dots += _DOTS[tokens[0]]
         tokens = tokens[2:end] + tokens[end + 1 :]
     return tokens, dots
 
 
-def _closing(tokens: Tokens, k: int) -> int:
+def closing_brace(tokens: Tokens, k: int) -> int:
     """Where the brace that opens at k closes."""
     depth = 0
     for i in range(k, len(tokens)):
@@ -115,14 +115,14 @@ def _closing(tokens: Tokens, k: int) -> int:
     raise ExpressionError("a brace is not closed", k)
 
 
-class Reading:
+class TypesetReading:
     """A formula that is read.
 
     Args:
         tokens: without blanks that say nothing.
     """
 
-    def __init__(self, tokens: Tokens, letters: Letters) -> None:
+    def __init__(self, tokens: Tokens, letters: SetLetters) -> None:
         self.tokens, self.letters, self.k = tokens, letters, 0
 
     def whole(self) -> Tree:
@@ -157,7 +157,7 @@ class Reading:
         return True
 
     def _sum(self) -> Tree:
-        found = []
+        found: list[Tree] = []
         while not found or self._next() in ("+", "-"):
             minus = self._given("-")
             if not minus:
@@ -219,7 +219,7 @@ class Reading:
         token = self._next()
         self.k += 1
         if token == r"\operatorname":
-            end = _closing(self.tokens, self.k)
+            end = closing_brace(self.tokens, self.k)
             op = _NAMED.get("".join(self.tokens[self.k + 1 : end]), "")
             self.k = end + 1
         else:
@@ -287,7 +287,7 @@ class Reading:
         self.k += 1
         return (_RELATIONS[token], left, self._sum())
 
-    _FIRST: Mapping[str, Callable[[Reading], Tree]] = {
+    _FIRST: Mapping[str, Callable[[TypesetReading], Tree]] = {
         r"\frac": _fraction,
         r"\tfrac": _fraction,
         r"\sqrt": _root,
@@ -298,22 +298,22 @@ class Reading:
     }
 
 
-def typeset(tokens: Sequence[str], letters: Letters) -> Tree:
+def typeset(tokens: Sequence[str], letters: SetLetters) -> Tree:
     """A formula of LaTeX as a tree.
 
     Raises:
         ExpressionError: it is none.
     """
-    return Reading(tuple(tokens), letters).whole()
+    return TypesetReading(tuple(tokens), letters).whole()
 
 
-def symbols_in(tree: Tree) -> Iterable[str]:
+def names_of_tree(tree: Tree) -> Iterable[str]:
     """The names of the symbols of a tree."""
     if tree[0] == "symbol":
         yield tree[1]
     for part in tree[1:]:
         if isinstance(part, tuple):
-            yield from symbols_in(part)
+            yield from names_of_tree(part)
 
 
 def worth(tree: Tree, values: Mapping[str, Any], arithmetic: Arithmetic) -> Any:
