@@ -24,9 +24,9 @@ from eomgen.robots.drawn_up import (
     told_left,
     without_empty,
 )
-from eomgen.robots.mjcf_acting import equalities, tendons
+from eomgen.robots.mjcf_acting import equalities, start_of, tendons
 from eomgen.robots.mjcf_files import compiled, spec_of
-from eomgen.robots.mjcf_motors import motors
+from eomgen.robots.mjcf_motors import motors, motors_in_space, rotors
 from eomgen.robots.mjcf_reading import BALL, FREE, HINGE, CompiledRobot, turn_by
 from eomgen.robots.numbers import (
     ZERO,
@@ -55,7 +55,11 @@ def mjcf(path: Path) -> Imported:
 def _switched(m: Any) -> Any:
     """A compiled model without what its flags switch off."""
     mujoco: Any = importlib.import_module("mujoco")
-    springs, dampers = (m.jnt_stiffness, m.tendon_stiffness), (m.dof_damping, m.tendon_damping)
+    kinds = ("jnt_stiffness", "tendon_stiffness"), ("dof_damping", "tendon_damping", "actuator_damping")
+    springs, dampers = (
+        tuple(getattr(m, f"{name}{of}") for name in names for of in ("", "poly") if hasattr(m, f"{name}{of}"))
+        for names in kinds
+    )
     for flag, values in (
         ("GRAVITY", (m.opt.gravity,)),
         ("SPRING", springs),
@@ -76,9 +80,12 @@ def _tables(r: CompiledRobot) -> Imported:
     r.body = {0: None} | {k: r.bodies.new(m.body(k).name or f"body{k}", "body") for k in range(1, m.nbody)}
     r.joint = {j: r.names.new(m.joint(j).name or f"joint{j}", "q") for j in range(m.njnt)}
     r.sites = _sites(r)
+    r.start = start_of(r)
+    rotors(r)
     motors(r)
     for k in range(m.nbody):
         _body(r, k)
+    motors_in_space(r)
     tendons(r)
     equalities(r)
     for k, own in r.points.items():  # those of ties too, which come after the bodies
@@ -122,7 +129,9 @@ def _body(r: CompiledRobot, k: int) -> None:
     place = decimals(decimal_of_double(x) for x in m.body_pos[k])
     seat = Seat(r.body[int(m.body_parentid[k])], place, R, turns)
     if [m.jnt_type[j] for j in joints] == [FREE]:
-        seat, turn = Seat(None), tuple(decimal_of_double(x) for x in m.body_quat[k])
+        first = m.jnt_qposadr[joints[0]]
+        seat, turn = Seat(None), tuple(decimal_of_double(x) for x in r.start[first + 3 : first + 7])
+        place = decimals(decimal_of_double(x) for x in r.start[first : first + 3])
         moved = [free_joint(r.found, r.joint[joints[0]], r.names, place, turn)]
         _in_space(r, joints[0], moved[0].keys)
     else:
@@ -138,7 +147,8 @@ def _joint(r: CompiledRobot, j: int) -> Moved:
     m, q = r.m, r.joint[j]
     pivot = decimals(decimal_of_double(x) for x in m.jnt_pos[j])
     if m.jnt_type[j] == BALL:
-        keys = {"kind": "spherical", **turned_freely(r.found, q, r.names)}
+        turn = tuple(decimal_of_double(x) for x in r.start[m.jnt_qposadr[j] : m.jnt_qposadr[j] + 4])
+        keys = {"kind": "spherical", **turned_freely(r.found, q, r.names, turn)}
         _in_space(r, j, keys)
         return Moved(keys, pivot, q)
     turns = m.jnt_type[j] == HINGE
@@ -148,7 +158,8 @@ def _joint(r: CompiledRobot, j: int) -> Moved:
     if m.jnt_limited[j]:
         low, high = (decimal_of_double(round(x, 6)) for x in m.jnt_range[j])
         remark.append(f"from {low.normalize():f} to {high.normalize():f} {unit}")
-    start = {"start": reference} if reference else {}
+    begun = decimal_of_double(r.start[m.jnt_qposadr[j]])
+    start = {"start": begun} if begun else {}
     said = {"about": ", ".join(remark)} if remark else {}
     r.found["coordinates"][q] = {**start, "unit": unit, **said}
     variable = q if not reference else signed_sum([(Decimal(1), q)], -reference)
@@ -172,9 +183,9 @@ def _efforts(r: CompiledRobot, j: int, reference: Decimal) -> Entries:
         rest = decimal_of_double(m.qpos_spring[m.jnt_qposadr[j]]) - reference
         if rest:
             keys["rest"] = rest
-    if m.dof_damping[d]:
-        keys["damping"] = decimal_of_double(m.dof_damping[d])
-    if rotor := decimal_of_double(m.dof_armature[d]) + r.rotors.get(j, ZERO):
+    if damping := r.added("joint", j, m.dof_damping[d], r.dampers):
+        keys["damping"] = damping
+    if rotor := r.added("joint", j, m.dof_armature[d], r.rotors):
         keys["armature"] = rotor
     if any([*r.numbers(["jnt_stiffnesspoly", "jnt_springyield"], j), *r.numbers(["dof_dampingpoly"], d)]):
         r.leave("springs and dampers that are not linear", [q])
@@ -187,25 +198,32 @@ def _efforts(r: CompiledRobot, j: int, reference: Decimal) -> Entries:
 
 
 def _in_space(r: CompiledRobot, j: int, keys: Mapping[str, Any]) -> None:
-    """What a free or a ball joint has beside its freedom: dampers; springs, friction, rotors, limits are left out."""
+    """What a free or a ball joint has beside its freedom: dampers, rotors; springs, friction, limits are left out."""
     m, q, d = r.m, r.joint[j], int(r.m.jnt_dofadr[j])
     places = keys.get("position", [])
     dofs = slice(d, d + len(places) + 3)
     kinds = {
-        "springs": [m.jnt_stiffness[j]],
+        "springs": [m.jnt_stiffness[j], *r.numbers(["jnt_stiffnesspoly", "jnt_springyield"], j)],
         "friction": m.dof_frictionloss[dofs],
-        "armature": m.dof_armature[dofs],
         "limits": [m.jnt_limited[j]],
         "dampers that are not linear": r.numbers(["dof_dampingpoly"], dofs),
     }
     for what, values in kinds.items():
         if any(values):
             r.leave(f"{what} of free and ball joints", [q])
-    if not any(m.dof_damping[dofs]):
-        return
-    body, damping = int(m.jnt_bodyid[j]), [decimal_of_double(x) for x in m.dof_damping[dofs]]
-    name, parent = r.body[body], r.body[int(m.body_parentid[body])]
     rates = [*(f"{x}'" for x in places), *keys["omega"]]
+    r.omega[j] = rates
+    damping, rotor = (
+        [r.added("joint", j, x, of) for x in values[dofs]]
+        for values, of in ((m.dof_damping, r.dampers), (m.dof_armature, r.rotors))
+    )
+    if any(rotor):
+        energy = signed_sum([(a / 2, f"{rate}^2") for a, rate in zip(rotor, rates, strict=True)], weighed=True)
+        r.found["forces"][r.forces.new(f"{q}_rotor", "rotor")] = {"kind": "kinetic", "energy": energy}
+    if not any(damping):
+        return
+    body = int(m.jnt_bodyid[j])
+    name, parent = r.body[body], r.body[int(m.body_parentid[body])]
     against = [signed_sum([(-c, rate)], weighed=True) for c, rate in zip(damping, rates, strict=True)]
     if places:
         drag = {"kind": "force", "point": f"{name}.origin", "force": against[:3]}
@@ -251,6 +269,6 @@ def _rest(r: CompiledRobot) -> None:
         ("sensors", m.nsensor, "outputs ask for what is measured"),
         ("keyframes", m.nkey, "start values are set by --start"),
         ("flexible bodies", m.nflex, "bodies are rigid"),
-        ("plugins", m.nplugin, "code of a simulator"),
+        ("plugins", m.nplugin - sum(r.by_plugin(k) for k in range(len(m.actuator_trntype))), "code of a simulator"),
     ):
         r.leave(what, [str(size)] * bool(size), why)

@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 
 from eomgen.robots.drawn_up import in_file, signed_sum
-from eomgen.robots.mjcf_reading import HINGE, SLIDE, CompiledRobot, turn_by
+from eomgen.robots.mjcf_reading import BALL, HINGE, SLIDE, CompiledRobot, turn_by
 from eomgen.robots.numbers import decimal_of_double, decimals
 from eomgen.robots.toml_text import decimal_text
 from eomgen.symbolic.expression.spatial import apply
@@ -20,6 +20,34 @@ LIMITS = ("ctrl", "force", "act")
 Length = list[tuple[Decimal, str]]
 
 
+def rotors(r: CompiledRobot) -> None:
+    """What motors add to inertia and damping of their joints and tendons, pushing or not: gear^2 times theirs.
+
+    The rotor of a tendon that is a multiple f of one joint is that joint's, f^2 times.
+    """
+    m = r.m
+    for k in range(len(m.actuator_trntype)):
+        way, target = int(m.actuator_trntype[k]), int(m.actuator_trnid[k][0])
+        of = "joint" if way in (ON_JOINT, IN_PARENT) else "tendon"
+        if way not in (ON_JOINT, IN_PARENT, ON_TENDON):
+            continue
+        square = decimal_of_double(m.actuator_gear[k][0]) ** 2
+        for field, found in (("actuator_armature", r.rotors), ("actuator_damping", r.dampers)):
+            for value in r.numbers([field], k):
+                found[of, target] = found.get((of, target), Decimal(0)) + square * decimal_of_double(value)
+        if any(r.numbers(["actuator_dampingpoly"], k)):
+            r.leave("springs and dampers that are not linear", [m.actuator(k).name or f"motor{k}"])
+    number = {q: j for j, q in r.joint.items()}
+    for t in range(m.ntendon):
+        length = r.length(t) or []
+        if len(length) == 1:
+            factor, at = length[0][0], ("joint", number[length[0][1]])
+            own = r.rotors.pop(("tendon", t), Decimal(0)) + sum(
+                map(decimal_of_double, r.numbers(["tendon_armature"], t))
+            )
+            r.rotors[at] = r.rotors.get(at, Decimal(0)) + factor * factor * own
+
+
 def motors(r: CompiledRobot) -> None:
     """Motors: an input each, and force = gain w + bias along what it acts on."""
     m = r.m
@@ -28,19 +56,58 @@ def motors(r: CompiledRobot) -> None:
         if _switched_off(m, k):
             r.leave("motors that are switched off", [raw], "they push nothing")
             continue
+        if r.by_plugin(k):
+            r.leave("motors by plugins", [raw], "code of a simulator")
+            continue
         way, target = int(m.actuator_trntype[k]), int(m.actuator_trnid[k][0])
         length: Length | None = None
-        if way in (ON_JOINT, IN_PARENT) and m.jnt_type[target] in (SLIDE, HINGE):
+        ends: list[str] = []
+        in_space = way in (ON_JOINT, IN_PARENT) and m.jnt_type[target] not in (SLIDE, HINGE)
+        if way in (ON_JOINT, IN_PARENT) and not in_space:
             length = [(Decimal(1), r.joint[target])]
         elif way == ON_TENDON:
-            length = r.length(target)
+            length, ends = r.length(target), r.ends(target)
         at_site = way == ON_SITE and m.actuator_trnid[k][1] < 0
-        if length is None and not at_site:
-            r.leave("motors on other things than hinges, slides, sums of these, and sites", [raw])
-        elif not _linear(r, k, at_site):
+        reached = length is not None or at_site or bool(ends)
+        if in_space:  # the axes of a parent are those of a body, not of a frame between two joints
+            reached = way == ON_JOINT or m.body_jntadr[m.jnt_bodyid[target]] == target
+        if not reached:
+            r.leave("motors on other things than joints, tendons between two places, and sites", [raw])
+        elif not _linear(r, k, at_site=at_site, in_space=in_space):
             r.leave("motors that are no linear laws", [raw])
         else:
-            _motor(r, k, raw, length)
+            _motor(r, k, raw, length, ends)
+
+
+def motors_in_space(r: CompiledRobot) -> None:
+    """The forces and couples of motors on free and ball joints, whose rates have their names now."""
+    for k, w in r.in_space.items():
+        m, j = r.m, int(r.m.actuator_trnid[k][0])
+        body, gear = int(m.jnt_bodyid[j]), [decimal_of_double(x) for x in m.actuator_gear[k]]
+        rates = r.omega[j]
+        law, _ = _law(r, k, w, [], Decimal(1), list(zip(gear, rates, strict=False)))
+        name, parent = r.body[body], r.body[int(m.body_parentid[body])]
+        parts = [("force", gear[:3], None), ("couple", gear[3:6], name)] if len(rates) == 6 else []
+        for kind, along, axes in parts or [("couple", gear[:3], name)]:
+            if kind == "couple" and m.actuator_trntype[k] == IN_PARENT:
+                axes = parent
+                if m.jnt_type[j] == BALL:
+                    turn = turn_by(m.body_quat[body])[0]
+                    along = in_file(apply(turn, decimals(along)))
+            if not any(along) or law == "0":
+                continue
+            pushed = [_times(x, law) for x in along]
+            where = {"point": f"{name}.origin"} if kind == "force" else {"body": name}
+            own = {"axes": axes} if axes else {}
+            r.found["forces"][r.forces.new(w)] = {"kind": kind, **where, kind: pushed, **own}
+            if kind == "couple" and parent is not None:
+                back = [_times(-x, law) for x in along]
+                r.found["forces"][r.forces.new(w)] = {"kind": kind, "body": parent, kind: back, **own}
+
+
+def _times(x: Decimal, law: str) -> str:
+    grouped = f"({law})" if " " in law else law
+    return "0" if not x else grouped if x == 1 else f"{decimal_text(x)}*{grouped}"
 
 
 def _switched_off(m: Any, k: int) -> bool:
@@ -51,20 +118,27 @@ def _switched_off(m: Any, k: int) -> bool:
     return bool(flag or (0 <= group < 31 and m.opt.disableactuator >> group & 1))
 
 
-def _linear(r: CompiledRobot, k: int, at_site: bool) -> bool:
-    """Whether a law is gain w + bias, linear in the length and its rate; the rate of a site has no name in a file."""
+def _linear(r: CompiledRobot, k: int, *, at_site: bool, in_space: bool) -> bool:
+    """True if a law is gain w + bias, linear in the length and its rate.
+
+    The rate of a site has no name in a file, nor has the length of a free or ball joint, or its rate in the parent.
+    """
     m = r.m
     known = m.actuator_gaintype[k] in (FIXED, AFFINE) and m.actuator_biastype[k] in (0, AFFINE)
     known = known and bool(np.isfinite([*m.actuator_gainprm[k][:3], *m.actuator_biasprm[k][:3]]).all())
-    bent = any(r.numbers(["actuator_dampingpoly"], k))
-    by_rate = [m.actuator_gainprm[k][2] * m.actuator_gaintype[k], m.actuator_biasprm[k][2] * m.actuator_biastype[k]]
-    return bool(known) and not bent and not (at_site and any([*by_rate, *r.numbers(["actuator_damping"], k)]))
+    constants = [m.actuator_gainprm[k], m.actuator_biasprm[k]]
+    used = [m.actuator_gaintype[k], m.actuator_biastype[k]]
+    by_length, by_rate = ([x[i] * kind for x, kind in zip(constants, used, strict=True)] for i in (1, 2))
+    unnamed = [*by_rate] if at_site or (in_space and m.actuator_trntype[k] == IN_PARENT) else []
+    unnamed += [*by_length] if in_space else []
+    return bool(known) and not any(unnamed)
 
 
-def _motor(r: CompiledRobot, k: int, raw: str, length: Length | None) -> None:
+def _motor(r: CompiledRobot, k: int, raw: str, length: Length | None, ends: list[str]) -> None:
     """One motor, its input and what of it has no counterpart."""
     m, target = r.m, int(r.m.actuator_trnid[k][0])
-    if length is None and m.site_bodyid[target] == 0:
+    at_site = m.actuator_trntype[k] == ON_SITE
+    if at_site and m.site_bodyid[target] == 0:
         r.leave("motors on the ground", [raw], "they move nothing")
         return
     if m.actuator_dyntype[k]:
@@ -80,7 +154,13 @@ def _motor(r: CompiledRobot, k: int, raw: str, length: Length | None) -> None:
         told = said[0][1] if len(said) == 1 else ", ".join(f"{kind} {span}" for kind, span in said)
         r.leave("limits of motors", [f"{raw} ({told})"], "an input has none")
     w = r.names.new(f"motor_{raw}" if raw in r.names.given else raw, "w")
-    if _thrust(r, k, w) if length is None else _push(r, k, raw, w, length):
+    if at_site:
+        driven = _thrust(r, k, w)
+    elif ends:
+        driven = _pull(r, k, w, ends)
+    else:
+        driven = _in_space(r, k, w) if length is None else _push(r, k, raw, w, length)
+    if driven:
         r.found["inputs"][w] = {"value": 0, **({} if w == raw else {"about": f"motor {raw}"})}
     else:
         r.leave("inputs of motors", [raw], "by its gain it moves nothing")
@@ -94,8 +174,6 @@ def _push(r: CompiledRobot, k: int, raw: str, w: str, length: Length) -> bool:
     if on_joint:
         if law != "0":
             r.drives.setdefault(target, []).append(law)
-        for armature in r.numbers(["actuator_armature"], k):
-            r.rotors[target] = r.rotors.get(target, Decimal(0)) + ratio * ratio * decimal_of_double(armature)
         return driven
     grouped = f"({law})" if " " in law else law
     for factor, q in length if ratio and law != "0" else ():
@@ -103,10 +181,28 @@ def _push(r: CompiledRobot, k: int, raw: str, w: str, length: Length) -> bool:
     return driven and bool(ratio)
 
 
-def _law(r: CompiledRobot, k: int, w: str, length: Length, gear: Decimal) -> tuple[str, bool]:
+def _in_space(r: CompiledRobot, k: int, w: str) -> bool:
+    """A motor on a free or ball joint, kept for when its rates have names; whether it moves anything by w."""
+    m, j = r.m, int(r.m.actuator_trnid[k][0])
+    r.in_space[k] = w
+    return bool(m.actuator_gainprm[k][0]) and any(m.actuator_gear[k][: 3 if m.jnt_type[j] == BALL else 6])
+
+
+def _pull(r: CompiledRobot, k: int, w: str, ends: list[str]) -> bool:
+    """A motor on a tendon straight between two places: it draws them together by what it shortens."""
+    gear = decimal_of_double(r.m.actuator_gear[k][0])
+    law, driven = _law(r, k, w, [(gear, "r")], -gear)
+    if law != "0":
+        r.found["forces"][r.forces.new(w)] = {"kind": "between", "points": ends, "pull": law}
+    return driven and bool(gear)
+
+
+def _law(
+    r: CompiledRobot, k: int, w: str, length: Length, gear: Decimal, rates: Length | None = None
+) -> tuple[str, bool]:
     """gear times the force of a motor, and whether it holds w."""
     m = r.m
-    rates = [(factor, f"{q}'") for factor, q in length]
+    rates = [(factor, f"{q}'") for factor, q in length] if rates is None else rates
 
     def affine(numbers: Any) -> str:
         constant, slope, rate = (decimal_of_double(x) for x in numbers[:3])
@@ -119,9 +215,7 @@ def _law(r: CompiledRobot, k: int, w: str, length: Length, gear: Decimal) -> tup
     if m.actuator_gaintype[k] == AFFINE and any(gain[1:3]):
         push = f"({affine(gain)})*{w}" if affine(gain) != "0" else "0"
     bias = affine(m.actuator_biasprm[k]) if m.actuator_biastype[k] == AFFINE else "0"
-    damping = sum(map(decimal_of_double, r.numbers(["actuator_damping"], k)), Decimal(0))
-    resisting = signed_sum(((-gear * damping * f, q) for f, q in rates), weighed=True)
-    terms = [term for term in (push, bias, resisting) if term != "0"]
+    terms = [term for term in (push, bias) if term != "0"]
     return " + ".join(terms).replace("+ -", "- ") or "0", push != "0"
 
 

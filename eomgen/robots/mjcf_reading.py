@@ -27,12 +27,19 @@ from eomgen.robots.numbers import (
 from eomgen.symbolic.expression.spatial import IDENTITY
 
 FREE, BALL, SLIDE, HINGE = range(4)  # the numbers of MuJoCo: of joints,
-JOINT_WRAP = 1  # of what a tendon is of
+JOINT_WRAP, SITE_WRAP = 1, 3  # of what a tendon is of
 
 
 @dataclass
 class CompiledRobot:
-    """A compiled model of MuJoCo, and what is made of it."""
+    """A compiled model of MuJoCo, and what is made of it.
+
+    Args:
+        rotors, dampers: what motors add to joints and tendons, by ("joint" or "tendon", number).
+        in_space: motors on free and ball joints, with their inputs.
+        omega: the rates of free and ball joints: of places, about the axes of the body.
+        start: the positions at which the model starts.
+    """
 
     m: Any
     title: str
@@ -45,7 +52,11 @@ class CompiledRobot:
     joint: dict[int, str] = field(default_factory=dict)
     sites: dict[int, str] = field(default_factory=dict)
     drives: dict[int, list[str]] = field(default_factory=dict)
-    rotors: dict[int, Decimal] = field(default_factory=dict)
+    rotors: dict[tuple[str, int], Decimal] = field(default_factory=dict)
+    dampers: dict[tuple[str, int], Decimal] = field(default_factory=dict)
+    omega: dict[int, list[str]] = field(default_factory=dict)
+    in_space: dict[int, str] = field(default_factory=dict)
+    start: Any = None
     points: dict[int, Entries] = field(default_factory=dict)
 
     def leave(self, what: str, where: Iterable[str], why: str = NO_COUNTERPART) -> None:
@@ -59,6 +70,14 @@ class CompiledRobot:
         self.points.setdefault(k, {})[own] = in_file(decimal_of_double(x) for x in place)
         return own if k == 0 else f"{self.body[k]}.{own}"
 
+    def by_plugin(self, k: int) -> bool:
+        """True if the law of a motor is code of a plugin."""
+        return any(x >= 0 for x in self.numbers(["actuator_plugin"], k))
+
+    def added(self, of: str, k: int, own: Any, motors: dict[tuple[str, int], Decimal]) -> Decimal:
+        """What a joint or tendon has itself, and what its motors add."""
+        return decimal_of_double(own) + motors.get((of, k), ZERO)
+
     def push(self, name: str, q: str, value: str) -> None:
         """A generalized force along a coordinate."""
         law = {"kind": "generalized", "coordinate": q, "value": value}
@@ -71,6 +90,12 @@ class CompiledRobot:
         if any(m.wrap_type[i] != JOINT_WRAP for i in wraps):
             return None
         return [(decimal_of_double(m.wrap_prm[i]), self.joint[int(m.wrap_objid[i])]) for i in wraps]
+
+    def ends(self, t: int) -> list[str]:
+        """The two places of a tendon that is straight between them; [] of another one."""
+        at = range(self.m.tendon_adr[t], self.m.tendon_adr[t] + self.m.tendon_num[t])
+        straight = len(at) == 2 and all(self.m.wrap_type[k] == SITE_WRAP for k in at)
+        return [self.sites[int(self.m.wrap_objid[k])] for k in at] if straight else []
 
     def units(self, coordinates: Iterable[str]) -> set[str]:
         """What they count, once each."""
