@@ -8,16 +8,17 @@ from __future__ import annotations
 import math
 from collections.abc import Iterator
 from functools import cached_property
+from random import Random
 from typing import Any
 
 import numpy as np
 
 from eomgen.mechanics.small_motions.modes import Modes
 from eomgen.mechanics.small_motions.polynomial import Polynomial
-from eomgen.proof.check import Check, attempted, checked
+from eomgen.proof.check import Check, attempted, checked, first_wrong
 from eomgen.records import dataclass
 from eomgen.symbolic.expression.graph import Node
-from eomgen.symbolic.numeric.evaluation import evaluate, fifty_digits
+from eomgen.symbolic.numeric.evaluation import NoValue, evaluate, fifty_digits
 from eomgen.symbolic.numeric.tolerances import CARRIED, DIFFERENCE_AT_50, SAME_PLACE, SLOW
 
 SAMPLES = (
@@ -25,6 +26,8 @@ SAMPLES = (
     -0.4 + 2.3j,
 )  # s, of the geometric mean of all eigenvalues, at which functions of it are compared
 FLOATS = "floating point"
+DRAWS = 24  # of other parameters, at which conditions of stability are compared with roots
+SURELY = 1e-3  # of the largest root, by which another one surely grows or fades
 
 
 def mode_checks(modes: Modes) -> Iterator[Check]:
@@ -200,6 +203,35 @@ class _Proof:
 
     @property
     def _wrong_conditions(self) -> str:
+        return self._wrong_here or first_wrong(map(self._wrong_elsewhere, range(DRAWS)))
+
+    def _wrong_elsewhere(self, seed: int) -> str:
+        """With other parameters: the roots of the characteristic polynomial in numbers, which is proven by itself."""
+        rng, polynomial, conditions = Random(seed), self.modes.polynomial, self.modes.conditions
+        if polynomial is None:
+            return ""
+        trial = self.modes.small.reference.trial
+        drawn = {x: v * _factor(rng, x in self.modes.positive) for x, v in trial.items()}
+        try:
+            scalars = (*polynomial.coefficients, *conditions.expressions)
+            first = float(evaluate(polynomial.coefficients[-1:], trial, fifty_digits())[0])
+            values = [float(x) for x in evaluate(scalars, drawn, fifty_digits())]
+        except (NoValue, ZeroDivisionError, OverflowError):
+            return ""
+        n = len(polynomial.coefficients)
+        c, least = np.array(values[conditions.zeros : n]), min(values[n:])
+        if first * c[-1] <= 0:  # leading coefficients keep their signs, as det M does
+            return ""
+        roots = np.roots(c[::-1])
+        grows = float(roots.real.max(initial=-np.inf)) / float(abs(roots).max(initial=1))
+        if least > 0 and grows > SURELY:
+            return "all hold for other parameters, and a root grows"
+        if least < 0 and (grows < -SURELY or (not conditions.fading and grows < CARRIED)):
+            return "one does not hold for other parameters, and no root grows"
+        return ""
+
+    @property
+    def _wrong_here(self) -> str:
         least = min(evaluate(self.modes.conditions.expressions, self.modes.small.reference.trial, fifty_digits()))
         if least > 0 and self.growth > SAME_PLACE:
             return "all hold, and an eigenvalue grows"
@@ -228,3 +260,9 @@ def _value(polynomial: Polynomial, s: complex, trial: dict[Node, Any]) -> comple
         c if isinstance(c, float) else float(evaluate((c,), digits, fifty_digits())[0]) for c in polynomial.coefficients
     ]
     return complex(Polynomial(tuple(floats)).at(s))
+
+
+def _factor(rng: Random, positive: bool) -> Any:
+    """By which a parameter is changed: between a seventh and seven times, of what may be negative at times below 0."""
+    size = fifty_digits().number(round(10**6 * math.exp(rng.uniform(-2, 2)))) / 10**6
+    return -size if not positive and rng.random() < 0.3 else size

@@ -62,20 +62,26 @@ def of_small_motions(
 
 
 def _by_matrices(found: Linearization, system: System, output: Output, value: float) -> str:
-    """By the entries in floats, and by the eigenvalue of A whose Im is next to the frequency."""
+    """By the entries in floats, and by the Im of A's eigenvalues in their order, motions of the whole first."""
     small = found.small
 
     def second(call: Call) -> Scalar:
         if call.name != "frequency":
             row, column = found.modes.place(call.name, *names_of(call))
             return Fraction(getattr(small.numbers, MATRICES[call.name])[row][column])
-        told = found.frequency(call).mode.frequency or 0.0
-        rates = np.linalg.eigvals(small.state_matrix).imag
-        return Fraction(float(rates[np.argmin(abs(rates - told))]))
+        return Fraction(_rates(found)[int(found.number_of(call)) - 1])
 
     right = number_of(output.value.evaluate(system.scope.names, second), known_exactly(system.scope))
     frequency = any(call.name == "frequency" for call in output.value.calls)
     return differing(value, in_unit(right, output), SAME_PLACE if frequency else COMPUTED)
+
+
+def _rates(found: Linearization) -> list[float]:
+    """The frequencies by A's eigenvalues, the slowest first; as many zeros as there are motions of the whole."""
+    modes = found.modes.spectrum.oscillating
+    still = sum(mode.frequency == 0 for mode in modes)
+    turning = sorted(np.linalg.eigvals(found.small.state_matrix).imag, reverse=True)[: len(modes) - still]
+    return [0.0] * still + [float(x) for x in reversed(turning)]
 
 
 # -- of one instant ----------------------------------------------------------------------------------------

@@ -35,6 +35,7 @@ from eomgen.model.ranges import Range, range_of
 from eomgen.model.reader import ModelOrPath, model_at
 from eomgen.model.replaced import Values
 from eomgen.proof.check import Certificate
+from eomgen.proof.linear_entries import linear_entries
 from eomgen.proof.small_motions import small_motion_checks
 from eomgen.records import dataclass
 from eomgen.symbolic.expression.expressions import Call, Expression
@@ -176,7 +177,8 @@ class Linearization(Result):
     def certify(self) -> Certificate:
         """Check the equations of motion, and the small motions against differences of these."""
         first = self.small.first
-        return certify(first.equations) + small_motion_checks(self.modes)
+        told = linear_entries(self.entries(), self.A, self.B) if self.valued else ()
+        return certify(first.equations) + small_motion_checks(self.modes) + told
 
     # -- as outputs ask ------------------------------------------------------------------------------------
 
@@ -197,11 +199,19 @@ class Linearization(Result):
         Raises:
             DerivationError: there are not so many.
         """
+        return self.modes.frequency(self.number_of(call))
+
+    def number_of(self, call: Call) -> int:
+        """k of frequency(k).
+
+        Raises:
+            DerivationError: it is no whole number.
+        """
         (number,) = call.args
         k = number.literal if isinstance(number, Expression) else None
         if k is None or k != int(k):
             raise DerivationError(f"'{call}': frequencies are numbered 1, 2, ...")
-        return self.modes.frequency(int(k))
+        return int(k)
 
     def _frequency(self, call: Call) -> tuple[Scalar, bool]:
         found = self.frequency(call)
@@ -257,6 +267,10 @@ class Linearization(Result):
 
     def entries(self) -> dict[str, Any]:
         """For machines."""
+        return self._entries
+
+    @cached_property
+    def _entries(self) -> dict[str, Any]:
         reference, equations = self.small.reference, self.equations
         parts = self.modes.symmetric_parts if self.small.is_second_order else {}
         return {

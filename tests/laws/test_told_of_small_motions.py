@@ -1,0 +1,86 @@
+"""What is told of small motions is contradicted where it is another: matrices by their names, words, conditions."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import pytest
+
+import eomgen
+from eomgen.mechanics.small_motions import conditions
+from eomgen.proof.linear_entries import linear_entries
+
+TURNING = """
+eomgen = 1
+space = "plane"
+parameters = { m = 2, k = 4, c = 0.5, n = 1, h = 0.3 }
+coordinates = { x = 0, y = 0 }
+[inputs]
+F = 0
+[bodies.p]
+shape = { kind = "particle", mass = "m" }
+joint = { kind = "placed", at = ["x", "y"] }
+[forces]
+f = { kind = "generalized", coordinate = "x", value = "F - k*x - c*x' + n*y' + h*y" }
+g = { kind = "generalized", coordinate = "y", value = "-2*k*y - c*y' - n*x' - h*x" }
+"""
+FADING, SWINGING = {}, {"h": 3.0}  # a follower force lets it grow
+
+
+def wrong(told: dict[str, Any], found: eomgen.Linearization) -> str:
+    (check,) = linear_entries(told, found.A, found.B)
+    return check.detail
+
+
+CHANGES = {
+    "D for G": {"gyroscopic": "damping"},
+    "E for F": {"kinematic_rates": "kinematic_places"},
+    "K for C": {"stiffness": "rates"},
+    "M for K": {"mass": "stiffness"},
+}
+
+
+@pytest.mark.parametrize("swap", CHANGES.values(), ids=CHANGES)
+def test_a_matrix_under_another_name_is_contradicted(swap):
+    """x' = A x + B_x w, A = [F E; -M^-1 K, -M^-1 C], C = D + G."""
+    found = eomgen.linearize(eomgen.loads(TURNING))
+    told = found.entries()
+    assert not wrong(told, found)
+    assert wrong({**told, **{name: told[other] for name, other in swap.items()}}, found)
+
+
+@pytest.mark.parametrize("values", [FADING, SWINGING], ids=["fades", "grows"])
+def test_words_of_motions_and_of_stability_are_those_of_the_eigenvalues(values):
+    """grows: Re > 0; flutter: with Im != 0."""
+    found = eomgen.linearize(eomgen.loads(TURNING), parameters=values)
+    told = found.entries()
+    assert not wrong(told, found)
+    modes = told["modes"]
+    turned = [{**mode, "kind": mode["kind"].translate(str.maketrans("", "", "g"))} for mode in modes]
+    assert wrong({**told, "modes": turned}, found) or not values
+    assert wrong({**told, "modes": [{**modes[0], "hertz": modes[0]["hertz"] * 2}, *modes[1:]]}, found)
+    assert wrong({**told, "why": "an oscillation grows (flutter)" if not values else "(divergence)"}, found)
+    assert wrong({**told, "eigenvalues": told["eigenvalues"][1:]}, found)
+
+
+def test_a_condition_that_is_missing_is_seen_at_other_parameters(monkeypatch):
+    """Of s^4 + ... the third Hurwitz determinant decides: coefficients alone are positive where an oscillation grows."""
+    monkeypatch.setattr(conditions, "_determinants", lambda polynomial: [])
+    found = eomgen.linearize(eomgen.loads(TURNING))
+    wrong = [check for check in found.certify().checks if check.ok is False]
+    assert [check.name for check in wrong] == ["the conditions of stability hold where nothing grows, and only there"]
+
+
+def test_a_frequency_of_another_number_is_contradicted(monkeypatch):
+    """frequency(k) is the k-th Im of the eigenvalues of A."""
+    from eomgen.mechanics.small_motions.modes import Modes
+
+    text = (
+        TURNING.replace("- c*x' + n*y' + h*y", "")
+        .replace("- c*y' - n*x' - h*x", "")
+        .replace(", c = 0.5, n = 1, h = 0.3", "")
+    )
+    text += '[outputs]\nw = "frequency(1)"\nv = "frequency(2)"\n'
+    assert eomgen.solve(eomgen.loads(text)).certify().ok
+    monkeypatch.setattr(Modes, "frequency", lambda self, k: self.frequencies[-k])
+    assert eomgen.solve(eomgen.loads(text)).certify().ok is False
