@@ -148,7 +148,8 @@ def _refuse_placeless_ties(system: System) -> None:
     for row in (row for row in system.ties.rows if row.tie not in drives and row.label not in idle):
         points = (push for push in row.pushes if isinstance(push, PointForce))
         slide = sum((slide_power(system.motion, push) for push in points), start=0)
-        own = 0 if is_zero(row.direct) else row.direct - slide  # a row of material points sees no slide
+        seen_alike = row.carrier is None and not is_zero(row.direct)
+        own = row.direct - slide if seen_alike else 0  # a row of material points sees no slide
         if row.status != "identical" and (not row.pushes or _pushes_along(system, own)):
             raise DerivationError(
                 f"the tie '{row.tie}' acts on coordinates and at no place: reactions do not follow",

@@ -11,6 +11,7 @@ derivatives of the poses. The certificate compares them.
 
 from __future__ import annotations
 
+from dataclasses import replace
 from functools import cached_property
 from typing import Any
 
@@ -104,6 +105,30 @@ class Motion:
     def points(self) -> dict[str, dict[str, Vector]]:
         """Points of each body, body axes [m]."""
         return {link.name: body_points(self.scope, link.name) for link in self.links}
+
+    def carrier_of(self, first: str | None, second: str | None) -> str | None:
+        """The nearest body that carries both, itself among those that carry it; None: only the ground does."""
+        carriers = self._carriers(second)
+        return next((body for body in self._carriers(first) if body in carriers), None)
+
+    def _carriers(self, body: str | None) -> list[str]:
+        """The body, and those it hangs on, the nearest first."""
+        found: list[str] = []
+        place = GROUND if body is None else self.index[body]
+        while place != GROUND:
+            found.append(self.links[place].name)
+            place = self.links[place].parent
+        return found
+
+    def seen_from(self, body: str) -> Motion:
+        """Poses and twists of what a body carries, against that body; others stay as the ground sees them."""
+        if body not in self._seen:
+            self._seen[body] = _seen_from(self, self.index[body])
+        return self._seen[body]
+
+    @cached_property
+    def _seen(self) -> dict[str, Motion]:
+        return {}
 
     def moves(self, scalars: tuple[Scalar, ...]) -> bool:
         """Whether any of the scalars depends on coordinates or time."""
@@ -211,6 +236,23 @@ def _link(scope: Scope, name: str, links: list[BodyLink], index: dict[str, int])
     pose = _pose(above, local, angle, point)
     twist = _twist(scope, above, before, local, s_rate, S, point)
     return BodyLink(name, parent, joint, before, point, s, s_rate, relative, S, pose, angle, twist)
+
+
+def _seen_from(motion: Motion, carrier: int) -> Motion:
+    """The motion with a body in the place of the ground, of all that hangs on it."""
+    links, scope = list(motion.links), motion.scope
+    turned = links[carrier].angle
+    links[carrier] = replace(links[carrier], pose=Pose(), angle=None if turned is None else 0, twist=Twist())
+    carried = {carrier}
+    for i, link in enumerate(motion.links):
+        if link.parent not in carried:
+            continue
+        carried.add(i)
+        above = links[link.parent]
+        angle = None if link.angle is None or turned is None else collected(link.angle - turned)
+        twist = _twist(scope, above, link.before, link.local, link.s_rate, link.S, link.point)
+        links[i] = replace(link, pose=_pose(above, link.local, angle, link.point), angle=angle, twist=twist)
+    return Motion(scope, tuple(links))
 
 
 def _pose(above: BodyLink | None, local: Pose, angle: Scalar | None, point: Vector) -> Pose:

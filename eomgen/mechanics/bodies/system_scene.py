@@ -75,6 +75,14 @@ class SystemScene:
         """R of the body in the ground."""
         return self.motion.link(body).pose.R
 
+    def carrier_of(self, first: str | None, second: str | None) -> str | None:
+        """The nearest body that carries both, itself among those that carry it; None: only the ground does."""
+        return self.motion.carrier_of(first, second)
+
+    def seen_from(self, body: str | None) -> SystemScene:
+        """The same as a body sees it that carries what is asked for: its axes stand for the ground's."""
+        return self if body is None else SystemScene(self.motion.seen_from(body), self.where)
+
     def angle(self, body: str) -> Scalar:
         angle = self.motion.link(body).angle
         if angle is None:

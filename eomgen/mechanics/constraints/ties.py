@@ -36,6 +36,7 @@ from eomgen.symbolic.numeric.evaluation import PRIME_FIELD, evaluate, fifty_digi
 from eomgen.symbolic.numeric.tolerances import SOLVED
 from eomgen.symbolic.print.text import text_size, to_text
 
+Wrenches = tuple[tuple[str, Wrench], ...]
 LONG = 60  # characters of a gap that is not printed
 STILL = Fraction(1, 10**8)  # a sliding velocity that is none [m/s]
 
@@ -46,7 +47,8 @@ class Row:
 
     Args:
         tie, number: its name and place in the tie, from 1.
-        wrenches: (body, W) for a unit lam, body axes, at the body's origin; empty for an equation.
+        wrenches: (body, W) for a unit lam, body axes, at the body's origin; empty for an equation. Seen from a body
+            that carries all that is held, that body takes what makes their sum 0, which it is where the tie holds.
         direct: s_t, the part that no twist sees: the slide of points in their bodies; of an equation all of it.
         velocity: W^T xi + s_t as a function of q, u, t: zero when the tie holds.
         gap: phi(q, t), or None where only the velocity row is given.
@@ -63,6 +65,7 @@ class Row:
         shares: of `friction` along both, v/|v| of Coulomb's, v of viscous friction; () where there is one direction.
         round: of a bilateral contact on a line: its friction is for a unit of |N|, of which this row's
             multiplier is one component and those of the rows before are the others.
+        carrier: the body in whose axes the row is written, which carries all that it holds; None: the ground.
     """
 
     tie: str
@@ -83,6 +86,7 @@ class Row:
     across: Scalar | None = None
     shares: tuple[Scalar, ...] = ()
     round: bool = False
+    carrier: str | None = None
 
     @property
     def identical(self) -> bool:
@@ -169,16 +173,19 @@ def _held_on_path(motion: Motion, link: BodyLink) -> TieRow:
 
 
 def _row(motion: Motion, name: str, number: int, row: TieRow, *, used: bool) -> Row:
-    wrenches = _wrenches(motion, row.pushes)
+    seen, pushes = (motion, row.pushes) if row.carrier is None else (motion.seen_from(row.carrier), row.carried)
+    wrenches = _wrenches(seen, pushes)
     if row.pushes:
-        direct = 0 if row.material else _slide(motion, row.pushes)
+        direct = 0 if row.material else _slide(seen, pushes)
         direct = direct if row.rate is None else direct + row.rate
     elif row.rate is not None:
         direct = _linear(motion, name, row.rate)
     else:
         assert row.gap is not None, "a row without pushes and rate is the rate of its gap"
         direct = motion.scope.time_derivative((row.gap,))[0]
-    velocity = _power(motion, wrenches, direct)
+    velocity = _power(seen, wrenches, direct)
+    if row.carrier is not None:
+        wrenches = _in_balance(seen, row.carrier, wrenches)
     if row.pushes and row.rate is not None:
         _linear(motion, name, velocity)
     if row.pushes and motion.scope.model.space == "space":
@@ -206,6 +213,7 @@ def _row(motion: Motion, name: str, number: int, row: TieRow, *, used: bool) -> 
         across=across,
         cross_tangent=row.cross_tangent,
         round=row.round,
+        carrier=row.carrier,
     )
 
 
@@ -289,6 +297,16 @@ def _is_met(motion: Motion, gap: Scalar) -> bool:
 
 def _wrenches(motion: Motion, pushes: tuple[Push, ...]) -> tuple[tuple[str, Wrench], ...]:
     return tuple(found for push in pushes if (found := body_wrench(motion, push)) is not None)
+
+
+def _in_balance(seen: Motion, carrier: str, wrenches: Wrenches) -> Wrenches:
+    """The wrenches, with that on the carrier which makes their sum 0: no work as they move with it."""
+    found = [(body, W) for body, W in wrenches if body != carrier]
+    total = Wrench()
+    for body, W in found:
+        pose = seen.link(body).pose
+        total = total.plus(W.turned(pose.R).moved(pose.p))
+    return (*found, (carrier, Wrench(times(-1, total.tau), times(-1, total.f))))
 
 
 def _power(motion: Motion, wrenches: tuple[tuple[str, Wrench], ...], direct: Scalar) -> Scalar:

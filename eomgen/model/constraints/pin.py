@@ -38,8 +38,9 @@ class Pin(Constraint):
         for other in others_of(scene, named):
             rows += held_together(scene, first, other)
             if self.axis is not None and not scene.plane:
-                n = unit(scene.vector(self.axis))
-                rows += [across_from(scene, (first[0], other[0]), e, n) for e in across(n)]
+                bodies = first[0], other[0]
+                n = unit(as_carried(scene, scene.carrier_of(*bodies), scene.vector(self.axis)))
+                rows += [across_from(scene, bodies, e, n) for e in across(n)]
         return tuple(rows)
 
     def agreeing(self, scene: LoadContext) -> tuple[Scalar, ...]:
@@ -61,20 +62,42 @@ def others_of(scene: LoadContext, named: list[BodyPoint]) -> list[BodyPoint]:
 
 
 def held_together(scene: LoadContext, first: BodyPoint, other: BodyPoint) -> list[TieRow]:
-    """e . (p_first - p_other) = 0 along each axis; a unit force on the first, its opposite on the other."""
-    gap = minus(scene.position(first), scene.position(other))
-    return [
-        TieRow((PointForce(first, e), PointForce(other, times(-1, e))), dot(e, gap), component=name)
-        for name, e in zip(AXIS_NAMES, scene_axes(scene), strict=False)
-    ]
+    """e . (p_first - p_other) = 0 along each axis; a unit force on the first, its opposite on the other.
+
+    The axes are those of the nearest body that carries both. A loop that lies in a plane of that body, however it
+    turns, then leaves rows that vanish identically; in ground axes they would only where the others hold.
+    """
+    carrier = scene.carrier_of(first[0], other[0])
+    view = scene.seen_from(carrier)
+    gap, found = minus(view.position(first), view.position(other)), []
+    for name, e in zip(AXIS_NAMES, scene_axes(scene), strict=False):
+        pushes = PointForce(first, e), PointForce(other, times(-1, e))
+        carried = () if carrier is None else pushes
+        found.append(TieRow(pushes, dot(e, gap), component=name, carrier=carrier, carried=carried))
+    return found
 
 
 def across_from(scene: LoadContext, bodies: tuple[str | None, str | None], e: Vector, n: Vector) -> TieRow:
-    """n . e = 0 in space: n is carried by the second body, e across it by the first; the couple is e x n."""
-    n, e = carried_direction(scene, bodies[1], n), carried_direction(scene, bodies[0], e)
+    """n . e = 0 in space: n is carried by the second body, e across it by the first; the couple is e x n.
+
+    Both are given in the axes that the body which carries both has at the start, and seen from there.
+    """
+    carrier = scene.carrier_of(*bodies)
+    view = scene.seen_from(carrier)
+    n, e = carried_direction(view, bodies[1], n), carried_direction(view, bodies[0], e)
     couple = cross(e, n)
-    pairs = ((bodies[0], couple), (bodies[1], times(-1, couple)))
-    return TieRow(tuple(Couple(b, tau) for b, tau in pairs if b is not None), dot(n, e), component="couple")
+    pairs = [(b, tau) for b, tau in ((bodies[0], couple), (bodies[1], times(-1, couple))) if b is not None]
+    pushes = tuple(Couple(b, tau, axes=carrier) for b, tau in pairs)
+    carried = () if carrier is None else tuple(Couple(b, tau) for b, tau in pairs)
+    return TieRow(pushes, dot(n, e), component="couple", carrier=carrier, carried=carried)
+
+
+def as_carried(scene: LoadContext, carrier: str | None, direction: Vector) -> Vector:
+    """A direction given in ground axes, in those that a body has at the start."""
+    if carrier is None:
+        return direction
+    at_start = matrix_of((scene.start(x) for x in row) for row in scene.orientation(carrier))
+    return apply(transposed(at_start), direction)
 
 
 def not_turning(scene: LoadContext, bodies: tuple[str | None, str | None]) -> list[TieRow]:

@@ -25,6 +25,8 @@ class TieRow:
         cross_tangent: of a contact on a surface the same along the second direction, across the first.
         round: of a bilateral contact on a line: N has this row's component and those of the rows before.
         part: what of the tie the row belongs to, by name: the member of a truss; "" elsewhere.
+        carrier: the body that carries all that the row holds together, from which its gap is seen; None: the ground.
+        carried: the pushes in the axes of the carrier; () where that is the ground.
     """
 
     pushes: tuple[PointForce | Couple, ...]
@@ -36,6 +38,8 @@ class TieRow:
     cross_tangent: tuple[PointForce | Couple, ...] = ()
     part: str = ""
     round: bool = False
+    carrier: str | None = None
+    carried: tuple[PointForce | Couple, ...] = ()
 
 
 @dataclass(frozen=True)
