@@ -23,7 +23,8 @@ def freedom_lines(model: Model, freedom: Freedom) -> list[str]:
     lines += [f"ties that only react: {_ties(freedom.identical_rows, freedom.closing)}"] if freedom.identical else []
     lines += _velocity_lines(freedom)
     for row in freedom.redundant:
-        others = f", it follows from {listed(row.others) if row.others else 'its other rows'}"
+        alone = "the joints" if row.by_joints else "its other rows"
+        others = f", it follows from {listed(row.others) if row.others else alone}"
         lines.append(f"redundant: row {row.number} of tie '{row.tie}'{others}")
     return lines
 

@@ -21,7 +21,8 @@ from eomgen.symbolic.expression.derivative import jacobian
 from eomgen.symbolic.expression.functions import sqrt
 from eomgen.symbolic.expression.graph import Node, Scalar
 from eomgen.symbolic.expression.node import State
-from eomgen.symbolic.numeric.evaluation import NoValue, evaluate, fifty_digits
+from eomgen.symbolic.numeric.dense import closed_entries
+from eomgen.symbolic.numeric.evaluation import NoValue, evaluate, fifty_digits, floats_of
 from eomgen.symbolic.numeric.newton import Newton
 from eomgen.symbolic.numeric.tolerances import CLOSED_AT_50, LEAST_CHANGE, SUMMED
 
@@ -113,6 +114,16 @@ def _open(ties: Ties, known: Mapping[str, Any]) -> EomgenError:
     names = ", ".join(dict.fromkeys(row.tie for row in ties.rows if not row.identical))
     what = f"the ties do not close near the start values: {names}"
     return DerivationError(what, mend="`eomgen check` says whether they can")
+
+
+def rows_where_closed(ties: Ties, state: State) -> np.ndarray:
+    """J of the closing rows at a state in which they hold, k x nu; entries that vanish there are 0, not what is left.
+
+    Raises:
+        NoValue: it has none there.
+    """
+    values = floats_of(evaluate([x for row in ties.J for x in row], state, fifty_digits()))
+    return closed_entries(np.array(values).reshape(len(ties.closing), len(ties.motion.scope.symbols.u)))
 
 
 def movable(ties: Ties) -> list[Node]:

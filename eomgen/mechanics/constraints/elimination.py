@@ -17,14 +17,14 @@ import numpy as np
 from eomgen.errors import DerivationError, MissingValues
 from eomgen.mechanics.bodies.scope import Scope, with_speeds_named
 from eomgen.mechanics.bodies.simplify import shorter
-from eomgen.mechanics.constraints.closure import generic_state, scattered_state
+from eomgen.mechanics.constraints.closure import generic_state, rows_where_closed, scattered_state
 from eomgen.mechanics.constraints.ties import Ties, holds_identically
 from eomgen.records import dataclass
 from eomgen.symbolic.expression.derivative import depends_on, substituted
 from eomgen.symbolic.expression.graph import Node, Scalar, is_zero
 from eomgen.symbolic.expression.traversal import operations, order
 from eomgen.symbolic.numeric.dense import independent
-from eomgen.symbolic.numeric.evaluation import NoValue, evaluate, fifty_digits, floats_of
+from eomgen.symbolic.numeric.evaluation import NoValue
 from eomgen.symbolic.numeric.tolerances import RANK
 from eomgen.symbolic.solve import cramer
 
@@ -135,13 +135,11 @@ def _numbers(ties: Ties) -> np.ndarray:
         state = generic_state(ties)
     except (DerivationError, MissingValues):
         state = scattered_state(ties)
-    width = len(ties.motion.scope.symbols.u)
     try:
-        values = floats_of(evaluate([x for row in ties.J for x in row], state, fifty_digits()))
+        return rows_where_closed(ties, state)
     except (NoValue, ZeroDivisionError):
         what = "the velocities of the ties have no finite value near the start"
         raise DerivationError(what, "constraints", "look at what grows in the joints that they hold") from None
-    return np.array(values).reshape(len(ties.closing), width)
 
 
 def _determining_rows(ties: Ties, J_d: np.ndarray) -> list[int]:

@@ -8,16 +8,19 @@ By formula:  f = 3 Nb + 2 Np - sum of the components of joints, ties and given m
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+
 import numpy as np
 
 from eomgen.errors import DerivationError, MissingValues, NotYet
 from eomgen.mechanics.bodies.contact_modes import ContactModes
 from eomgen.mechanics.bodies.kinematics import BodyLink, Motion, motion_of
 from eomgen.mechanics.bodies.scope import scope_of
-from eomgen.mechanics.constraints.closure import generic_state
+from eomgen.mechanics.constraints.closure import generic_state, rows_where_closed
 from eomgen.mechanics.constraints.elimination import dependent_coordinates, elimination_of
 from eomgen.mechanics.constraints.integrability import Integrability, integrability_of
 from eomgen.mechanics.constraints.ties import Ties, ties_of
+from eomgen.mechanics.constraints.ways_of_bodies import is_placed, powers_of_rows
 from eomgen.model.reader import ModelOrPath, model_at
 from eomgen.model.replaced import Values
 from eomgen.model.unbuilt import unbuilt_ties
@@ -25,8 +28,7 @@ from eomgen.records import dataclass
 from eomgen.symbolic.expression.graph import is_zero
 from eomgen.symbolic.expression.node import State
 from eomgen.symbolic.expression.spatial import Vector
-from eomgen.symbolic.numeric.dense import independent_rows
-from eomgen.symbolic.numeric.evaluation import evaluate, fifty_digits
+from eomgen.symbolic.numeric.dense import closed_entries, independent_rows
 from eomgen.symbolic.numeric.tolerances import RANK_NEARBY, SHARE
 
 TwistColumns = tuple[tuple[Vector, Vector], ...]
@@ -35,16 +37,18 @@ RowName = tuple[str, int]  # of a tie, from 1
 
 @dataclass(frozen=True)
 class Redundant:
-    """A closing row that follows from others.
+    """A row that holds what others hold already.
 
     Args:
         tie, number: the row, from 1.
-        others: the ties from which it follows.
+        others: the other ties from which it follows.
+        by_joints: whether joints alone hold it, and no tie.
     """
 
     tie: str
     number: int
     others: tuple[str, ...]
+    by_joints: bool = False
 
 
 @dataclass(frozen=True)
@@ -55,7 +59,8 @@ class Freedom:
         by_rank: nu - rank J, None where it was not counted.
         by_formula: 3 Nb + 2 Np - the components, None where it was not counted.
         formula: the same as text.
-        redundant: closing rows that follow from those declared before them.
+        redundant: closing rows that follow from those declared before them; then rows that only react, and hold what
+            joints or other ties hold already.
         identical_rows: what the coordinates satisfy by themselves: it only carries a reaction.
         closing_rows: the others.
         not_counted: why not, or "".
@@ -112,13 +117,15 @@ def freedom_of(
     identical = tuple((row.tie, row.number) for row in ties.rows if row.identical)
     closing = tuple((row.tie, row.number) for row in ties.closing)
     try:
-        redundant, integrability = redundant_rows(ties), integrability_of(ties)
+        state = generic_state(ties)
+        redundant, integrability = redundant_rows(ties, state), integrability_of(ties)
+        shared = rows_held_twice(ties, redundant, state)
     except (DerivationError, MissingValues) as error:
         return Freedom(None, count, formula, (), identical, closing, error.what)
     scope = ties.motion.scope
     speeds = len(scope.symbols.u) - len(scope.quaternions)
     by_rank = speeds - len(ties.closing) + len(redundant)
-    return Freedom(by_rank, count, formula, redundant, identical, closing, integrability=integrability)
+    return Freedom(by_rank, count, formula, (*redundant, *shared), identical, closing, integrability=integrability)
 
 
 # -- by formula ------------------------------------------------------------------------------------
@@ -144,11 +151,7 @@ def is_particle(motion: Motion, link: BodyLink) -> bool:
     """A point mass that its joint does not turn."""
     shape = motion.scope.model.bodies[link.name].shape
     turns = any(not is_zero(x) for w, _ in _ways(motion, link) for x in w)
-    return shape is not None and shape.is_point and (_is_placed(link) or not turns)
-
-
-def _is_placed(link: BodyLink) -> bool:
-    return link.joint is None or not link.joint.carries_reaction
+    return shape is not None and shape.is_point and (is_placed(link) or not turns)
 
 
 def _components(ties: Ties, link: BodyLink, free: int, columns: TwistColumns) -> int:
@@ -156,7 +159,7 @@ def _components(ties: Ties, link: BodyLink, free: int, columns: TwistColumns) ->
 
     A variable that is a constant (`angle = 0`) is one more, unless a tie that this satisfies is counted for it.
     """
-    if _is_placed(link):
+    if is_placed(link):
         return 0
     constant = sum(column not in _ways(ties.motion, link) for column in columns)
     satisfied = sum(row.identical and link.name in dict(row.wrenches) for row in ties.rows)
@@ -202,14 +205,41 @@ def redundant_rows(ties: Ties, state: State | None = None) -> tuple[Redundant, .
     closing = ties.closing
     if not closing:
         return ()
-    entries = evaluate([x for row in ties.J for x in row], state or generic_state(ties), fifty_digits())
-    J = np.array([float(x) for x in entries]).reshape(len(closing), len(ties.motion.scope.symbols.u))
+    J = rows_where_closed(ties, state or generic_state(ties))
     kept = independent_rows(J, RANK_NEARBY)
     return tuple(
         Redundant(row.tie, row.number, _others(row.tie, J[i], [(closing[k].tie, J[k]) for k in kept if k < i]))
         for i, row in enumerate(closing)
         if i not in kept
     )
+
+
+def rows_held_twice(ties: Ties, redundant: Sequence[Redundant], state: State) -> tuple[Redundant, ...]:
+    """The rows that the coordinates satisfy and that joints, closing rows or such rows before them hold already.
+
+    W^T xi of such a row depends on those of the others in all ways that the joints leave the bodies: where it carries
+    a reaction, they share it.
+
+    Args:
+        redundant: closing rows that follow from others.
+        state: a generic configuration in which the ties hold.
+    """
+    dropped = {(row.tie, row.number) for row in redundant}
+    closing = [row for row in ties.closing if row.wrenches and (row.tie, row.number) not in dropped]
+    reacting = [row for row in ties.rows if row.identical and row.wrenches and is_zero(row.direct)]
+    if not reacting:
+        return ()
+    rows = [*closing, *reacting]
+    touched = {body for row in reacting for body, _ in row.wrenches}
+    lines = closed_entries(powers_of_rows(ties.motion, rows, state, touched))
+    kept = independent_rows(lines, RANK_NEARBY)
+    found = []
+    for i in range(len(closing), len(rows)):
+        if i not in kept:
+            before = [(rows[k].tie, lines[k]) for k in kept if k < i]
+            alone = not np.any(lines[i])
+            found.append(Redundant(rows[i].tie, rows[i].number, () if alone else _others(rows[i].tie, lines[i], before), alone))
+    return tuple(found)
 
 
 def _others(tie: str, line: np.ndarray, kept: list[tuple[str, np.ndarray]]) -> tuple[str, ...]:

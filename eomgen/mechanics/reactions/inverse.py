@@ -20,7 +20,7 @@ from eomgen.mechanics.balance.friction import has_friction
 from eomgen.mechanics.bodies.armature import armature_bias, armature_mass, joint_row
 from eomgen.mechanics.bodies.recursion import applied_wrenches, bias_forces
 from eomgen.mechanics.bodies.tree import branches_of
-from eomgen.mechanics.constraints.closure import generic_state
+from eomgen.mechanics.constraints.closure import generic_state, rows_where_closed
 from eomgen.mechanics.equations.system import System
 from eomgen.mechanics.equations.work import joint_forces, placeless_forces
 from eomgen.model.findings import nearest
@@ -177,7 +177,7 @@ def _refuse_wrong_number(system: System, names: Sequence[str], columns: Sequence
     ties, nu = system.ties, len(system.symbols.u)
     state = generic_state(ties)
     A = _numbers([x for column in columns for x in column], state, nu)
-    J = _numbers([x for row in ties.J for x in row], state, nu)
+    J = rows_where_closed(ties, state)
     whole, own = (dense.rank(rows, smallest=RANK_NEARBY) for rows in (np.vstack([A, J]), J))
     told = f"{len(names)} actuated, and {nu - own} degrees of freedom"
     if whole < nu:

@@ -7,7 +7,7 @@ from typing import Any
 
 import numpy as np
 
-from eomgen.symbolic.numeric.tolerances import RANK, ROUNDING, ZERO_AT_50
+from eomgen.symbolic.numeric.tolerances import ELIMINATED_AT_50, RANK, ROUNDING, ZERO_AT_50
 
 SWEEPS = 8  # of scaling; each takes the square root of what is left
 
@@ -37,6 +37,15 @@ def without_noise(A: np.ndarray, share: float, axis: int | None = None) -> np.nd
     """The matrix; entries below that share of the largest, or with axis 1 of the largest in their row, are 0."""
     sizes = abs(A)
     return np.where(sizes > share * np.max(sizes, axis=axis, keepdims=True, initial=0.0), A, 0.0)
+
+
+def closed_entries(A: np.ndarray) -> np.ndarray:
+    """The entries of rows of 50 digits at a place that Newton's method closed; those that are only left of 0 are 0.
+
+    Such a place is known to 28 digits: an entry that vanishes there is 1e-28, and a rank by scaled columns would count
+    it. Rows whose entries all are left of 0 are 0 too.
+    """
+    return without_rounding(without_noise(A, ELIMINATED_AT_50, axis=1))
 
 
 def without_rounding(A: np.ndarray) -> np.ndarray:
