@@ -53,7 +53,7 @@ def certify(
         checks.append(trials.given_motions())
     if equations.system.elimination is not None:
         checks.append(trials.eliminated_rows())
-    checks.append(trials.free_bodies())
+    checks += [trials.free_bodies(), *trials.accelerations()]
     if has_friction(equations.system):
         checks += [trials.friction(), *trials.pushes()]
     checks += [

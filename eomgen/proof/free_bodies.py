@@ -23,6 +23,7 @@ from eomgen.mechanics.bodies.armature import armature_bias, armature_mass
 from eomgen.mechanics.bodies.inertia import mass_properties
 from eomgen.mechanics.bodies.kinematics import BodyLink
 from eomgen.mechanics.bodies.loads import body_wrench, weights
+from eomgen.mechanics.constraints.closure import rows_where_closed
 from eomgen.mechanics.equations.system import System
 from eomgen.mechanics.equations.work import joint_forces, placeless_forces
 from eomgen.mechanics.formulations.lagrange import free_rates
@@ -47,7 +48,7 @@ from eomgen.symbolic.expression.spatial import (
 )
 from eomgen.symbolic.numeric.dense import balanced, rank
 from eomgen.symbolic.numeric.evaluation import NoValue, evaluate, fifty_digits
-from eomgen.symbolic.numeric.tolerances import COMPUTED, RANK
+from eomgen.symbolic.numeric.tolerances import COMPUTED, NEARLY_SINGULAR, RANK, SUMMED
 
 PARTS = 18  # numbers of a joint: E^T, r, r', s
 
@@ -115,6 +116,54 @@ def multipliers_demanded(system: System, state: State, friction: Sequence[Any] =
     single = [rank(np.delete(A, k, axis=1)) < rank(A) for k in range(len(closing))]
     values = zip(closing, columns * lam, single, strict=True)
     return {(row.tie, row.number): float(x) for row, x, has_one in values if has_one}
+
+
+def moved_otherwise(system: System, state: State, friction: Sequence[Any] = ()) -> str:
+    """What the accelerations of a state leave of the free bodies, whatever all their ties carry; "" where nothing.
+
+        z . (M a + c - Q) = 0  for every z with J z = 0,      d/dt (J u + sigma) = 0
+
+    J holds every row of every tie that closes, those too that determine dependent coordinates or follow from others:
+    its rank is that at the state, and no row is chosen. So a is that of the bodies with multipliers of least norm.
+
+    Args:
+        state: one in which the ties hold, positions and speeds, at 50 digits, accelerations included.
+        friction: that of the contacts along the speeds; () where there is none.
+    Raises:
+        NoValue: next to a singular position; friction along speeds of which rows were eliminated.
+    """
+    free = system.free or system
+    if friction and free is not system:
+        raise NoValue("there is friction")
+    known = state if free is system else _with_free_motion(system, free, state)
+    known = known | dict.fromkeys(free.symbols.lam, fifty_digits().number(0))
+    needed, J = _demand(free, known), rows_where_closed(free.ties, known)
+    a = np.abs([float(known[x]) for x in free.scope.symbols.a])
+    for row, line in zip(free.ties.closing, J, strict=True):
+        if abs(needed.rates[row.tie, row.number]) > COMPUTED * (1 + abs(line) @ a):
+            return f"row {row.number} of '{row.tie}' is torn open"
+    own = [float(x) for x in friction] or [0.0] * len(needed.forces)
+    forces = np.array([float(x) - y for x, y in zip(needed.forces, own, strict=True)])
+    sizes = np.array([float(x) + abs(y) for x, y in zip(needed.sizes, own, strict=True)])
+    for z in _allowed(J).T:
+        if abs(z @ forces) > COMPUTED * (abs(z) @ sizes):
+            most = free.scope.symbols.u[int(np.argmax(abs(z) * sizes))]
+            return f"the bodies are not in balance along {most.name}"
+    return ""
+
+
+def _allowed(J: np.ndarray) -> np.ndarray:
+    """The z with J z = 0, in columns.
+
+    Raises:
+        NoValue: whether rows depend on one another is not sure.
+    """
+    scaled, _, columns = balanced(J)
+    _, values, directions = np.linalg.svd(scaled)
+    if np.any((values > SUMMED) & (values < NEARLY_SINGULAR)):
+        raise NoValue("next to a singular position")
+    free: np.ndarray = columns[:, None] * directions[int(np.sum(values >= NEARLY_SINGULAR)) :].T
+    return free
 
 
 def _with_free_motion(system: System, free: System, state: State, h: Any = STEP) -> State:

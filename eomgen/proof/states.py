@@ -6,6 +6,7 @@ A state at which something has no value is not a failure: another near it is tak
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator
+from contextlib import suppress
 from functools import cached_property
 from random import Random
 from typing import Any
@@ -23,6 +24,7 @@ from eomgen.symbolic.expression.node import State
 from eomgen.symbolic.numeric.evaluation import NoValue, evaluate, fifty_digits
 from eomgen.symbolic.numeric.tolerances import COMPUTED, LARGEST_AT_50, LARGEST_SQUARED
 
+CONSISTENT = (11, 12)  # seeds of states at which all ties hold
 TRIES = 20  # random states, for one with a value
 NEAR = (0.001, 0.01, 0.1, 0.5)  # how far from the start another is looked for, twice each
 MOST = 12  # pieces of one quantity that are visited, evenly spread; 1000 samples are one formula
@@ -247,6 +249,34 @@ def refuse_open(system: System, state: State) -> None:
     asked = [*(row.velocity for row in rows), *(row.gap for row in rows if row.gap is not None)]
     if any(abs(x) > COMPUTED for x in evaluate(asked, state, fifty_digits())):
         raise NoValue("the ties are open")
+
+
+def is_open(system: System, state: State) -> bool:
+    """Whether the ties do not hold there, positions or speeds."""
+    try:
+        refuse_open(system, state)
+    except NoValue:
+        return True
+    return False
+
+
+def consistent_states(system: System) -> tuple[tuple[str, Supply], ...]:
+    """States in motion at which every tie holds, positions and speeds, by where dependent coordinates are free.
+
+    A row that is wrongly taken for one that holds something may keep the states of the system from moving.
+    """
+    whole, start = system.free or system, _own_state(system, Random(5))
+
+    def at_random(seed: int) -> Iterator[TrialState]:
+        rng = Random(seed)
+        for _ in range(TRIES):
+            state = real_state(system, rng)
+            with suppress(DerivationError, ModelError):
+                yield TrialState(state | generic_state(whole.ties, rng), " (at a state at which all ties hold)")
+
+    begun = () if start is None else (TrialState(start, " (at the start)"),)
+    random = [("at random", Supply(at_random(seed))) for seed in CONSISTENT]
+    return (("at the start", Supply(begun)), *random)
 
 
 def in_doubles(state: State) -> State:

@@ -26,14 +26,14 @@ from eomgen.proof.contact_geometry import apart, meetings_of
 from eomgen.proof.declared_work import acting_otherwise, working_otherwise
 from eomgen.proof.elements import elements_of, undeclared
 from eomgen.proof.energies import other_energies
-from eomgen.proof.free_bodies import Demand, demand_of
+from eomgen.proof.free_bodies import Demand, demand_of, moved_otherwise
 from eomgen.proof.friction_laws import other_friction, pushing_otherwise
 from eomgen.proof.in_numbers import FINER_STEP, STEP, way_through
 from eomgen.proof.joint_places import misplaced
 from eomgen.proof.kept_ties import open_at_start, rows_that_stay
 from eomgen.proof.named_axes import named_otherwise
 from eomgen.proof.printed import Printed, ReadBack
-from eomgen.proof.states import States, in_doubles, own_start
+from eomgen.proof.states import States, TrialState, consistent_states, in_doubles, is_open, own_start, refuse_open
 from eomgen.proof.strands import strung_otherwise, threads_of
 from eomgen.records import dataclass
 from eomgen.symbolic.expression.functions import inner
@@ -82,20 +82,28 @@ class Trials:
         entries = (x for rows in (e.M, e.J, e.N) for row in rows for x in row)
         return States(e.system, (*poses, *entries, *e.nu, *e.c, *e.Q, *e.forcing, *e.sigma, *e.gamma, e.T, e.V))
 
-    def _at_states(self, name: str, how: str, check: Callable[[State], str], moving: bool = False) -> Check:
+    def _at_states(
+        self,
+        name: str,
+        how: str,
+        check: Callable[[State], str],
+        moving: bool = False,
+        supplies: Iterable[tuple[str, Iterable[TrialState]]] = (),
+    ) -> Check:
         """A check at the first state of each supply where everything has a value; `check` names what differs.
 
         Args:
             moving: whether it takes accelerations, which contradict one another where ties are open.
+            supplies: of states; () for those of the system.
         """
         seen: dict[str, int] = {}
-        for where, supply in self.states.supplies:
+        for where, supply in supplies or self.states.supplies:
             for place in supply:
                 try:
                     wrong = check(place.state)
                 except (NoValue, ZeroDivisionError):
                     continue
-                if wrong and moving and place.remark:
+                if wrong and moving and is_open(self.equations.system, place.state):
                     continue
                 if wrong:
                     return checked(name, wrong + place.remark, how)
@@ -237,6 +245,28 @@ class Trials:
 
         name = "the equations are those of the free bodies, at any accelerations and multipliers"
         return self._at_states(name, "differences at 50 digits", check)
+
+    def accelerations(self) -> Iterable[Check]:
+        """a of the equations, put to the free bodies that all ties hold at once; none where no tie closes."""
+        if self._whole.ties.closing:
+            name = "accelerations are those of the free bodies, all ties holding at once"
+            how = "differences at 50 digits, rank of all rows at the state"
+            supplies = consistent_states(self.equations.system)
+            yield self._at_states(name, how, lambda state: self._torn(state, self._moving(state)), supplies=supplies)
+
+    @property
+    def _whole(self) -> System:
+        """The system in which dependent coordinates are free."""
+        return self.equations.system.free or self.equations.system
+
+    def _torn(self, state: State, moving: State) -> str:
+        """What accelerations leave of the free bodies at a state in which the ties hold.
+
+        Raises:
+            NoValue: they do not hold there.
+        """
+        refuse_open(self.equations.system, state)
+        return moved_otherwise(self.equations.system, moving, evaluate(self.equations.friction, moving, fifty_digits()))
 
     def friction(self) -> Check:
         """Friction brakes: factor * v < 0 for a contact that pushes, v its sliding velocity.

@@ -9,7 +9,7 @@ import numpy as np
 from eomgen.mechanics.equations.equations_of_motion import EquationsOfMotion
 from eomgen.records import dataclass
 from eomgen.symbolic.expression.node import State
-from eomgen.symbolic.numeric.dense import balanced, independent, scaled_condition, weighted, without_rounding
+from eomgen.symbolic.numeric.dense import balanced, closed_entries, independent, scaled_condition, weighted
 from eomgen.symbolic.numeric.evaluation import NoValue, evaluate, fifty_digits
 from eomgen.symbolic.numeric.tolerances import LEAST_CHANGE, REFINED_AT_50
 
@@ -39,10 +39,10 @@ def exact_accelerations(equations: EquationsOfMotion, state: State) -> list[Any]
     entries = [x for row in (*equations.M, *equations.J) for x in row]
     values = evaluate((*entries, *equations.forcing, *equations.gamma), state, fifty_digits())
     wide = np.array(values[: n * (n + k)], dtype=object).reshape(n + k, n)
-    M, J = wide[:n].astype(float), without_rounding(wide[n:].astype(float))
+    M, J = wide[:n].astype(float), closed_entries(wide[n:].astype(float))
     if scaled_condition(weighted(M, J)) > SINGULAR:  # what no mass measures the ties may say
         raise NoValue("the mass matrix is singular")
-    wide[n:] *= np.any(J, axis=1, keepdims=True)
+    wide[n:] *= J != 0
     regular = k == 0 or independent(J, smallest=LEAST_CHANGE)
     inverse = _inverse(np.block([[M, -J.T], [J, np.zeros((k, k))]]), regular=regular)
     right = np.array([*values[n * (n + k) : len(values) - k], *(-y for y in values[len(values) - k :])], dtype=object)
