@@ -44,6 +44,7 @@ from eomgen.model.reader import ModelOrPath, model_at
 from eomgen.model.replaced import Values
 from eomgen.proof.check import Certificate, Check, checked, unchecked
 from eomgen.proof.emitted_code import PhaseMotion
+from eomgen.proof.states import consistent_states
 from eomgen.proof.written_code import Judged, Written, start_state_tried
 from eomgen.questions.run import pulling
 from eomgen.records import dataclass
@@ -88,8 +89,22 @@ class Generated:
         program, rhs = self.equations.program, self._start
         remarks = _remarks(self.model)
         origin = f"Made by eomgen {__version__} from {self.origin}."
-        answers = vectors(program, x0=rhs.x0, p0=rhs.p0)
+        answers = vectors(program, x0=rhs.x0, p0=rhs.p0, held=self._held)
         return program, Description(self.model.name, origin, remarks, answers)
+
+    @cached_property
+    def _held(self) -> list[tuple[float, list[float], list[float]]]:
+        """States (t, x, p) at which all ties hold, rounded; [] where none closes."""
+        system = self.equations.graph.system
+        if not (system.free or system).ties.closing:
+            return []
+        symbols, found = system.symbols, []
+        groups = ((*symbols.q, *symbols.u), tuple(symbols.parameters.values()))
+        for place in (next(iter(supply), None) for _, supply in consistent_states(system)):
+            if place is not None:
+                x, p = ([float(place.state[s]) for s in group] for group in groups)
+                found.append((float(place.state[symbols.t]), x, p))
+        return found
 
     @cached_property
     def reactions(self) -> Emitted | None:

@@ -24,12 +24,19 @@ NEAR = Fraction(1, 10**6)  # of a state: so far from it, what has no value there
 
 
 def vectors(
-    program: Program, *, x0: Any = None, p0: Any = None, count: int = 6, seed: int = 1
+    program: Program,
+    *,
+    x0: Any = None,
+    p0: Any = None,
+    count: int = 6,
+    seed: int = 1,
+    held: Sequence[tuple[float, Sequence[float], Sequence[float]]] = (),
 ) -> tuple[TestVector, ...]:
     """Right answers near the start (else near 0), half of them with inputs given where there are any; and there.
 
     Args:
         x0, p0: start and parameter values; where None, states near 0 and parameters between 0.5 and 2.
+        held: (t, x, p) at which all ties hold: right answers there too.
     Raises:
         DerivationError: no states were found at which the right-hand side has a value.
     """
@@ -45,7 +52,9 @@ def vectors(
             (found if all(value == value for value in vector.result) else partial).append(vector)
     if not found:
         raise DerivationError("the equations have no value at any of the states tried for test vectors")
-    special = (_vector(program, floats, state) for state in _special(program, found[0], x0))
+    where_held = [replace(found[0], t=t, x=tuple(x), p=tuple(p), inputs=None, result=()) for t, x, p in held]
+    states = (*where_held, *_special(program, found[0], x0))
+    special = (_vector(program, floats, state) for state in states)
     return (*found, *(vector for vector in special if vector is not None), *partial[:PARTIAL])
 
 

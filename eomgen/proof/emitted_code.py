@@ -9,13 +9,16 @@ code but the equations: neither the elimination, nor the order of its statements
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Mapping, Sequence
+from contextlib import suppress
 from dataclasses import field, replace
 
 import numpy as np
 
+from eomgen.mechanics.constraints.closure import closed, movable, speeds_closed
 from eomgen.mechanics.constraints.closure import of_50_digits as precise
 from eomgen.mechanics.equations.equations_of_motion import EquationsOfMotion
 from eomgen.proof.check import Check, checked, unchecked
+from eomgen.proof.free_bodies import moved_otherwise
 from eomgen.proof.in_numbers import with_inputs
 from eomgen.records import dataclass
 from eomgen.symbolic.expression.graph import Node, Scalar
@@ -23,9 +26,10 @@ from eomgen.symbolic.expression.node import State
 from eomgen.symbolic.expression.traversal import order
 from eomgen.symbolic.numeric.dense import of_one_length
 from eomgen.symbolic.numeric.evaluation import NoValue, evaluate, fifty_digits, floats_of
-from eomgen.symbolic.numeric.tolerances import COMPUTED, LARGEST_SQUARED, SOLVED
+from eomgen.symbolic.numeric.tolerances import CARRIED, COMPUTED, LARGEST_SQUARED, SOLVED
 
 WORK = 60_000  # graph nodes evaluated with 50 digits in one check, some 0.2 s; one state always
+PUT = 2  # states at which accelerations are put to the free bodies: those take as long as the equations' whole proof
 HOW = "equations with 50 digits, the code's accelerations put in"
 
 
@@ -70,6 +74,29 @@ class PhaseMotion:
         equations = self.equations
         matrices = (x for row in (*equations.M, *equations.J) for x in row)
         return (*self.equations.system.scope.rates, *matrices, *equations.forcing, *equations.gamma)
+
+    def torn(self, code: Code, at: TriedState) -> str | None:
+        """What the code's accelerations leave of the free bodies that all ties hold at once; "" where nothing.
+
+        None at a state in which the ties do not hold, and where no tie closes.
+        """
+        equations, symbols = self.equations, self.equations.symbols
+        system = equations.system
+        if not (system.free or system).ties.closing:
+            return None
+        given = self.values(at)
+        found = closed(system.ties, given, movable(system.ties))
+        if found is None or any(abs(found[q] - given[q]) > CARRIED * (1 + abs(given[q])) for q in symbols.q):
+            return None
+        found = speeds_closed(system.ties, found)
+        if any(abs(found[u] - given[u]) > CARRIED * (1 + abs(given[u])) for u in symbols.u):
+            return None
+        state = replace(at, x=np.array(floats_of(found[x] for x in (*symbols.q, *symbols.u))))
+        a = code(state)[len(symbols.q) :]
+        if not np.all(np.isfinite(a)):
+            return None
+        moving = found | dict(zip(symbols.a, map(precise, a.tolist()), strict=True))
+        return moved_otherwise(system, moving, evaluate(equations.friction, moving, fifty_digits()))
 
     def numbers(self, at: TriedState) -> RunNumbers:
         """The coefficients at a state.
@@ -152,13 +179,24 @@ class RunNumbers:
 
 
 def equations_hold(motion: PhaseMotion, code: Code, at: Iterable[TriedState], name: str) -> Check:
-    """The code's accelerations fulfil the equations at states; one next to a singular position says nothing."""
+    """The code's accelerations fulfil the equations at states; one next to a singular position says nothing.
+
+    Where the ties hold they are put to the free bodies too, which choose no rows: at the first PUT states.
+    """
+    put: list[str] = []
+
+    def torn(instant: TriedState) -> str:
+        with suppress(NoValue, ZeroDivisionError):
+            found = motion.torn(code, instant) if len(put) < PUT else None
+            put.extend([] if found is None else [found])
+            return f"{found} at t = {instant.t:.6g} s" if found and _sure(code, instant) else ""
+        return ""
 
     def wrong(instant: TriedState) -> str | None:
         numbers = motion.numbers(instant)
         left, where = numbers.left(code(instant))
         if left <= COMPUTED:
-            return ""
+            return torn(instant)
         if not _sure(code, instant):
             return None
         return f"{where} is left with {left:.1e} of its terms at t = {instant.t:.6g} s"

@@ -48,7 +48,7 @@ from eomgen.symbolic.expression.spatial import (
 )
 from eomgen.symbolic.numeric.dense import balanced, rank
 from eomgen.symbolic.numeric.evaluation import NoValue, evaluate, fifty_digits
-from eomgen.symbolic.numeric.tolerances import COMPUTED, NEARLY_SINGULAR, RANK, SUMMED
+from eomgen.symbolic.numeric.tolerances import COMPUTED, NEARLY_SINGULAR, RANK, SUMMED, ZERO_AT_50
 
 PARTS = 18  # numbers of a joint: E^T, r, r', s
 
@@ -146,7 +146,7 @@ def moved_otherwise(system: System, state: State, friction: Sequence[Any] = ()) 
     forces = np.array([float(x) - y for x, y in zip(needed.forces, own, strict=True)])
     sizes = np.array([float(x) + abs(y) for x, y in zip(needed.sizes, own, strict=True)])
     for z in _allowed(J).T:
-        if abs(z @ forces) > COMPUTED * (abs(z) @ sizes):
+        if abs(z @ forces) > abs(z) @ (COMPUTED * sizes + ZERO_AT_50):
             most = free.scope.symbols.u[int(np.argmax(abs(z) * sizes))]
             return f"the bodies are not in balance along {most.name}"
     return ""

@@ -49,7 +49,7 @@ def generic_state(
         found = closed(ties, state | _scattered(ties, q, spread, rng), movable(ties))
         if found is not None:
             with suppress(NoValue, ZeroDivisionError):  # a strand into a pulley: nearer then
-                return _moving(ties, _with_laws(ties, found))
+                return speeds_closed(ties, _with_laws(ties, found))
     raise _open(ties, exact_parameters(ties.motion.scope.model))
 
 
@@ -183,7 +183,7 @@ class _Gaps:
         return state | {q: state[q] + float(s) * d for q, s, d in zip(self.free, self.sizes, step, strict=True)}
 
 
-def _moving(ties: Ties, state: State) -> State:
+def speeds_closed(ties: Ties, state: State) -> State:
     """The state with the nearest speeds that satisfy J u + sigma = 0."""
     u = ties.motion.scope.symbols.u
     if not ties.closing or not u:
