@@ -43,14 +43,14 @@ from eomgen.model.parts import Model
 from eomgen.model.reader import ModelOrPath, model_at
 from eomgen.model.replaced import Values
 from eomgen.proof.check import Certificate, Check, checked, unchecked
-from eomgen.proof.emitted_code import PhaseMotion
+from eomgen.proof.emitted_code import PhaseMotion, TriedState
 from eomgen.proof.states import consistent_states
 from eomgen.proof.written_code import Judged, Written, start_state_tried
 from eomgen.questions.run import pulling
 from eomgen.records import dataclass
 from eomgen.simulation.configuration import paths_of
 from eomgen.symbolic.expression.graph import Scalar
-from eomgen.symbolic.numeric.tolerances import RUN, SINGLE
+from eomgen.symbolic.numeric.tolerances import BEST, RUN, SINGLE
 from eomgen.symbolic.numeric.work import doing
 from eomgen.version import __version__
 
@@ -94,7 +94,7 @@ class Generated:
 
     @cached_property
     def _held(self) -> list[tuple[float, list[float], list[float]]]:
-        """States (t, x, p) at which all ties hold, rounded; [] where none closes."""
+        """States (t, x, p) at which all ties hold, in doubles; [] where none closes."""
         system = self.equations.graph.system
         if not (system.free or system).ties.closing:
             return []
@@ -103,6 +103,7 @@ class Generated:
         for place in (next(iter(supply), None) for _, supply in consistent_states(system)):
             if place is not None:
                 x, p = ([float(place.state[s]) for s in group] for group in groups)
+                x = [0.0 if abs(each) < BEST else each for each in x]  # what Newton's method left of 0
                 found.append((float(place.state[symbols.t]), x, p))
         return found
 
@@ -253,6 +254,7 @@ class Generated:
             plain: the equations whose ties do not pull, in which inverse dynamics is written.
         """
         start = start_state_tried(0.0, self._start.x0, self._start.p0)
+        start = (*(TriedState(t, np.array(x), p) for t, x, p in self._held), *start)
         values = {}
         if self.reactions is not None:
             values = self.equations.reaction_values

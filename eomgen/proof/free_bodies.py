@@ -118,7 +118,9 @@ def multipliers_demanded(system: System, state: State, friction: Sequence[Any] =
     return {(row.tie, row.number): float(x) for row, x, has_one in values if has_one}
 
 
-def moved_otherwise(system: System, state: State, friction: Sequence[Any] = ()) -> str:
+def moved_otherwise(
+    system: System, state: State, friction: Sequence[Any] = (), *, regular: float = NEARLY_SINGULAR
+) -> str:
     """What the accelerations of a state leave of the free bodies, whatever all their ties carry; "" where nothing.
 
         z . (M a + c - Q) = 0  for every z with J z = 0,      d/dt (J u + sigma) = 0
@@ -129,6 +131,7 @@ def moved_otherwise(system: System, state: State, friction: Sequence[Any] = ()) 
     Args:
         state: one in which the ties hold, positions and speeds, at 50 digits, accelerations included.
         friction: that of the contacts along the speeds; () where there is none.
+        regular: how independent rows must be, or not at all.
     Raises:
         NoValue: next to a singular position; friction along speeds of which rows were eliminated.
     """
@@ -145,14 +148,14 @@ def moved_otherwise(system: System, state: State, friction: Sequence[Any] = ()) 
     own = [float(x) for x in friction] or [0.0] * len(needed.forces)
     forces = np.array([float(x) - y for x, y in zip(needed.forces, own, strict=True)])
     sizes = np.array([float(x) + abs(y) for x, y in zip(needed.sizes, own, strict=True)])
-    for z in _allowed(J).T:
+    for z in _allowed(J, regular).T:
         if abs(z @ forces) > abs(z) @ (COMPUTED * sizes + ZERO_AT_50):
             most = free.scope.symbols.u[int(np.argmax(abs(z) * sizes))]
             return f"the bodies are not in balance along {most.name}"
     return ""
 
 
-def _allowed(J: np.ndarray) -> np.ndarray:
+def _allowed(J: np.ndarray, regular: float) -> np.ndarray:
     """The z with J z = 0, in columns.
 
     Raises:
@@ -160,9 +163,9 @@ def _allowed(J: np.ndarray) -> np.ndarray:
     """
     scaled, _, columns = balanced(J)
     _, values, directions = np.linalg.svd(scaled)
-    if np.any((values > SUMMED) & (values < NEARLY_SINGULAR)):
+    if np.any((values > SUMMED) & (values < regular)):
         raise NoValue("next to a singular position")
-    free: np.ndarray = columns[:, None] * directions[int(np.sum(values >= NEARLY_SINGULAR)) :].T
+    free: np.ndarray = columns[:, None] * directions[int(np.sum(values >= regular)) :].T
     return free
 
 
@@ -246,9 +249,32 @@ class _Bodies(InNumbers):
     @property
     def _inertia(self) -> list[Wrench]:
         """What the motion of every body takes, about its origin in its axes."""
+        return [_taken(mass, *motion) for mass, motion in zip(self._masses, self._motions, strict=True)]
+
+    @cached_property
+    def _masses(self) -> list[list[Any]]:
+        """m, c and I of every body."""
         masses = [mass_properties(self.system.scope, link.name) for link in self.links]
         flat = [x for mass in masses for x in (mass.m, *mass.com, *(y for row in mass.I for y in row))]
-        return [_taken(mass, *motion) for mass, motion in zip(_in_parts(self.at(flat), 13), self._motions, strict=True)]
+        return _in_parts(self.at(flat), 13)
+
+    @property
+    def _inertia_sizes(self) -> list[tuple[Any, Any]]:
+        """(force, moment) of its terms, without signs: what centripetal acceleration takes from another counts too."""
+        found, of_origins = [], list[tuple[Any, Any]]()  # (|wd|, |acc|) of every body
+        for link, own, rate, (w, _, _), mass in zip(
+            self.links, *self._moving, self._motions, self._masses, strict=True
+        ):
+            r, v, s = (_size(own[k : k + 3]) for k in (9, 12, 15))
+            wd_p, acc_p = of_origins[link.parent] if link.parent >= 0 else (0, 0)
+            w_p = _size(self._motions[link.parent][0]) if link.parent >= 0 else 0
+            wd = wd_p + _size(rate[15:18]) + w_p * s
+            acc = acc_p + wd_p * r + w_p * w_p * r + 2 * w_p * v + _size(rate[12:15])
+            of_origins.append((wd, acc))
+            m, c, I, spin = mass[0], _size(mass[1:4]), _size(mass[4:13]), _size(w)
+            force = m * (acc + wd * c + spin * spin * c)
+            found.append((force, I * wd + spin * spin * I + c * force))
+        return found
 
     @cached_property
     def _pushes(self) -> list[tuple[str, Wrench]]:
@@ -289,7 +315,7 @@ class _Bodies(InNumbers):
     @property
     def _sizes(self) -> list[tuple[Any, Any]]:
         """(force, moment) of all that adds up to it, without signs: of one that cancels only rounding is left."""
-        found = {link.name: (_size(x.f), _size(x.tau)) for link, x in zip(self.links, self._inertia, strict=True)}
+        found = dict(zip((link.name for link in self.links), self._inertia_sizes, strict=True))
         for body, push in self._pushes:
             f, tau = found[body]
             found[body] = f + _size(push.f), tau + _size(push.f) + _size(push.tau)

@@ -9,7 +9,7 @@ differences along the motion v. Nothing of eomgen.
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 
 import numpy as np
 
@@ -29,6 +29,7 @@ class Part:
         axis: of the joint, axes of the carrier.
         point: the joint's place in the body's own axes.
         m, inertia, com: principal moments about the mass centre, which lies at com, body axes.
+        more: further fields of the joint in a model file, which `efforts` of the machine must follow.
     """
 
     on: str
@@ -39,6 +40,7 @@ class Part:
     inertia: Vector
     point: Vector = (0, 0, 0)
     com: Vector = (0, 0, 0)
+    more: str = ""
 
     @property
     def freedoms(self) -> int:
@@ -69,7 +71,6 @@ class Machine:
     closures: Sequence[Closure]
     gravity: Vector = (0, 0, -9.81)
     efforts: Callable[[np.ndarray, np.ndarray], np.ndarray] | None = None
-    steps: dict[str, float] = field(default_factory=dict)
 
     def frames(self, q: np.ndarray) -> Frames:
         """(R, origin) of every body."""
@@ -151,9 +152,7 @@ class Machine:
 
     def _together(self, frames: Frames, first: tuple[str, Vector], second: tuple[str, Vector]) -> list[np.ndarray]:
         places = [frames[b][1] + frames[b][0] @ np.array(r, float) for b, r in (first, second)]
-        return list(
-            self._velocity_of(frames, first[0], places[0]) - self._velocity_of(frames, second[0], places[1])
-        )
+        return list(self._velocity_of(frames, first[0], places[0]) - self._velocity_of(frames, second[0], places[1]))
 
     def _turning(self, frames: Frames, first: str, second: str, held: Sequence[np.ndarray]) -> list[np.ndarray]:
         """No spin of the second against the first along directions of the first."""
@@ -228,3 +227,90 @@ def across(n: Vector) -> list[np.ndarray]:
     e = np.eye(3)[int(np.argmin(abs(a)))]
     b = unit(np.cross(a, e))
     return [b, np.cross(a, b)]
+
+
+def closed(machine: Machine, q: np.ndarray, kept: Sequence[int]) -> np.ndarray:
+    """q at which the loops close, the kept coordinates as they are: Newton's method on what the closures leave open."""
+    q = np.array(q, float)
+    moved = [k for k in range(len(q)) if k not in kept]
+    for _ in range(50):
+        gap = _open(machine, q)
+        if np.max(abs(gap)) < 1e-13:
+            return q
+        slopes = [(_open(machine, q + h) - _open(machine, q - h)) / 2e-6 for h in 1e-6 * np.eye(len(q))[moved]]
+        q[moved] -= np.linalg.lstsq(np.array(slopes).T, gap, rcond=1e-8)[0]
+    raise AssertionError("the loops do not close")
+
+
+def rates_that_stay(machine: Machine, q: np.ndarray, wanted: np.ndarray, kept: Sequence[int]) -> np.ndarray:
+    """u with which the loops stay closed, the kept rates as they are wanted."""
+    slopes = np.array([(_open(machine, q + h) - _open(machine, q - h)) / 2e-5 for h in 1e-5 * np.eye(len(q))]).T
+    moved, u = [k for k in range(len(q)) if k not in kept], np.array(wanted, float)
+    u[moved] = 0.0
+    u[moved] = np.linalg.lstsq(slopes[:, moved], -slopes @ u, rcond=1e-8)[0]
+    return u
+
+
+def _open(machine: Machine, q: np.ndarray) -> np.ndarray:
+    frames, found = machine.frames(q), []
+    for closure in machine.closures:
+        (A, r), (B, s) = closure.first, closure.second
+        found += [
+            *(frames[A][1] + frames[A][0] @ np.array(r, float) - frames[B][1] - frames[B][0] @ np.array(s, float))
+        ]
+        if closure.axis is not None:
+            found += [(frames[A][0] @ d) @ (frames[B][0] @ unit(closure.axis)) for d in across(closure.axis)]
+    return np.array(found)
+
+
+def text_of(machine: Machine, names: Sequence[str], start: np.ndarray, dependent: Sequence[str] = ()) -> str:
+    """The machine as a model file, a hinge's axis being the third of both bodies at rest.
+
+    Args:
+        names: of the coordinates, in order.
+        start: of the coordinates: of the dependent ones a guess.
+        dependent: the names of those.
+    """
+    lines = ["eomgen = 1", 'name = "machine"', 'space = "space"', "[coordinates]"]
+    for name, value in zip(names, start.tolist(), strict=True):
+        lines.append(
+            f"{name} = {{ dependent = true, near = {value!r} }}" if name in dependent else f"{name} = {value!r}"
+        )
+    first = 0
+    for body, part in machine.parts.items():
+        own, first = list(names[first : first + part.freedoms]), first + part.freedoms
+        on = "" if part.on == GROUND else f'on = "{part.on}", '
+        angles = ", ".join(f'"{name}"' for name in own[-3:])
+        fields = {
+            "revolute": f'axis = {_list(part.axis)}, angle = "{own[0]}"',
+            "prismatic": f'axis = {_list(part.axis)}, displacement = "{own[0]}"',
+            "spherical": f'orientation = "xyz", angles = [{angles}]',
+            "free": f"position = [{', '.join(f'{chr(34)}{name}{chr(34)}' for name in own[:3])}], "
+            f'orientation = "xyz", angles = [{angles}]',
+        }[part.kind]
+        seat = "" if part.kind == "free" else f'{on}at = {_list(part.at)}, point = "seat", '
+        lines += [
+            f"[bodies.{body}]",
+            f"mass = {part.m}",
+            f"inertia = {_list(part.inertia)}",
+            f"center = {_list(part.com)}",
+        ]
+        points = {"seat": part.point} | {
+            f"c{k}": r for k, c in enumerate(machine.closures) for b, r in (c.first, c.second) if b == body
+        }
+        lines.append("points = { " + ", ".join(f"{name} = {_list(r)}" for name, r in points.items()) + " }")
+        lines.append(f'joint = {{ kind = "{part.kind}", {seat}{fields}{part.more} }}')
+    for k, closure in enumerate(machine.closures):
+        lines += [
+            f"[constraints.C{k}]",
+            'kind = "pin"',
+            f'points = ["{closure.first[0]}.c{k}", "{closure.second[0]}.c{k}"]',
+        ]
+        if closure.axis is not None:
+            frames = machine.frames(start)
+            lines.append(f"axis = {_list(frames[closure.first[0]][0] @ unit(closure.axis))}")
+    return "\n".join([*lines, "[forces.weight]", 'kind = "gravity"', f"acceleration = {_list(machine.gravity)}", ""])
+
+
+def _list(v: Vector) -> str:
+    return f"[{', '.join(repr(float(x)) for x in v)}]"

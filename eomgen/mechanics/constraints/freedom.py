@@ -238,7 +238,9 @@ def rows_held_twice(ties: Ties, redundant: Sequence[Redundant], state: State) ->
         if i not in kept:
             before = [(rows[k].tie, lines[k]) for k in kept if k < i]
             alone = not np.any(lines[i])
-            found.append(Redundant(rows[i].tie, rows[i].number, () if alone else _others(rows[i].tie, lines[i], before), alone))
+            found.append(
+                Redundant(rows[i].tie, rows[i].number, () if alone else _others(rows[i].tie, lines[i], before), alone)
+            )
     return tuple(found)
 
 
