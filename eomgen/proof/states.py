@@ -266,7 +266,7 @@ def consistent_states(system: System) -> tuple[tuple[str, Supply], ...]:
     A row that is wrongly taken for one that holds something may keep the states of the system from moving.
     """
     whole = system.free if system.free is not None and not system.declared else system
-    start = _own_state(system, Random(5))
+    start = own_start(system)
 
     def at_random(seed: int) -> Iterator[TrialState]:
         rng = Random(seed)
