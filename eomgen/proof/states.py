@@ -24,7 +24,7 @@ from eomgen.symbolic.expression.node import State
 from eomgen.symbolic.numeric.evaluation import NoValue, evaluate, fifty_digits
 from eomgen.symbolic.numeric.tolerances import COMPUTED, LARGEST_AT_50, LARGEST_SQUARED
 
-CONSISTENT = (11, 12)  # seeds of states at which all ties hold
+CONSISTENT = (11,)  # seeds of states at which all ties hold
 TRIES = 20  # random states, for one with a value
 NEAR = (0.001, 0.01, 0.1, 0.5)  # how far from the start another is looked for, twice each
 MOST = 12  # pieces of one quantity that are visited, evenly spread; 1000 samples are one formula
