@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import warnings
 from collections.abc import Mapping, Sequence
+from threading import get_ident
 from typing import TYPE_CHECKING, Any
 
 from eomgen.codegen.inverse import InverseDynamics
@@ -19,6 +20,7 @@ from eomgen.model.fields import WrittenEquation
 from eomgen.model.reader import ModelOrPath, model_at
 from eomgen.model.replaced import Values, with_inputs
 from eomgen.model.unknowns import refuse_motion
+from eomgen.records import recalled
 from eomgen.symbolic.expression.typed import Typed
 from eomgen.symbolic.numeric.gc_pause import growing
 from eomgen.symbolic.numeric.tolerances import RUN
@@ -41,7 +43,7 @@ def derive(
     parameters: Values | None = None,
     start: Values | None = None,
 ) -> Equations:
-    """The equations of motion of a model; no certificate is made.
+    """The equations of motion of a model; no certificate is made. Of one model they are derived once.
 
     Args:
         method: by which way they are derived, one of METHODS: energies, wrenches along the motions that are free, or
@@ -59,7 +61,12 @@ def derive(
     if method not in METHODS:
         raise UsageError(f"unknown method '{method}'", mend=f"one of {', '.join(METHODS)}")
     refuse_motion(model)
-    at_start = contacts_at_start(model) if contacts is None else ContactsAtStart(contacts)
+    if contacts is None:
+        return recalled(model, method, lambda: _derived(model, method, contacts_at_start(model)))
+    return _derived(model, method, ContactsAtStart(contacts))
+
+
+def _derived(model: Model, method: str, at_start: ContactsAtStart) -> Equations:
     system = system_of(model, at_start.modes)
     if method == "kinetostatic":
         reactions_of(system)  # refuses joints and ties that cannot carry the motion
@@ -146,7 +153,7 @@ def simulate(
     stabilization: str = "projection",
     until: WrittenEquation | str | None = None,
 ) -> Trajectory:
-    """The motion from the start values of the model.
+    """The motion from the start values of the model. Of one model it is derived and compiled once in a thread.
 
     Args:
         time: how long: 5 s, "500 ms", (500, "ms") or a quantity of pint.
@@ -181,7 +188,8 @@ def simulate(
         instants = SAMPLES if samples is None else samples
         found = controlled_run(equations, controllers, time=time, samples=instants, how=how, target=target)
         return _warned(model, found)
-    run = simulator(model, rtol=rtol, atol=atol, target=target, method=method, stabilization=stabilization)
+    how = {"rtol": rtol, "atol": atol, "target": target, "method": method, "stabilization": stabilization}
+    run = recalled(model, (get_ident(), *how.values()), lambda: simulator(model, **how))
     samples = SAMPLES if samples is None else samples
     found = run(time, samples=samples, columns=(REACTIONS, OUTPUTS), until=until)
     return _warned(model, found)

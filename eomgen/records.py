@@ -11,10 +11,15 @@ the difference, delete this file.
 from __future__ import annotations
 
 import dataclasses
-from collections.abc import Callable
+from collections.abc import Callable, Hashable
 from operator import attrgetter
 from reprlib import recursive_repr
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, TypeVar, cast
+
+Made = TypeVar("Made")
+
+RECALLED = "_recalled"  # where a record keeps what was made of it
+MOST_RECALLED = 8
 
 _SET = object.__setattr__
 
@@ -48,6 +53,21 @@ def with_fields(record: Any, **changes: Any) -> Any:
     made, held = object.__new__(type(record)), record.__dict__
     made.__dict__.update({name: held[name] for name in record.__dataclass_fields__}, **changes)
     return made
+
+
+def recalled(record: Any, key: Hashable, make: Callable[[], Made]) -> Made:
+    """make(), kept with a frozen record; of its last MOST_RECALLED keys each is made once.
+
+    It lives as long as the record, and no longer; a class whose records keep something leaves it out of its pickles.
+    """
+    known = record.__dict__.setdefault(RECALLED, {})
+    found = known.pop(key, _FACTORY)
+    if found is _FACTORY:
+        found = make()
+    known[key] = found  # now the youngest
+    while len(known) > MOST_RECALLED:
+        known.pop(next(iter(known)), None)
+    return cast("Made", found)
 
 
 def _frozen(cls: type, *, kw_only: bool, eq: bool, shown: bool) -> type:

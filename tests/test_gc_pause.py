@@ -7,43 +7,58 @@ import weakref
 from collections.abc import Iterator
 
 import pytest
+from derivations import model_called
 
+import eomgen
 from eomgen.symbolic.numeric.gc_pause import growing
 
 
 class Ring:
     """An object that holds itself."""
 
+    alive = 0
+
     def __init__(self) -> None:
         self.own = self
+        Ring.alive += 1
+
+    def __del__(self) -> None:
+        Ring.alive -= 1
 
 
 @pytest.fixture(autouse=True)
-def none_kept_apart() -> Iterator[None]:
-    """What the tests themselves have frozen is so again afterwards."""
-    frozen = gc.get_freeze_count()
+def as_python_is_found() -> Iterator[None]:
+    """The collector as Python starts it; what the tests themselves have made of it is so again afterwards."""
+    frozen, thresholds = gc.get_freeze_count(), gc.get_threshold()
     gc.unfreeze()
+    gc.set_threshold(700, 10, 10)
     yield
+    gc.set_threshold(*thresholds)
     if frozen:
         gc.freeze()
 
 
-def test_what_was_made_in_a_rest_is_not_looked_through_at_its_end():
-    """Of twice as many objects as make Python look none is looked at within, or when the next is made."""
-    seen: list[int] = []
-
-    def look(phase: str, info: dict[str, int]) -> None:
-        seen.append(info["generation"])
-
+def test_rings_that_are_dropped_after_rests_do_not_pile_up():
+    """Of 400 rests, each of which leaves 100 rings behind, the collector by itself finds nearly all; nobody asks it."""
+    Ring.alive = 0
     gc.collect()
-    gc.callbacks.append(look)
-    try:
+    for _ in range(400):
         with growing():
-            made = [[k] for k in range(2 * gc.get_threshold()[0])]
-        more = [[made]]
-    finally:
-        gc.callbacks.remove(look)
-    assert gc.isenabled() and not seen and more
+            made = [Ring() for _ in range(100)]
+        del made
+    assert gc.isenabled() and Ring.alive < 400 * 100 / 4
+
+
+def test_the_collector_is_left_as_it_was_found():
+    """Thresholds, and whether it works, are those of whoever calls: also where it was switched off."""
+    for works in (True, False):
+        before = gc.get_threshold()
+        (gc.enable if works else gc.disable)()
+        try:
+            eomgen.derive(model_called("arm3"))
+            assert gc.isenabled() is works and gc.get_threshold() == before
+        finally:
+            gc.enable()
 
 
 def test_rests_that_overlap_end_with_the_last():

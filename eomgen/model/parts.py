@@ -44,7 +44,7 @@ from eomgen.model.part import Part, PartRule, SeamRule
 from eomgen.model.shapes import Shape
 from eomgen.model.symbols import SymbolField
 from eomgen.model.table import Table
-from eomgen.records import dataclass
+from eomgen.records import RECALLED, dataclass
 from eomgen.symbolic.expression.expressions import Expression
 from eomgen.symbolic.expression.units import Unit
 
@@ -293,6 +293,10 @@ class Model(Part):
 
     def __post_init__(self) -> None:
         finish(self)
+
+    def __getstate__(self) -> dict[str, Any]:
+        """What was declared; what was derived of it (`records.recalled`) is derived anew where it is needed."""
+        return {name: value for name, value in self.__dict__.items() if name != RECALLED}
 
     def __repr__(self) -> str:
         tables = ("bodies", "trusses", "coordinates", "constraints", "forces", "parameters", "outputs")

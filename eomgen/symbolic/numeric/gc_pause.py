@@ -26,12 +26,8 @@ class _Rests:
     def end(self) -> None:
         with self.lock:
             self.number -= 1
-            if self.number or not self.worked:
-                return
-            if not gc.get_freeze_count():  # else somebody keeps objects of his own apart
-                gc.freeze()  # what is young
-                gc.unfreeze()  # is old
-            gc.enable()
+            if not self.number and self.worked:
+                gc.enable()
 
 
 _RESTS = _Rests()
@@ -41,8 +37,9 @@ _RESTS = _Rests()
 def growing() -> Iterator[None]:
     """Expressions are made, and all of them stay: to look for cycles among them takes longer than to make them.
 
-    Python's own counting of references goes on; what hangs in a ring is found later, among what is old: to look at once
-    through all that was made took a tenth of a command. Where threads rest at once the last to end wakes the collector.
+    Python's own counting of references goes on. What was made stays young, and is looked at when the collector wakes:
+    put among what is old it would never count as new there, and rings that callers drop would pile up for ever. Where
+    threads rest at once the last to end wakes the collector.
     """
     _RESTS.begin()
     try:
