@@ -387,7 +387,7 @@ def test_a_notebook_was_run_with_the_values_of_the_report(tmp_path):
 @pytest.mark.parametrize(
     ("package", "ending", "mend"),
     [
-        ("math_core", ".html", r"eomgen\[report\]"),
+        ("math_core", ".html", "pip install math-core"),
         ("typst", ".pdf", r"eomgen\[pdf\]"),
         ("nbclient", ".ipynb", r"eomgen\[notebook\]"),
     ],

@@ -117,6 +117,10 @@ class RightHandSide:
         """The program's text in the target's language."""
         return target_named(self.target).text(self.program, "eomgen", RHS)
 
+    def __reduce__(self) -> tuple[Any, ...]:
+        """As its program, which is compiled where the pickle is read: in C where there is a compiler."""
+        return _compiled_again, (self.program, None if self.target == "c" else self.target, self.x0, self.p0)
+
     def __repr__(self) -> str:
         arguments = f"x = ({', '.join(self.coordinates + self.speeds)}), p = ({', '.join(self.parameters)})"
         return f"<right-hand side in {self.target}: {arguments}>"
@@ -161,6 +165,11 @@ def compiled(program: Program, target: str | None = None, *, x0: Any = None, p0:
     except (RunFailed, ToolMissing) as error:
         _say(f"{error.what.splitlines()[0]}: the equations run in numpy, some 30 times slower")
         return compiled(program, "numpy", x0=x0, p0=p0)
+
+
+def _compiled_again(program: Program, target: str | None, x0: Any, p0: Any) -> RightHandSide:
+    """A right-hand side out of a pickle."""
+    return compiled(program, target, x0=x0, p0=p0)
 
 
 def compiled_together(programs: Sequence[Program], target: str | None = None) -> tuple[RightHandSide, ...]:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import html
 from collections.abc import Mapping
 from dataclasses import field, replace
 from typing import Any
@@ -84,7 +85,7 @@ AREAS = {
 }
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, repr=False)
 class Verdict:
     """What the judge says of one equation.
 
@@ -112,6 +113,13 @@ class Verdict:
 
     def __bool__(self) -> bool:
         return self.verdict == RIGHT
+
+    def __repr__(self) -> str:
+        return "\n".join(self.lines())
+
+    def _repr_html_(self) -> str:
+        """As the command line tells it."""
+        return f"<pre>{html.escape(repr(self))}</pre>"
 
     @property
     def exit_code(self) -> int:

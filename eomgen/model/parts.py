@@ -312,10 +312,15 @@ class Model(Part):
         """
         return import_module("eomgen").scene_of(self)  # the package's front door: the scene is a later room's
 
+    @property
+    def picture(self) -> Any:
+        """Where it starts, as it is drawn: shows itself in a notebook, `save("model.svg")` writes it."""
+        return import_module("eomgen").rest_picture(self)  # as above
+
     def _repr_png_(self) -> bytes | None:
         """Where it starts, for notebooks; None where that cannot be drawn."""
         try:
-            found: bytes = import_module("eomgen").rest_picture(self)._repr_png_()
+            found: bytes = self.picture._repr_png_()
         except EomgenError:
             return None
         return found

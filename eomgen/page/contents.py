@@ -2,9 +2,12 @@
 
 from __future__ import annotations
 
+import html
+import tempfile
 from collections.abc import Callable, Mapping
 from dataclasses import replace
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 
@@ -13,7 +16,7 @@ from eomgen.documents.statements import Prose, Step
 from eomgen.model.table import Table
 from eomgen.page.markup import Html
 from eomgen.proof.check import Certificate, Check
-from eomgen.records import dataclass
+from eomgen.records import Known, dataclass
 
 SECTIONS = {
     "figure": "Figure",
@@ -39,6 +42,10 @@ INKS = ("#1f5fa8", "#b8431f", "#1f7a4a", "#7a3f9d", "#8a6a00", "#0f7c86", "#a12d
 """The colours of curves on light paper, by the number of their class."""
 
 
+ENDINGS = (".svg", ".pdf")
+"""Of the files in which figures stand beside a report."""
+
+
 @dataclass(frozen=True)
 class LegendEntry:
     """What a line of a drawing means.
@@ -50,6 +57,30 @@ class LegendEntry:
 
     style: str
     name: Prose
+
+
+class _Files:
+    """A picture as it was drawn, by the ending of the file."""
+
+    def __init__(self, drawn: Mapping[str, bytes]) -> None:
+        self.drawn = dict(drawn)
+
+    def __call__(self, path: Path) -> None:
+        path.write_bytes(self.drawn[path.suffix])
+
+
+def _drawn(save: Callable[[Path], object], ending: str) -> bytes:
+    """What a picture's file holds."""
+    with tempfile.TemporaryDirectory() as folder:
+        path = Path(folder) / f"figure{ending}"
+        save(path)
+        return path.read_bytes()
+
+
+def framed(page: str) -> str:
+    """A page inside another, as notebooks show it: it asks nobody for anything."""
+    style = "width:100%;height:560px;border:0"
+    return f'<iframe sandbox="allow-scripts" style="{style}" srcdoc="{html.escape(page)}"></iframe>'
 
 
 @dataclass(frozen=True)
@@ -73,6 +104,11 @@ class ReportFigure:
     legend: tuple[LegendEntry, ...] = ()
     save: Callable[[Path], object] | None = None
     fixed: bool = False
+
+    def __getstate__(self) -> dict[str, Any]:
+        """With its files as they are: what draws them does not go into a pickle."""
+        own = {name: self.__dict__[name] for name in self.__dataclass_fields__}
+        return own if self.save is None else own | {"save": _Files({e: _drawn(self.save, e) for e in ENDINGS})}
 
 
 @dataclass(frozen=True)
@@ -111,6 +147,11 @@ class ReportSection:
     computed: frozenset[str] = frozenset()
     remark: str = ""
 
+    def __getstate__(self) -> dict[str, Any]:
+        """With what moves as it is."""
+        own = {name: self.__dict__[name] for name in self.__dataclass_fields__}
+        return own if self.live is None else own | {"live": Known(self.live())}
+
     @property
     def title(self) -> str:
         return SECTIONS[self.key]
@@ -135,6 +176,17 @@ class Report:
     source: str = ""
     values: Mapping[str, Mapping[str, str]] = Table()
     time: float = 0.0
+
+    def __repr__(self) -> str:
+        keys = ", ".join(section.key for section in self.sections)
+        proof = "" if self.certificate is None else f"; {self.certificate!r}"
+        return f"<report of {self.head.title!r}: {keys}{proof}>"
+
+    def _repr_html_(self) -> str:
+        """The page in a frame of its own, for notebooks."""
+        from eomgen.page.formats import written_as  # formats are drawn of contents
+
+        return framed(str(written_as(self, ".html", "report.html")["report.html"]))
 
     @property
     def certificate(self) -> Certificate | None:

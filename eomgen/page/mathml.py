@@ -26,7 +26,7 @@ def _converters() -> tuple[Any, Any]:
     try:
         from math_core import LatexToMathML
     except ImportError as error:
-        mend = "pip install 'eomgen[report]'; or write a .md, .tex or .pdf"
+        mend = "pip install math-core; or write a .md, .tex or .pdf"
         raise ToolMissing(
             "the formulas of an HTML page are set by math-core, which is not installed", "", mend
         ) from error

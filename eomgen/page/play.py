@@ -17,6 +17,7 @@ from eomgen.model.parts import Model
 from eomgen.model.ranges import TypedNumbers
 from eomgen.model.reader import ModelOrPath, model_at
 from eomgen.model.replaced import Taken, Values
+from eomgen.page.contents import framed
 from eomgen.page.player_data import PlayedRun, PlayerOptions, SliderRange
 from eomgen.page.player_page import player_page
 from eomgen.proof.check import Certificate, Check, checked, unchecked
@@ -62,6 +63,10 @@ class Played:
 
     def __repr__(self) -> str:
         return f"<page of {self.played.model.name!r}, {len(self.html) // 1024} KB{': ' * bool(self.rests)}{self.rests}>"
+
+    def _repr_html_(self) -> str:
+        """The page in a frame of its own, for notebooks."""
+        return framed(self.html)
 
     def certify(self) -> Certificate:
         """The proof of the run that the page begins with, and of the programs in the page, run by node."""

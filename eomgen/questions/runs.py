@@ -9,8 +9,10 @@ from typing import Any
 
 import numpy as np
 
+from eomgen.errors import UsageError
 from eomgen.proof.check import Certificate
 from eomgen.records import dataclass
+from eomgen.simulation.result import NO_EQUATIONS
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -24,7 +26,7 @@ class Runs:
         status: "finished", or why a run failed; message: the same as a sentence.
         steps: taken by each.
         given: the values of each run, by name, of those that are not the same in all.
-        proof: -> the certificate of the equations.
+        proof: -> the certificate of the equations; None out of a pickle.
         drifts: (t, x) -> of each run how far its energy went; None where it need not stay.
     """
 
@@ -35,8 +37,13 @@ class Runs:
     message: np.ndarray
     steps: np.ndarray
     given: Mapping[str, np.ndarray]
-    proof: Callable[[], Certificate] = field(repr=False)
+    proof: Callable[[], Certificate] | None = field(repr=False)
     drifts: Callable[[np.ndarray, np.ndarray], np.ndarray] | None = field(default=None, repr=False)
+
+    def __getstate__(self) -> dict[str, Any]:
+        """All its numbers, the drift among them; its equations do not go into a pickle."""
+        own = {name: self.__dict__[name] for name in self.__dataclass_fields__}
+        return own | {"drift": self.drift, "drifts": None, "proof": None}
 
     def __len__(self) -> int:
         return len(self.x)
@@ -53,7 +60,13 @@ class Runs:
         return None if self.drifts is None else self.drifts(self.t, self.x)
 
     def certify(self) -> Certificate:
-        """The proof of the equations that all runs share."""
+        """The proof of the equations that all runs share.
+
+        Raises:
+            UsageError: they come out of a pickle.
+        """
+        if self.proof is None:
+            raise UsageError(NO_EQUATIONS, mend="take eomgen.simulate_many(model), in the process that asks")
         return self.proof()
 
     def to_pandas(self) -> Any:

@@ -15,10 +15,11 @@ import numpy as np
 from eomgen import files
 from eomgen.errors import UsageError
 from eomgen.model.own_units import OUTPUT
-from eomgen.records import dataclass
+from eomgen.records import Known, dataclass
 from eomgen.symbolic.expression.units import Unit
 from eomgen.symbolic.numeric.tolerances import SOLVED
 
+NO_EQUATIONS = "nothing is known of the equations behind these numbers"  # given by hand, or read from a pickle
 SHOWN = 80  # characters of names on a line
 
 RunStatus = Literal[
@@ -76,6 +77,12 @@ class Phase:
     def last(self) -> Mapping[str, float]:
         """The same at its end."""
         return self._edges[1]
+
+    def __getstate__(self) -> dict[str, Any]:
+        """What there is in numbers; equations and compiled code do not go into a pickle."""
+        own = {name: self.__dict__[name] for name in ("start", "end", "ended_by", "rows")}
+        made = {"tracked": self.track, "edges": self._edges if self.edges is not None else None}
+        return own | {"model": None} | {name: None if x is None else Known(x) for name, x in made.items()}
 
 
 @dataclass(frozen=True)
@@ -140,6 +147,12 @@ class Trajectory:
     quantities: Mapping[str, Any] = field(default_factory=dict)
     estimate: Callable[[Trajectory], Any] | None = None
 
+    def __getstate__(self) -> dict[str, Any]:
+        """All its numbers. What asks the equations again (`certify`, `ask`, `accuracy`) does not go into a pickle."""
+        own = {name: self.__dict__[name] for name in self.__dataclass_fields__}
+        own |= {"energies": None if self.energies is None else Known(self.energy), "measure": Known(self.kept)}
+        return own | {"proof": None, "whole": None, "estimate": None}
+
     @cached_property
     def energy(self) -> np.ndarray | None:
         """T + V, n [J]; None where nobody gave it."""
@@ -173,7 +186,7 @@ class Trajectory:
             UsageError: as of `certify`.
         """
         if self.estimate is None:
-            raise UsageError("nothing is known of the equations of this run", mend="take eomgen.simulate(model)")
+            raise UsageError(NO_EQUATIONS, mend="take eomgen.simulate(model), in the process that asks")
         return self.estimate(self)
 
     def certify(self) -> Any:
@@ -183,7 +196,7 @@ class Trajectory:
             UsageError: it was integrated without the equations of a model.
         """
         if self.proof is None:
-            raise UsageError("nothing is known of the equations of this run", mend="take eomgen.simulate(model)")
+            raise UsageError(NO_EQUATIONS, mend="take eomgen.simulate(model), in the process that asks")
         return self.proof(self)
 
     def ask(self, text: Any) -> Any:
@@ -195,7 +208,7 @@ class Trajectory:
             UsageError: it cannot be read; or the run is of no model.
         """
         if self.whole is None:
-            raise UsageError("nothing is known of the model of this run", mend="take eomgen.simulate(model)")
+            raise UsageError(NO_EQUATIONS, mend="take eomgen.simulate(model), in the process that asks")
         return self.whole(text)
 
     def plot(self, path: str | Path | None = None, view: str = "time") -> Any:
@@ -214,6 +227,11 @@ class Trajectory:
         if path is not None:
             picture.save(path)
         return picture
+
+    @property
+    def picture(self) -> Any:
+        """Its curves over time: shows itself in a notebook."""
+        return self.plot()
 
     @property
     def ok(self) -> bool:

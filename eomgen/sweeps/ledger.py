@@ -10,6 +10,7 @@ import sqlite3
 from collections.abc import Iterable, Iterator, Sequence
 from contextlib import suppress
 from pathlib import Path
+from typing import Any
 
 from eomgen.errors import UsageError, WriteFailed
 from eomgen.records import dataclass
@@ -30,6 +31,15 @@ class SweepLedger:
 
     connection: sqlite3.Connection
     plan: SweepPlan
+
+    def __getstate__(self) -> dict[str, Any]:
+        """Its rows; out of a pickle comes a ledger in memory."""
+        return {"connection": self.connection.serialize(), "plan": self.plan}
+
+    def __setstate__(self, state: dict[str, Any]) -> None:
+        connection = sqlite3.connect(":memory:")
+        connection.deserialize(state["connection"])
+        self.__dict__.update(state | {"connection": connection})
 
     def add(self, rows: Sequence[SampleRow]) -> int:
         """How many of them are new; a run that is there stays as it is."""

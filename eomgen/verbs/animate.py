@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import html
 import warnings
 from collections.abc import Sequence
 from dataclasses import replace
@@ -35,11 +34,13 @@ from eomgen.mechanics.structures.structure import structure_of
 from eomgen.model.parts import Model
 from eomgen.model.reader import ModelOrPath, model_at
 from eomgen.model.replaced import Values
+from eomgen.questions.run import PAGE_TIME
 from eomgen.questions.run import run as simulated
 from eomgen.records import dataclass
 from eomgen.scene.virtual import VirtualDisplacement
 from eomgen.simulation.integrator import Stepping
 from eomgen.simulation.result import Trajectory
+from eomgen.symbolic.expression.typed import Typed
 from eomgen.symbolic.numeric.tolerances import COMPUTED
 from eomgen.verbs.outcome import with_start_told
 
@@ -51,15 +52,19 @@ ROUNDS = 60  # between two frames of a strip, at most
 NOTHING_MOVES = "nothing moves: all frames show the same"
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, repr=False)
 class PlayerFrame:
     """A run's player, which shows itself in a notebook: a page of its own that asks nobody for anything."""
 
     page: str
 
+    def __repr__(self) -> str:
+        return f"<page of a motion, {len(self.page) // 1024} KB>"
+
     def _repr_html_(self) -> str:
-        inside = html.escape(self.page)
-        return f'<iframe sandbox="allow-scripts" style="width:100%;height:560px;border:0" srcdoc="{inside}"></iframe>'
+        from eomgen.page.contents import framed
+
+        return framed(self.page)
 
 
 @dataclass(frozen=True)
@@ -232,21 +237,29 @@ def _told(
 
 
 def animate(
-    run: Trajectory,
+    motion: Trajectory | ModelOrPath,
     path: str | Path | None = None,
     *,
+    time: Typed | None = None,
     fps: float = 25.0,
     speed: float = 1.0,
     trail: str | Sequence[str] = (),
     forces: bool = False,
     frames: int = 6,
+    parameters: Values | None = None,
+    start: Values | None = None,
 ) -> PlayerFrame | None:
-    """A run as a moving picture: written as .gif, .mp4, a strip .png or a page; without a path the page shows itself.
+    """A motion as a moving picture: a .gif, .mp4, a strip .png or a page; without a path the page shows itself.
 
+    Args:
+        motion: a run; or a model, which is simulated.
+        time: of a model how long, 10 s where nothing is said.
+        parameters, start: of a model, values that replace its own, each as `model_at` takes it.
     Raises:
-        UsageError: another ending, a point that is not there.
+        UsageError: another ending, a point that is not there; of a run a time or values.
         ToolMissing: .mp4 without ffmpeg.
     """
+    run = _run_of(motion, time, parameters, start)
     showing = Showing(fps, speed, (trail,) if isinstance(trail, str) else tuple(trail), forces, frames)
     if path is None:
         return PlayerFrame(player(run, showing))
@@ -259,6 +272,17 @@ def animate(
     else:
         write_movies([movie], str(path), showing, None)
     return None
+
+
+def _run_of(
+    motion: Trajectory | ModelOrPath, time: Typed | None, parameters: Values | None, start: Values | None
+) -> Trajectory:
+    """The run; of a model it is made."""
+    if not isinstance(motion, Trajectory):
+        return pipeline.simulate(motion, time=PAGE_TIME if time is None else time, parameters=parameters, start=start)
+    if time is not None or parameters or start:
+        raise UsageError("a run has its time and values already", mend="give the model in its place")
+    return motion
 
 
 def player(run: Trajectory, showing: Showing) -> str:

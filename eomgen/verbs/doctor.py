@@ -46,7 +46,7 @@ def _without(what: str) -> str:
         "C compiler": ": equations run in numpy, some 30 times slower; install cc or `pip install ziglang`",
         "cache": ": it cannot be written, code is compiled anew each time",
         "LaTeX": ": derivations are written as .tex, but cannot be typeset here",
-        "formulas": ": no report as .html, no notebook: pip install 'eomgen[report]'",
+        "formulas": ": no report as .html, no notebook: pip install math-core",
         "PDF": ": a report as .pdf takes LaTeX then: pip install 'eomgen[pdf]'",
         "space": ": pages do not play motions in space: pip install 'eomgen[space]'",
         "notebooks": ": no report as .ipynb: pip install 'eomgen[notebook]'",

@@ -299,11 +299,14 @@ def fifty_digits(partial: bool = False) -> Arithmetic:
         partial: outside its domain a function is nan, as in doubles, and so is what is made of that.
     """
     from mpmath.ctx_mp import MPContext
+    from mpmath.libmp import to_pickable
 
     from eomgen.symbolic.numeric.sure_digits import by_balls
 
     mp = MPContext()
     mp.dps = 50
+    # The class is this context's own, which pickle does not find by its name.
+    mp.mpf.__reduce__ = lambda x: (_read_again, (partial, to_pickable(x._mpf_)))
 
     def real(function: Callable[..., Any]) -> Callable[..., Any]:
         def guarded(*arguments: Any) -> Any:
@@ -331,6 +334,13 @@ def fifty_digits(partial: bool = False) -> Arithmetic:
     own["sampled"] = lambda t, k: sampled_of(k).at(t, number, +mp.pi)
     failed = (lambda x: mp.nan) if partial else _no_value
     return Arithmetic("50 digits", number, _RING | _ORDERED | functions | own, failed, partial_of(by_balls, mp))
+
+
+def _read_again(partial: bool, kept: Any) -> Any:
+    """A number with 50 digits out of a pickle."""
+    from mpmath.libmp import from_pickable
+
+    return fifty_digits(partial).number(1).context.make_mpf(from_pickable(kept))
 
 
 def digits_at(state: Mapping[Node, Any]) -> Callable[[Sequence[Scalar]], list[Any]]:
