@@ -226,15 +226,17 @@ class _Bodies:
 
         n = len(self.system.symbols.u)
         units = self._momenta(late, [*np.eye(n), np.zeros(n)])
-        P = self._momenta(late, [early[-n:], late[-n:]])
+        speeds = [state[len(self.system.symbols.q) :] for state in (early, late)]
+        P = self._momenta(late, speeds)
         M = units[:-1] - units[-1]
         found, V = np.linalg.eigh((M + M.T) / 2)
         held = found > SUMMED * max(found, default=0.0)
         whiten = (V[:, held] / np.sqrt(found[held])).T
-        columns = np.array([*pushes, *frees, *(-J for J in frees)]).reshape(-1, n) @ whiten.T
+        rows = [*pushes, *frees, *(-J for J in frees)]
+        columns = np.array(rows).reshape(len(rows), n) @ whiten.T
         change = whiten @ (P[1] - P[0])
         left = nnls(columns.T, change)[1] if len(columns) else float(np.linalg.norm(change))
-        fastest = max(1.0, float(np.max(np.abs([early[-n:], late[-n:]]))))
+        fastest = max(1.0, float(np.max(np.abs(speeds), initial=0.0)))
         if left > UNBALANCED * fastest * float(np.sqrt(np.trace(M))):
             return f"no impulses that only push give the change of momentum: {left:.3g} sqrt(J) are left"
         return ""

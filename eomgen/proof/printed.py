@@ -210,11 +210,12 @@ def least_multipliers(equations: EquationsOfMotion, state: State) -> dict[Node, 
     """Of J^T lam = M a - forcing the multipliers of least size, at a state of the motion."""
     if not equations.J:
         return {}
-    n, symbols = len(equations.M), equations.symbols
+    n, k, symbols = len(equations.M), len(equations.J), equations.symbols
     entries = (*(x for row in (*equations.M, *equations.J) for x in row), *equations.forcing)
     wide = np.array(evaluate(entries, state, fifty_digits()), dtype=object)
-    M, J = wide[: n * n].reshape(n, n), wide[n * n : -n].reshape(-1, n).astype(float)
-    needed = (M @ np.array([state[a] for a in symbols.a], dtype=object) - wide[-n:]).astype(float)
+    M, J, forcing = np.split(wide, [n * n, n * (n + k)])
+    needed = (M.reshape(n, n) @ np.array([state[a] for a in symbols.a], dtype=object) - forcing).astype(float)
+    J = J.reshape(k, n).astype(float)
     sizes = np.linalg.norm(J, axis=1)
     scaled = np.linalg.lstsq(of_one_length(J).T, needed, rcond=COMPUTED)[0]
     lam = scaled / np.where(sizes > 0, sizes, 1.0)
