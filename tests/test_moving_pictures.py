@@ -287,6 +287,27 @@ def test_a_virtual_displacement_shows_itself_in_a_notebook():
         eomgen.virtual_displacement(MODELS / "spatial_four_bar.toml", "reaction_x(crank)")
 
 
+HELD_BY_SPRINGS = """
+eomgen = 1
+space = "plane"
+bodies.beam.points = { A = [0, 0], B = [2, 0] }
+points.up = [4, 3]
+points.left = [-1, 2]
+constraints.A = { kind = "pin", points = ["beam.A"] }
+constraints.B = { kind = "support", point = "beam.B", normal = [0, 1] }
+forces.pull = { kind = "spring", points = ["up", "beam.B"], stiffness = 5, length = 1 }
+forces.other = { kind = "damper", points = ["beam.B", "left"], damping = 1 }
+"""
+
+
+@pytest.mark.parametrize("ending", [".png", ".html"])
+def test_a_structure_with_springs_at_the_ground_is_shown_displaced(tmp_path, ending):
+    """The wall behind a spring lies as it does where nothing is displaced: share 0"""
+    eomgen.virtual_displacement(eomgen.loads(HELD_BY_SPRINGS), "reaction_n(B)", tmp_path / f"a{ending}")
+    eomgen.report(eomgen.loads(HELD_BY_SPRINGS), tmp_path / "r.html")
+    assert (tmp_path / f"a{ending}").stat().st_size > 1000
+
+
 def test_of_a_mechanism_other_freedoms_stand_still_where_a_reaction_is_released():
     """The crank's pin gives way along x alone: its displacement is 1 along x, 0 along y."""
     found, stands = released(eomgen.load(MODELS / "four_bar.toml"), "reaction_x(crank)")

@@ -25,7 +25,9 @@ def walls(system: System, grounded: Sequence[Vector], free: Vector, of: str) -> 
     scene, known = SystemScene(system.motion), parameters_as_drawn(system)
     found = []
     for at in grounded:
-        dx, dy, _ = (float(x) for x in evaluate(list(map(scene.start, minus(free, at))), known, FLOAT))
+        way = tuple(map(scene.start, minus(free, at)))
+        still = dict.fromkeys(symbols_of(way), 0.0)  # the share of a virtual displacement
+        dx, dy, _ = (float(x) for x in evaluate(way, still | known, FLOAT))
         if math.hypot(dx, dy) > 0:
             level = abs(dy) >= abs(dx)
             along: Vector = (int(math.copysign(1, dy)), 0, 0) if level else (0, -int(math.copysign(1, dx)), 0)
