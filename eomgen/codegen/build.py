@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import ctypes
 import importlib.util
+import math
 import os
 import platform
 import shlex
@@ -11,6 +12,7 @@ import shutil
 import signal
 import subprocess
 import sys
+import time
 from contextlib import suppress
 from dataclasses import replace
 from functools import cache
@@ -21,9 +23,15 @@ from eomgen import kept
 from eomgen.errors import RunFailed, ToolMissing
 from eomgen.files import beside
 from eomgen.records import dataclass
+from eomgen.symbolic.numeric.work import time_left
 
 LONG_TEXT = 150_000  # characters, some 8 000 operations: there -O2 takes several seconds
-PATIENCE = 20  # seconds: under what a verb has in all, so that numpy still has its time
+PATIENCE = 20  # seconds of work: under what a verb has in all, so that numpy still has its time
+SHARE = 0.5  # of the time that a user still waits, for one compilation: what runs without it needs the other half
+LOOK = 0.1  # seconds between two looks at a compiler at work
+IDLE = 20  # seconds in which a compiler that does nothing has stopped; a loaded machine gives each its turn sooner
+TURN = 0.05  # seconds of work that are something
+_GIVEN_UP: dict[str, str] = {}  # what took a compiler too long in this process, and why: nobody waits for it twice
 MOST_SAID = 2000  # characters of a compiler
 
 
@@ -39,7 +47,7 @@ class Compiler:
         zig: as which ziglang stands in; "" where it cannot.
         flags: always; last: after the file.
         once, usual, long: of a text that is called a few times only, so that it is made soonest; of others; of long.
-        patience: seconds that it may take.
+        patience: seconds of work that it may take; how long a loaded machine needs for them nobody counts.
         mend: where it comes from.
     """
 
@@ -164,6 +172,8 @@ def _kept(text: str, by: Compiler, quickly: bool) -> Path:
     for path, _ in kept.contents(folder, name, ".so"):  # half a file kills at load
         kept.used(path)
         return path
+    if name in _GIVEN_UP:
+        raise RunFailed(_GIVEN_UP[name], command[0])
     return _compile(text, [*command, *flags], folder, name, by)
 
 
@@ -187,7 +197,11 @@ def _compile(text: str, command: list[str], folder: Path, name: str, by: Compile
         with beside(folder) as place:
             source, made = place / f"program{by.suffix}", place / "program.so"
             source.write_text(text, encoding="utf-8")
-            code, said = _ran([*command, "-o", str(made), str(source), *by.last], by, place)
+            try:
+                code, said = _ran([*command, "-o", str(made), str(source), *by.last], by, place)
+            except TimeoutError as late:
+                _GIVEN_UP[name] = f"the {by.language} compiler {late}"
+                raise RunFailed(_GIVEN_UP[name], command[0]) from None
             if code != 0 or not made.is_file():
                 raise RunFailed(
                     f"the {by.language} compiler failed: {said or f'it ended with {code}, and made nothing'}",
@@ -202,7 +216,7 @@ def _ran(command: list[str], by: Compiler, place: Path) -> tuple[int, str]:
     """(the exit code, what it said) of a compiler; it and all that it has started end with this call.
 
     Raises:
-        RunFailed: it does not come back.
+        TimeoutError: it works too long, does nothing, or takes more than its share of what a user waits.
     """
     started = subprocess.Popen(
         command,
@@ -213,15 +227,52 @@ def _ran(command: list[str], by: Compiler, place: Path) -> tuple[int, str]:
         errors="replace",
         start_new_session=True,
         cwd=place,  # where modules are left
+        env=os.environ | dict.fromkeys(("TMPDIR", "TMP", "TEMP"), str(place)),  # a full folder elsewhere is no matter
     )
     try:
-        said = started.communicate(timeout=by.patience)[1]
+        said = _awaited(started, by)
         return started.returncode, said.strip()[:MOST_SAID]
-    except subprocess.TimeoutExpired:
-        raise RunFailed(f"the {by.language} compiler did not come back within {by.patience:g} s", command[0]) from None
     finally:
         if started.poll() is None:
             _end(started)
+
+
+def _awaited(started: subprocess.Popen[str], by: Compiler) -> str:
+    """What a compiler says until it ends.
+
+    Raises:
+        TimeoutError: why nobody waits for it any longer.
+    """
+    left, begun = time_left(), time.monotonic()
+    at_most = math.inf if left is None else SHARE * left
+    worked, since = 0.0, begun
+    while True:
+        try:
+            return started.communicate(timeout=LOOK)[1]
+        except subprocess.TimeoutExpired:
+            now = time.monotonic()
+        work = _work_of(started.pid)
+        if work is None:  # nobody tells: what passes on the clock stands for it
+            work = now - begun
+        if work >= worked + TURN:
+            worked, since = work, now
+        if work > by.patience:
+            raise TimeoutError(f"did not come back within {by.patience:g} s of its own work")
+        if now - since > min(IDLE, by.patience):
+            raise TimeoutError(f"did not come back: it did nothing for {min(IDLE, by.patience):g} s")
+        if now - begun > at_most:
+            raise TimeoutError(f"did not come back within {at_most:.3g} s, half of the time to wait (--patience)")
+
+
+def _work_of(session: int) -> float | None:
+    """CPU seconds of all processes of a session, ended ones included; None where the system does not tell."""
+    ticks, found = 0, False
+    for stat in Path("/proc").glob("[0-9]*/stat"):
+        with suppress(OSError, ValueError, IndexError):
+            fields = stat.read_text().rpartition(")")[2].split()
+            if int(fields[3]) == session:
+                ticks, found = ticks + sum(map(int, fields[11:15])), True
+    return ticks / os.sysconf("SC_CLK_TCK") if found else None
 
 
 def _end(started: subprocess.Popen[str]) -> None:

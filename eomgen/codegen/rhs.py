@@ -3,10 +3,10 @@
 from __future__ import annotations
 
 import sys
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from contextlib import suppress
 from functools import cached_property
-from typing import Any
+from typing import Any, TypeVar
 
 import numpy as np
 
@@ -22,6 +22,8 @@ from eomgen.errors import RunFailed, ToolMissing, UsageError
 from eomgen.model.parts import Model
 from eomgen.model.replaced import with_values
 from eomgen.model.values import numeric_parameters
+
+Made = TypeVar("Made")
 
 _said: set[str] = set()
 
@@ -89,7 +91,7 @@ class RightHandSide:
         p = np.ascontiguousarray(p, dtype=float)
         if p.shape != (len(x), len(self.parameters)):
             raise UsageError(f"p is {' x '.join(map(str, p.shape))}, not {len(x)} x {len(self.parameters)}")
-        if self.target == "c":
+        if self.target == "c" and self._in_lanes is not None:
             return self._in_lanes(t, x, p, given)
         if self.target == "numpy":
             return self._functions.many(t, x, p, given)
@@ -97,9 +99,9 @@ class RightHandSide:
         return np.vstack([np.empty((0, len(self.program.outputs))), *(self._functions.many(*row) for row in rows)])
 
     @cached_property
-    def _in_lanes(self) -> ProgramInLanes:
-        """The program in lanes."""
-        return ProgramInLanes(self.program)
+    def _in_lanes(self) -> ProgramInLanes | None:
+        """The program in lanes; None where no compiler makes it."""
+        return in_c(lambda: ProgramInLanes(self.program), "states are evaluated one by one")
 
     @cached_property
     def without_series(self) -> str:
@@ -160,11 +162,17 @@ def compiled(program: Program, target: str | None = None, *, x0: Any = None, p0:
     """
     if target is not None:
         return RightHandSide(program, target_named(target).load(program), target, x0, p0)
+    found = in_c(lambda: compiled(program, "c", x0=x0, p0=p0), "the equations run in numpy, some 30 times slower")
+    return compiled(program, "numpy", x0=x0, p0=p0) if found is None else found
+
+
+def in_c(make: Callable[[], Made], otherwise: str) -> Made | None:
+    """What a compiler makes; None where there is none, or it fails: that, and what is done otherwise, is said once."""
     try:
-        return compiled(program, "c", x0=x0, p0=p0)
+        return make()
     except (RunFailed, ToolMissing) as error:
-        _say(f"{error.what.splitlines()[0]}: the equations run in numpy, some 30 times slower")
-        return compiled(program, "numpy", x0=x0, p0=p0)
+        _say(f"{error.what.splitlines()[0]}: {otherwise}")
+        return None
 
 
 def _compiled_again(program: Program, target: str | None, x0: Any, p0: Any) -> RightHandSide:

@@ -11,12 +11,13 @@ import contextvars
 from collections.abc import Callable, Mapping, Sequence
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import replace
+from functools import partial
 from typing import Any
 
 import numpy as np
 
 from eomgen.codegen.batching import STATUS, Asked, Batch, FoundRuns
-from eomgen.codegen.rhs import parameter_vector
+from eomgen.codegen.rhs import in_c, parameter_vector
 from eomgen.codegen.series import order_for
 from eomgen.codegen.taylor import without_series
 from eomgen.errors import EomgenError, ExpressionError, RunFailed, ToolMissing, UsageError
@@ -225,7 +226,8 @@ def _in_marches(plan: _Plan, threads: int) -> Told | None:
     found = None
     if len(which):
         starts = x0[which], p[which]
-        found = marched(phase, starts, step, plan.instants, plan.time, threads=threads, check=check_patience)
+        march = partial(marched, phase, starts, step, plan.instants, plan.time, threads=threads, check=check_patience)
+        found = in_c(march, "runs are made one by one")
     if found is None:
         return None
     x, steps = np.full((plan.runs, len(plan.instants), len(names)), np.nan), np.zeros(plan.runs, dtype=int)

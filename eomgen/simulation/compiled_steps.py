@@ -8,13 +8,14 @@ from __future__ import annotations
 
 import ctypes
 import time
+from collections.abc import Callable
 from itertools import accumulate
 from typing import Any, Protocol
 
 import numpy as np
 from numpy.polynomial.polynomial import polyval
 
-from eomgen.codegen.rhs import RightHandSide
+from eomgen.codegen.rhs import RightHandSide, in_c
 from eomgen.codegen.series import ALONE, order_for
 from eomgen.codegen.targets.base import Address
 from eomgen.simulation import event_location
@@ -58,6 +59,11 @@ class Tolerances(Protocol):
 
     @property
     def method(self) -> str: ...
+
+
+def _in_c(functions: tuple[RightHandSide, ...]) -> tuple[Callable[[np.ndarray], Address], ...] | None:
+    """As of `compiled_functions`; None where no compiler makes them, and every step is looked at in Python."""
+    return in_c(lambda: compiled_functions(functions), "steps are watched in Python, slower")
 
 
 class CompiledSteps:
@@ -167,11 +173,12 @@ class CompiledSteps:
             else:
                 self._lookout = lookout
                 self._near(lookout, functions)
+        made = _in_c(tuple(function for _, function, _ in functions)) if functions and not blind else ()
+        blind = blind or made is None
         m.is_blind = blind
         if search is not None and not blind:
             search.seen = self._seen
-        made = compiled_functions(tuple(function for _, function, _ in functions)) if functions and not blind else ()
-        for (name, _, p), address in zip(functions, made, strict=False):
+        for (name, _, p), address in zip(functions, made or (), strict=False):
             found = address(p)
             self._kept.append(found)
             place = getattr(m, name)
@@ -221,9 +228,9 @@ class CompiledSteps:
         slope = self._slope()
         if not m.jac:
             m.jac, m.real, m.both, m.Z = (self._put(np.zeros(k)) for k in (n * n, n * n, 4 * n * n, 7 * n))
-            if isinstance(slope, ExactSlope):
-                (made,) = compiled_functions((slope.function,))
-                found = made(slope.p)
+            made = _in_c((slope.function,)) if isinstance(slope, ExactSlope) else None
+            if isinstance(slope, ExactSlope) and made is not None:
+                found = made[0](slope.p)
                 self._kept.append(found)
                 m.slope, m.has_slope, m.slope_speeds, m.slope_rows = function_at(found), 1, slope.n, slope.k
                 s = slope.n + slope.k

@@ -6,12 +6,12 @@ import math
 from bisect import bisect_left, bisect_right
 from collections.abc import Callable, Sequence
 from dataclasses import field, replace
-from functools import cache
+from functools import cache, partial
 from typing import Any, Protocol
 
 import numpy as np
 
-from eomgen.codegen.rhs import RateFunction
+from eomgen.codegen.rhs import RateFunction, in_c
 from eomgen.codegen.spheres import SpherePlaces
 from eomgen.records import dataclass, with_fields
 from eomgen.simulation.compiled_steps import COMPILED, CompiledSteps, Watched
@@ -269,9 +269,13 @@ def march(
     watch = EventSearch(events, start, x0) if events is not None else None
     late = slope if slope is not None else lambda: None
     how, instead = _possible(how, f)
+    solver: Steps | None = None
     if how.method in COMPILED and getattr(f, "address", None) is not None:
         watched: Watched = (hold, watch, lookout)
-        solver: Steps = CompiledSteps(f, span, x0, how=how, instants=instants, watched=watched, slope=late)
+        marched = partial(CompiledSteps, f, span, x0, how=how, instants=instants, watched=watched, slope=late)
+        solver = in_c(marched, "steps are taken in Python, slower")
+    if solver is not None:
+        pass
     elif how.method == HEYOKA:
         program, p = (f.rhs.program, f.p) if isinstance(f, RateFunction) else (None, ())
         solver = HeyokaSteps(program, p, span, x0, tolerance=how.rtol, breakpoints=how.breakpoints)

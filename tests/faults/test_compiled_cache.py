@@ -8,14 +8,20 @@ import time
 from dataclasses import replace
 from pathlib import Path
 
+import numpy as np
 import pytest
 from hand_made import cart_pole, pendulum
 
+import eomgen
 from eomgen import kept
 from eomgen.codegen import build, rhs
 from eomgen.codegen.program import right_hand_side
 from eomgen.codegen.rhs import compiled
 from eomgen.errors import RunFailed
+from eomgen.simulation import march
+from eomgen.symbolic.numeric.work import patience
+
+MODELS = Path(__file__).parent.parent.parent / "models"
 
 pytestmark = [
     pytest.mark.slow,
@@ -70,11 +76,47 @@ def test_a_compiler_that_hangs_is_ended_with_all_that_it_started(cache, tmp_path
     """A shell that waits for another process, which holds its streams: both are gone, soon."""
     compiler(tmp_path, monkeypatch, f"sleep 1000 & echo $! > {tmp_path}/child; wait")
     begun = time.monotonic()
-    with pytest.raises(RunFailed, match=r"did not come back within 0\.5 s"):
+    with pytest.raises(RunFailed, match=r"did not come back: it did nothing for 0\.5 s"):
         build.library(TEXT, by=replace(build.C, patience=0.5))
     assert time.monotonic() - begun < 20 and list(cache.iterdir()) == []
     child = Path(f"/proc/{(tmp_path / 'child').read_text().strip()}/stat")
     assert not child.exists() or child.read_text().split()[2] == "Z"
+
+
+def test_a_compiler_is_ended_by_its_own_work_and_not_by_the_clock(cache, tmp_path, monkeypatch):
+    """One that waits for its turn as a loaded machine lets it is awaited; one that works on and on is not"""
+    compiler(tmp_path, monkeypatch, 'sleep 1; exec cc "$@"')
+    build.library(TEXT, by=replace(build.C, patience=2.5))
+    compiler(tmp_path, monkeypatch, "while :; do :; done")
+    with pytest.raises(RunFailed, match=r"did not come back within 0\.5 s of its own work"):
+        build.library(TEXT + "/* again */", by=replace(build.C, patience=0.5))
+
+
+def test_a_compiler_leaves_half_of_the_patience_to_what_runs_without_it(cache, tmp_path, monkeypatch):
+    """With 2 s to wait it has 1 s, once: what was given up is not tried again in this process"""
+    compiler(tmp_path, monkeypatch, "sleep 1000")
+    with patience(2.0):
+        begun = time.monotonic()
+        for _ in range(2):
+            with pytest.raises(RunFailed, match="half of the time to wait"):
+                build.library(TEXT + "/* awaited */")
+        assert 0.9 < time.monotonic() - begun < 1.9
+
+
+@pytest.mark.parametrize("limit", [3000, 20_000])
+def test_what_no_compiler_makes_runs_without_it(limit, cache, tmp_path, monkeypatch, capsys):
+    """Texts over a length fail: the rates in numpy, or steps in Python; the same numbers, each remark once"""
+    usual = eomgen.simulate(MODELS / "four_bar.toml", time=0.3, samples=4)
+    text = f'for a in "$@"; do case "$a" in *.c) n=$(wc -c < "$a");; esac; done; [ $n -lt {limit} ] && exec cc "$@"; '
+    compiler(tmp_path, monkeypatch, text + "echo too long >&2; exit 1")
+    march.library_of_march.cache_clear()
+    for _ in range(2):
+        found = eomgen.simulate(eomgen.load(MODELS / "four_bar.toml"), time=0.3, samples=4)
+        assert np.allclose(found.x, usual.x, rtol=0, atol=1e-6) and found.ok
+    many = eomgen.simulate_many(MODELS / "four_bar.toml", time=0.3, samples=4, parameters={"m": [1, 1]})
+    assert set(many.status) == {"finished"}
+    said = capsys.readouterr().err.splitlines()
+    assert said and len(said) == len(set(said)) and all("the C compiler failed: too long: " in line for line in said)
 
 
 def test_an_entry_of_which_one_bit_is_turned_is_never_loaded(cache, monkeypatch):

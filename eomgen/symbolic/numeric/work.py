@@ -49,7 +49,7 @@ class PatienceEnded(Exception):
     """
 
 
-LATE = 1.0  # s, after which what does not ask is stopped
+LATE = 1.0  # s, after which what does not ask is stopped, or a tenth of the patience where that is less
 SOON = 0.05  # s, after which what was importing is looked at again
 
 
@@ -94,6 +94,12 @@ def check_patience() -> None:
     clock = _CLOCK.get()
     if clock is not None and time.monotonic() > clock.end:
         raise PatienceEnded
+
+
+def time_left() -> float | None:
+    """Seconds of patience that are left; None where nobody counts them."""
+    clock = _CLOCK.get()
+    return None if clock is None or clock.end == math.inf else max(0.0, clock.end - time.monotonic())
 
 
 def keep_what_there_is() -> None:
@@ -176,7 +182,7 @@ def _watch(clock: _Clock) -> None:
 
 def _stop_late(clock: _Clock, closed: threading.Event, thread: int) -> None:
     """Throws into a thread that does not ask, again where a library swallowed it."""
-    wait = clock.seconds + LATE
+    wait = clock.seconds + min(LATE, clock.seconds / 10)
     while not closed.wait(wait):
         with clock.lock:
             importing = _imports(thread)
