@@ -188,8 +188,11 @@ def simulate(
         instants = SAMPLES if samples is None else samples
         found = controlled_run(equations, controllers, time=time, samples=instants, how=how, target=target)
         return _warned(model, found)
-    how = {"rtol": rtol, "atol": atol, "target": target, "method": method, "stabilization": stabilization}
-    run = recalled(model, (get_ident(), *how.values()), lambda: simulator(model, **how))
+    run = recalled(
+        model,
+        (get_ident(), rtol, atol, target, method, stabilization),
+        lambda: simulator(model, rtol=rtol, atol=atol, target=target, method=method, stabilization=stabilization),
+    )
     samples = SAMPLES if samples is None else samples
     found = run(time, samples=samples, columns=(REACTIONS, OUTPUTS), until=until)
     return _warned(model, found)

@@ -5,7 +5,7 @@ from __future__ import annotations
 import re
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import replace
-from itertools import pairwise
+from itertools import zip_longest
 
 from eomgen.documents.document import Document
 from eomgen.documents.latex_lines import aligned, lead_of, rows_of, runs_of
@@ -144,7 +144,7 @@ def latex_blocks(setter: Setter, statements: Sequence[Statement]) -> list[str]:
     """Paragraphs, displays and tables; formulas that follow one another are aligned together."""
     blocks: list[str] = []
     groups = grouped(statements)
-    for group, after in pairwise([*groups, None]):
+    for group, after in zip_longest(groups, groups[1:]):
         if isinstance(group, list):
             blocks += [rf"\[{block}\]" for block in display_blocks(setter, group)]
         elif isinstance(group, Prose):  # a display belongs to the paragraph before it

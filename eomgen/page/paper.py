@@ -6,7 +6,7 @@ import re
 import shutil
 import subprocess
 import tempfile
-from itertools import pairwise
+from itertools import zip_longest
 from pathlib import Path
 
 from eomgen.documents.latex import Group, display_blocks, grouped, piece_latex, setter_of, side_latex
@@ -103,7 +103,7 @@ def _section(setter: Setter, section: ReportSection, certificate: Certificate | 
     for step in section.steps:
         lines += [f"#heading(level: 2, {string(step.title)})"] if step.title not in ("", section.title) else []
         groups = grouped(step.statements)
-        for group, after in pairwise([*groups, None]):
+        for group, after in zip_longest(groups, groups[1:]):
             parts = _group(setter, group)
             lines += [_kept_with_next(parts[0])] if isinstance(group, Prose) and isinstance(after, list) else parts
     lines += [_drawing(setter, drawing) for drawing in section.drawings]
