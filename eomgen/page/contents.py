@@ -6,6 +6,7 @@ import html
 import tempfile
 from collections.abc import Callable, Mapping
 from dataclasses import replace
+from importlib import import_module
 from pathlib import Path
 from typing import Any
 
@@ -184,9 +185,8 @@ class Report:
 
     def _repr_html_(self) -> str:
         """The page in a frame of its own, for notebooks."""
-        from eomgen.page.formats import written_as  # formats are drawn of contents
-
-        return framed(str(written_as(self, ".html", "report.html")["report.html"]))
+        formats = import_module("eomgen.page.formats")  # they are made of contents, and come later
+        return framed(str(formats.written_as(self, ".html", "report.html")["report.html"]))
 
     @property
     def certificate(self) -> Certificate | None:
