@@ -16,7 +16,7 @@ from operator import attrgetter
 from reprlib import recursive_repr
 from typing import TYPE_CHECKING, Any, TypeVar, cast
 
-Made = TypeVar("Made")
+_Made = TypeVar("_Made")
 
 RECALLED = "_recalled"  # where a record keeps what was made of it
 MOST_RECALLED = 8
@@ -48,7 +48,7 @@ else:
         return made if cls is None else made(cls)
 
 
-class Known:
+class Pickled:
     """A function that gives what was made already: pickles carry it in place of the one that makes it."""
 
     def __init__(self, value: Any) -> None:
@@ -65,7 +65,7 @@ def with_fields(record: Any, **changes: Any) -> Any:
     return made
 
 
-def recalled(record: Any, key: Hashable, make: Callable[[], Made]) -> Made:
+def recalled(record: Any, key: Hashable, make: Callable[[], _Made]) -> _Made:
     """make(), kept with a frozen record; of its last MOST_RECALLED keys each is made once.
 
     It lives as long as the record, and no longer; a class whose records keep something leaves it out of its pickles.
@@ -77,7 +77,7 @@ def recalled(record: Any, key: Hashable, make: Callable[[], Made]) -> Made:
     known[key] = found  # now the youngest
     while len(known) > MOST_RECALLED:
         known.pop(next(iter(known)), None)
-    return cast("Made", found)
+    return cast("_Made", found)
 
 
 def _frozen(cls: type, *, kw_only: bool, eq: bool, shown: bool) -> type:

@@ -23,7 +23,7 @@ from eomgen.model.parts import Model
 from eomgen.model.replaced import with_values
 from eomgen.model.values import numeric_parameters
 
-Made = TypeVar("Made")
+_Made = TypeVar("_Made")
 
 _said: set[str] = set()
 
@@ -166,7 +166,7 @@ def compiled(program: Program, target: str | None = None, *, x0: Any = None, p0:
     return compiled(program, "numpy", x0=x0, p0=p0) if found is None else found
 
 
-def in_c(make: Callable[[], Made], otherwise: str) -> Made | None:
+def in_c(make: Callable[[], _Made], otherwise: str) -> _Made | None:
     """What a compiler makes; None where there is none, or it fails: that, and what is done otherwise, is said once."""
     try:
         return make()

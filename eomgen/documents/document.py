@@ -14,7 +14,7 @@ from eomgen.model.parts import Model
 from eomgen.model.replaced import Taken
 from eomgen.model.values import exact_parameters
 from eomgen.proof.check import Certificate
-from eomgen.records import Known, dataclass
+from eomgen.records import Pickled, dataclass
 from eomgen.symbolic.expression.graph import Node, Scalar
 from eomgen.symbolic.print.symbols import Symbol
 
@@ -73,7 +73,7 @@ class Document:
     def __getstate__(self) -> dict[str, Any]:
         """With its entries as they are."""
         own = {name: self.__dict__[name] for name in self.__dataclass_fields__}
-        return own | {"entries": Known(self.entries())}
+        return own | {"entries": Pickled(self.entries())}
 
     def __repr__(self) -> str:
         return f"<document {self.title!r} of {len(self.steps)} sections>"

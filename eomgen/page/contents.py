@@ -17,7 +17,7 @@ from eomgen.documents.statements import Prose, Step
 from eomgen.model.table import Table
 from eomgen.page.markup import Html
 from eomgen.proof.check import Certificate, Check
-from eomgen.records import Known, dataclass
+from eomgen.records import Pickled, dataclass
 
 SECTIONS = {
     "figure": "Figure",
@@ -151,7 +151,7 @@ class ReportSection:
     def __getstate__(self) -> dict[str, Any]:
         """With what moves as it is."""
         own = {name: self.__dict__[name] for name in self.__dataclass_fields__}
-        return own if self.live is None else own | {"live": Known(self.live())}
+        return own if self.live is None else own | {"live": Pickled(self.live())}
 
     @property
     def title(self) -> str:

@@ -15,7 +15,7 @@ import numpy as np
 from eomgen import files
 from eomgen.errors import UsageError
 from eomgen.model.own_units import OUTPUT
-from eomgen.records import Known, dataclass
+from eomgen.records import Pickled, dataclass
 from eomgen.symbolic.expression.units import Unit
 from eomgen.symbolic.numeric.tolerances import SOLVED
 
@@ -82,7 +82,7 @@ class Phase:
         """What there is in numbers; equations and compiled code do not go into a pickle."""
         own = {name: self.__dict__[name] for name in ("start", "end", "ended_by", "rows")}
         made = {"tracked": self.track, "edges": self._edges if self.edges is not None else None}
-        return own | {"model": None} | {name: None if x is None else Known(x) for name, x in made.items()}
+        return own | {"model": None} | {name: None if x is None else Pickled(x) for name, x in made.items()}
 
 
 @dataclass(frozen=True)
@@ -150,7 +150,7 @@ class Trajectory:
     def __getstate__(self) -> dict[str, Any]:
         """All its numbers. What asks the equations again (`certify`, `ask`, `accuracy`) does not go into a pickle."""
         own = {name: self.__dict__[name] for name in self.__dataclass_fields__}
-        own |= {"energies": None if self.energies is None else Known(self.energy), "measure": Known(self.kept)}
+        own |= {"energies": None if self.energies is None else Pickled(self.energy), "measure": Pickled(self.kept)}
         return own | {"proof": None, "whole": None, "estimate": None}
 
     @cached_property
