@@ -62,7 +62,7 @@ def derivation_of(
     """
     system = equations.system
     model = system.scope.model
-    reader = Reader(full=full, gathers=model.space == "space")
+    reader = Reader(full=full, gathers=model.space == "space", positive=system.scope.positive)
     letters = letters_of(system)
     steps, result = _by_method(equations, reader, method, letters)
     known = method == "kinetostatic" or bool(equations.friction)  # the table of the reactions stands further up

@@ -43,7 +43,7 @@ def integral_steps(
     Args:
         in_time: the same with all that is driven as functions of time; None: they are so.
     """
-    laws = _laws(equations, reader) if in_time is None else _laws(in_time, Reader(gathers=reader.gathers))
+    laws = _laws(equations, reader) if in_time is None else _laws(in_time, Reader(gathers=reader.gathers, positive=reader.positive))
     return (*_integrals(equations, reader), *laws)
 
 

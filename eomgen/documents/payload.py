@@ -44,7 +44,9 @@ class Texts:
 def payload_texts(equations: EquationsOfMotion) -> Texts:
     """What the payload says of the equations of motion, the reactions left out."""
     fields = _fields(equations)
-    definitions, texts = _texts([x for field in fields.values() for x in field.scalars], _taken(equations))
+    definitions, texts = _texts(
+        [x for field in fields.values() for x in field.scalars], equations.system.scope.positive, _taken(equations)
+    )
     return Texts(fields, definitions, texts)
 
 
@@ -139,10 +141,12 @@ def _sides(equations: EquationsOfMotion) -> tuple[Scalar, ...]:
     return tuple(sides)
 
 
-def _texts(scalars: Sequence[Scalar], taken: frozenset[str]) -> tuple[list[tuple[str, str]], list[str]]:
+def _texts(
+    scalars: Sequence[Scalar], positive: frozenset[Node], taken: frozenset[str]
+) -> tuple[list[tuple[str, str]], list[str]]:
     """The texts, and the named parts that they share where all in full would be too long."""
     whole = sum(text_size(x) for x in scalars)
-    written = without_cases(Reader().short(scalars) if whole <= TRIED * len(scalars) else scalars)
+    written = without_cases(Reader(positive=positive).short(scalars) if whole <= TRIED * len(scalars) else scalars)
     if sum(text_size(x) for x in written) <= LARGEST:
         return [], [to_text(x) for x in written]
     return with_definitions(without_cases(scalars), NAMED_PART, taken)

@@ -31,7 +31,7 @@ def reactions_payload(equations: EquationsOfMotion, taken: frozenset[str]) -> di
         taken: names that no shared part may have.
     """
     try:
-        readings = readings_of(equations, Reader())
+        readings = readings_of(equations, Reader(positive=equations.system.scope.positive))
         names = named_reactions(readings.ways[0].balance)
     except DerivationError as error:
         message = f"{error.what}; {error.mend}" if error.mend else error.what
@@ -50,7 +50,7 @@ def reactions_payload(equations: EquationsOfMotion, taken: frozenset[str]) -> di
 
 def null_space(equations: EquationsOfMotion) -> list[dict[str, str]]:
     """What may be added to indeterminate reactions without a trace: for each free one {name: coefficient}."""
-    readings = readings_of(equations, Reader())
+    readings = readings_of(equations, Reader(positive=equations.system.scope.positive))
     spaces = _null_space(readings, named_reactions(readings.ways[0].balance))
     texts = iter(_texts(readings, [x for space in spaces for x in space.values()], frozenset())[1])
     return [{name: next(texts) for name in space} for space in spaces]
@@ -120,7 +120,7 @@ def reaction_formulas(equations: EquationsOfMotion) -> dict[str, ReactionFormula
     Raises:
         DerivationError: a body is held by nothing; a force acts at no place.
     """
-    readings = readings_of(equations, Reader())
+    readings = readings_of(equations, Reader(positive=equations.system.scope.positive))
     return {named.name: _formula(readings, named) for named in named_reactions(readings.ways[0].balance)}
 
 

@@ -10,7 +10,7 @@ from eomgen.records import dataclass
 from eomgen.symbolic.exact.book_form import book_form
 from eomgen.symbolic.exact.collected_sums import BRACKETS
 from eomgen.symbolic.exact.equality import equal_at_random_states
-from eomgen.symbolic.exact.normal_form import TooLarge, common_factor, normal_form
+from eomgen.symbolic.exact.normal_form import TooLarge, common_factor, normal_form, readable
 from eomgen.symbolic.exact.roots import Rooted, readable_over, rooted
 from eomgen.symbolic.exact.squares_of_sums import with_squares
 from eomgen.symbolic.expression.derivative import substituted
@@ -45,10 +45,11 @@ class Reader:
         full: what is too long to print is printed as it is, and not left out.
         gathers: sums of parameters stand in parentheses before what moves, and squares of sums are left, where that
             is shorter: so the equations of bodies that turn in space are written.
+        positive: symbols that stand for positive numbers: the length sqrt(l^2) of a rod is l.
     """
 
-    def __init__(self, *, full: bool = False, gathers: bool = False) -> None:
-        self.full, self.gathers = full, gathers
+    def __init__(self, *, full: bool = False, gathers: bool = False, positive: Collection[Node] = ()) -> None:
+        self.full, self.gathers, self.positive = full, gathers, positive
         self.raw: set[Scalar] = set()  # what is too long to print whole
         self.roots: dict[Node, Scalar] = {}  # what the symbols in `shown` stand for
         self._known: dict[Scalar, Scalar | None] = {}
@@ -65,7 +66,16 @@ class Reader:
         return self._known[x]
 
     def _whole(self, x: Scalar) -> Scalar | None:
-        return self._shortened(*self.with_symbols((x,)))
+        return self._shortened(*self.with_symbols((self._with_sizes(x),)))
+
+    def _with_sizes(self, x: Scalar) -> Scalar:
+        """x with every root of a positive parameter's square as what it is: l for sqrt(l^2)."""
+        if not self.positive or not holds_op(x, "sqrt", "abs"):
+            return x
+        sizes = [node for node in order((x,)) if node.op in ("sqrt", "abs") and node.graph.is_constant(node)]
+        known = {node: readable(node, Work.ENTRY, self.positive) for node in sizes}
+        known = {node: size for node, size in known.items() if not holds_op(size, "sqrt", "abs")}
+        return substituted((x,), known)[0] if known else x
 
     def _by_cases(self, x: Scalar, condition: Node) -> Scalar | None:
         """x where the condition holds, and where it does not, each in readable form."""
@@ -95,11 +105,15 @@ class Reader:
         try:
             if held and len(normal_form(x, Work.ENTRY).terms) > WAVES:
                 return None
-            short = readable_over(x, held, Work.ENTRY) if held else book_form(x, most=WAVES)
+            short = (
+                readable_over(x, held, Work.ENTRY, self.positive)
+                if held
+                else book_form(x, positive=self.positive, most=WAVES)
+            )
         except TooLarge:
             return None
         if self.gathers and not held:
-            squares = with_squares(x, Work.ENTRY)
+            squares = with_squares(x, Work.ENTRY, self.positive)
             short = squares if length_of(squares) + BRACKETS < length_of(short) else short
         left_alone = held or holds_roots(x)
         return x if left_alone and length_of(x) < length_of(short) else short

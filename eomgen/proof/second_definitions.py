@@ -121,6 +121,16 @@ class NearbyStates:
         half = (flat[0] + flat[4] + flat[8]) / 2
         return [[(half if i == j else 0) - flat[3 * i + j] for j in range(3)] for i in range(3)]
 
+    def given_energy(self) -> Any:
+        """The expressions of the file, coordinates' rates as differences say."""
+        scope = self.state.equations.system.scope
+        q = scope.symbols.q
+        names = {f"{x.name}'": scope.graph.symbol(f"(difference of {x.name})") for x in q}
+        known = {**self._way.now, **dict(zip(names.values(), self.along(q)[1], strict=True))}
+        stated = [force.kinetic for force in scope.model.forces.values() if force.kinetic is not None]
+        given = [formula.evaluate({**scope.names, **names}) for formula in stated]
+        return sum(evaluate(given, known, fifty_digits()), start=0 * SECOND_STEP)
+
     def worked(self, body: str | None = None) -> Any:
         """Of every body F . v + tau . w, and s' times the effort of every joint."""
         system = self.state.equations.system
@@ -206,7 +216,7 @@ class NearbyStates:
         found: list[Any] = sorted(context.eigsy(context.matrix(rows), eigvals_only=True))
         return found
 
-    def faster(self, speed: str, by: int) -> NearbyStates:
+    def faster(self, speed: str, by: float) -> NearbyStates:
         """The same with one speed larger.
 
         Raises:

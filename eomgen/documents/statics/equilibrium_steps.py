@@ -29,11 +29,11 @@ MOST_SHOWN = 4  # coordinates of a K that is printed
 
 def equilibrium_steps(found: Equilibria, reactions: ReactionsOrWhy | None) -> tuple[Step, ...]:
     """The balance at rest, every place, its stability, and the reactions at the nearest one."""
-    reader = Reader()
+    scope = found.statics.system.scope
+    reader = Reader(positive=scope.positive)
     steps: tuple[Step, ...] = (rest_balance_step(found.statics, reader), _places(found))
     if reactions:
         steps = (*steps, _stability(found), *_reactions(found.found[0], reactions))
-    scope = found.statics.system.scope
     return with_roots_named(Written(steps, (), ()), scope.graph, scope.names, reader.roots).steps
 
 

@@ -26,7 +26,7 @@ from eomgen.symbolic.numeric.evaluation import NoValue, evaluate, fifty_digits, 
 from eomgen.symbolic.numeric.newton import Newton
 from eomgen.symbolic.numeric.tolerances import CLOSED_AT_50, LEAST_CHANGE, SUMMED
 
-CLOSING = Newton(enough=CLOSED_AT_50, stalls=SUMMED, damped=True)
+CLOSING = Newton(enough=CLOSED_AT_50, stalls=SUMMED, damped=True, again=True)
 SPREADS = (0.1, 0.01, 0.001)  # how far from the start a generic configuration is looked for
 
 

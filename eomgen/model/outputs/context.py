@@ -124,6 +124,9 @@ class Trial(Protocol):
             NoValue: they count, and there are some.
         """
 
+    def given_energy(self) -> Any:
+        """The kinetic energies that the model gives by expressions, the rates in them by differences."""
+
     def worked(self, body: str | None = None) -> Any:
         """Power of everything applied, or of what is applied to one body: forces and couples on differences of poses.
 
@@ -148,7 +151,7 @@ class Trial(Protocol):
             NoValue: it shares its force with others; there is friction.
         """
 
-    def faster(self, speed: str, by: int) -> Trial:
+    def faster(self, speed: str, by: float) -> Trial:
         """The same with one speed larger.
 
         Raises:

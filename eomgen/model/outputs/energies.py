@@ -1,6 +1,6 @@
 """kinetic_energy, potential_energy, power: of the whole, of one body, or of one force.
 
-By the second way T = sum m v.v/2 over particles, and the power of a force whose potential does not see time is -dV/dt.
+By the second way T = sum m v.v/2 over particles, what the file gives as an energy beside it, and the power of a force whose potential does not see time is -dV/dt.
 """
 
 from __future__ import annotations
@@ -17,8 +17,9 @@ from eomgen.symbolic.numeric.evaluation import NoValue
 
 
 def _of_particles(trial: Trial, call: Call) -> Any:
-    bodies = names_of(call) or trial.scene.bodies
-    return sum(m * dot(v, v) / 2 for body in bodies for m, _, v in trial.particles(body))
+    asked = names_of(call)
+    of_bodies = sum(m * dot(v, v) / 2 for body in asked or trial.scene.bodies for m, _, v in trial.particles(body))
+    return of_bodies if asked else of_bodies + trial.given_energy()
 
 
 def _lost(trial: Trial, call: Call) -> Any:

@@ -6,7 +6,7 @@ k*(1 - l0/r)*(x2 - x1), and nothing is made rational that was not.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Container, Iterator, Mapping, Sequence
+from collections.abc import Callable, Collection, Container, Iterator, Mapping, Sequence
 
 from eomgen.records import dataclass
 from eomgen.symbolic.exact.expansion import Expansion
@@ -127,7 +127,7 @@ def _over(x: Scalar, divisors: Sequence[Node], limit: int) -> Scalar:
         return x
 
 
-def readable_over(x: Scalar, roots: Sequence[Node], limit: int) -> Scalar:
+def readable_over(x: Scalar, roots: Sequence[Node], limit: int, positive: Collection[Node] = ()) -> Scalar:
     """x multiplied out but for what is divided by the symbols `roots`: k*(1 - l0/r)*(x2 - x1).
 
     Raises:
@@ -135,7 +135,7 @@ def readable_over(x: Scalar, roots: Sequence[Node], limit: int) -> Scalar:
     """
     if type(x) is not Node:
         return x
-    expansion = Expansion(x.graph, limit)
+    expansion = Expansion(x.graph, limit, positive)
     found = expansion.of(x)
     writer = Writer(expansion)
     atoms = {symbol.index for symbol in roots}
