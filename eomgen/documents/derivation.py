@@ -17,8 +17,8 @@ from eomgen.documents.reaction_names import Lettered, lettered
 from eomgen.documents.reaction_steps import along_the_motion, letters_of, reactions_step
 from eomgen.documents.reading import Reader
 from eomgen.documents.setting_steps import setting_steps
-from eomgen.documents.statements import Formula, Law, Step
-from eomgen.documents.text import side_text
+from eomgen.documents.statements import Formula, Law, Prose, Step
+from eomgen.documents.text import prose_text, side_text
 from eomgen.mechanics.bodies.armature import given_energy
 from eomgen.mechanics.bodies.inertia import BodyEnergy, armature_energy, body_energies, kinetic_energy
 from eomgen.mechanics.equations.equations_of_motion import EquationsOfMotion
@@ -206,12 +206,17 @@ _BY_METHOD = {"lagrange": _lagrange, "projection": _projection}
 def printed_formulas(document: Document) -> Printed:
     """The formulas that hold at any state, and what is said to stay constant, as they are printed."""
     formulas: list[tuple[str, ...]] = []
-    constants: list[str] = []
+    constants: list[tuple[str, str]] = []
     for step in (step for step in document.steps if step.key not in FROM_THE_START):
-        for statement in (s for s in step.statements if isinstance(s, Formula)):
+        while_ = ""
+        for statement in step.statements:
+            if isinstance(statement, Prose):
+                while_ = prose_text(statement).rstrip(":.").partition(" while ")[2]
+            if not isinstance(statement, Formula):
+                continue
             sides = tuple(map(side_text, statement.sides))
             if step.key == "integrals" and type(statement.sides[0]) is not Node:  # a symbol is a part of what follows
-                constants.append(sides[-1])
+                constants.append((sides[-1], while_))
             else:
                 formulas.append(sides)
     return Printed(tuple(formulas), tuple(constants))

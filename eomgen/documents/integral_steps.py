@@ -9,10 +9,11 @@ from eomgen.documents.bounded import page
 from eomgen.documents.energy_steps import energies_by_parts
 from eomgen.documents.reading import Reader
 from eomgen.documents.setting_steps import listed_symbols
-from eomgen.documents.statements import Formula, Law, Name, Partial, Prose, Statement, Step, prose
+from eomgen.documents.statements import Formula, Law, Name, Partial, Piece, Prose, Statement, Step, prose
 from eomgen.mechanics.bodies.system_scene import given_start
 from eomgen.mechanics.equations.equations_of_motion import EquationsOfMotion
 from eomgen.mechanics.equations.explicit_accelerations import short_accelerations
+from eomgen.mechanics.equations.pieces import Held
 from eomgen.mechanics.equations.system import System
 from eomgen.mechanics.first_integrals.constants_of_motion import Constant, momenta_of_the_whole
 from eomgen.mechanics.first_integrals.integrals import (
@@ -25,13 +26,14 @@ from eomgen.mechanics.first_integrals.laws import laws_of_motion
 from eomgen.symbolic.expression.derivative import depends_on
 from eomgen.symbolic.expression.graph import Node, Scalar
 from eomgen.symbolic.expression.traversal import order
-from eomgen.symbolic.print.text import text_size
+from eomgen.symbolic.print.text import text_size, to_text
 
 MOST_SPEEDS = 6  # of a system whose laws of motion are sought
 LONGEST_LAW = 400  # characters of a law that is printed
 
 ENERGY = Law("T + V", "T + V")
 ENERGY_AND_WORK = Law("T + V - W", "T + V - W")
+AT_MOST, AT_LEAST = Law("<=", r"\le"), Law(">=", r"\ge")
 JACOBI = Law("sum u_k*dT/du_k - T + V", r"\sum u_{k} \frac{\partial T}{\partial u_{k}} - T + V")
 
 
@@ -55,12 +57,14 @@ def _integrals(equations: EquationsOfMotion, reader: Reader) -> tuple[Step, ...]
         moving = {q.name: q for q in symbols.q}
         speeds = {u.name.removesuffix("'"): u for u in symbols.u}
         rates = [each for each in cyclic if speeds[each.coordinate].name != each.coordinate]
-        if rates:
-            statements.append(_cyclic(tuple(moving[each.coordinate] for each in rates)))
-            pairs = [(Partial(Name("T"), speeds[each.coordinate]), each.expression) for each in rates]
+        for held, group in groupby(rates, key=lambda each: each.held):
+            each_held = tuple(group)
+            statements.append(_cyclic(tuple(moving[each.coordinate] for each in each_held), held))
+            pairs = [(Partial(Name("T"), speeds[each.coordinate]), each.expression) for each in each_held]
             statements += page(reader, pairs)
         for each in (other for other in cyclic if other not in rates):
-            statements.append(prose("The momentum of the speed ", speeds[each.coordinate], " stays constant:"))
+            words = ("The momentum of the speed ", speeds[each.coordinate], " stays constant")
+            statements.append(prose(*words, *_while(each.held), ":"))
             statements += page(reader, [(Partial(Name("T"), speeds[each.coordinate]), each.expression)])
     energies = energy_integral(equations)
     for energy in energies:
@@ -84,10 +88,21 @@ def _side(each: Constant) -> Name:
     return Name(f"{each.letter}_{each.axis}") if each.axis else Name(each.letter, power=2)
 
 
-def _cyclic(coordinates: tuple[Node, ...]) -> Prose:
+def _cyclic(coordinates: tuple[Node, ...], held: Held) -> Prose:
     many = len(coordinates) > 1
     verb = ("s ", " are cyclic: their momenta stay") if many else (" ", " is cyclic: its momentum stays")
-    return prose(f"The coordinate{verb[0]}", *listed_symbols(coordinates), f"{verb[1]} constant:")
+    if not held.everywhere:
+        verb = ("s ", ": their momenta stay") if many else (" ", ": its momentum stays")
+    return prose(f"The coordinate{verb[0]}", *listed_symbols(coordinates), f"{verb[1]} constant", *_while(held), ":")
+
+
+def _while(held: Held) -> tuple[Piece, ...]:
+    """" while y >= 0" of what holds in some pieces alone."""
+    words: list[Piece] = []
+    for each in held.within:
+        left, right = (x if type(x) is Node else to_text(x) for x in (each.left, each.right))
+        words += [" and " if words else " while ", left, " ", AT_MOST if each.relation == "<=" else AT_LEAST, " ", right]
+    return tuple(words)
 
 
 def _energy(reader: Reader, equations: EquationsOfMotion, energy: Integral) -> list[Statement]:
@@ -99,6 +114,7 @@ def _energy(reader: Reader, equations: EquationsOfMotion, energy: Integral) -> l
     elif energy.expression is not equations.T + equations.V:
         law = ENERGY_AND_WORK
         words = ("The energy less the work of the constant forces, ", law, ", stays constant")
+    words = (*words, *_while(energy.held))
     if any(node.op == "select" for node in order((energy.expression,))):
         return [prose(*words, ".")]
     if law is not JACOBI:

@@ -30,7 +30,7 @@ from eomgen.symbolic.expression.graph import Node, Scalar
 from eomgen.symbolic.expression.node import State
 from eomgen.symbolic.expression.spatial import Vector
 from eomgen.symbolic.numeric.dense import of_one_length
-from eomgen.symbolic.numeric.evaluation import evaluate, fifty_digits
+from eomgen.symbolic.numeric.evaluation import NoValue, evaluate, fifty_digits
 from eomgen.symbolic.numeric.tolerances import COMPUTED
 
 SPINS = ("omega_x", "omega_y", "omega_z")
@@ -43,14 +43,14 @@ class Printed:
 
     Args:
         formulas: the sides of each.
-        constants: of what is said to stay constant along every motion.
+        constants: what is said to stay constant along every motion, and while what: "y >= 0 and t <= t0", "".
         letters: what a letter that only formulas define is worth by another way.
         texts: (where, text, the scalar that it stands for).
         definitions: (name, text) of parts that have a name in these texts, each before its use.
     """
 
     formulas: tuple[tuple[str, ...], ...] = ()
-    constants: tuple[str, ...] = ()
+    constants: tuple[tuple[str, str], ...] = ()
     letters: Mapping[str, Scalar] = field(default_factory=dict)
     texts: tuple[tuple[str, str, Scalar], ...] = ()
     definitions: tuple[tuple[str, str], ...] = ()
@@ -90,9 +90,25 @@ class ReadBack:
         return found, {name: x for name, x in names.items() if name not in energies or name in own}
 
     @cached_property
-    def constants(self) -> list[tuple[str, Scalar]]:
-        read = [(text, self._read(text, self._formulas[1])) for text in self.printed.constants]
-        return [(text, x) for text, x in read if x is not None]
+    def constants(self) -> list[tuple[str, Scalar, tuple[Scalar, ...]]]:
+        """(the text, what it stands for, what must be negative for it to stay constant)."""
+        found = []
+        for text, while_ in self.printed.constants:
+            x, limits = self._read(text, self._formulas[1]), self._limits(while_)
+            if x is not None and limits is not None:
+                found.append((text, x, limits))
+        return found
+
+    def _limits(self, while_: str) -> tuple[Scalar, ...] | None:
+        """Conditions "left <= right", joined by "and", as differences that are negative; None where one is not read."""
+        found = []
+        for condition in while_.split(" and ") if while_ else ():
+            left, relation, right = condition.partition(" <= ") if " <= " in condition else condition.partition(" >= ")
+            sides = [self._read(text, self._formulas[1]) for text in (left, right)]
+            if sides[0] is None or sides[1] is None or not relation:
+                return None
+            found.append(sides[0] - sides[1] if relation == " <= " else sides[1] - sides[0])
+        return tuple(found)
 
     @property
     def _symbols(self) -> Mapping[str, Scalar]:
@@ -187,13 +203,25 @@ class ReadBack:
         return self.unreadable(text for _, text, _ in self.printed.texts) or _unequal(self.data, {**some, **state})
 
     def drifting(self, state: State) -> str:
-        """Which constant does not stay at a state of the motion; "" where all do."""
+        """Which constant does not stay at a state of the motion; "" where all do.
+
+        Raises:
+            NoValue: none of them is said to stay in the piece in which the state lies.
+        """
         refuse_open(self.equations.system, state)
-        worths, rates, _ = way_through(self.equations.system, state).along([x for _, x in self.constants])
-        for (text, _), worth, rate in zip(self.constants, worths, rates, strict=True):
+        said = [(text, x) for text, x, limits in self.constants if self._is_met(limits, state)]
+        if not said:
+            raise NoValue("nothing is said of this piece")
+        worths, rates, _ = way_through(self.equations.system, state).along([x for _, x in said])
+        for (text, _), worth, rate in zip(said, worths, rates, strict=True):
             if abs(rate) > COMPUTED * (1 + abs(worth)):
                 return f"{text} changes by {float(rate):.3g} in a second"
         return ""
+
+
+    @staticmethod
+    def _is_met(limits: Sequence[Scalar], state: State) -> bool:
+        return all(x < 0 for x in evaluate(limits, state, fifty_digits()))
 
 
 def _unequal(pairs: Sequence[tuple[str, Scalar, Scalar]], state: State) -> str:

@@ -53,6 +53,25 @@ def generic_state(
     raise _open(ties, exact_parameters(ties.motion.scope.model))
 
 
+def start_of(ties: Ties) -> State:
+    """Values of every symbol at the model's own start, the nearest at which phi = 0; speeds as they are given.
+
+    Raises:
+        MissingValues, DerivationError: the ties do not close there.
+    """
+    model, symbols = ties.motion.scope.model, ties.motion.scope.symbols
+    state, q = _still(ties, Random(1))
+    numbers = {name: float(state[node]) for name, node in symbols.parameters.items()}
+    speeds = start_values(model, numbers)[1]
+    given = {node: of_50_digits(q[node.name]) for node in symbols.q}
+    given |= {u: of_50_digits(speeds.get(u.name, 0.0)) for u in symbols.u}
+    given |= on_unit_spheres(ties.motion.scope.quaternions, state | given)
+    found = closed(ties, state | given, movable(ties))
+    if found is None:
+        raise _open(ties, exact_parameters(model))
+    return _moving(ties, _with_laws(ties, found))
+
+
 def scattered_state(ties: Ties) -> State:
     """Values of every symbol: near the start, off any special position; the ties need not hold."""
     rng = Random(1)

@@ -11,6 +11,7 @@ from eomgen.mechanics.bodies.inertia import mass_properties
 from eomgen.mechanics.bodies.kinematics import BodyLink
 from eomgen.mechanics.constraints.closure import generic_state, of_50_digits, scattered_state
 from eomgen.mechanics.equations.equations_of_motion import EquationsOfMotion
+from eomgen.mechanics.equations.pieces import EVERYWHERE, NOWHERE, Held, where_holds
 from eomgen.mechanics.equations.system import System
 from eomgen.mechanics.equations.work import from_potential
 from eomgen.symbolic.exact.equality import equal_at_random_states
@@ -23,13 +24,25 @@ from eomgen.symbolic.numeric.tolerances import RANK, SHARE, SOLVED, SQUARED_AT_5
 
 
 def is_conservative(equations: EquationsOfMotion) -> bool:
-    """Whether T + V stays: nothing moves by itself, and Q is -N^T dV/dq alone."""
+    """Whether T + V stays in every motion: nothing moves by itself, and Q is -N^T dV/dq alone, in every piece."""
+    return where_conservative(equations).everywhere
+
+
+def where_conservative(equations: EquationsOfMotion) -> Held:
+    """In which pieces of min, max, abs, sign, cases and samples T + V stays."""
     t = equations.symbols.t
     by_itself = (*equations.nu, *equations.sigma)
     if any(not is_zero(x) for x in by_itself) or depends_on(equations.V, (t,)) or depends_on(equations.T, (t,)):
-        return False
+        return NOWHERE
     elastic = from_potential(equations.system.motion, equations.V)
-    return equal_at_random_states(zip(equations.Q, elastic, strict=True)).equal if elastic else True
+    if not elastic:
+        return EVERYWHERE
+    n = len(elastic)
+    return where_holds(
+        equations,
+        (*equations.Q, *elastic),
+        lambda x: equal_at_random_states(zip(x[:n], x[n:], strict=True)).equal,
+    )
 
 
 def refuse_massless(equations: EquationsOfMotion) -> None:

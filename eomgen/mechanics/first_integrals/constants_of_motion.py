@@ -3,7 +3,7 @@
     df/dt = g.a + r = 0  for all a with  M a = forcing        g = df/du,  r what is left at a = 0
 
 that is, the row (g, -r) follows from the rows (M, forcing): decided exactly, at random states of a prime field, or with
-50 digits where roots have no meaning there.
+50 digits where roots have no meaning there; in every piece of what is made of min, max, abs, sign, cases and samples.
 """
 
 from __future__ import annotations
@@ -16,6 +16,7 @@ from eomgen.errors import DerivationError
 from eomgen.mechanics.bodies.inertia import mass_properties
 from eomgen.mechanics.bodies.kinematics import GROUND, velocity_of
 from eomgen.mechanics.equations.equations_of_motion import EquationsOfMotion
+from eomgen.mechanics.equations.pieces import EVERYWHERE, NOWHERE, Held, division_of
 from eomgen.mechanics.equations.system import System
 from eomgen.mechanics.masses.inertia_about import angular_momentum, shapeless
 from eomgen.records import dataclass
@@ -38,6 +39,7 @@ from eomgen.symbolic.expression.spatial import (
 from eomgen.symbolic.numeric import dense
 from eomgen.symbolic.numeric.evaluation import PRIME_FIELD, NoMeaning, NoValue, evaluate, fifty_digits
 from eomgen.symbolic.numeric.modular import follows
+from eomgen.symbolic.numeric.pieces import Choices, resolved
 from eomgen.symbolic.print.text import text_size
 
 STATES = 2
@@ -63,20 +65,38 @@ class Constant:
 
 
 def stay_constant(equations: EquationsOfMotion, functions: Sequence[Scalar]) -> tuple[bool, ...]:
-    """Of each function of q, u and t whether it stays constant along every motion.
+    """Of each function of q, u and t whether it stays constant along every motion, in every piece.
 
     Where ties close or there is friction none is said to be, nor where the prime field cannot tell.
     """
+    return tuple(held.everywhere for held in where_constant(equations, functions))
+
+
+def where_constant(equations: EquationsOfMotion, functions: Sequence[Scalar]) -> tuple[Held, ...]:
+    """Of each function of q, u and t in which pieces it stays constant."""
     if equations.J or equations.friction or not equations.M:
-        return (False,) * len(functions)
+        return (NOWHERE,) * len(functions)
     try:
         drifts = equations.system.scope.time_derivative(tuple(functions))
     except DerivationError:  # an input, which a caller may replace
-        return (False,) * len(functions)
+        return (NOWHERE,) * len(functions)
     slopes = [gradient(f, equations.symbols.u) for f in functions]
     rows = [[*row, force] for row, force in zip(equations.M, equations.forcing, strict=True)]
     asked = [[*slope, -drift] for slope, drift in zip(slopes, drifts, strict=True)]
-    return _following(rows, asked)
+    flat = [x for row in (*rows, *asked) for x in row]
+    division = division_of(equations, flat)
+    if division is None:
+        return tuple(EVERYWHERE if yes else NOWHERE for yes in _following(rows, asked))
+    known: dict[Choices, tuple[bool, ...]] = {}
+
+    def found(piece: Choices) -> tuple[bool, ...]:
+        if piece not in known:
+            values = iter(resolved(flat, division.nodes, piece))
+            table = [[next(values) for _ in row] for row in (*rows, *asked)]
+            known[piece] = _following(table[: len(rows)], table[len(rows) :])
+        return known[piece]
+
+    return tuple(division.where(lambda piece, k=k: found(piece)[k]) for k in range(len(functions)))  # type: ignore[misc]
 
 
 def _following(rows: Sequence[Sequence[Scalar]], asked: Sequence[Sequence[Scalar]]) -> tuple[bool, ...]:
@@ -104,13 +124,14 @@ def _real_values(flat: Sequence[Scalar], rng: Random) -> list[Any]:
     return real_values(flat, rng, fifty_digits())
 
 
-def jacobi(equations: EquationsOfMotion) -> Scalar | None:
-    """u . dT/du - T + V where it stays constant: drives at a steady rate take energy in and out."""
+def jacobi(equations: EquationsOfMotion) -> tuple[Scalar, Held] | None:
+    """(u . dT/du - T + V, in which pieces it stays constant): drives at a steady rate take energy in and out."""
     symbols = equations.symbols
     if depends_on(equations.V, (symbols.t,)) or all(is_zero(x) for x in equations.nu):
         return None
     found = inner(symbols.u, gradient(equations.T, symbols.u)) - equations.T + equations.V
-    return found if stay_constant(equations, (found,))[0] else None
+    (held,) = where_constant(equations, (found,))
+    return (found, held) if held else None
 
 
 def momenta_of_the_whole(equations: EquationsOfMotion, known: Sequence[Scalar]) -> tuple[Constant, ...]:

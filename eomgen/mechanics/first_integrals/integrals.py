@@ -2,6 +2,9 @@
 
 T + V = const,      p_k - integral of Q_k dt = const where dp_k/dt = Q_k(t),  p_k = dT/du_k
 u . dT/du - T + V = const    (Jacobi's, where what moves by itself does so at a steady rate)
+
+Each is decided in every piece of what is made of min, max, abs, sign, cases and samples; what stays in the piece of the
+start alone, as the energy above an elastic floor, says so long as what it does.
 """
 
 from __future__ import annotations
@@ -15,16 +18,20 @@ from eomgen.mechanics.bodies.scope import integral_from_zero
 from eomgen.mechanics.constraints.closure import of_50_digits, on_unit_spheres, scattered_state
 from eomgen.mechanics.constraints.ties import hold_identically
 from eomgen.mechanics.equations.equations_of_motion import EquationsOfMotion
+from eomgen.mechanics.equations.pieces import EVERYWHERE, NOWHERE, Held, division_of
 from eomgen.mechanics.equations.system import System
-from eomgen.mechanics.equations.wellposed import is_conservative
+from eomgen.mechanics.equations.wellposed import where_conservative
 from eomgen.mechanics.first_integrals.constants_of_motion import jacobi
 from eomgen.model.forces.load import Couple, GeneralizedForce, Load, PointForce
 from eomgen.records import dataclass
+from eomgen.symbolic.exact.equality import equal_at_random_states
 from eomgen.symbolic.exact.normal_form import readable
 from eomgen.symbolic.expression.derivative import depends_on, gradient
 from eomgen.symbolic.expression.graph import Node, Scalar
+from eomgen.symbolic.expression.node import holds_op
 from eomgen.symbolic.expression.spatial import dot
 from eomgen.symbolic.numeric.evaluation import NoValue, evaluate, fifty_digits
+from eomgen.symbolic.numeric.pieces import PIECEWISE, Choices, resolved
 from eomgen.symbolic.numeric.tolerances import ZERO_AT_50
 from eomgen.symbolic.numeric.work import Work
 
@@ -37,25 +44,37 @@ class Integral:
         name: "energy", "jacobi" or "momentum(x)".
         expression: the function, of q, u, t and parameters.
         coordinate: whose momentum it is, "" of the energy.
+        held: in which pieces.
     """
 
     name: str
     expression: Scalar
     coordinate: str = ""
+    held: Held = EVERYWHERE
 
 
 def energy_integral(equations: EquationsOfMotion) -> tuple[Integral, ...]:
     """(T + V - W,) where it stays constant, W the work of constant forces that have no potential; else ().
 
-    Where something moves by itself, Jacobi's integral if that stays.
+    Where something moves by itself, Jacobi's integral if that stays. One that stays in every piece goes before one that
+    stays in that of the start.
     """
     if not equations.M:
         return ()
+    within: list[Integral] = []
     for V in (equations.V, equations.V - work_of_constant_forces(equations.system)):
-        if is_conservative(replace(equations, V=V)):
+        held = where_conservative(replace(equations, V=V))
+        if held.everywhere:
             return (Integral("energy", equations.T + V),)
+        if held:
+            within.append(Integral("energy", equations.T + V, held=held))
     found = jacobi(equations)
-    return () if found is None else (Integral("jacobi", found),)
+    if found is not None:
+        integral = Integral("jacobi", found[0], held=found[1])
+        if integral.held.everywhere:
+            return (integral,)
+        within.append(integral)
+    return tuple(within[:1])
 
 
 def work_of_constant_forces(system: System) -> Scalar:
@@ -98,7 +117,7 @@ def momentum_integrals(equations: EquationsOfMotion) -> tuple[Integral, ...]:
     others, found = (*symbols.q, *symbols.u, *symbols.inputs.values()), []
     free = [k for k in range(len(symbols.u)) if all(hold_identically([row[k] for row in equations.J]))]
     rates = [drifts[k] + equations.forcing[k] for k in free]
-    for k, rate in zip(free, _of_time_alone(equations.system, rates, others), strict=True):
+    for k, (rate, held) in zip(free, _of_time_alone(equations, rates, others), strict=True):
         u, p = symbols.u[k], momenta[k]
         if rate is None:
             continue
@@ -107,11 +126,49 @@ def momentum_integrals(equations: EquationsOfMotion) -> tuple[Integral, ...]:
         except DerivationError:  # no closed form
             continue
         name = u.name.removesuffix("'")
-        found.append(Integral(f"momentum({name})", p - gained, name))
+        found.append(Integral(f"momentum({name})", p - gained, name, held))
     return tuple(found)
 
 
-def _of_time_alone(system: System, rates: Sequence[Scalar], others: Sequence[Node]) -> list[Scalar | None]:
+def _of_time_alone(
+    equations: EquationsOfMotion, rates: Sequence[Scalar], others: Sequence[Node]
+) -> list[tuple[Scalar | None, Held]]:
+    """Each rate where it depends on none of the others, else None; in which pieces."""
+    whole = [None if holds_op(rate, *PIECEWISE) and depends_on(rate, others) else rate for rate in rates]
+    smooth = iter(_alone_at_all(equations.system, [rate for rate in whole if rate is not None], others))
+    return [
+        _in_pieces(equations, rate, others) if same is None else (next(smooth), EVERYWHERE)
+        for rate, same in zip(rates, whole, strict=True)
+    ]
+
+
+def _in_pieces(equations: EquationsOfMotion, rate: Scalar, others: Sequence[Node]) -> tuple[Scalar | None, Held]:
+    """A rate that has pieces as it is in that of the start, where it depends on none of the others there."""
+    division = division_of(equations, (rate,))
+    if division is None:
+        return _alone_at_all(equations.system, (rate,), others)[0], EVERYWHERE
+    if division.start is None:
+        return None, NOWHERE
+
+    def alone(piece: Choices) -> Scalar | None:
+        return _alone_at_all(equations.system, resolved((rate,), division.nodes, piece), others)[0]
+
+    try:
+        begun = alone(division.start)
+    except DerivationError:  # a division by zero
+        return None, NOWHERE
+    if begun is None:
+        return None, NOWHERE
+
+    def stays(piece: Choices) -> bool:
+        other = alone(piece)
+        return other is not None and equal_at_random_states([(other, begun)]).equal
+
+    held = division.where(stays)
+    return (begun, held) if held else (None, NOWHERE)
+
+
+def _alone_at_all(system: System, rates: Sequence[Scalar], others: Sequence[Node]) -> list[Scalar | None]:
     """Each rate where it depends on none of the others, else None; what is seen to change needs no exact look."""
     changes = _seen_to_change(system, rates, others)
     left = [rate for rate, seen in zip(rates, changes, strict=True) if not seen]

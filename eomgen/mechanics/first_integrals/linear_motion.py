@@ -16,6 +16,8 @@ from eomgen.symbolic.exact.normal_form import readable
 from eomgen.symbolic.expression.derivative import depends_on, derivative, substituted
 from eomgen.symbolic.expression.functions import function, over, sqrt
 from eomgen.symbolic.expression.graph import Node, Scalar, is_zero, linear_terms
+from eomgen.symbolic.expression.node import holds_op
+from eomgen.symbolic.numeric.pieces import PIECEWISE
 from eomgen.symbolic.solve.solving import vanishes
 
 HIGHEST_DEGREE = 6  # of a polynomial on the right side
@@ -100,8 +102,13 @@ def particular(line: LinearEquation, of: MotionConstants) -> Scalar | None:
 
 
 def _of_term(A: Scalar, B: Scalar, g: Scalar, of: MotionConstants) -> Scalar | None:
-    """One solution for f = g, g a polynomial in t or a g with g'' = mu g."""
+    """One solution for f = g, g a polynomial in t or a g with g'' = mu g; none of what has pieces in time.
+
+    max(0, t - t0) has no second derivative in any piece, and is no polynomial: at t0 a vibration begins.
+    """
     t = of.t
+    if holds_op(g, *PIECEWISE) and depends_on(g, (t,)):
+        return None
     second = derivative(derivative(g, t), t)
     mu = 0 if is_zero(second) else of.simple(over(second, g))
     if is_zero(second) or depends_on(mu, (t,)):

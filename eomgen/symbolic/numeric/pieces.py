@@ -2,6 +2,7 @@
 
 A comparison, min, max, abs or sign changes where the difference of its two sides passes 0, samples where their argument
 passes one of their places. Differences that are the same up to what stands still are one quantity with several ends.
+With the choice of each made, the scalars are formulas without pieces, of which one says by algebra what they are.
 """
 
 from __future__ import annotations
@@ -11,11 +12,11 @@ from itertools import pairwise
 from typing import Any
 
 from eomgen.records import dataclass
-from eomgen.symbolic.expression.derivative import gradient, symbols_of
+from eomgen.symbolic.expression.derivative import gradient, substituted, symbols_of
 from eomgen.symbolic.expression.graph import Node, Scalar, linear_terms
 from eomgen.symbolic.expression.node import State, holds_op
 from eomgen.symbolic.expression.rational import Fraction
-from eomgen.symbolic.expression.splines import sampled_of
+from eomgen.symbolic.expression.splines import Sampled, sampled_of
 from eomgen.symbolic.expression.traversal import order
 from eomgen.symbolic.numeric.evaluation import evaluate, fifty_digits
 from eomgen.symbolic.numeric.tolerances import CERTAIN_AT_50, COMPUTED
@@ -26,6 +27,10 @@ BEYOND = (Fraction(1, 2), Fraction(1, 20), Fraction(1, 200))  # of the nearest p
 
 COMPARING = ("less", "less_equal", "min", "max")
 ABOUT_ZERO = ("abs", "sign")
+PIECEWISE = (*COMPARING, *ABOUT_ZERO, "sampled")
+
+Choices = tuple[int, ...]
+"""Of each node that has pieces: -1 and 1, the sign of its argument or of the difference of both; of samples the place."""
 
 
 @dataclass(frozen=True)
@@ -79,13 +84,89 @@ class Switch:
         return None
 
 
-def switches_of(scalars: Iterable[Scalar], moving: frozenset[Node]) -> tuple[Switch, ...]:
-    """Every switch in the scalars that something that moves can throw."""
-    nodes = order(x for x in scalars if holds_op(x, *COMPARING, *ABOUT_ZERO, "sampled"))
+def piecewise_nodes(scalars: Iterable[Scalar], moving: frozenset[Node]) -> tuple[Node, ...]:
+    """What changes its form with something that moves, in the order of evaluation."""
+    nodes = order(x for x in scalars if holds_op(x, *PIECEWISE))
+    active = _active(nodes, moving)
+    return tuple(x for x in nodes if x.op in PIECEWISE and x in active)
+
+
+def choices_at(nodes: Sequence[Node], state: State) -> Choices | None:
+    """What each of the nodes chooses at a state; None where it lies between two pieces of one.
+
+    A node without a value, in a case that does not hold there, chooses 0: nothing.
+    """
+    sides = [y for x in nodes for y in (x.args[0], 0 if x.op in (*ABOUT_ZERO, "sampled") else x.args[1])]
+    values = evaluate(sides, state, fifty_digits(partial=True))
+    found: list[int] = []
+    for x, a, b in zip(nodes, values[::2], values[1::2], strict=True):
+        if a != a or b != b:
+            found.append(0)
+            continue
+        ends = [fifty_digits().number(end) for end in sampled_of(x.args[1]).spline.bounds] if x.op == "sampled" else [b]
+        if any(abs(a - end) <= CERTAIN_AT_50 * (1 + abs(end)) for end in ends):
+            return None
+        passed = len([end for end in ends if a > end])
+        found.append(passed if x.op == "sampled" else 2 * passed - 1)
+    return tuple(found)
+
+
+def resolved(scalars: Sequence[Scalar], nodes: Sequence[Node], choices: Choices) -> tuple[Scalar, ...]:
+    """The scalars as they are where the nodes choose so: without pieces.
+
+    Raises:
+        DerivationError: they divide by zero there.
+    """
+    chosen = dict(zip(nodes, choices, strict=True))
+    known: dict[Node, Scalar] = {}
+    for x in order(scalars):
+        if chosen.get(x):
+            known[x] = _as_chosen(x, chosen[x], substituted(x.args[:1] if x.op == "sampled" else x.args, known))
+        elif x.op == "sampled" and x in chosen:
+            known[x] = _as_chosen(x, 0, substituted(x.args[:1], known))
+        elif x.op == "select":
+            condition = substituted(x.args[:1], known)[0]
+            if type(condition) is not Node:
+                known[x] = substituted((x.args[1] if condition else x.args[2],), known)[0]
+    return substituted(tuple(scalars), known) if known else tuple(scalars)
+
+
+def _as_chosen(x: Node, choice: int, args: Sequence[Scalar]) -> Scalar:
+    """A node with its choice made."""
+    if x.op == "sampled":
+        return _polynomial_of(sampled_of(x.args[1]), choice, args[0], x.graph.pi)
+    if x.op == "sign":
+        return choice
+    if x.op == "abs":
+        return choice * args[0]
+    if x.op in ("less", "less_equal"):
+        return int(choice < 0)
+    return args[0] if (x.op == "min") is (choice < 0) else args[1]
+
+
+def _polynomial_of(sampled: Sampled, piece: int, t: Scalar, pi: Node) -> Scalar:
+    """What samples are in one piece."""
+    s, found = t - sampled.spline.origins[piece], 0 * t
+    for c in reversed(sampled.spline.pieces[piece]):
+        found = found * s + c
+    for _ in range(abs(sampled.pi_power)):
+        found = found * pi if sampled.pi_power > 0 else found / pi
+    return found
+
+
+def _active(nodes: Sequence[Node], moving: frozenset[Node]) -> set[Any]:
+    """What hangs on something that moves."""
     active: set[Any] = set(moving)
     for x in nodes:
         if x.op != "symbol" and any(type(a) is Node and a in active for a in x.args):
             active.add(x)
+    return active
+
+
+def switches_of(scalars: Iterable[Scalar], moving: frozenset[Node]) -> tuple[Switch, ...]:
+    """Every switch in the scalars that something that moves can throw."""
+    nodes = order(x for x in scalars if holds_op(x, *PIECEWISE))
+    active = _active(nodes, moving)
     found: dict[tuple[tuple[int, Any], ...], tuple[Scalar, dict[Scalar, None]]] = {}
     for x in nodes:
         for terms, ends in _thrown_by(x):

@@ -1,0 +1,340 @@
+"""Equations of motion, scalars -> the pieces of which these are made, and in which of them something holds.
+
+What is made of min, max, abs, sign, cases and samples is one formula in each piece: with all choices made it has none,
+and algebra says there what it is. Pieces are found from states: the model's own start, states along its own motion,
+states around, and from each of them by Newton's method over every switch into the next.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator, Sequence
+from functools import cached_property
+from random import Random
+from typing import Any
+
+from eomgen.errors import DerivationError, MissingValues, ModelError
+from eomgen.mechanics.constraints.closure import closed, generic_state, movable, of_50_digits, on_unit_spheres
+from eomgen.mechanics.constraints.closure import start_of as own_start
+from eomgen.mechanics.equations.accelerations import exact_accelerations
+from eomgen.mechanics.equations.equations_of_motion import EquationsOfMotion
+from eomgen.mechanics.equations.system import System
+from eomgen.records import dataclass
+from eomgen.symbolic.exact.normal_form import readable
+from eomgen.symbolic.expression.derivative import depends_on
+from eomgen.symbolic.expression.functions import function
+from eomgen.symbolic.expression.graph import Node, Scalar, linear_terms
+from eomgen.symbolic.expression.node import State, holds_op
+from eomgen.symbolic.expression.splines import sampled_of
+from eomgen.symbolic.expression.traversal import order
+from eomgen.symbolic.numeric.evaluation import NoValue, evaluate, fifty_digits
+from eomgen.symbolic.numeric.pieces import (
+    PIECEWISE,
+    Choices,
+    Switch,
+    choices_at,
+    piecewise_nodes,
+    resolved,
+    switches_of,
+)
+from eomgen.symbolic.numeric.work import Work, check_patience
+
+MOST = 64  # pieces that are told apart
+MOST_OF_ONE = 12  # pieces of one quantity that are entered, evenly spread: a road of 100 arcs is one formula in each
+ROUNDS = 3  # of entering pieces from those found
+STEPS, LONG = 24, 0.1  # steps along the own motion, and of how many seconds
+SOON = 1e-6  # [s] how soon after the start a motion that begins between two pieces is in one
+AROUND = (0.1, 1.0, 3.0)  # of the size of a coordinate and 1: how far from the start states are drawn
+DRAWN = 4  # at each of these distances
+
+
+@dataclass(frozen=True)
+class Condition:
+    """A comparison of two sides, what moves on the left one.
+
+    Args:
+        relation: "<=" or ">=".
+    """
+
+    left: Scalar
+    relation: str
+    right: Scalar
+
+
+@dataclass(frozen=True)
+class Held:
+    """Where something holds.
+
+    Args:
+        everywhere: in every piece.
+        within: where not everywhere: the conditions under which it does, met at the start; () nowhere.
+        chosen: the same as (node, its choice).
+    """
+
+    everywhere: bool
+    within: tuple[Condition, ...] = ()
+    chosen: tuple[tuple[Node, int], ...] = ()
+
+    def __bool__(self) -> bool:
+        return self.everywhere or bool(self.within)
+
+
+EVERYWHERE, NOWHERE = Held(True), Held(False)
+
+
+@dataclass(frozen=True)
+class Division:
+    """The pieces of some scalars.
+
+    Args:
+        system: whose they are.
+        nodes: what has pieces.
+        found: every piece that a state was found in; () where they are too many.
+        start: that in which the motion starts; None where it is not known.
+    """
+
+    system: System
+    nodes: tuple[Node, ...]
+    found: tuple[Choices, ...]
+    start: Choices | None
+
+    def where(self, decide: Callable[[Choices], bool]) -> Held:
+        """Where a property holds that is decided piece by piece."""
+        if not self.found:
+            return NOWHERE
+        good = {piece: self._decided(decide, piece) for piece in self.found}
+        if all(good.values()):
+            return EVERYWHERE
+        if self.start is None or not good.get(self.start):
+            return NOWHERE
+        literals = self._literals([piece for piece, yes in good.items() if not yes])
+        within = dict.fromkeys(c for node, choice in literals for c in self.conditions(node, choice))
+        return Held(False, tuple(within), tuple(literals))
+
+    def _decided(self, decide: Callable[[Choices], bool], piece: Choices) -> bool:
+        try:
+            return decide(piece)
+        except DerivationError:  # a division by zero: no motion goes there, but nothing is known
+            return False
+
+    def _literals(self, bad: Sequence[Choices]) -> list[tuple[Node, int]]:
+        """The fewest choices of the start's piece that no piece makes in which it does not hold."""
+        assert self.start is not None
+        kept = [k for k, choice in enumerate(self.start) if choice or self.nodes[k].op == "sampled"]
+        for k in list(kept):
+            rest = [j for j in kept if j != k]
+            if not any(all(piece[j] == self.start[j] for j in rest) for piece in bad):
+                kept = rest
+        return [(self.nodes[k], self.start[k]) for k in kept]
+
+    def conditions(self, x: Node, choice: int) -> Iterator[Condition]:
+        """What holds where a node chooses so."""
+        if x.op == "sampled":
+            ends = sampled_of(x.args[1]).spline.bounds
+            if choice > 0:
+                yield self._condition(ends[choice - 1] - x.args[0])
+            if choice < len(ends):
+                yield self._condition(x.args[0] - ends[choice])
+        else:
+            difference = x.args[0] if len(x.args) == 1 else x.args[0] - x.args[1]
+            yield self._condition(-choice * difference)
+
+    def _condition(self, below: Scalar) -> Condition:
+        """below <= 0, without factors that are positive, what moves on the left side."""
+        sign = readable(function("sign", below), Work.ENTRY, self.system.scope.positive)
+        inside = {x.args[0] for x in order((sign,)) if x.op == "sign"}
+        if len(inside) == 1 and type(sign) is Node and sign.op in ("sign", "neg"):
+            (x,) = inside
+            below = x if sign.op == "sign" else -x
+        terms = linear_terms(below)
+        left = sum((c * (1 if y is None else y) for y, c in terms.items() if c > 0), start=0)
+        right = sum((-c * (1 if y is None else y) for y, c in terms.items() if c < 0), start=0)
+        if depends_on(left, tuple(moving_symbols(self.system))):
+            return Condition(left, "<=", right)
+        return Condition(right, ">=", left)
+
+
+def moving_symbols(system: System) -> frozenset[Node]:
+    """What changes along a motion."""
+    symbols = system.symbols
+    return frozenset((symbols.t, *symbols.q, *symbols.u, *symbols.a, *symbols.lam, *symbols.inputs.values()))
+
+
+def division_of(equations: EquationsOfMotion, scalars: Sequence[Scalar]) -> Division | None:
+    """The pieces of the scalars; None where they have none."""
+    if not any(holds_op(x, *PIECEWISE) for x in scalars):
+        return None
+    known, key = equations.symbols.graph.found(division_of), (equations.system.scope.model, tuple(scalars))
+    if key not in known:
+        known[key] = _divided(equations, tuple(scalars))
+    found: Division | None = known[key]
+    return found
+
+
+def where_holds(
+    equations: EquationsOfMotion, scalars: Sequence[Scalar], decide: Callable[[tuple[Scalar, ...]], bool]
+) -> Held:
+    """Where a property of scalars holds; `decide` is asked of them as they are in each piece."""
+    division = division_of(equations, scalars)
+    if division is None:
+        return EVERYWHERE if decide(tuple(scalars)) else NOWHERE
+    nodes = division.nodes
+    return division.where(lambda piece: decide(resolved(scalars, nodes, piece)))
+
+
+def _divided(equations: EquationsOfMotion, scalars: tuple[Scalar, ...]) -> Division | None:
+    nodes = piecewise_nodes(scalars, moving_symbols(equations.system))
+    return _Search(equations, scalars, nodes).division if nodes else None
+
+
+@dataclass(frozen=True)
+class _Search:
+    """The search for pieces."""
+
+    equations: EquationsOfMotion
+    scalars: tuple[Scalar, ...]
+    nodes: tuple[Node, ...]
+
+    @cached_property
+    def division(self) -> Division:
+        found: dict[Choices, State] = {}
+        start: Choices | None = None
+        for state in self._seeds():
+            choices = self._choices(state)
+            if choices is not None:
+                found.setdefault(choices, state)
+        begun = self._begun
+        if begun is not None:
+            start = self._choices(begun) or next(
+                (c for state in self._soon(begun) if (c := self._choices(state)) is not None), None
+            )
+            if start is not None:
+                found.setdefault(start, begun)
+        rng, entered = Random(9), set[Choices]()
+        for _ in range(ROUNDS):
+            for choices, state in list(found.items()):
+                if choices in entered or len(found) > MOST:
+                    continue
+                entered.add(choices)
+                for beside in self._beside(state, rng):
+                    check_patience()
+                    if (there := self._choices(beside)) is not None:
+                        found.setdefault(there, beside)
+        return Division(self.equations.system, self.nodes, tuple(found) if len(found) <= MOST else (), start)
+
+    def _choices(self, state: State) -> Choices | None:
+        try:
+            return choices_at(self.nodes, state)
+        except (NoValue, ZeroDivisionError):
+            return None
+
+    # -- states ------------------------------------------------------------------------------------
+
+    @property
+    def _system(self) -> System:
+        return self.equations.system
+
+    @cached_property
+    def _begun(self) -> State | None:
+        """The model's own start, its ties closed; None where it has none."""
+        try:
+            return own_start(self._system.ties)
+        except (DerivationError, MissingValues, ModelError, NoValue, ZeroDivisionError):
+            return None
+
+    def _seeds(self) -> Iterator[State]:
+        """The start, states along the own motion, states around."""
+        begun = self._begun
+        if begun is not None:
+            yield begun
+            yield from self._along(begun, LONG)
+        rng = Random(8)
+        for spread in AROUND:
+            for _ in range(DRAWN):
+                state = self._around(begun, spread, rng)
+                if state is not None:
+                    yield state
+
+    def _around(self, begun: State | None, spread: float, rng: Random) -> State | None:
+        ties, symbols = self._system.ties, self._system.symbols
+        try:
+            if begun is None:
+                return generic_state(ties, rng)
+            moved = {x: begun[x] + of_50_digits(spread * rng.uniform(-1, 1)) * (1 + abs(begun[x])) for x in symbols.q}
+            moved |= {u: begun[u] + of_50_digits(spread * rng.uniform(-1, 1)) * (1 + abs(begun[u])) for u in symbols.u}
+            moved |= {symbols.t: begun[symbols.t] + of_50_digits(spread * rng.uniform(0, 1))}
+            moved |= {x: of_50_digits(spread * rng.uniform(-1, 1)) for x in symbols.inputs.values()}
+            return self._closed(begun | moved)
+        except (DerivationError, MissingValues, ModelError, NoValue, ZeroDivisionError):
+            return None
+
+    def _closed(self, state: State) -> State | None:
+        ties = self._system.ties
+        state = state | on_unit_spheres(self._system.scope.quaternions, state)
+        return state if all(row.identical for row in ties.rows) else closed(ties, state, movable(ties))
+
+    def _along(self, state: State, step: float) -> Iterator[State]:
+        """States along the motion, by the midpoint rule."""
+        for _ in range(STEPS):
+            middle = self._moved(state, state, step / 2)
+            later = None if middle is None else self._moved(state, middle, step)
+            if later is None:
+                return
+            yield (state := later)
+
+    def _soon(self, state: State) -> Iterator[State]:
+        """States just after one."""
+        for step in (SOON, 10 * SOON, 100 * SOON):
+            middle = self._moved(state, state, step / 2)
+            later = None if middle is None else self._moved(state, middle, step)
+            if later is not None:
+                yield later
+
+    def _moved(self, state: State, slopes_at: State, step: float) -> State | None:
+        """The state moved on for a while with the rates of another."""
+        symbols, scope = self._system.symbols, self._system.scope
+        try:
+            a = exact_accelerations(self.equations, slopes_at)
+            rates = evaluate(scope.rates, slopes_at, fifty_digits())
+            later = {x: state[x] + of_50_digits(step) * r for x, r in zip(symbols.q, rates, strict=True)}
+            later |= {u: state[u] + of_50_digits(step) * r for u, r in zip(symbols.u, a, strict=True)}
+            later[symbols.t] = state[symbols.t] + of_50_digits(step)
+            known = state | later
+            own = {x: self._system.inputs[name] for name, x in symbols.inputs.items()}
+            return known | dict(zip(own, evaluate(tuple(own.values()), known, fifty_digits()), strict=True))
+        except (NoValue, ZeroDivisionError, ArithmeticError, DerivationError):
+            return None
+
+    def _beside(self, state: State, rng: Random) -> Iterator[State]:
+        """States in the pieces next to one, over every switch."""
+        moving = moving_symbols(self._system)
+        shaken = state | {u: state[u] + of_50_digits(rng.uniform(-0.5, 0.5)) for u in self._system.symbols.u}
+        for switch in self._switches:
+            try:
+                targets = switch.targets(state)
+                now = switch.piece(state)
+            except (NoValue, ZeroDivisionError):
+                continue
+            for k in _spread(len(targets)):
+                if k == now:
+                    continue
+                for target in targets[k]:
+                    found = self._entered(switch, shaken, target, moving)
+                    if found is not None:
+                        yield found
+
+    def _entered(self, switch: Switch, state: State, target: Any, moving: frozenset[Node]) -> State | None:
+        try:
+            found = switch.moved(state, target, moving)
+            return None if found is None else self._closed(found)
+        except (NoValue, ZeroDivisionError):
+            return None
+
+    @cached_property
+    def _switches(self) -> tuple[Switch, ...]:
+        return switches_of(self.scalars, moving_symbols(self._system))
+
+
+def _spread(count: int) -> list[int]:
+    """Of so many pieces of one quantity some, evenly spread, the first and the last among them."""
+    many = min(count, MOST_OF_ONE)
+    return sorted({round(i * (count - 1) / (many - 1)) for i in range(many)}) if many > 1 else [0]
