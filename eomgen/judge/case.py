@@ -318,18 +318,19 @@ class Case:
                 return x
         return None
 
-    def follows(self, scalar: Scalar, rows: ScalarRow | None = None) -> Follows:
+    def follows(self, scalar: Scalar, rows: ScalarRow | None = None, *, within: bool = False) -> Follows:
         """Whether a scalar is_zero_everywhere by the equations of motion and the ties.
 
         Args:
             rows: equations in place of the model's own.
+            within: where it is not in every piece, it is asked in which it is.
         """
         row, linear = linear_row(scalar, self.forced)
         if not linear:
             return is_zero_everywhere(self.system, self.phase.eliminated(scalar)) if rows is None else Follows(None)
         own, closing = self._linear
         mine = own if rows is None else [linear_row(x, self.forced)[0] for x in rows]
-        return combination(self.system, row, mine, closing)
+        return combination(self.system, row, mine, closing, within=within)
 
     @cached_property
     def _linear(self) -> tuple[list[ScalarRow], list[ScalarRow]]:

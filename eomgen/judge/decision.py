@@ -15,13 +15,16 @@ from typing import Any
 
 import numpy as np
 
+from eomgen.errors import DerivationError, ModelError
+from eomgen.mechanics.balance.friction import equations_of_motion
+from eomgen.mechanics.equations.pieces import NOWHERE, Held, division_of
 from eomgen.mechanics.equations.system import System
 from eomgen.model.values import exact_parameters
 from eomgen.records import dataclass
 from eomgen.symbolic.exact.equality import exact_state
 from eomgen.symbolic.expression.derivative import gradient, symbols_of
 from eomgen.symbolic.expression.graph import Node, Scalar
-from eomgen.symbolic.expression.node import ScalarRow
+from eomgen.symbolic.expression.node import ScalarRow, holds_op
 from eomgen.symbolic.expression.traversal import united
 from eomgen.symbolic.numeric.balls import Ball, balls
 from eomgen.symbolic.numeric.evaluation import (
@@ -33,6 +36,7 @@ from eomgen.symbolic.numeric.evaluation import (
     evaluate,
     fifty_digits,
 )
+from eomgen.symbolic.numeric.pieces import PIECEWISE, Choices, resolved
 from eomgen.symbolic.numeric.tolerances import CERTAIN_AT_50, CLOSED_AT_50, COMPUTED, ELIMINATED_AT_50, ZERO_AT_50
 
 STATES = 3
@@ -51,12 +55,14 @@ class Follows:
         rows: which of the rows stand in the combination, by their places.
         way: "prime field" or "50 digits".
         on_ties: it holds only where the ties do.
+        held: of what has pieces and does not hold in all of them, in which it does, where that was asked.
     """
 
     holds: bool | None
     rows: tuple[int, ...] = ()
     way: str = ""
     on_ties: bool = False
+    held: Held = NOWHERE
 
 
 @dataclass(frozen=True)
@@ -118,14 +124,80 @@ IN_BALLS = NumberKind(
 
 
 def combination(
-    system: System, row: Sequence[Scalar], rows: Sequence[Sequence[Scalar]], tied: Sequence[Sequence[Scalar]] = ()
+    system: System,
+    row: Sequence[Scalar],
+    rows: Sequence[Sequence[Scalar]],
+    tied: Sequence[Sequence[Scalar]] = (),
+    *,
+    within: bool = False,
 ) -> Follows:
-    """Whether a row is a combination of others, its factors functions of the state.
+    """Whether a row is a combination of others, its factors functions of the state, in every piece of what has pieces.
 
     Args:
         row: its entries, scalars of the system's graph; with no others it is asked whether they vanish.
         tied: further rows, which hold on the ties alone: apart from these redundant ones contradict one another.
+        within: of what does not hold in all pieces it is asked in which it does.
     """
+    found = _at_random(system, row, rows, tied)
+    if found.holds is not True and not (within and found.holds is False):
+        return found
+    held = _in_pieces(system, row, rows, tied, on_ties=found.on_ties)
+    if held is None or (held.everywhere and found.holds):
+        return found
+    return Follows(False, (), found.way, held=NOWHERE if held.everywhere else held)
+
+
+def _in_pieces(
+    system: System,
+    row: Sequence[Scalar],
+    rows: Sequence[Sequence[Scalar]],
+    tied: Sequence[Sequence[Scalar]],
+    *,
+    on_ties: bool,
+) -> Held | None:
+    """In which pieces it is one; None: there are none, or nobody knows them all."""
+    flat = [x for each in (row, *rows, *(tied if on_ties else ())) for x in each]
+    if not any(holds_op(x, *PIECEWISE) for x in flat):
+        return None
+    try:
+        known, key = system.scope.graph.found(_in_pieces), (system.symbols.u, system.ties.J, system.ties.sigma)
+        if key not in known:
+            known[key] = equations_of_motion(system)
+        division = division_of(known[key], flat)
+    except (DerivationError, ModelError):
+        return None
+    if division is None or not division.found:
+        return None
+    width, nodes = len(row), division.nodes
+
+    def holds(piece: Choices) -> bool:
+        there = resolved(flat, nodes, piece)
+        table = [there[k : k + width] for k in range(0, len(there), width)]
+        if not on_ties:
+            return _at_random(system, table[0], table[1:], ()).holds is True
+        state = _at_tied_speeds(system, dict(division.found[piece]))
+        if state is None:
+            return True  # nothing contradicts it
+        try:
+            values = evaluate(there, state | _others(there, state), fifty_digits())
+        except (NoValue, ZeroDivisionError):
+            return True
+        numbers = [values[k : k + width] for k in range(0, len(values), width)]
+        return factors_in(numbers[1:], numbers[0], IN_DIGITS) is not None
+
+    return division.where(holds)
+
+
+def _others(scalars: Sequence[Scalar], state: Mapping[Node, Any]) -> dict[Node, Any]:
+    """Values of symbols that stand in scalars, and in no state of the system."""
+    rng = Random(12)
+    return {x: fifty_digits().number(_rational(rng.uniform(0.3, 2))) for x in symbols_of(scalars) if x not in state}
+
+
+def _at_random(
+    system: System, row: Sequence[Scalar], rows: Sequence[Sequence[Scalar]], tied: Sequence[Sequence[Scalar]]
+) -> Follows:
+    """The same at random states."""
     if not row:
         return Follows(True)
     flat = [x for each in (row, *rows) for x in each]

@@ -38,6 +38,7 @@ from eomgen.judge.right import (
     Decided,
     by_balance,
     by_what_is_given,
+    in_its_piece,
     on_one_side,
     says_nothing,
     truth_of,
@@ -189,7 +190,8 @@ class Judge:
         with suppress(DerivationError):
             unknowns = case.system.symbols.unknowns if written.calls else {}
             solved = {name: case.solved(x) for name, x in unknowns.items() if depends_on(scalar, (x,))}
-        return self._wrong(written, kind, case.value(written.difference, solved) if solved else scalar, solved)
+        wrong = self._wrong(written, kind, case.value(written.difference, solved) if solved else scalar, solved)
+        return replace(wrong, up_to=in_its_piece(case, scalar)) if kind in ("motion", "acceleration") else wrong
 
     def _course(self, written: HandEquation, constants: Meanings | None = None) -> Verdict | None:
         """Of a coordinate as a function of time; None: it is something else."""

@@ -11,6 +11,8 @@ from eomgen.judge.case import Case
 from eomgen.judge.decision import combination, is_zero_everywhere, linear_row
 from eomgen.judge.reading import HandEquation
 from eomgen.judge.terms import LONG
+from eomgen.mechanics.equations.pieces import EVERYWHERE, Held
+from eomgen.mechanics.first_integrals.integrals import where_integrals_hold
 from eomgen.model.values import exact_parameters
 from eomgen.records import dataclass
 from eomgen.symbolic.exact.normal_form import legible
@@ -80,9 +82,26 @@ def _by_integrals(case: Case, scalar: Scalar, known: Mapping[Node, Scalar]) -> s
     for told in ("the momenta", "the energy theorem and the momenta"):
         speeds = case.by_momenta if told == "the momenta" else case.speeds
         started = substituted((case.phase.eliminated(scalar),), {**speeds, **known}) if speeds else ()
-        if started and is_zero_everywhere(case.system, *started).holds:
-            return f"{told} from the start"
+        if not started or case.equations is None:
+            continue
+        held = where_integrals_hold(case.equations)
+        found = combination(case.system, started, (), within=not held.everywhere)
+        if found.holds:
+            return f"{told} from the start{while_(held)}"
+        if found.held and not depends_on(scalar, case.system.symbols.a):  # equations of motion hold in every piece
+            return f"{told} from the start{while_(held & found.held)}"
     return ""
+
+
+def while_(held: Held) -> str:
+    """", while y >= 0" of what holds in some pieces alone."""
+    return "" if held.everywhere else f", while {held.text}"
+
+
+def in_its_piece(case: Case, scalar: Scalar) -> str:
+    """ "while y >= 0", where an equation of motion holds in the piece of the start and not in all; "": in neither."""
+    follows = case.follows(scalar, within=True) if depends_on(scalar, case.forced) else None
+    return f"while {follows.held.text}" if follows is not None and follows.held else ""
 
 
 def says_nothing(case: Case, written: HandEquation) -> bool:
@@ -169,15 +188,17 @@ def _integral(case: Case, scalar: Scalar) -> Decided | None:
         (rate,) = case.system.scope.with_accelerations((scalar,))
     except DerivationError:
         return None
-    if not case.follows(rate).holds:
+    follows = case.follows(rate, within=True)
+    if not follows.holds and not follows.held:
         return None
+    held = EVERYWHERE if follows.holds else follows.held
     constants = [x for x in (symbols.unknowns or {}).values() if depends_on(scalar, (x,))]
     if constants or not case.start:
-        return Decided(True, "a first integral of the motion")
+        return Decided(True, f"a first integral of the motion{while_(held)}")
     (start,) = substituted((scalar,), case.start)
     if is_zero_everywhere(case.system, start).holds:
-        return Decided(True, "the first integral from the start")
-    return Decided(False, why=CONSTANT)
+        return Decided(True, f"the first integral from the start{while_(held)}")
+    return Decided(False, why=CONSTANT) if held.everywhere else None
 
 
 # -- what the file has beside its symbols --------------------------------------------------------------

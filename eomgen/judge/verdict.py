@@ -93,7 +93,8 @@ class Verdict:
         given: as it was written.
         kind: motion, energy, force, reaction, velocity, acceleration, inertia, frequency, equilibrium, statics or law.
         verdict: "right", "wrong" or "undecided".
-        up_to: what had to be used to see that it is right, in words; "" where nothing.
+        up_to: what had to be used to see that it is right, in words; of what is wrong in some pieces of the model
+            alone, in which it is right: "while y >= 0"; "" where nothing.
         substitution: what names had to be replaced by, {theta: "phi - pi/2"}.
         difference: left minus right that is too much, in the names of the model; "".
         causes: why it is wrong.
@@ -167,7 +168,7 @@ class Verdict:
         """As people read it."""
         found = [f"{self.verdict}: {self.given}"]
         if self.up_to:
-            found.append(f"    up to {self.up_to}")
+            found.append(f"    {'right' if self.verdict == WRONG else 'up to'} {self.up_to}")
         found += [f"    with {name} = {value}" for name, value in self.substitution.items()]
         if self.reason:
             found.append(f"    {self.reason}")

@@ -29,7 +29,9 @@ from eomgen.errors import (
     ModelError,
     RunFailed,
 )
+from eomgen.mechanics.equations.pieces import Held
 from eomgen.mechanics.first_integrals.constants_of_motion import stay_constant
+from eomgen.mechanics.first_integrals.integrals import where_integrals_hold
 from eomgen.mechanics.first_integrals.speeds import rates_of
 from eomgen.mechanics.initial_state.initial_state import start_state
 from eomgen.mechanics.initial_state.numeric_value import known_exactly, known_parameters
@@ -47,6 +49,7 @@ from eomgen.questions.at_instant import StateAtInstant, resting
 from eomgen.questions.in_phase import PhaseEquations
 from eomgen.questions.motion_from_start import MotionFromStart
 from eomgen.questions.of_a_run import is_of_a_run
+from eomgen.questions.one_phase_run import leaves_at
 from eomgen.questions.proof_of_answers import Solver, certificate_of
 from eomgen.records import dataclass
 from eomgen.symbolic.exact.book_form import book_form
@@ -307,8 +310,32 @@ class _Solver:
                 "no integrals of the motion give the rates as functions of the coordinates",
                 mend="ask it at an instant: `at`",
             )
+        held = where_integrals_hold(phase.equations)
+        self._refuse_leaving(motion, held)
         (scalar,) = substituted((scalar,), rates)
-        return self._started(phase.simple(scalar), "energy theorem", output)
+        method = "energy theorem" if held.everywhere else f"energy theorem, while {held.text}"
+        return self._started(phase.simple(scalar), method, output)
+
+    @staticmethod
+    def _refuse_leaving(motion: MotionFromStart, held: Held) -> None:
+        """Nothing, where the motion stays in the pieces in which its integrals hold.
+
+        Raises:
+            DerivationError: it does not, or nobody knows.
+        """
+        if held.everywhere:
+            return
+        what = f"the integrals of the motion give the rates only while {held.text}"
+        if not motion.numbers:
+            raise DerivationError(
+                f"{what}, and without values of all parameters nobody knows whether the motion stays there",
+                mend="give the parameters values",
+            )
+        left = leaves_at(motion, held)
+        if left is not None:
+            raise DerivationError(
+                f"{what}, and the motion leaves that at t = {left:.4g} s", mend="ask it at an instant: `at`"
+            )
 
     def _started(self, scalar: Scalar, method: str, output: Output) -> Answer:
         """The text, and the value at the start in the output's unit."""

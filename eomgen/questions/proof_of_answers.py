@@ -15,12 +15,11 @@ from typing import Any, Protocol
 import numpy as np
 
 from eomgen.certificate import certify
-from eomgen.codegen.program import program_of, right_hand_side
+from eomgen.codegen.program import program_of
 from eomgen.codegen.rhs import compiled
 from eomgen.documents.linearize.result import Linearization
 from eomgen.documents.quantity import Quantity
 from eomgen.errors import DerivationError, ModelError, RunFailed
-from eomgen.mechanics.equations.articulated import with_accelerations
 from eomgen.mechanics.initial_state.numeric_value import known_exactly
 from eomgen.mechanics.instant.outputs import asks_of
 from eomgen.model.fields import AtRest
@@ -35,22 +34,23 @@ from eomgen.proof.second_definitions import second_definition
 from eomgen.questions.at_instant import StateAtInstant
 from eomgen.questions.in_phase import PhaseEquations
 from eomgen.questions.motion_from_start import MotionFromStart
+from eomgen.questions.one_phase_run import parameters_in_numbers, run_from_start
 from eomgen.questions.proof_apart import Asked, in_unit, of_one_instant, of_small_motions
 from eomgen.questions.proof_of_phases import wrong_way
 from eomgen.records import dataclass
-from eomgen.simulation.constraint_drift import projection_of
-from eomgen.simulation.constraint_rank import nearness_of
-from eomgen.simulation.integrate import integrate
 from eomgen.simulation.result import Trajectory
 from eomgen.symbolic.expression.derivative import depends_on, symbols_of
 from eomgen.symbolic.expression.graph import Node, Scalar
+from eomgen.symbolic.expression.node import holds_op
 from eomgen.symbolic.numeric.evaluation import NoValue
+from eomgen.symbolic.numeric.pieces import PIECEWISE
 from eomgen.symbolic.numeric.sure_numbers import number_of
-from eomgen.symbolic.numeric.tolerances import CARRIED, COMPUTED, FINE_RUN, RUNS_AGREE, SAME_PLACE
+from eomgen.symbolic.numeric.tolerances import CARRIED, COMPUTED, RUNS_AGREE, SAME_PLACE
 
-STEPS = 2000  # of a run in time that one instant is compared with
 WAY = 1.0  # s, of the motion along which functions of the configuration are tried
 ROWS = 21  # of it
+LONG_WAY, LONG_ROWS = 10.0, 401  # of a motion through pieces of min, max, abs, sign, cases and samples
+TRIED = 8  # rows of it that are looked at, about
 
 
 class Solver(Protocol):
@@ -291,7 +291,7 @@ class _Proof:
             raise RunFailed("the instant is not known in numbers")
         if t == 0:
             return ""
-        run = _run(motion, t)
+        run = run_from_start(motion, t)
         symbols = motion.phase.system.symbols
         there = np.array([moment.numbers[node] for node in (*symbols.q, *symbols.u)])
         apart = np.abs(run.x[-1] - there) / (1 + np.max(np.abs(run.x), axis=0, initial=0.0))
@@ -309,7 +309,7 @@ class _Proof:
         system = phase.system
         function = compiled(program_of((left - right,), system.symbols, inputs=system.inputs), "numpy")
         with np.errstate(all="ignore"):
-            values = function.many(run.t, run.x, _parameters(motion))[:, 0]
+            values = function.many(run.t, run.x, parameters_in_numbers(motion))[:, 0]
         size = float(np.max(np.abs(values), initial=0.0))
         before = [float(v) for v, when in zip(values, run.t, strict=True) if when < t * (1 - SAME_PLACE)]
         signs = {v > 0 for v in before if abs(v) > CARRIED * size}
@@ -336,15 +336,23 @@ class _Proof:
                 tally.add(name, partial(self._along, output, found))
         return tally.checks()
 
+    @staticmethod
+    def _way(motion: MotionFromStart) -> Trajectory:
+        """A while of the motion; a long one, as far as its steps lead, where it may come into other pieces."""
+        with suppress(RunFailed):
+            if any(holds_op(x, *PIECEWISE) for x in (*motion.phase.equations.forcing, motion.phase.equations.V)):
+                return run_from_start(motion, LONG_WAY, LONG_ROWS)
+        return run_from_start(motion, WAY, ROWS)
+
     def _along(self, output: Output, found: Quantity) -> str:
         motion = self.solver.motions[output.from_ == "rest"]
-        phase, run = motion.phase, _run(motion, WAY, ROWS)
+        phase, run = motion.phase, self._way(motion)
         scalar, symbols = read_back(phase.system, found.exact or ""), phase.system.symbols
         if depends_on(scalar, symbols.u):
             return ""  # a function of the state: its number is compared
         nodes, parameters = (*symbols.q, *symbols.u), known_exactly(phase.system.scope)
         one_way = _before_a_turn(run, len(symbols.q))
-        for t, x in list(zip(run.t.tolist(), run.x.tolist(), strict=True))[1:one_way:4]:
+        for t, x in list(zip(run.t.tolist(), run.x.tolist(), strict=True))[1 : one_way : max(4, one_way // TRIED)]:
             state = self._state(phase, {symbols.t: t, **dict(zip(nodes, x, strict=True))})
             right = in_unit(state.worth(output.value), output)
             here: dict[Node, Scalar | float] = {**parameters, symbols.t: t, **dict(zip(nodes, x, strict=True))}
@@ -363,39 +371,6 @@ def _start(motion: MotionFromStart) -> dict[Node, float]:
         return motion.numbers
     except (ModelError, DerivationError):
         return {}
-
-
-def _parameters(motion: MotionFromStart) -> np.ndarray:
-    known = known_exactly(motion.phase.system.scope)
-    symbols = motion.phase.system.symbols
-    return np.array([number_of(known[node]) if node in known else math.nan for node in symbols.parameters.values()])
-
-
-def _run(motion: MotionFromStart, time: float, samples: int | None = None) -> Trajectory:
-    """The motion from the start, in one phase, by emitted code.
-
-    Raises:
-        RunFailed: it does not get there.
-    """
-    phase, p = motion.phase, _parameters(motion)
-    system, equations, symbols = phase.system, phase.equations, phase.system.symbols
-    x0 = np.array([motion.numbers[node] for node in (*symbols.q, *symbols.u)])
-    rhs = compiled(right_hand_side(with_accelerations(equations)), "numpy")
-    run = integrate(
-        rhs,
-        time=time,
-        x0=x0,
-        p=p,
-        rtol=FINE_RUN,
-        atol=FINE_RUN,
-        samples=samples,
-        projection=projection_of(system, p, "numpy"),
-        nearness=nearness_of(equations, p, system),
-        most_steps=STEPS,
-    )
-    if not run.ok:
-        raise RunFailed(f"the run does not get there: {run.message}")
-    return run
 
 
 def _before_a_turn(run: Trajectory, coordinates: int) -> int:

@@ -16,7 +16,7 @@ from eomgen.mechanics.constraints.edges import edges_of
 from eomgen.mechanics.equations.equations_of_motion import EquationsOfMotion
 from eomgen.mechanics.equations.no_value import Valueless, overlarge, valueless
 from eomgen.mechanics.equations.system import System
-from eomgen.mechanics.equations.wellposed import is_conservative
+from eomgen.mechanics.equations.wellposed import is_conservative, why_not_conservative
 from eomgen.mechanics.initial_state.initial_state import Start, start_of_motion
 from eomgen.mechanics.reactions.reactions import Reactions
 from eomgen.model.constraints.row import Edge
@@ -208,7 +208,7 @@ class PhaseModel:
             UsageError: energy need not stay.
         """
         if not self.conservative:
-            what = "energy is not kept: something drives, brakes or carries the model"
+            what = f"energy is not kept: {why_not_conservative(self.equations)}"
             raise UsageError(what, mend='take stabilization "projection"')
         places, size = len(self.coordinates), len(self.coordinates) + len(self.speeds)
         energy = float(self.energies(np.array([t]), x[None, :]).sum())

@@ -7,7 +7,7 @@ states around, and from each of them by Newton's method over every switch into t
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from functools import cached_property
 from random import Random
 from typing import Any
@@ -34,9 +34,11 @@ from eomgen.symbolic.numeric.pieces import (
     choices_at,
     piecewise_nodes,
     resolved,
+    sides_of,
     switches_of,
 )
 from eomgen.symbolic.numeric.work import Work, check_patience
+from eomgen.symbolic.print.text import to_text
 
 MOST = 64  # pieces that are told apart
 MOST_OF_ONE = 12  # pieces of one quantity that are entered, evenly spread: a road of 100 arcs is one formula in each
@@ -67,15 +69,29 @@ class Held:
     Args:
         everywhere: in every piece.
         within: where not everywhere: the conditions under which it does, met at the start; () nowhere.
-        chosen: the same as (node, its choice).
     """
 
     everywhere: bool
     within: tuple[Condition, ...] = ()
-    chosen: tuple[tuple[Node, int], ...] = ()
 
     def __bool__(self) -> bool:
         return self.everywhere or bool(self.within)
+
+    def __and__(self, other: Held) -> Held:
+        """Where both hold."""
+        if not self or not other or (self.everywhere and other.everywhere):
+            return EVERYWHERE if self.everywhere and other.everywhere else NOWHERE
+        return Held(False, tuple(dict.fromkeys((*self.within, *other.within))))
+
+    @property
+    def text(self) -> str:
+        """The conditions in words: "y >= 0 and t <= t0"; "" where it holds everywhere."""
+        return " and ".join(f"{to_text(x.left)} {x.relation} {to_text(x.right)}" for x in self.within)
+
+    @property
+    def limits(self) -> tuple[Scalar, ...]:
+        """What is negative inside the pieces in which it holds."""
+        return tuple(x.left - x.right if x.relation == "<=" else x.right - x.left for x in self.within)
 
 
 EVERYWHERE, NOWHERE = Held(True), Held(False)
@@ -88,13 +104,13 @@ class Division:
     Args:
         system: whose they are.
         nodes: what has pieces.
-        found: every piece that a state was found in; () where they are too many.
+        found: every piece that a state was found in, with that state; {} where they are too many.
         start: that in which the motion starts; None where it is not known.
     """
 
     system: System
     nodes: tuple[Node, ...]
-    found: tuple[Choices, ...]
+    found: Mapping[Choices, State]
     start: Choices | None
 
     def where(self, decide: Callable[[Choices], bool]) -> Held:
@@ -108,7 +124,7 @@ class Division:
             return NOWHERE
         literals = self._literals([piece for piece, yes in good.items() if not yes])
         within = dict.fromkeys(c for node, choice in literals for c in self.conditions(node, choice))
-        return Held(False, tuple(within), tuple(literals))
+        return Held(False, tuple(within))
 
     def _decided(self, decide: Callable[[Choices], bool], piece: Choices) -> bool:
         try:
@@ -135,8 +151,8 @@ class Division:
             if choice < len(ends):
                 yield self._condition(x.args[0] - ends[choice])
         else:
-            difference = x.args[0] if len(x.args) == 1 else x.args[0] - x.args[1]
-            yield self._condition(-choice * difference)
+            a, b = sides_of(x)
+            yield self._condition(-choice * (a - b))
 
     def _condition(self, below: Scalar) -> Condition:
         """below <= 0, without factors that are positive, what moves on the left side."""
@@ -219,7 +235,7 @@ class _Search:
                     check_patience()
                     if (there := self._choices(beside)) is not None:
                         found.setdefault(there, beside)
-        return Division(self.equations.system, self.nodes, tuple(found) if len(found) <= MOST else (), start)
+        return Division(self.equations.system, self.nodes, found if len(found) <= MOST else {}, start)
 
     def _choices(self, state: State) -> Choices | None:
         try:

@@ -45,6 +45,24 @@ def where_conservative(equations: EquationsOfMotion) -> Held:
     )
 
 
+def why_not_conservative(equations: EquationsOfMotion) -> str:
+    """What keeps T + V from staying, in words; "" where it stays."""
+    held = where_conservative(equations)
+    if held.everywhere:
+        return ""
+    if held:
+        return f"T + V stays constant only while {held.text}"
+    model, loads = equations.system.scope.model, equations.system.loads
+    carried = [f"'{name}' moves by itself" for name, part in model.coordinates.items() if part.driven]
+    pushed = [f"'{each.name}' has no potential" for each in loads.applied if each.potential is None and each.loads]
+    turned = [f"something drives or brakes the joint of '{e.body}'" for e in loads.efforts if not is_zero(e.drive)]
+    rubbed = ["contacts rub"] if equations.friction else []
+    rows = zip(equations.system.ties.closing, equations.sigma, strict=True)
+    moving = [f"'{row.tie}' moves by itself" for row, sigma in rows if not is_zero(sigma)]
+    found = tuple(dict.fromkeys((*carried, *pushed, *turned, *rubbed, *moving)))
+    return ", ".join(found) or "something drives, brakes or carries the model"
+
+
 def refuse_massless(equations: EquationsOfMotion) -> None:
     """A free coordinate that moves no mass has no acceleration, nor have several that can move together without any.
 

@@ -77,6 +77,14 @@ def energy_integral(equations: EquationsOfMotion) -> tuple[Integral, ...]:
     return tuple(within[:1])
 
 
+def where_integrals_hold(equations: EquationsOfMotion) -> Held:
+    """Where all of them do: what follows from them holds there."""
+    held = EVERYWHERE
+    for each in (*energy_integral(equations), *momentum_integrals(equations)):
+        held = held & each.held
+    return held
+
+
 def work_of_constant_forces(system: System) -> Scalar:
     """W(q): F . r of constant forces on points, C times the angle of constant couples in the plane, Q_k q_k."""
     loads = system.loads

@@ -1,7 +1,8 @@
 """Scalars -> what their pieces hang on: quantities that move, and where one piece ends and the next begins.
 
 A comparison, min, max, abs or sign changes where the difference of its two sides passes 0, samples where their argument
-passes one of their places. Differences that are the same up to what stands still are one quantity with several ends.
+passes one of their places; the root of a square is a size, too. Differences that are the same up to what stands still
+are one quantity with several ends.
 With the choice of each made, the scalars are formulas without pieces, of which one says by algebra what they are.
 """
 
@@ -88,7 +89,26 @@ def piecewise_nodes(scalars: Iterable[Scalar], moving: frozenset[Node]) -> tuple
     """What changes its form with something that moves, in the order of evaluation."""
     nodes = order(x for x in scalars if holds_op(x, *PIECEWISE))
     active = _active(nodes, moving)
-    return tuple(x for x in nodes if x.op in PIECEWISE and x in active)
+    return tuple(x for x in nodes if (x.op in PIECEWISE or _base(x) is not None) and x in active)
+
+
+def _base(x: Node) -> Scalar | None:
+    """y of sqrt(y^2), which is |y|; None of anything else."""
+    inside = x.args[0] if x.op == "sqrt" else None
+    if type(inside) is not Node:
+        return None
+    if inside.op == "mul" and inside.args[0] is inside.args[1]:
+        base: Scalar = inside.args[0]
+        return base
+    return inside.args[0] if inside.op == "pow" and inside.args[1] == 2 else None
+
+
+def sides_of(x: Node) -> tuple[Scalar, Scalar]:
+    """What is compared where x chooses; of samples their argument and 0."""
+    if x.op in COMPARING:
+        return x.args[0], x.args[1]
+    base = _base(x)
+    return x.args[0] if base is None else base, 0
 
 
 def choices_at(nodes: Sequence[Node], state: State) -> Choices | None:
@@ -96,8 +116,7 @@ def choices_at(nodes: Sequence[Node], state: State) -> Choices | None:
 
     A node without a value, in a case that does not hold there, chooses 0: nothing.
     """
-    sides = [y for x in nodes for y in (x.args[0], 0 if x.op in (*ABOUT_ZERO, "sampled") else x.args[1])]
-    values = evaluate(sides, state, fifty_digits(partial=True))
+    values = evaluate([side for x in nodes for side in sides_of(x)], state, fifty_digits(partial=True))
     found: list[int] = []
     for x, a, b in zip(nodes, values[::2], values[1::2], strict=True):
         if a != a or b != b:
@@ -120,10 +139,10 @@ def resolved(scalars: Sequence[Scalar], nodes: Sequence[Node], choices: Choices)
     chosen = dict(zip(nodes, choices, strict=True))
     known: dict[Node, Scalar] = {}
     for x in order(scalars):
-        if chosen.get(x):
-            known[x] = _as_chosen(x, chosen[x], substituted(x.args[:1] if x.op == "sampled" else x.args, known))
-        elif x.op == "sampled" and x in chosen:
-            known[x] = _as_chosen(x, 0, substituted(x.args[:1], known))
+        if x.op == "sampled" and x in chosen:
+            known[x] = _polynomial_of(sampled_of(x.args[1]), chosen[x], substituted(x.args[:1], known)[0], x.graph.pi)
+        elif chosen.get(x):
+            known[x] = _as_chosen(x, chosen[x], substituted(sides_of(x), known))
         elif x.op == "select":
             condition = substituted(x.args[:1], known)[0]
             if type(condition) is not Node:
@@ -131,17 +150,15 @@ def resolved(scalars: Sequence[Scalar], nodes: Sequence[Node], choices: Choices)
     return substituted(tuple(scalars), known) if known else tuple(scalars)
 
 
-def _as_chosen(x: Node, choice: int, args: Sequence[Scalar]) -> Scalar:
+def _as_chosen(x: Node, choice: int, sides: Sequence[Scalar]) -> Scalar:
     """A node with its choice made."""
-    if x.op == "sampled":
-        return _polynomial_of(sampled_of(x.args[1]), choice, args[0], x.graph.pi)
     if x.op == "sign":
         return choice
-    if x.op == "abs":
-        return choice * args[0]
+    if x.op in ("abs", "sqrt"):
+        return choice * sides[0]
     if x.op in ("less", "less_equal"):
         return int(choice < 0)
-    return args[0] if (x.op == "min") is (choice < 0) else args[1]
+    return sides[0] if (x.op == "min") is (choice < 0) else sides[1]
 
 
 def _polynomial_of(sampled: Sampled, piece: int, t: Scalar, pi: Node) -> Scalar:
@@ -186,7 +203,7 @@ def _thrown_by(x: Node) -> Iterator[tuple[dict[Any, Any], Sequence[Scalar]]]:
     """(terms, the values of their sum at which x changes its form)."""
     if x.op in COMPARING:
         yield linear_terms(x.args[0] - x.args[1]), (0,)
-    elif x.op in ABOUT_ZERO:
-        yield linear_terms(x.args[0]), (0,)
+    elif x.op in ABOUT_ZERO or _base(x) is not None:
+        yield linear_terms(sides_of(x)[0]), (0,)
     elif x.op == "sampled":
         yield linear_terms(x.args[0]), sampled_of(x.args[1]).spline.bounds
