@@ -45,7 +45,11 @@ def integral_steps(
     Args:
         in_time: the same with all that is driven as functions of time; None: they are so.
     """
-    laws = _laws(equations, reader) if in_time is None else _laws(in_time, Reader(gathers=reader.gathers, positive=reader.positive))
+    laws = (
+        _laws(equations, reader)
+        if in_time is None
+        else _laws(in_time, Reader(gathers=reader.gathers, positive=reader.positive))
+    )
     return (*_integrals(equations, reader), *laws)
 
 
@@ -97,17 +101,25 @@ def _cyclic(coordinates: tuple[Node, ...], held: Held) -> Prose:
 
 
 def _while(held: Held) -> tuple[Piece, ...]:
-    """" while y >= 0" of what holds in some pieces alone."""
+    """ " while y >= 0" of what holds in some pieces alone."""
     words: list[Piece] = []
     for each in held.within:
         left, right = (x if type(x) is Node else to_text(x) for x in (each.left, each.right))
-        words += [" and " if words else " while ", left, " ", AT_MOST if each.relation == "<=" else AT_LEAST, " ", right]
+        words += [
+            " and " if words else " while ",
+            left,
+            " ",
+            AT_MOST if each.relation == "<=" else AT_LEAST,
+            " ",
+            right,
+        ]
     return tuple(words)
 
 
 def _energy(reader: Reader, equations: EquationsOfMotion, energy: Integral) -> list[Statement]:
     """T + V, or T + V - W, and that it stays constant; in words alone where it is written piece by piece."""
-    law, words = ENERGY, ("The energy ", ENERGY, " stays constant")
+    law = ENERGY
+    words: tuple[Piece, ...] = ("The energy ", ENERGY, " stays constant")
     if energy.name == "jacobi":
         law = JACOBI
         words = ("What moves by itself does so at a steady rate, and Jacobi's integral ", JACOBI, " stays constant")

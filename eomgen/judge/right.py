@@ -94,7 +94,7 @@ def _by_integrals(case: Case, scalar: Scalar, known: Mapping[Node, Scalar]) -> s
 
 
 def while_(held: Held) -> str:
-    """", while y >= 0" of what holds in some pieces alone."""
+    """ ", while y >= 0" of what holds in some pieces alone."""
     return "" if held.everywhere else f", while {held.text}"
 
 

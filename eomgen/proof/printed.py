@@ -218,7 +218,6 @@ class ReadBack:
                 return f"{text} changes by {float(rate):.3g} in a second"
         return ""
 
-
     @staticmethod
     def _is_met(limits: Sequence[Scalar], state: State) -> bool:
         return all(x < 0 for x in evaluate(limits, state, fifty_digits()))

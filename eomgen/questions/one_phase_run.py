@@ -1,4 +1,4 @@
-"""A motion from its start -> a run of it in one phase, and whether it stays in the pieces in which its integrals hold."""
+"""Motion from the start -> a run of it in one phase; whether it stays in the pieces in which its integrals hold."""
 
 from __future__ import annotations
 
@@ -74,5 +74,10 @@ def leaves_at(motion: MotionFromStart, held: Held) -> float | None:
     function = compiled(program_of(held.limits, system.symbols, inputs=system.inputs), "numpy")
     with np.errstate(all="ignore"):
         over = function.many(run.t, run.x, parameters_in_numbers(motion))
-    out = np.any(over > COMPUTED * (1 + np.max(np.abs(over), initial=0.0)), axis=1)
-    return float(run.t[int(np.argmax(out))]) if out.any() else None
+    worst = np.max(over, axis=1)
+    out = worst > COMPUTED * (1 + np.max(np.abs(over), initial=0.0))
+    if not out.any():
+        return None
+    k = max(int(np.argmax(out)), 1)
+    share = -worst[k - 1] / (worst[k] - worst[k - 1]) if worst[k - 1] < 0 else 0.0  # of the way between two instants
+    return float(run.t[k - 1] + share * (run.t[k] - run.t[k - 1]))

@@ -14,7 +14,6 @@ from eomgen.model.outputs.context import Trial
 from eomgen.symbolic.expression.spatial import dot
 from eomgen.symbolic.numeric.evaluation import NoValue
 
-
 SMALL = 2.0**-10  # [m/s, rad/s] of a speed, in the differences of an energy that is no square of it
 
 

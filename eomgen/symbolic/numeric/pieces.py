@@ -31,7 +31,7 @@ ABOUT_ZERO = ("abs", "sign")
 PIECEWISE = (*COMPARING, *ABOUT_ZERO, "sampled")
 
 Choices = tuple[int, ...]
-"""Of each node that has pieces: -1 and 1, the sign of its argument or of the difference of both; of samples the place."""
+"""Of each node that has pieces: the sign of its argument, or of the difference of both; of samples the place."""
 
 
 @dataclass(frozen=True)
