@@ -1,6 +1,7 @@
 """kinetic_energy, potential_energy, power: of the whole, of one body, or of one force.
 
-By the second way T = sum m v.v/2 over particles, what the file gives as an energy beside it, and the power of a force whose potential does not see time is -dV/dt.
+By the second way T = sum m v.v/2 over particles, what the file gives as an energy beside it, and the power of a force
+whose potential does not see time is -dV/dt.
 """
 
 from __future__ import annotations
