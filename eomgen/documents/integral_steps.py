@@ -13,7 +13,7 @@ from eomgen.documents.statements import Formula, Law, Name, Partial, Piece, Pros
 from eomgen.mechanics.bodies.system_scene import given_start
 from eomgen.mechanics.equations.equations_of_motion import EquationsOfMotion
 from eomgen.mechanics.equations.explicit_accelerations import short_accelerations
-from eomgen.mechanics.equations.pieces import Held
+from eomgen.mechanics.equations.pieces import Extent
 from eomgen.mechanics.equations.system import System
 from eomgen.mechanics.first_integrals.constants_of_motion import Constant, momenta_of_the_whole
 from eomgen.mechanics.first_integrals.integrals import (
@@ -92,7 +92,7 @@ def _side(each: Constant) -> Name:
     return Name(f"{each.letter}_{each.axis}") if each.axis else Name(each.letter, power=2)
 
 
-def _cyclic(coordinates: tuple[Node, ...], held: Held) -> Prose:
+def _cyclic(coordinates: tuple[Node, ...], held: Extent) -> Prose:
     many = len(coordinates) > 1
     verb = ("s ", " are cyclic: their momenta stay") if many else (" ", " is cyclic: its momentum stays")
     if not held.everywhere:
@@ -100,7 +100,7 @@ def _cyclic(coordinates: tuple[Node, ...], held: Held) -> Prose:
     return prose(f"The coordinate{verb[0]}", *listed_symbols(coordinates), f"{verb[1]} constant", *_while(held), ":")
 
 
-def _while(held: Held) -> tuple[Piece, ...]:
+def _while(held: Extent) -> tuple[Piece, ...]:
     """ " while y >= 0" of what holds in some pieces alone."""
     words: list[Piece] = []
     for each in held.within:

@@ -17,7 +17,7 @@ import numpy as np
 
 from eomgen.errors import DerivationError, ModelError
 from eomgen.mechanics.balance.friction import equations_of_motion
-from eomgen.mechanics.equations.pieces import NOWHERE, Held, division_of
+from eomgen.mechanics.equations.pieces import NOWHERE, Extent, division_of
 from eomgen.mechanics.equations.system import System
 from eomgen.model.values import exact_parameters
 from eomgen.records import dataclass
@@ -36,7 +36,7 @@ from eomgen.symbolic.numeric.evaluation import (
     evaluate,
     fifty_digits,
 )
-from eomgen.symbolic.numeric.pieces import PIECEWISE, Choices, resolved
+from eomgen.symbolic.numeric.pieces import PIECEWISE, Choices, as_chosen
 from eomgen.symbolic.numeric.tolerances import CERTAIN_AT_50, CLOSED_AT_50, COMPUTED, ELIMINATED_AT_50, ZERO_AT_50
 
 STATES = 3
@@ -62,7 +62,7 @@ class Follows:
     rows: tuple[int, ...] = ()
     way: str = ""
     on_ties: bool = False
-    held: Held = NOWHERE
+    held: Extent = NOWHERE
 
 
 @dataclass(frozen=True)
@@ -154,7 +154,7 @@ def _in_pieces(
     tied: Sequence[Sequence[Scalar]],
     *,
     on_ties: bool,
-) -> Held | None:
+) -> Extent | None:
     """In which pieces it is one; None: there are none, or nobody knows them all."""
     flat = [x for each in (row, *rows, *(tied if on_ties else ())) for x in each]
     if not any(holds_op(x, *PIECEWISE) for x in flat):
@@ -171,7 +171,7 @@ def _in_pieces(
     width, nodes = len(row), division.nodes
 
     def holds(piece: Choices) -> bool:
-        there = resolved(flat, nodes, piece)
+        there = as_chosen(flat, nodes, piece)
         table = [there[k : k + width] for k in range(0, len(there), width)]
         if not on_ties:
             return _at_random(system, table[0], table[1:], ()).holds is True

@@ -11,7 +11,7 @@ from eomgen.judge.case import Case
 from eomgen.judge.decision import combination, is_zero_everywhere, linear_row
 from eomgen.judge.reading import HandEquation
 from eomgen.judge.terms import LONG
-from eomgen.mechanics.equations.pieces import EVERYWHERE, Held
+from eomgen.mechanics.equations.pieces import EVERYWHERE, Extent
 from eomgen.mechanics.first_integrals.integrals import where_integrals_hold
 from eomgen.model.values import exact_parameters
 from eomgen.records import dataclass
@@ -93,7 +93,7 @@ def _by_integrals(case: Case, scalar: Scalar, known: Mapping[Node, Scalar]) -> s
     return ""
 
 
-def while_(held: Held) -> str:
+def while_(held: Extent) -> str:
     """ ", while y >= 0" of what holds in some pieces alone."""
     return "" if held.everywhere else f", while {held.text}"
 

@@ -29,7 +29,7 @@ from eomgen.errors import (
     ModelError,
     RunFailed,
 )
-from eomgen.mechanics.equations.pieces import Held
+from eomgen.mechanics.equations.pieces import Extent
 from eomgen.mechanics.first_integrals.constants_of_motion import stay_constant
 from eomgen.mechanics.first_integrals.integrals import where_integrals_hold
 from eomgen.mechanics.first_integrals.speeds import rates_of
@@ -317,7 +317,7 @@ class _Solver:
         return self._started(phase.simple(scalar), method, output)
 
     @staticmethod
-    def _refuse_leaving(motion: MotionFromStart, held: Held) -> None:
+    def _refuse_leaving(motion: MotionFromStart, held: Extent) -> None:
         """Nothing, where the motion stays in the pieces in which its integrals hold.
 
         Raises:

@@ -10,7 +10,7 @@ from eomgen.codegen.program import program_of, right_hand_side
 from eomgen.codegen.rhs import compiled
 from eomgen.errors import RunFailed
 from eomgen.mechanics.equations.articulated import with_accelerations
-from eomgen.mechanics.equations.pieces import Held
+from eomgen.mechanics.equations.pieces import Extent
 from eomgen.mechanics.initial_state.numeric_value import known_exactly
 from eomgen.questions.motion_from_start import MotionFromStart
 from eomgen.simulation.constraint_drift import projection_of
@@ -60,7 +60,7 @@ def parameters_in_numbers(motion: MotionFromStart) -> np.ndarray:
     return np.array([number_of(known[node]) if node in known else math.nan for node in symbols.parameters.values()])
 
 
-def leaves_at(motion: MotionFromStart, held: Held) -> float | None:
+def leaves_at(motion: MotionFromStart, held: Extent) -> float | None:
     """When the motion first leaves the pieces in which something holds; None: it stays, as far as it was watched.
 
     Raises:

@@ -17,10 +17,11 @@ from itertools import combinations
 from eomgen.errors import DerivationError
 from eomgen.records import dataclass
 from eomgen.symbolic.exact.normal_form import simplest
-from eomgen.symbolic.expression.derivative import depends_on, substituted, symbols_of
-from eomgen.symbolic.expression.functions import cos, sin
+from eomgen.symbolic.expression.derivative import depends_on, derivative, substituted, symbols_of
+from eomgen.symbolic.expression.functions import cos, over, sin
 from eomgen.symbolic.expression.graph import Node, Scalar
 from eomgen.symbolic.expression.rational import Fraction
+from eomgen.symbolic.expression.traversal import order
 from eomgen.symbolic.numeric.evaluation import FLOAT, evaluate
 from eomgen.symbolic.numeric.tolerances import CARRIED
 from eomgen.symbolic.numeric.work import Work
@@ -57,13 +58,14 @@ class Located:
     def chosen(self, candidates: Sequence[Scalar], node: Node, equation: Scalar) -> Scalar | None:
         """The candidate that the node is worth there, the nearest of several; whole turns added if it has them.
 
-        One of more than a page is none: no reader follows it, and what depends on it would be longer still.
+        A turn is 2 pi, or 2 pi/q where the node stands in waves of q times it alone. A candidate of more than a page is
+        none: no reader follows it, and what depends on it would be longer still.
         """
-        turn, found = 2 * node.graph.pi, list[tuple[float, Scalar]]()
+        turn, found = _turn_of(equation, node), list[tuple[float, Scalar]]()
         for candidate in candidates:
             if text_size(candidate) > PAGE:
                 continue
-            away = (self.numbers.get(node, math.nan) - self.value(candidate)) / math.tau
+            away = (self.numbers.get(node, math.nan) - self.value(candidate)) / self.value(turn)
             turns = round(away) if math.isfinite(away) else 0
             shifted = candidate + turns * turn if turns else candidate
             if self.agrees(shifted, node) and (not turns or has_period(equation, node, turn)):
@@ -73,6 +75,17 @@ class Located:
     def root(self, equation: Scalar, node: Node) -> Scalar | None:
         """The root of the equation that the node is worth there."""
         return self.chosen(roots(equation, node, self.positive, Work.VALUE), node, equation)
+
+
+def _turn_of(equation: Scalar, node: Node) -> Scalar:
+    """2 pi/q of an equation that holds a node in waves of q times it, q a constant with a name; else 2 pi."""
+    turn: Scalar = 2 * node.graph.pi
+    waves = {x.args[0] for x in order((equation,)) if x.op in ("sin", "cos") and depends_on(x, (node,))}
+    slopes = {derivative(x, node) for x in waves}
+    if len(slopes) != 1:
+        return turn
+    (q,) = slopes
+    return over(turn, q) if type(q) is Node and not depends_on(q, (node,)) else turn
 
 
 def places_of(equations: Sequence[Scalar], unknowns: Collection[Node], located: Located) -> dict[Node, Scalar]:

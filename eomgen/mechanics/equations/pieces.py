@@ -13,8 +13,14 @@ from random import Random
 from typing import Any
 
 from eomgen.errors import DerivationError, MissingValues, ModelError
-from eomgen.mechanics.constraints.closure import closed, generic_state, movable, of_50_digits, on_unit_spheres
-from eomgen.mechanics.constraints.closure import start_of as own_start
+from eomgen.mechanics.constraints.closure import (
+    closed,
+    generic_state,
+    movable,
+    of_50_digits,
+    on_unit_spheres,
+    own_start,
+)
 from eomgen.mechanics.equations.accelerations import exact_accelerations
 from eomgen.mechanics.equations.equations_of_motion import EquationsOfMotion
 from eomgen.mechanics.equations.system import System
@@ -31,10 +37,10 @@ from eomgen.symbolic.numeric.pieces import (
     PIECEWISE,
     Choices,
     Switch,
+    as_chosen,
     choices_at,
+    compared_sides,
     piecewise_nodes,
-    resolved,
-    sides_of,
     switches_of,
 )
 from eomgen.symbolic.numeric.work import Work, check_patience
@@ -63,7 +69,7 @@ class Condition:
 
 
 @dataclass(frozen=True)
-class Held:
+class Extent:
     """Where something holds.
 
     Args:
@@ -77,11 +83,11 @@ class Held:
     def __bool__(self) -> bool:
         return self.everywhere or bool(self.within)
 
-    def __and__(self, other: Held) -> Held:
+    def __and__(self, other: Extent) -> Extent:
         """Where both hold."""
         if not self or not other or (self.everywhere and other.everywhere):
             return EVERYWHERE if self.everywhere and other.everywhere else NOWHERE
-        return Held(False, tuple(dict.fromkeys((*self.within, *other.within))))
+        return Extent(False, tuple(dict.fromkeys((*self.within, *other.within))))
 
     @property
     def text(self) -> str:
@@ -94,7 +100,7 @@ class Held:
         return tuple(x.left - x.right if x.relation == "<=" else x.right - x.left for x in self.within)
 
 
-EVERYWHERE, NOWHERE = Held(True), Held(False)
+EVERYWHERE, NOWHERE = Extent(True), Extent(False)
 
 
 @dataclass(frozen=True)
@@ -113,7 +119,7 @@ class Division:
     found: Mapping[Choices, State]
     start: Choices | None
 
-    def where(self, decide: Callable[[Choices], bool]) -> Held:
+    def where(self, decide: Callable[[Choices], bool]) -> Extent:
         """Where a property holds that is decided piece by piece."""
         if not self.found:
             return NOWHERE
@@ -124,7 +130,7 @@ class Division:
             return NOWHERE
         literals = self._literals([piece for piece, yes in good.items() if not yes])
         within = dict.fromkeys(c for node, choice in literals for c in self.conditions(node, choice))
-        return Held(False, tuple(within))
+        return Extent(False, tuple(within))
 
     def _decided(self, decide: Callable[[Choices], bool], piece: Choices) -> bool:
         try:
@@ -151,7 +157,7 @@ class Division:
             if choice < len(ends):
                 yield self._condition(x.args[0] - ends[choice])
         else:
-            a, b = sides_of(x)
+            a, b = compared_sides(x)
             yield self._condition(-choice * (a - b))
 
     def _condition(self, below: Scalar) -> Condition:
@@ -188,13 +194,13 @@ def division_of(equations: EquationsOfMotion, scalars: Sequence[Scalar]) -> Divi
 
 def where_holds(
     equations: EquationsOfMotion, scalars: Sequence[Scalar], decide: Callable[[tuple[Scalar, ...]], bool]
-) -> Held:
+) -> Extent:
     """Where a property of scalars holds; `decide` is asked of them as they are in each piece."""
     division = division_of(equations, scalars)
     if division is None:
         return EVERYWHERE if decide(tuple(scalars)) else NOWHERE
     nodes = division.nodes
-    return division.where(lambda piece: decide(resolved(scalars, nodes, piece)))
+    return division.where(lambda piece: decide(as_chosen(scalars, nodes, piece)))
 
 
 def _divided(equations: EquationsOfMotion, scalars: tuple[Scalar, ...]) -> Division | None:

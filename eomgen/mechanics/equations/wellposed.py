@@ -11,7 +11,7 @@ from eomgen.mechanics.bodies.inertia import mass_properties
 from eomgen.mechanics.bodies.kinematics import BodyLink
 from eomgen.mechanics.constraints.closure import generic_state, of_50_digits, scattered_state
 from eomgen.mechanics.equations.equations_of_motion import EquationsOfMotion
-from eomgen.mechanics.equations.pieces import EVERYWHERE, NOWHERE, Held, where_holds
+from eomgen.mechanics.equations.pieces import EVERYWHERE, NOWHERE, Extent, where_holds
 from eomgen.mechanics.equations.system import System
 from eomgen.mechanics.equations.work import from_potential
 from eomgen.symbolic.exact.equality import equal_at_random_states
@@ -28,7 +28,7 @@ def is_conservative(equations: EquationsOfMotion) -> bool:
     return where_conservative(equations).everywhere
 
 
-def where_conservative(equations: EquationsOfMotion) -> Held:
+def where_conservative(equations: EquationsOfMotion) -> Extent:
     """In which pieces of min, max, abs, sign, cases and samples T + V stays."""
     t = equations.symbols.t
     by_itself = (*equations.nu, *equations.sigma)

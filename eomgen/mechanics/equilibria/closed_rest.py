@@ -6,7 +6,7 @@ coordinates. What is found is taken only where all equations hold at it as funct
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator, Mapping, Sequence
 from functools import cached_property
 from typing import Any
 
@@ -26,7 +26,7 @@ from eomgen.symbolic.numeric.evaluation import NoValue, digits_at
 from eomgen.symbolic.numeric.tolerances import COMPUTED
 from eomgen.symbolic.numeric.work import Work
 from eomgen.symbolic.print.text import text_size
-from eomgen.symbolic.solve.linear_systems import LinearSystem, general_solution
+from eomgen.symbolic.solve.linear_systems import LinearSystem, Solution, general_solution
 from eomgen.symbolic.solve.solving import vanishes
 
 MOST_EXACT = 2  # coordinates of equations that are solved in closed form, those left out that ties give at once
@@ -139,7 +139,7 @@ class ClosedForms:
             solution = general_solution(LinearSystem(lines, readable_all(right, Work.VALUE), n, values))
         except (DerivationError, NoValue, ZeroDivisionError):
             return None
-        if not all(map(_is_nothing, solution.left)):
+        if not all(map(_is_nothing, solution.left)) or not _satisfied(lines, right, solution):
             return None
         positive = self.statics.system.scope.positive
         lam = {statics.lam[j]: simplest(x, Work.VALUE, positive) for j, x in solution.constants.items()}
@@ -149,6 +149,16 @@ class ClosedForms:
             {**place, **{node: x for node, x in lam.items() if node in single}},
             {**dict.fromkeys(statics.lam, 0), **lam},
         )
+
+
+def _satisfied(lines: Sequence[Mapping[int, Scalar]], right: Sequence[Scalar], solution: Solution) -> bool:
+    """Whether the rows hold as functions of the parameters, free unknowns 0.
+
+    An entry that vanishes at the model's own parameters alone counts as 0 in the solution: sin(pi*q) at q = 3.
+    """
+    known = solution.constants
+    left = (sum((x * known.get(j, 0) for j, x in line.items()), start=-b) for line, b in zip(lines, right, strict=True))
+    return all(map(_is_nothing, left))
 
 
 def _round_components(graph: Owner) -> tuple[Scalar, ...]:

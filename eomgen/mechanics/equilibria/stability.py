@@ -232,6 +232,9 @@ class _Place:
                 raise NoValue("the ties do not determine the other coordinates there")
             for j, k in enumerate(others):
                 Z[k][column] = solution.constants[j]
+            moved = (sum((x * Z[k][column] for k, x in enumerate(row)), start=0) for row in J)
+            if not all(map(vanishes, moved)):
+                raise NoValue("the displacements are those of these parameters alone")
         return Z
 
     def _has_potential(self, along: Sequence[int]) -> bool:

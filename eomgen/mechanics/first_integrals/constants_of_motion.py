@@ -16,7 +16,7 @@ from eomgen.errors import DerivationError
 from eomgen.mechanics.bodies.inertia import mass_properties
 from eomgen.mechanics.bodies.kinematics import GROUND, velocity_of
 from eomgen.mechanics.equations.equations_of_motion import EquationsOfMotion
-from eomgen.mechanics.equations.pieces import EVERYWHERE, NOWHERE, Held, division_of
+from eomgen.mechanics.equations.pieces import EVERYWHERE, NOWHERE, Extent, division_of
 from eomgen.mechanics.equations.system import System
 from eomgen.mechanics.masses.inertia_about import angular_momentum, shapeless
 from eomgen.records import dataclass
@@ -39,7 +39,7 @@ from eomgen.symbolic.expression.spatial import (
 from eomgen.symbolic.numeric import dense
 from eomgen.symbolic.numeric.evaluation import PRIME_FIELD, NoMeaning, NoValue, evaluate, fifty_digits
 from eomgen.symbolic.numeric.modular import follows
-from eomgen.symbolic.numeric.pieces import Choices, resolved
+from eomgen.symbolic.numeric.pieces import Choices, as_chosen
 from eomgen.symbolic.print.text import text_size
 
 STATES = 2
@@ -72,7 +72,7 @@ def stay_constant(equations: EquationsOfMotion, functions: Sequence[Scalar]) -> 
     return tuple(held.everywhere for held in where_constant(equations, functions))
 
 
-def where_constant(equations: EquationsOfMotion, functions: Sequence[Scalar]) -> tuple[Held, ...]:
+def where_constant(equations: EquationsOfMotion, functions: Sequence[Scalar]) -> tuple[Extent, ...]:
     """Of each function of q, u and t in which pieces it stays constant."""
     if equations.J or equations.friction or not equations.M:
         return (NOWHERE,) * len(functions)
@@ -91,7 +91,7 @@ def where_constant(equations: EquationsOfMotion, functions: Sequence[Scalar]) ->
 
     def found(piece: Choices) -> tuple[bool, ...]:
         if piece not in known:
-            values = iter(resolved(flat, division.nodes, piece))
+            values = iter(as_chosen(flat, division.nodes, piece))
             table = [[next(values) for _ in row] for row in (*rows, *asked)]
             known[piece] = _following(table[: len(rows)], table[len(rows) :])
         return known[piece]
@@ -124,7 +124,7 @@ def _real_values(flat: Sequence[Scalar], rng: Random) -> list[Any]:
     return real_values(flat, rng, fifty_digits())
 
 
-def jacobi(equations: EquationsOfMotion) -> tuple[Scalar, Held] | None:
+def jacobi(equations: EquationsOfMotion) -> tuple[Scalar, Extent] | None:
     """(u . dT/du - T + V, in which pieces it stays constant): drives at a steady rate take energy in and out."""
     symbols = equations.symbols
     if depends_on(equations.V, (symbols.t,)) or all(is_zero(x) for x in equations.nu):

@@ -18,7 +18,7 @@ from eomgen.mechanics.bodies.scope import integral_from_zero
 from eomgen.mechanics.constraints.closure import of_50_digits, on_unit_spheres, scattered_state
 from eomgen.mechanics.constraints.ties import hold_identically
 from eomgen.mechanics.equations.equations_of_motion import EquationsOfMotion
-from eomgen.mechanics.equations.pieces import EVERYWHERE, NOWHERE, Held, division_of
+from eomgen.mechanics.equations.pieces import EVERYWHERE, NOWHERE, Extent, division_of
 from eomgen.mechanics.equations.system import System
 from eomgen.mechanics.equations.wellposed import where_conservative
 from eomgen.mechanics.first_integrals.constants_of_motion import jacobi
@@ -31,7 +31,7 @@ from eomgen.symbolic.expression.graph import Node, Scalar
 from eomgen.symbolic.expression.node import holds_op
 from eomgen.symbolic.expression.spatial import dot
 from eomgen.symbolic.numeric.evaluation import NoValue, evaluate, fifty_digits
-from eomgen.symbolic.numeric.pieces import PIECEWISE, Choices, resolved
+from eomgen.symbolic.numeric.pieces import PIECEWISE, Choices, as_chosen
 from eomgen.symbolic.numeric.tolerances import ZERO_AT_50
 from eomgen.symbolic.numeric.work import Work
 
@@ -50,7 +50,7 @@ class Integral:
     name: str
     expression: Scalar
     coordinate: str = ""
-    held: Held = EVERYWHERE
+    held: Extent = EVERYWHERE
 
 
 def energy_integral(equations: EquationsOfMotion) -> tuple[Integral, ...]:
@@ -77,7 +77,7 @@ def energy_integral(equations: EquationsOfMotion) -> tuple[Integral, ...]:
     return tuple(within[:1])
 
 
-def where_integrals_hold(equations: EquationsOfMotion) -> Held:
+def where_integrals_hold(equations: EquationsOfMotion) -> Extent:
     """Where all of them do: what follows from them holds there."""
     held = EVERYWHERE
     for each in (*energy_integral(equations), *momentum_integrals(equations)):
@@ -140,7 +140,7 @@ def momentum_integrals(equations: EquationsOfMotion) -> tuple[Integral, ...]:
 
 def _of_time_alone(
     equations: EquationsOfMotion, rates: Sequence[Scalar], others: Sequence[Node]
-) -> list[tuple[Scalar | None, Held]]:
+) -> list[tuple[Scalar | None, Extent]]:
     """Each rate where it depends on none of the others, else None; in which pieces."""
     whole = [None if holds_op(rate, *PIECEWISE) and depends_on(rate, others) else rate for rate in rates]
     smooth = iter(_alone_at_all(equations.system, [rate for rate in whole if rate is not None], others))
@@ -150,7 +150,7 @@ def _of_time_alone(
     ]
 
 
-def _in_pieces(equations: EquationsOfMotion, rate: Scalar, others: Sequence[Node]) -> tuple[Scalar | None, Held]:
+def _in_pieces(equations: EquationsOfMotion, rate: Scalar, others: Sequence[Node]) -> tuple[Scalar | None, Extent]:
     """A rate that has pieces as it is in that of the start, where it depends on none of the others there."""
     division = division_of(equations, (rate,))
     if division is None:
@@ -159,7 +159,7 @@ def _in_pieces(equations: EquationsOfMotion, rate: Scalar, others: Sequence[Node
         return None, NOWHERE
 
     def alone(piece: Choices) -> Scalar | None:
-        return _alone_at_all(equations.system, resolved((rate,), division.nodes, piece), others)[0]
+        return _alone_at_all(equations.system, as_chosen((rate,), division.nodes, piece), others)[0]
 
     try:
         begun = alone(division.start)

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
+from contextlib import suppress
 
 from eomgen.errors import DerivationError, MissingValues
 from eomgen.mechanics.constraints.closure import generic_state
@@ -82,12 +83,19 @@ def relations_of(
 def _solved(
     system: System, rows: Sequence[Mapping[int, Scalar]], right: Sequence[Scalar], unknowns: int
 ) -> Solution | None:
-    """The speeds by the rows, with pivots that do not vanish at a generic state of the motion."""
+    """The speeds by the rows, with pivots that do not vanish at a generic state of the motion.
+
+    Parameters are off any special value, m1 - m2 is 0 at m1 = m2 alone, unless the rows determine less for these.
+    """
     try:
-        state = generic_state(system.ties)
+        own = general_solution(LinearSystem(rows, right, unknowns, digits_at(generic_state(system.ties))))
     except (DerivationError, MissingValues):
         return None
-    return general_solution(LinearSystem(rows, right, unknowns, digits_at(state)))
+    with suppress(DerivationError, MissingValues):
+        shaken = generic_state(system.ties, shaken=True)
+        found = general_solution(LinearSystem(rows, right, unknowns, digits_at(shaken)))
+        return found if len(found.free) == len(own.free) else own
+    return own
 
 
 def value_at_start(integral: Scalar, start: Mapping[Node, Scalar], symbols: Symbols) -> Scalar:

@@ -103,7 +103,7 @@ def _base(x: Node) -> Scalar | None:
     return inside.args[0] if inside.op == "pow" and inside.args[1] == 2 else None
 
 
-def sides_of(x: Node) -> tuple[Scalar, Scalar]:
+def compared_sides(x: Node) -> tuple[Scalar, Scalar]:
     """What is compared where x chooses; of samples their argument and 0."""
     if x.op in COMPARING:
         return x.args[0], x.args[1]
@@ -116,7 +116,7 @@ def choices_at(nodes: Sequence[Node], state: State) -> Choices | None:
 
     A node without a value, in a case that does not hold there, chooses 0: nothing.
     """
-    values = evaluate([side for x in nodes for side in sides_of(x)], state, fifty_digits(partial=True))
+    values = evaluate([side for x in nodes for side in compared_sides(x)], state, fifty_digits(partial=True))
     found: list[int] = []
     for x, a, b in zip(nodes, values[::2], values[1::2], strict=True):
         if a != a or b != b:
@@ -130,7 +130,7 @@ def choices_at(nodes: Sequence[Node], state: State) -> Choices | None:
     return tuple(found)
 
 
-def resolved(scalars: Sequence[Scalar], nodes: Sequence[Node], choices: Choices) -> tuple[Scalar, ...]:
+def as_chosen(scalars: Sequence[Scalar], nodes: Sequence[Node], choices: Choices) -> tuple[Scalar, ...]:
     """The scalars as they are where the nodes choose so: without pieces.
 
     Raises:
@@ -142,7 +142,7 @@ def resolved(scalars: Sequence[Scalar], nodes: Sequence[Node], choices: Choices)
         if x.op == "sampled" and x in chosen:
             known[x] = _polynomial_of(sampled_of(x.args[1]), chosen[x], substituted(x.args[:1], known)[0], x.graph.pi)
         elif chosen.get(x):
-            known[x] = _as_chosen(x, chosen[x], substituted(sides_of(x), known))
+            known[x] = _as_chosen(x, chosen[x], substituted(compared_sides(x), known))
         elif x.op == "select":
             condition = substituted(x.args[:1], known)[0]
             if type(condition) is not Node:
@@ -204,6 +204,6 @@ def _thrown_by(x: Node) -> Iterator[tuple[dict[Any, Any], Sequence[Scalar]]]:
     if x.op in COMPARING:
         yield linear_terms(x.args[0] - x.args[1]), (0,)
     elif x.op in ABOUT_ZERO or _base(x) is not None:
-        yield linear_terms(sides_of(x)[0]), (0,)
+        yield linear_terms(compared_sides(x)[0]), (0,)
     elif x.op == "sampled":
         yield linear_terms(x.args[0]), sampled_of(x.args[1]).spline.bounds
