@@ -43,6 +43,7 @@ from eomgen.symbolic.numeric.pieces import (
     piecewise_nodes,
     switches_of,
 )
+from eomgen.symbolic.numeric.tolerances import SOON
 from eomgen.symbolic.numeric.work import Work, check_patience
 from eomgen.symbolic.print.text import to_text
 
@@ -50,7 +51,6 @@ MOST = 64  # pieces that are told apart
 MOST_OF_ONE = 12  # pieces of one quantity that are entered, evenly spread: a road of 100 arcs is one formula in each
 ROUNDS = 3  # of entering pieces from those found
 STEPS, LONG = 24, 0.1  # steps along the own motion, and of how many seconds
-SOON = 1e-6  # [s] how soon after the start a motion that begins between two pieces is in one
 AROUND = (0.1, 1.0, 3.0)  # of the size of a coordinate and 1: how far from the start states are drawn
 DRAWN = 4  # at each of these distances
 

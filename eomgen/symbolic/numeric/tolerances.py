@@ -62,6 +62,7 @@ UNBALANCED = 1e-6  # of the forces: what least squares leave, above which ties d
 MASSES_APART = 1e11  # of the least mass: beside a larger one the least is lost in a difference of doubles
 AT_AN_EDGE = 1e-5  # [1] of what vanishes at the edge of a domain (1 - x under an arccosine): a motion ends there
 GAP_CLOSED = 1e-11  # [m or rad] a gap that an iteration in doubles has closed
+SOON = 1e-6  # [s] after the start, when a motion that begins between two pieces is in one
 LARGEST_AT_50 = 1e15  # [SI] a coordinate or speed: beyond it a difference with a step of 1e-15 is lost
 LARGEST_SQUARED = 1e150  # [SI] of what is multiplied in doubles: beyond it its square has no value
 COORDINATE_AT_50 = 1e-18  # [SI] a coordinate or speed after the last step in 50 digits: it is 0
