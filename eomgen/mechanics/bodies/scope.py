@@ -8,17 +8,19 @@ speeds take the place of rates last of all (`declared_speeds`); until then their
 from __future__ import annotations
 
 from collections.abc import Container, Mapping
+from contextlib import suppress
 from dataclasses import field, replace
 from functools import cached_property
+from math import isfinite
 
-from eomgen.errors import DerivationError
+from eomgen.errors import DerivationError, EomgenError
 from eomgen.model.composite import Composite
 from eomgen.model.joints.orientation import spin_of_quaternion
 from eomgen.model.part import leaves_of
 from eomgen.model.parts import Coordinate, Model
 from eomgen.model.quaternions import quaternions_of
 from eomgen.model.trusses import in_parts
-from eomgen.model.values import exact_parameters
+from eomgen.model.values import exact_parameters, start_values
 from eomgen.records import dataclass
 from eomgen.symbolic.expression.derivative import depends_on, substituted, symbols_of, tangent
 from eomgen.symbolic.expression.expressions import Expression
@@ -180,7 +182,19 @@ def scope_of(model: Model, *, with_laws: bool = False) -> Scope:
     quaternions = tuple(tuple(graph.symbol(e) for e in each.coordinates) for each in quaternions_of(model))
     for four in quaternions:
         graph.hold_on_sphere(four)
+    graph.hold_near(_own_numbers(model, symbols))
     return with_speeds_named(Scope(model, symbols, tuple(N), tuple(nu), names, quaternions, laws))
+
+
+def _own_numbers(model: Model, symbols: Symbols) -> dict[Node, float]:
+    """Parameters, coordinates and rates at the start, as far as the file says them in numbers."""
+    known = exact_parameters(model)
+    found = {node: float(known[name]) for name, node in symbols.parameters.items() if name in known}
+    with suppress(EomgenError, OverflowError):
+        q, rates = start_values(model)
+        found |= {node: q[node.name] for node in symbols.q if node.name in q}
+        found |= {node: rates[node.name] for node in symbols.u if node.name in rates}
+    return {node: value for node, value in found.items() if isfinite(value)}
 
 
 def with_speeds_named(scope: Scope) -> Scope:

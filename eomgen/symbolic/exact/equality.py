@@ -32,6 +32,7 @@ from eomgen.symbolic.numeric.evaluation import (
 TRIES = 12  # states of the prime field to be tried for one with a value
 REAL_TRIES = 60
 RANGES = ((0.5, 2.0), (0.05, 0.6), (1.5, 6.0))  # of the symbols at a real state
+NEAR = (0.3, 0.1, 0.03, 0.01, 0.001)  # of a symbol's own size and 1, how far from where it is held near: a start
 EXPONENTS = (-4, 2)  # of their sizes in every other later state: beside a length of 0.08 stands a radius of 0.03
 TOLERANCE = Fraction(1, 10**30)  # of a comparison at 50 digits, relative to the larger of the two and 1
 Pair = tuple[Scalar, Scalar]
@@ -303,8 +304,9 @@ def _first_apart(values: Sequence[Any]) -> int | None:
 def real_values(flat: Sequence[Scalar], rng: Random, arithmetic: Arithmetic) -> list[Any]:
     """Values at a random real state.
 
-    Symbols are positive (roots of parameters exist), rates of either sign; of one size at first, then each of its own
-    size, so that sqrt(l^2 - x^2) and sqrt(0.08^2 - r^2) exist, and some of them negative.
+    Symbols are positive (roots of parameters exist), rates of either sign; of one size at first, then near the numbers
+    near which they are held (acos((s - 20)/3) has values about s = 21 alone), then each of its own size, so that
+    sqrt(l^2 - x^2) and sqrt(0.08^2 - r^2) exist, and some of them negative.
     """
     symbols = [x for x in order(flat) if x.op == "symbol"]
     for attempt in range(REAL_TRIES):
@@ -320,6 +322,9 @@ def real_values(flat: Sequence[Scalar], rng: Random, arithmetic: Arithmetic) -> 
 
 def _real(symbol: Node, rng: Random, attempt: int) -> Fraction:
     """A random value of a symbol for the attempt-th real state."""
+    if len(RANGES) <= attempt < len(RANGES) + 2 * len(NEAR) and (near := symbol.graph.near.get(symbol)) is not None:
+        spread = NEAR[(attempt - len(RANGES)) // 2] * (1 if near == 0 else min(1.0, abs(near)))
+        return Fraction(near + rng.uniform(-spread, spread))
     low, high = RANGES[attempt] if attempt < len(RANGES) else rng.choice(RANGES)
     either = symbol.name.endswith("'") or (attempt > REAL_TRIES // 3 and rng.random() < 0.3)
     any_size = attempt > len(RANGES) and attempt % 2 == 1

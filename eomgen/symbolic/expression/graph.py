@@ -64,6 +64,7 @@ class Graph:
         self.pi = self.held("pi", ())
         self._constants = {self.pi}
         self.spheres: list[tuple[Node, ...]] = []
+        self.near: dict[Node, float] = {}
         self._found: dict[Any, dict[Any, Any]] = {}
 
     def __len__(self) -> int:
@@ -76,6 +77,7 @@ class Graph:
             "nodes": nodes,
             "constants": sorted(x.index for x in self._constants),
             "spheres": [tuple(x.index for x in symbols) for symbols in self.spheres],
+            "near": {x.index: value for x, value in self.near.items()},
             "samples": [sampled_of(x.args[1]) for x in self.nodes if x.op == "sampled"],
         }
 
@@ -88,6 +90,7 @@ class Graph:
             nodes.append(self.held(op, tuple(nodes[a] if is_node else a for is_node, a in args)))
         self._constants = {nodes[k] for k in state["constants"]}
         self.spheres = [tuple(nodes[k] for k in symbols) for symbols in state["spheres"]]
+        self.near = {nodes[k]: value for k, value in state["near"].items()}
 
     def reduced(self, x: Node) -> tuple[Any, ...]:
         """How a node is pickled: by its place in its graph, which goes along; a constant by what it is."""
@@ -125,6 +128,10 @@ class Graph:
     def hold_on_sphere(self, symbols: tuple[Node, ...]) -> None:
         """Symbols whose squares always add up to 1, as those of a unit quaternion: so are values chosen for them."""
         self.spheres.append(symbols)
+
+    def hold_near(self, values: Mapping[Node, float]) -> None:
+        """Numbers near which symbols have values at which formulas have some: where a model starts."""
+        self.near |= values
 
     def is_constant(self, x: Scalar) -> bool:
         """Whether x is made of numbers and of symbols that stay the same."""

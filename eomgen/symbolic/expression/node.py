@@ -14,6 +14,7 @@ class Owner(Protocol):
 
     pi: Node
     spheres: list[tuple[Node, ...]]
+    near: dict[Node, float]
 
     @property
     def nodes(self) -> tuple[Node, ...]: ...
