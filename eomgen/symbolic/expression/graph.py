@@ -13,7 +13,7 @@ There is no expansion and no simplification.
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from typing import Any
 
 from eomgen.errors import DerivationError
