@@ -53,7 +53,7 @@ def generic_state(
     raise _open(ties, exact_parameters(ties.motion.scope.model))
 
 
-def own_start(ties: Ties) -> State:
+def begun_state(ties: Ties) -> State:
     """Values of every symbol at the model's own start, the nearest at which phi = 0; speeds as they are given.
 
     Raises:

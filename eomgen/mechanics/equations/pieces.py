@@ -14,12 +14,12 @@ from typing import Any
 
 from eomgen.errors import DerivationError, MissingValues, ModelError
 from eomgen.mechanics.constraints.closure import (
+    begun_state,
     closed,
     generic_state,
     movable,
     of_50_digits,
     on_unit_spheres,
-    own_start,
 )
 from eomgen.mechanics.equations.accelerations import exact_accelerations
 from eomgen.mechanics.equations.equations_of_motion import EquationsOfMotion
@@ -259,7 +259,7 @@ class _Search:
     def _begun(self) -> State | None:
         """The model's own start, its ties closed; None where it has none."""
         try:
-            return own_start(self._system.ties)
+            return begun_state(self._system.ties)
         except (DerivationError, MissingValues, ModelError, NoValue, ZeroDivisionError):
             return None
 
