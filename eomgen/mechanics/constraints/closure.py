@@ -69,7 +69,7 @@ def begun_state(ties: Ties) -> State:
     found = closed(ties, state | given, movable(ties))
     if found is None:
         raise _open(ties, exact_parameters(model))
-    return _moving(ties, _with_laws(ties, found))
+    return speeds_closed(ties, _with_laws(ties, found))
 
 
 def scattered_state(ties: Ties) -> State:
