@@ -1,0 +1,260 @@
+"""Verbs, formats and doors, asked of a drawn model in this process; what each must keep.
+
+A call is right when its exit code has a meaning, no internal error leaves, a certificate that is told holds, what is
+refused is told with a place or a name, and a line that `derive` printed is not called wrong by `verify`.
+"""
+
+from __future__ import annotations
+
+import json
+import re
+import signal
+import time
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
+from dataclasses import dataclass
+from pathlib import Path
+from random import Random
+from typing import Any
+
+import numpy as np
+from click.testing import CliRunner
+from compare import filled, quiet
+
+import eomgen
+from eomgen.cli import main
+
+SECONDS = 20  # of CPU that one call may take
+SLOW = 8.0  # of CPU from which a call is named
+FORMATS = ("text", "latex", "markdown", "json")
+LANGUAGES = (
+    "c",
+    "numpy",
+    "cpp",
+    "fortran",
+    "javascript",
+    "julia",
+    "matlab",
+    "rust",
+    "casadi",
+    "jax",
+    "numba",
+    "wasm",
+    "fmu",
+)
+
+
+@dataclass(frozen=True)
+class Outcome:
+    """What came of a call.
+
+    Args:
+        fault: "" or the kind of the fault: "internal error", "certificate", "exit code", "judged wrong", ...
+        detail: the line that says it.
+        code: exit code, or 0 and 1 of Python.
+        seconds: of CPU.
+    """
+
+    call: str
+    code: int
+    fault: str = ""
+    detail: str = ""
+    seconds: float = 0.0
+    note: str = ""
+
+
+class TooLong(BaseException):
+    """The CPU of a call is used up."""
+
+
+@contextmanager
+def limit(seconds: float) -> Iterator[None]:
+    def stop(*_: object) -> None:
+        raise TooLong
+
+    old = signal.signal(signal.SIGVTALRM, stop)
+    signal.setitimer(signal.ITIMER_VIRTUAL, seconds)
+    try:
+        yield
+    finally:
+        signal.setitimer(signal.ITIMER_VIRTUAL, 0)
+        signal.signal(signal.SIGVTALRM, old)
+
+
+def commands(text: str, rng: Random) -> list[list[str]]:
+    """The command lines of one model: each verb once, with its ways in turn."""
+    form = lambda: ["--format", rng.choice(FORMATS)]  # noqa: E731
+    first = re.search(r"^\[coordinates\]\n(\w+) =", text, re.M)
+    q = first[1] if first else "q"
+    number = next((n for n in ("m", "k", "g", "l0", "m0", "h") if re.search(rf"^{n} = ", text, re.M)), "m")
+    method = rng.choice(("lagrange", "projection", "kinetostatic"))
+    way = rng.choice(("projection", "energy", "baumgarte", "none"))
+    run = ["--time", "0.4", "--samples", "5", "--target", "numpy"]
+    found = [
+        ["check", "MODEL", *rng.choice(([], ["--json"]))],
+        ["derive", "MODEL", "--method", method, *form(), *rng.choice(([], ["--units"]))],
+        ["solve", "MODEL", *form()],
+        ["reactions", "MODEL", *form()],
+        ["simulate", "MODEL", *run, "--stabilize", way, *form()],
+    ]
+    rest = [
+        ["statics", "MODEL", *form()],
+        ["kinematics", "MODEL", *form()],
+        ["inertia", "MODEL", *form()],
+        ["linearize", "MODEL", *form(), *rng.choice(([], ["--about", "start"], ["--about", "steady"]))],
+        ["codegen", "MODEL", "-o", "OUT/code", "--target", rng.choice(LANGUAGES)],
+        ["report", "MODEL", "-o", "OUT/" + rng.choice(("r.html", "r.ipynb", "r.md", "r.tex")), "--time", "0.3"],
+        ["animate", "MODEL", "-o", "OUT/a.html", "--time", "0.2", "--forces"],
+        ["play", "MODEL", "-o", "OUT/p.html", "--time", "0.3"],
+        ["sweep", "MODEL", "-o", "OUT/sweep", "--over", f"{number}=1,1.2", "--ask", f"max({q})", "--time", "0.2"],
+        ["export", "MODEL", "-o", "OUT/robot.urdf"],
+        ["simulate", "MODEL", *run, "-o", "OUT/run.csv", "--units"],
+    ]
+    rng.shuffle(rest)
+    return found + rest[:5]
+
+
+def by_command(text: str, words: list[str], folder: Path) -> Outcome:
+    """One command line."""
+    path = folder / "model.toml"
+    path.write_text(text, encoding="utf-8")
+    (folder / "out").mkdir(exist_ok=True)
+    known = {"MODEL": str(path)}
+    arguments = [known.get(w, w.replace("OUT", str(folder / "out"))) for w in words]
+    if words[0] not in ("check",):
+        arguments += ["--patience", "none"]
+    call, begin = " ".join(words), time.process_time()
+    try:
+        with limit(SECONDS):
+            result = CliRunner().invoke(main, arguments)
+    except TooLong:
+        return Outcome(call, -1, "slow", f"more than {SECONDS} s of CPU", time.process_time() - begin)
+    seconds = time.process_time() - begin
+    fault, detail = _fault(words, result)
+    return Outcome(call, result.exit_code, fault, detail, seconds, _refusal(result))
+
+
+def _fault(words: list[str], result: Any) -> tuple[str, str]:
+    out, err = result.stdout, result.stderr
+    if result.exception is not None and not isinstance(result.exception, SystemExit):
+        return "internal error", f"{type(result.exception).__name__}: {str(result.exception)[:160]}"
+    if "internal error" in err or "Traceback" in err or result.exit_code == 70:
+        return "internal error", next((x for x in err.splitlines() if "internal error" in x), err[-200:])
+    if result.exit_code not in (0, 1, 2, 3, 4):
+        return "exit code", str(result.exit_code)
+    if "FAILS" in out or '"ok": false' in out or "FAILS" in err:
+        lines = [x for x in (out + err).splitlines() if "FAILS" in x or '"fails"' in x]
+        return "certificate", (lines or ["a certificate does not hold"])[0].strip()[:300]
+    if result.exit_code and not err.strip() and '"error"' not in out:
+        return "said nothing", f"exit {result.exit_code} without a word"
+    if result.exit_code == 2 and "energy is not kept" not in err:
+        return "usage", err.strip().splitlines()[-1][:200]
+    return "", ""
+
+
+def _refusal(result: Any) -> str:
+    if not result.exit_code:
+        return ""
+    lines = [x for x in result.stderr.splitlines() if x.strip() and not x.startswith(("warning", " ", "mend"))]
+    return lines[0][:200] if lines else ""
+
+
+def judged(text: str) -> Iterator[Outcome]:
+    """`verify` of the equations that derive prints: none may be called wrong."""
+    begin = time.process_time()
+    try:
+        with quiet(), limit(SECONDS):
+            model = eomgen.loads(text)
+            e = eomgen.derive(model)
+            told = e.render("text") if hasattr(e, "render") else str(e)
+            lines = [x.strip() for x in told.splitlines() if re.match(r"^ {4,}\S.* = ", x) and "..." not in x]
+            lines = [x for x in lines if len(x) < 300 and not re.search(r"\[[^\]]*\]$", x)]
+            for line in lines[-6:]:
+                verdict = eomgen.verify(model, line)
+                wrong = verdict.verdict == "wrong"
+                spent, begin = time.process_time() - begin, time.process_time()
+                yield Outcome("verify", 0, "judged wrong" if wrong else "", line[:200], spent, verdict.verdict)
+    except TooLong:
+        yield Outcome("verify", -1, "slow", f"more than {SECONDS} s of CPU", time.process_time() - begin)
+    except eomgen.EomgenError as no:
+        yield Outcome("verify", 1, "", "", time.process_time() - begin, str(no).splitlines()[0][:200])
+    except Exception as error:
+        yield Outcome("verify", 70, "internal error", f"{type(error).__name__}: {str(error)[:160]}")
+
+
+PYTHON: dict[str, Callable[[Any], Any]] = {
+    "derive and pickled": lambda m: _pickled(eomgen.derive(m)),
+    "derive in a notebook": lambda m: _shown(eomgen.derive(m)),
+    "simulate in a notebook": lambda m: _shown(eomgen.simulate(m, time=0.2, samples=4)),
+    "simulate and pickled": lambda m: _pickled(eomgen.simulate(m, time=0.2, samples=4)),
+    "linearize and pickled": lambda m: _pickled(eomgen.linearize(m)),
+    "linearize in a notebook": lambda m: _shown(eomgen.linearize(m)),
+    "statics in a notebook": lambda m: _shown(eomgen.statics(m)),
+    "kinematics in a notebook": lambda m: _shown(eomgen.kinematics(m)),
+    "inertia and pickled": lambda m: _pickled(eomgen.inertia(m)),
+    "inertia in a notebook": lambda m: _shown(eomgen.inertia(m)),
+    "solve in a notebook": lambda m: [_shown(x) for x in eomgen.solve(m).values()],
+    "reactions in a notebook": lambda m: _shown(eomgen.reactions(m)),
+    "model pickled": lambda m: _pickled(m),
+    "sensitivity": lambda m: eomgen.sensitivity(
+        m, next(iter(m.coordinates)), next(iter(m.parameters)), time=0.2, samples=3
+    ),
+    "animate": lambda m: eomgen.animate(eomgen.simulate(m, time=0.2, samples=4)),
+    "simulate_many": lambda m: eomgen.simulate_many(m, time=0.1, parameters={next(iter(m.parameters)): [1.0, 1.1]}),
+    "scene": lambda m: eomgen.scene_of(m),
+    "regressor": lambda m: eomgen.regressor(m),
+    "freedom": lambda m: eomgen.freedom_of(m),
+    "as_dict": lambda m: json.dumps(eomgen.derive(m).as_dict()),
+}
+
+
+def _pickled(x: Any) -> Any:
+    import pickle
+
+    again = pickle.loads(pickle.dumps(x))
+    assert type(again) is type(x)
+    return again
+
+
+def _shown(x: Any) -> Any:
+    for door in ("_repr_html_", "_repr_latex_", "_repr_markdown_", "_repr_mimebundle_"):
+        if hasattr(x, door):
+            getattr(x, door)()
+    return repr(x)
+
+
+def by_python(text: str, names: list[str]) -> Iterator[Outcome]:
+    """The Python doors of these names."""
+    try:
+        with quiet():
+            model = eomgen.loads(text)
+    except eomgen.EomgenError as no:
+        yield Outcome("python loads", 1, "", "", 0.0, str(no).splitlines()[0][:200])
+        return
+    for name in names:
+        begin = time.process_time()
+        try:
+            with quiet(), limit(SECONDS):
+                PYTHON[name](model)
+            yield Outcome(f"python {name}", 0, "", "", time.process_time() - begin)
+        except TooLong:
+            yield Outcome(f"python {name}", -1, "slow", f"more than {SECONDS} s of CPU", time.process_time() - begin)
+        except eomgen.EomgenError as no:
+            yield Outcome(f"python {name}", 1, "", "", time.process_time() - begin, str(no).splitlines()[0][:200])
+        except Exception as error:
+            detail = f"{type(error).__name__}: {str(error)[:160]}"
+            yield Outcome(f"python {name}", 70, "internal error", detail, time.process_time() - begin)
+
+
+def python_doors(rng: Random, count: int = 3) -> list[str]:
+    return rng.sample(sorted(PYTHON), count)
+
+
+def columns_of_a_run(text: str) -> Any:
+    """A short run of a model, or the reason why there is none."""
+    with quiet(), limit(SECONDS):
+        return eomgen.simulate(eomgen.loads(filled(text)), time=0.5, samples=4)
+
+
+def finite(x: Any) -> bool:
+    return bool(np.all(np.isfinite(np.asarray(x, dtype=float))))

@@ -1,0 +1,218 @@
+"""What models are drawn from: factors with their levels, and pairs of levels that cannot be, each with its reason.
+
+A pair that cannot be is refused by the product where it can be written down at all (`refused`: the model and words of
+the message); it covers nothing.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import cache
+
+SHAPES = (
+    "particle", "rod", "disc", "ring", "rectangle", "triangle", "polygon", "sphere", "cylinder", "box", "cone",
+    "ellipsoid", "arc", "annulus", "sector", "ellipse", "hollow_sphere", "spherical_shell", "hemisphere",
+    "hemispherical_shell", "tube", "cylindrical_shell", "prism", "conical_shell", "frustum", "pyramid", "tetrahedron",
+    "torus", "parts", "given", "massless",
+)  # fmt: skip
+
+FORCES = (
+    "gravity", "force", "follower", "couple", "distributed", "spring", "spring_along", "spring_start", "damper",
+    "damper_along", "torsion_spring", "torsion_damper", "between", "potential", "kinetic", "generalized", "none",
+)  # fmt: skip
+
+FACTORS: dict[str, tuple[str, ...]] = {
+    "space": ("plane", "space"),
+    "base": (
+        "ground", "turning", "sliding", "by_formula", "by_rate", "by_acceleration", "by_samples", "by_samples_rate",
+        "by_tie", "all_driven",
+    ),
+    "loop": ("none", "four_bar", "slider_crank", "two_loops", "on_base"),
+    "tie": (
+        "none", "support", "clamp", "guide", "slider", "link", "rolling", "skate", "string", "gear", "gap", "rate",
+        "points", "motion",
+    ),
+    "closure": ("multipliers", "dependent", "near"),
+    "joint": (
+        "revolute", "prismatic", "planar", "free", "placed", "path", "fixed", "cylindrical", "screw", "universal",
+        "spherical", "quaternion",
+    ),
+    "joint_with": ("nothing", "spring_damper", "drive", "armature", "turned", "moving_seat", "point"),
+    "shape": SHAPES,
+    "force": FORCES,
+    "second_force": FORCES,
+    "contact": ("none", "open", "closed", "sliding", "ending", "viscous"),
+    "speeds": ("rates", "declared", "omega"),
+    "input": ("none", "expression", "table", "steps", "controller"),
+    "units": ("none", "si", "other"),
+    "parameters": ("numbers", "formulas", "valueless"),
+    "symbols": ("plain", "declared"),
+    "output": ("kinematics", "energies", "reactions", "inertia", "of_a_run", "at_instant", "equilibrium", "none"),
+}  # fmt: skip
+
+
+@dataclass(frozen=True)
+class Forbidden:
+    """Two levels that cannot stand together, and why."""
+
+    one: tuple[str, str]
+    two: tuple[str, str]
+    why: str
+    refused: str = ""  # words of the product's message; "": nothing that could be written down
+
+
+def _each(one: tuple[str, str], factor: str, levels: tuple[str, ...], why: str, refused: str = "") -> list[Forbidden]:
+    return [Forbidden(one, (factor, level), why, refused) for level in levels]
+
+
+FORBIDDEN: tuple[Forbidden, ...] = (
+    *_each(
+        ("space", "plane"),
+        "joint",
+        ("cylindrical", "screw", "universal", "spherical", "quaternion"),
+        "a joint of space",
+        "space",
+    ),
+    *_each(
+        ("space", "space"), "force", ("torsion_spring", "torsion_damper"), "in space it stands in the joint", "plane"
+    ),
+    *_each(
+        ("space", "space"),
+        "second_force",
+        ("torsion_spring", "torsion_damper"),
+        "in space it stands in the joint",
+        "plane",
+    ),
+    Forbidden(("space", "plane"), ("speeds", "omega"), "omega needs three components", "space"),
+    *_each(
+        ("speeds", "omega"),
+        "joint",
+        tuple(x for x in FACTORS["joint"] if x not in ("spherical", "quaternion", "free")),
+        "no orientation of three freedoms",
+    ),
+    *_each(
+        ("joint_with", "spring_damper"),
+        "joint",
+        ("planar", "free", "placed", "path", "fixed", "cylindrical", "universal", "spherical", "quaternion"),
+        "no one variable that a spring could act along",
+        "unknown",
+    ),
+    *_each(
+        ("joint_with", "armature"),
+        "joint",
+        ("planar", "free", "placed", "path", "fixed", "cylindrical", "universal", "spherical", "quaternion"),
+        "no one variable that a rotor could turn with",
+        "unknown",
+    ),
+    *_each(
+        ("joint_with", "drive"),
+        "joint",
+        ("planar", "free", "placed", "path", "fixed", "universal", "spherical", "quaternion"),
+        "no one variable that a drive could act along",
+        "unknown",
+    ),
+    *_each(
+        ("shape", "massless"),
+        "joint",
+        tuple(x for x in FACTORS["joint"] if x != "fixed"),
+        "a free coordinate moves no mass",
+        "mass",
+    ),
+    *_each(("base", "all_driven"), "closure", ("dependent", "near"), "nothing is free that could depend"),
+    *_each(
+        ("base", "all_driven"),
+        "contact",
+        ("open", "closed", "sliding", "ending", "viscous"),
+        "nothing is free that could leave a contact",
+    ),
+    *_each(
+        ("base", "all_driven"),
+        "loop",
+        ("four_bar", "slider_crank", "two_loops", "on_base"),
+        "loops determine what would be driven",
+    ),
+    *_each(
+        ("base", "all_driven"),
+        "tie",
+        tuple(x for x in FACTORS["tie"] if x != "none"),
+        "ties determine what would be driven",
+    ),
+    *_each(("base", "all_driven"), "joint", ("quaternion",), "a quaternion is free"),
+    *_each(("base", "all_driven"), "speeds", ("declared", "omega"), "no rate is free that a speed could stand for"),
+    *_each(("base", "ground"), "loop", ("on_base",), "there is no base that moves"),
+    *_each(
+        ("joint", "spherical"), "shape", ("particle", "rod"), "its turn about itself moves no mass", "moves no mass"
+    ),
+    *_each(
+        ("joint", "quaternion"), "shape", ("particle", "rod"), "its turn about itself moves no mass", "moves no mass"
+    ),
+    *_each(("speeds", "omega"), "shape", ("particle", "rod"), "its turn about itself moves no mass", "moves no mass"),
+    *(
+        Forbidden(
+            ("contact", contact),
+            (factor, force),
+            "friction needs reactions, which do not follow",
+            "acts on coordinates",
+        )
+        for contact in ("sliding", "viscous")
+        for factor in ("force", "second_force")
+        for force in ("potential", "kinetic", "generalized")
+    ),
+    *_each(
+        ("tie", "gap"),
+        "contact",
+        ("sliding", "viscous"),
+        "friction needs reactions, which do not follow",
+        "acts on coordinates",
+    ),
+    *_each(
+        ("tie", "rate"),
+        "contact",
+        ("sliding", "viscous"),
+        "friction needs reactions, which do not follow",
+        "acts on coordinates",
+    ),
+    *_each(("space", "space"), "tie", ("string",), "drawn in the plane only"),
+    *_each(("space", "space"), "contact", ("ending",), "drawn in the plane only"),
+)
+
+
+def forbidden(a: tuple[str, str], b: tuple[str, str]) -> Forbidden | None:
+    """Why two levels cannot stand together, or None."""
+    return _INDEX.get((a, b)) or _INDEX.get((b, a))
+
+
+_INDEX = {(f.one, f.two): f for f in FORBIDDEN}
+
+
+Item = tuple[str, str]
+Pair = tuple[Item, Item]
+
+
+def all_pairs() -> list[Pair]:
+    names = list(FACTORS)
+    return [
+        ((f, x), (g, y)) for i, f in enumerate(names) for g in names[i + 1 :] for x in FACTORS[f] for y in FACTORS[g]
+    ]
+
+
+def why_not(a: Item, b: Item) -> str:
+    """Why two levels cannot stand together, "" where they can: forbidden, or no level of a third factor fits both."""
+    own = forbidden(a, b)
+    if own is not None:
+        return own.why
+    for f, levels in FACTORS.items():
+        if f not in (a[0], b[0]) and all(forbidden((f, x), a) or forbidden((f, x), b) for x in levels):
+            return f"no {f} fits both"
+    return ""
+
+
+@cache
+def possible_pairs() -> frozenset[Pair]:
+    """Every pair of levels of two factors that can be."""
+    return frozenset(pair for pair in all_pairs() if not why_not(*pair))
+
+
+def pairs_of(levels: dict[str, str]) -> set[Pair]:
+    names = list(FACTORS)
+    return {((f, levels[f]), (g, levels[g])) for i, f in enumerate(names) for g in names[i + 1 :]}

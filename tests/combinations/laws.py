@@ -1,0 +1,985 @@
+"""The oracle's laws, each kind of joint, tie and force for itself: tables of functions in which a test plants errors.
+
+Imports nothing of eomgen.
+"""
+
+from __future__ import annotations
+
+import itertools
+from collections.abc import Callable
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+import taylor as ty
+from taylor import Jet, component, cross, dot, jet, matmul, transpose, vector
+
+Z = [0.0, 0.0, 1.0]
+Rows = list[tuple[Jet, bool, str]]  # (gap or rate, is it a rate, what its multiplier is called)
+
+
+def _unit(now: Any, declared: Any) -> np.ndarray:
+    v = now.model.numbers(declared)
+    return v / np.linalg.norm(v)
+
+
+# joints: (rotation, displacement) of the child against the turned axes of the seat
+
+
+def _fixed(now: Any, j: dict) -> tuple[Jet, Jet]:
+    return ty.turn(_axis(now, j), now.value(j.get("angle", 0))), vector([0, 0, 0])
+
+
+def _axis(now: Any, j: dict) -> np.ndarray:
+    return _unit(now, j["axis"]) if "axis" in j else np.array(Z)
+
+
+def _revolute(now: Any, j: dict) -> tuple[Jet, Jet]:
+    return ty.turn(_axis(now, j), now.value(j["angle"])), vector([0, 0, 0])
+
+
+def _along(axis: np.ndarray, s: Any) -> Jet:
+    return vector([float(x) * jet(s) for x in axis])
+
+
+def _prismatic(now: Any, j: dict) -> tuple[Jet, Jet]:
+    return ty.turn(Z, now.value(j.get("angle", 0))), _along(_axis(now, j), now.value(j["displacement"]))
+
+
+def _planar(now: Any, j: dict) -> tuple[Jet, Jet]:
+    return ty.turn(Z, now.value(j.get("angle", 0))), vector([now.value(j["x"]), now.value(j["y"]), 0.0])
+
+
+def _free(now: Any, j: dict) -> tuple[Jet, Jet]:
+    if "position" in j:
+        return _orientation(now, j), now.vector(j["position"])
+    return _planar(now, j)
+
+
+def _placed(now: Any, j: dict) -> tuple[Jet, Jet]:
+    if "orientation" in j:
+        return _orientation(now, j), vector([0, 0, 0])
+    return ty.turn(_axis(now, j), now.value(j.get("angle", 0))), vector([0, 0, 0])
+
+
+def _cylindrical(now: Any, j: dict) -> tuple[Jet, Jet]:
+    return ty.turn(_axis(now, j), now.value(j["angle"])), _along(_axis(now, j), now.value(j["displacement"]))
+
+
+def _screw(now: Any, j: dict) -> tuple[Jet, Jet]:
+    s = now.value(j["angle"])
+    return ty.turn(_axis(now, j), s), _along(_axis(now, j), now.value(j["pitch"]) * jet(s))
+
+
+def _universal(now: Any, j: dict) -> tuple[Jet, Jet]:
+    one, two = (ty.turn(_unit(now, e), now.value(x)) for e, x in zip(j["axes"], j["angles"], strict=True))
+    return matmul(one, two), vector([0, 0, 0])
+
+
+def _spherical(now: Any, j: dict) -> tuple[Jet, Jet]:
+    return _orientation(now, j), vector([0, 0, 0])
+
+
+def _path(now: Any, j: dict) -> tuple[Jet, Jet]:
+    """Lines and arcs, one after another; before the first and after the last these go on."""
+    s = jet(now.value(j["along"]))
+    heading, begin = now.model.number(j.get("heading", 0)), 0.0
+    at = vector([0, 0, 0])
+    for k, piece in enumerate(j["pieces"]):
+        arc = "arc" in piece
+        radius = now.model.number(piece["arc"]) if arc else 0.0
+        left = 1.0 if piece.get("turn") == "ccw" else -1.0
+        length = radius * now.model.number(piece["angle"]) if arc else now.model.number(piece["line"])
+        here = s - begin
+        if here.value <= length or k == len(j["pieces"]) - 1:
+            return jet(np.eye(3)), at + _on_piece(heading, here, radius, left, arc)
+        end = _on_piece(heading, jet(length), radius, left, arc)
+        at, begin = at + end, begin + length
+        heading += left * length / radius if arc else 0.0
+    raise ValueError("a path without pieces")
+
+
+def _on_piece(heading: float, s: Jet, radius: float, left: float, arc: bool) -> Jet:
+    if not arc:
+        return vector([s * float(np.cos(heading)), s * float(np.sin(heading)), 0.0])
+    turned = s * (left / radius) + heading
+    x = (ty.sin(turned) - float(np.sin(heading))) * (left * radius)
+    y = (float(np.cos(heading)) - ty.cos(turned)) * (left * radius)
+    return vector([x, y, 0.0])
+
+
+def _orientation(now: Any, j: dict) -> Jet:
+    if j.get("orientation") is None:
+        return jet(np.eye(3))
+    if j["orientation"] == "quaternion":
+        return _of_quaternion([now.q[e] for e in j["quaternion"]])
+    R = jet(np.eye(3))
+    for axis, angle in zip(j["orientation"], j["angles"], strict=True):
+        R = matmul(R, ty.turn(np.eye(3)["xyz".index(axis)], now.value(angle)))
+    return R
+
+
+def _of_quaternion(e: list[Jet]) -> Jet:
+    a, b, c, d = e
+    rows = [
+        [a * a + b * b - c * c - d * d, 2 * (b * c - a * d), 2 * (b * d + a * c)],
+        [2 * (b * c + a * d), a * a - b * b + c * c - d * d, 2 * (c * d - a * b)],
+        [2 * (b * d - a * c), 2 * (c * d + a * b), a * a - b * b - c * c + d * d],
+    ]
+    n = max(x.c.shape[-1] for x in e)
+    c_ = np.array([[np.broadcast_to(x.c, (3, n)) for x in row] for row in rows])
+    return Jet(np.moveaxis(c_, 2, 0))
+
+
+JOINTS: dict[str, Callable] = {
+    "fixed": _fixed, "revolute": _revolute, "prismatic": _prismatic, "planar": _planar, "free": _free,
+    "placed": _placed, "cylindrical": _cylindrical, "screw": _screw, "universal": _universal,
+    "spherical": _spherical, "path": _path,
+}  # fmt: skip
+
+
+def seat(now: Any, body: dict) -> tuple[Jet, Jet]:
+    """(place, turned axes) of the seat of a body's joint, on the ground or its parent."""
+    j = body["joint"]
+    on, _, point = (j.get("on") or "").partition(".")
+    p, R = now.frame(on or "ground")
+    at = now.of_body(on, point) if point else now.vector(j["at"]) if "at" in j else vector([0, 0, 0])
+    turned = j.get("turned", [])
+    axes = R
+    for one in turned if isinstance(turned, list) else [turned]:
+        axes = matmul(axes, ty.turn(_axis(now, one), now.model.number(one["angle"])))
+    return p + matmul(R, at), axes
+
+
+def pose(now: Any, body: dict) -> tuple[Jet, Jet]:
+    """(place of the origin, axes) of a body as its joint says."""
+    j = body.get("joint")
+    if j is None:
+        return vector([0, 0, 0]), jet(np.eye(3))
+    place, axes = seat(now, body)
+    R, d = JOINTS[j["kind"]](now, j)
+    R = matmul(axes, R)
+    point = now.of_body(body["name"], j["point"]) if "point" in j else vector([0, 0, 0])
+    return place + matmul(axes, d) - matmul(R, point), R
+
+
+# ties
+
+
+def _left(v: Jet) -> Jet:
+    return vector([-component(v, 1), component(v, 0), jet(0.0)])
+
+
+def _split(now: Any, point: str) -> str | None:
+    body = point.rpartition(".")[0]
+    return body or (point if point in now.model.bodies else None)
+
+
+def _across(axis: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    other = np.eye(3)[int(np.argmin(np.abs(axis)))]
+    one = np.cross(axis, other)
+    one = one / np.linalg.norm(one)
+    return one, np.cross(axis, one)
+
+
+def _turned_since(now: Any, start: Any, body: str | None) -> Jet:
+    """R(t) R(0)^T of a body."""
+    if body is None:
+        return jet(np.eye(3))
+    R0 = start.poses[body][1].c[0][..., 0]
+    return matmul(now.poses[body][1], R0.T)
+
+
+def _pin(name: str, tie: dict, now: Any, o: Any) -> Rows:
+    points, plane = tie["points"], now.model.plane
+    places = [now.point(p) for p in points]
+    if len(points) == 1:
+        places.append(vector(o.start.point(points[0]).c[0][:, 0]))
+    rows: Rows = []
+    for other in places[1:]:
+        gap = places[0] - other
+        rows += [(component(gap, k), False, "xyz"[k]) for k in range(2 if plane else 3)]
+    if "axis" in tie:
+        axis = _unit(now, tie["axis"])
+        first = matmul(_turned_since(now, o.start, _split(now, points[0])), vector(axis))
+        others = [_split(now, p) for p in points[1:]] or [None]
+        for body in others:
+            R = _turned_since(now, o.start, body)
+            rows += [(dot(matmul(R, vector(e)), first), False, "couple") for e in _across(axis)]
+    return rows
+
+
+def _support(name: str, tie: dict, now: Any, o: Any) -> Rows:
+    n = _unit(now, tie["normal"])
+    at = now.model.numbers(tie["at"]) if "at" in tie else o.start.point(tie["point"]).c[0][:, 0]
+    return [(dot(vector(n), now.point(tie["point"]) - vector(at)), False, "n")]
+
+
+def _clamp(name: str, tie: dict, now: Any, o: Any) -> Rows:
+    points = tie.get("points") or [tie["point"]]
+    rows = _pin(name, {"points": points}, now, o)
+    first = _turned_since(now, o.start, _split(now, points[0]))
+    for body in [_split(now, p) for p in points[1:]] or [None]:
+        turn = ty.vee(matmul(transpose(_turned_since(now, o.start, body)), first))
+        rows += [(component(turn, k), False, "couple") for k in ([2] if now.model.plane else range(3))]
+    return rows
+
+
+def _guide(name: str, tie: dict, now: Any, o: Any) -> Rows:
+    along = _unit(now, tie["along"])
+    gap = now.point(tie["point"]) - vector(o.start.point(tie["point"]).c[0][:, 0])
+    across = [np.array([-along[1], along[0], 0])] if now.model.plane else list(_across(along))
+    rows: Rows = [(dot(vector(e), gap), False, "n") for e in across]
+    turn = ty.vee(_turned_since(now, o.start, _split(now, tie["point"])))
+    return rows + [(component(turn, k), False, "couple") for k in ([2] if now.model.plane else range(3))]
+
+
+def _slider(name: str, tie: dict, now: Any, o: Any) -> Rows:
+    a, b = now.model.bodies[tie["on"]].get("line", ["start", "end"])
+    A, B = (now.of_body(tie["on"], x) for x in (a, b))
+    d = (B - A).c[0][:, 0]
+    d = d / np.linalg.norm(d)
+    across = [np.array([-d[1], d[0], 0])] if now.model.plane else list(_across(d))
+    p, R = now.poses[tie["on"]]
+    gap = now.point(tie["point"]) - (p + matmul(R, A))
+    return [(dot(matmul(R, vector(e)), gap), False, "n") for e in across]
+
+
+def _link(name: str, tie: dict, now: Any, o: Any) -> Rows:
+    a, b = (now.point(p) for p in tie["points"])
+    if "length" in tie:
+        length = now.model.number(tie["length"])
+    else:
+        length = float(ty.norm(o.start.point(tie["points"][0]) - o.start.point(tie["points"][1])).value)
+    d = a - b
+    return [((length**2 - dot(d, d)) / (2 * length), False, "n")]
+
+
+def _radius(now: Any, body: str, tie: dict) -> Any:
+    declared = tie.get("radius", now.model.bodies[body].get("shape", {}).get("radius"))
+    return None if declared is None else now.model.number(declared)
+
+
+def _meeting(tie: dict, now: Any) -> tuple[Jet, Jet, Jet, str | None]:
+    """(gap, unit normal towards the rolling body, place of contact, body of the track)."""
+    body, r = tie["body"], _radius(now, tie["body"], tie)
+    center = now.of_body(body, tie["center"]) if "center" in tie else vector([0, 0, 0])
+    p, R = now.poses[body]
+    c = p + matmul(R, center)
+    on = tie.get("on")
+    o, axes = now.frame(on or "ground")
+    if "line" in tie or "plane" in tie:
+        track = tie.get("line") or tie.get("plane")
+        n = matmul(axes, vector(_unit(now, track["normal"])))
+        at = o + matmul(axes, now.vector(track["at"]))
+        gap = dot(n, c - at) - r
+        if "axis" in tie:
+            return _wheel(tie, now, R, c, n, at, r, on)
+        if r is None:
+            return _ellipsoid(tie, now, R, c, n, at, on)
+        return gap, n, c - _times(n, r), on
+    circle = tie.get("circle")
+    middle = o + matmul(axes, now.vector(circle["at"]) if circle else vector([0, 0, 0]))
+    size = now.model.number(circle["radius"]) if circle else _radius(now, on, {})
+    inside = bool(circle and circle.get("inside"))
+    d = c - middle
+    if circle and "axis" in circle:
+        e = matmul(axes, vector(_unit(now, circle["axis"])))
+        d = d - _times(e, dot(e, d))
+    away = _times(d, 1.0 / ty.norm(d))
+    n = -away if inside else away
+    gap = size - r - ty.norm(d) if inside else ty.norm(d) - size - r
+    return gap, n, c - _times(n, r), on
+
+
+def _wheel(tie: dict, now: Any, R: Jet, c: Jet, n: Jet, at: Jet, r: float, on: str | None) -> tuple:
+    """A thin wheel on a plane: its rim's lowest point."""
+    axle = matmul(R, vector(_unit(now, tie["axis"])))
+    down = -(n - _times(axle, dot(axle, n)))
+    down = _times(down, 1.0 / ty.norm(down))
+    place = c + _times(down, r) - _times(n, now.model.number(tie.get("tube", 0)))
+    return dot(n, place - at), n, place, on
+
+
+def _ellipsoid(tie: dict, now: Any, R: Jet, c: Jet, n: Jet, at: Jet, on: str | None) -> tuple:
+    """The place of an ellipsoid whose normal is -n."""
+    declared = tie.get("ellipsoid") or now.model.bodies[tie["body"]]["shape"]["semiaxes"]
+    square = vector(now.model.numbers(declared) ** 2)
+    own = matmul(transpose(R), n)
+    scaled = square * own
+    place = c - matmul(R, _times(scaled, 1.0 / ty.sqrt(dot(scaled, own))))
+    return dot(n, place - at), n, place, on
+
+
+def _times(v: Jet, x: Any) -> Jet:
+    return Jet(v.c * x) if isinstance(x, (int, float)) else Jet(jet(x).c[:, None, :]) * v
+
+
+def _rolling(name: str, tie: dict, now: Any, o: Any) -> Rows:
+    gap, n, place, on = _meeting(tie, now)
+    rows: Rows = [(gap, False, "n")]
+    if tie.get("slip"):
+        return rows
+    v = now.velocity_at(tie["body"], place) - now.velocity_at(on, place)
+    return rows + [(dot(e, v), True, role) for e, role in _tangents(now, n, tie, on)]
+
+
+def _tangents(now: Any, n: Jet, tie: dict, on: str | None) -> list[tuple[Jet, str]]:
+    if now.model.plane:
+        return [(-_left(n), "t")]
+    axes = now.frame(on or "ground")[1]
+    if "axis" in tie.get("circle", {}):
+        t = matmul(axes, vector(_unit(now, tie["circle"]["axis"])))
+        return [(t, "t"), (cross(n, t), "s")]
+    x = component(transpose(axes), 0)
+    along = x - _times(n, dot(n, x))
+    if float(ty.norm(along).value) < 1e-6:
+        x = component(transpose(axes), 1)
+        along = x - _times(n, dot(n, x))
+    t = _times(along, 1.0 / ty.norm(along))
+    return [(t, "t"), (cross(n, t), "s")]
+
+
+def _skate(name: str, tie: dict, now: Any, o: Any) -> Rows:
+    body = _split(now, tie["point"])
+    along = matmul(now.poses[body][1], vector(_unit(now, tie["along"])))
+    v = now.velocity_at(body, now.point(tie["point"]))
+    n = cross(vector(_unit(now, tie["normal"]) if "normal" in tie else Z), along)
+    return [(dot(_times(n, 1.0 / ty.norm(n)), v), True, "n")]
+
+
+def _touch(now: Any, item: Any) -> tuple[Jet, str | None, float]:
+    """(centre, body, signed radius) of an item of a string's path; cw is positive."""
+    if isinstance(item, str):
+        return now.point(item), _split(now, item), 0.0
+    body = item.get("body")
+    center = now.frame(body)[0] if body else now.vector(item["at"])
+    r = item.get("radius")
+    if r is None:
+        r = now.model.bodies[body]["shape"]["radius"]
+    return center, body, now.model.number(r) * (1 if item.get("turn") == "cw" else -1)
+
+
+DIRECTIONS = {"up": [0, 1, 0], "down": [0, -1, 0], "left": [-1, 0, 0], "right": [1, 0, 0]}
+
+
+def _string(name: str, tie: dict, now: Any, o: Any) -> Rows:
+    items, tensions, keeping = tie["path"], [], []
+    for k, (one, two) in enumerate(itertools.pairwise(items)):
+        (A, body_a, s_a), (B, body_b, s_b) = _touch(now, one), _touch(now, two)
+        if "strands" in tie:
+            given = tie["strands"][k]
+            way = np.array(DIRECTIONS[given]) if isinstance(given, str) else _unit(now, given)
+            d = vector(way)
+        else:
+            D = B - A
+            length = ty.norm(D)
+            d = _times(D, 1.0 / length)
+            if s_a or s_b:
+                sine = (s_a - s_b) / length
+                cosine = ty.sqrt(1.0 - sine * sine)
+                d = _times(d, cosine) - _times(_left(d), sine)
+        a, b = A + _times(_left(d), s_a), B + _times(_left(d), s_b)
+        v = now.velocity_at(body_b, b) if not isinstance(two, str) else now.point(two).rate()
+        w = now.velocity_at(body_a, a) if not isinstance(one, str) else now.point(one).rate()
+        tensions.append(-dot(d, v - w))
+        if "strands" in tie:
+            keeping.append(dot(_left(d), b - a))
+    joined: Rows = []
+    for k, (item, row) in enumerate(zip(items[:-1], tensions, strict=True)):
+        through = k > 0 and (isinstance(item, str) or item.get("slip"))
+        if through:
+            joined[-1] = (joined[-1][0] + row, True, "n")
+        else:
+            joined.append((row, True, "n"))
+    for row in keeping:
+        if row.c.shape[-1] > 1 and np.max(np.abs(row.c[1][2:])) > 1e-12 and _moves(o, now, tie):
+            joined.append((row, False, "side"))
+    return joined
+
+
+def _moves(o: Any, now: Any, tie: dict) -> bool:
+    return True
+
+
+def _gear(name: str, tie: dict, now: Any, o: Any) -> Rows:
+    ratio = now.model.number(tie["ratio"])
+    if now.model.plane:
+        one, two = (component(now.spin(b), 2) for b in tie["bodies"])
+        return [(one - ratio * two, True, "couple")]
+    rates = []
+    for b in tie["bodies"]:
+        body = now.model.bodies[b]
+        axes = seat(now, body)[1]
+        e = matmul(axes, vector(_axis(now, body["joint"])))
+        rates.append(dot(e, now.spin(b) - now.spin(now.model.parent(body))))
+    return [(rates[0] - ratio * rates[1], True, "couple")]
+
+
+def _equation(name: str, tie: dict, now: Any, o: Any) -> Rows:
+    return [(jet(now.value(tie.get("gap", tie.get("rate")))), "rate" in tie, "n")]
+
+
+def _motion(name: str, tie: dict, now: Any, o: Any) -> Rows:
+    value = tie["value"]
+    if isinstance(value, dict) and "samples" in value:
+        f = now.model.law(value, now.t.value)
+        n = now.t.c.shape[-1]
+        c = np.zeros((3, n))
+        c[0], c[1, 0], c[2, 0] = f[0], f[1], f[2] / 2
+        return [(now.q[tie["coordinate"]] - Jet(c), False, "drive")]
+    return [(now.q[tie["coordinate"]] - now.value(value), False, "drive")]
+
+
+TIES: dict[str, Callable] = {
+    "pin": _pin, "support": _support, "clamp": _clamp, "guide": _guide, "slider": _slider, "link": _link,
+    "rolling": _rolling, "skate": _skate, "string": _string, "gear": _gear, "equation": _equation, "motion": _motion,
+}  # fmt: skip
+
+
+def tie_rows(name: str, tie: dict, now: Any, o: Any) -> Rows:
+    return TIES[tie["kind"]](name, tie, now, o)
+
+
+# loads
+
+
+@dataclass
+class Load:
+    """What acts: on a body at a place (ground axes), or on coordinates."""
+
+    name: str
+    body: str | None = None
+    place: np.ndarray | None = None
+    force: np.ndarray | None = None
+    torque: np.ndarray | None = None
+    along: dict[str, float] | None = None
+
+    def on(self, o: Any, now: Any) -> np.ndarray:
+        """Its part of F."""
+        F = np.zeros(6 * len(o.bodies) + len(o.names))
+        for q, x in (self.along or {}).items():
+            F[6 * len(o.bodies) + o.names.index(q)] += x
+        if self.body is None:
+            return F
+        i = o.bodies.index(self.body)
+        p, R = (x.c[0][..., 0] for x in now.poses[self.body])
+        center = p + R @ now.model.mass[self.body][1]
+        f = np.zeros(3) if self.force is None else self.force
+        torque = (np.zeros(3) if self.torque is None else self.torque) + (
+            0 if self.place is None else np.cross(self.place - center, f)
+        )
+        F[6 * i : 6 * i + 3] += f
+        F[6 * i + 3 : 6 * i + 6] += R.T @ torque
+        return F
+
+
+def _now(x: Jet) -> np.ndarray:
+    return x.c[0][..., 0]
+
+
+def _number(x: Any) -> float:
+    return jet(x).value
+
+
+def _pair(name: str, now: Any, points: list[str], pull: Callable, along: Any = None) -> list[Load]:
+    """Both ends of something between two points that draws them together with pull(distance, its rate)."""
+    a, b = (now.point(p) for p in points)
+    d = b - a
+    if along is not None:
+        e = _unit(now, along)
+        r = dot(vector(e), d)
+    else:
+        r = ty.norm(d)
+        e = _now(d) / r.value
+    strength = pull(float(r.c[0][0]), float(r.c[1][0]))
+    found = []
+    for p, place, sense in ((points[0], a, 1), (points[1], b, -1)):
+        body = _split(now, p)
+        if body is not None:
+            found.append(Load(name, body, _now(place), sense * strength * e))
+    return found
+
+
+def _gravity(name: str, f: dict, now: Any, o: Any, s: Any) -> list[Load]:
+    g = _now(now.vector(f["acceleration"]))
+    found = []
+    for body in f.get("bodies", o.bodies):
+        m, com, _ = now.model.mass[body]
+        p, R = now.poses[body]
+        found.append(Load(name, body, _now(p + matmul(R, vector(com))), m * g))
+    return found
+
+
+def _force(name: str, f: dict, now: Any, o: Any, s: Any) -> list[Load]:
+    body = _split(now, f["point"])
+    force = _now(now.vector(f["force"]))
+    if f.get("axes", "ground") != "ground":
+        force = _now(now.poses[f["axes"]][1]) @ force
+    return [Load(name, body, _now(now.point(f["point"])), force)] if body else []
+
+
+def _couple(name: str, f: dict, now: Any, o: Any, s: Any) -> list[Load]:
+    if isinstance(f["couple"], list):
+        torque = _now(now.vector(f["couple"]))
+    else:
+        torque = np.array([0, 0, _number(now.value(f["couple"]))])
+    if f.get("axes", "ground") != "ground":
+        torque = _now(now.poses[f["axes"]][1]) @ torque
+    return [Load(name, f["body"], torque=torque)]
+
+
+def _distributed(name: str, f: dict, now: Any, o: Any, s: Any) -> list[Load]:
+    a, b = (_now(now.point(f"{f['body']}.{x}")) for x in f["between"])
+    ends = f.get("intensities") or [f["intensity"]] * 2
+    p, q = (_now(now.vector(x)) for x in ends)
+    x, w = np.polynomial.legendre.leggauss(3)
+    length = np.linalg.norm(b - a)
+    return [
+        Load(name, f["body"], a + (b - a) * (1 + xi) / 2, (p + (q - p) * (1 + xi) / 2) * length * wi / 2)
+        for xi, wi in zip(x, w, strict=True)
+    ]
+
+
+def _rest_length(f: dict, now: Any, o: Any) -> float:
+    if f["length"] != "start":
+        return _number(now.value(f["length"]))
+    d = o.start.point(f["points"][1]) - o.start.point(f["points"][0])
+    return float(np.dot(_unit(now, f["along"]), _now(d))) if "along" in f else ty.norm(d).value
+
+
+def _spring(name: str, f: dict, now: Any, o: Any, s: Any) -> list[Load]:
+    k, l0 = _number(now.value(f["stiffness"])), _rest_length(f, now, o)
+    return _pair(name, now, f["points"], lambda r, _: k * (r - l0), f.get("along"))
+
+
+def _damper(name: str, f: dict, now: Any, o: Any, s: Any) -> list[Load]:
+    c = _number(now.value(f["damping"]))
+    return _pair(name, now, f["points"], lambda _, rate: c * rate, f.get("along"))
+
+
+def _between(name: str, f: dict, now: Any, o: Any, s: Any) -> list[Load]:
+    def pull(r: float, rate: float) -> float:
+        c = np.array([[r], [rate], [0.0]])
+        now.local["r"] = Jet(c)
+        try:
+            return _number(now.value(f["pull"]))
+        finally:
+            del now.local["r"]
+
+    return _pair(name, now, f["points"], pull)
+
+
+def _twisted(f: dict, now: Any) -> tuple[list, float, float]:
+    """([(body, sense)], angle, its rate) of a torsion element in the plane."""
+    first, second = f["bodies"] if "bodies" in f else (None, f["body"])
+    angles = [0.0, 0.0]
+    rates = [0.0, 0.0]
+    for i, b in enumerate((first, second)):
+        if b is not None and b != "ground":
+            angles[i] = _absolute_angle(now, b)
+            rates[i] = float(component(now.spin(b), 2).c[0][0])
+    pairs = [(b, sense) for b, sense in ((second, 1), (first, -1)) if b is not None and b != "ground"]
+    return pairs, angles[1] - angles[0], rates[1] - rates[0]
+
+
+def _absolute_angle(now: Any, body: str) -> float:
+    """The angle of a body in the plane, turns counted: the sum of what the joints declare."""
+    total = 0.0
+    while body is not None:
+        declared = now.model.bodies[body]
+        j = declared.get("joint", {})
+        total += _number(now.value(j.get("angle", 0)))
+        turned = j.get("turned", [])
+        for one in turned if isinstance(turned, list) else [turned]:
+            total += now.model.number(one["angle"])
+        body = now.model.parent(declared)
+    return total
+
+
+def _torsion_spring(name: str, f: dict, now: Any, o: Any, s: Any) -> list[Load]:
+    pairs, angle, _ = _twisted(f, now)
+    M = -_number(now.value(f["stiffness"])) * (angle - _number(now.value(f.get("rest", 0))))
+    return [Load(name, b, torque=np.array([0, 0, sense * M])) for b, sense in pairs]
+
+
+def _torsion_damper(name: str, f: dict, now: Any, o: Any, s: Any) -> list[Load]:
+    pairs, _, rate = _twisted(f, now)
+    M = -_number(now.value(f["damping"])) * rate
+    return [Load(name, b, torque=np.array([0, 0, sense * M])) for b, sense in pairs]
+
+
+def _potential(name: str, f: dict, now: Any, o: Any, s: Any) -> list[Load]:
+    V = jet(now.value(f["energy"])).c
+    if V.shape[-1] == 1:
+        return []
+    slopes = V[1][2 + 6 * len(o.bodies) :]
+    return [Load(name, along={q: -float(x) for q, x in zip(o.names, slopes, strict=True)})]
+
+
+def _generalized(name: str, f: dict, now: Any, o: Any, s: Any) -> list[Load]:
+    return [Load(name, along={f["coordinate"]: _number(now.value(f["value"]))})]
+
+
+FORCES: dict[str, Callable] = {
+    "gravity": _gravity, "force": _force, "couple": _couple, "distributed": _distributed, "spring": _spring,
+    "damper": _damper, "between": _between, "torsion_spring": _torsion_spring, "torsion_damper": _torsion_damper,
+    "potential": _potential, "generalized": _generalized, "kinetic": lambda *_: [],
+}  # fmt: skip
+
+
+def _in_joint(body: dict, now: Any, o: Any, s: Any) -> list[Load]:
+    """Drive, spring and damper in a joint: on the child, the opposite on the parent."""
+    j = body["joint"]
+    name, parent = body["name"], now.model.parent(body)
+    variable = j.get("angle") if j["kind"] in ("revolute", "screw") else j.get("displacement")
+    x = jet(now.value(variable)) if variable is not None else jet(0.0)
+    value, rate = float(x.c[0][0]), float(x.c[1][0])
+    elastic = EFFORTS["spring"](j, now, value) + EFFORTS["damper"](j, now, rate)
+    turning, pushing = EFFORTS["torque"](j, now), EFFORTS["force"](j, now)
+    if j["kind"] in ("revolute", "screw"):
+        turning += elastic
+    elif j["kind"] == "prismatic":
+        pushing += elastic
+    if turning == 0 and pushing == 0:
+        return []
+    _place, axes = seat(now, body)
+    e = _now(axes) @ _axis(now, j)
+    p, R = now.poses[name]
+    point = _now(p + matmul(R, now.of_body(name, j["point"]))) if "point" in j else _now(p)
+    both = [(name, 1), (parent, -1)] if parent else [(name, 1)]
+    return [Load(f"joint {name}", b, point, sign * pushing * e, sign * turning * e) for b, sign in both]
+
+
+EFFORTS: dict[str, Callable] = {
+    "spring": lambda j, now, s: -_number(now.value(j.get("stiffness", 0))) * (s - _number(now.value(j.get("rest", 0)))),
+    "damper": lambda j, now, rate: -_number(now.value(j.get("damping", 0))) * rate,
+    "torque": lambda j, now: _number(now.value(j.get("torque", 0))),
+    "force": lambda j, now: _number(now.value(j.get("force", 0))),
+}
+
+
+def loads(o: Any, now: Any, s: Any) -> list[Load]:
+    """Everything applied, at the first curve."""
+    found = []
+    for body in now.model.bodies.values():
+        if "joint" in body:
+            found += _in_joint(body, now, o, s)
+    for name, f in now.model.forces.items():
+        found += FORCES[f["kind"]](name, f, now, o, s)
+    return found
+
+
+# inertia beyond the bodies': armature, kinetic energies
+
+
+def inertias(o: Any, now: Any, s: Any) -> list[tuple[np.ndarray, np.ndarray]]:
+    """(M, bias) of rotors behind gears and of declared kinetic energies."""
+    n, first = 6 * len(o.bodies) + len(o.names), 6 * len(o.bodies)
+    found = []
+    for body in now.model.bodies.values():
+        j = body.get("joint", {})
+        if "armature" in j:
+            x = jet(now.value(j["angle"] if j["kind"] in ("revolute", "screw") else j["displacement"])).c
+            if x.shape[-1] > 1:
+                own = ARMATURE["armature"](now.model.number(j["armature"]))
+                slope = x[1][2:]
+                found.append((own * np.outer(slope, slope), own * slope * float(2 * x[2][0])))
+    for f in now.model.forces.values():
+        if f["kind"] == "kinetic":
+            M, bias = ARMATURE["kinetic"](o, now, s, f["energy"])
+            whole, part = np.zeros((n, n)), np.zeros(n)
+            whole[first:, first:], part[first:] = M, bias
+            found.append((whole, part))
+    return found
+
+
+def _kinetic(o: Any, now: Any, s: Any, energy: str) -> tuple[np.ndarray, np.ndarray]:
+    """d/dt dT/dq' - dT/dq of a T that is of second degree in the rates: differences in the rates are exact."""
+    n = len(o.names)
+    rates = np.eye(n)
+
+    def T(q: np.ndarray, v: np.ndarray, t: float) -> float:
+        known = {name: Jet(np.array([[a], [b], [0.0]])) for name, a, b in zip(o.names, q, v, strict=True)}
+        return _number(type(now)(now.model, Jet(np.array([[t], [1.0], [0.0]])), known).value(energy))
+
+    def momentum(q: np.ndarray, t: float) -> np.ndarray:
+        return np.array([(T(q, s.v + e, t) - T(q, s.v - e, t)) / 2 for e in rates])
+
+    base = T(s.q, s.v, s.t)
+    M = np.array(
+        [[T(s.q, s.v + a + b, s.t) - T(s.q, s.v + a, s.t) - T(s.q, s.v + b, s.t) + base for b in rates] for a in rates]
+    )
+    h = 1e-5
+    along = (momentum(s.q + h * s.v, s.t + h) - momentum(s.q - h * s.v, s.t - h)) / (2 * h)
+    slope = np.array([(T(s.q + h * e, s.v, s.t) - T(s.q - h * e, s.v, s.t)) / (2 * h) for e in rates])
+    return M, along - slope
+
+
+ARMATURE: dict[str, Callable] = {"armature": lambda x: x, "kinetic": _kinetic}
+
+
+def own_kinetic(o: Any, now: Any) -> float:
+    total = 0.0
+    for body in now.model.bodies.values():
+        j = body.get("joint", {})
+        if "armature" in j:
+            x = jet(now.value(j["angle"] if j["kind"] in ("revolute", "screw") else j["displacement"])).c
+            total += now.model.number(j["armature"]) * float(x[1][0]) ** 2 / 2
+    return total + sum(_number(now.value(f["energy"])) for f in now.model.forces.values() if f["kind"] == "kinetic")
+
+
+def potential(o: Any, now: Any) -> float | None:
+    """V of weights, springs and declared potentials; None where something else might have one."""
+    V = 0.0
+    for _name, f in now.model.forces.items():
+        kind = f["kind"]
+        if kind == "gravity":
+            g = _now(now.vector(f["acceleration"]))
+            for body in f.get("bodies", o.bodies):
+                m, com, _ = now.model.mass[body]
+                p, R = now.poses[body]
+                V -= m * g @ _now(p + matmul(R, vector(com)))
+        elif kind == "spring":
+            a, b = (now.point(p) for p in f["points"])
+            r = float(_unit(now, f["along"]) @ _now(b - a)) if "along" in f else ty.norm(b - a).value
+            V += _number(now.value(f["stiffness"])) * (r - _rest_length(f, now, o)) ** 2 / 2
+        elif kind == "torsion_spring":
+            angle = _twisted(f, now)[1] - _number(now.value(f.get("rest", 0)))
+            V += _number(now.value(f["stiffness"])) * angle**2 / 2
+        elif kind == "potential":
+            V += _number(now.value(f["energy"]))
+        elif kind not in ("damper", "torsion_damper", "kinetic"):
+            return None
+    for body in now.model.bodies.values():
+        j = body.get("joint", {})
+        if "stiffness" in j:
+            x = _number(now.value(j["angle"] if j["kind"] in ("revolute", "screw") else j["displacement"]))
+            V += _number(now.value(j["stiffness"])) * (x - _number(now.value(j.get("rest", 0)))) ** 2 / 2
+        if "torque" in j or "force" in j:
+            return None
+    return V
+
+
+# friction, contacts, reactions
+
+
+def frictions(o: Any, now: Any, rows: list) -> list[tuple[int, np.ndarray]]:
+    """(row, force per unit of |N|) of each contact that rubs."""
+    found = []
+    for i, row in enumerate(rows):
+        tie = now.model.constraints.get(row.owner)
+        if tie is None or row.role != "n" or "friction" not in tie:
+            continue
+        if tie["kind"] == "rolling" and not tie.get("slip"):
+            continue
+        found.append((i, rubbing(o, now, tie)))
+    return found
+
+
+def rubbing(o: Any, now: Any, tie: dict) -> np.ndarray:
+    place, body, on, tangents = _sliding(now, tie)
+    push = _push(now, tie, place, body, on, tangents)
+    F = Load("", body, _now(place), push).on(o, now)
+    return F + Load("", on, _now(place), -push).on(o, now) if on is not None else F
+
+
+def _push(now: Any, tie: dict, place: Jet, body: Any, on: Any, tangents: list[Jet]) -> np.ndarray:
+    """Force on the body for |N| = 1."""
+    v = now.velocity_at(body, place) - now.velocity_at(on, place)
+    slip = sum((float(dot(e, v).c[0][0]) * _now(e) for e in tangents), np.zeros(3))
+    if isinstance(tie["friction"], dict):
+        return FRICTION["viscous"](now.model.number(tie["friction"]["viscous"]), slip)
+    if np.linalg.norm(slip) < 1e-9:
+        raise NoSliding(tie)
+    return FRICTION["coulomb"](now.model.number(tie["friction"]), slip)
+
+
+FRICTION: dict[str, Callable] = {
+    "coulomb": lambda mu, slip: -mu * slip / np.linalg.norm(slip),
+    "viscous": lambda c, slip: -c * slip,
+}
+
+
+class NoSliding(Exception):
+    """Friction at rest: no law gives its value."""
+
+
+def _sliding(now: Any, tie: dict) -> tuple[Jet, str | None, str | None, list[Jet]]:
+    if tie["kind"] == "rolling":
+        _, n, place, on = _meeting(tie, now)
+        return place, tie["body"], on, [e for e, _ in _tangents(now, n, tie, on)]
+    place = now.point(tie["point"])
+    body = _split(now, tie["point"])
+    if tie["kind"] == "slider":
+        a, b = now.model.bodies[tie["on"]].get("line", ["start", "end"])
+        d = now.of_body(tie["on"], b) - now.of_body(tie["on"], a)
+        d = matmul(now.poses[tie["on"]][1], _times(d, 1.0 / ty.norm(d)))
+        return place, body, tie["on"], [d]
+    return place, body, None, [e for e, _ in _tangents(now, vector(_unit(now, tie["normal"])), tie, None)]
+
+
+def _gap(name: str, o: Any, s: Any) -> Jet:
+    now = o.reduced(s)
+    return next(jet_ for jet_, rate, role in tie_rows(name, o.model.constraints[name], now, o) if role == "n")
+
+
+def touches(name: str, o: Any, s: Any) -> bool:
+    c = _gap(name, o, s).c
+    return abs(c[0][0]) < 1e-6 and abs(c[1][0]) < 1e-6
+
+
+def agrees(name: str, o: Any, s: Any, solved: Any) -> bool:
+    """A closed contact pushes (a string pulls); an open one opens."""
+    if solved.closed[name]:
+        kept, lam, _ = holding(o, solved)
+        found = {solved.rows[i].owner: x for i, x in zip(kept, lam, strict=True) if solved.rows[i].role == "n"}
+        return found[name] >= -1e-9
+    now = o.reduced(s, solved.a)
+    c = next(j for j, rate, role in tie_rows(name, o.model.constraints[name], now, o) if role == "n").c
+    return float(c[2][0]) >= -1e-9
+
+
+def modes_at_start(o: Any, x0: np.ndarray, e: Any) -> dict[str, bool]:
+    """Which contacts are closed at the start: those that touch and are pressed."""
+    if not o.modes:
+        return {}
+    n = len(o.names)
+    o.modes = {name: abs(_gap(name, o, o.consistent_or_not(x0[:n])).c[0][0]) < 1e-6 for name in o.modes}
+    s = o.of_speeds(0.0, x0[:n], e.speeds, x0[n:])
+    return o.contacts(s).closed
+
+
+UNHELD = ("placed", "free")
+
+
+def holding(o: Any, solved: Any) -> tuple[list[int], np.ndarray, np.ndarray]:
+    """(rows that hold, their multipliers, what may be added to them) by the balance of all bodies.
+
+    What only says where a body is (`placed`, `free`) holds nothing; the rows of the balance along coordinates on which
+    such a saying depends are left out with it.
+    """
+    now, first = solved.now, 6 * len(o.bodies)
+    unheld = UNHELD + (("planar",) if now.model.plane else ())
+    loose = {name for name, b in now.model.bodies.items() if b.get("joint", {"kind": "fixed"})["kind"] in unheld}
+    kept = [i for i, row in enumerate(solved.rows) if row.owner not in loose]
+    shut = np.ones(first + len(o.names), bool)
+    for i, row in enumerate(solved.rows):
+        if row.owner in loose:
+            shut[first:] &= np.abs(solved.J[i][first:]) < 1e-12
+    need = solved.M @ solved.z - solved.F
+    from oracle import NoAnswer, least_squares
+
+    push = solved.J.T[:, kept]
+    lam, null = least_squares(push[shut], need[shut])
+    if np.max(np.abs(push[shut] @ lam - need[shut]), initial=0.0) > 1e-6 * (1 + np.max(np.abs(need))):
+        raise NoAnswer("something holds the bodies that has no name")
+    return kept, lam, null
+
+
+def reactions(o: Any, solved: Any, s: Any) -> dict[str, float]:
+    """Reactions that have one value, by the product's names: force and couple of joints on the child, those of ties."""
+    now = solved.now
+    kept, lam, null = holding(o, solved)
+    size = float(np.max(np.abs(lam), initial=1.0))
+
+    def sure(parts: dict[str, np.ndarray]) -> dict[str, float]:
+        """Of combinations of the multipliers those that have one value."""
+        kind = {key: g for key, g in parts.items() if not null.size or np.max(np.abs(null @ g)) < 1e-6}
+        return {key: float(g @ lam) for key, g in kind.items()}
+
+    found: dict[str, float] = {}
+    for name in o.bodies:
+        mine = [k for k, i in enumerate(kept) if solved.rows[i].owner == name]
+        if mine and "joint" in now.model.bodies[name]:
+            columns = np.zeros((6 * len(o.bodies) + len(o.names), len(kept)))
+            for k in mine:
+                columns[:, k] = solved.J[kept[k]]
+            own = _of_joint(name, o, now, s, columns)
+            for key, x in sure({key: g for key, (g, _) in own.items()}).items():
+                found[key] = x + own[key][1]
+    for name, tie in now.model.constraints.items():
+        mine = [k for k, i in enumerate(kept) if solved.rows[i].owner == name]
+        units = np.eye(len(kept))
+        found |= sure(_of_tie(name, tie, now, [(solved.rows[kept[k]].role, units[k]) for k in mine]))
+        if not solved.closed.get(name, True):
+            found |= {key: 0.0 for key in _of_tie(name, tie, now, [("n", units[0])])}
+        if name in solved.pressed:
+            found |= _rubbed(name, tie, now, solved.pressed[name])
+    for k, i in enumerate(kept):
+        row = solved.rows[i]
+        if row.role == "drive":
+            q = row.owner[6:] if row.owner.startswith("drive ") else now.model.constraints[row.owner]["coordinate"]
+            found |= sure({f"drive({q})": np.eye(len(kept))[k]})
+    return {key: x for key, x in found.items() if abs(x) < 1e9 * size}
+
+
+def _rubbed(name: str, tie: dict, now: Any, pressed: float) -> dict[str, float]:
+    place, body, on, tangents = _sliding(now, tie)
+    push = _push(now, tie, place, body, on, tangents) * pressed
+    if tie["kind"] == "slider":
+        return {}
+    return {f"reaction_{role}({name})": float(_now(e) @ push) for e, role in zip(tangents, "ts", strict=False)}
+
+
+def _of_joint(name: str, o: Any, now: Any, s: Any, columns: np.ndarray) -> dict[str, tuple[np.ndarray, float]]:
+    """{name: (combination of the multipliers, what drives and springs add)}."""
+    i = o.bodies.index(name)
+    W = columns[6 * i : 6 * i + 6]
+    p, R = (_now(x) for x in now.poses[name])
+    center = p + R @ now.model.mass[name][1]
+    j = now.model.bodies[name]["joint"]
+    point = p + R @ _now(now.of_body(name, j["point"])) if "point" in j else p
+    lever = point - center
+    cross = np.array([[0, -lever[2], lever[1]], [lever[2], 0, -lever[0]], [-lever[1], lever[0], 0]])
+    own = np.zeros(6)
+    for load in _in_joint(now.model.bodies[name], now, o, s):
+        if load.body == name:
+            own += load.on(o, now)[6 * i : 6 * i + 6]
+    f, torque = W[:3], R @ W[3:] - cross @ W[:3]
+    f_own, torque_own = own[:3], R @ own[3:] - cross @ own[:3]
+    found = {f"reaction_{'xyz'[k]}({name})": (f[k], float(f_own[k])) for k in range(2 if now.model.plane else 3)}
+    found |= {key: (g @ f, 0.0) for key, g in _guiding(name, now).items()}
+    if now.model.plane:
+        return found | {f"reaction_couple({name})": (torque[2], float(torque_own[2]))}
+    return found | {f"reaction_couple_{'xyz'[k]}({name})": (torque[k], float(torque_own[k])) for k in range(3)}
+
+
+def _guiding(name: str, now: Any) -> dict[str, np.ndarray]:
+    """The normal force of a guide or path in the plane: to the left of the way that it leaves."""
+    body = now.model.bodies[name]
+    j = body["joint"]
+    if j["kind"] not in ("prismatic", "path") or not now.model.plane:
+        return {}
+    axes = seat(now, body)[1]
+    if j["kind"] == "prismatic":
+        way = _now(axes) @ _axis(now, j)
+    else:
+        one, two = (_path(now, j | {"along": f"({j['along']}) + {h}"})[1] for h in (1e-6, -1e-6))
+        way = _now(axes) @ (_now(one) - _now(two)) / 2e-6
+    return {f"reaction_n({name})": np.array([-way[1], way[0], 0])}
+
+
+def _of_tie(name: str, tie: dict, now: Any, rows: list[tuple[str, Any]]) -> dict[str, Any]:
+    kind = tie["kind"]
+    plane = now.model.plane
+    if not rows:
+        return {}
+    if kind == "pin" and len(tie["points"]) <= 2:
+        return {f"reaction_{role}({name})": x for role, x in rows if role in ("x", "y", "z")}
+    if kind in ("support", "slider", "rolling", "skate") and (plane or kind != "slider"):
+        return {f"reaction_{role}({name})": x for role, x in rows}
+    if kind == "guide" and plane:
+        return {f"reaction_{'couple' if role == 'couple' else 'n'}({name})": x for role, x in rows}
+    if kind == "clamp" and plane and len(tie.get("points", [0])) <= 2:
+        return {f"reaction_{role}({name})": x for role, x in rows}
+    if kind == "link":
+        return {f"tension({name})": rows[0][1]}
+    if kind == "string":
+        strands = [x for role, x in rows if role == "n"]
+        return {f"tension({name}, {k + 1})" if k else f"tension({name})": x for k, x in enumerate(strands)}
+    if kind == "equation":
+        return {f"multiplier({name})": rows[0][1]}
+    if kind == "gear" and plane:
+        return {f"reaction_couple({name})": rows[0][1]}
+    return {}

@@ -1,0 +1,129 @@
+"""The combinations, by a command: models of a covering array against the oracle, and through verbs, formats and doors.
+
+    python tests/combinations/run.py --shard 3/40 --out DIR     one shard; what is in DIR already is passed over
+    python tests/combinations/run.py --totals --out DIR         what all shards found
+
+One line of JSON a model is written into DIR/shard_K_of_N_SEED.jsonl, and each model that shows a fault beside it.
+"""
+
+from __future__ import annotations
+
+import argparse
+import json
+import os
+import sys
+import tempfile
+import time
+from collections import Counter
+from pathlib import Path
+from random import Random
+from typing import Any
+
+HERE = Path(__file__).parent
+sys.path[:0] = [str(HERE), str(HERE.parents[1])]
+os.environ.setdefault("EOMGEN_FRESH", "1")
+os.environ.setdefault("EOMGEN_PATIENCE", "none")
+
+import calls  # noqa: E402
+import compare  # noqa: E402
+from covering import rows  # noqa: E402
+from drawn import text_of  # noqa: E402
+from features import all_pairs, pairs_of, possible_pairs, why_not  # noqa: E402
+
+import eomgen  # noqa: E402
+
+
+def of_model(levels: dict[str, str], seed: int, *, through_verbs: bool = True) -> dict[str, Any]:
+    """All that one model shows: its faults, its calls, and whether it covers its pairs."""
+    text = text_of(levels, seed)
+    begin = time.process_time()
+    row: dict[str, Any] = {"levels": levels, "seed": seed, "faults": [], "refused": "", "numbers": 0, "skipped": []}
+    try:
+        with calls.limit(120):
+            found = compare.of_model(text, seed)
+        row["numbers"], row["skipped"] = found.numbers, found.skipped
+        row["faults"] += [["oracle: " + kind, what] for kind, what in found.faults[:5]]
+    except eomgen.EomgenError as no:
+        row["refused"] = f"{type(no).__name__}: {str(no).splitlines()[0][:200]}"
+    except calls.TooLong:
+        row["faults"].append(["slow", "derive and the comparison take more than 120 s"])
+    except Exception as error:
+        row["faults"].append(["internal error", f"{type(error).__name__}: {str(error)[:200]}"])
+    outcomes: list[calls.Outcome] = []
+    if through_verbs:
+        rng = Random(f"calls{sorted(levels.items())}{seed}")
+        with tempfile.TemporaryDirectory() as folder:
+            outcomes += [calls.by_command(text, words, Path(folder)) for words in calls.commands(text, rng)]
+        outcomes += calls.by_python(text, calls.python_doors(rng))
+        if not row["refused"] and rng.random() < 0.5:
+            outcomes += calls.judged(text)
+    row["calls"] = [[o.call, o.code, round(o.seconds, 2), o.note] for o in outcomes]
+    row["faults"] += [[o.fault, f"{o.call}: {o.detail}"] for o in outcomes if o.fault]
+    row["covers"] = not row["refused"]
+    row["seconds"] = round(time.process_time() - begin, 1)
+    return row
+
+
+def shard(number: int, count: int, seed: int, out: Path, most: int | None) -> None:
+    """The models number, number + count, ... of the array of a seed; those in the ledger are passed over."""
+    out.mkdir(parents=True, exist_ok=True)
+    ledger = out / f"shard_{number}_of_{count}_{seed}.jsonl"
+    done = {json.loads(line)["index"] for line in ledger.read_text().splitlines()} if ledger.exists() else set()
+    made = 0
+    for index, levels in enumerate(rows(seed)):
+        if index % count != number - 1 or index in done:
+            continue
+        if most is not None and made >= most:
+            return
+        row = {"index": index, "array": seed, **of_model(levels, seed)}
+        if row["faults"]:
+            (out / f"model_{seed}_{index}.toml").write_text(text_of(levels, seed))
+        with ledger.open("a") as file:
+            file.write(json.dumps(row) + "\n")
+        made += 1
+
+
+def totals(out: Path) -> dict[str, Any]:
+    """Over all shards: models, calls, pairs covered of those that can be, faults by kind, the slowest calls."""
+    lines = [json.loads(x) for path in sorted(out.glob("shard_*.jsonl")) for x in path.read_text().splitlines()]
+    covered: set = set()
+    for row in lines:
+        if row["covers"]:
+            covered |= pairs_of(row["levels"])
+    faults = Counter(kind for row in lines for kind, _ in row["faults"])
+    slow = sorted((c[2], c[0], row["array"], row["index"]) for row in lines for c in row["calls"] if c[2] > calls.SLOW)
+    return {
+        "models": len(lines),
+        "refused": sum(bool(row["refused"]) for row in lines),
+        "calls": sum(len(row["calls"]) for row in lines),
+        "numbers against the oracle": sum(row["numbers"] for row in lines),
+        "pairs covered": len(covered & possible_pairs()),
+        "pairs that can be": len(possible_pairs()),
+        "pairs that cannot be": sum(bool(why_not(*pair)) for pair in all_pairs()),
+        "models with faults": sum(bool(row["faults"]) for row in lines),
+        "faults": dict(faults.most_common()),
+        "unread lines": sum(
+            c[0] == "verify" and "wrong" not in c[3] and "right" not in c[3] for r in lines for c in r["calls"]
+        ),
+        "calls above 8 s": slow[::-1],
+        "CPU seconds": round(sum(row["seconds"] for row in lines)),
+    }
+
+
+def main() -> None:
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("--shard", default="1/1", help="K/N: the K-th of N shards")
+    parser.add_argument("--seed", type=int, default=1, help="of the covering array and its numbers")
+    parser.add_argument("--out", type=Path, required=True, help="the folder of the ledgers")
+    parser.add_argument("--most", type=int, help="at most so many models now")
+    parser.add_argument("--totals", action="store_true", help="tell what is in the ledgers")
+    given = parser.parse_args()
+    if given.totals:
+        print(json.dumps(totals(given.out), indent=1))
+        return
+    number, count = map(int, given.shard.split("/"))
+    shard(number, count, given.seed, given.out, given.most)
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,123 @@
+"""Combinations of features against an oracle that shares nothing; the oracle is looked at by errors planted in it."""
+
+from __future__ import annotations
+
+import sys
+from collections.abc import Callable
+from functools import cache
+from pathlib import Path
+from random import Random
+from typing import Any
+
+import pytest
+
+sys.path.insert(0, str(Path(__file__).parent))
+
+import compare
+import laws
+import taylor as ty
+from covering import _row
+from drawn import text_of
+from features import FACTORS, possible_pairs
+
+pytestmark = pytest.mark.slow
+
+PLAIN = {
+    "space": "plane", "base": "turning", "loop": "none", "tie": "none", "closure": "multipliers", "joint": "revolute",
+    "joint_with": "nothing", "shape": "given", "force": "gravity", "second_force": "none", "contact": "none",
+    "speeds": "rates", "input": "none", "units": "none", "parameters": "numbers", "symbols": "plain",
+    "output": "none",
+}  # fmt: skip
+IN_SPACE = ("cylindrical", "screw", "universal", "spherical", "quaternion")
+
+
+@cache
+def product(**levels: str) -> compare.Product:
+    return compare.product_of(text_of(PLAIN | levels, 1))
+
+
+def of_law(table: str, law: str) -> compare.Product:
+    """A small model in which the law acts."""
+    if table == "JOINTS":
+        level = {"spherical": "quaternion"}.get(law, law)
+        return product(joint=level, space="space" if level in IN_SPACE else "plane")
+    if table == "TIES":
+        ties = {"equation": "points", "pin": "none"}
+        return product(tie=ties.get(law, law), loop="four_bar" if law == "pin" else "none", base="ground")
+    if table == "FORCES":
+        return product(force=law, second_force="gravity")
+    if table == "FRICTION":
+        return product(contact={"coulomb": "sliding", "viscous": "viscous"}[law])
+    return product(joint_with={"spring": "spring_damper", "damper": "spring_damper", "torque": "drive"}.get(law, law))
+
+
+def planted(table: str, law: str) -> Callable:
+    """The law with an error in it."""
+    own: Callable = getattr(laws, table)[law]
+
+    def joint(now: Any, j: dict) -> Any:
+        R, d = own(now, j)
+        return ty.matmul(R, ty.turn([0, 0, 1], ty.component(R, 1, 0) * 0.3 + ty.component(d, 0) * 0.3)), d * 1.3
+
+    def tie(name: str, tie: dict, now: Any, o: Any) -> Any:
+        (gap, rate, role), *rest = own(name, tie, now, o)
+        q = next(iter(now.q.values()))
+        return [(gap + (q.rate() if rate else q * q) * 0.3, rate, role), *rest]
+
+    def force(*arguments: Any) -> Any:
+        found = own(*arguments)
+        for load in found:
+            load.force = None if load.force is None else -load.force
+            load.torque = None if load.torque is None else -load.torque
+            load.along = None if load.along is None else {q: -x for q, x in load.along.items()}
+        return found
+
+    def kinetic(*arguments: Any) -> Any:
+        M, bias = own(*arguments)
+        return 2 * M, 2 * bias
+
+    by_table = {"JOINTS": joint, "TIES": tie, "FORCES": force}
+    return by_table.get(table, kinetic if law == "kinetic" else lambda *arguments: 1.5 * own(*arguments))
+
+
+LAWS = [
+    *(("JOINTS", law) for law in laws.JOINTS),
+    *(("TIES", law) for law in laws.TIES),
+    *(("FORCES", law) for law in laws.FORCES if law != "kinetic"),
+    *(("EFFORTS", law) for law in ("spring", "damper", "torque")),
+    ("ARMATURE", "armature"),
+    *(("FRICTION", law) for law in laws.FRICTION),
+]
+
+
+@pytest.mark.parametrize(("table", "law"), LAWS)
+def test_an_error_in_each_law_of_the_oracle_is_noticed(monkeypatch, table, law):
+    """Product and oracle agree; with the law wrong they do not."""
+    known = of_law(table, law)
+    right = compare.against(known, seed=1)
+    assert right.numbers > 0
+    assert not right.faults
+    assert not [x for x in right.skipped if x.startswith("oracle: ")]
+    monkeypatch.setitem(getattr(laws, table), law, planted(table, law))
+    assert compare.against(known, seed=1).faults or compare.against(known, seed=1).skipped != right.skipped
+
+
+def test_every_level_stands_in_some_pair():
+    """No level of a factor is forbidden with all of another factor."""
+    pairs = possible_pairs()
+    for factor, levels in FACTORS.items():
+        for level in levels:
+            others = {f for pair in pairs if (factor, level) in pair for f, _ in pair} - {factor}
+            assert others == set(FACTORS) - {factor}, (factor, level)
+
+
+@pytest.mark.parametrize("number", range(12))
+def test_a_sample_of_combinations_moves_as_the_oracle_says(number):
+    """Accelerations, determinate reactions and energies of the product are the oracle's."""
+    pairs = sorted(possible_pairs())
+    rng = Random(number)
+    row = None
+    while row is None:
+        row = _row(rng, dict(rng.choice(pairs)), set(pairs))
+    found = compare.of_model(text_of(row, number), number)
+    assert not found.faults, (found.faults, row)
