@@ -43,6 +43,7 @@ from typing import Any
 
 ROOT = Path(__file__).resolve().parent.parent
 LIST = Path(__file__).with_suffix(".toml")
+CACHE = ".cache"
 PATIENCE = 180  # s of one run of a verb; what takes longer counts as refused
 TEST_PATIENCE = 900  # s of the tests of one room
 
@@ -54,7 +55,8 @@ class Planted:
     Args:
         name: unique, what is wrong in words.
         room: of which law it is.
-        run: words of the command line, the model among them, models/ and .toml left out: "solve four_bar"; "" where
+        run: words of the command line, the model among them, models/ and .toml left out: "solve four_bar"; several with
+            " then " between; @ is a folder of their own; "--text" at the end asks for what a person reads; "" where
             no proof can know what was meant, as of what a person typed: then the tests alone are asked.
         tests: pytest's words that should see it, where the verb does not: "tests/test_targets.py -k nan".
         model: text of a model of its own, in the list its name in [models] where more than one entry has it; `run` then
@@ -100,10 +102,11 @@ class Planted:
 
 @dataclass(frozen=True)
 class Outcome:
-    """What a verb said: its exit code, and its output."""
+    """What a verb said: its exit code, its output, and the files that it wrote, by their names."""
 
     code: int
     out: str
+    files: tuple[tuple[str, bytes], ...] = ()
 
     @property
     def why(self) -> str:
@@ -185,8 +188,9 @@ def words_of(run: str, model: str, folder: str) -> list[str]:
     if name == "-":
         path.write_text(model, encoding="utf-8")
     else:
-        path = ROOT / "models" / f"{name}.toml"
-    return [verb, str(path), *(o.replace("@", folder) for o in options), "--json"]
+        path = Path(name.replace("@", folder)) if "@" in name else ROOT / "models" / f"{name}.toml"
+    form = options.pop() if options[-1:] == ["--text"] else "--json"
+    return [verb, str(path), *(o.replace("@", folder) for o in options), *([form] if form == "--json" else [])]
 
 
 def _child(planted: Planted | None, run: str, model: str, pipe: multiprocessing.connection.Connection) -> None:
@@ -195,18 +199,41 @@ def _child(planted: Planted | None, run: str, model: str, pipe: multiprocessing.
         plant(planted)
     out, err = io.StringIO(), io.StringIO()
     with tempfile.TemporaryDirectory() as folder, contextlib.redirect_stdout(out), contextlib.redirect_stderr(err):
-        os.environ["XDG_CACHE_HOME"] = folder  # no code of another patch
-        try:
-            from eomgen.cli import main
+        os.environ["XDG_CACHE_HOME"] = os.path.join(folder, CACHE)  # no code of another patch
+        code = 0
+        for each in run.split(" then "):
+            out.truncate(out.seek(0))
+            if code := _code(each, model, folder, out):
+                break
+        written = () if code else _written(Path(folder), run)
+    pipe.send(Outcome(code, (out.getvalue() or err.getvalue()).replace(folder, "@"), written))
 
-            main(words_of(run, model, folder))
-            code = 0
-        except SystemExit as end:
-            code = int(end.code or 0) if not isinstance(end.code, str) else 1
-        except BaseException as error:  # a crash is a refusal, too
-            code = 70
-            print(f"{type(error).__name__}: {error}", file=out)
-    pipe.send(Outcome(code, (out.getvalue() or err.getvalue()).replace(folder, "@")))
+
+def _code(run: str, model: str, folder: str, out: io.StringIO) -> int:
+    """The exit code of one command line."""
+    try:
+        from eomgen.cli import main
+
+        main(words_of(run, model, folder))
+    except SystemExit as end:
+        return int(end.code or 0) if not isinstance(end.code, str) else 1
+    except BaseException as error:  # a crash is a refusal, too
+        print(f"{type(error).__name__}: {error}", file=out)
+        return 70
+    return 0
+
+
+def _written(folder: Path, run: str) -> tuple[tuple[str, bytes], ...]:
+    """The files that a run wrote, where its command line names its folder."""
+    if "@" not in run:
+        return ()
+    found = (path for path in sorted(folder.rglob("*")) if path.is_file() and path.suffix not in (".sqlite", ".so"))
+    names = ((path.relative_to(folder).as_posix(), path) for path in found)
+    return tuple(
+        (name, path.read_bytes().replace(str(folder).encode(), b"@"))
+        for name, path in names
+        if not name.startswith(CACHE) and name != "model.toml"
+    )
 
 
 def outcome(planted: Planted | None, run: str, model: str = "") -> Outcome:
