@@ -44,6 +44,7 @@ from eomgen.model.reader import ModelOrPath, model_at
 from eomgen.model.replaced import Values
 from eomgen.proof.check import Certificate, Check, checked, unchecked
 from eomgen.proof.emitted_code import PhaseMotion, TriedState
+from eomgen.proof.shipped_fmu import fmu_told
 from eomgen.proof.states import consistent_states
 from eomgen.proof.written_code import Judged, Written, start_state_tried
 from eomgen.questions.run import pulling
@@ -275,9 +276,23 @@ class Generated:
             for emitted in self.emitted:
                 if target_named(target).writes(emitted[1].role):
                     yield judged[emitted[1].role].check(self._written(target, emitted), start)
+        for emitted in self.emitted:
+            found = judged[emitted[1].role].shipped(self._written(self.targets[0], emitted))
+            yield from () if found is None else (found,)
+        yield from self._packed()
         for target in self.targets if self.float32 else ():
             for emitted in self.emitted:
                 yield self._single(target, emitted)
+
+    def _packed(self) -> Iterator[Check]:
+        """What FMUs say of their variables."""
+        symbols = self.equations.graph.symbols
+        x0, p0 = (() if each is None else each.tolist() for each in (self._start.x0, self._start.p0))
+        states = dict(zip((x.name for x in (*symbols.q, *symbols.u)), x0, strict=bool(len(x0))))
+        given = {name: x for name, x in zip(symbols.parameters, p0, strict=False) if x == x}
+        for path, content in self.texts.items():
+            if path.endswith(".fmu") and isinstance(content, bytes):
+                yield fmu_told(content, states if len(given) == len(symbols.parameters) else {}, given)
 
     def _single(self, target: str, emitted: Emitted) -> Check:
         """The text in single precision, run, against the vectors and the tolerances that stand beside it."""

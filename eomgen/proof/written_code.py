@@ -16,7 +16,7 @@ from eomgen.mechanics.bodies.armature import joint_row
 from eomgen.mechanics.equations.accelerations import accelerations_at
 from eomgen.mechanics.equations.system import System
 from eomgen.proof import emitted_code
-from eomgen.proof.check import Check, unchecked
+from eomgen.proof.check import Check, checked, unchecked
 from eomgen.proof.emitted_code import Code, PhaseMotion, RunNumbers, TriedState
 from eomgen.records import dataclass
 from eomgen.symbolic.expression.graph import Node, Scalar
@@ -24,6 +24,8 @@ from eomgen.symbolic.expression.node import ScalarRow
 from eomgen.symbolic.expression.traversal import order
 from eomgen.symbolic.numeric.evaluation import evaluate, fifty_digits
 from eomgen.symbolic.numeric.tolerances import CARRIED, COMPUTED
+
+MOST_TOLERANCE = 10 * COMPUTED  # that a test vector may allow
 
 
 @dataclass(frozen=True)
@@ -104,14 +106,33 @@ class Judged:
             return unchecked(name, error.what, "run")
         if code is None:
             return unchecked(name, f"nothing here runs {written.target}", "run")
-        if written.role is RHS:
-            return emitted_code.equations_hold(self.motion, code, (*start, *written.instants), name)
-        if self.slopes is not None:
-            return self._slopes(code, written.instants, name, self.slopes)
         if self.parameters is not None:
             return self._regressor(code, written.instants, name, self.parameters)
         if self.actuators:
             return self._inverse(code, written.instants, name)
+        return self._by_symbols(written, code, start, name)
+
+    def shipped(self, written: Written) -> Check | None:
+        """The test vectors that are written beside it; None of those that are given accelerations."""
+        if not written.vectors or self.actuators or self.parameters is not None:
+            return None
+        name = f"the test vectors of {written.role.main(written.stem)} are the symbols' numbers"
+        wide = [v for v in written.vectors if not 0 < v.tolerance <= MOST_TOLERANCE]
+        if wide:
+            return checked(name, f"a tolerance of {wide[0].tolerance:.2g} at t = {wide[0].t:.6g} s", "as written")
+
+        def told(at: TriedState) -> np.ndarray:
+            nearest = min(written.vectors, key=lambda v: abs(v.t - at.t) + np.abs(np.array(v.x) - at.x).max(initial=0))
+            return np.array(nearest.result)
+
+        return self._by_symbols(written, told, (), name)
+
+    def _by_symbols(self, written: Written, code: Code, start: Sequence[TriedState], name: str) -> Check:
+        """What is given at a state, against the symbols there."""
+        if written.role is RHS:
+            return emitted_code.equations_hold(self.motion, code, (*start, *written.instants), name)
+        if self.slopes is not None:
+            return self._slopes(code, written.instants, name, self.slopes)
         return emitted_code.values_agree(
             name, self.motion, self.values, code, (*start, *written.instants), self._accelerations
         )
