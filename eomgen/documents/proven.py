@@ -15,6 +15,7 @@ from eomgen.documents.quantity import Quantity
 from eomgen.documents.read_back import page_read_back
 from eomgen.documents.statements import Equation, Listing, Matrix, Statement, parts_of
 from eomgen.documents.text import cases_text, is_piecewise, side_text
+from eomgen.documents.text_read_back import text_read_back
 from eomgen.errors import ExpressionError, NumberBeyond
 from eomgen.proof.check import Certificate, Check, Tally, differing
 from eomgen.symbolic.expression.derivative import symbols_of
@@ -60,7 +61,8 @@ def proven_as(document: Document, form: str) -> Document:
     if document.certificate is None:
         return document
     bare = replace(document, certificate=None)
-    more = page_read_back(bare, rendered(bare, form), form)
+    page = rendered(bare, form)
+    more = text_read_back(bare, page) if form == "text" else page_read_back(bare, page, form)
     return replace(document, certificate=_joined(document.certificate, more))
 
 

@@ -93,13 +93,11 @@ class Wanted:
 
 
 def page_read_back(document: Document, text: str, form: str) -> Iterator[Check]:
-    """Whether a page says what its document holds; nothing of a form that nobody reads.
+    """Whether a page of LaTeX or Markdown says what its document holds.
 
     Args:
         text: the page, without its proof.
     """
-    if form not in PAGES:
-        return
     comparison = PageComparison(document)
     wanted = list(_wanted(document, form))
     blocks = list(PAGES[form](text))
@@ -142,7 +140,7 @@ def _of_statement(statement: Statement) -> Iterator[Wanted]:
         for row in statement.rows:
             yield from _of_row(row)
     else:
-        grid = statement if isinstance(statement, Grid) else _columns(statement)
+        grid = statement if isinstance(statement, Grid) else columns_of(statement)
         yield Wanted("table", rows=(grid.head, *grid.rows))
 
 
@@ -154,7 +152,7 @@ def _of_row(row: Found) -> Iterator[Wanted]:
         yield Wanted("formula", sides=(found,))
 
 
-def _columns(table: Table) -> Grid:
+def columns_of(table: Table) -> Grid:
     """The columns of a table in which something stands."""
     rows = [(row.symbol, row.meaning, row.unit, row.value) for row in table.rows]
     kept = [k for k in range(len(table.head)) if any(row[k] != "" for row in rows)]

@@ -126,12 +126,12 @@ def side_text(side: Side) -> str:
         return f"({side.operations} operations, not printed)"
     if isinstance(side, Law):
         return side.text
-    return "; ".join(cases_text(side)) if is_piecewise(side) else _formula_text(side)
+    return "; ".join(cases_text(side)) if is_piecewise(side) else formula_as_text(side)
 
 
 @lru_cache(maxsize=KEPT, typed=True)
-def _formula_text(x: Scalar) -> str:
-    """Asked when it is printed, and when that is read back."""
+def formula_as_text(x: Scalar) -> str:
+    """A formula as the grammar reads it: asked when it is printed, and when that is read back."""
     return to_text(without_cases((x,))[0])
 
 

@@ -96,29 +96,76 @@ class WholeRun:
     def checks(self) -> Iterator[Check]:
         """Extremes, means and mean squares of the model's outputs against the samples of the run alone."""
         tally = Tally("what is of the whole run holds against its samples", "samples as they were integrated")
-        for output in self.model.outputs.values():
+        for name, output in self.model.outputs.items():
+            if isinstance(output.at, WrittenEquation) and output.event is not None:
+                tally.add(name, partial(self._events_against_samples, output))
             for call in output.value.calls if is_of_a_run(output) else ():
-                if call.name in ("max", "min", "mean", "rms"):
+                if call.name in _FUNCTIONS:
                     tally.add(str(call), partial(self._against_samples, call))
         return tally.checks()
 
     def _against_samples(self, call: Call) -> str:
-        """No sample is beyond an extreme, one is near to it; the trapezium rule is as near to a mean as it can tell."""
+        """No sample is beyond an extreme, and the motion is there at its instant; means are near the trapezium rule's.
+
+        The last value is that of the last sample, and a period the time between upward passages of the samples.
+        """
         formula = formula_at(call, 0)
-        told, power = self._called(call)[0], 2 if call.name == "rms" else 1
-        samples = [self._columns(formula, run).along(run.run.t, run.run.x)["asked"] for run in self.runs]
-        values = np.concatenate(samples)
+        told, when = self._called(call)
+        curves = self._sampled(formula)
+        values = np.concatenate([y for _, y in curves])
         size = float(np.max(np.abs(values)))
-        if call.name in ("max", "min"):
-            sign = 1 if call.name == "max" else -1
-            beyond = float(np.max(sign * values)) - sign * told
-            rise = max(float(np.max(np.abs(np.diff(each)), initial=0.0)) for each in samples)
-            wrong = beyond > CARRIED * size or -beyond > rise + CARRIED * size
-            return f"{told:.10g} for the sample {sign * np.max(sign * values):.10g}" if wrong else ""
-        pairs = [(run.run.t, each**power) for run, each in zip(self.runs, samples, strict=True)]
+        if call.name == "period":
+            return self._period_against_samples(told, curves)
+        if call.name in ("mean", "rms"):
+            return self._mean_against_samples(told, curves, 2 if call.name == "rms" else 1)
+        if call.name == "last":
+            return _not_at(curves, when[0], told, size)
+        sign = 1 if call.name.endswith("max") else -1
+        extreme = float(np.max(sign * values))
+        if call.name.startswith("time"):
+            return _not_at(curves, told, sign * extreme, size)
+        beyond = extreme - sign * told
+        rise = max(float(np.max(np.abs(np.diff(y)), initial=0.0)) for _, y in curves)
+        if beyond > CARRIED * size or -beyond > rise + CARRIED * size:
+            return f"{told:.10g} for the sample {sign * extreme:.10g}"
+        return _not_at(curves, when[0], told, size)
+
+    def _sampled(self, formula: Expression) -> list[_Curve]:
+        """(t, the formula) at the states of each phase."""
+        return [(run.run.t, self._columns(formula, run).along(run.run.t, run.run.x)["asked"]) for run in self.runs]
+
+    def _mean_against_samples(self, told: float, curves: Sequence[_Curve], power: int) -> str:
+        pairs = [(t, y**power) for t, y in curves]
+        size, count = max(float(np.max(np.abs(y))) for _, y in pairs), sum(len(y) for _, y in pairs)
         fine, coarse = (sum(float(np.trapezoid(y[::k], t[::k])) for t, y in pairs) / self._duration for k in (1, 2))
-        unsure = 4 * abs(fine - coarse) + CARRIED * size**power + size**power * len(pairs) / len(values)
+        unsure = 4 * abs(fine - coarse) + CARRIED * size + size * len(pairs) / count
         return f"{told:.10g}, squared {told**2:.10g}, for {fine:.10g}" if abs(told**power - fine) > unsure else ""
+
+    def _period_against_samples(self, told: float, curves: Sequence[_Curve]) -> str:
+        """Between passages of the mean there are as many periods; an instant is known to a step."""
+        level = sum(float(np.trapezoid(y, t)) for t, y in curves) / self._duration
+        steps = [(t[k], t[k + 1]) for t, y in curves for k in np.flatnonzero((y[:-1] < level) & (y[1:] >= level))]
+        if len(steps) < 2:
+            return ""
+        (first, after), (last, end) = steps[0], steps[-1]
+        low, high = ((x - y) / told for x, y in ((last, after), (end, first)))
+        return "" if low - 1 < len(steps) < high + 2 else f"{told:.10g} for {len(steps)} passages of the samples"
+
+    def _events_against_samples(self, output: Output) -> str:
+        """At the instants of its events both sides are equal among the samples, and the value is theirs."""
+        assert isinstance(output.at, WrittenEquation)
+        found = self.of(output)
+        sides = self._sampled(output.at.left - output.at.right)
+        curves = self._sampled(output.value)
+        largest = [max(float(np.max(np.abs(y))) for _, y in each) for each in (sides, curves)]
+        values = found.value if isinstance(found.value, tuple) else (found.value,)
+        for value, t in zip(values, found.t, strict=False):
+            wrong = _not_at(sides, t, 0.0, largest[0])
+            if value is not None and not wrong:
+                wrong = _not_at(curves, t, value, largest[1])
+            if wrong:
+                return wrong
+        return ""
 
     # -- of the whole ------------------------------------------------------------------------------
 
@@ -315,6 +362,22 @@ _FUNCTIONS: dict[str, Callable[[WholeRun, Expression], tuple[float, tuple[float,
     "last": WholeRun.last,
     "period": WholeRun.period,
 }
+
+
+_Curve = tuple[np.ndarray, np.ndarray]
+BESIDE = 2  # samples on either side of an instant that bound what a curve is between them
+
+
+def _not_at(curves: Sequence[_Curve], when: float, value: float, size: float) -> str:
+    """That a curve has another value at an instant, as far as its samples tell; ""."""
+    for t, y in curves:
+        k = int(np.searchsorted(t, when))
+        near = y[max(0, k - BESIDE) : k + BESIDE]
+        if len(near) and t[0] <= when <= t[-1]:
+            slack = float(np.max(near) - np.min(near)) + CARRIED * size
+            if not (np.isfinite(slack) and not np.min(near) - slack <= value <= np.max(near) + slack):
+                return ""
+    return f"at t = {when:.10g} s it is not {value:.10g}"
 
 
 def is_of_a_run(output: Output) -> bool:

@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+import csv
+import io
+from collections.abc import Mapping, Sequence
 from dataclasses import replace
 from pathlib import Path
 from typing import Any
@@ -15,12 +17,14 @@ from eomgen.codegen.rhs import parameter_vector
 from eomgen.documents.document import Document, plain_document
 from eomgen.documents.proven import proven
 from eomgen.documents.statements import Grid, Statement, prose
+from eomgen.documents.text import cell_text
 from eomgen.equations import Equations
 from eomgen.errors import UsageError
 from eomgen.files import is_stream
 from eomgen.model.fields import WrittenEquation
 from eomgen.model.own_units import units_of
 from eomgen.model.parts import Model
+from eomgen.proof.run_told import ToldRun, run_told
 from eomgen.questions.run import run as simulated
 from eomgen.simulation.accuracy import Accuracy
 from eomgen.simulation.integrator import Stepping
@@ -69,16 +73,34 @@ def simulate_document(
     missing = run.remark if run.reactions or run.outputs else ""
     notes = tuple(note for note in (unproven, assembled, run.still, missing) if note)
     first = _first_instant(equations, run)
+    statements = _run_statements(model, run)
+    payload = _run_payload(model, run, files)
     document = plain_document(
         model,
-        lambda: _run_payload(model, run, files) | first,
-        *_run_statements(model, run),
+        lambda: payload | first,
+        *statements,
         failed="" if run.ok else run.message,
         notes=notes,
     )
     if cut:
         return replace(proven(document, None), interrupted=run.status == "interrupted")
-    return proven(document, run.certify() if certify else None)
+    return proven(
+        document, run.certify() + run_told(run, model, _told(statements, payload, output)) if certify else None
+    )
+
+
+def _told(statements: Sequence[Statement], payload: Mapping[str, Any], output: str | None) -> ToldRun:
+    """What is told of a run, as it stands in the text, the entries and the file."""
+    grids = {
+        cell_text(grid.head[-1]): [list(map(cell_text, row)) for row in grid.rows]
+        for grid in statements
+        if isinstance(grid, Grid)
+    }
+    table = None
+    if output and not is_stream(output) and Path(output).suffix.lower() == ".csv":
+        head, *lines = csv.reader(io.StringIO(Path(output).read_text(encoding="utf-8")))
+        table = head, lines
+    return ToldRun(grids.get("end", ()), grids.get("at", ()), payload, table)
 
 
 def _first_instant(equations: Equations, run: Trajectory) -> dict[str, Any]:

@@ -12,6 +12,7 @@ import numpy as np
 from eomgen.certificate import certify
 from eomgen.documents.document import Document, document_of
 from eomgen.documents.figures import Picture
+from eomgen.documents.linearize.printed_modes import printed_modes
 from eomgen.documents.linearize.state_space import LETTERS, StateSpace, state_space_of
 from eomgen.documents.linearize.steps import linearization_steps
 from eomgen.documents.quantity import Quantity
@@ -34,9 +35,11 @@ from eomgen.model.parts import Model
 from eomgen.model.ranges import Range, range_of
 from eomgen.model.reader import ModelOrPath, model_at
 from eomgen.model.replaced import Values
+from eomgen.model.values import exact_parameters
 from eomgen.proof.check import Certificate
 from eomgen.proof.linear_entries import linear_entries
 from eomgen.proof.small_motions import small_motion_checks
+from eomgen.proof.small_motions_told import small_motions_told
 from eomgen.records import dataclass
 from eomgen.symbolic.expression.expressions import Call, Expression
 from eomgen.symbolic.expression.graph import Scalar
@@ -177,8 +180,10 @@ class Linearization(Result):
     def certify(self) -> Certificate:
         """Check the equations of motion, and the small motions against differences of these."""
         first = self.small.first
-        told = linear_entries(self.entries(), self.A, self.B) if self.valued else ()
-        return certify(first.equations) + small_motion_checks(self.modes) + told
+        entries, values = self.entries(), exact_parameters(self.model)
+        told = linear_entries(entries, self.A, self.B) if self.valued else ()
+        printed = small_motions_told(entries, printed_modes(self.derivation), values)
+        return certify(first.equations) + small_motion_checks(self.modes) + told + printed
 
     # -- as outputs ask ------------------------------------------------------------------------------------
 

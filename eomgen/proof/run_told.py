@@ -1,0 +1,244 @@
+"""A run, and what is told of it -> checks: names, units, starts and ends, tables and files are those of its states.
+
+What is told is read as it stands, "theta1 [deg]", "-1.27834046", a line of a file, and looked up among the states by
+its name; that a column bears the right name shows where it is the integral of the one that is its rate.
+"""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from dataclasses import field
+from functools import cached_property, partial
+from typing import Any
+
+import numpy as np
+
+from eomgen.model.own_units import OUTPUT
+from eomgen.model.parts import Model
+from eomgen.proof.check import Check, Tally, differing
+from eomgen.proof.run_columns import state_of_row
+from eomgen.records import dataclass
+from eomgen.simulation.result import Trajectory
+from eomgen.symbolic.expression.units import parse_unit
+from eomgen.symbolic.numeric.evaluation import NoValue
+from eomgen.symbolic.numeric.tolerances import COMPUTED
+
+NAME, HOW = "what is told of the run is what it went through", "states by their names, texts read back"
+PRINTED = 1e-8  # of a number that is told to nine digits
+ROWS = 3  # of a file or table that are looked at: its first, middle and last
+_HEAD = re.compile(r"(?P<name>.*?)(?: \[(?P<unit>[^\]]*)\])?")
+
+
+@dataclass(frozen=True)
+class ToldRun:
+    """What is told of a run.
+
+    Args:
+        rows: (name with its unit, the start, the end) as texts.
+        whole: (name with its unit, value or why there is none, "t = 1 s" or "").
+        entries: for machines.
+        table: of a file: its heads, and lines of texts.
+    """
+
+    rows: Sequence[Sequence[str]] = ()
+    whole: Sequence[Sequence[str]] = ()
+    entries: Mapping[str, Any] = field(default_factory=dict)
+    table: tuple[Sequence[str], Sequence[Sequence[str]]] | None = None
+
+
+def run_told(run: Trajectory, model: Model, told: ToldRun) -> Iterator[Check]:
+    """Everything that is told of a run, against its states."""
+    return _RunTold(run, model, told).checks()
+
+
+@dataclass(frozen=True)
+class _RunTold:
+    run: Trajectory
+    model: Model
+    told: ToldRun
+
+    def checks(self) -> Iterator[Check]:
+        tally = Tally(NAME, HOW)
+        for head, *texts in self.told.rows:
+            tally.add(head, partial(self._ends, head, texts))
+        tally.add("the columns told", self._complete)
+        for name in self.run.coordinates:
+            if f"{name}'" in self.own and len(self.run.t) > ROWS:
+                tally.add(f"{name}'", partial(self._is_rate, name))
+        if self.told.table is not None:
+            for k, head in enumerate(self.told.table[0]):
+                tally.add(f"column {head}", partial(self._column, head, [row[k] for row in self.told.table[1]]))
+        for what, wrong in self._of_entries():
+            tally.add(what, wrong)
+        if self.run.energy is not None and len(self.run.t):
+            tally.add("energy", self._energy)
+        return tally.checks()
+
+    @cached_property
+    def own(self) -> dict[str, np.ndarray]:
+        """The columns by their names, put together here."""
+        found = {"t": self.run.t}
+        for k, name in enumerate((*self.run.coordinates, *self.run.speeds)):
+            found[name] = self.run.x[:, k]
+        if self.run.energy is not None:
+            found["energy"] = self.run.energy
+        found.update(self.run.reactions)
+        for name, column in self.run.outputs.items():
+            found[name + (OUTPUT if name in found else "")] = column
+        return found
+
+    def _of_head(self, head: str) -> tuple[str, float]:
+        """(name, size of its unit), where that is a unit that it can have."""
+        match = _HEAD.fullmatch(head)
+        assert match is not None
+        if match["name"] not in self.own:
+            raise NoValue(f"'{match['name']}' is no column of the run")
+        unit = match["unit"]
+        if unit is None:
+            return match["name"], 1.0
+        wanted = self._unit(match["name"])
+        if wanted is not None and parse_unit(wanted).dimension != parse_unit(unit).dimension:
+            raise _Unlike(f"[{unit}] for [{wanted}]")
+        return match["name"], parse_unit(unit).size
+
+    def _unit(self, name: str) -> str | None:
+        """A unit that a column has by what it is."""
+        if name in ("t", "energy"):
+            return {"t": "s", "energy": "J"}[name]
+        if name in self.run.units:
+            return self.run.units[name]
+        part = self.model.coordinates.get(name.removesuffix("'")) if name in self.run.coordinates else None
+        return None if part is None or part.unit is None else part.unit.text
+
+    def _ends(self, head: str, texts: Sequence[str]) -> str:
+        try:
+            name, size = self._of_head(head)
+        except _Unlike as error:
+            return str(error)
+        column = self.own[name]
+        for place, text in zip((0, -1), texts, strict=True):
+            if wrong := _apart(float(text) * size, float(column[place]), PRINTED):
+                return f"{('start', 'end')[place]}: {wrong}"
+        return ""
+
+    def _complete(self) -> str:
+        """No column is left out, and none told twice."""
+        named = [match["name"] for head, *_ in self.told.rows if (match := _HEAD.fullmatch(head))]
+        if len(self.run.t) and sorted(named) != sorted(self.own):
+            return ", ".join(set(self.own).symmetric_difference(named)) or "one is told twice"
+        return ""
+
+    def _column(self, head: str, texts: Sequence[str]) -> str:
+        try:
+            name, size = self._of_head(head)
+        except NoValue as error:
+            return str(error)
+        except _Unlike as error:
+            return str(error)
+        column = self.own[name]
+        if len(texts) != len(column):
+            return f"{len(texts)} lines for {len(column)} instants"
+        places = dict.fromkeys(np.linspace(0, len(column) - 1, ROWS).astype(int).tolist()) if len(column) else ()
+        found = (_apart(float(texts[k]) * size, float(column[k]), COMPUTED) for k in places)
+        return next(filter(None, found), "")
+
+    def _is_rate(self, name: str) -> str:
+        """The steps of a coordinate are the means of its rate, to second order; jumps of the rate are a few."""
+        q, u, h = self.own[name], self.own[f"{name}'"], np.diff(self.run.t)
+        apart = np.abs(np.diff(q) - h * (u[1:] + u[:-1]) / 2)
+        allowed = h * np.abs(np.diff(u)) + h * _largest_change(u) + COMPUTED * (1 + np.max(np.abs(q), initial=0.0))
+        wrong = np.isfinite(apart) & (apart > allowed)
+        return f"it is not the rate of {name}" if np.sum(wrong) > len(h) / 2 else ""
+
+    def _energy(self) -> str:
+        """T + V in the middle of a phase."""
+        for phase in self.run.phases:
+            row = sum(phase.rows) // 2
+            if phase.model is None or phase.track is None or phase.rows[1] - phase.rows[0] < ROWS:
+                continue
+            state = state_of_row(self.run, phase, row)
+            T, V = (state.number(x) for x in (phase.model.equations.T, phase.model.equations.V))
+            found = float(self.own["energy"][row])
+            if abs(found - T - V) > COMPUTED * (1 + abs(T) + abs(V)):
+                return f"{found:.10g} for {T + V:.10g} at t = {self.run.t[row]:.6g} s"
+            return ""
+        raise NoValue("no phase is long enough")
+
+    def _of_entries(self) -> Iterator[tuple[str, Callable[[], str]]]:
+        told, own = self.told.entries, self.own
+        for key, place in (("start", 0), ("end", -1)):
+            for name, x in told.get(key, {}).items():
+                yield f"{key} of {name}", partial(self._entry, name, [x], [place])
+        for name, column in told.get("trajectory", {}).items():
+            places = [0, len(column) // 2, -1] if len(column) else []
+            yield f"trajectory of {name}", partial(self._entry, name, [column[k] for k in places], places)
+        if told and len(self.run.t):
+            yield "time", lambda: _apart(told["time"], self.run.phases[-1].end, COMPUTED)
+            yield "energy drift", lambda: _none_apart(told["energy_drift"], self.run.drift)
+            yield "gap", lambda: _none_apart(told["gap"], self.run.gap)
+            yield "gap rate", lambda: _none_apart(told["gap_rate"], self.run.gap_rate)
+        for name, value in told.get("quantities", {}).items():
+            yield f"{name} for machines", partial(self._quantity, name, value)
+        for name in self.run.quantities if self.told.whole or told else ():
+            rows = [row for row in self.told.whole if (m := _HEAD.fullmatch(row[0])) and m["name"] == name]
+            yield f"{name} of the run", partial(self._rows_of, name, rows)
+        if told and len(told.get("trajectory", own)) != len(own):
+            yield "trajectory", lambda: f"{len(told['trajectory'])} columns for {len(own)}"
+
+    def _entry(self, name: str, values: Sequence[float | None], places: Sequence[int]) -> str:
+        if name not in self.own:
+            return "there is no such column"
+        return next(filter(None, (_none_apart(x, self.own[name][k]) for x, k in zip(values, places, strict=True))), "")
+
+    def _quantity(self, name: str, told: Mapping[str, Any]) -> str:
+        found = self.run.quantities[name]
+        size = parse_unit(told["unit"]).size if told["unit"] else 1.0
+        values = told["value"] if isinstance(told["value"], list) else [told["value"]]
+        rights = found.value if isinstance(found.value, tuple) else (found.value,)
+        if len(values) != len(rights) or len(told["t"]) != len(found.t):
+            return "another number of values"
+        pairs = [*zip(values, rights, strict=True)]
+        wrong = [_none_apart(None if x is None else x * size, right) for x, right in pairs]
+        wrong += [_apart(x, right, COMPUTED) for x, right in zip(told["t"], found.t, strict=True)]
+        return next(filter(None, wrong), "")
+
+    def _rows_of(self, name: str, rows: Sequence[Sequence[str]]) -> str:
+        """A row for each value, under its unit, at its instant."""
+        found = self.run.quantities[name]
+        rights = found.value if isinstance(found.value, tuple) else (found.value,)
+        if len(rows) != len(rights):
+            return f"{len(rows)} rows for {len(rights)}"
+        for k, ((head, text, when), right) in enumerate(zip(rows, rights, strict=True)):
+            unit = _HEAD.fullmatch(head)
+            size = parse_unit(unit["unit"]).size if unit is not None and unit["unit"] else 1.0
+            wrong = "" if right is None else _apart(float(text) * size, right, PRINTED)
+            if right is not None and k < len(found.t):
+                instant = re.fullmatch(r"t = (.*) s", when)
+                wrong = wrong or ("no instant" if instant is None else _apart(float(instant[1]), found.t[k], PRINTED))
+            if wrong:
+                return wrong
+        return ""
+
+
+class _Unlike(Exception):
+    """A unit of another dimension."""
+
+
+def _largest_change(u: np.ndarray) -> float:
+    return float(np.nanmedian(np.abs(np.diff(u)))) if len(u) > 1 else 0.0
+
+
+def _apart(found: float, right: float, share: float) -> str:
+    if np.isnan(found) and np.isnan(right):
+        return ""
+    if np.isnan(found) or np.isnan(right):
+        return f"{found} for {right}"
+    return "" if np.isinf(found) and found == right else differing(found, right, share)
+
+
+def _none_apart(found: float | None, right: float | None) -> str:
+    """The same for what may be missing: null stands for what is not finite."""
+    if right is None or not np.isfinite(right):
+        return "" if found is None else f"{found:.10g} for none"
+    return f"nothing for {right:.10g}" if found is None else _apart(found, float(right), COMPUTED)

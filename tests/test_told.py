@@ -1,0 +1,175 @@
+"""What is told of runs and small motions is proven as it stands: names, units, starts and ends, modes, matrices."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import replace
+from functools import cache
+from typing import Any
+
+import pytest
+
+import eomgen
+from eomgen.model.values import exact_parameters
+from eomgen.proof.run_told import ToldRun, run_told
+from eomgen.proof.small_motions_told import small_motions_told
+from eomgen.questions.of_a_run import WholeRun
+from eomgen.simulation.result import Trajectory
+from eomgen.verbs.simulate import _run_payload, _run_statements, _told
+
+TWO = """
+eomgen = 1
+name = "Two carts"
+space = "plane"
+
+[parameters]
+m = { value = 2, unit = "kg" }
+k = { value = 30, unit = "N/m" }
+c = { value = 0.8, unit = "N*s/m" }
+F = { value = 3, unit = "N" }
+
+[coordinates]
+x = { start = 20, unit = "cm" }
+y = { start = 0.1, unit = "m" }
+
+[inputs]
+w = 0
+
+[bodies.first]
+mass = "m"
+inertia = 0
+joint = { kind = "prismatic", axis = [1, 0], displacement = "x", stiffness = "k", damping = "c", force = "w*F" }
+
+[bodies.second]
+mass = "2*m"
+inertia = 0
+joint = { kind = "prismatic", on = "first", axis = [1, 0], displacement = "y", stiffness = "k" }
+
+[outputs]
+largest = "max(x)"
+when = "time_of_max(y)"
+all = { value = "y'", at = "x = 0", event = "every" }
+"""
+
+
+@cache
+def model() -> Any:
+    return eomgen.loads(TWO)
+
+
+@cache
+def run() -> Trajectory:
+    return eomgen.simulate(model(), time=2.0, target="numpy")
+
+
+def told() -> ToldRun:
+    return _told(_run_statements(model(), run()), _run_payload(model(), run(), []), None)
+
+
+def wrong_run(of: ToldRun) -> str:
+    return "; ".join(check.detail for check in run_told(run(), model(), of) if check.status == "fails")
+
+
+def test_what_is_told_of_a_run_holds():
+    assert not wrong_run(told())
+    assert run().certify().ok
+
+
+def exchanged(rows: Any, i: int, j: int) -> list[Any]:
+    """Two rows under the names of one another."""
+    found = [list(row) for row in rows]
+    found[i][1:], found[j][1:] = found[j][1:], found[i][1:]
+    return found
+
+
+def in_head(rows: Any, old: str, new: str) -> list[Any]:
+    return [[row[0].replace(old, new), *row[1:]] for row in rows]
+
+
+RUNS: dict[str, Callable[[ToldRun], ToldRun]] = {
+    "two columns exchanged": lambda of: replace(of, rows=exchanged(of.rows, 1, 2)),
+    "a start for an end": lambda of: replace(of, rows=[[a, c, b] for a, b, c in of.rows]),
+    "another unit": lambda of: replace(of, rows=in_head(of.rows, "[cm]", "[m]")),
+    "a unit of another kind": lambda of: replace(of, rows=in_head(of.rows, "y [m]", "y [kg]")),
+    "a row left out": lambda of: replace(of, rows=of.rows[:-1]),
+    "an end for machines": lambda of: replace(of, entries={**of.entries, "end": of.entries["start"]}),
+    "another duration": lambda of: replace(of, entries={**of.entries, "time": 1.9}),
+    "an extreme under another name": lambda of: replace(of, whole=exchanged(of.whole, 0, 1)),
+    "an event elsewhere": lambda of: replace(of, whole=[*of.whole[:-1], [*of.whole[-1][:2], "t = 0.3 s"]]),
+    "columns of a file exchanged": lambda of: replace(
+        of, table=(("t [s]", "y [m]"), [(str(t), str(x)) for t, x in zip(run().t, run()["x"], strict=True)])
+    ),
+}
+
+
+@pytest.mark.parametrize("change", RUNS)
+def test_what_is_told_otherwise_of_a_run_is_seen(change: str):
+    assert wrong_run(RUNS[change](told()))
+
+
+def test_a_column_under_the_name_of_another_is_seen():
+    """q is the integral of q'."""
+    other = replace(run(), speeds=run().speeds[::-1])
+    assert any(check.status == "fails" for check in run_told(other, model(), ToldRun()))
+
+
+@pytest.mark.parametrize("what", ["the instant of an extreme", "the instants of events"])
+def test_an_instant_that_is_elsewhere_is_seen(what: str, monkeypatch: pytest.MonkeyPatch):
+    """Samples beside it bound the value that a motion has there."""
+    extreme, events = WholeRun.extreme, WholeRun.events
+    if what == "the instant of an extreme":
+        monkeypatch.setattr(WholeRun, "extreme", lambda *asked: (extreme(*asked)[0], (0.9,)))
+    else:
+        monkeypatch.setattr(WholeRun, "events", lambda *asked: [(k, t + 0.1) for k, t in events(*asked)])
+    failing = [check.name for check in run().certify().checks if check.status == "fails"]
+    assert failing == ["what is of the whole run holds against its samples"]
+
+
+# -- small motions --------------------------------------------------------------------------------------------
+
+
+@cache
+def small() -> Any:
+    return eomgen.linearize(model())
+
+
+def wrong_modes(change: Callable[[dict[str, Any]], None]) -> str:
+    from eomgen.documents.linearize.printed_modes import printed_modes
+
+    entries = small().entries()
+    change(entries)
+    checks = small_motions_told(entries, printed_modes(small().derivation), exact_parameters(model()))
+    return "; ".join(check.detail for check in checks if check.status == "fails")
+
+
+def test_what_is_told_of_small_motions_holds():
+    assert not wrong_modes(lambda entries: None)
+
+
+def mode(k: int, name: str, value: Any) -> Callable[[dict[str, Any]], None]:
+    return lambda entries: entries["modes"][k].update({name: value})
+
+
+def swap(one: str, other: str) -> Callable[[dict[str, Any]], None]:
+    return lambda entries: entries.update({one: entries[other], other: entries[one]})
+
+
+SMALL: dict[str, Callable[[dict[str, Any]], None]] = {
+    "M for K": swap("mass", "stiffness"),
+    "a mode that grows": mode(0, "kind", "oscillates and grows"),
+    "another damping ratio": mode(0, "damping_ratio", -0.1),
+    "another frequency": mode(1, "hertz", 1.0),
+    "another eigenvalue": mode(1, "eigenvalue", [-1.0, 2.0]),
+    "another shape": mode(0, "shape", {"x": [1.0, 0.0], "y": [-1.0, 0.0]}),
+    "a condition with the other sign": lambda entries: entries.update(conditions=["-c", *entries["conditions"][1:]]),
+    "modes exchanged": lambda entries: entries["modes"].reverse(),
+    "a transfer function of another coordinate": lambda entries: entries["transfer_functions"][0].update(
+        coordinate="y"
+    ),
+    "a text that is not its number": lambda entries: entries["mass"]["exact"][0].__setitem__(0, "2*m"),
+}
+
+
+@pytest.mark.parametrize("change", SMALL)
+def test_what_is_told_otherwise_of_small_motions_is_seen(change: str):
+    assert wrong_modes(SMALL[change])
