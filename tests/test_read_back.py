@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from functools import cache
 
 import pytest
@@ -10,6 +11,7 @@ import eomgen
 from eomgen.documents import rendered
 from eomgen.documents.document import Document
 from eomgen.documents.read_back import page_read_back
+from eomgen.documents.text_read_back import text_read_back
 from eomgen.proof.typeset import SetLetters, tokens_of, typeset, worth
 from eomgen.symbolic.numeric.evaluation import FLOAT
 
@@ -105,3 +107,34 @@ def test_typeset_formulas_are_read_as_a_person_reads_them():
     )
     assert read(r"\left\lvert y - \ddot{y} \right\rvert^{2}") == pytest.approx(3.9**2)
     assert read(r"\begin{cases} a & x < b \\ 7 & \text{otherwise} \end{cases}") == 2
+
+
+TEXT = {
+    "a sign": (" + ", " - "),
+    "an exponent": ("^2", "^3"),
+    "a digit": ("9.81", "9.82"),
+    "a unit": ("kg", "N"),
+    "a word": ("Equations", "Equation"),
+    "a cell under another head": ("    m ", "       m "),
+    "a number of a section": ("2. ", "3. "),
+}
+
+
+@pytest.mark.parametrize("change", TEXT)
+def test_a_change_of_a_text_is_seen(change: str):
+    """Where it stands first and where it stands last."""
+    page, (old, new) = rendered(document(), "text"), TEXT[change]
+    last = page.rpartition(old)
+    assert told_of_text(page) == ""
+    assert told_of_text(page.replace(old, new, 1))
+    assert told_of_text(f"{last[0]}{new}{last[2]}")
+
+
+def test_columns_of_a_text_that_are_exchanged_are_seen():
+    """A cell stands under its head."""
+    page = rendered(document(), "text")
+    assert told_of_text(re.sub(r"kg( +)2\b", r"2\1kg", page, count=1))
+
+
+def told_of_text(page: str) -> str:
+    return "; ".join(check.detail for check in text_read_back(document(), page) if check.status == "fails")
