@@ -22,10 +22,9 @@ from eomgen.records import dataclass
 from eomgen.simulation.result import Trajectory
 from eomgen.symbolic.expression.units import parse_unit
 from eomgen.symbolic.numeric.evaluation import NoValue
-from eomgen.symbolic.numeric.tolerances import COMPUTED
+from eomgen.symbolic.numeric.tolerances import COMPUTED, NINE_DIGITS
 
 NAME, HOW = "what is told of the run is what it went through", "states by their names, texts read back"
-PRINTED = 1e-8  # of a number that is told to nine digits
 ROWS = 3  # of a file or table that are looked at: its first, middle and last
 _HEAD = re.compile(r"(?P<name>.*?)(?: \[(?P<unit>[^\]]*)\])?")
 
@@ -118,7 +117,7 @@ class _RunTold:
             return str(error)
         column = self.own[name]
         for place, text in zip((0, -1), texts, strict=True):
-            if wrong := _apart(float(text) * size, float(column[place]), PRINTED):
+            if wrong := _apart(float(text) * size, float(column[place]), NINE_DIGITS):
                 return f"{('start', 'end')[place]}: {wrong}"
         return ""
 
@@ -212,10 +211,12 @@ class _RunTold:
         for k, ((head, text, when), right) in enumerate(zip(rows, rights, strict=True)):
             unit = _HEAD.fullmatch(head)
             size = parse_unit(unit["unit"]).size if unit is not None and unit["unit"] else 1.0
-            wrong = "" if right is None else _apart(float(text) * size, right, PRINTED)
+            wrong = "" if right is None else _apart(float(text) * size, right, NINE_DIGITS)
             if right is not None and k < len(found.t):
                 instant = re.fullmatch(r"t = (.*) s", when)
-                wrong = wrong or ("no instant" if instant is None else _apart(float(instant[1]), found.t[k], PRINTED))
+                wrong = wrong or (
+                    "no instant" if instant is None else _apart(float(instant[1]), found.t[k], NINE_DIGITS)
+                )
             if wrong:
                 return wrong
         return ""

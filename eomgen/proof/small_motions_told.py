@@ -20,10 +20,9 @@ from eomgen.proof.check import Check, Tally, differing
 from eomgen.records import dataclass
 from eomgen.symbolic.expression.expressions import LONGEST, parse
 from eomgen.symbolic.numeric.evaluation import NoValue
-from eomgen.symbolic.numeric.tolerances import CARRIED, COMPUTED, SAME_PLACE, SLOW, SOLVED
+from eomgen.symbolic.numeric.tolerances import CARRIED, COMPUTED, SAME_PLACE, SEVEN_DIGITS, SLOW, SOLVED
 
 NAME, HOW = "what is printed of small motions is what machines get of them", "texts and numbers read back"
-PRINTED = 1e-6  # of a number that is printed to seven digits
 MATRICES = ("mass", "rates", "stiffness", "input", "kinematic_rates", "kinematic_places")
 PARTS = ("damping", "gyroscopic", "circulatory")
 
@@ -161,7 +160,7 @@ class _Told:
             else:
                 continue
             found = np.array(rows, dtype=float)
-            if all(found.shape != right.shape or _differ(found, right, PRINTED) for right in rights):
+            if all(found.shape != right.shape or _differ(found, right, SEVEN_DIGITS) for right in rights):
                 return f"{letter} is another for machines"
         return ""
 
@@ -180,7 +179,7 @@ class _Told:
             }
             for head, right in wanted.items():
                 text = row.get(head, "")
-                if (text == "") != (right is None) or (text and differing(float(text), right or 0.0, PRINTED)):
+                if (text == "") != (right is None) or (text and differing(float(text), right or 0.0, SEVEN_DIGITS)):
                     return f"mode {k + 1}, {head}: {text} for {right}"
             if row.get("", "") != mode["kind"] or row.get("mode") != str(k + 1):
                 return f"mode {k + 1}: '{row.get('', '')}' for '{mode['kind']}'"
@@ -188,7 +187,7 @@ class _Told:
                 return f"mode {k + 1}: {row.get('eigenvalue [1/s]')} for {complex(*mode['eigenvalue']):.7g}"
         for name, cells in self.printed.shapes.items():
             for k, cell in enumerate(cells):
-                if not _is_complex(cell, complex(*modes[k]["shape"][name]), 2 * PRINTED):
+                if not _is_complex(cell, complex(*modes[k]["shape"][name]), 2 * SEVEN_DIGITS):
                     return f"mode {k + 1}, {name}: {cell} for {complex(*modes[k]['shape'][name]):.7g}"
         return ""
 
@@ -197,7 +196,7 @@ class _Told:
         if len(told) != len(self.printed.conditions):
             return f"{len(self.printed.conditions)} are printed of {len(told)}" if self.printed.conditions else ""
         for text, number in zip(told, self.printed.conditions, strict=True):
-            if not math.isnan(number) and (wrong := differing(number, self._worth(text, self.values), PRINTED)):
+            if not math.isnan(number) and (wrong := differing(number, self._worth(text, self.values), SEVEN_DIGITS)):
                 return wrong
         return ""
 
@@ -229,7 +228,7 @@ def _differ(a: np.ndarray, b: np.ndarray, share: float = COMPUTED) -> bool:
     return bool(np.any(abs(a - b) > share * (size + usual) + SOLVED * size.max()))
 
 
-def _is_complex(text: str, right: complex, share: float = PRINTED) -> bool:
+def _is_complex(text: str, right: complex, share: float = SEVEN_DIGITS) -> bool:
     """Whether 1.2 +- 3.4i is that number, or its conjugate."""
     pieces = text.replace("+-", "+").replace("+ ", "+").replace("- ", "-").replace("i", "j").replace(" ", "")
     try:
