@@ -10,6 +10,7 @@ from cpu_limit import cpu_limit
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
+import eomgen
 from eomgen.errors import ExpressionError
 from eomgen.symbolic.expression.expressions import (
     Call,
@@ -316,3 +317,73 @@ def test_an_arm_of_250_expressions_is_read_in_a_moment():
     with cpu_limit(5):
         for text in texts:
             parse(text)
+
+
+@pytest.mark.parametrize(
+    ("text", "value"),
+    [
+        ("a = x + 1; a^2", 9),
+        ("a = x; b = a*a; c = b - a; c*b/a", 4),
+        ("2*(a = x; a + 1) - (b = 3; b)", 3),
+        ("a = x; -a^2 + max(a, 1, 3*a)", 2),
+        ("a = 5; x", 2),
+        ("x = 3; x", 3),
+    ],
+)
+def test_parts_with_names_stand_for_what_they_are(text, value):
+    """a = ...; b = ...; the value: as if each stood written out; no name of a part is a name of the formula."""
+    expression = parse(text)
+    assert expression.evaluate({"x": 2, "pi": 3}) == value
+    assert expression.names <= {"x"} and set(expression.parts) <= {"a", "b", "c", "x"}
+    assert (expression * 3 + expression).evaluate({"x": 2, "pi": 3}) == 4 * value
+    assert parse(f"1 + ({text})").evaluate({"x": 2, "pi": 3}) == value + 1
+    assert parse((expression.scaled(Fraction(1, 2))).text).evaluate({"x": 2, "pi": 3}) == Fraction(value, 2)
+
+
+@pytest.mark.parametrize(
+    ("text", "what"),
+    [
+        ("a = 1; a = 2; a", "'a' cannot be the name of a part"),
+        ("sin = 1; sin", "'sin' cannot be the name of a part"),
+        ("a' = 1; a'", "cannot be the name of a part"),
+        ("a = 1 b; a", "no sign between|has no end"),
+        ("a = 1;", "a value is missing"),
+        ("a = 1", "'=' has no place here"),
+        ("b; a = 1", "';' has no place here"),
+        ("(a = 1; a) + a; 2", "';' has no place here"),
+        ("a = 1/0; x", "division by zero|no value|1/0|zero"),
+        (f"a = {'x+' * 6000}x; a", "a part of the expression is longer than 10000"),
+        ("a = x;" * 40_000 + "a", "longer than 200000"),
+    ],
+)
+def test_parts_that_are_none_are_refused_where_they_stand(text, what):
+    with pytest.raises(ExpressionError, match=what):
+        parse(text)
+
+
+def test_a_part_is_seen_outside_of_its_parentheses_by_nobody():
+    """(a = 1; a) + a: the second is a name of the model."""
+    assert parse("(a = 1; a) + a; 2".partition(";")[0] + "; a) + a").names == {"a"}
+
+
+def test_parts_have_dimensions_and_no_name_of_the_model(tmp_path):
+    """m g (l = ...): of N*m; an error in a part is told, a part that is called like a parameter is refused."""
+    text = """eomgen = 1
+space = "plane"
+[parameters]
+m = { value = 2, unit = "kg" }
+k = { value = 3, unit = "N/m" }
+[coordinates]
+x = { start = 0.1, unit = "m" }
+[bodies.b]
+mass = "m"
+joint = { kind = "prismatic", axis = [1, 0], displacement = "x", force = "VALUE" }
+"""
+    good = eomgen.loads(text.replace("VALUE", "s = -k*x; r = s/2; r + r"))
+    plain = eomgen.loads(text.replace("VALUE", "-k*x"))
+    rhs = [eomgen.derive(model).rhs("numpy")(0.0, [0.2, 0.0], [2.0, 3.0], [])[1] for model in (good, plain)]
+    assert rhs[0] == rhs[1] == pytest.approx(-0.3)
+    with pytest.raises(eomgen.ModelError, match=r"\[N\]|kg"):
+        eomgen.loads(text.replace("VALUE", "s = -k*x; s + m"))
+    with pytest.raises(eomgen.ModelError, match="is called 'm', like a parameter"):
+        eomgen.loads(text.replace("VALUE", "m = -k*x; m"))

@@ -9,11 +9,22 @@ from typing import Any
 import numpy as np
 import pytest
 import sympy as sm
-from sympy.physics.mechanics import KanesMethod, LagrangesMethod, Particle, Point, ReferenceFrame, dynamicsymbols
+from sympy.physics.mechanics import (
+    KanesMethod,
+    LagrangesMethod,
+    Particle,
+    PinJoint,
+    Point,
+    ReferenceFrame,
+    RigidBody,
+    System,
+    dynamicsymbols,
+    inertia,
+)
 
 import eomgen
 from eomgen.errors import DerivationError, UsageError
-from tests.helpers.sympy_systems import SYSTEMS, accelerations_by_sympy
+from tests.helpers.sympy_systems import SYSTEMS, accelerations_by_kane, accelerations_by_sympy, bicycle
 
 pytestmark = pytest.mark.slow
 
@@ -87,12 +98,8 @@ def test_what_is_none_of_sympys_systems_is_refused():
     """What it is, and how to mend it."""
     with pytest.raises(UsageError, match="a System, KanesMethod or LagrangesMethod"):
         eomgen.from_sympy(sm.Symbol("x"))
-    q, u, a, f = dynamicsymbols("q u a f")
+    q, u, f = dynamicsymbols("q u f")
     pendulum = SYSTEMS["pendulum"]()
-    with pytest.raises(DerivationError, match="auxiliary speeds"):
-        eomgen.from_sympy(
-            KanesMethod(pendulum._inertial, [q], [u], [q.diff() - u], u_auxiliary=[a], bodies=pendulum.bodies)
-        )
     with pytest.raises(DerivationError, match="has no bodies"):
         eomgen.from_sympy(KanesMethod(pendulum._inertial, [q], [u], [q.diff() - u]))
     with pytest.raises(DerivationError, match="of a given function of time"):
@@ -140,10 +147,13 @@ def test_a_rate_that_stands_in_another_speed_is_a_declared_speed_too():
     assert [found[u] for u in ("u1'", "u2'")] == pytest.approx([expected[x] for x in ("q1''", "u2'")], rel=1e-12)
 
 
-def test_what_is_too_long_for_a_model_file_is_said_to_be():
-    """How long, and what helps; no place in a file that nobody wrote."""
+def test_what_is_too_long_for_a_model_file_is_said_to_be(monkeypatch):
+    """How long, and what helps; no place in a file that nobody wrote. By parts with names it has room."""
     q = dynamicsymbols("q")
-    long = sum(sm.Symbol(f"a{k}") * sm.sin(k * q) for k in range(1, 1200))
+    long = sum(sm.Symbol(f"a{k}".ljust(80, "x")) * sm.sin(k * q) for k in range(1, 120))
+    model = eomgen.from_sympy(LagrangesMethod(q.diff() ** 2 / 2 - long, [q]))
+    assert "; " in model.forces["V"].energy.text and len(model.parameters) == 119
+    monkeypatch.setattr("eomgen.robots.sympy_words.LONGEST_WITH_PARTS", 10_000)
     with pytest.raises(DerivationError, match=r"characters to write, of which a model file may have 10000"):
         eomgen.from_sympy(LagrangesMethod(q.diff() ** 2 / 2 - long, [q]))
 
@@ -160,3 +170,96 @@ def test_a_parameter_that_is_called_like_a_coordinate_or_an_input_is_another_thi
     rhs = eomgen.derive(model).rhs("numpy")
     p = [{"q_2": 2.0, "F_2": 3.0}[name] for name in model.parameters]
     assert rhs(0.0, [0.5, 0.0], p, [7.0])[1] == pytest.approx((7 * 3 - 0.5) / 2)
+
+
+def test_a_particle_hangs_on_a_joint_as_sympy_s_tutorial_has_it():
+    """A block on a rail and a bob on it, both particles: u' of the joints' System against sympy's own."""
+    system = SYSTEMS["particles_on_joints"]()
+    model = eomgen.from_sympy(system)
+    assert [body.joint.kind for body in model.bodies.values()] == ["prismatic", "revolute"]
+    assert [x.text for x in model.bodies["C"].inertia] == ["0", "0", "0"] and eomgen.derive(model).certify().ok
+
+
+@pytest.mark.parametrize("by", ["speeds that are rates", "speeds of their own", "no joints"])
+def test_a_system_that_is_formed_by_lagrange_has_the_potential_energies_of_its_bodies(by):
+    """(A_zz + m l^2) q'' = m g l sin q, V = m g l cos q of the body: a System with eom_method=LagrangesMethod."""
+    q, (m, l, g, J) = dynamicsymbols("q"), sm.symbols("m l g J")
+    wall, A = RigidBody("N"), RigidBody("A", mass=m)
+    A.central_inertia = inertia(A.frame, 0, 0, J)
+    system = System.from_newtonian(wall)
+    if by == "no joints":
+        A.frame.orient_axis(wall.frame, q, wall.z)
+        A.masscenter.set_pos(wall.masscenter, -l * A.x)
+        A.masscenter.set_vel(wall.frame, -l * q.diff() * A.y)
+        system.add_bodies(A)
+        system.q_ind = [q]
+    else:
+        own = {"speeds": q.diff()} if by == "speeds that are rates" else {}
+        system.add_joints(PinJoint("J", wall, A, coordinates=q, child_point=l * A.x, joint_axis=wall.z, **own))
+    A.potential_energy = -m * g * l * sm.cos(q)
+    system.form_eoms(eom_method=LagrangesMethod)
+    model = eomgen.from_sympy(system)
+    values = {"m": 2.0, "l": 0.7, "g": 9.81, "J": 0.3}
+    rhs = eomgen.derive(model, parameters=values).rhs("numpy")
+    found = rhs(0.0, [0.4, 0.9], [values.get(name, 0.0) for name in model.parameters], [])
+    assert found[1] == pytest.approx(-2 * 9.81 * 0.7 * np.sin(0.4) / (0.3 + 2 * 0.49), rel=1e-14)
+
+
+def test_auxiliary_speeds_are_zero_and_what_they_alone_measure_is_gone():
+    """A point that could leave its place with u_aux, held by a force f: u' without either; f is no input."""
+    q, u, aux, f = dynamicsymbols("q u aux f")
+    m, l, g = sm.symbols("m l g")
+    N = ReferenceFrame("N")
+    A = N.orientnew("A", "Axis", [q, N.z])
+    A.set_ang_vel(N, u * N.z)
+    O, P = Point("O"), Point("P")
+    O.set_vel(N, aux * N.x)
+    P.set_pos(O, l * A.x)
+    P.v2pt_theory(O, N, A)
+    loads = [(P, m * g * N.x), (O, f * N.x)]
+    method = KanesMethod(N, [q], [u], [q.diff() - u], u_auxiliary=[aux], bodies=[Particle("Pa", P, m)], forcelist=loads)
+    model = eomgen.from_sympy(method)
+    assert not model.inputs and set(model.parameters) == {"m", "l", "g"}
+    rhs = eomgen.derive(model).rhs("numpy")
+    p = [{"m": 2.0, "l": 0.5, "g": 9.81}[name] for name in model.parameters]
+    assert rhs(0.0, [0.3, 1.2], p, [])[1] == pytest.approx(-9.81 / 0.5 * np.sin(0.3), rel=1e-14)
+
+
+@pytest.mark.parametrize("explicit", [True, False])
+def test_kinematic_equations_are_solved_for_the_speeds_where_sympy_has_none(explicit):
+    """omega of a body by three turns as speeds, explicit or not: u = Y q'; Euler's equations without torques."""
+    q, u = dynamicsymbols("q1:4"), dynamicsymbols("u1:4")
+    J = sm.symbols("J1:4")
+    N = ReferenceFrame("N")
+    B = N.orientnew("B", "Body", q, "xyz")
+    kinematic = [(B.ang_vel_in(N) - sum((x * axis for x, axis in zip(u, B, strict=True)), 0 * N.x)).dot(a) for a in B]
+    B.set_ang_vel(N, sum((x * axis for x, axis in zip(u, B, strict=True)), 0 * N.x))
+    O = Point("O")
+    O.set_vel(N, 0)
+    body = RigidBody("b", O, B, 0, (inertia(B, *J), O))
+    method = KanesMethod(N, q, u, kinematic, bodies=[body], explicit_kinematics=explicit)
+    model = eomgen.from_sympy(method)
+    values = {"J1": 1.0, "J2": 2.0, "J3": 4.0}
+    rhs = eomgen.derive(model, parameters=values).rhs("numpy")
+    found = rhs(0.0, [0.3, 0.4, 0.5, 0.6, -0.7, 0.8], [values[name] for name in model.parameters], [])
+    assert set(model.speeds) == {"u1", "u2", "u3"}
+    assert found[3:] == pytest.approx([-0.7 * 0.8 * (2 - 4) / 1, 0.8 * 0.6 * (4 - 1) / 2, -0.6 * 0.7 * (1 - 2) / 4])
+
+
+def test_a_bicycle_has_room_in_a_model_file_by_parts_with_names(tmp_path):
+    """Sympy's own bicycle (743 000 characters multiplied out): u' as sympy has them, the file reads as the model."""
+    method, known = bicycle()
+    model = eomgen.from_sympy(method, path=tmp_path / "bicycle.toml")
+    assert eomgen.load(tmp_path / "bicycle.toml") == model and (tmp_path / "bicycle.toml").stat().st_size < 100_000
+    assert any("; z2 = " in force.energy.text for force in model.forces.values() if force.kind == "kinetic")
+    values = {name: known[name] for name in model.parameters}
+    start = {"q1": 0.2, "q2": 0.15, "q5": 0.3, "q4": -0.05, "q2'": 0.3, "q5'": -0.4, "u3_0'": -5.0}
+    equations = eomgen.derive(model, parameters=values, start=start)
+    x = equations.start()
+    dx = equations.rhs("numpy")(0.0, x, list(values.values()), [])
+    q = equations.coordinates
+    speeds = {"q1": "u1", "q2": "u2", "u3_0": "u3", "q4": "u4", "q5": "u5", "u6_0": "u6"}
+    known |= dict(zip(q, x, strict=False)) | {speeds[name]: rate for name, rate in zip(q, dx, strict=False)}
+    expected = accelerations_by_kane(method, known)
+    found = {speeds[name]: a for name, a in zip(q, dx[len(q) :], strict=True)}
+    assert found == pytest.approx(expected, rel=1e-9)

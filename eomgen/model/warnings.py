@@ -57,8 +57,10 @@ def _terms(expression: Expression) -> Iterator[tuple[float, int]]:
     for (kind, what), column in zip(expression.code, expression.columns, strict=True):
         if kind == "number":
             stack.append(([(float(what), column)] if column >= 0 else [], True))
-        elif kind in ("name", "call"):
+        elif kind in ("name", "call", "part"):
             stack.append(([], False))
+        elif kind == "under":
+            del stack[-1 - len(what) : -1]
         elif kind in ("+", "-"):
             (b, _), (a, _) = stack.pop(), stack.pop()
             stack.append(([*a, *b], False))

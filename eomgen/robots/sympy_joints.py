@@ -13,6 +13,8 @@ import sympy
 from sympy.physics.mechanics import (
     CylindricalJoint,
     Force,
+    LagrangesMethod,
+    Lagrangian,
     LinearDamper,
     LinearPathway,
     LinearSpring,
@@ -45,6 +47,18 @@ class BodyAxes:
     body: Any = None
 
 
+def lagrangian_method(system: Any) -> Any:
+    """The method of Lagrange by which a system's equations are formed, or must be where it has no speeds; else None."""
+    if isinstance(system.eom_method, LagrangesMethod):
+        return system.eom_method
+    if len(system.u) or not len(system.q):
+        return None
+    loads = [*system.loads, *(load for each in system.actuators for load in each.to_loads())]
+    gaps, rows = list(system.holonomic_constraints), list(system.nonholonomic_constraints)
+    L = Lagrangian(system.frame, *system.bodies)
+    return LagrangesMethod(L, system.q, loads or None, system.bodies, system.frame, gaps or None, rows or None)
+
+
 def tables_of_joints(system: Any) -> Entries | None:
     """The tables; None where bodies hang otherwise, or something acts that only energies say."""
     try:
@@ -68,7 +82,7 @@ class _Joints:
     def tables(self) -> Entries:
         system = self.system
         rates = speeds_as_rates(system.q, system.u, system.kdes)
-        if not system.joints or len(system.u_aux) or len(rates) != len(system.u) or len(system.q) != len(system.u):
+        if not system.joints or len(rates) != len(system.u) or len(system.q) != len(system.u):
             raise _NoBodies
         self.words = Words(tuple(system.q), tuple(system.u), rates)
         self._place()
@@ -168,6 +182,8 @@ class _Joints:
                 found["inertia"] = six if any(x != 0 for x in six[3:]) else six[:3]
                 if sum(x == 0 for x in six) == 5:  # of a plane system people give one moment alone
                     found["measured"] = True
+            else:
+                found["inertia"] = [0, 0, 0]
         return found
 
     def _vector(self, vector: Any, frame: Any) -> list[Any]:
@@ -225,6 +241,10 @@ class _Joints:
                 loads += each.to_loads()
         for load in loads:
             self._load(load, found)
+        if lagrangian_method(self.system) is not None:  # Kane's method asks no body for a potential energy
+            energies = [body.potential_energy for body in self.system.bodies]
+            for k, text in enumerate(self.words.texts([x for x in energies if x != 0])):
+                found[self.forces.new(f"V{k + 1}")] = {"kind": "potential", "energy": text}
         return found
 
     def _weights(self, found: Entries) -> Iterator[Any]:

@@ -1,17 +1,20 @@
 """Systems of sympy.physics.mechanics -> models: System, KanesMethod, LagrangesMethod.
 
 A `System` whose bodies hang on joints becomes bodies on joints, with its gravity, springs, forces and torques. Anything
-else has its energies, and what the equations have beside them: with T(q, q', t) the kinetic energy of all bodies,
-u = Y q' + y the speeds and r_k = 0 their equations (Fr + Fr* of Kane's method), the generalized forces are
+else has its energies, and what the equations have beside them. With w = q' and u = Y w + y the speeds, T(q, w, t) the
+kinetic energy of all bodies, the generalized forces are
 
-    Q_i = d/dt dT/dq_i' - dT/dq_i + sum_k r_k du_k/dq_i'
+    Q_i = sum F . dv/dw_i + M . domega/dw_i
+          + d/dt dT/dw_i - dT/dq_i - sum d(m v)/dt . dv/dw_i + dH/dt . domega/dw_i
 
-in which the accelerations cancel. Velocities that were given and are not the rates of places (a wheel that rolls) so
-leave in Q what ties them.
+in which the accelerations cancel. The second line vanishes where velocities are the rates of places; those that were
+given and are not (a wheel that rolls) so leave in Q what ties them. Everything is written into one graph, in which what
+is met again is one node: sympy multiplies nothing out.
 """
 
 from __future__ import annotations
 
+import re
 from collections.abc import Sequence
 from dataclasses import field
 from pathlib import Path
@@ -20,7 +23,7 @@ from typing import Any
 
 import numpy as np
 import sympy
-from sympy.physics.mechanics import KanesMethod, LagrangesMethod
+from sympy.physics.mechanics import KanesMethod, LagrangesMethod, Particle, ReferenceFrame, find_dynamicsymbols
 from sympy.physics.mechanics import System as SympySystem
 from sympy.physics.vector import dynamicsymbols
 
@@ -30,13 +33,44 @@ from eomgen.model.parts import Model
 from eomgen.model.reader import loads
 from eomgen.records import dataclass
 from eomgen.robots.drawn_up import Entries, without_empty
-from eomgen.robots.sympy_joints import tables_of_joints
+from eomgen.robots.numbers import Nine, Triple
+from eomgen.robots.sympy_joints import lagrangian_method, tables_of_joints
 from eomgen.robots.sympy_words import Words, file_texts, speeds_as_rates
 from eomgen.robots.toml_text import toml_text
-from eomgen.symbolic.expression.derivative import gradient, substituted, symbols_of, tangent
-from eomgen.symbolic.expression.graph import Node, Scalar
+from eomgen.symbolic.expression.derivative import (
+    depends_on_any,
+    gradient,
+    pullback,
+    substituted,
+    symbols_of,
+    tangent,
+)
+from eomgen.symbolic.expression.expressions import LONGEST
+from eomgen.symbolic.expression.graph import Node, Scalar, is_zero
+from eomgen.symbolic.expression.rational import Fraction
+from eomgen.symbolic.expression.spatial import IDENTITY, apply, dot, plus, product, times, transposed
 from eomgen.symbolic.numeric.evaluation import FLOAT, evaluate
 from eomgen.symbolic.numeric.tolerances import RANK_NEARBY
+from eomgen.symbolic.print.text import text_size
+from eomgen.symbolic.solve.linear_systems import LinearSystem, unique_solution
+from eomgen.symbolic.solve.solving import vanishes
+
+HALF = Fraction(1, 2)
+
+
+@dataclass(frozen=True)
+class MovingMass:
+    """A body as its motion: its mass, the velocity of its mass centre, its inertia about that, and how it turns.
+
+    Args:
+        I: central, in the axes of `frame`, which need not be the body's; None of a particle.
+    """
+
+    mass: Any
+    velocity: Any
+    I: Any = None
+    omega: Any = None
+    frame: Any = None
 
 
 @dataclass(frozen=True)
@@ -44,22 +78,27 @@ class Formed:
     """What equations of motion are made of, whichever class of sympy holds it.
 
     Args:
+        ground: the frame in which velocities are.
         q, u: coordinates and speeds, the dependent ones included.
         kinematic: what vanishes of q' and u.
         gaps, velocities: what vanishes of q, and of q and u.
-        T: kinetic energy.
-        rows: Fr + Fr* along each speed, ties left out.
-        V: potential energy, where it is known.
+        masses: what moves.
+        pushes: (force, velocity of its point) or (torque, angular velocity), vectors.
+        T, V: kinetic and potential energy, where they are known beside the masses.
+        still: auxiliary speeds, which are 0.
     """
 
+    ground: Any
     q: tuple[Any, ...]
     u: tuple[Any, ...]
     kinematic: tuple[Any, ...]
     gaps: tuple[Any, ...]
     velocities: tuple[Any, ...]
-    T: Any
-    rows: tuple[Any, ...]
+    masses: tuple[MovingMass, ...]
+    pushes: tuple[tuple[Any, Any], ...]
+    T: Any = field(default=sympy.S.Zero)
     V: Any = field(default=sympy.S.Zero)
+    still: tuple[Any, ...] = ()
 
 
 def from_sympy(system: Any, *, name: str = "model", path: str | Path | None = None) -> Model:
@@ -74,14 +113,15 @@ def from_sympy(system: Any, *, name: str = "model", path: str | Path | None = No
         path: where the model file is written; None: nowhere.
     Raises:
         UsageError: something else.
-        DerivationError: what a model has no counterpart for: auxiliary speeds, rates of given functions.
+        DerivationError: what a model has no counterpart for: rates of given functions, masses that change.
     """
     if not isinstance(system, (SympySystem, KanesMethod, LagrangesMethod)):
         what = "a System, KanesMethod or LagrangesMethod of sympy.physics.mechanics is needed"
         raise UsageError(f"{what}, not {type(system).__name__}", mend="name one of them")
     tables = tables_of_joints(system) if isinstance(system, SympySystem) else None
     if tables is None:
-        formed = _of_lagrange(system) if isinstance(system, LagrangesMethod) else _of_kane(system)
+        method = lagrangian_method(system) if isinstance(system, SympySystem) else system
+        formed = _of_lagrange(method) if isinstance(method, LagrangesMethod) else _of_kane(system)
         tables = _Energies(formed).tables()
     space = "space" if "bodies" in tables else "plane"
     text = toml_text({"eomgen": 1, "name": name, "space": space, **tables}, ["From sympy.physics.mechanics."])
@@ -94,31 +134,39 @@ def _of_lagrange(method: Any) -> Formed:
     """T, V and the forces of a Lagrangian."""
     t, (L,) = dynamicsymbols._t, method._L
     q = tuple(method.q)
-    alone = LagrangesMethod(L, list(q), forcelist=method.forcelist or None, frame=method.inertial)
-    rows = [-x for x in alone.form_lagranges_equations()]
     at_rest = L.xreplace({x.diff(t): sympy.S.Zero for x in q})
     gaps = tuple(method._hol_coneqs)
-    return Formed(q, (), (), gaps, tuple(method.coneqs)[len(gaps) :], L - at_rest, tuple(rows), -at_rest)
+    ties = tuple(method.coneqs)[len(gaps) :]
+    pushes = _pushes(method.forcelist or (), method.inertial)
+    return Formed(method.inertial, q, (), (), gaps, ties, (), pushes, T=L - at_rest, V=-at_rest)
+
+
+def _pushes(loads: Any, ground: Any) -> tuple[tuple[Any, Any], ...]:
+    """Each load with the velocity that it does work on."""
+    found = []
+    for place, vector in loads:
+        rate = place.ang_vel_in(ground) if isinstance(place, ReferenceFrame) else place.vel(ground)
+        found.append((vector, rate))
+    return tuple(found)
 
 
 def _of_kane(system: Any) -> Formed:
-    """T of the bodies, and Fr + Fr* as if nothing tied the speeds.
+    """The masses, loads and ties of Kane's method, auxiliary speeds 0.
 
     Raises:
-        DerivationError: auxiliary speeds; no bodies; kinematic equations that are missing.
+        DerivationError: no bodies; kinematic equations that are missing; masses that change.
     """
     if isinstance(system, SympySystem):
-        frame, bodies, kinematic = system.frame, system.bodies, tuple(system.kdes)
-        forces = [*system.loads, *(load for each in system.actuators for load in each.to_loads())]
+        ground, bodies, kinematic = system.frame, system.bodies, tuple[Any, ...](system.kdes)
+        forces: Any = [*system.loads, *(load for each in system.actuators for load in each.to_loads())]
         gaps, velocities = tuple(system.holonomic_constraints), tuple(system.nonholonomic_constraints)
         auxiliary = system.u_aux
     else:
-        frame, bodies, forces = system._inertial, system.bodies, system.forcelist
-        kinematic = tuple(rate - x for rate, x in (system._qdot_u_map or {}).items())
+        ground, bodies, forces = system._inertial, system.bodies, system.forcelist or ()
+        parts = (system._k_kqdot_implicit, system._k_ku_implicit, system._f_k_implicit)
+        kinematic = tuple(parts[0] * system._qdot + parts[1] * system.u + parts[2]) if parts[0] else ()
         gaps, auxiliary = tuple(system._f_h), system._uaux
         velocities = tuple(system._f_nh + system._k_nh * system.u) if system._k_nh else ()
-    if len(auxiliary):
-        raise DerivationError("auxiliary speeds have no counterpart", mend="leave them out, and ask for reactions")
     if not bodies:
         raise DerivationError("the method has no bodies", mend="give them to it: KanesMethod(..., bodies=bodies)")
     q, u = tuple(system.q), tuple(system.u)
@@ -126,10 +174,25 @@ def _of_kane(system: Any) -> Formed:
         raise DerivationError(
             f"{len(kinematic)} kinematic equations for {len(q)} coordinates", mend="give one for each"
         )
-    alone = KanesMethod(frame, list(q), list(u), kd_eqs=list(kinematic))
-    fr, star = alone.kanes_equations(list(bodies), list(forces) if forces else None)
-    T = sum((body.kinetic_energy(frame) for body in bodies), start=sympy.S.Zero)
-    return Formed(q, u, kinematic, gaps, velocities, T, tuple(fr + star))
+    masses = tuple(_moving(body, ground) for body in bodies)
+    pushes = _pushes(forces, ground)
+    return Formed(ground, q, u, kinematic, gaps, velocities, masses, pushes, still=tuple(auxiliary))
+
+
+def _moving(body: Any, ground: Any) -> MovingMass:
+    """Raises: DerivationError: its mass changes."""
+    velocity = body.masscenter.vel(ground)
+    if find_dynamicsymbols(sympy.sympify(body.mass, strict=True)):
+        what = f"the mass of '{body.name}' changes"
+        raise DerivationError(what, mend="make it a symbol: a model's masses are parameters")
+    if isinstance(body, Particle):
+        return MovingMass(body.mass, velocity)
+    dyads = body.central_inertia.args
+    if not dyads:
+        return MovingMass(body.mass, velocity)
+    axes = {frame for _, one, other in dyads for vector in (one, other) for _, frame in vector.args}
+    own = axes.pop() if len(axes) == 1 else body.frame  # of a wheel people give it in axes that do not spin
+    return MovingMass(body.mass, velocity, body.central_inertia.to_matrix(own), body.frame.ang_vel_in(ground), own)
 
 
 @dataclass
@@ -148,69 +211,176 @@ class _Energies:
                 own = dynamicsymbols(f"{u.func.__name__}_0")
                 self.q.append(own)
                 kinematic.append(own.diff(t) - u)
-        solved = sympy.solve(kinematic, list(formed.u), dict=True) if formed.u else [{}]
-        if not solved or len(solved[0]) != len(formed.u):
-            raise DerivationError(
-                "the kinematic equations do not give every speed", mend="give one for each coordinate"
-            )
         rates = speeds_as_rates(self.q, formed.u, kinematic)
-        combined = [solved[0][u] for u in formed.u if u not in rates]  # what stands in one is no speed by itself
-        rates = {u: q for u, q in rates.items() if not any(x.has(q.diff(t)) for x in combined)}
+        rates = {  # what stands in another's equation is no speed by itself
+            u: q for u, q in rates.items() if sum(x.has(q.diff(t)) or x.has(u) for x in kinematic) == 1
+        }
         self.words = Words(self.q, formed.u, rates)
-        self.speeds = {u: solved[0][u] for u in formed.u if u not in rates}
+        self.ties: list[Scalar] = []
+        self.turned: dict[Any, Nine] = {formed.ground: IDENTITY}
+        own = [u for u in formed.u if u not in rates]
+        self.own = dict(
+            zip([self.words.nodes[self.words.of(u)] for u in own], self._speeds(own, kinematic), strict=True)
+        )
+
+    def _speeds(self, u: Sequence[Any], kinematic: Sequence[Any]) -> tuple[Scalar, ...]:
+        """u = Y w + y, of what vanishes of both.
+
+        Raises:
+            DerivationError: it does not give them.
+        """
+        if not u:
+            return ()
+        nodes = [self.words.nodes[self.words.of(x)] for x in u]
+        rows = [x for x in (self._scalar(x) for x in kinematic) if depends_on_any((x,), nodes)]
+        A = [gradient(row, nodes) for row in rows]
+        flat = [x for row in A for x in row]
+        rng = Random(1)
+        state = {x: rng.uniform(0.5, 1.5) for x in symbols_of([*rows])}
+        numbers = np.array(evaluate(flat, state, FLOAT), dtype=float).reshape(len(rows), len(u))
+        ranks = [0, *(int(np.linalg.matrix_rank(numbers[: k + 1], tol=RANK_NEARBY)) for k in range(len(rows)))]
+        chosen = [k for k in range(len(rows)) if ranks[k + 1] > ranks[k]]
+        mend = "give one for each coordinate"
+        if len(chosen) != len(u):
+            raise DerivationError("the kinematic equations do not give every speed", mend=mend)
+        right = substituted(rows, dict.fromkeys(nodes, 0))
+        system = LinearSystem(
+            [{j: x for j, x in enumerate(A[k]) if not is_zero(x)} for k in chosen],
+            [-right[k] for k in chosen],
+            len(u),
+            lambda found: evaluate(found, state, FLOAT),
+        )
+        found = unique_solution(system, vanishes=vanishes)
+        others = [row for k, row in enumerate(rows) if k not in chosen]  # of fewer speeds than rates: these tie rates
+        self.ties = [x for x in substituted(others, dict(zip(nodes, found, strict=True))) if not vanishes(x)]
+        return found
+
+    def _scalar(self, expression: Any) -> Scalar:
+        """In the graph, auxiliary speeds 0."""
+        if self.formed.still:
+            t = dynamicsymbols._t
+            expression = sympy.sympify(expression).xreplace(
+                {x: sympy.S.Zero for u in self.formed.still for x in (u, u.diff(t))}
+            )
+        return self.words.scalar(expression)
+
+    def _rotation(self, frame: Any) -> Nine:
+        """R of a frame in the ground: products of those of neighbours, each of which is short."""
+        if frame not in self.turned:
+            path = frame._dict_list(self.formed.ground, 0)
+            above = path[1]
+            step = above.dcm(frame)
+            R: Any = tuple(tuple(self._scalar(step[i, j]) for j in range(3)) for i in range(3))
+            self.turned[frame] = product(self._rotation(above), R)
+        return self.turned[frame]
+
+    def _vector(self, vector: Any, axes: Any = None) -> Triple:
+        """Components in the ground's axes, or in those of a frame."""
+        total: Any = (0, 0, 0)
+        for components, frame in getattr(vector, "args", ()):
+            own: Any = tuple(self._scalar(x) for x in components)
+            if frame is not axes:
+                own = apply(self._rotation(frame), own)
+                own = own if axes is None else apply(transposed(self._rotation(axes)), own)
+            total = plus(total, own)
+        return total  # type: ignore[no-any-return]
 
     def tables(self) -> Entries:
         formed, words = self.formed, self.words
         q = [words.nodes[words.of(x)] for x in self.q]
         w = [words.nodes[words.of(x.diff(dynamicsymbols._t))] for x in self.q]
-        T, V, *rows = (words.scalar(x) for x in (formed.T, formed.V, *formed.rows))
-        velocities = [words.scalar(x) for x in formed.velocities]
-        gaps = [words.scalar(x) for x in formed.gaps]
-        own = {words.nodes[words.of(u)]: words.scalar(rate) for u, rate in self.speeds.items()}
+        energies, moved = [self._scalar(formed.T)], list[tuple[Triple, Triple]]()
+        for mass in formed.masses:
+            energies += self._mass(mass, moved, q, w)
+        V = self._scalar(formed.V)
+        pushes = [(self._vector(force), self._vector(rate)) for force, rate in formed.pushes]
+        velocities, gaps = ([self._scalar(x) for x in rows] for rows in (formed.velocities, formed.gaps))
+        velocities += self.ties
+        own = self.own
         accelerated = {words.nodes[f"{u.name}'"]: self._rate((x,), q, w)[0] for u, x in own.items()}
-        still = {words.nodes[f"{x.name}'"]: 0 for x in w}
-        known = own | accelerated | still
-        (T, *rows) = substituted(substituted((T, *rows), known), still)
-        u = [words.nodes[words.of(x)] for x in formed.u] or w
-        Q = self._forces(q, w, T, V, [(own.get(x, x), row) for x, row in zip(u, rows, strict=True)])
-        ties = {f"tie{k}": {"kind": "equation", "gap": x} for k, x in enumerate(file_texts(gaps), 1)}
+        self.known = own | accelerated | {words.nodes[f"{x.name}'"]: 0 for x in w}
+        applied = self._work(pushes, w)
+        inertial = self._inertial(energies, moved, q, w)
+        Q = [x + y for x, y in zip(applied, inertial, strict=True)]
+        ties = {f"tie{k}": {"kind": "equation", "gap": x} for k, x in enumerate(self._texts(gaps), 1)}
         kept = _beyond(q, w, self._rate(gaps, q, w), substituted(velocities, own))
-        shown = file_texts([velocities[k] for k in kept])
+        shown = self._texts([velocities[k] for k in kept])
         ties |= {f"tie{len(gaps) + k}": {"kind": "equation", "rate": x} for k, x in enumerate(shown, 1)}
-        energies = zip(("T", "V"), ("kinetic", "potential"), file_texts([words.scalar(formed.T), V]), strict=True)
-        forces: Entries = {name: {"kind": kind, "energy": x} for name, kind, x in energies if x != 0}
-        along = zip(q, file_texts(Q), strict=True)
+        forces: Entries = {}
+        whole = sum(energies, start=0)
+        energies = [whole] if text_size(whole) <= LONGEST else energies
+        for kind, stem, found in (("kinetic", "T", energies), ("potential", "V", [V])):
+            told = [x for x in self._texts(found) if x != 0]
+            forces |= {
+                f"{stem}{k if len(told) > 1 else ''}": {"kind": kind, "energy": x} for k, x in enumerate(told, 1)
+            }
+        along = zip(q, self._texts(Q), strict=True)
         forces |= {
             f"Q_{x.name}": {"kind": "generalized", "coordinate": x.name, "value": value}
             for x, value in along
             if value != 0
         }
-        speeds = file_texts(list(own.values()))
+        speeds = self._texts(list(own.values()))
+        used = _names_in([*forces.values(), *ties.values(), speeds])
         return without_empty(
             {
-                "parameters": {name: {} for name in words.parameters.values()},
-                "coordinates": {x.name: {"start": 0} for x in q},
+                "parameters": {name: {} for name in words.parameters.values() if name in used},
+                "coordinates": {x.name: {"start": 0} for x in q if x.name in used},
                 "speeds": {x.name: {"rate": rate} for x, rate in zip(own, speeds, strict=True)},
-                "inputs": {name: {"value": 0} for name in words.inputs.values()},
+                "inputs": {name: {"value": 0} for name in words.inputs.values() if name in used},
                 "constraints": ties,
                 "forces": forces,
             }
         )
 
+    def _texts(self, scalars: Sequence[Scalar]) -> list[Any]:
+        return file_texts(scalars, self.words.names.given)
+
+    def _mass(self, mass: MovingMass, moved: list[tuple[Triple, Triple]], q: list[Node], w: list[Node]) -> list[Scalar]:
+        """m v^2/2 and omega . I omega/2; (m v, v) and (H, omega) in the ground's axes are put beside `moved`."""
+        m, v = self._scalar(mass.mass), self._vector(mass.velocity)
+        moved.append((times(m, v), v))
+        T = HALF * m * dot(v, v)
+        if mass.I is None:
+            return [T]
+        I: Any = tuple(tuple(self._scalar(mass.I[i, j]) for j in range(3)) for i in range(3))
+        omega = self._vector(mass.omega, mass.frame)
+        H, R = apply(I, omega), self._rotation(mass.frame)
+        moved.append((apply(R, H), apply(R, omega)))
+        return [T + HALF * dot(omega, H)]
+
     def _rate(self, outputs: Sequence[Scalar], q: list[Node], w: list[Node]) -> tuple[Scalar, ...]:
         """d/dt of functions of q, q' and t where q'' = 0."""
         return tangent(tuple(outputs), {self.words.nodes["t"]: 1, **dict(zip(q, w, strict=True))})
 
-    def _forces(
-        self, q: list[Node], w: list[Node], T: Scalar, V: Scalar, rows: Sequence[tuple[Scalar, Scalar]]
+    def _in_rates(self, scalars: Sequence[Scalar]) -> tuple[Scalar, ...]:
+        """In q and w alone, accelerations 0."""
+        return substituted(substituted(tuple(scalars), self.known), self.known)
+
+    def _work(self, pushes: Sequence[tuple[Triple, Triple]], w: list[Node]) -> list[Scalar]:
+        """sum F . dv/dw"""
+        forces = self._in_rates([x for force, _ in pushes for x in force])
+        rates = self._in_rates([x for _, rate in pushes for x in rate])
+        return list(pullback(rates, forces, w)) if pushes else [0] * len(w)
+
+    def _inertial(
+        self, energies: Sequence[Scalar], moved: Sequence[tuple[Triple, Triple]], q: list[Node], w: list[Node]
     ) -> list[Scalar]:
-        """d/dt dT/dq' - dT/dq + dV/dq + sum r_k du_k/dq' where q'' = 0."""
+        """d/dt dT/dw - dT/dq - sum d(m v)/dt . dv/dw - sum dH/dt . domega/dw; 0 of rates of places."""
+        T = self._in_rates([sum(energies[1:], start=0)])[0]
         momenta = self._rate(gradient(T, w), q, w)
-        held, elastic = gradient(T, q), gradient(V, q)
-        found = [p - x + y for p, x, y in zip(momenta, held, elastic, strict=True)]
-        for speed, row in rows:
-            found = [x + row * slope for x, slope in zip(found, gradient(speed, w), strict=True)]
-        return found
+        lost = self._rate(self._in_rates([x for p, _ in moved for x in p]), q, w)
+        work = pullback(self._in_rates([x for _, v in moved for x in v]), lost, w) if moved else [0] * len(w)
+        found = [p - x - y for p, x, y in zip(momenta, gradient(T, q), work, strict=True)]
+        return [0 if vanishes(x) else x for x in found]
+
+
+def _names_in(written: Any) -> set[str]:
+    """The names in texts of a file, without primes."""
+    if isinstance(written, str):
+        return set(re.findall(r"[^\W\d]\w*", written))
+    inside = written.values() if isinstance(written, dict) else written if isinstance(written, list) else ()
+    return set[str]().union(*map(_names_in, inside))
 
 
 def _beyond(q: list[Node], w: list[Node], rates: Sequence[Scalar], velocities: Sequence[Scalar]) -> list[int]:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Mapping, Sequence
+from collections.abc import Container, Mapping, Sequence
 from dataclasses import field
 from decimal import Decimal
 from functools import cached_property
@@ -16,13 +16,14 @@ from eomgen.errors import DerivationError
 from eomgen.records import dataclass
 from eomgen.robots.drawn_up import LegalNames
 from eomgen.symbolic.exact.normal_form import simplest
-from eomgen.symbolic.expression.expressions import LONGEST
+from eomgen.symbolic.expression.expressions import LONGEST, LONGEST_WITH_PARTS
 from eomgen.symbolic.expression.graph import Graph, Node, Scalar
 from eomgen.symbolic.expression.rational import Fraction, fraction_of
 from eomgen.symbolic.numeric.work import Work
 from eomgen.symbolic.print.sympy_form import scalar_from_sympy
-from eomgen.symbolic.print.text import text_size, to_text
+from eomgen.symbolic.print.text import text_size, to_text, with_definitions
 
+NAMED_PART = 400  # characters of a part that gets a name of its own
 PLAIN = re.compile(r"[{}\\^]")  # of sympy's names, as in \dot{q}
 
 
@@ -113,17 +114,30 @@ def with_rationals(expression: Any) -> Any:
     return expression.xreplace({x: sympy.Rational(str(x)) for x in expression.atoms(sympy.Float)})
 
 
-def file_texts(scalars: Sequence[Scalar]) -> list[Any]:
+def file_texts(scalars: Sequence[Scalar], taken: Container[str] = ()) -> list[Any]:
     """Scalars as they stand in a model file, numbers as decimals where they end.
 
+    What would be longer than a formula may be has its parts named before it: "z1 = sin(q); z1^2 + z1".
+
+    Args:
+        taken: names that no part may have.
     Raises:
-        DerivationError: one is longer than a model file may have it.
+        DerivationError: one is longer than a model file may have it even so.
     """
     shortest = [min((simplest(x, Work.FORMULA), x), key=text_size) for x in scalars]
-    if (size := max(map(text_size, shortest), default=0)) > LONGEST:
-        what = f"an energy or a force takes some {size} characters to write, of which a model file may have {LONGEST}"
-        raise DerivationError(what, mend="give sympy's System its joints, or sympy shorter frames and velocities")
-    return [to_text(x) if (value := _decimal(x)) is None else value for x in shortest]
+    return [_written(x, taken) if (value := _decimal(x)) is None else value for x in shortest]
+
+
+def _written(x: Scalar, taken: Container[str]) -> str:
+    if text_size(x) <= LONGEST:
+        return to_text(x)
+    definitions, (text,) = with_definitions([x], NAMED_PART, taken)
+    found = "; ".join([*(f"{name} = {part}" for name, part in definitions), text])
+    if len(found) > LONGEST_WITH_PARTS:
+        what = f"an energy or a force takes {len(found)} characters to write"
+        mend = "give sympy's System its joints, or sympy shorter frames and velocities"
+        raise DerivationError(f"{what}, of which a model file may have {LONGEST_WITH_PARTS}", mend=mend)
+    return found
 
 
 def _decimal(x: Scalar) -> Decimal | None:
@@ -136,7 +150,8 @@ def _decimal(x: Scalar) -> Decimal | None:
 
 def speeds_as_rates(q: Sequence[Any], u: Sequence[Any], kinematic: Sequence[Any]) -> dict[Any, Any]:
     """{speed: coordinate} of the speeds that are rates, by what vanishes of q' and u."""
-    t, found = dynamicsymbols._t, {}
+    t = dynamicsymbols._t
+    found = {x.diff(t): x for x in q if x.diff(t) in list(u)}  # a rate that was given for the speed
     for x in kinematic:
         for coordinate in (each for each in q if x.has(each.diff(t))):
             for speed in (each for each in u if x.has(each)):

@@ -244,11 +244,88 @@ def speeds_of_omega() -> Any:
     return method
 
 
+def particles_on_joints() -> Any:
+    """A block on a rail, a bob on the block, as in sympy's tutorial: particles have no axes of their own."""
+    q, u, q1, u1 = dynamicsymbols("q u q1 u1")
+    m, M, l, g = sm.symbols("m M l g")
+    wall, block, bob = RigidBody("N"), Particle("A", mass=M), Particle("C", mass=m)
+    system = System.from_newtonian(wall)
+    system.add_bodies(block, bob)
+    fa, fc = ReferenceFrame("A"), ReferenceFrame("C")
+    block.masscenter.set_vel(fa, 0)
+    bob.masscenter.set_vel(fc, 0)
+    rail = PrismaticJoint("J1", wall, block, coordinates=q1, speeds=u1, child_interframe=fa)
+    pin = PinJoint("J2", block, bob, coordinates=q, speeds=u, joint_axis=fa.z, parent_interframe=fa,
+                   child_interframe=fc, child_point=l * fc.y)  # fmt: skip
+    system.add_joints(rail, pin)
+    system.apply_uniform_gravity(-g * wall.y)
+    return system
+
+
+def bicycle() -> tuple[Any, dict[str, float]]:
+    """Whipple's bicycle with its wheels' turns unmeasured, as sympy's own test builds it; and numbers for it."""
+    q1, q2, q4, q5 = q = dynamicsymbols("q1 q2 q4 q5")
+    u1, u2, u3, u4, u5, u6 = dynamicsymbols("u1:7")
+    rf, rr, tilt, offset, fork, frame, a1, a3, b1, b3, g = sm.symbols("rf rr tilt offset fork frame a1 a3 b1 b3 g")
+    masses = sm.symbols("m1:5")
+    I, J, K, L = sm.symbols("I1:5"), sm.symbols("J1:5"), sm.symbols("K1:3"), sm.symbols("L1:3")
+    N, WR, WF = ReferenceFrame("N"), ReferenceFrame("WR"), ReferenceFrame("WF")
+    Y = N.orientnew("Y", "Axis", [q1, N.z])
+    R = Y.orientnew("R", "Axis", [q2, Y.x])
+    A = R.orientnew("A", "Axis", [q4 + tilt, R.y])
+    TA = A.orientnew("TA", "Axis", [-tilt, A.y])
+    B = A.orientnew("B", "Axis", [q5, A.x])
+    TB = B.orientnew("TB", "Axis", [-tilt, B.y])
+    rear = Point("rear")
+    hub = rear.locatenew("hub", rr * R.z)
+    steer = hub.locatenew("steer", frame * A.z)
+    center = hub.locatenew("center", -a1 * A.x + a3 * A.z)
+    of_fork = steer.locatenew("of_fork", -b1 * B.x + b3 * B.z)
+    front_hub = steer.locatenew("front_hub", fork * B.x + offset * B.z)
+    front = front_hub.locatenew("front", rf * (B.y.dot(Y.z) * B.y - Y.z).normalize())
+    for own, other, w in ((Y, N, u1 * Y.z), (R, Y, u2 * R.x), (WR, A, u3 * A.y), (A, R, u4 * A.y), (B, A, u5 * B.x),
+                          (WF, B, u6 * B.y)):  # fmt: skip
+        own.set_ang_vel(other, w)
+    rear.set_vel(N, 0)
+    for point, other, own in ((hub, rear, WR), (steer, hub, A), (center, hub, A), (of_fork, steer, B),
+                              (front_hub, steer, B), (front, front_hub, WF)):  # fmt: skip
+        point.v2pt_theory(other, N, own)
+    parts = ((center, A, (inertia(TA, *I[:3], 0, 0, I[3]), center)),
+             (of_fork, B, (inertia(TB, *J[:3], 0, 0, J[3]), of_fork)),
+             (hub, WR, (inertia(A, K[0], K[1], K[0]), hub)),
+             (front_hub, WF, (inertia(B, L[0], L[1], L[0]), front_hub)))  # fmt: skip
+    bodies = [RigidBody(f"b{k}", at, own, m, I) for k, (m, (at, own, I)) in enumerate(zip(masses, parts, strict=True))]
+    method = KanesMethod(
+        N, [q1, q2, q5], [u2, u3, u5], [x.diff(t) - u for x, u in zip(q, (u1, u2, u4, u5), strict=True)],
+        q_dependent=[q4], configuration_constraints=[front.pos_from(rear).dot(Y.z)], u_dependent=[u1, u4, u6],
+        velocity_constraints=[front.vel(N).dot(axis) for axis in Y], constraint_solver="CRAMER", bodies=bodies,
+        forcelist=[(body.masscenter, -body.mass * g * Y.z) for body in bodies],
+    )  # fmt: skip
+    names = "rf rr tilt offset fork frame a1 a3 b1 b3 g m1 m2 m3 m4 I1 I2 I3 I4 J1 J2 J3 J4 K1 K2 L1 L2".split()
+    numbers = [0.35, 0.3, 1.2566, 0.03, 0.27, 0.95, 0.5, 0.3, 0.05, -0.02, 9.81, 85, 4, 2, 3, 7, 11, 4, 1, 0.05, 0.06,
+               0.02, 0.003, 0.06, 0.12, 0.14, 0.28]  # fmt: skip
+    return method, dict(zip(names, map(float, numbers), strict=True))
+
+
+def accelerations_by_kane(method: Any, numbers: dict[str, float]) -> dict[str, float]:
+    """u' by name of sympy's M and forcing along the speeds, in doubles; `numbers` by name, speeds among them."""
+    method.kanes_equations()
+    symbols = [
+        *method.q,
+        *method.u,
+        *sorted(sm.Matrix([*method.mass_matrix, *method.forcing]).free_symbols - {t}, key=str),
+    ]
+    formulas = sm.lambdify(symbols, [method.mass_matrix, method.forcing], cse=True)
+    M, right = formulas(*(numbers[x.name if isinstance(x, sm.Symbol) else x.func.__name__] for x in symbols))
+    found = np.linalg.solve(np.array(M, dtype=float), np.array(right, dtype=float).ravel())
+    return {u.func.__name__: float(a) for u, a in zip(method.u, found, strict=True)}
+
+
 SYSTEMS = {
     each.__name__: each
     for each in (pendulum, rolling_disc, sliding_particle_with_dependent_speed, double_pendulum_by_lagrange,
                  tied_by_lagrange, cart_and_pendulum_on_joints, oblique_joints, cylinder_and_ball,
-                 four_bar, particle_by_hand, speeds_of_omega)
+                 four_bar, particle_by_hand, speeds_of_omega, particles_on_joints)
 }  # fmt: skip
 
 

@@ -24,6 +24,10 @@ def formulas(catalog: Catalog) -> Iterator[Finding]:
             for name, column in dict.fromkeys(expression.occurrences):
                 if name not in allowed:
                     yield _misplaced(catalog, leaf, name, column, allowed)
+        for name in expression.parts:
+            if name in catalog.symbols:
+                what = f"a part of {whereabouts(leaf.path)} is called '{name}', like {article(catalog.symbols[name])}"
+                yield Finding(leaf.path, what, "give it another name")
         unit = leaf.part.unit if leaf.part is not None and leaf.path[-1] in leaf.part.in_unit else None
         if unit is not None and expression.names <= allowed and is_mixed(expression, unit):
             yield mixed(expression, unit, leaf.path)

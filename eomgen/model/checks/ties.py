@@ -89,6 +89,9 @@ def _used(catalog: Catalog) -> set[str]:
             used.update(name.rstrip("'") for name in expression.names)
             used.update(a.name for call in expression.calls for a in call.args if not hasattr(a, "code"))
     used.update(leaf.value for leaf in catalog.leaves if isinstance(leaf.rule, NameRule))
+    for name, part in catalog.table("speeds").items():
+        if name in used and part is not None and part.rate is not None:
+            used.update(x.rstrip("'") for x in part.rate.names)
     for finding in catalog.found:
         used.update(_WORD.findall(str(finding.raw)))
     return used

@@ -257,6 +257,10 @@ class Walk:
     def _step(self, stack: list[Term], k: int, kind: str, what: Any) -> None:
         if kind in ("number", "name", "call"):
             stack.append(self._leaf(k, kind, what))
+        elif kind == "part":
+            stack.append(replace(stack[-1 - what], first=k, last=k))
+        elif kind == "under":
+            del stack[-1 - len(what) : -1]
         elif kind == "neg":
             stack[-1] = replace(stack[-1], last=k)
         elif kind == "sampled":
@@ -375,7 +379,7 @@ class Walk:
 
 def _worth(code: tuple[Any, ...]) -> Any:
     """The number that a piece of code is, None with names in it."""
-    if any(kind in ("name", "call") for kind, _ in code):
+    if any(kind in ("name", "call", "part") for kind, _ in code):
         return None
     try:
         return Expression("", code, (0,) * len(code)).evaluate({})

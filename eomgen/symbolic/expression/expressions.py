@@ -1,10 +1,11 @@
 """Text -> Expression: the grammar of the model file.
 
+    whole    = (name "=" sum ";")* sum                parts with a name, of which what follows is made
     sum      = product (("+" | "-") product)*
     product  = signed (("*" | "/") signed)*
     signed   = ("-" | "+") signed | power
     power    = value (("^" | "**") signed)?           right to left: -x^2 is -(x^2)
-    value    = number | name | function "(" sum ("," sum)* ")" | "(" sum ")"
+    value    = number | name | function "(" sum ("," sum)* ")" | "(" whole ")"
 
 A Pratt parser that writes the tree in postfix order. Nothing is ever handed to Python's own evaluation.
 Length, depth and the size of exact numbers are bounded, so that a hostile text costs a millisecond.
@@ -29,6 +30,7 @@ from eomgen.symbolic.expression.tokens import Token, is_name, number_in, referen
 __all__ = ["Call", "Expression", "Reference", "as_expression", "is_name", "parse", "parse_equation", "unknown"]
 
 LONGEST = 10_000  # characters
+LONGEST_WITH_PARTS = 200_000  # of a text in which parts have names, each of at most LONGEST
 DEEPEST = 64  # parentheses, signs and powers inside one another
 
 # how strongly a sign binds to the value on its left, and to the one on its right
@@ -47,7 +49,7 @@ def parse(text: str, *, references: bool = False, longest: int = LONGEST) -> Exp
     Raises:
         ExpressionError: it is none; column and length say where.
     """
-    parser = _Parser(text, references, longest)
+    parser = _Parser(text, references, longest, named=";" in text)
     expression = parser.whole()
     if parser.token.kind != "end":
         raise parser.misplaced()
@@ -121,10 +123,11 @@ def _exact_number(value: Fraction) -> Expression:
 class _Parser:
     """One pass over a text; `code` and `columns` grow in postfix order."""
 
-    def __init__(self, text: str, references: bool, longest: int = LONGEST) -> None:
-        if len(text) > longest:
-            raise ExpressionError(f"the expression is longer than {longest} characters", longest)
-        self.text, self.references, self.depth = text, references, 0
+    def __init__(self, text: str, references: bool, longest: int = LONGEST, *, named: bool = False) -> None:
+        _refuse_long(text, longest, named)
+        self.text, self.references, self.depth, self.named = text, references, 0, named
+        self.parts: dict[str, int] = {}  # by name, at which height of the stack each stands
+        self.height = 0
         self.code: list[Instruction] = []
         self.columns: list[int] = []
         self.before = self.token = Token("end", "", 0)
@@ -136,18 +139,48 @@ class _Parser:
         return self.before
 
     def emit(self, kind: str, what: Any, column: int) -> None:
+        if kind in _LEAVES:
+            self.height += 1
+        elif kind == "under":
+            self.height -= len(what)
+        else:
+            self.height -= what[1] - 1 if kind == "function" else 0 if kind == "neg" else 1
         self.code.append((kind, what))
         self.columns.append(column)
 
     def whole(self) -> Expression:
         """One expression with code of its own."""
         code, columns, self.code, self.columns = self.code, self.columns, [], []
+        parts, height, self.parts, self.height = self.parts, self.height, {}, 0
         start = self.token.start
-        self.operand(0)
+        self.with_parts()
+        self.parts, self.height = parts, height
         made = Expression(self.text[start : self.before.end], tuple(self.code), tuple(self.columns))
         self.code, self.columns = code, columns
         _check_numbers(made)
         return made
+
+    def with_parts(self) -> None:
+        """A sum, and before it the parts that have names."""
+        outside, own = dict(self.parts), list[str]()
+        while self.named and self.token.kind == "name" and token_at(self.text, self.token.end).text == "=":
+            name = self.advance()
+            if name.text in (*NAMES, "t", "pi") or "'" in name.text or name.text in self.parts:
+                what = f"'{name.text}' cannot be the name of a part"
+                raise ExpressionError(what, name.start, "give each part a name of its own", len(name.text))
+            self.advance()
+            self.operand(0)
+            if self.token.text != ";":
+                raise ExpressionError(
+                    f"the part '{name.text}' has no end", name.start, "write ; behind it", len(name.text)
+                )
+            self.advance()
+            self.parts[_checked_name(name)] = self.height - 1
+            own.append(name.text)
+        self.operand(0)
+        if own:
+            self.emit("under", tuple(own), -1)
+        self.parts = outside
 
     def operand(self, binding: int) -> None:
         """A value and all signs after it that bind more strongly than `binding`."""
@@ -178,7 +211,7 @@ class _Parser:
             self.name_or_function()
         elif token.text == "(":
             self.advance()
-            self.nested(token, lambda: self.operand(0))
+            self.nested(token, self.with_parts)
             self.close(token)
         elif token.text in ("-", "+"):
             self.advance()
@@ -201,6 +234,8 @@ class _Parser:
         token = self.advance()
         if self.token.text == "(":
             self.nested(token, lambda: self.function(token))
+        elif token.text in self.parts:
+            self.emit("part", self.height - 1 - self.parts[token.text], token.start)
         else:
             self.emit("name", _checked_name(token), token.start)
 
@@ -213,7 +248,7 @@ class _Parser:
             product = f"for a product write {name.text}*(...)"
             mend = rate_of_call(self.text[name.start :]) or error.mend or product
             raise ExpressionError(error.what, error.column, mend, error.length)
-        opening, count, begun = self.advance(), 0, len(self.code)
+        opening, count, begun, height = self.advance(), 0, len(self.code), self.height
         while self.token.text != ")" and (count == 0 or self.token.text == ","):
             if count:
                 self.advance()
@@ -223,7 +258,10 @@ class _Parser:
         self.close(opening)
         if count == 1 and self.references and name.text in EXTREMES:
             formula = Expression(inner, tuple(self.code[begun:]), tuple(self.columns[begun:]))
+            if self.parts and any(kind == "part" for kind, _ in formula.code):
+                raise ExpressionError("a part with a name means nothing over a run", name.start, "write it out")
             del self.code[begun:], self.columns[begun:]
+            self.height = height
             self.emit("call", Call(name.text, (formula,), name.start), name.start)
             return
         _check_count(name, count)
@@ -316,6 +354,9 @@ def _check_numbers(expression: Expression) -> None:
     """Refuses plain numbers without a value (1/0, 9^9^9) at once, where they are written."""
     stack: list[Any] = []
     for (kind, what), column in zip(expression.code, expression.columns, strict=True):
+        if kind in ("part", "under"):
+            apply_operation(stack, kind, what, None)
+            continue
         count = what[1] if kind == "function" else 1 if kind == "neg" else 0 if kind in _LEAVES else 2
         operands = stack[len(stack) - count :]
         del stack[len(stack) - count :]
@@ -329,4 +370,18 @@ def _check_numbers(expression: Expression) -> None:
         stack.append(operands[0])
 
 
-_LEAVES = ("number", "name", "call")
+def _refuse_long(text: str, longest: int, named: bool) -> None:
+    """Raises: ExpressionError: a text, or a part of it, is longer than it may be."""
+    if len(text) <= longest:
+        return
+    if not named or len(text) > LONGEST_WITH_PARTS:
+        most = LONGEST_WITH_PARTS if named else longest
+        raise ExpressionError(f"the expression is longer than {most} characters", most)
+    start = 0
+    for part in text.split(";"):
+        if len(part) > longest:
+            raise ExpressionError(f"a part of the expression is longer than {longest} characters", start + longest)
+        start += len(part) + 1
+
+
+_LEAVES = ("number", "name", "call", "part")

@@ -21,7 +21,8 @@ from eomgen.symbolic.expression.splines import Sampled
 Value = TypeVar("Value")
 Instruction = tuple[str, Any]
 """("number", value) | ("name", name) | ("neg", None) | ("+" "-" "*" "/" "^", None) | ("function", (name, count))
-| ("call", Call) | ("sampled", Sampled): a function through samples, of what stands before it"""
+| ("call", Call) | ("sampled", Sampled): a function through samples, of what stands before it | ("part", n): once more
+what stands n below the top, a part with a name | ("under", names): the parts that stand below the top are done with"""
 
 
 @dataclass(frozen=True, slots=True)
@@ -107,6 +108,11 @@ class Expression:
         for call in self.calls:
             found.update(*(a.names for a in call.args if isinstance(a, Expression)))
         return frozenset(found)
+
+    @property
+    def parts(self) -> tuple[str, ...]:
+        """The names that were given to parts of it: `a` in "a = sin(q); a^2"."""
+        return tuple(name for kind, what in self.code if kind == "under" for name in what)
 
     @property
     def calls(self) -> tuple[Call, ...]:
@@ -262,6 +268,10 @@ def apply_operation(stack: list[AnyScalar], kind: str, what: Any, pi: AnyScalar)
     """Replaces the operands on top of the stack by the result of one operation."""
     if kind == "neg":
         stack[-1] = -stack[-1]
+    elif kind == "part":
+        stack.append(stack[-1 - what])
+    elif kind == "under":
+        del stack[-1 - len(what) : -1]
     elif kind == "sampled":
         stack[-1] = scalar_operations.through_samples(what, stack[-1], pi)
     elif kind == "function":

@@ -16,7 +16,7 @@ LARGEST_SIZE = 1000  # bits: a number still fits a double, and a product of two 
 _DIGITS = r"[0-9](?:_?[0-9])*"
 _NUMBER = rf"(?:{_DIGITS}(?:\.(?:{_DIGITS})?)?|\.{_DIGITS})(?:[eE][+-]?{_DIGITS})?"
 _NAME = r"[^\W\d²³¹⁰⁴-⁹][^\W²³¹⁰⁴-⁹]*"
-_TOKEN = re.compile(rf"(?P<number>{_NUMBER})|(?P<name>{_NAME}'*)|(?P<sign>\*\*|[-+*/^(),=])")
+_TOKEN = re.compile(rf"(?P<number>{_NUMBER})|(?P<name>{_NAME}'*)|(?P<sign>\*\*|[-+*/^(),=;])")
 _SPACE = re.compile(r"\s*")
 _REFERENCE = re.compile(rf"(?P<number>{_NUMBER}\s*[,)])|(?P<reference>\w+(?:\.\w+)*(?:\s*-\s*\w+(?:\.\w+)*)*)\s*[,)]")
 _DOTTED = re.compile(rf"{_NAME}(?:\.\w+)+")
