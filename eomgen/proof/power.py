@@ -9,8 +9,10 @@ error that its formulas of orders 5 and 3 tell.
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Hashable
+from dataclasses import field
 from functools import cached_property
+from typing import Any
 
 import numpy as np
 
@@ -34,11 +36,13 @@ class Energies:
     Args:
         p: the parameters' values.
         pulled: whether the ties take power by being open: Baumgarte's rows.
+        known: what was compiled of the equations, whatever the parameters' values.
     """
 
     equations: EquationsOfMotion
     p: np.ndarray
     pulled: bool = False
+    known: dict[Hashable, Any] = field(default_factory=dict, repr=False, compare=False)
 
     @cached_property
     def power(self) -> Scalar:
@@ -69,6 +73,13 @@ class Energies:
         return self._compiled((self.power,))
 
     def _compiled(self, scalars: tuple[Scalar, ...]) -> RightHandSide:
+        key = ("proof of energies", scalars)
+        if key not in self.known:
+            self.known[key] = self._program(scalars)
+        found: RightHandSide = self.known[key]
+        return found
+
+    def _program(self, scalars: tuple[Scalar, ...]) -> RightHandSide:
         symbols = self.equations.symbols
         solve = bordered(self.equations) if depends_on(scalars[-1], symbols.lam) else None
         return compiled(program_of(scalars, symbols, inputs=self.equations.inputs, solve=solve), "numpy")

@@ -8,7 +8,7 @@ position, or has equations or a start of its own is run alone.
 from __future__ import annotations
 
 import contextvars
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import replace
 from functools import partial
@@ -28,6 +28,7 @@ from eomgen.model.parts import Model, Parameter
 from eomgen.model.ranges import TypedNumbers, are_several, typed_values
 from eomgen.model.replaced import with_inputs, with_values
 from eomgen.model.table import Table
+from eomgen.proof.motion import Promise
 from eomgen.questions.runs import Runs
 from eomgen.questions.simulator import SAMPLES, KnownEquations, Simulator
 from eomgen.records import dataclass, with_fields
@@ -102,6 +103,11 @@ def many_runs(
     names, status, message, x, steps = found
     x[status != "finished"] = np.nan
     equations, phase = _known(plan.simulator)
+    if not has_phases(plan.model) and names == (*phase.coordinates, *phase.speeds):
+        why = _contradictions(plan, phase, x, steps)
+        status = np.where(why != "", "contradicted", status)
+        message = np.where(why != "", why, message)
+        x[why != ""] = np.nan
     given = {**plan.parameters, **plan.start}
     drifts = _drifts(plan, phase) if phase.conservative and not has_phases(plan.model) else None
     return Runs(plan.instants, x, names, status, message, steps, given, equations.certify, drifts)
@@ -300,6 +306,37 @@ def _following(model: Model, varied: Mapping[str, Any]) -> set[str]:
 
 def _names(expression: Expression | None) -> frozenset[str]:
     return frozenset() if expression is None else frozenset(expression.names)
+
+
+def _contradictions(plan: _Plan, phase: PhaseModel, x: np.ndarray, steps: np.ndarray) -> np.ndarray:
+    """What of its energy (where that is constant), ties and norms contradicts each run, in words; "": nothing.
+
+    The limits are those of one run: 10 (rtol size + atol) a step; on ties, onto which each step is put back, of one.
+    """
+    how, (runs, instants) = plan.simulator.how, x.shape[:2]
+    t, p = np.tile(plan.instants, runs), np.repeat(_parameters(plan), instants, axis=0)
+    promises = [Promise(how.rtol, how.atol, int(n), how.stabilization == "projection") for n in steps]
+    size = np.max(np.abs(x), axis=(1, 2), initial=0.0)
+    found = np.full(runs, "", dtype=object)
+
+    def judge(what: str, left: np.ndarray, limits: Iterable[float]) -> None:
+        for i in np.flatnonzero((found == "") & (left > np.array([*limits]))):
+            found[i] = f"Contradicted: {what} by {left[i]:.1e}."
+
+    with np.errstate(all="ignore"):
+        rows = x.reshape(runs * instants, -1)
+        if phase.conservative:
+            T, V = phase.functions.energies.many(t, rows, p).T.reshape(2, runs, instants)
+            E, moving = T + V, np.max(np.abs(T) + np.abs(V - V[:, :1]), axis=1, initial=0.0)
+            drift = np.max(np.abs(E - E[:, :1]), axis=1, initial=0.0)
+            judge("the energy, which is constant, changes", drift, map(Promise.limit, promises, moving))
+        if phase.projection is not None:
+            gaps = phase.projection.gaps.many(t, rows[:, : phase.projection.size], p).reshape(runs, -1)
+            judge("ties are open", np.max(np.abs(gaps), axis=1, initial=0.0), map(Promise.open, promises, size))
+        for four in phase.functions.rhs.spheres:
+            norms = np.sum(x[:, :, list(four)] ** 2, axis=2)
+            judge("a quaternion's norm changes", np.max(np.abs(norms - 1), axis=1), (q.limit(1.0) for q in promises))
+    return found
 
 
 def _drifts(plan: _Plan, phase: PhaseModel) -> Callable[[np.ndarray, np.ndarray], np.ndarray]:

@@ -66,10 +66,9 @@ class RunProof:
             what = "a Python function sets an input: nobody knows what it is between the states"
             unseen = unchecked("the run follows its equations", what, "the run's right-hand side")
             return Certificate((*certificate.checks, unseen))
-        legs = [leg for phase in found.phases for leg in self._legs(phase, found)]
-        projected = self.how.stabilization in ("projection", "energy") and self.how.every is None
-        promise = motion.Promise(self.how.rtol, self.how.atol, found.steps, projected)
+        legs, promise = self._moving(found)
         certificate += motion.run_checks(legs, promise)
+        certificate += self.watch(found) if found.watch is None else found.watched
         columns = (
             *reaction_columns_hold(found),
             *output_columns_hold(found, formulas_of(self.models.model)),
@@ -77,6 +76,18 @@ class RunProof:
         if self.whole is not None:
             certificate += (*self.whole.checks(), *rows_left_out(found, self.whole.plan.instants))
         return certificate + columns + self._contacts(found)
+
+    def watch(self, found: Trajectory) -> tuple[Check, ...]:
+        """Of a run its energy against the power, its ties and norms: what it watches anyway."""
+        if any(phase.model.fed is not None for phase in found.phases):
+            return ()
+        return motion.watched_checks(*self._moving(found))
+
+    def _moving(self, found: Trajectory) -> tuple[list[motion.Leg], motion.Promise]:
+        """(the legs of a run, what its tolerances promise)."""
+        legs = [leg for phase in found.phases for leg in self._legs(phase, found)]
+        projected = self.how.stabilization in ("projection", "energy") and self.how.every is None
+        return legs, motion.Promise(self.how.rtol, self.how.atol, found.steps, projected)
 
     def _contacts(self, found: Trajectory) -> Iterator[Check]:
         """What contacts do in the phases of a run, and between them."""
@@ -94,7 +105,7 @@ class RunProof:
         t, x = track
         pulled = self.how.stabilization == "baumgarte"
         rhs, inner = phased.functions.rhs, phased.functions.inner(x)
-        yield motion.Leg(phased.equations, phased.p, rhs, t, inner, found.carried, pulled)
+        yield motion.Leg(phased.equations, phased.p, rhs, t, inner, found.carried, pulled, phased.known)
 
 
 def _until(phase: Phase, t: np.ndarray) -> Phase:
@@ -226,11 +237,13 @@ def finished_run(
     found = with_reactions(found, runs) if reactions else found
     found = with_outputs(found, runs, formulas_of(model) if outputs is None else outputs)
     begun = runs[0].here.begun
+    proof = RunProof(equations, models.p, how, models, whole)
     more = {
         "assembled": "" if begun is None else begun.words,
         "whole": whole.value,
         "quantities": whole.outputs() if outputs is None else {},
-        "proof": RunProof(equations, models.p, how, models, whole),
+        "proof": proof,
+        "watch": proof.watch,
         "estimate": estimate,
     }
     return thinned(found, instants, **more)
@@ -300,8 +313,8 @@ def pulling(equations: Equations, rates: tuple[float, float]) -> Equations:
 
 def _told(found: Trajectory, until: str | None) -> Trajectory:
     """The run, its message in the words of the condition."""
-    if until is None or found.status not in ("event", "finished"):
+    if until is None or found.ended not in ("event", "finished"):
         return found
     end = found.phases[-1].end
-    met = f"{until} at t = {end:.6g} s." if found.status == "event" else f"{found.message} '{until}' did not come."
-    return replace(found, message=met, phases=(*found.phases[:-1], replace(found.phases[-1], ended_by=met)))
+    met = f"{until} at t = {end:.6g} s." if found.ended == "event" else f"{found.words} '{until}' did not come."
+    return replace(found, words=met, phases=(*found.phases[:-1], replace(found.phases[-1], ended_by=met)))

@@ -15,6 +15,7 @@ from eomgen.simulation.result import Trajectory
 from eomgen.symbolic.numeric.tolerances import BEST, LEAST_RTOL
 
 FINER = 100.0  # times
+FEWEST, DECADES = 6, 3.0  # instants that show a pace; powers of ten by which errors grow where motions part
 LOST = 0.1  # of the largest value of a coordinate or speed: a digit that does not hold
 
 
@@ -26,10 +27,12 @@ class Accuracy:
         error: of the last state, of each column against its largest value in the run; the largest. Infinite where one
             of the two runs has left the numbers.
         until: the first instant at which no digit holds any more [s]; None where some hold to the end.
+        parts: whether digits were lost at a steady pace until then: neighbouring motions part exponentially.
     """
 
     error: float
     until: float | None
+    parts: bool = False
 
     @property
     def digits(self) -> int:
@@ -41,7 +44,8 @@ class Accuracy:
 
     def __str__(self) -> str:
         if self.until is not None:
-            return f"No digit of the states holds from t = {self.until:.4g} s on: neighbouring motions part."
+            why = "neighbouring motions part" if self.parts else "a finer run goes another way from there"
+            return f"No digit of the states holds from t = {self.until:.4g} s on: {why}."
         return f"Digits that hold at the end: {self.digits}."
 
 
@@ -66,4 +70,15 @@ def accuracy_of(run: Trajectory, other: Trajectory, share: float) -> Accuracy | 
     lost = np.flatnonzero(~(errors < LOST))
     ended = len(run.t) and common[-1] < run.t[-1]  # the other came to another end
     until = float(common[lost[0]]) if lost.size else float(common[-1]) if ended else None
-    return Accuracy(float(errors[-1]), until)
+    return Accuracy(
+        float(errors[-1]), until, until is not None and _part_steadily(errors[: lost[0]] if lost.size else errors)
+    )
+
+
+def _part_steadily(errors: np.ndarray) -> bool:
+    """Whether errors grow exponentially: their digits go one after the other, not most of them at one instant."""
+    digits = np.log10(np.maximum.accumulate(errors[errors > 0]))
+    if len(digits) < FEWEST:
+        return False
+    lost = digits[-1] - digits[0]
+    return bool(lost >= DECADES and np.max(np.diff(digits)) <= lost / 2)

@@ -39,8 +39,8 @@ def joined(models: PhaseModels, runs: Sequence[PhaseRun]) -> Trajectory:
             Phase(s.here.t, s.run.end, phase_text(models, s), (first, last), s.phase, s.tracked)
             for s, first, last in zip(runs, ends[:-1], ends[1:], strict=True)
         ),
-        status=runs[-1].run.status,
-        message=runs[-1].run.message,
+        ended=runs[-1].run.status,
+        words=runs[-1].run.message,
         steps=sum(phase_run.run.steps for phase_run in runs),
         evaluations=sum(phase_run.run.evaluations for phase_run in runs),
         carried=tuple(span for phase_run in runs for span in phase_run.run.carried),
@@ -140,7 +140,7 @@ def thinned(full: Trajectory, instants: np.ndarray | None, **more: Any) -> Traje
     kept[:-1] = full.t[1:] > full.t[:-1]
     if instants is not None and not np.array_equal(full.t, instants):
         kept &= np.isin(full.t, instants)
-        kept[-1] |= full.status != "finished"
+        kept[-1] |= full.ended != "finished"
     all_kept = bool(kept.all())
     before = range(len(kept) + 1) if all_kept else [0, *np.cumsum(kept).tolist()]
     columns = cache(full.columns)

@@ -15,6 +15,7 @@ import numpy as np
 from eomgen import files
 from eomgen.errors import UsageError
 from eomgen.model.own_units import OUTPUT
+from eomgen.proof.check import Check
 from eomgen.records import Pickled, dataclass
 from eomgen.symbolic.expression.units import Unit
 from eomgen.symbolic.numeric.tolerances import SOLVED
@@ -32,6 +33,7 @@ RunStatus = Literal[
     "event",
     "contact",
     "singular",
+    "contradicted",
 ]
 
 
@@ -110,8 +112,8 @@ class Trajectory:
         energies: -> `energy`, found where somebody asks for it; None where nobody gave it.
         measure: -> how well the laws were kept, found where somebody asks for it.
         phases: in order.
-        status: "finished" or what stopped it.
-        message: the same as a sentence.
+        ended: "finished" or what stopped it.
+        words: the same as a sentence.
         steps, evaluations: taken by the integrator.
         reactions: of joints and ties, n each [N, N m]: nan where one has no single value; {} where there are none.
         units: of the reactions, by name.
@@ -123,6 +125,7 @@ class Trajectory:
         whole: text -> what it asks of the whole run (a RunValue); None where nobody knows its equations.
         quantities: of the model's outputs those that are of the whole run, each a RunValue.
         estimate: the run -> its Accuracy, by another run; None where nobody knows its equations.
+        watch: the run -> the checks of what it watches anyway: energy against power, ties, norms; None: nobody does.
     """
 
     t: np.ndarray
@@ -132,8 +135,8 @@ class Trajectory:
     energies: Callable[[], np.ndarray] | None = field(repr=False)
     measure: Callable[[], Kept] = field(repr=False)
     phases: tuple[Phase, ...]
-    status: RunStatus
-    message: str
+    ended: RunStatus
+    words: str
     steps: int
     evaluations: int
     reactions: Mapping[str, np.ndarray] = field(default_factory=dict)
@@ -146,12 +149,13 @@ class Trajectory:
     whole: Callable[[Any], Any] | None = field(default=None, repr=False)
     quantities: Mapping[str, Any] = field(default_factory=dict)
     estimate: Callable[[Trajectory], Any] | None = None
+    watch: Callable[[Trajectory], tuple[Check, ...]] | None = field(default=None, repr=False)
 
     def __getstate__(self) -> dict[str, Any]:
         """All its numbers. What asks the equations again (`certify`, `ask`, `accuracy`) does not go into a pickle."""
         own = {name: self.__dict__[name] for name in self.__dataclass_fields__}
         own |= {"energies": None if self.energies is None else Pickled(self.energy), "measure": Pickled(self.kept)}
-        return own | {"proof": None, "whole": None, "estimate": None}
+        return own | {"proof": None, "whole": None, "estimate": None, "watch": Pickled(self.watched)}
 
     @cached_property
     def energy(self) -> np.ndarray | None:
@@ -233,9 +237,32 @@ class Trajectory:
         """Its curves over time: shows itself in a notebook."""
         return self.plot()
 
+    @cached_property
+    def watched(self) -> tuple[Check, ...]:
+        """Checks of what a run watches anyway, made when somebody asks how it ended."""
+        return () if self.watch is None else self.watch(self)
+
+    @property
+    def contradiction(self) -> str:
+        """What of its energy, ties and norms contradicts a run that came to its end, in words; ""."""
+        if self.ended not in ("finished", "event"):
+            return ""
+        return next((f"{check.name}: {check.detail}" for check in self.watched if check.ok is False), "")
+
+    @property
+    def status(self) -> RunStatus:
+        """How it ended: "finished", "event", what stopped it; "contradicted" where what it watches says so."""
+        return "contradicted" if self.contradiction else self.ended
+
+    @property
+    def message(self) -> str:
+        """The same as a sentence."""
+        why = self.contradiction
+        return f"{self.words} It contradicts what it watches ({why}): do not trust it." if why else self.words
+
     @property
     def ok(self) -> bool:
-        """True where the end was reached, or the condition that was to end it."""
+        """True where the end was reached, or the condition that was to end it, and nothing that is watched says no."""
         return self.status in ("finished", "event")
 
     def __len__(self) -> int:
