@@ -15,7 +15,6 @@ import numpy as np
 from eomgen import files
 from eomgen.errors import UsageError
 from eomgen.model.own_units import OUTPUT
-from eomgen.proof.check import Check
 from eomgen.records import Pickled, dataclass
 from eomgen.symbolic.expression.units import Unit
 from eomgen.symbolic.numeric.tolerances import SOLVED
@@ -149,7 +148,7 @@ class Trajectory:
     whole: Callable[[Any], Any] | None = field(default=None, repr=False)
     quantities: Mapping[str, Any] = field(default_factory=dict)
     estimate: Callable[[Trajectory], Any] | None = None
-    watch: Callable[[Trajectory], tuple[Check, ...]] | None = field(default=None, repr=False)
+    watch: Callable[[Trajectory], tuple[Any, ...]] | None = field(default=None, repr=False)
 
     def __getstate__(self) -> dict[str, Any]:
         """All its numbers. What asks the equations again (`certify`, `ask`, `accuracy`) does not go into a pickle."""
@@ -238,7 +237,7 @@ class Trajectory:
         return self.plot()
 
     @cached_property
-    def watched(self) -> tuple[Check, ...]:
+    def watched(self) -> tuple[Any, ...]:
         """Checks of what a run watches anyway, made when somebody asks how it ended."""
         return () if self.watch is None else self.watch(self)
 
