@@ -33,6 +33,7 @@ ROW: Ints = ()
 FROM: Ints = ()
 LATER: Ints = ()
 NEXT: Ints = ()
+ALIKE: Ints = ()  # of each row of J those that share what they hold have one number
 
 
 def zeros(n: int) -> Work:
@@ -295,7 +296,8 @@ def flexibility(w: Int, L: Reals, J: Reals, mobility: Work, Y: Work, S: Work) ->
 def eliminated(w: Int, S: Work, order: Places) -> Int:
     """S factored in place along what is not zero, dependent rows passed over; the rank; order[K] rows of it are sure.
 
-    A row depends on those before it where its pivot, the squared sine of its angle to them, is no more than PIVOT.
+    A row depends on those before it where its pivot, the squared sine of its angle to them, is no more than PIVOT: of
+    rows that share what they hold against the longest of them, for one may vanish where others hold, but for rounding.
     What is no more than SURE_PIVOT waits for all others, and is then taken largest first.
     """
     whole = room(K)
@@ -306,6 +308,11 @@ def eliminated(w: Int, S: Work, order: Places) -> Int:
     best = zeros(1)
     for m in range(K):
         whole[m] = S[m * K + m]
+        for h in range(K):
+            if ALIKE[h] == ALIKE[m]:
+                size = S[h * K + h]
+                if size > whole[m]:
+                    whole[m] = size
     invert(whole)
     for c in range(K):
         share = S[c * K + c] * whole[c]

@@ -42,12 +42,14 @@ class Solve:
         border: k rows of n; of rows that depend on others the unknowns lam are 0, and a is right all the same.
         right: n + k.
         unknowns: the symbols that stand for (a, lam) in later statements, n + k.
+        alike: of each row of the border a number that those have together which share what they hold; () where none do.
     """
 
     matrix: tuple[ScalarRow, ...]
     border: tuple[ScalarRow, ...]
     right: ScalarRow
     unknowns: tuple[Node, ...]
+    alike: tuple[int, ...] = ()
 
     @property
     def kind(self) -> Literal["dense", "kkt"]:
@@ -88,6 +90,7 @@ class Solve:
             *_joined("REACH", "START", [way.reach for way in ways]),
             *_joined("ROW", "FROM", [way.rows for way in ways]),
             *_joined("LATER", "NEXT", [way.later for way in ways]),
+            Table("ALIKE", self.alike or tuple(range(len(self.border)))),
         ]
 
     @property
@@ -215,10 +218,16 @@ def bordered(equations: EquationsOfMotion) -> Solve:
     """Accelerations and multipliers from one system: M a - J^T lam = forcing, J a = -gamma."""
     symbols = equations.symbols
     right = (*equations.forcing, *(-g for g in equations.gamma))
-    return _ordered(equations.M, equations.J, right, symbols.a + symbols.lam)
+    return _ordered(equations.M, equations.J, right, symbols.a + symbols.lam, equations.alike)
 
 
-def _ordered(M: Sequence[ScalarRow], J: Sequence[ScalarRow], right: ScalarRow, unknowns: tuple[Node, ...]) -> Solve:
+def _ordered(
+    M: Sequence[ScalarRow],
+    J: Sequence[ScalarRow],
+    right: ScalarRow,
+    unknowns: tuple[Node, ...],
+    alike: Sequence[int] = (),
+) -> Solve:
     """The system with the accelerations in the order in which elimination fills in least: in a tree leaves first.
 
     The rows in that of J M^-1 J^T: loops that touch but their neighbours one after the other.
@@ -234,6 +243,7 @@ def _ordered(M: Sequence[ScalarRow], J: Sequence[ScalarRow], right: ScalarRow, u
         tuple(border[m] for m in rows),
         tuple(right[i] for i in places),
         tuple(unknowns[i] for i in places),
+        tuple(alike[m] for m in rows) if alike else (),
     )
 
 

@@ -276,3 +276,13 @@ def test_accelerations_by_a_row_that_vanishes_where_the_others_hold_are_contradi
 
 def _failing(certificate) -> list[str]:
     return [check.name for check in certificate.checks if check.ok is False]
+
+
+def test_code_holds_a_gap_by_the_longer_of_two_rows_that_share_it():
+    """d cos q = 0 and d sin q = 0 at sin q = 1e-6, open by 1e-9 and opening: a is that of d = 0 all the same."""
+    codes = [eomgen.derive(eomgen.loads(text)).rhs("numpy") for text in (IN_GROUND_AXES, REGULAR)]
+    a, s, ga = 0.508800829, 1.95118272, 0.901883355
+    for q in (1e-6, np.pi / 2 + 1e-6):
+        x = np.array([q, a, s + 1e-9, ga, 1.5, 0.0, 1e-9, 0.0])
+        found, right = (rhs(0.0, x, rhs.p0) for rhs in codes)
+        assert np.allclose(found, right, rtol=1e-6, atol=1e-5)

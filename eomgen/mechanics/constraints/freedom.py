@@ -29,8 +29,10 @@ from eomgen.symbolic.expression.graph import is_zero
 from eomgen.symbolic.expression.node import State
 from eomgen.symbolic.expression.spatial import Vector
 from eomgen.symbolic.numeric.dense import closed_entries, independent_rows
+from eomgen.symbolic.numeric.evaluation import NoValue
 from eomgen.symbolic.numeric.tolerances import RANK_NEARBY, SHARE
 
+LONGER = 1e3  # times the length of another row: of another kind, as force and couple at a mechanism of micrometres
 TwistColumns = tuple[tuple[Vector, Vector], ...]
 RowName = tuple[str, int]  # of a tie, from 1
 
@@ -212,6 +214,30 @@ def redundant_rows(ties: Ties, state: State | None = None) -> tuple[Redundant, .
         for i, row in enumerate(closing)
         if i not in kept
     )
+
+
+def rows_alike(ties: Ties) -> tuple[int, ...]:
+    """Of each closing row a number that it has together with those with which it shares what it holds.
+
+    Which of them is the one that follows may change along a motion: d cos q = 0 and d sin q = 0 hold d in turns. Rows
+    are of one kind where their lengths are, at a generic state, within LONGER of one another.
+    """
+    own = tuple(range(len(ties.closing)))
+    if len(own) < 2:
+        return own
+    try:
+        J = rows_where_closed(ties, generic_state(ties))
+    except (DerivationError, MissingValues, NoValue):
+        return own
+    kept, lengths, found = independent_rows(J, RANK_NEARBY), np.linalg.norm(J, axis=1), list(own)
+    for i in own:
+        if i in kept or not lengths[i]:
+            continue
+        shares = np.linalg.lstsq(J[kept].T, J[i], rcond=None)[0] * lengths[kept] / lengths[i]
+        near = (lengths[kept] < LONGER * lengths[i]) & (LONGER * lengths[kept] > lengths[i])
+        sharing = {found[k] for k, share, one in zip(kept, shares, near, strict=True) if one and abs(share) > SHARE}
+        found = [min(sharing | {i}) if number in sharing | {i} else number for number in found]
+    return tuple(found)
 
 
 def rows_held_twice(ties: Ties, redundant: Sequence[Redundant], state: State) -> tuple[Redundant, ...]:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from eomgen.mechanics.constraints.freedom import rows_alike
 from eomgen.mechanics.equations.system import System
 from eomgen.records import dataclass
 from eomgen.symbolic.expression.functions import inner
@@ -26,6 +27,7 @@ class EquationsOfMotion:
         T, V: kinetic and potential energy [J].
         accelerations: a as explicit expressions where the formulation gives them (articulated body), else None.
         friction: the part of Q that contacts with friction make, nu; () where there is no friction.
+        alike: of each closing row a number that it has with those that share what they hold (`rows_alike`); () of few.
     """
 
     system: System
@@ -43,6 +45,7 @@ class EquationsOfMotion:
     V: Scalar
     accelerations: ScalarRow | None = None
     friction: ScalarRow = ()
+    alike: tuple[int, ...] = ()
 
     def __repr__(self) -> str:
         name = self.system.scope.model.name
@@ -91,4 +94,14 @@ def assembled(
         ties.phi,
         T,
         system.loads.potential_energy,
+        alike=_alike(system),
     )
+
+
+def _alike(system: System) -> tuple[int, ...]:
+    if len(system.ties.closing) < 2:
+        return ()
+    if rows_alike not in system.found:
+        system.found[rows_alike] = rows_alike(system.ties)
+    found: tuple[int, ...] = system.found[rows_alike]
+    return found
