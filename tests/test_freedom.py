@@ -2,12 +2,14 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from pathlib import Path
 
 import pytest
 
 import eomgen
 from eomgen.documents import rendered
+from eomgen.proof.freedoms import counted_otherwise
 from eomgen.verbs.check import check_document
 
 HEAD = """
@@ -170,3 +172,18 @@ def test_a_tie_that_closes_in_some_rows_and_reacts_in_others_says_which():
     assert kept == ["integrable (holonomic): rows 2 and 3 of tie 'plane': phi - psi*sin(alpha) - 1/5 = 0"]
     freedom = eomgen.freedom_of(model)
     assert (freedom.closing, freedom.identical) == (("plane",), ("plane",))
+
+
+def test_a_count_that_is_another_one_is_contradicted_by_the_rank_of_differences():
+    """f = nu - rank J of (phi+ - phi-)/2h; the rows that are not redundant are as many as the rank."""
+    model = eomgen.loads(HEAD + FOUR_BAR + HINGE + MIDDLE + coordinates(q1=1.0, q2=0.1, q3=1.0, q4=1.0))
+    found = eomgen.freedom_of(model)
+    assert counted_otherwise(model, {}, found) == ""
+    first = found.redundant[0]
+    wrong = (
+        replace(found, by_rank=(found.by_rank or 0) + 1),
+        replace(found, redundant=()),
+        replace(found, redundant=(replace(first, others=()), *found.redundant[1:])),
+        replace(found, by_formula=7),
+    )
+    assert all(counted_otherwise(model, {}, each) for each in wrong)

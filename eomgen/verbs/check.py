@@ -12,6 +12,7 @@ from eomgen.mechanics.structures.structure import Structure
 from eomgen.model.dimensions import inferred_units
 from eomgen.model.parts import Model, Truss
 from eomgen.model.warnings import warnings_of
+from eomgen.proof.freedoms import counted_otherwise
 from eomgen.symbolic.print.text import to_text
 from eomgen.verbs.checked import Checked, LoopStart, checked_model
 from eomgen.verbs.freedom_lines import branch_lines, freedom_lines
@@ -22,7 +23,9 @@ def check_document(model: Model) -> Document:
     """The model's parts and its degrees of freedom, by rank beside the count by formula."""
     found = checked_model(model)
     lines = [*_declared_lines(found), *freedom_lines(model, found.freedom), *_start_lines(found), *_rest_lines(found)]
-    return replace(plain_document(model, lambda: _entries(found), Lines(tuple(lines))), cautions=found.cautions)
+    wrong = counted_otherwise(model, found.modes, found.freedom)
+    document = plain_document(model, lambda: _entries(found), Lines(tuple(lines)), failed=wrong)
+    return replace(document, cautions=found.cautions)
 
 
 def _entries(found: Checked) -> dict[str, Any]:

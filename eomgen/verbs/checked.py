@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import field
 from functools import cached_property
 
 from eomgen.errors import DerivationError, MissingValues, ModelError, Problem
@@ -45,6 +46,7 @@ class Checked:
         open: the contacts that do not touch at the start.
         mobility, structure: of what has no coordinates; None of all else.
         cautions: what will be refused, or hardly is meant.
+        modes: how the contacts are at the start.
     """
 
     model: Model
@@ -54,6 +56,7 @@ class Checked:
     structure: Structure | None
     start: LoopStart
     cautions: tuple[Problem, ...] = ()
+    modes: ContactModes = field(default_factory=dict)
 
     @property
     def missing(self) -> list[str]:
@@ -99,6 +102,7 @@ def checked_model(model: Model) -> Checked:
         structure=structure_of(system_of(model, modes_at_rest(model))) if still else None,
         start=start,
         cautions=(*_open(model, start), *(_idle(model, modes) if model.coordinates else ())),
+        modes=modes,
     )
 
 
