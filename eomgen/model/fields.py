@@ -218,7 +218,7 @@ class VectorRule:
     Args:
         item: the rule of a component.
         length: how many (None: as the space says).
-        point: a ground point's name may stand for it.
+        point, own_point: a name may stand for it, of a point of the ground, or of the body whose table this is.
         nonzero: a direction, so not all of it may be 0.
         downward: its last component, where it is the only one, is hardly above zero.
     """
@@ -226,14 +226,16 @@ class VectorRule:
     item: FormulaRule = FormulaRule()
     length: int | None = None
     point: bool = False
+    own_point: bool = False
     nonzero: bool = False
     downward: bool = False
 
     def read(self, raw: Any, path: DocumentPath, found: list[Finding]) -> Any:
-        if self.point and isinstance(raw, str) and not isinstance(raw, Decimal):
+        if (self.point or self.own_point) and isinstance(raw, str) and not isinstance(raw, Decimal):
             return str(raw)
         if not isinstance(raw, (list, tuple)):
-            also = " or the name of a point of the ground" if self.point else ""
+            of = "ground" if self.point else "body"
+            also = f" or the name of a point of the {of}" if self.point or self.own_point else ""
             what = f"a list of components{also} is needed here, not {shown(raw)}"
             found.append(Finding(path, what, 'write one for each axis: [1, 0], [0, "-g"]'))
             return None
@@ -248,7 +250,7 @@ class VectorRule:
     def schema(self, definitions: dict[str, Any]) -> dict[str, Any]:
         low, high = (self.length, self.length) if self.length else (2, 3)
         vector = {"type": "array", "items": self.item.schema(definitions), "minItems": low, "maxItems": high}
-        return {"anyOf": [{"type": "string"}, vector]} if self.point else vector
+        return {"anyOf": [{"type": "string"}, vector]} if self.point or self.own_point else vector
 
 
 @dataclass(frozen=True)

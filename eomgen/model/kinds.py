@@ -80,6 +80,7 @@ PlaneSize = Annotated[VectorFormula, VectorRule(FormulaRule("m", "positive"), le
 
 BodyName = Annotated[str, NameRule("body")]
 PointName = Annotated[str, NameRule("point")]
+OwnPlace = Annotated[VectorFormula | str, VectorRule(FormulaRule("m"), own_point=True)]
 OwnPointName = Annotated[str, NameRule("own point")]
 SeatName = Annotated[str, NameRule("seat")]
 CoordinateName = Annotated[str, NameRule("coordinate")]

@@ -52,12 +52,39 @@ def resolved(model: Made) -> Made:
 
 
 def _resolved_tables(model: Any) -> dict[str, Any]:
+    constraints, centers = _with_centers(model)
     bodies = Table({name: _resolved_body(model, name, body) for name, body in model.bodies.items()})
+    for name, points in centers.items():
+        own = bodies[name].points or {}
+        bodies = Table({**bodies, name: altered(bodies[name], points=Table({**own, **points}))})
     forces = {name: _resolved_force(force) for name, force in model.forces.items()}
     in_si, in_own = typing_of(model)
     outputs = {name: _settled(output, in_si, ("at",)) for name, output in model.outputs.items()}
     given = None if model.given is None else _settled(model.given, in_own, ("velocity", "acceleration"))
-    return {"bodies": bodies, "forces": Table(forces), "outputs": Table(outputs), "given": given}
+    return {
+        "bodies": bodies,
+        "constraints": constraints,
+        "forces": Table(forces),
+        "outputs": Table(outputs),
+        "given": given,
+    }
+
+
+def _with_centers(model: Any) -> tuple[Table[Any], dict[str, dict[str, Any]]]:
+    """The ties, each place that is the center of a body a point of it; and these points, by body."""
+    found: dict[str, Any] = {}
+    points: dict[str, dict[str, Any]] = {}
+    for name, tie in model.constraints.items():
+        center = getattr(tie, "center", None)
+        found[name] = tie
+        if isinstance(center, tuple):
+            body = model.bodies[tie.body]
+            own = f"center_of_{name}"
+            while own in (body.points or {}) or own in points.get(tie.body, {}):
+                own += "_"
+            points.setdefault(tie.body, {})[own] = center
+            found[name] = altered(tie, center=own)
+    return Table(found), points
 
 
 def _settled(part: Any, typing: Typing, keys: tuple[str, ...]) -> Any:

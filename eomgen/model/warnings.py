@@ -8,6 +8,7 @@ from typing import Any
 
 from eomgen.model.arithmetic import AnyNumber, in_order, value_of
 from eomgen.model.catalog import SYMBOL_TABLES, Catalog, owner_of
+from eomgen.model.checks.triangle import possible
 from eomgen.model.dimensions import inferred
 from eomgen.model.fields import Leaf, NameRule
 from eomgen.model.findings import Finding, whereabouts
@@ -25,7 +26,7 @@ def warnings_of(model: Any) -> tuple[Finding, ...]:
     catalog = Catalog(model, ())
     values = _assumed(catalog)
     checks = (_angles(catalog, values), _signs(catalog, values), _weights(catalog, values))
-    more = (_unheld(catalog), _masses(catalog, values), _symbols_twice(catalog))
+    more = (_impossible(catalog, values), _unheld(catalog), _masses(catalog, values), _symbols_twice(catalog))
     return (*inferred(catalog).warnings, *(finding for check in (*checks, *more) for finding in check))
 
 
@@ -100,6 +101,21 @@ def _weights(catalog: Catalog, values: Mapping[str, AnyNumber]) -> Iterator[Find
                 axis = "xyz"[len(parts) - 1]
                 mend = f'write "-{leaf.value[-1].text}"; where {axis} points down, axis_down = true says so'
                 yield Finding(leaf.path, f"gravity pulls upward, along {axis}", mend)
+
+
+def _impossible(catalog: Catalog, values: Mapping[str, AnyNumber]) -> Iterator[Finding]:
+    """An inertia in space that no body has, where nobody says that it was measured: published data are often so."""
+    for name, body in catalog.table("bodies").items():
+        if catalog.model.space != "space" or body.inertia is None or body.measured or len(body.inertia) not in (3, 6):
+            continue
+        if not all(x.names <= _valued(catalog) for x in body.inertia):
+            continue
+        moments = [float(x) for e in body.inertia if (x := value_of(e, values)) is not None]
+        if len(moments) == len(body.inertia) and not possible(moments):
+            shown = ", ".join(f"{x:g}" for x in moments)
+            what = f"no body has the inertia of '{name}': [{shown}] breaks the triangle inequality"
+            mend = "a principal moment is at most the sum of the others; measured = true says that it is published data"
+            yield Finding(("bodies", name, "inertia"), what, mend)
 
 
 def _unheld(catalog: Catalog) -> Iterator[Finding]:

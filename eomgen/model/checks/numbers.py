@@ -8,7 +8,6 @@ from eomgen.errors import ExpressionError
 from eomgen.model.arithmetic import AnyNumber, in_order, value_of
 from eomgen.model.catalog import Catalog
 from eomgen.model.checks.made import made
-from eomgen.model.checks.triangle import possible
 from eomgen.model.fields import Leaf
 from eomgen.model.findings import Finding, shown, whereabouts
 from eomgen.model.positions import DocumentPath
@@ -106,13 +105,3 @@ def _inertias(catalog: Catalog, values: dict[str, AnyNumber]) -> Iterator[Findin
         for k in negative:
             what = f"a moment of inertia of body '{name}' is negative: {body.inertia[k].text}"
             yield Finding(path if len(moments) == 1 else (*path, k), what)
-        if not negative and not body.measured and catalog.model.space == "space" and len(moments) in (3, 6):
-            yield from _triangle(name, path, [float(x) for x in moments if x is not None], len(moments))
-
-
-def _triangle(name: str, path: DocumentPath, moments: list[float], count: int) -> Iterator[Finding]:
-    if len(moments) == count and not possible(moments):
-        told = ", ".join(f"{x:g}" for x in moments)
-        what = f"no body has the inertia of '{name}': [{told}] breaks the triangle inequality"
-        mend = "a principal moment is at most the sum of the others; measured = true waives this for published data"
-        yield Finding(path, what, mend)

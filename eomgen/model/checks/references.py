@@ -156,6 +156,9 @@ _CHECKS: dict[str, Callable[[Catalog, Leaf], Any]] = {
 
 def _vector(catalog: Catalog, leaf: Leaf) -> Iterator[Finding]:
     rule, value, space = leaf.rule, leaf.value, catalog.model.space
+    if isinstance(value, str) and rule.own_point:
+        yield from _own_point(catalog, leaf)
+        return
     if isinstance(value, str):
         if value not in catalog.table("points"):
             what = f"unknown point of the ground '{value}' in {whereabouts(leaf.path)}"

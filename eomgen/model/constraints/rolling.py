@@ -24,7 +24,7 @@ from eomgen.model.constraints.tracks import (
 from eomgen.model.findings import Finding
 from eomgen.model.forces.load import LoadContext
 from eomgen.model.friction import FrictionLaw
-from eomgen.model.kinds import BodyName, Flag, Length, OwnPointName, Radius, Size, SpaceDirection
+from eomgen.model.kinds import BodyName, Flag, Length, OwnPlace, Radius, Size, SpaceDirection
 from eomgen.model.part import PartRule
 from eomgen.model.positions import DocumentPath
 from eomgen.records import dataclass
@@ -51,7 +51,8 @@ class Rolling(Constraint):
         friction: with slip.
         radius: None: the shape's; of a tyre that of its centre line [m].
         tube: in space, with `axis`: the radius of the tyre's section (None: a thin disc) [m].
-        center: the point of the body about which it is round; None: its origin.
+        center: the point of the body about which it is round, or a place in its axes, which becomes a point of it when
+            the model is finished; None: its origin.
         axis: in space, of a wheel, body axes; without it a ball.
         ellipsoid: in space, semiaxes of an ellipsoid, 3 [m].
     """
@@ -67,9 +68,15 @@ class Rolling(Constraint):
     friction: FrictionLaw | None = None
     radius: Length | None = None
     tube: Radius | None = None
-    center: OwnPointName | None = None
+    center: OwnPlace | None = None
     axis: SpaceDirection | None = None
     ellipsoid: Size | None = None
+
+    @property
+    def _hub(self) -> str | None:
+        """The center as a point of the body."""
+        assert not isinstance(self.center, tuple), "a point when the model was finished"
+        return self.center
 
     def findings(self, path: DocumentPath, catalog: Catalog) -> Iterator[Finding]:
         """Tracks and sizes that are missing or exclude one another, or that are for another space."""
@@ -129,7 +136,7 @@ class Rolling(Constraint):
 
     def meeting(self) -> Meeting:
         """The round body and its track."""
-        body = TouchingRound(self.body, self.center, self.radius, self.axis, self.tube, self.ellipsoid)
+        body = TouchingRound(self.body, self._hub, self.radius, self.axis, self.tube, self.ellipsoid)
         flat, track = self.line or self.plane, self.circle
         if flat is not None:
             return Meeting(body, FlatSurface(self.on, flat.at, flat.normal), not self.slip)
@@ -145,7 +152,7 @@ class Rolling(Constraint):
         clockwise (x, where n is y); in space e = t and s, with n a right-handed frame (x and y, where n is z). The
         no-slip rows are of velocities alone.
         """
-        center = scene.own_place(self.body, self.center)
+        center = scene.own_place(self.body, self._hub)
         contact = self._contact(scene, scene.position(center))
         touch = Touch(center, contact.reach), Touch(contact.anchor, contact.arm)
         normal = opposite(*touch, contact.n)
@@ -164,7 +171,7 @@ class Rolling(Constraint):
         if self.plane is not None:
             n = normal_of(scene, self.on, self.plane)
             return (Edge(f"'{self.body}' lies flat in '{name}'", body.tilt(scene, n)),)
-        center = scene.position(scene.own_place(self.body, self.center))
+        center = scene.position(scene.own_place(self.body, self._hub))
         out = minus(center, scene.position(self._curved(scene).anchor))
         return (Edge(f"the whole rim of '{self.body}' touches in '{name}'", body.distance(scene, out)),)
 
