@@ -10,6 +10,7 @@ import pytest
 import eomgen
 from eomgen.documents import rendered
 from eomgen.documents.document import Document
+from eomgen.documents.json_read_back import json_read_back
 from eomgen.documents.read_back import page_read_back
 from eomgen.documents.text_read_back import text_read_back
 from eomgen.proof.typeset import SetLetters, tokens_of, typeset, worth
@@ -138,3 +139,26 @@ def test_columns_of_a_text_that_are_exchanged_are_seen():
 
 def told_of_text(page: str) -> str:
     return "; ".join(check.detail for check in text_read_back(document(), page) if check.status == "fails")
+
+
+MACHINES = {
+    "a number": ("9.81", "9.82"),
+    "a sign": (" + ", " - "),
+    "a unit": ('"kg"', '"N"'),
+    "a title": ("Equations", "Equation"),
+    "a key": ('"exact"', '"value"'),
+}
+
+
+@pytest.mark.parametrize("change", MACHINES)
+def test_a_change_of_what_machines_get_is_seen(change: str):
+    """Where it stands first and where it stands last."""
+    found = eomgen.linearize(eomgen.loads(SWING)).document
+    entries, page, (old, new) = found.entries(), rendered(found, "json"), MACHINES[change]
+    last = page.rpartition(old)
+
+    def wrong(text: str) -> bool:
+        return any(check.status == "fails" for check in json_read_back(found, entries, text))
+
+    assert not wrong(page) and old in page
+    assert wrong(page.replace(old, new, 1)) and wrong(f"{last[0]}{new}{last[2]}")

@@ -11,6 +11,7 @@ from typing import Any
 
 from eomgen.documents import rendered
 from eomgen.documents.document import Document, quantities_of
+from eomgen.documents.json_read_back import json_read_back
 from eomgen.documents.quantity import Quantity
 from eomgen.documents.read_back import page_read_back
 from eomgen.documents.statements import Equation, Listing, Matrix, Statement, parts_of
@@ -49,7 +50,9 @@ def proven_for_machines(document: Document) -> Document:
     entries, tally = document.entries(), Tally("texts for machines, read back, give their numbers", HOW)
     for name, compared in _compared(quantities_of(entries).items(), document.parameters):
         tally.add(name, compared)
-    certificate = _joined(document.certificate, tally.checks())
+    bare = {name: x for name, x in entries.items() if name != "certificate"}
+    page = rendered(replace(document, certificate=None, entries=lambda: bare), "json")
+    certificate = _joined(document.certificate, (*tally.checks(), *json_read_back(document, bare, page)))
     found = {**entries, "certificate": certificate.as_dict()}
     return replace(document, certificate=certificate, entries=lambda: found)
 

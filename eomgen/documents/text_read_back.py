@@ -92,11 +92,11 @@ class TextRead:
             self._table(statement if isinstance(statement, Grid) else columns_of(statement))
         elif isinstance(statement, Listing):
             for row in statement.rows:
-                self._says(_row_said(row))
+                self._says(row_said(row))
         elif isinstance(statement, Lines):
             self._says("".join(statement.lines))
         elif isinstance(statement, Prose):
-            self._says("".join(map(_piece_said, statement.pieces)))
+            self._says("".join(map(piece_said, statement.pieces)))
         else:
             self._says(_formula_said(statement))
 
@@ -115,10 +115,10 @@ class TextRead:
     def _table(self, grid: Grid) -> None:
         """Heads, then rows: each cell begins where its head does, or where it does in the other rows."""
         begins: dict[int, int] = {}
-        if not any(map(flat, chain.from_iterable(map(_cell_said, row) for row in (grid.head, *grid.rows)))):
+        if not any(map(flat, chain.from_iterable(map(cell_said, row) for row in (grid.head, *grid.rows)))):
             return
         for row in (grid.head, *grid.rows):
-            rest = {k: text for k, cell in enumerate(row) if (text := flat(_cell_said(cell)))}
+            rest = {k: text for k, cell in enumerate(row) if (text := flat(cell_said(cell)))}
             where = next(iter(rest.values()), "")
             while rest:
                 if not self.lines:
@@ -148,7 +148,8 @@ def _placed(line: str, rest: dict[int, str]) -> Iterator[tuple[int, int, str]]:
         yield columns.pop(0), found.start(), text
 
 
-def _row_said(row: Found) -> str:
+def row_said(row: Found) -> str:
+    """A quantity by its name."""
     told = f"{row.name}:{row.words}" if row.words else row.name
     return told + _quantity_said(row.quantity)
 
@@ -161,30 +162,32 @@ def _quantity_said(found: Quantity) -> str:
     return said + (f"[{found.method}]" if found.method else "") + (f"({found.message})" if found.message else "")
 
 
-def _piece_said(piece: Piece | Side) -> str:
+def piece_said(piece: Piece | Side) -> str:
+    """A piece of a sentence."""
     if isinstance(piece, str):
         return piece
-    return f"`{piece.text}`" if isinstance(piece, Code) else _side_said(piece)
+    return f"`{piece.text}`" if isinstance(piece, Code) else side_said(piece)
 
 
-def _cell_said(cell: Cell) -> str:
-    return cell if isinstance(cell, str) else _side_said(cell)
+def cell_said(cell: Cell) -> str:
+    """A cell of a table."""
+    return cell if isinstance(cell, str) else side_said(cell)
 
 
 def _formula_said(formula: Formula) -> str:
     """a = b; a matrix row by row, cases one below the other."""
     *left, last = formula.sides
-    said = [_side_said(side) for side in left]
+    said = [side_said(side) for side in left]
     if left and isinstance(last, Matrix):
-        said.append("".join("[" + "".join(map(_side_said, row)) + "]" for row in last.rows))
+        said.append("".join("[" + "".join(map(side_said, row)) + "]" for row in last.rows))
     elif left and is_piecewise(last):
         said.append("".join(cases_text(last)))
     else:
-        said.append(_side_said(last))
+        said.append(side_said(last))
     return "=".join(said)
 
 
-def _side_said(side: Side) -> str:
+def side_said(side: Side) -> str:
     """Quantities by their letters, as Q(theta), v(bob)^2, M[x, y], -dV/dx; what is a formula as it is proven."""
     if isinstance(side, Name):
         whose = ",".join([*([side.by.name] if side.by is not None else []), *([side.of] if side.of else [])])
@@ -192,15 +195,15 @@ def _side_said(side: Side) -> str:
     if isinstance(side, Entry):
         return f"{side.letter}[{side.row.name},{side.column.name}]"
     if isinstance(side, Partial):
-        return f"{'-' if side.sign == -1 else ''}d{_side_said(side.of)}/d{side.by.name}"
+        return f"{'-' if side.sign == -1 else ''}d{side_said(side.of)}/d{side.by.name}"
     if isinstance(side, Rate):
-        return f"{side.of.name}'" if isinstance(side.of, Node) else f"d/dt({_side_said(side.of)})"
+        return f"{side.of.name}'" if isinstance(side.of, Node) else f"d/dt({side_said(side.of)})"
     if isinstance(side, Law):
         return side.text
     if isinstance(side, Omitted):
         return f"({side.operations}operations,notprinted)"
     if isinstance(side, Matrix):
-        return "[" + ",".join("[" + ",".join(map(_side_said, row)) + "]" for row in side.rows) + "]"
+        return "[" + ",".join("[" + ",".join(map(side_said, row)) + "]" for row in side.rows) + "]"
     return ";".join(cases_text(side)) if is_piecewise(side) else formula_as_text(side)
 
 
