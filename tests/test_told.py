@@ -173,3 +173,60 @@ SMALL: dict[str, Callable[[dict[str, Any]], None]] = {
 @pytest.mark.parametrize("change", SMALL)
 def test_what_is_told_otherwise_of_small_motions_is_seen(change: str):
     assert wrong_modes(SMALL[change])
+
+
+# -- section forces --------------------------------------------------------------------------------------------
+
+BEAM = """
+eomgen = 1
+name = "A beam"
+space = "plane"
+
+[parameters]
+p = { value = 2, unit = "kN/m" }
+a = { value = 1.5, unit = "m" }
+F = { value = 3, unit = "kN" }
+
+[bodies.beam]
+points = { A = [0, 0], B = ["3*a", 0] }
+line = ["A", "B"]
+
+[constraints]
+A = { kind = "pin", points = ["beam.A"] }
+B = { kind = "support", point = "beam.B", normal = [0, 1] }
+
+[forces]
+load = { kind = "distributed", body = "beam", between = ["A", "B"], intensity = [0, "-p"] }
+pull = { kind = "force", point = "beam.B", force = ["F", 0] }
+"""
+
+
+def wrong_sections(change: Callable[[Any, Any], None]) -> str:
+    from eomgen.documents.statics.section_steps import section_payload, section_steps, told_sections
+    from eomgen.proof.sections_told import sections_told
+
+    sections = eomgen.statics(eomgen.loads(BEAM)).sections
+    told = dict(enumerate(told_sections(sections, section_steps(sections), section_payload(sections))))
+    assert len(told) == 2
+    for _, each in told.values():
+        change(each.pieces[0], each.extremes[0])
+    return "; ".join(c.detail for c in sections_told(sections.found, told.values(), {}) if c.status == "fails")
+
+
+def test_section_forces_as_they_are_told_hold():
+    assert not wrong_sections(lambda piece, extreme: None)
+
+
+SECTIONS: dict[str, Callable[[Any, Any], None]] = {
+    "V and M exchanged": lambda piece, extreme: piece.update(V=piece["M"], M=piece["V"]),
+    "N and V exchanged": lambda piece, extreme: piece.update(V=piece["N"], N=piece["V"]),
+    "the ends exchanged": lambda piece, extreme: piece.update({"from": piece["to"], "to": piece["from"]}),
+    "an extreme elsewhere": lambda piece, extreme: extreme.update(x=0),
+    "another extreme": lambda piece, extreme: extreme.update(M=0),
+}
+
+
+@pytest.mark.parametrize("change", SECTIONS)
+def test_section_forces_that_are_told_otherwise_are_seen(change: str):
+    """dM/dx = V, under the heads that are printed."""
+    assert wrong_sections(SECTIONS[change])

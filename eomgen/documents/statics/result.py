@@ -17,6 +17,7 @@ from eomgen.documents.statics.section_steps import (
     section_payload,
     section_steps,
     sections_of,
+    told_sections,
 )
 from eomgen.documents.statics.steps import contacts_step, statics_derivation
 from eomgen.errors import UsageError
@@ -33,8 +34,10 @@ from eomgen.model.contacts import contacts_of
 from eomgen.model.parts import Model
 from eomgen.model.reader import ModelOrPath, model_at
 from eomgen.model.replaced import Values
+from eomgen.model.values import exact_parameters
 from eomgen.proof.check import Certificate
 from eomgen.proof.parameters import other_data
+from eomgen.proof.sections_told import sections_told
 from eomgen.proof.structure import structure_checks
 from eomgen.records import dataclass
 from eomgen.symbolic.expression.graph import Scalar
@@ -123,7 +126,9 @@ class Statics(Result):
     def certify(self) -> Certificate:
         """Check the two ways, every body's balance, section forces from the other end, influence lines by loads."""
         checks = structure_checks(self.found, self.sections.found, self.influence)
-        return Certificate((*checks, *other_data(self.found.system.motion)))
+        told = told_sections(self.sections, self.derivation.steps, section_payload(self.sections))
+        sections = sections_told(self.sections.found, told, exact_parameters(self.model))
+        return Certificate((*checks, *other_data(self.found.system.motion), *sections))
 
     @cached_property
     def derivation(self) -> Document:

@@ -2,16 +2,18 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from typing import Any
 
 from eomgen.documents.latex_names import letter_law
 from eomgen.documents.statements import Formula, Grid, Law, Name, Side, Statement, Step, prose
+from eomgen.documents.text import cell_text
 from eomgen.errors import DerivationError
 from eomgen.mechanics.reactions.reactions import Reactions
 from eomgen.mechanics.statics.influence import InfluenceLine
 from eomgen.mechanics.statics.section_forces import KINDS, SectionForces, SectionPiece, section_forces
 from eomgen.model.trusses import is_node
+from eomgen.proof.sections_told import ToldSections
 from eomgen.records import dataclass
 from eomgen.symbolic.expression.graph import Node, Scalar
 from eomgen.symbolic.print.text import to_text
@@ -76,6 +78,21 @@ def section_payload(sections: Sections) -> dict[str, Any]:
             "extremes": [{"x": to_text(e.x), "M": to_text(e.M)} for e in forces.extremes],
         }
     return found | {body: {"message": reason} for body, reason in sections.reasons.items()}
+
+
+def told_sections(sections: Sections, steps: Sequence[Step], payload: Mapping[str, Any]) -> Iterator[tuple[str, Any]]:
+    """(body, what is told of it), as it is printed and as machines get it."""
+    by_key = {step.key: step.statements for step in steps}
+    for body, forces in sections.found.items():
+        printed = by_key[f"section_{body}"]
+        (grid,) = (x for x in printed if isinstance(x, Grid))
+        heads = [{"from x": "from", "to x": "to"}.get(head, head) for head in map(cell_text, grid.head)]
+        sides = [x.sides[1] for x in printed if isinstance(x, Formula)]
+        extremes = [dict(zip(("M", "x"), sides[k : k + 2], strict=True)) for k in range(0, len(sides), 2)]
+        rows = [dict(zip(heads, row, strict=True)) for row in grid.rows]
+        x = _variable(forces).name
+        yield body, ToldSections(x, rows, extremes)  # type: ignore[arg-type]
+        yield body, ToldSections(payload[body]["variable"], payload[body]["pieces"], payload[body]["extremes"])
 
 
 def _row(forces: SectionForces, piece: SectionPiece, x: Node) -> dict[str, str]:
