@@ -68,7 +68,7 @@ def _integrals(equations: EquationsOfMotion, reader: Reader) -> tuple[Step, ...]
             statements += page(reader, pairs)
         for each in (other for other in cyclic if other not in rates):
             words = ("The momentum of the speed ", speeds[each.coordinate], " stays constant")
-            statements.append(prose(*words, *_while(each.held), ":"))
+            statements.append(prose(*words, *while_words(each.held), ":"))
             statements += page(reader, [(Partial(Name("T"), speeds[each.coordinate]), each.expression)])
     energies = energy_integral(equations)
     for energy in energies:
@@ -97,10 +97,12 @@ def _cyclic(coordinates: tuple[Node, ...], held: Extent) -> Prose:
     verb = ("s ", " are cyclic: their momenta stay") if many else (" ", " is cyclic: its momentum stays")
     if not held.everywhere:
         verb = ("s ", ": their momenta stay") if many else (" ", ": its momentum stays")
-    return prose(f"The coordinate{verb[0]}", *listed_symbols(coordinates), f"{verb[1]} constant", *_while(held), ":")
+    return prose(
+        f"The coordinate{verb[0]}", *listed_symbols(coordinates), f"{verb[1]} constant", *while_words(held), ":"
+    )
 
 
-def _while(held: Extent) -> tuple[Piece, ...]:
+def while_words(held: Extent) -> tuple[Piece, ...]:
     """ " while y >= 0" of what holds in some pieces alone."""
     words: list[Piece] = []
     for each in held.within:
@@ -126,7 +128,7 @@ def _energy(reader: Reader, equations: EquationsOfMotion, energy: Integral) -> l
     elif energy.expression is not equations.T + equations.V:
         law = ENERGY_AND_WORK
         words = ("The energy less the work of the constant forces, ", law, ", stays constant")
-    words = (*words, *_while(energy.held))
+    words = (*words, *while_words(energy.held))
     if any(node.op == "select" for node in order((energy.expression,))):
         return [prose(*words, ".")]
     if law is not JACOBI:

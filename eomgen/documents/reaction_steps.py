@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from itertools import islice
 
+from eomgen.documents.integral_steps import while_words
 from eomgen.documents.reaction_names import Lettered, lettered
 from eomgen.documents.reaction_values import Readings, readings_of, shown_system
 from eomgen.documents.reading import LONGEST, TRIED, Reader, free_names, length_in_print
@@ -14,6 +15,7 @@ from eomgen.errors import DerivationError
 from eomgen.mechanics.bodies.system_scene import given_start
 from eomgen.mechanics.equations.equations_of_motion import EquationsOfMotion
 from eomgen.mechanics.equations.system import System
+from eomgen.mechanics.first_integrals.integrals import where_integrals_hold
 from eomgen.mechanics.first_integrals.speeds import rates_of
 from eomgen.mechanics.reactions.reactions import Reactions, reactions_of
 from eomgen.symbolic.exact.book_form import book_form
@@ -130,7 +132,8 @@ def along_the_motion(equations: EquationsOfMotion, reader: Reader, letters: Lett
             formulas.append(Formula((symbol, found)))
     if not formulas:
         return ()
-    words = prose("The motion from the start has, by its first integrals,")
+    held = while_words(where_integrals_hold(equations))
+    words = prose("The motion from the start has, by its first integrals", *held, ",")
     then = prose("so that along it the reactions are functions of the coordinates:")
     statements = (words, *map(Formula, squares), then, *formulas)
     return (Step("along", "Reactions along the motion from the start", statements),)

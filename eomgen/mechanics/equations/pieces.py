@@ -43,7 +43,7 @@ from eomgen.symbolic.numeric.pieces import (
     piecewise_nodes,
     switches_of,
 )
-from eomgen.symbolic.numeric.tolerances import SOON
+from eomgen.symbolic.numeric.tolerances import COMPUTED, DIFFERENCE_AT_50, SOON
 from eomgen.symbolic.numeric.work import Work, check_patience
 from eomgen.symbolic.print.text import to_text
 
@@ -142,7 +142,7 @@ class Division:
         """The fewest choices of the start's piece that no piece makes in which it does not hold."""
         assert self.start is not None
         kept = [k for k, choice in enumerate(self.start) if choice or self.nodes[k].op == "sampled"]
-        for k in list(kept):
+        for k in reversed(kept):  # what is made of others first: abs(y) <= L0 says more than max(0, abs(y) - L0) = 0
             rest = [j for j in kept if j != k]
             if not any(all(piece[j] == self.start[j] for j in rest) for piece in bad):
                 kept = rest
@@ -167,12 +167,13 @@ class Division:
         if len(inside) == 1 and type(sign) is Node and sign.op in ("sign", "neg"):
             (x,) = inside
             below = x if sign.op == "sign" else -x
-        terms = linear_terms(below)
-        left = sum((c * (1 if y is None else y) for y, c in terms.items() if c > 0), start=0)
-        right = sum((-c * (1 if y is None else y) for y, c in terms.items() if c < 0), start=0)
-        if depends_on(left, tuple(moving_symbols(self.system))):
-            return Condition(left, "<=", right)
-        return Condition(right, ">=", left)
+        moving = tuple(moving_symbols(self.system))
+        parts = [(c, 1 if y is None else y) for y, c in linear_terms(below).items()]
+        moves = [(c, y) for c, y in parts if depends_on(y, moving)]
+        sense = -1 if all(c < 0 for c, _ in moves) else 1
+        left = sum((sense * c * y for c, y in moves), start=0)
+        right = sum((-sense * c * y for c, y in parts if not depends_on(y, moving)), start=0)
+        return Condition(left, "<=" if sense > 0 else ">=", right)
 
 
 def moving_symbols(system: System) -> frozenset[Node]:
@@ -201,6 +202,25 @@ def where_holds(
         return EVERYWHERE if decide(tuple(scalars)) else NOWHERE
     nodes = division.nodes
     return division.where(lambda piece: decide(as_chosen(scalars, nodes, piece)))
+
+
+def where_continuous(equations: EquationsOfMotion, x: Scalar) -> Extent:
+    """Where a function of the motion does not jump: everywhere, or in the piece of the start alone."""
+    division = division_of(equations, (x,))
+    if division is None:
+        return EVERYWHERE
+    moving, near = moving_symbols(equations.system), of_50_digits(DIFFERENCE_AT_50)
+    for switch in switches_of((x,), moving):
+        for state in division.found.values():
+            try:
+                for end in switch.places(state):
+                    sides = [switch.moved(state, end + sign * near, moving) for sign in (-1, 1)]
+                    values = [evaluate((x,), side, fifty_digits())[0] for side in sides if side is not None]
+                    if len(values) == 2 and abs(values[0] - values[1]) > COMPUTED * (1 + abs(values[0])):
+                        return division.where(lambda piece: piece == division.start)
+            except (NoValue, ZeroDivisionError):
+                continue
+    return EVERYWHERE
 
 
 def _divided(equations: EquationsOfMotion, scalars: tuple[Scalar, ...]) -> Division | None:

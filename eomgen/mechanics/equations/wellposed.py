@@ -11,7 +11,7 @@ from eomgen.mechanics.bodies.inertia import mass_properties
 from eomgen.mechanics.bodies.kinematics import BodyLink
 from eomgen.mechanics.constraints.closure import generic_state, of_50_digits, scattered_state
 from eomgen.mechanics.equations.equations_of_motion import EquationsOfMotion
-from eomgen.mechanics.equations.pieces import EVERYWHERE, NOWHERE, Extent, where_holds
+from eomgen.mechanics.equations.pieces import EVERYWHERE, NOWHERE, Extent, where_continuous, where_holds
 from eomgen.mechanics.equations.system import System
 from eomgen.mechanics.equations.work import from_potential
 from eomgen.symbolic.exact.equality import equal_at_random_states
@@ -38,7 +38,7 @@ def where_conservative(equations: EquationsOfMotion) -> Extent:
     if not elastic:
         return EVERYWHERE
     n = len(elastic)
-    return where_holds(
+    return where_continuous(equations, equations.V) & where_holds(
         equations,
         (*equations.Q, *elastic),
         lambda x: equal_at_random_states(zip(x[:n], x[n:], strict=True)).equal,
