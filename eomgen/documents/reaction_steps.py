@@ -15,8 +15,7 @@ from eomgen.errors import DerivationError
 from eomgen.mechanics.bodies.system_scene import given_start
 from eomgen.mechanics.equations.equations_of_motion import EquationsOfMotion
 from eomgen.mechanics.equations.system import System
-from eomgen.mechanics.first_integrals.integrals import where_integrals_hold
-from eomgen.mechanics.first_integrals.speeds import rates_of
+from eomgen.mechanics.first_integrals.speeds import rates_and_extent
 from eomgen.mechanics.reactions.reactions import Reactions, reactions_of
 from eomgen.symbolic.exact.book_form import book_form
 from eomgen.symbolic.expression.derivative import depends_on, substituted
@@ -116,9 +115,10 @@ def along_the_motion(equations: EquationsOfMotion, reader: Reader, letters: Lett
     accelerations, positive = readings.accelerations, readings.system.scope.positive
     if not accelerations or start is None:
         return ()
-    rates = rates_of(equations, start, accelerations=tuple(accelerations.values()))
-    if rates is None or sum(text_size(x) for x in rates.values()) > TRIED:
+    by_integrals = rates_and_extent(equations, start, accelerations=tuple(accelerations.values()))
+    if by_integrals is None or sum(text_size(x) for x in by_integrals[0].values()) > TRIED:
         return ()
+    rates, held = by_integrals
     known, u = rates, tuple(rates)
     squares = [(u * u, book_form(x * x, Work.ENTRY, positive)) for u, x in rates.items()]
     formulas: list[Statement] = []
@@ -132,8 +132,7 @@ def along_the_motion(equations: EquationsOfMotion, reader: Reader, letters: Lett
             formulas.append(Formula((symbol, found)))
     if not formulas:
         return ()
-    held = while_words(where_integrals_hold(equations))
-    words = prose("The motion from the start has, by its first integrals", *held, ",")
+    words = prose("The motion from the start has, by its first integrals", *while_words(held), ",")
     then = prose("so that along it the reactions are functions of the coordinates:")
     statements = (words, *map(Formula, squares), then, *formulas)
     return (Step("along", "Reactions along the motion from the start", statements),)

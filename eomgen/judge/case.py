@@ -15,9 +15,11 @@ from eomgen.judge.decision import Follows, combination, is_zero_everywhere, line
 from eomgen.judge.edits import Edits
 from eomgen.judge.reading import MULTIPLIER, HandEquation, Reading, side_value
 from eomgen.mechanics.equations.equations_of_motion import EquationsOfMotion
+from eomgen.mechanics.equations.pieces import Extent
 from eomgen.mechanics.equations.system import System, system_of
 from eomgen.mechanics.equilibria.search import Equilibrium, all_equilibria
-from eomgen.mechanics.first_integrals.speeds import rates_of
+from eomgen.mechanics.first_integrals.integrals import where_momenta_hold
+from eomgen.mechanics.first_integrals.speeds import rates_and_extent
 from eomgen.mechanics.first_integrals.speeds_from_momenta import relations_of
 from eomgen.mechanics.instant.outputs import Quantities
 from eomgen.mechanics.statics.contacts_at_start import contacts_at_start
@@ -339,23 +341,23 @@ class Case:
         return rows, closing
 
     @cached_property
-    def speeds(self) -> dict[Node, Scalar] | None:
-        """Every speed as a function of the coordinates, by the first integrals from the start; None: they do not."""
+    def speeds(self) -> tuple[dict[Node, Scalar], Extent] | None:
+        """(every speed as a function of the coordinates, where that holds), by the first integrals; None: by none."""
         if self.equations is None or not self.start:
             return None
         try:
-            return rates_of(self.equations, self.start, accelerations=self.phase.accelerations)
+            return rates_and_extent(self.equations, self.start, accelerations=self.phase.accelerations)
         except (DerivationError, MissingValues, ModelError):
             return None
 
     @cached_property
-    def by_momenta(self) -> dict[Node, Scalar] | None:
-        """The speeds that the momenta from the start and the ties give by one of them; None: there are none."""
+    def by_momenta(self) -> tuple[dict[Node, Scalar], Extent] | None:
+        """(the speeds that the momenta from the start and the ties give by one of them, where); None: none."""
         if self.equations is None or not self.start:
             return None
         with suppress(DerivationError, MissingValues, ModelError):
             found = relations_of(self.equations, self.start)
-            return None if found is None else found.speeds
+            return None if found is None else (found.speeds, where_momenta_hold(self.equations))
         return None
 
     # -- what the solver of outputs answers --------------------------------------------------------

@@ -12,7 +12,6 @@ from eomgen.judge.decision import combination, is_zero_everywhere, linear_row
 from eomgen.judge.reading import HandEquation
 from eomgen.judge.terms import LONG
 from eomgen.mechanics.equations.pieces import EVERYWHERE, Extent
-from eomgen.mechanics.first_integrals.integrals import where_integrals_hold
 from eomgen.model.values import exact_parameters
 from eomgen.records import dataclass
 from eomgen.symbolic.exact.normal_form import legible
@@ -80,15 +79,16 @@ def _by_integrals(case: Case, scalar: Scalar, known: Mapping[Node, Scalar]) -> s
     if depends_on(scalar, case.system.symbols.lam):
         return ""
     for told in ("the momenta", "the energy theorem and the momenta"):
-        speeds = case.by_momenta if told == "the momenta" else case.speeds
-        started = substituted((case.phase.eliminated(scalar),), {**speeds, **known}) if speeds else ()
-        if not started or case.equations is None:
+        by_integrals = case.by_momenta if told == "the momenta" else case.speeds
+        if not by_integrals:
             continue
-        held = where_integrals_hold(case.equations)
-        found = combination(case.system, started, (), within=not held.everywhere)
+        speeds, held = by_integrals
+        started = substituted((case.phase.eliminated(scalar),), {**speeds, **known})
+        of_forces = depends_on(scalar, case.system.symbols.a)  # equations of motion hold in every piece
+        found = combination(case.system, started, (), within=not of_forces)
         if found.holds:
             return f"{told} from the start{while_(held)}"
-        if found.held and not depends_on(scalar, case.system.symbols.a):  # equations of motion hold in every piece
+        if found.held:
             return f"{told} from the start{while_(held & found.held)}"
     return ""
 

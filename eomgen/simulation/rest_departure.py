@@ -16,8 +16,7 @@ from eomgen.codegen.rhs import compiled
 from eomgen.errors import DerivationError, RunFailed
 from eomgen.mechanics.equations.equations_of_motion import EquationsOfMotion
 from eomgen.mechanics.first_integrals.closed_instant import position_equations
-from eomgen.mechanics.first_integrals.integrals import where_integrals_hold
-from eomgen.mechanics.first_integrals.speeds import rates_of
+from eomgen.mechanics.first_integrals.speeds import rates_and_extent
 from eomgen.mechanics.first_integrals.speeds_from_momenta import Relations, relations_of
 from eomgen.records import dataclass
 from eomgen.simulation.configurations import Configurations
@@ -195,10 +194,10 @@ class RestDeparture:
         Raises:
             RunFailed: no integrals give it.
         """
-        found = rates_of(self.equations, self._exact_start, accelerations=self.accelerations)
-        if found is None or not where_integrals_hold(self.equations).everywhere:
+        found = rates_and_extent(self.equations, self._exact_start, accelerations=self.accelerations)
+        if found is None or not found[1].everywhere:
             raise RunFailed("the motion rests at the start, and no integrals give its speeds elsewhere", mend=MEND)
-        return found[speed] * found[speed]
+        return found[0][speed] * found[0][speed]
 
     def _senses(self, speed: Node) -> tuple[int, ...]:
         u = self.start[speed]

@@ -22,8 +22,9 @@ from eomgen.model.quaternions import quaternions_of
 from eomgen.model.trusses import in_parts
 from eomgen.model.values import exact_parameters, start_values
 from eomgen.records import dataclass
-from eomgen.symbolic.expression.derivative import depends_on, substituted, symbols_of, tangent
+from eomgen.symbolic.expression.derivative import depends_on, derivative, substituted, symbols_of, tangent
 from eomgen.symbolic.expression.expressions import Expression
+from eomgen.symbolic.expression.functions import function, over
 from eomgen.symbolic.expression.graph import Graph, Node, Scalar
 from eomgen.symbolic.expression.rational import Fraction
 from eomgen.symbolic.expression.scalar_operations import through_samples
@@ -295,6 +296,46 @@ def primitive(f: Scalar, x: Node, zero: Container[str] | None = None) -> Scalar 
         return scalar_from_sympy(found, lookup)
     except DerivationError:  # a function that the graph does not have
         return None
+
+
+BENT = ("max", "min", "abs", "sign")
+
+
+def primitive_over_bends(f: Scalar, x: Node) -> Scalar | None:
+    """`primitive`, of functions with bends too, continuous over these; None where no closed form was found.
+
+    f = rest + sum of c times what has a bend, its arguments linear in x, c without x. The integral of max(0, d) is
+    max(0, d)^2/(2 d'), of min(0, d) the same with min, of |d| it is d |d|/(2 d'), of sign(d) it is |d|/d'.
+    """
+    total: Scalar = 0
+    while type(f) is Node and (bent := [n for n in order((f,)) if n.op in BENT and depends_on(n, (x,))]):
+        node = bent[-1]  # what holds others comes after them
+        name = f.graph.symbol("(what has a bend)")
+        (named,) = substituted((f,), {node: name})
+        factor, own = derivative(named, name), _of_one_bend(node, x)
+        if own is None or depends_on(factor, (x, name)):
+            return None
+        (f,) = substituted((named,), {name: 0})
+        total = total + factor * own
+    rest = 0 if _zero(f) else primitive(f, x)
+    return None if rest is None else total + rest
+
+
+def _of_one_bend(node: Node, x: Node) -> Scalar | None:
+    """The integral of max, min, abs or sign of what is linear in x; None of anything else."""
+    a, b = node.args if len(node.args) == 2 else (node.args[0], 0)
+    if not depends_on(a, (x,)):
+        a, b = b, a
+    d = a - b
+    slope = derivative(d, x)
+    if _zero(slope) or depends_on(slope, (x,)) or any(depends_on(derivative(y, x), (x,)) for y in (a, b)):
+        return None
+    if node.op == "sign":
+        return over(function("abs", d), slope)
+    if node.op == "abs":
+        return over(d * function("abs", d), 2 * slope)
+    above = function(node.op, 0, d)  # max(a, b) = b + max(0, a - b), and min the same
+    return Fraction(1, 2) * derivative(b, x) * x * x + substituted((b,), {x: 0})[0] * x + over(above * above, 2 * slope)
 
 
 def _zero(a: Scalar) -> bool:

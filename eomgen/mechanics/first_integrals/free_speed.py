@@ -11,8 +11,9 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 
-from eomgen.mechanics.bodies.scope import primitive
+from eomgen.mechanics.bodies.scope import primitive, primitive_over_bends
 from eomgen.mechanics.equations.equations_of_motion import EquationsOfMotion
+from eomgen.mechanics.equations.pieces import EVERYWHERE, Extent
 from eomgen.mechanics.first_integrals.integrals import energy_integral
 from eomgen.mechanics.first_integrals.linear_motion import LinearEquation, MotionConstants, particular
 from eomgen.mechanics.first_integrals.speeds_from_momenta import Relations, value_at_start
@@ -24,6 +25,7 @@ from eomgen.symbolic.expression.functions import function, over
 from eomgen.symbolic.expression.graph import Node, Scalar, is_zero, linear_terms
 from eomgen.symbolic.expression.traversal import order
 from eomgen.symbolic.numeric.evaluation import FLOAT, evaluate
+from eomgen.symbolic.numeric.pieces import PIECEWISE
 from eomgen.symbolic.numeric.tolerances import COMPUTED
 from eomgen.symbolic.numeric.work import Work
 from eomgen.symbolic.solve.solving import vanishes
@@ -49,15 +51,22 @@ class FreeSpeed:
     accelerations: Sequence[Scalar] | None
     at: Mapping[Node, Scalar]
 
-    def value(self) -> Scalar | None:
-        """u_s as a function of the coordinates that are not in `at`; None where nothing gives it."""
-        for energy in energy_integral(self.equations):
+    def value(self) -> tuple[Scalar, Extent] | None:
+        """(u_s as a function of the coordinates that are not in `at`, where that holds); None where nothing gives it.
+
+        By the energy where it stays; else along the path, where it is lost or stored without a potential; else by the
+        energy in the piece in which it stays.
+        """
+        energies = energy_integral(self.equations)
+        if not any(energy.held.everywhere for energy in energies):
+            square = self._square_by_path()
+            if square is not None:
+                root = function("sqrt", self._simple(substituted((square,), self.at)[0]))
+                return self._sense(self._speed) * root, EVERYWHERE
+        for energy in energies:
             difference = energy.expression - value_at_start(energy.expression, self.start, self.equations.symbols)
-            return self._root_of_energy(substituted((difference,), self.relations.speeds)[0])
-        square = self._square_by_path()
-        if square is None:
-            return None
-        return self._sense(self._speed) * function("sqrt", self._simple(substituted((square,), self.at)[0]))
+            return self._root_of_energy(substituted((difference,), self.relations.speeds)[0]), energy.held
+        return None
 
     @property
     def _speed(self) -> Node:
@@ -117,7 +126,7 @@ class FreeSpeed:
             return None
         (F,) = substituted((self.accelerations[symbols.u.index(s)],), self.relations.speeds)  # of all q: `at` is later
         F = self._in_sense(F)
-        if depends_on(F, (symbols.t, *symbols.inputs.values())):
+        if depends_on(F, (symbols.t, *symbols.inputs.values())) or self._has_pieces_of_speed(F):
             return None
         F = simplest(F, Work.VALUE)
         F0, F2 = substituted((F, over(derivative(derivative(F, s), s), 2)), {s: 0})
@@ -130,6 +139,10 @@ class FreeSpeed:
         growth, own = solution
         at, first = substituted((own, growth), {q: self.start[q]})
         return own + over(growth, first) * (self.start[s] * self.start[s] - at)
+
+    def _has_pieces_of_speed(self, F: Scalar) -> bool:
+        """Whether something in it changes its form with the speed: max(0, -y'), which is no square of it."""
+        return any(depends_on(x, (self._speed,)) for x in order((F,)) if x.op in PIECEWISE)
 
     def _in_sense(self, F: Scalar) -> Scalar:
         """F with sign(k u_s) replaced by what it is in this sense, for every k that has a sign of its own."""
@@ -155,7 +168,7 @@ def _of_first_order(f: Scalar, k: Scalar, q: Node) -> tuple[Scalar, Scalar] | No
         constants = MotionConstants(q, lambda x: None, lambda x: simplest(x, Work.VALUE))
         second = particular(LinearEquation(0, k, f), constants)  # of Y'' = k Y' + f, y = Y'
         return None if second is None else (growth, derivative(second, q))
-    gained = primitive(over(f, growth), q)
+    gained = primitive_over_bends(over(f, growth), q)
     return None if gained is None else (growth, growth * gained)
 
 

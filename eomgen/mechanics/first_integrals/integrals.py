@@ -77,11 +77,12 @@ def energy_integral(equations: EquationsOfMotion) -> tuple[Integral, ...]:
     return tuple(within[:1])
 
 
-def where_integrals_hold(equations: EquationsOfMotion) -> Extent:
-    """Where all of them do: what follows from them holds there."""
+def where_momenta_hold(equations: EquationsOfMotion) -> Extent:
+    """Where all momenta that stay constant do: what follows from them holds there."""
     held = EVERYWHERE
-    for each in (*energy_integral(equations), *momentum_integrals(equations)):
-        held = held & each.held
+    for each in momentum_integrals(equations):
+        if not depends_on(each.expression, (equations.symbols.t,)):
+            held = held & each.held
     return held
 
 

@@ -9,8 +9,10 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 
 from eomgen.mechanics.equations.equations_of_motion import EquationsOfMotion
+from eomgen.mechanics.equations.pieces import Extent
 from eomgen.mechanics.equations.system import System
 from eomgen.mechanics.first_integrals.free_speed import FreeSpeed
+from eomgen.mechanics.first_integrals.integrals import where_momenta_hold
 from eomgen.mechanics.first_integrals.speeds_from_momenta import relations_of
 from eomgen.model.values import exact_parameters
 from eomgen.symbolic.expression.derivative import substituted
@@ -36,17 +38,32 @@ def rates_of(
     Raises:
         DerivationError: a coordinate has no value at the start.
     """
+    found = rates_and_extent(equations, start, there=there, accelerations=accelerations, at=at)
+    return None if found is None else found[0]
+
+
+def rates_and_extent(
+    equations: EquationsOfMotion,
+    start: Mapping[Node, Scalar],
+    *,
+    there: Mapping[Node, float] | None = None,
+    accelerations: Sequence[Scalar] | None = None,
+    at: Mapping[Node, Scalar] | None = None,
+) -> tuple[dict[Node, Scalar], Extent] | None:
+    """(the same, in which pieces the integrals hold that give it)."""
     relations = relations_of(equations, start, at)
     if relations is None:
         return None
-    speeds = relations.speeds
+    speeds, held = relations.speeds, where_momenta_hold(equations)
     if relations.speed is None:
-        return speeds
+        return speeds, held
     there = start_in_numbers(equations.system, start) if there is None else there
-    speed = FreeSpeed(equations, relations, start, there, accelerations, at or {}).value()
-    if speed is None:
+    found = FreeSpeed(equations, relations, start, there, accelerations, at or {}).value()
+    if found is None:
         return None
-    return dict(zip(speeds, substituted(tuple(speeds.values()), {relations.speed: speed}), strict=True))
+    speed, of_speed = found
+    rates = substituted(tuple(speeds.values()), {relations.speed: speed})
+    return dict(zip(speeds, rates, strict=True)), held & of_speed
 
 
 def start_in_numbers(system: System, start: Mapping[Node, Scalar]) -> dict[Node, float]:
