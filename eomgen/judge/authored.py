@@ -118,7 +118,8 @@ class Authored:
         found = samples_of(case.system, tuple(self.meant.values()), on_ties=tied, places=places)
         if found is None or self.is_still:
             return found
-        speeds = (case.speeds or case.by_momenta or {}) if self.kind == "law" else {}
+        by_integrals = (case.speeds or case.by_momenta) if self.kind == "law" else None
+        speeds = {} if by_integrals is None else by_integrals[0]
         found = found.with_values(dict(zip(speeds, found.flat(tuple(speeds.values())), strict=True)))
         return found if case.equations is None else self._moving(found)
 

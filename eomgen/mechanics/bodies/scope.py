@@ -323,6 +323,8 @@ def primitive_over_bends(f: Scalar, x: Node) -> Scalar | None:
 
 def _of_one_bend(node: Node, x: Node) -> Scalar | None:
     """The integral of max, min, abs or sign of what is linear in x; None of anything else."""
+    a: Scalar
+    b: Scalar
     a, b = node.args if len(node.args) == 2 else (node.args[0], 0)
     if not depends_on(a, (x,)):
         a, b = b, a
