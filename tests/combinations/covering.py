@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 from random import Random
 
-from features import FACTORS, forbidden, pairs_of, possible_pairs
+from features import FACTORS, fits, forbidden, pairs_of, possible_pairs
 
 
 def rows(seed: int, tries: int = 4) -> Iterator[dict[str, str]]:
@@ -33,7 +33,9 @@ def _row(rng: Random, row: dict[str, str], left: set) -> dict[str, str] | None:
     others = [f for f in FACTORS if f not in row]
     rng.shuffle(others)
     for f in others:
-        levels = [x for x in FACTORS[f] if all(forbidden((f, x), item) is None for item in row.items())]
+        levels = [
+            x for x in FACTORS[f] if fits(row | {f: x}) and all(forbidden((f, x), item) is None for item in row.items())
+        ]
         if not levels:
             return None
         rng.shuffle(levels)

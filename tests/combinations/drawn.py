@@ -95,7 +95,7 @@ class Drawing:
         if self.levels["units"] == "si":
             unit = {"angle": "rad", "length": "m", "pure": None}[kind]
         scale = {"deg": 180 / math.pi, "cm": 100.0}.get(unit or "", 1.0)
-        declared: dict[str, Any] = {"start": round(start * scale, 6)}
+        declared: dict[str, Any] = {"start": round(start * scale, 12)}
         if speed is not None:
             declared["speed"] = round(speed * scale, 6)
         if unit is not None:
@@ -539,18 +539,16 @@ class Drawing:
             return
         place = [self.coordinate(f"j{k}", "length", 0.2 * k, self.number(-1, 1)) for k in (1, 2, 3)]
         joint |= {"position": place}
-        self.orientation(joint, self.rng.choice(["zxz", "xyz", "zyx"]))
+        omega = self.levels["speeds"] == "omega"
+        self.orientation(joint, "quaternion" if omega else self.rng.choice(["zxz", "xyz", "zyx"]))
 
     def orientation(self, joint: dict, sequence: str) -> None:
-        omega = self.levels["speeds"] == "omega" or sequence == "quaternion"
+        omega = sequence == "quaternion"
         if sequence == "quaternion":
             four = [self.coordinate(f"e{k}", "pure", x) for k, x in enumerate((0.9, 0.3, -0.2, 0.25))]
             joint |= {"orientation": "quaternion", "quaternion": four}
         else:
-            three = [
-                self.coordinate(f"a{k}", "angle", x, None if omega else self.number(-1, 1))
-                for k, x in enumerate((0.3, 0.7, -0.4))
-            ]
+            three = [self.coordinate(f"a{k}", "angle", x, self.number(-1, 1)) for k, x in enumerate((0.3, 0.7, -0.4))]
             joint |= {"orientation": sequence, "angles": three}
         if omega:
             for k in range(3):

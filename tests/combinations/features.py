@@ -87,8 +87,8 @@ FORBIDDEN: tuple[Forbidden, ...] = (
     *_each(
         ("speeds", "omega"),
         "joint",
-        tuple(x for x in FACTORS["joint"] if x not in ("spherical", "quaternion", "free")),
-        "no orientation of three freedoms",
+        tuple(x for x in FACTORS["joint"] if x not in ("quaternion", "free")),
+        "no quaternion",
     ),
     *_each(
         ("joint_with", "spring_damper"),
@@ -183,6 +183,17 @@ def forbidden(a: tuple[str, str], b: tuple[str, str]) -> Forbidden | None:
 
 
 _INDEX = {(f.one, f.two): f for f in FORBIDDEN}
+
+
+TRIPLES: tuple[tuple[dict[str, str], str], ...] = tuple(
+    ({"space": "space", "joint": "free", "shape": shape}, "its turn about itself moves no mass")
+    for shape in ("particle", "rod")
+)
+
+
+def fits(row: dict[str, str]) -> bool:
+    """Whether no three levels of a row contradict one another."""
+    return not any(all(row.get(f) == x for f, x in triple.items()) for triple, _ in TRIPLES)
 
 
 Item = tuple[str, str]

@@ -867,14 +867,37 @@ def holding(o: Any, solved: Any) -> tuple[list[int], np.ndarray, np.ndarray]:
     for i, row in enumerate(solved.rows):
         if row.owner in loose:
             shut[first:] &= np.abs(solved.J[i][first:]) < 1e-12
-    need = solved.M @ solved.z - solved.F
-    from oracle import NoAnswer, least_squares
+    need = (solved.M @ solved.z - solved.F)[shut]
+    from oracle import least_squares
 
-    push = solved.J.T[:, kept]
-    lam, null = least_squares(push[shut], need[shut])
-    if np.max(np.abs(push[shut] @ lam - need[shut]), initial=0.0) > 1e-6 * (1 + np.max(np.abs(need))):
-        raise NoAnswer("something holds the bodies that has no name")
-    return kept, lam, null
+    push = solved.J.T[:, kept][shut]
+    lam, null = np.zeros(len(kept)), [np.zeros((0, len(kept)))]
+    for rows, columns in _parts(push):
+        part = push[np.ix_(rows, columns)]
+        x, free = least_squares(part, need[rows])
+        lam[columns] = x
+        if np.max(np.abs(part @ x - need[rows]), initial=0.0) > 1e-6 * (1 + np.max(np.abs(need))):
+            free = np.eye(len(columns))  # something holds these bodies that has no name
+        own = np.zeros((len(free), len(kept)))
+        own[:, columns] = free
+        null.append(own)
+    return kept, lam, np.vstack(null)
+
+
+def _parts(A: np.ndarray) -> list[tuple[np.ndarray, np.ndarray]]:
+    """(rows, columns) of the parts of a matrix that have nothing to do with one another."""
+    full, left, found = np.abs(A) > 1e-12, set(range(A.shape[1])), []
+    while left:
+        columns = {min(left)}
+        while True:
+            rows = np.flatnonzero(full[:, sorted(columns)].any(axis=1))
+            more = set(np.flatnonzero(full[rows].any(axis=0))) | columns
+            if more == columns:
+                break
+            columns = more
+        left -= columns
+        found.append((rows, np.array(sorted(columns))))
+    return found
 
 
 def reactions(o: Any, solved: Any, s: Any) -> dict[str, float]:

@@ -37,11 +37,20 @@ def of_model(levels: dict[str, str], seed: int, *, through_verbs: bool = True) -
     """All that one model shows: its faults, its calls, and whether it covers its pairs."""
     text = text_of(levels, seed)
     begin = time.process_time()
-    row: dict[str, Any] = {"levels": levels, "seed": seed, "faults": [], "refused": "", "numbers": 0, "skipped": []}
+    row: dict[str, Any] = {
+        "levels": levels,
+        "seed": seed,
+        "faults": [],
+        "refused": "",
+        "numbers": 0,
+        "skipped": [],
+        "calls": [],
+    }
     try:
         with calls.limit(120):
             found = compare.of_model(text, seed)
         row["numbers"], row["skipped"] = found.numbers, found.skipped
+        row["calls"] = [[f"python {call}", 0, 0.0, ""] for call in ("derive", "rhs", "reaction_rhs")]
         row["faults"] += [["oracle: " + kind, what] for kind, what in found.faults[:5]]
     except eomgen.EomgenError as no:
         row["refused"] = f"{type(no).__name__}: {str(no).splitlines()[0][:200]}"
@@ -57,17 +66,17 @@ def of_model(levels: dict[str, str], seed: int, *, through_verbs: bool = True) -
         outcomes += calls.by_python(text, calls.python_doors(rng))
         if not row["refused"] and rng.random() < 0.5:
             outcomes += calls.judged(text)
-    row["calls"] = [[o.call, o.code, round(o.seconds, 2), o.note] for o in outcomes]
+    row["calls"] += [[o.call, o.code, round(o.seconds, 2), o.note] for o in outcomes]
     row["faults"] += [[o.fault, f"{o.call}: {o.detail}"] for o in outcomes if o.fault]
     row["covers"] = not row["refused"]
     row["seconds"] = round(time.process_time() - begin, 1)
     return row
 
 
-def shard(number: int, count: int, seed: int, out: Path, most: int | None) -> None:
+def shard(number: int, count: int, seed: int, out: Path, *, most: int | None, alone: bool) -> None:
     """The models number, number + count, ... of the array of a seed; those in the ledger are passed over."""
     out.mkdir(parents=True, exist_ok=True)
-    ledger = out / f"shard_{number}_of_{count}_{seed}.jsonl"
+    ledger = out / f"{'oracle' if alone else 'shard'}_{number}_of_{count}_{seed}.jsonl"
     done = {json.loads(line)["index"] for line in ledger.read_text().splitlines()} if ledger.exists() else set()
     made = 0
     for index, levels in enumerate(rows(seed)):
@@ -75,7 +84,7 @@ def shard(number: int, count: int, seed: int, out: Path, most: int | None) -> No
             continue
         if most is not None and made >= most:
             return
-        row = {"index": index, "array": seed, **of_model(levels, seed)}
+        row = {"index": index, "array": seed, **of_model(levels, seed, through_verbs=not alone)}
         if row["faults"]:
             (out / f"model_{seed}_{index}.toml").write_text(text_of(levels, seed))
         with ledger.open("a") as file:
@@ -85,7 +94,9 @@ def shard(number: int, count: int, seed: int, out: Path, most: int | None) -> No
 
 def totals(out: Path) -> dict[str, Any]:
     """Over all shards: models, calls, pairs covered of those that can be, faults by kind, the slowest calls."""
-    lines = [json.loads(x) for path in sorted(out.glob("shard_*.jsonl")) for x in path.read_text().splitlines()]
+    ledgers = sorted(out.glob("oracle_*.jsonl")) + sorted(out.glob("shard_*.jsonl"))
+    every = [json.loads(x) for path in ledgers for x in path.read_text().splitlines()]
+    lines = list({(row["array"], row["index"]): row for row in every}.values())  # with calls before without
     covered: set = set()
     for row in lines:
         if row["covers"]:
@@ -116,13 +127,14 @@ def main() -> None:
     parser.add_argument("--seed", type=int, default=1, help="of the covering array and its numbers")
     parser.add_argument("--out", type=Path, required=True, help="the folder of the ledgers")
     parser.add_argument("--most", type=int, help="at most so many models now")
+    parser.add_argument("--alone", action="store_true", help="the oracle alone, without verbs: a fifth of the time")
     parser.add_argument("--totals", action="store_true", help="tell what is in the ledgers")
     given = parser.parse_args()
     if given.totals:
         print(json.dumps(totals(given.out), indent=1))
         return
     number, count = map(int, given.shard.split("/"))
-    shard(number, count, given.seed, given.out, given.most)
+    shard(number, count, given.seed, given.out, most=given.most, alone=given.alone)
 
 
 if __name__ == "__main__":

@@ -65,10 +65,11 @@ def _orientation(joint: Any, path: DocumentPath, catalog: Catalog) -> Iterator[F
     needed, other = ("angles", "quaternion") if orientation in SEQUENCES else ("quaternion", "angles")
     if getattr(joint, needed) is None and (*path, needed) not in catalog.broken:
         yield Finding((*path, "orientation"), f"orientation \"{orientation}\" needs '{needed}'", f"give '{needed}'")
-    for key in (other, *joint.beside_orientation):
+    for key in (other, *joint.beside_orientation, *(("omega",) if needed == "angles" else ())):
         if getattr(joint, key) is not None:
             what = f"'{key}' does not go with orientation \"{orientation}\""
-            yield Finding((*path, key), what, "leave it out", key=True)
+            mend = "leave it out" if key != "omega" else 'take orientation = "quaternion", or speeds of a declared \'rate\''
+            yield Finding((*path, key), what, mend, key=True)
     if needed == "quaternion" and joint.omega is None and (*path, "omega") not in catalog.broken:
         yield Finding((*path, "orientation"), "a quaternion needs 'omega'", 'omega = ["w1", "w2", "w3"], of [speeds]')
 
