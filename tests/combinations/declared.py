@@ -95,10 +95,10 @@ class Moving:
             if function == "epsilon":
                 return ty.component(w.rate(), 2)
             return ty.component(w, "xyz".index(function[-1]) if "_" in function else 2)
-        kind, axis = function[:-1], "xyz".index(function[-1])
         if function in ("speed", "acceleration"):
             v = self.point(names[0]).rate()
             return ty.norm(v if function == "speed" else v.rate())
+        kind, axis = function[:-1], "xyz".index(function[-1])
         p = self.point(names[0])
         if len(names) > 1 and names[1] != "ground":
             o, R = self.frame(names[1])

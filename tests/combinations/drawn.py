@@ -498,7 +498,7 @@ class Drawing:
         moving = [q for q, kind in self.kinds.items() if kind == "length" and q in self.coordinates]
         fixed_at = self.v("l/4", "h", "-h/2")
         joint["at"] = self.v(f"l/4 + {moving[0]}/5", "h", "0") if extra == "moving_seat" and moving else fixed_at
-        if extra == "moving_seat" and not moving:
+        if extra == "moving_seat" and (not moving or self.levels["contact"] in ("sliding", "viscous")):
             joint["at"] = self.v("l/4", "h + B*sin(w*t)", "0")
         if extra == "turned":
             joint["turned"] = {"angle": "pi/5"} if self.plane else {"axis": [1, 2, 2], "angle": 0.6}
@@ -514,7 +514,9 @@ class Drawing:
             joint["armature"] = "I/2" if how in ("revolute", "screw") else "m/2"
         if extra == "drive":
             turning = how in ("revolute", "screw", "cylindrical")
-            if turning:
+            if not turning and "displacement" not in joint:  # refused by the product
+                joint["torque"] = "M0"
+            elif turning:
                 joint["torque"] = f"M0*sin(w*t) - ct*{joint['angle']}'"
             else:
                 joint["force"] = f"F0 - c*{joint['displacement']}'"

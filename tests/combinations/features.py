@@ -74,16 +74,20 @@ FORBIDDEN: tuple[Forbidden, ...] = (
         "space",
     ),
     *_each(
-        ("space", "space"), "force", ("torsion_spring", "torsion_damper"), "in space it stands in the joint", "plane"
+        ("space", "space"),
+        "force",
+        ("torsion_spring", "torsion_damper"),
+        "in space it stands in the joint",
+        "no single angle in space",
     ),
     *_each(
         ("space", "space"),
         "second_force",
         ("torsion_spring", "torsion_damper"),
         "in space it stands in the joint",
-        "plane",
+        "no single angle in space",
     ),
-    Forbidden(("space", "plane"), ("speeds", "omega"), "omega needs three components", "space"),
+    Forbidden(("space", "plane"), ("speeds", "omega"), "omega needs three components"),
     *_each(
         ("speeds", "omega"),
         "joint",
@@ -140,13 +144,12 @@ FORBIDDEN: tuple[Forbidden, ...] = (
     *_each(("base", "all_driven"), "joint", ("quaternion",), "a quaternion is free"),
     *_each(("base", "all_driven"), "speeds", ("declared", "omega"), "no rate is free that a speed could stand for"),
     *_each(("base", "ground"), "loop", ("on_base",), "there is no base that moves"),
-    *_each(
-        ("joint", "spherical"), "shape", ("particle", "rod"), "its turn about itself moves no mass", "moves no mass"
-    ),
-    *_each(
-        ("joint", "quaternion"), "shape", ("particle", "rod"), "its turn about itself moves no mass", "moves no mass"
-    ),
-    *_each(("speeds", "omega"), "shape", ("particle", "rod"), "its turn about itself moves no mass", "moves no mass"),
+    Forbidden(("joint", "spherical"), ("shape", "particle"), "its turn about itself moves no mass", "moves no mass"),
+    Forbidden(("joint", "spherical"), ("shape", "rod"), "its turn about itself moves no mass", "no inertia"),
+    Forbidden(("joint", "quaternion"), ("shape", "particle"), "its turn about itself moves no mass", "moves no mass"),
+    Forbidden(("joint", "quaternion"), ("shape", "rod"), "its turn about itself moves no mass", "no inertia"),
+    Forbidden(("speeds", "omega"), ("shape", "particle"), "its turn about itself moves no mass"),
+    Forbidden(("speeds", "omega"), ("shape", "rod"), "its turn about itself moves no mass"),
     *(
         Forbidden(
             ("contact", contact),

@@ -260,11 +260,24 @@ class Oracle:
             sigma.append(c[0][0] if r.rate else c[1][0])
         return np.array(J), np.array(sigma)
 
-    def of_speeds(self, t: float, q: np.ndarray, speeds: tuple[str, ...], u: np.ndarray) -> State:
+    def of_all_rates(self, t: float, q: np.ndarray, speeds: tuple[str, ...], u: np.ndarray) -> State:
+        """As `of_speeds`, whichever contacts are closed."""
+        return self.of_speeds(t, q, speeds, u, loose=1e-5, closed=dict.fromkeys(self.modes, False))
+
+    def of_speeds(
+        self,
+        t: float,
+        q: np.ndarray,
+        speeds: tuple[str, ...],
+        u: np.ndarray,
+        *,
+        loose: float = 1e-7,
+        closed: dict[str, bool] | None = None,
+    ) -> State:
         """The state of given speeds: rates, declared speeds, and the ties' rows, solved together."""
         drives = self.drives(t)
         zero = State(t, np.array(q, dtype=float), np.zeros(len(q)))
-        closed = self.closed_at_start()
+        closed = self.closed_at_start() if closed is None else closed
         J, sigma = self._velocity_rows(zero, closed)
         A, b = [*J], [*(-sigma)] if len(J) else []
         at = self.reduced(zero)
@@ -281,7 +294,7 @@ class Oracle:
             b.append(rate)
         A, b = np.array(A), np.array(b)
         v = np.linalg.lstsq(A, b, rcond=1e-10)[0]
-        if np.max(np.abs(A @ v - b)) > 1e-7 * (1 + np.max(np.abs(b))):
+        if np.max(np.abs(A @ v - b)) > loose * (1 + np.max(np.abs(b))):
             raise NoAnswer("these speeds break the ties")
         return State(t, np.array(q, dtype=float), v)
 
@@ -427,13 +440,42 @@ class Oracle:
             p, R = now.poses[name]
             center = p + ty.matmul(R, ty.vector(self.model.mass[name][1]))
             w = ty.vee(ty.matmul(ty.transpose(R), R.rate()))
-            if center.c.shape[-1] == 1:
-                n = 2 + len(self.names)
-                center = Jet(np.broadcast_to(center.c, (3, 3, n)))
-                w = Jet(np.broadcast_to(w.c, (3, 3, n)))
+            center, w = (Jet(np.broadcast_to(x.c, (3, 3, 2 + len(self.names)))) for x in (center, w))
             B += [*center.c[1][:, 2:], *w.c[0][:, 2:]]
             acc += [*(2 * center.c[2][:, 0]), *w.c[1][:, 0]]
         return np.array([*B, *np.eye(len(self.names))]), np.array([*acc, *a])
+
+    def small(self, q: np.ndarray, h: float = 1e-5) -> np.ndarray:
+        """A of x' = A x about rest at q, x = independent coordinates and their rates, by differences.
+
+        The ties are positions alone; the rest follows from the independent ones, which the rows of J choose.
+        """
+        J = self._velocity_rows(State(0.0, q, np.zeros(len(q))), None)[0]
+        dependent = _pivots(J) if len(J) else []
+        own = [k for k in range(len(q)) if k not in dependent]
+
+        def slope(x: np.ndarray) -> np.ndarray:
+            places, rates = np.array(q, dtype=float), np.zeros(len(q))
+            places[own], rates[own] = q[own] + x[: len(own)], x[len(own) :]
+            s = self._closed_by(places, rates, dependent)
+            return np.concatenate([s.v[own], self.solve(s).a[own]])
+
+        n = 2 * len(own)
+        return np.array([(slope(h * e) - slope(-h * e)) / (2 * h) for e in np.eye(n)]).T
+
+    def _closed_by(self, q: np.ndarray, v: np.ndarray, dependent: list[int]) -> State:
+        """The state in which the dependent coordinates and rates close the ties."""
+        if dependent:
+            for _ in range(20):
+                rows = self.tie_rows(self.reduced(State(0.0, q, np.zeros(len(q)))))
+                gap = np.array([float(r.jet.c[0][0]) for r in rows])
+                J = np.array([r.jet.c[1][2:] if r.jet.c.shape[-1] > 1 else np.zeros(len(q)) for r in rows])
+                q[dependent] += np.linalg.lstsq(J[:, dependent], -gap, rcond=1e-9)[0]
+                if np.max(np.abs(gap)) < 1e-13:
+                    break
+            J, sigma = self._velocity_rows(State(0.0, q, np.zeros(len(q))), None)
+            v[dependent] += np.linalg.lstsq(J[:, dependent], -(sigma + J @ v), rcond=1e-9)[0]
+        return State(0.0, q, v)
 
     def reactions(self, solved: Solved, s: State) -> dict[str, float]:
         return laws.reactions(self, solved, s)
@@ -454,6 +496,18 @@ class Oracle:
         if len(kept) != 1:
             raise NoAnswer(f"{len(kept)} states of the contacts agree with the forces")
         return kept[0]
+
+
+def _pivots(J: np.ndarray) -> list[int]:
+    """Columns of J by which its rows are solved, the largest first (Gauss, both pivots)."""
+    A, found = J.copy(), []
+    for _ in range(min(A.shape)):
+        i, k = np.unravel_index(int(np.argmax(np.abs(A))), A.shape)
+        if abs(A[i, k]) < 1e-8:
+            break
+        found.append(int(k))
+        A = A - np.outer(A[:, k], A[i]) / A[i, k]
+    return found
 
 
 def tilde(a: np.ndarray) -> np.ndarray:

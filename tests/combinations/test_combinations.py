@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 import sys
 from collections.abc import Callable
 from functools import cache
@@ -14,11 +15,14 @@ import pytest
 sys.path.insert(0, str(Path(__file__).parent))
 
 import compare
+import cross
 import laws
 import taylor as ty
 from covering import _row
 from drawn import text_of
-from features import FACTORS, possible_pairs
+from features import FACTORS, FORBIDDEN, possible_pairs
+
+import eomgen
 
 pytestmark = pytest.mark.slow
 
@@ -121,3 +125,81 @@ def test_a_sample_of_combinations_moves_as_the_oracle_says(number):
         row = _row(rng, dict(rng.choice(pairs)), set(pairs))
     found = compare.of_model(text_of(row, number), number)
     assert not found.faults, (found.faults, row)
+
+
+FINDS = sorted((Path(__file__).parent / "finds").glob("*.toml"))
+
+
+@pytest.mark.parametrize("path", FINDS, ids=lambda path: path.stem)
+def test_what_was_found_stays_right(path):
+    """Every find, as its smallest model, does what its first line says; an open one is known to fail."""
+    text = path.read_text(encoding="utf-8")
+    first, second = text.splitlines()[:2]
+    kind, _, rest = first.removeprefix("# ").partition(": ")
+    known = second.startswith("# open: ")
+    try:
+        EXPECTED[kind](text, rest)
+    except (AssertionError, eomgen.EomgenError) as error:
+        if not known:
+            raise
+        pytest.xfail(f"{second[2:]} ({str(error).splitlines()[0][:80]})")
+
+
+def is_refused(text: str, words: str) -> None:
+    with pytest.raises(eomgen.EomgenError, match=re.escape(words)):
+        eomgen.derive(eomgen.loads(text)).rhs("numpy")
+
+
+def answers_are(text: str, said: str) -> None:
+    answers = eomgen.solve(eomgen.loads(text))
+    for one in said.split(", "):
+        name, _, value = one.partition(" = ")
+        assert answers[name].value == pytest.approx(float(value), abs=1e-9)
+
+
+def is_as_the_oracle_says(text: str, _: str) -> None:
+    found = compare.of_model(text, 1)
+    assert found.numbers
+    assert not found.faults
+
+
+def derives(text: str, _: str) -> None:
+    assert eomgen.derive(eomgen.loads(text)).certify().ok
+
+
+EXPECTED: dict[str, Callable[[str, str], None]] = {
+    "refused": is_refused,
+    "answers": answers_are,
+    "oracle": is_as_the_oracle_says,
+    "derives": derives,
+}
+
+
+def refused_pairs() -> list[Any]:
+    """One of each reason, of those that can be written down."""
+    kinds = {(f.one, f.two[0], f.refused): f for f in FORBIDDEN if f.refused}
+    return [pytest.param(f, id=f"{f.one[1]}-{f.two[1]}") for f in kinds.values()]
+
+
+@pytest.mark.parametrize("pair", refused_pairs())
+def test_a_pair_that_cannot_be_is_refused_by_name(pair):
+    """The message names what does not go together."""
+    levels = PLAIN | {"space": "space"} | dict([pair.one, pair.two])
+    if levels["space"] == "space" and levels["speeds"] == "omega" and levels["joint"] == "revolute":
+        levels["joint"] = "quaternion"
+    with pytest.raises(eomgen.EomgenError) as told:
+        eomgen.derive(eomgen.loads(compare.filled(text_of(levels, 1)))).rhs("numpy")
+    assert pair.refused in str(told.value)
+
+
+@pytest.mark.parametrize("number", range(3))
+def test_verbs_say_of_one_quantity_one_number(number):
+    """`solve`, `reactions`, a run, small motions and inverse dynamics agree with the oracle, so with one another."""
+    levels = [
+        {"base": "by_formula", "loop": "on_base", "force": "spring", "closure": "dependent", "output": "kinematics"},
+        {"joint": "prismatic", "joint_with": "spring_damper", "force": "spring", "output": "energies"},
+        {"space": "space", "base": "sliding", "joint": "universal", "force": "gravity", "output": "reactions"},
+    ]
+    found = cross.across(compare.product_of(text_of(PLAIN | levels[number], 1)))
+    assert found.numbers > 10
+    assert not found.faults

@@ -1,0 +1,213 @@
+"""What several verbs say of one quantity is one number, and it is the oracle's.
+
+At the start: `solve`, `reactions`, `reaction_rhs` and the first row of a run; along a run: its columns; small motions
+against differences of the oracle; inverse dynamics; the right-hand side in C and JavaScript.
+"""
+
+from __future__ import annotations
+
+import json
+import shutil
+import subprocess
+import tempfile
+from pathlib import Path
+from typing import Any
+
+import laws
+import numpy as np
+from compare import Found, Product, quiet
+from declared import NotCovered
+from oracle import NoAnswer, Oracle, Solved, State
+
+import eomgen
+
+NO = (NoAnswer, NotCovered, laws.NoSliding)
+
+
+def across(product: Product, *, languages: tuple[str, ...] = ()) -> Found:
+    """The verbs of one model against the oracle and so against one another."""
+    found, e = Found(), product.equations
+    x0 = next(iter(product.functions.values())).x0
+    if x0 is None:
+        return found
+    n = len(e.coordinates)
+    try:
+        oracle = Oracle(product.text, x0[:n])
+        oracle.modes = laws.modes_at_start(oracle, x0, e)
+        s = oracle.of_speeds(0.0, x0[:n], e.speeds, x0[n:])
+        solved = oracle.solve(s)
+    except NO as no:
+        found.skipped.append(f"oracle: {no}")
+        return found
+    model = e.model
+    for part in (_answers, _reactions, _run, _small, _inverse):
+        try:
+            with quiet():
+                part(found, model, product, oracle, s, solved)
+        except eomgen.EomgenError as no:
+            found.skipped.append(f"{part.__name__[1:]}: {str(no).splitlines()[0][:120]}")
+        except NO as no:
+            found.skipped.append(f"oracle in {part.__name__[1:]}: {no}")
+    for language in languages:
+        with quiet():
+            LANGUAGES[language](found, model, product, oracle, s, solved)
+    return found
+
+
+def expected(oracle: Oracle, s: State, solved: Solved) -> dict[str, float]:
+    """Everything that the oracle says at a state, by the names of columns."""
+    said = {f"acc_{q}": float(a) for q, a, sure in zip(oracle.names, solved.a, solved.sure, strict=True) if sure}
+    return said | oracle.reactions(solved, s)
+
+
+def kinematic(oracle: Oracle, s: State, solved: Solved) -> dict[str, float]:
+    """Outputs that are functions of the motion, by the oracle's own poses."""
+    now, said = oracle.reduced(s, solved.a), {}
+    for name, text in oracle.model.outputs.items():
+        if isinstance(text, str) and text.startswith(("x(", "vy(", "speed(", "ax(", "angle(", "omega_z(")):
+            said[name] = float(now.value(text).c[0][0])
+        if text == "kinetic_energy()":
+            said[name] = oracle.energy(s)[0]
+        if text == "power()":
+            said[name] = sum(oracle.power(s).values())
+    return said
+
+
+def _answers(found: Found, model: Any, product: Product, oracle: Oracle, s: State, solved: Solved) -> None:
+    want = expected(oracle, s, solved) | kinematic(oracle, s, solved)
+    for name, answer in eomgen.solve(model).items():
+        if name in want and answer.value is not None:
+            found.same("solve", f"{name} at the start", answer.value, want[name], _size(want))
+
+
+def _size(want: dict[str, float]) -> float:
+    return 1.0 + 1e-3 * max((abs(x) for x in want.values()), default=0.0)
+
+
+def _reactions(found: Found, model: Any, product: Product, oracle: Oracle, s: State, solved: Solved) -> None:
+    want = oracle.reactions(solved, s)
+    for name, told in eomgen.reactions(model).items():
+        if name in want and told.value is not None:
+            found.same("reactions", f"{name} at the start", told.value, want[name], _size(want))
+
+
+def _run(found: Found, model: Any, product: Product, oracle: Oracle, s: State, solved: Solved) -> None:
+    """Columns of a run at the states that it visits."""
+    run = eomgen.simulate(model, time=0.6, samples=4)
+    columns = run.columns()
+    n = len(run.coordinates)
+    energy: list[tuple[float, float]] = []
+    for i, t in enumerate(run.t):
+        x = run.x[i]
+        here = oracle.of_speeds(float(t), x[:n], run.speeds, x[n:], loose=1e-5) if not oracle.modes else None
+        if here is None:
+            here = oracle.of_all_rates(float(t), x[:n], run.speeds, x[n:])
+        told = oracle.contacts(here) if oracle.modes else oracle.solve(here)
+        want = expected(oracle, here, told) | kinematic(oracle, here, told)
+        for name in sorted(want.keys() & columns.keys()):
+            got = columns[name][i]
+            if not np.isfinite(got):
+                found.skipped.append(f"run: {name} is nan")
+                continue
+            found.same("run", f"{name} at t = {t:.3g}", got, want[name], 10 * _size(want))
+        T, V = oracle.energy(here)
+        if V is not None and "energy" in columns:
+            energy.append((float(columns["energy"][i]), T + V))
+    for got, want_E in energy[1:]:
+        found.same("run", "energy against the start's", got - energy[0][0], want_E - energy[0][1], 1 + abs(want_E))
+
+
+def _small(found: Found, model: Any, product: Product, oracle: Oracle, s: State, solved: Solved) -> None:
+    """Eigenvalues of the small motions against those of the oracle's differences."""
+    if (
+        oracle.model.driven
+        or oracle.model.speeds
+        or oracle.modes
+        or any(
+            "rate" in tie or (tie["kind"] in ("rolling", "skate", "motion") and not tie.get("slip"))
+            for tie in oracle.model.constraints.values()
+        )
+    ):
+        return
+    told = eomgen.linearize(model).as_dict()
+    at = {name: x["value"] for name, x in told["state"].items()}
+    if any(q not in at for q in oracle.names):
+        return
+    A = oracle.small(np.array([at[q] for q in oracle.names]))
+    own = np.array([complex(*x) for x in told["eigenvalues"]])
+    if len(own) != len(A):
+        found.skipped.append("linearize: other states")
+        return
+    scale = max(1.0, float(np.max(np.abs(own))))
+    got, want = np.poly(own / scale), np.poly(A / scale)
+    for k, (a, b) in enumerate(zip(got, want, strict=True)):
+        found.same("linearize", f"coefficient {k} of the characteristic polynomial", np.real(a), np.real(b), 1.0, 1e-4)
+
+
+def _inverse(found: Found, model: Any, product: Product, oracle: Oracle, s: State, solved: Solved) -> None:
+    """tau of given accelerations, of a system whose ties are open."""
+    e = product.equations
+    if oracle.model.constraints or oracle.model.speeds:
+        return
+    inverse = e.inverse_dynamics()
+    function = inverse.function("numpy")
+    free = [q for q in oracle.names if q not in oracle.model.driven]
+    if len(free) != len(e.speeds):
+        return
+    a = np.array([solved.a[k] if q not in free else 0.3 + 0.1 * k for k, q in enumerate(oracle.names)])
+    now = oracle.maximal(s)
+    inputs = [oracle.model.input(i, now) for i in e.inputs]
+    rhs = next(iter(product.functions.values()))
+    u, _ = oracle.speeds_of(s, e.speeds)
+    got = function(0.0, np.concatenate([s.q, u]), [a[oracle.names.index(q)] for q in free], rhs.p0, inputs)
+    want = oracle.wanted(s, a)
+    for q, x in zip(free, got, strict=True):
+        found.same("inverse dynamics", f"tau of {q}", x, want[oracle.names.index(q)])
+
+
+def _right(found: Found, language: str, got: Any, product: Product, oracle: Oracle, s: State, solved: Solved) -> None:
+    e = product.equations
+    _, du = oracle.speeds_of(s, e.speeds, solved.a)
+    want = [*s.v, *du]
+    size = 1.0 + 1e-3 * float(np.max(np.abs(du), initial=0.0))
+    for k, (a, b) in enumerate(zip(got, want, strict=True)):
+        found.same("code", f"dx[{k}] at the start by {language}", a, b, size)
+
+
+def _given(product: Product, oracle: Oracle, s: State) -> tuple[Any, Any, list[float]]:
+    e = product.equations
+    u, _ = oracle.speeds_of(s, e.speeds)
+    now = oracle.maximal(s)
+    p = next(iter(product.functions.values())).p0
+    return np.concatenate([s.q, u]), p, [oracle.model.input(i, now) for i in e.inputs]
+
+
+def _c(found: Found, model: Any, product: Product, oracle: Oracle, s: State, solved: Solved) -> None:
+    x, p, inputs = _given(product, oracle, s)
+    _right(found, "C", product.equations.rhs("c")(0.0, x, p, inputs), product, oracle, s, solved)
+
+
+def _javascript(found: Found, model: Any, product: Product, oracle: Oracle, s: State, solved: Solved) -> None:
+    node = shutil.which("node")
+    if node is None:
+        return
+    x, p, inputs = _given(product, oracle, s)
+    with tempfile.TemporaryDirectory() as folder:
+        eomgen.generate(model, ("javascript",)).write(folder)
+        module = next(Path(folder).glob("*_rhs.mjs"))
+        say = (
+            f'import {{ evaluate, constants }} from "{module}";'
+            f"const p = {json.dumps(list(map(float, p)))};"
+            f"console.log(JSON.stringify([...evaluate(0, {json.dumps(list(map(float, x)))}, p, constants(p),"
+            f" {json.dumps(inputs) if inputs else 'null'})]));"
+        )
+        script = Path(folder) / "ask.mjs"
+        script.write_text(say)
+        told = subprocess.run([node, str(script)], capture_output=True, text=True, timeout=60, check=False)
+    if told.returncode:
+        found.faults.append(("code", f"JavaScript: {told.stderr.strip().splitlines()[-1][:200]}"))
+        return
+    _right(found, "JavaScript", json.loads(told.stdout), product, oracle, s, solved)
+
+
+LANGUAGES = {"c": _c, "javascript": _javascript}
