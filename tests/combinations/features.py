@@ -147,7 +147,7 @@ FORBIDDEN: tuple[Forbidden, ...] = (
     Forbidden(("joint", "spherical"), ("shape", "particle"), "its turn about itself moves no mass", "moves no mass"),
     Forbidden(("joint", "spherical"), ("shape", "rod"), "its turn about itself moves no mass", "no inertia"),
     Forbidden(("joint", "quaternion"), ("shape", "particle"), "its turn about itself moves no mass", "moves no mass"),
-    Forbidden(("joint", "quaternion"), ("shape", "rod"), "its turn about itself moves no mass", "no inertia"),
+    Forbidden(("joint", "quaternion"), ("shape", "rod"), "its turn about itself moves no mass", "moves no mass"),
     Forbidden(("speeds", "omega"), ("shape", "particle"), "its turn about itself moves no mass"),
     Forbidden(("speeds", "omega"), ("shape", "rod"), "its turn about itself moves no mass"),
     *(

@@ -26,11 +26,19 @@ os.environ.setdefault("EOMGEN_PATIENCE", "none")
 
 import calls  # noqa: E402
 import compare  # noqa: E402
+import cross  # noqa: E402
 from covering import rows  # noqa: E402
 from drawn import text_of  # noqa: E402
 from features import all_pairs, pairs_of, possible_pairs, why_not  # noqa: E402
 
 import eomgen  # noqa: E402
+
+
+LANGUAGES = ((), ("c",), ("javascript",))
+
+
+def seed_of(levels: dict[str, str]) -> int:
+    return sum(map(ord, "".join(levels.values())))
 
 
 def of_model(levels: dict[str, str], seed: int, *, through_verbs: bool = True) -> dict[str, Any]:
@@ -48,9 +56,17 @@ def of_model(levels: dict[str, str], seed: int, *, through_verbs: bool = True) -
     }
     try:
         with calls.limit(120):
-            found = compare.of_model(text, seed)
+            product = compare.product_of(text)
+            found = compare.against(product, seed)
+        if through_verbs:
+            with calls.limit(120):
+                told = cross.across(product, languages=LANGUAGES[seed_of(levels) % 3])
+            row["calls"] += [[f"python {call}", 0, 0.0, ""] for call in ("solve", "reactions", "simulate", "linearize")]
+            found.numbers += told.numbers
+            found.faults += told.faults
+            found.skipped += told.skipped
         row["numbers"], row["skipped"] = found.numbers, found.skipped
-        row["calls"] = [[f"python {call}", 0, 0.0, ""] for call in ("derive", "rhs", "reaction_rhs")]
+        row["calls"] += [[f"python {call}", 0, 0.0, ""] for call in ("derive", "rhs", "reaction_rhs")]
         row["faults"] += [["oracle: " + kind, what] for kind, what in found.faults[:5]]
     except eomgen.EomgenError as no:
         row["refused"] = f"{type(no).__name__}: {str(no).splitlines()[0][:200]}"
