@@ -33,7 +33,6 @@ from features import all_pairs, pairs_of, possible_pairs, why_not  # noqa: E402
 
 import eomgen  # noqa: E402
 
-
 LANGUAGES = ((), ("c",), ("javascript",))
 
 
