@@ -68,7 +68,11 @@ def _orientation(joint: Any, path: DocumentPath, catalog: Catalog) -> Iterator[F
     for key in (other, *joint.beside_orientation, *(("omega",) if needed == "angles" else ())):
         if getattr(joint, key) is not None:
             what = f"'{key}' does not go with orientation \"{orientation}\""
-            mend = "leave it out" if key != "omega" else 'take orientation = "quaternion", or speeds of a declared \'rate\''
+            mend = (
+                "leave it out"
+                if key != "omega"
+                else "take orientation = \"quaternion\", or speeds of a declared 'rate'"
+            )
             yield Finding((*path, key), what, mend, key=True)
     if needed == "quaternion" and joint.omega is None and (*path, "omega") not in catalog.broken:
         yield Finding((*path, "orientation"), "a quaternion needs 'omega'", 'omega = ["w1", "w2", "w3"], of [speeds]')
