@@ -286,3 +286,12 @@ def test_code_holds_a_gap_by_the_longer_of_two_rows_that_share_it():
         x = np.array([q, a, s + 1e-9, ga, 1.5, 0.0, 1e-9, 0.0])
         found, right = (rhs(0.0, x, rhs.p0) for rhs in codes)
         assert np.allclose(found, right, rtol=1e-6, atol=1e-5)
+
+
+def test_dependent_rates_by_rows_that_vanish_in_turns_are_determined_at_every_turn():
+    """d cos q = 0 and d sin q = 0 give d' = 0 at q = pi/2 too, where the chosen one of them says nothing."""
+    codes = [eomgen.derive(eomgen.loads(text.replace(*FOLLOWING))).rhs("numpy") for text in (IN_GROUND_AXES, REGULAR)]
+    a, s, ga = 0.508800829, 1.951182719, 0.901883355
+    for q in (0.0, np.pi / 2, 2.0):
+        found, right = (rhs(0.0, [q, a, s, ga, 1.5, 0.3], rhs.p0) for rhs in codes)
+        assert np.allclose(found, right, rtol=1e-6, atol=1e-6)

@@ -9,7 +9,9 @@ centre, a change point) the dependent coordinates do not follow the independent 
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
+from contextlib import suppress
 from dataclasses import replace
+from random import Random
 from typing import Any
 
 import numpy as np
@@ -21,14 +23,19 @@ from eomgen.mechanics.constraints.closure import generic_state, rows_where_close
 from eomgen.mechanics.constraints.ties import Ties, holds_identically
 from eomgen.records import dataclass
 from eomgen.symbolic.expression.derivative import depends_on, substituted
+from eomgen.symbolic.expression.functions import inner
 from eomgen.symbolic.expression.graph import Node, Scalar, is_zero
 from eomgen.symbolic.expression.traversal import operations, order
-from eomgen.symbolic.numeric.dense import independent
+from eomgen.symbolic.numeric.dense import divisor, independent, rank
 from eomgen.symbolic.numeric.evaluation import NoValue
 from eomgen.symbolic.numeric.tolerances import RANK
 from eomgen.symbolic.solve import cramer
 
 Label = tuple[str, int]
+FAR = (3.0, 1.0, 0.3)  # from the start, at which chosen rows are looked at
+FAR_STATES = 8
+LEAN = 0.02  # of the largest share of the chosen rows in the determinant of all
+SHAKEN = (2, 3)  # seeds of states with parameters of their own
 PLACE = "a dead centre or a change point"
 
 
@@ -114,12 +121,17 @@ def elimination_of(ties: Ties) -> Elimination:
     rows = _determining_rows(ties, J[:, dependent])
     if len(rows) < len(dependent):
         raise _undetermined(names, J[np.ix_(rows, dependent)], ties)
-    A, b, blocks = _solved(ties, rows, dependent, kept)
+    follow = _following(J, rows, dependent, kept)
+    sharing = [i for i in follow if np.any(J[i, dependent])]
+    system = _LinearRows(ties, J, rows, dependent, kept)
+    if sharing and system.lean(sharing):
+        system = system.where_closed().joined(sharing)
+    A, b, blocks = system.solved()
     scope = _reduced(scope, dependent, kept, A, b)
     own = [names[j] for j in _released_by(J[np.ix_(rows, dependent)])]
-    found = dict(zip(rows, own, strict=True)) | dict.fromkeys(_following(J, rows, dependent, kept), "")
+    found = dict(zip(rows, own, strict=True)) | dict.fromkeys(follow, "")
     used = {(ties.closing[i].tie, ties.closing[i].number): name for i, name in found.items()}
-    return Elimination(scope, used, tuple(_named(ties, names, rows, block) for block in blocks))
+    return Elimination(scope, used, tuple(_named(ties, names, system.rows, block) for block in blocks))
 
 
 # -- which rows --------------------------------------------------------------------------------------
@@ -203,12 +215,74 @@ def _why(ties: Ties, left: int) -> str:
 # -- the rates ---------------------------------------------------------------------------------------
 
 
-def _solved(ties: Ties, rows: list[int], dependent: tuple[int, ...], kept: tuple[int, ...]) -> Any:
-    """(A, b, blocks) of u_d = A u_i + b."""
-    system = [{j: ties.J[i][k] for j, k in enumerate(dependent)} for i in rows]
-    right = [[*(-ties.J[i][k] for k in kept), -ties.sigma[i]] for i in rows]
-    solution, blocks = cramer.solution_by_minors(system, right, vanishes=holds_identically, shorter=shorter)
-    return [row[:-1] for row in solution], [row[-1] for row in solution], blocks
+@dataclass(frozen=True)
+class _LinearRows:
+    """Rows that determine the dependent rates.
+
+    Args:
+        ties: all of them.
+        numbers: J at a state in which they hold.
+        rows: of the closing rows.
+        dependent, kept: which speeds are solved for, and which are not.
+        vanishing: (row, speed) of entries that vanish wherever the ties hold.
+        are_squared: whether they are taken together, J_d^T (J_d u_d + J_i u_i + sigma) = 0.
+    """
+
+    ties: Ties
+    numbers: np.ndarray
+    rows: list[int]
+    dependent: tuple[int, ...]
+    kept: tuple[int, ...]
+    vanishing: frozenset[tuple[int, int]] = frozenset()
+    are_squared: bool = False
+
+    def where_closed(self) -> _LinearRows:
+        """The same without entries that vanish wherever the ties hold, at parameters near the model's too."""
+        zero = self.numbers == 0
+        try:
+            for seed in SHAKEN:
+                zero &= rows_where_closed(self.ties, generic_state(self.ties, Random(seed), shaken=True)) == 0
+        except (DerivationError, MissingValues, NoValue):
+            return self
+        return replace(self, vanishing=frozenset((int(i), int(k)) for i, k in np.argwhere(zero)))
+
+    def lean(self, sharing: Sequence[int]) -> bool:
+        """Whether the rows come to depend on one another where with those that share they do not.
+
+        |J_d|^2 / |J_d^T J_d of all| at states far from one another, at which the ties hold.
+        """
+        lengths = np.linalg.norm(self.numbers, axis=1, keepdims=True)
+        rows, shares = [*self.rows, *sharing], []
+        for seed in range(FAR_STATES):
+            with suppress(DerivationError, MissingValues, NoValue, ZeroDivisionError):
+                state = generic_state(self.ties, Random(seed), spreads=FAR)
+                J = (rows_where_closed(self.ties, state) / divisor(lengths))[rows]
+                J_d = J[:, self.dependent]
+                whole = np.linalg.det(J_d.T @ J_d)
+                if whole > RANK and rank(J) == len(self.rows):  # on another branch they need not follow
+                    shares.append(np.linalg.det(J_d[: len(self.rows)]) ** 2 / whole)
+        return min(shares, default=1.0) < LEAN * max(shares, default=1.0)
+
+    def joined(self, sharing: Sequence[int]) -> _LinearRows:
+        """All of them together: u_d of least squares, which is exact where the ties hold."""
+        return replace(self, rows=sorted([*self.rows, *sharing]), are_squared=True)
+
+    def _entry(self, i: int, k: int) -> Scalar:
+        return 0 if (i, k) in self.vanishing else self.ties.J[i][k]
+
+    def solved(self) -> Any:
+        """(A, b, blocks) of u_d = A u_i + b."""
+        left = [[self._entry(i, k) for k in self.dependent] for i in self.rows]
+        right = [[*(-self._entry(i, k) for k in self.kept), -self.ties.sigma[i]] for i in self.rows]
+        if self.are_squared:
+            columns = list(zip(*left, strict=True))
+            left, right = (
+                [[inner(column, other) for other in zip(*side, strict=True)] for column in columns]
+                for side in (left, right)
+            )
+        system = [dict(enumerate(row)) for row in left]
+        solution, blocks = cramer.solution_by_minors(system, right, vanishes=holds_identically, shorter=shorter)
+        return [row[:-1] for row in solution], [row[-1] for row in solution], blocks
 
 
 def _reduced(scope: Scope, dependent: tuple[int, ...], kept: tuple[int, ...], A: Any, b: Any) -> Scope:
@@ -230,5 +304,6 @@ def _reduced(scope: Scope, dependent: tuple[int, ...], kept: tuple[int, ...], A:
 
 
 def _named(ties: Ties, names: tuple[str, ...], rows: list[int], block: cramer.Block) -> DependentBlock:
-    owners = dict.fromkeys(ties.closing[rows[i]].tie for i in block.equations)
+    taken = rows if len(rows) > len(names) else [rows[i] for i in block.equations]
+    owners = dict.fromkeys(ties.closing[i].tie for i in taken)
     return DependentBlock(tuple(names[j] for j in block.unknowns), tuple(owners), cramer.determinant(block.matrix))
