@@ -70,6 +70,27 @@ def test_cases_are_read_back_one_by_one(monkeypatch: pytest.MonkeyPatch):
     assert told(found) == ["fails"]
 
 
+SAMPLED = """
+eomgen = 1
+space = "plane"
+parameters = { m = 2, l = 0.5, g = 9.81 }
+coordinates = { q = 0.3, arm = { motion = { samples = [[0, 0], [1, 0.7], [2, 0.2], [3, 0.4]] } } }
+bodies.crank = { points = { tip = ["l", 0] }, joint = { kind = "revolute", angle = "arm" } }
+bodies.rod.shape = { kind = "rod", mass = "m", length = "l" }
+bodies.rod.joint = { kind = "revolute", on = "crank.tip", angle = "q" }
+forces.weight = { kind = "gravity", acceleration = [0, "-g"] }
+"""
+
+
+def test_rates_of_samples_are_read_back_by_their_names(monkeypatch: pytest.MonkeyPatch):
+    """arm' and arm'' of a motion through samples; one printed for the other is a contradiction."""
+    found = eomgen.derive(eomgen.loads(SAMPLED)).document
+    assert told(found) == ["holds"]
+    print_side = proof_of_texts.side_text
+    monkeypatch.setattr(proof_of_texts, "side_text", lambda x: print_side(x).replace("arm''", "arm'"))
+    assert told(found) == ["fails"]
+
+
 VERBS = [
     ("statics", "gerber_beam"),
     *(

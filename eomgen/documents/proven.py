@@ -22,9 +22,11 @@ from eomgen.proof.check import Certificate, Check, Tally, differing
 from eomgen.symbolic.expression.derivative import symbols_of
 from eomgen.symbolic.expression.expressions import LONGEST, Expression, parse
 from eomgen.symbolic.expression.graph import Graph, Node, Scalar
+from eomgen.symbolic.expression.traversal import order
 from eomgen.symbolic.expression.units import parse_unit
 from eomgen.symbolic.numeric.evaluation import NoValue, evaluate, fifty_digits
 from eomgen.symbolic.numeric.tolerances import COMPUTED, ZERO_AT_50
+from eomgen.symbolic.print.text import to_text
 
 NAME = "formulas, read back as they are printed, are what they stand for"
 HOW = "50 digits"
@@ -133,6 +135,7 @@ def _read(text: str, meant: Scalar) -> Scalar:
     if not isinstance(meant, Node):
         return parse(text).evaluate({})
     symbols = {x.name: x for x in symbols_of((meant,))}
+    symbols |= {to_text(x): x for x in order((meant,)) if x.op == "sampled"}
     longest = max(map(len, symbols), default=0)
     for k, name in enumerate([name for name in symbols if "(" in name]):
         letter = f"lam{'_' * longest}{k}"
