@@ -19,7 +19,7 @@ from eomgen.proof.check import Check, attempted, checked, first_wrong
 from eomgen.records import dataclass
 from eomgen.symbolic.expression.graph import Node
 from eomgen.symbolic.numeric.evaluation import NoValue, evaluate, fifty_digits
-from eomgen.symbolic.numeric.tolerances import CARRIED, DIFFERENCE_AT_50, SAME_PLACE, SLOW
+from eomgen.symbolic.numeric.tolerances import CARRIED, COMPUTED, DIFFERENCE_AT_50, SAME_PLACE, SLOW
 
 SAMPLES = (
     0.7 + 0.9j,
@@ -194,7 +194,18 @@ class _Proof:
         said = self.modes.spectrum.stability
         if said == "unstable":
             return "none of them grows" if self.growth < -CARRIED else ""
+        if said == "unstable to first order":
+            return "" if self._has_chains else "said to grow like t, and the eigenvalue 0 has all its modes"
+        if said in ("stable", "asymptotically stable") and self._has_chains:
+            return f"said to be {said}, and a motion grows like t"
         return f"said to be {said}, and one of them grows" if said != "undecided" and self.growth > SAME_PLACE else ""
+
+    @property
+    def _has_chains(self) -> bool:
+        """Whether A^2 lets more motions stay than A: they grow like t."""
+        zeros = sum(x == 0 for x in self.modes.spectrum.eigenvalues)
+        sizes = np.linalg.svd(self.A, compute_uv=False)
+        return zeros > 0 and int(np.sum(sizes <= COMPUTED * sizes.max(initial=0))) < zeros
 
     def conditions(self) -> Check:
         """All are positive where nothing grows, and one is not where something does."""

@@ -151,3 +151,21 @@ def defective(e: LinearEquations, values: Sequence[complex]) -> bool:
             if len(whole) - dense.rank(whole, smallest=NEARLY_SINGULAR) < 2 * len(group):
                 return True
     return False
+
+
+def drifting(e: LinearEquations, zeros: int) -> np.ndarray | None:
+    """The displacements that grow like t: x = x_2 + t x_1 with A x_1 = 0, A x_2 = B x_1; None where there are none.
+
+    A x_2 = B x_1 has a solution where L^T B x_1 = 0, L^T A = 0: with x_1 = N c, A N = 0, that is (L^T B N) c = 0.
+
+    Args:
+        zeros: how many eigenvalues are 0.
+    """
+    A, B = _pencil(e)
+    nullity = len(A) - dense.rank(A, smallest=RANK)
+    if not 0 < nullity < zeros:
+        return None
+    U, _, V = np.linalg.svd(A)
+    L, N = U[:, -nullity:], V[-nullity:].T
+    x = N @ np.linalg.svd(L.T @ B @ N)[2][-1]
+    return np.asarray(x[: len(e.coordinates)])

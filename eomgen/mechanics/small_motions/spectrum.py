@@ -12,14 +12,19 @@ from collections.abc import Mapping, Sequence
 
 import numpy as np
 
-from eomgen.mechanics.small_motions.eigen import count_of_zeros, defective, eigenpairs, merged, squares_of
+from eomgen.errors import DerivationError
+from eomgen.mechanics.small_motions.eigen import count_of_zeros, defective, drifting, eigenpairs, merged, squares_of
+from eomgen.mechanics.small_motions.field import Numbers
 from eomgen.mechanics.small_motions.forms import floats
 from eomgen.mechanics.small_motions.linearization import SmallMotions, state_matrix_of
 from eomgen.mechanics.small_motions.polynomial import Polynomial
 from eomgen.mechanics.small_motions.reference import EQUILIBRIUM
 from eomgen.records import dataclass
 from eomgen.symbolic.expression.graph import Node
+from eomgen.symbolic.numeric.evaluation import NoValue
 from eomgen.symbolic.numeric.tolerances import COMPUTED, ITERATED, RANK, ROUNDING, SHARE, SOLVED, SUMMED
+
+ALONG = 0.1  # of a displacement along a drift, after which the equations are compared
 
 
 @dataclass(frozen=True)
@@ -70,7 +75,8 @@ class Spectrum:
     Args:
         modes: see there.
         eigenvalues: all of them.
-        stability: "asymptotically stable", "stable", "stable to first order", "unstable" or "undecided".
+        stability: "asymptotically stable", "stable", "stable to first order", "unstable to first order", "unstable" or
+            "undecided".
         why: in words.
     """
 
@@ -221,6 +227,11 @@ def _stability(small: SmallMotions, values: Sequence[complex], modes: Sequence[M
         return "asymptotically stable", "all motions fade"
     if defective(small.numbers, values):
         return "undecided", "two oscillations have come to be one: to first order they grow with the time"
+    drift = drifting(small.numbers, sum(x == 0 for x in values))
+    leads_on = drift is not None and _leads_on(small, drift)
+    if drift is not None and (small.reference.about == EQUILIBRIUM or not leads_on):
+        others = "" if leads_on else "; terms of higher order may decide otherwise"
+        return "unstable to first order", _grows_like_time(small, drift, values) + others
     if any(x == 0 for x in values) and small.reference.about != EQUILIBRIUM and small.reference.moving:
         return "stable to first order", "motions oscillate, fade, or go over into a steady motion nearby"
     if any(x == 0 for x in values):
@@ -229,6 +240,27 @@ def _stability(small: SmallMotions, values: Sequence[complex], modes: Sequence[M
         added = ", that of the centrifugal forces included," if small.reference.moving else ""
         return "stable", f"the potential energy{added} has a minimum (Lagrange and Dirichlet)"
     return "stable to first order", "all motions oscillate or fade; terms of higher order may decide otherwise"
+
+
+def _leads_on(small: SmallMotions, drift: np.ndarray) -> bool:
+    """Whether all equations are the same after a displacement along a drift: it is a steady motion nearby."""
+    shape = _shape(small, drift.astype(complex), 0)
+    numbers = small.reference.numbers
+    there = {q: numbers[q] + ALONG * x.real for q, x in shape.items()}
+    try:
+        beside = small.over(Numbers({**numbers, **there}))
+    except (DerivationError, NoValue, ZeroDivisionError, np.linalg.LinAlgError):
+        return False
+    pairs = [(floats(getattr(small.numbers, name)), floats(getattr(beside, name))) for name in "MCKFE"]
+    return all(A.shape == B.shape and np.all(abs(A - B) <= COMPUTED * (1 + abs(A))) for A, B in pairs)
+
+
+def _grows_like_time(small: SmallMotions, drift: np.ndarray, values: Sequence[complex]) -> str:
+    """That a zero eigenvalue has fewer modes than it counts for; what grows."""
+    shape = _shape(small, drift.astype(complex), 0)
+    names = ", ".join(q.name for q, x in shape.items() if abs(x) > SHARE) or "some speeds"
+    others = "; all other motions oscillate or fade" if any(values) else ""
+    return f"{names} grows like t, as the eigenvalue 0 has fewer modes than it counts for{others}"
 
 
 def _drifting(modes: Sequence[Mode]) -> str:
