@@ -15,6 +15,7 @@ from typing import Any
 import numpy as np
 
 from eomgen.mechanics.equilibria.search import Equilibrium
+from eomgen.mechanics.equilibria.standing import standing_system
 from eomgen.mechanics.equilibria.static_equations import StaticEquations
 from eomgen.mechanics.initial_state.values_at_rest import values_of_parameters
 from eomgen.mechanics.small_motions.first_order import FirstOrder
@@ -68,14 +69,16 @@ def pushes_check(places: Sequence[Equilibrium]) -> Check:
 def _pushed(place: Equilibrium) -> str:
     """Which speed of the free bodies is pushed; multipliers that stand in no equation push nothing."""
     statics = place.statics
-    free = statics.system.free or statics.system
+    standing = standing_system(statics.system)
+    free = standing.free or standing
     symbols, digits = free.symbols, fifty_digits()
     known: dict[Node, Any] = values_of_parameters(free.scope, Random(3))
     still = (symbols.t, *symbols.q, *symbols.u, *symbols.a, *symbols.lam)
     known = {**dict.fromkeys(still, digits.number(0)), **known}
     held = {q: value for q, value in statics.given.items() if q in symbols.q}
     known |= dict(zip(held, evaluate(tuple(held.values()), known, digits), strict=True))
-    known |= _places(place, statics.unknowns, known)
+    stays = [q for q in symbols.q if q not in statics.q and (q in place.exact or q in place.numbers)]
+    known |= _places(place, (*statics.unknowns, *stays), known)
     most = max(_usual(statics, known), default=0)
     for u, x in zip(symbols.u, demand_of(free, with_inputs(free, known)).forces, strict=True):
         if abs(x) > COMPUTED * most + ZERO_AT_50:

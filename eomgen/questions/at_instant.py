@@ -79,6 +79,7 @@ def resting(system: System, guess: Mapping[str, float] | None = None) -> StateAt
         DerivationError: there is none; a contact would have to pull there.
     """
     from eomgen.mechanics.equilibria.search import all_equilibria
+    from eomgen.mechanics.equilibria.standing import standing_system
     from eomgen.mechanics.equilibria.static_equations import static_equations
 
     statics = static_equations(system)
@@ -86,7 +87,7 @@ def resting(system: System, guess: Mapping[str, float] | None = None) -> StateAt
         return _held(system)
     equilibria = all_equilibria(system, guess)
     place = equilibria.nearest()
-    system = place.statics.system
+    system = standing_system(place.statics.system)
     place.refuse_pulling()
     held = f", {', '.join(place.statics.held)} held" if place.statics.held else ""
     exact = {**place.exact, **_still(system)}

@@ -20,6 +20,7 @@ from eomgen.mechanics.equations.system import System
 from eomgen.mechanics.equilibria.resting_reactions import ReactionsOrWhy, reactions_or_why
 from eomgen.mechanics.equilibria.search import Equilibria, Equilibrium, all_equilibria
 from eomgen.mechanics.equilibria.stability import Stability
+from eomgen.mechanics.equilibria.standing import standing_system
 from eomgen.mechanics.initial_state.numeric_value import known_exactly, known_parameters, shown_numbers
 from eomgen.mechanics.small_motions.first_order import first_order_of
 from eomgen.model.parts import Model
@@ -61,7 +62,7 @@ class Resting(Result):
         if not self.places:
             return Certificate(())
         balanced = (balance_check(self.places), pushes_check(self.places))
-        first = first_order_of(self.places[0].statics.system)
+        first = first_order_of(standing_system(self.places[0].statics.system))
         try:
             base = certify(first.equations)
         except (ModelError, DerivationError) as error:  # a massless coordinate, say: there is rest, and no motion

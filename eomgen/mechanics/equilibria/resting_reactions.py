@@ -7,6 +7,7 @@ from eomgen.mechanics.balance.balance_solution import Indeterminate
 from eomgen.mechanics.balance.named_reactions import NamedReaction, named_reactions
 from eomgen.mechanics.equations.system import System
 from eomgen.mechanics.equilibria.search import Equilibrium
+from eomgen.mechanics.equilibria.standing import standing_system
 from eomgen.mechanics.reactions.reactions import Reactions, reactions_of
 from eomgen.records import dataclass
 from eomgen.symbolic.exact.normal_form import simplest
@@ -30,9 +31,9 @@ class RestingReaction:
 
 
 def system_at_rest(place: Equilibrium) -> System:
-    """The system over its rates: at rest declared speeds do not matter, nor whether they determine the rates."""
+    """The system as it stands there: at rest declared speeds do not matter, nor whether they determine the rates."""
     system = place.statics.system
-    return system if system.free is None or system.elimination is not None else system.free
+    return standing_system(system if system.free is None or system.elimination is not None else system.free)
 
 
 def state_at_rest(place: Equilibrium) -> dict[Node, Scalar]:

@@ -15,13 +15,15 @@ from eomgen.mechanics.equations.system import System
 from eomgen.mechanics.initial_state.initial_state import fixed_by_position, start_state
 from eomgen.model.arithmetic import in_order
 from eomgen.model.values import exact_parameters
-from eomgen.symbolic.expression.derivative import substituted, symbols_of
-from eomgen.symbolic.expression.graph import Node, Scalar
+from eomgen.symbolic.expression.derivative import jacobian, substituted, symbols_of
+from eomgen.symbolic.expression.graph import Node, Scalar, is_zero
 from eomgen.symbolic.expression.node import State
 from eomgen.symbolic.expression.rational import Fraction
-from eomgen.symbolic.numeric.evaluation import NoValue, evaluate, fifty_digits
+from eomgen.symbolic.numeric.evaluation import NoValue, digits_at, evaluate, fifty_digits
+from eomgen.symbolic.solve.linear_systems import LinearSystem, general_solution
 
 TRIES = 20
+DIGITS = 12  # of a speed that a start was given by its constraints
 
 
 def values_where_at_rest(system: System, places: Mapping[Node, Scalar] | None = None) -> State:
@@ -56,6 +58,25 @@ def _closed_in(system: System, state: State, sought: list[Node]) -> State:
             f"coordinates.{missing[0]}",
             "give start values at which it has one",
         )
+    return found
+
+
+def speeds_near(system: System, places: State, numbers: Mapping[Node, float]) -> State:
+    """Exact speeds at exact places, for which J u + sigma = 0, next to those of a start that was put together.
+
+    Args:
+        numbers: of all speeds; as many as the rows determine follow from the others, which are rounded.
+    """
+    u = system.symbols.u
+    rows = substituted(tuple(row.velocity for row in system.ties.closing), places | {system.symbols.t: 0})
+    still = substituted(rows, dict.fromkeys(u, 0))
+    lines = [{j: x for j, x in enumerate(row) if not is_zero(x)} for row in jacobian(rows, u)]
+    values = digits_at(values_of_parameters(system.scope, Random(3)))
+    solution = general_solution(LinearSystem(lines, [-x for x in still], len(u), values))
+    known = {j: Fraction(f"{numbers[u[j]]:.{DIGITS}g}") for j in solution.free}
+    found: dict[Node, Scalar] = {u[j]: x for j, x in known.items()}
+    for j, x in solution.constants.items():
+        found[u[j]] = x - sum((share * known[f] for f, share in solution.shares[j].items()), start=0)
     return found
 
 

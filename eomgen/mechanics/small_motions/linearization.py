@@ -12,6 +12,7 @@ from eomgen.errors import DerivationError, EomgenError, MissingValues, NotYet
 from eomgen.mechanics.constraints.bifurcations import fork_at
 from eomgen.mechanics.equations.system import System
 from eomgen.mechanics.equilibria.higher_derivatives import states_beside
+from eomgen.mechanics.equilibria.standing import standing_system
 from eomgen.mechanics.small_motions.dependent_values import with_followers
 from eomgen.mechanics.small_motions.field import Exact, NumberField, Numbers
 from eomgen.mechanics.small_motions.first_order import Choice, FirstOrder, choice_of, first_order_of
@@ -298,9 +299,24 @@ def _balanced(
         return reference, first
     try:
         reference = place_of_rest(system, guess)
-        return reference, first_order_of(reference.system)
+        first = first_order_of(reference.system)
+        _refuse_carried(first, reference)
+        return reference, first
     except (DerivationError, NotYet) as error:
         return _other_rest(system, guess, error)
+
+
+def _refuse_carried(first: FirstOrder, reference: ReferenceMotion) -> None:
+    """What an explicit time moves, as the seat of a joint, may accelerate the others where all forces balance.
+
+    Raises:
+        DerivationError: it does.
+    """
+    if standing_system(reference.system) is reference.system:
+        return
+    if wrong := _accelerated(first, reference):
+        what = f"what moves by an explicit time accelerates '{wrong}' where all forces balance: nothing is at rest"
+        raise DerivationError(what, "linearize", "hold it, or let an input push in its place")
 
 
 def _steady(first: FirstOrder, start: ReferenceMotion, wanted: Sequence[str]) -> ReferenceMotion:

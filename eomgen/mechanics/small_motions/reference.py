@@ -15,6 +15,7 @@ from eomgen.mechanics.constraints.ties import Row
 from eomgen.mechanics.equations.equations_of_motion import EquationsOfMotion
 from eomgen.mechanics.equations.system import System
 from eomgen.mechanics.equilibria.search import Equilibrium, nearest_equilibrium
+from eomgen.mechanics.equilibria.standing import over_rates
 from eomgen.mechanics.equilibria.static_equations import StaticEquations, static_equations
 from eomgen.mechanics.first_integrals.closed_instant import position_equations
 from eomgen.mechanics.initial_state.initial_state import fixed_by_position, refuse_lost, start_state
@@ -126,7 +127,7 @@ def relative_rest(equations: EquationsOfMotion, guess: Mapping[str, float] | Non
 
 
 def _place(place: Equilibrium) -> ReferenceMotion:
-    system = place.statics.system
+    system = over_rates(place.statics.system)
     symbols = system.symbols
     still: dict[Node, Scalar] = {symbols.t: 0, **dict.fromkeys(symbols.u, 0)}
     exact = {q: place.exact[q] for q in symbols.q if q in place.exact} | still
