@@ -1,4 +1,4 @@
-"""Rest where time stands in the model: surfaces and seats as they are at t = 0, declared speeds that need not vanish."""
+"""Rest where time stands in the model: surfaces and seats as they are at t = 0, declared speeds that are not 0."""
 
 from __future__ import annotations
 
