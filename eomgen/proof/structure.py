@@ -289,11 +289,10 @@ class _Proof:
 
     @cached_property
     def _G(self) -> np.ndarray:
-        """(force, moment about the mass centre) of a unit of each component on each body."""
-        components = self.found.structure.components
-        G = np.zeros((3 * len(self._centers), len(components)))
-        for j, component in enumerate(components):
-            for e in component.effects:
+        """(force, moment about the mass centre) of a unit of each component and unknown load on each body."""
+        G = np.zeros((3 * len(self._centers), len(self.found.structure.pushes)))
+        for j, (_, effects) in enumerate(self.found.structure.pushes):
+            for e in effects:
                 force, couple, arm = (self.numbers(v) for v in (e.force, e.couple, e.arm))
                 G[3 * e.link : 3 * e.link + 3, j] += _wrench(force, arm) + np.array([0, 0, couple[2]])
         return G
@@ -311,9 +310,9 @@ class _Proof:
         motion = self.found.system.motion
         i, at, section = motion.index[cut.axis.body], self.numbers(cut.place), self.one(cut.x)
         R, T = np.zeros(3), 0.0
-        for j, component in enumerate(self.found.structure.components):
-            for e in component.effects:
-                place = place_of(self.found.structure.components, e, component.owner)
+        for j, (owner, effects) in enumerate(self.found.structure.pushes):
+            for e in effects:
+                place = place_of(self.found.structure.components, e, owner)
                 s = None if place is None else cut.axis.distance(place)
                 if e.link != i or place is None or s is None or not cut.before(s):
                     continue

@@ -29,9 +29,11 @@ from eomgen.errors import (
     ModelError,
     RunFailed,
 )
+from eomgen.mechanics.equations.jumps import refuse_jump, signs_of_rates
 from eomgen.mechanics.equations.pieces import Extent
 from eomgen.mechanics.first_integrals.constants_of_motion import stay_constant
-from eomgen.mechanics.first_integrals.speeds import rates_and_extent
+from eomgen.mechanics.first_integrals.integrals import where_integrals_hold
+from eomgen.mechanics.first_integrals.speeds import rates_of
 from eomgen.mechanics.initial_state.initial_state import start_state
 from eomgen.mechanics.initial_state.numeric_value import known_exactly, known_parameters
 from eomgen.mechanics.instant.outputs import asks_motion, asks_of
@@ -45,7 +47,7 @@ from eomgen.model.reader import ModelOrPath, model_at
 from eomgen.model.replaced import Values
 from eomgen.proof.check import Certificate
 from eomgen.questions.at_instant import StateAtInstant, resting
-from eomgen.questions.in_phase import PhaseEquations
+from eomgen.questions.in_phase import PhaseEquations, exact_numbers
 from eomgen.questions.motion_from_start import MotionFromStart
 from eomgen.questions.of_a_run import is_of_a_run
 from eomgen.questions.one_phase_run import leaves_at
@@ -253,7 +255,10 @@ class _Solver:
         method = phase.method_for(output.value) or ("kinematics" if symbols_of((scalar,)) else "arithmetic")
         if self._not_at_rest:
             raise DerivationError(f"the bodies are not at rest: {self._not_at_rest}")
-        answer = self._regular(self._started(phase.simple(scalar), method, output), output)
+        answer = self._started(phase.simple(scalar), method, output)
+        if jump := _jump(phase, output, self.motions[False].numbers):
+            return replace(answer, value=None, message=jump)
+        answer = self._regular(answer, output)
         failure = self.motions[False].failure
         if failure and any(node.op == "sign" for node in order((scalar,))):
             return replace(answer, value=None, message=f"no number: at the start {failure}")
@@ -300,16 +305,18 @@ class _Solver:
         scalar = phase.of_state(output.value)
         if not depends_on(scalar, phase.system.symbols.u):
             method = phase.method_for(output.value) or "kinematics"
-            return self._started(phase.simple(scalar), method, output)
+            answer = self._started(phase.simple(scalar), method, output)
+            jump = _jump(phase, output, motion.numbers)
+            return replace(answer, value=None, message=jump) if jump else answer
         if not motion.start:
             raise DerivationError("a coordinate at the start has no closed form", mend="ask it at an instant: `at`")
-        found = rates_and_extent(phase.equations, motion.start, accelerations=phase.accelerations)
-        if found is None:
+        rates = rates_of(phase.equations, motion.start, accelerations=phase.accelerations)
+        if rates is None:
             raise DerivationError(
                 "no integrals of the motion give the rates as functions of the coordinates",
                 mend="ask it at an instant: `at`",
             )
-        rates, held = found
+        held = where_integrals_hold(phase.equations)
         self._refuse_leaving(motion, held)
         (scalar,) = substituted((scalar,), rates)
         method = "energy theorem" if held.everywhere else f"energy theorem, while {held.text}"
@@ -452,6 +459,17 @@ class _Solver:
         phase = moment.phase
         value = phase.number(output.value, {**known_exactly(phase.system.scope), **moment.numbers})
         return value if output.unit is None else float(output.unit.from_si(value, math.pi))
+
+
+def _jump(phase: PhaseEquations, output: Output, numbers: Mapping[Node, float]) -> str:
+    """Why accelerations and reactions have no number at the start: a force jumps with the sign of a rate; ""."""
+    if not signs_of_rates(phase.system) or not phase.needs_equations(output.value):
+        return ""
+    try:
+        refuse_jump(phase.system, exact_numbers(numbers))
+    except DerivationError as error:
+        return f"no number: {error.what}; {error.mend}"
+    return ""
 
 
 def _in_unit(quantity: Scalar, output: Output) -> Scalar:

@@ -23,6 +23,7 @@ from eomgen.mechanics.constraints.freedom import freedoms
 from eomgen.mechanics.constraints.ties import holds_identically
 from eomgen.mechanics.equations.equations_of_motion import EquationsOfMotion
 from eomgen.mechanics.equations.explicit_accelerations import bordered_rows, by_short_rows, regular_rows
+from eomgen.mechanics.equations.jumps import refuse_jump, signs_of_rates
 from eomgen.mechanics.equations.system import System, system_of
 from eomgen.mechanics.equations.wellposed import refuse_massless
 from eomgen.mechanics.initial_state.initial_state import fixed_by_position, start_speeds
@@ -166,6 +167,8 @@ class PhaseEquations:
 
     def numbers(self, formulas: Sequence[Expression], numbers: Mapping[Node, Scalar | float]) -> list[float]:
         """The numbers of several formulas at a state: what they share is found once."""
+        if signs_of_rates(self.system) and any(map(self.needs_equations, formulas)):
+            refuse_jump(self.system, exact_numbers(numbers))
         inputs = {node: self.system.inputs[name] for name, node in self.system.symbols.inputs.items()}
         closed = substituted(tuple(self.eliminated(self.raw(formula)) for formula in formulas), inputs)
         found = numbers_of(closed, numbers)
@@ -224,6 +227,7 @@ class PhaseEquations:
             return {**state, **still(self.system)}
         if formula is not None and not self.needs_equations(formula):
             return state
+        refuse_jump(self.system, state)
         return {**state, **self._unknowns_at(state, readable)}
 
     def method_for(self, formula: Expression) -> str:

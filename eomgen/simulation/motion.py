@@ -10,6 +10,7 @@ import numpy as np
 
 from eomgen.errors import DerivationError, UsageError
 from eomgen.mechanics.constraints.edges import left_of, stopped_at
+from eomgen.mechanics.equations.jumps import SMOOTH, signs_of_rates
 from eomgen.records import dataclass
 from eomgen.simulation.configuration import Configuration
 from eomgen.simulation.event_location import TOUCH, Events
@@ -22,6 +23,7 @@ from eomgen.simulation.singular import ended_where_singular
 from eomgen.simulation.singular_crossing import Flow, march_across
 from eomgen.symbolic.expression.graph import Node
 from eomgen.symbolic.numeric.tolerances import COMPUTED, FINEST_RUN
+from eomgen.symbolic.print.text import to_text
 
 LOOK_PHASES = 1000  # from one look at how fast they follow one another to the next
 MOST_PHASES = 100_000  # that may be left to the end: about half an hour of work
@@ -100,6 +102,9 @@ def _named(phase: PhaseModel, run: Run, begun: float) -> Run:
     """The run; where it came to a state without a value, with what has none there, or with what is too large."""
     if run.status in ("step too small", "too many steps") and (large := phase.overlarge(run.end, run.last)):
         return replace(run, message=f"{run.message[:-1]}: {large.what}.")
+    if run.status in ("step too small", "too many steps") and (jumping := signs_of_rates(phase.system)):
+        told = f"A force jumps with the sign of {to_text(jumping[0])}, and sticks where that is 0: {SMOOTH}."
+        return replace(run, message=f"{run.message} {told}")
     found = phase.valueless(run.end, run.last) if run.status == "not finite" else None
     if found is None:
         return run

@@ -26,6 +26,7 @@ from eomgen.equations import Equations
 from eomgen.errors import DerivationError, ExpressionError, MissingValues, ModelError, UsageError
 from eomgen.mechanics.balance.balance import balance_of
 from eomgen.mechanics.balance.named_reactions import NamedReaction, named_reactions
+from eomgen.mechanics.equations.jumps import refuse_jump
 from eomgen.mechanics.equations.system import System, system_of
 from eomgen.mechanics.initial_state.numeric_value import known_exactly
 from eomgen.model.fields import AtRest, WrittenEquation
@@ -42,6 +43,7 @@ from eomgen.questions import answers
 from eomgen.simulation.reaction_columns import ReactionColumns
 from eomgen.symbolic.exact.book_form import book_form
 from eomgen.symbolic.expression.expressions import parse
+from eomgen.symbolic.expression.rational import Fraction
 from eomgen.symbolic.numeric.tolerances import ROUNDING
 from eomgen.symbolic.numeric.work import doing
 from eomgen.symbolic.print.text import to_text
@@ -182,10 +184,13 @@ def _at_start(equations: Equations) -> tuple[dict[str, float], str | None]:
     """({name: value}, why there are none, or None): what has no single value at the start is left out."""
     try:
         p = parameter_vector(equations.model)
+        system = equations.graph.system
+        start = zip((*system.symbols.q, *system.symbols.u), map(float, equations.start()), strict=True)
+        refuse_jump(system, {x: Fraction(value) for x, value in start})
         columns = ReactionColumns(equations.reactions, equations.rhs("numpy"))
         values = columns.along(np.zeros(1), equations.start()[None, :], p)[0]
     except (MissingValues, DerivationError, ModelError) as error:
-        return {}, error.what
+        return {}, f"{error.what}; {error.mend}" if isinstance(error, DerivationError) and error.mend else error.what
     rounding = ROUNDING * max((abs(x) for x in values if math.isfinite(x)), default=0.0)
     return {
         n: float(x) if abs(x) > rounding else 0.0

@@ -520,3 +520,19 @@ def test_a_gap_that_is_small_for_ever_is_not_closed(away, says):
     """Two rods of length 1 against a point beyond 2: 1e-10 m is missing, whatever doubles take for 0."""
     with pytest.raises(eomgen.DerivationError, match=says):
         eomgen.simulate(eomgen.loads(REACHING.format(away=away)), time=1)
+
+
+def test_a_link_that_cannot_close_is_open_by_a_length():
+    """|L - |r||, not (L - r^2/L)/2 = 0.75:  1.8 m between ends 1 m and 0.2 m from places 3 m apart, L = 1.2 m"""
+    text = """
+eomgen = 1
+space = "plane"
+coordinates = { a = 0.1, b = { dependent = true, near = 0.2 } }
+points = { O = [0, 0], P = [3, 0] }
+bodies.r = { shape = { kind = "rod", mass = 1, length = 1 }, joint = { kind = "revolute", angle = "a" } }
+bodies.s.shape = { kind = "rod", mass = 1, length = 0.2 }
+bodies.s.joint = { kind = "revolute", at = "P", angle = "b" }
+constraints.L = { kind = "link", points = ["r.end", "s.end"], length = 1.2 }
+"""
+    with pytest.raises(eomgen.EomgenError, match=r"stays open: by 0\.6 at"):
+        eomgen.simulate(eomgen.loads(text), time=0.1)

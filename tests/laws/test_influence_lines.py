@@ -183,3 +183,27 @@ def test_an_indeterminate_reaction_has_none():
     text = GERBER + 'M = { kind = "support", point = "I.C", normal = [0, 1] }\n'
     with pytest.raises(eomgen.DerivationError, match="nothing can move"):
         line(text, "reaction_n(A)")
+
+
+BESIDE_UNKNOWNS = (
+    HEAD
+    + """
+unknowns = { X = "holds it", F = "holds it too" }
+bodies.I = { shape = { kind = "rod", mass = 4, length = 6 }, points = { Q = [2, 0] } }
+constraints.A = { kind = "support", point = "I.start", normal = [1, 0] }
+forces.couple = { kind = "couple", body = "I", couple = "2*X", point = "end" }
+forces.force = { kind = "force", point = "I.Q", force = [0, "F"] }
+"""
+)
+
+
+@pytest.mark.parametrize("x", [1, 3])
+def test_unknown_loads_hold_a_beam_as_reactions_do(x):
+    """F = 1, couple s - 2 of a unit load at s:  M(x) = couple - [s > x] (s - x) + [2 > x] (2 - x)"""
+    found = eomgen.statics(eomgen.loads(BESIDE_UNKNOWNS), influence=f"bending_moment(I, {x})")
+    assert found.certify().ok
+    for span in found.influence.spans:
+        for place, value in ((span.start, span.at_start), (span.end, span.at_end)):
+            s, M = float(place[0]), float(value)
+            after = s > x or (s == x and span.start[0] == x)
+            assert M == pytest.approx((s - 2) - (s - x) * after + max(2 - x, 0))

@@ -287,3 +287,25 @@ def test_a_sweep_asks_for_derivatives():
     assert swept.in_units()[1][asked[2]] == "d(last(x))/d(k) [m/(N/m)]"
     with pytest.raises(eomgen.UsageError, match="no parameter"):
         eomgen.sweep(model, over={"k": [1.0]}, ask="d(x)/d(q)", time=1.0)
+
+
+DRIVEN = """
+eomgen = 1
+space = "plane"
+parameters = { r = 0.1, b = 0.3, m = 1 }
+coordinates = { phi = { motion = "5*t + 1" }, be = { dependent = true, near = 0 }, x = { dependent = true, near = 0.3 } }
+bodies.crank = { shape = { kind = "rod", mass = "m", length = "r" }, joint = { kind = "revolute", angle = "phi" } }
+bodies.rod.shape = { kind = "rod", mass = "m", length = "b" }
+bodies.rod.joint = { kind = "revolute", on = "crank.end", angle = "be - phi" }
+bodies.slide.shape = { kind = "particle", mass = "m" }
+bodies.slide.joint = { kind = "prismatic", axis = [1, 0], displacement = "x" }
+constraints.P = { kind = "pin", points = ["rod.end", "slide.origin"] }
+"""
+
+
+def test_a_driven_linkage_follows_its_parameters():
+    """x = r cos(phi) + sqrt(b^2 - r^2 sin^2(phi)) of phi = 1, which nobody has to mark as dependent"""
+    found = eomgen.sensitivity(eomgen.loads(DRIVEN), of="x", to=["r", "b", "m"])
+    c, s, root = np.cos(1), np.sin(1), np.sqrt(0.09 - 0.01 * np.sin(1) ** 2)
+    slopes = [float(found["x", to].value) for to in ("r", "b", "m")]
+    assert slopes == pytest.approx([c - 0.1 * s * s / root, 0.3 / root, 0])

@@ -13,10 +13,12 @@ from eomgen.mechanics.constraints.ties import Row
 from eomgen.mechanics.equations.no_value import reason_without_value
 from eomgen.mechanics.equations.system import System
 from eomgen.mechanics.initial_state.nearest_miss import nearest_miss
+from eomgen.model.forces.load import PointForce
 from eomgen.model.own_units import in_own_unit
 from eomgen.symbolic.expression.derivative import depends_on, gradient
 from eomgen.symbolic.expression.graph import Node, Scalar
 from eomgen.symbolic.expression.node import State
+from eomgen.symbolic.expression.spatial import minus
 from eomgen.symbolic.expression.traversal import order
 from eomgen.symbolic.numeric.evaluation import NoValue, evaluate, fifty_digits
 from eomgen.symbolic.numeric.tolerances import COMPUTED, OPEN_GAP
@@ -36,6 +38,7 @@ def refuse_open_gaps(system: System, state: State) -> None:
             f"constraints.{row.tie}",
             "give start values at which its roots and quotients have one",
         )
+    size = _in_full(system, row, size, state)
     what = f"'{row.tie}' (row {row.number}) does not close at the start: it is open by {size:.3g}"
     raise DerivationError(f"{what}{_nearest(system, state)}", f"constraints.{row.tie}", _mend(system, gap))
 
@@ -56,7 +59,26 @@ def _nearest(system: System, state: State) -> str:
     if not miss.open:
         return f"; all ties close at {there}, farther than a start is moved"
     stay = f"{quoted_names(miss.ties)} {'stays' if len(miss.ties) == 1 else 'stay'} open"
-    return f"; wherever the coordinates go, {stay}: by {miss.open:.3g} at {there}, the least that was found"
+    left = state | {q: of_50_digits(miss.values[q.name]) for q in system.symbols.q if q.name in miss.values}
+    rows = [row for row in system.ties.rows if row.gap is not None and row.tie in miss.ties]
+    gaps = evaluate([row.gap for row in rows if row.gap is not None], left, fifty_digits())
+    size = max((_in_full(system, row, abs(float(x)), left) for row, x in zip(rows, gaps, strict=True)), default=0)
+    return f"; wherever the coordinates go, {stay}: by {size:.3g} at {there}, the least that was found"
+
+
+def _in_full(system: System, row: Row, size: float, state: State) -> float:
+    """By how much a row is open: of a link, whose gap g = (L - r.r/L)/2 is a length to first order, |L - |r||.
+
+    L = g + sqrt(g^2 + r.r)
+    """
+    tie = system.scope.model.constraints.get(row.tie)
+    if row.gap is None or tie is None or not tie.by_squares:
+        return size
+    first, second = (system.motion.position(push.place) for push in row.pushes if isinstance(push, PointForce))
+    (g, *r), digits = evaluate((row.gap, *minus(second, first)), state, fifty_digits()), fifty_digits()
+    root = digits.functions["sqrt"]
+    square = sum(x * x for x in r)
+    return float(abs(g + root(g * g + square) - root(square)))
 
 
 def _mend(system: System, gap: Scalar) -> str:

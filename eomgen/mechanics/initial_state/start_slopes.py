@@ -60,7 +60,9 @@ def start_seeds(system: System, numbers: Mapping[Node, Any], seeds: Seeds, own: 
     rows = [row for row in system.ties.rows if row.gap is not None and not row.identical]
     gaps = [row.gap for row in rows if row.gap is not None]
     sought = fixed_by_position(system)
+    given = {q for q in symbols.q if scope.model.coordinates[q.name].driven}
     silent = [q for q in symbols.q if q in sought or (q.name != own and is_guess(scope.model, q.name))]
+    silent = [q for q in silent if q not in given]
     what = own or "the parameter"
     dq = _kept(gaps, at(gaps, {**seeds, **dq}), silent, dq, numbers, what, _moved(begun, symbols.q, numbers))
     speeds = start_speeds(system)

@@ -85,18 +85,17 @@ def cut_of(structure: Structure, call: Call, sizes: Sizes) -> Cut:
 def _is_pushed(structure: Structure, axis: MemberAxis, x: Scalar, body: str) -> bool:
     """Whether a reaction acts at the section."""
     link = structure.system.motion.index[body]
-    places = (e.place for c in structure.components for e in c.effects if e.link == link and e.place is not None)
+    places = (e.place for _, effects in structure.pushes for e in effects if e.link == link and e.place is not None)
     distances = (axis.distance(place) for place in places)
     return any(s is not None and axis.sizes.sign(x - s) == 0 for s in distances)
 
 
 def left_powers(structure: Structure, cut: Cut) -> dict[int, Scalar]:
-    """Minus the power of each reaction on the part before the section in the motion w."""
+    """Minus the power of each reaction and unknown load on the part before the section in the motion w."""
     found: dict[int, Scalar] = {}
     link = structure.system.motion.index[cut.axis.body]
-    for j, component in enumerate(structure.components):
-        mine = [e for e in component.effects if e.link == link]
-        power = sum((_power(structure, cut, e, component.owner) for e in mine), start=0)
+    for j, (owner, effects) in enumerate(structure.pushes):
+        power = sum((_power(structure, cut, e, owner) for e in effects if e.link == link), start=0)
         if not is_zero(power):
             found[j] = -power
     return found
@@ -120,5 +119,5 @@ def loaded_axis(structure: Structure, body: str, sizes: Sizes) -> MemberAxis:
     """The axis of a body, as far as reactions act on it."""
     motion = structure.system.motion
     link = motion.index[body]
-    acting = [e.place for c in structure.components for e in c.effects if e.link == link and e.place is not None]
+    acting = [e.place for _, effects in structure.pushes for e in effects if e.link == link and e.place is not None]
     return axis_of(motion, body, acting, sizes)

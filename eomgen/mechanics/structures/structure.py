@@ -19,7 +19,7 @@ from typing import Any
 from eomgen.errors import DerivationError
 from eomgen.mechanics.balance.balance import Balance, balance_of
 from eomgen.mechanics.balance.components import Component
-from eomgen.mechanics.balance.unit_wrenches import Axes
+from eomgen.mechanics.balance.unit_wrenches import Axes, Effect, effects_of_load, joint_effects
 from eomgen.mechanics.balance.unknown_loads import slope
 from eomgen.mechanics.constraints.ties import holds_identically
 from eomgen.mechanics.equations.system import System
@@ -31,7 +31,7 @@ from eomgen.symbolic.exact.normal_form import readable_all
 from eomgen.symbolic.expression.derivative import derivative, substituted, tangent, tangents
 from eomgen.symbolic.expression.graph import Node, Scalar, is_zero
 from eomgen.symbolic.expression.node import ScalarRow, State
-from eomgen.symbolic.expression.spatial import Vector
+from eomgen.symbolic.expression.spatial import Vector, vector_of
 from eomgen.symbolic.numeric.dense import sparse_rank
 from eomgen.symbolic.numeric.evaluation import digits_at, evaluate, fifty_digits
 from eomgen.symbolic.numeric.work import Work
@@ -75,6 +75,15 @@ class Structure:
     def unknowns(self) -> tuple[Node, ...]:
         """Of the loads."""
         return self.balance.unknowns
+
+    @cached_property
+    def pushes(self) -> tuple[tuple[str, tuple[Effect, ...]], ...]:
+        """(owner, what a unit does) of every row; of an unknown of the loads its derivative, on what it acts on."""
+        axes = Axes(self.system.motion)
+        given = [e for load in self.system.loads.placed for e in effects_of_load(axes, load)]
+        given += joint_effects(self.system)
+        own = [(component.owner, component.effects) for component in self.components]
+        return (*own, *((p.name, tuple(filter(None, (_slope_of(e, p) for e in given)))) for p in self.unknowns))
 
     # -- counts ------------------------------------------------------------------------------------
 
@@ -290,3 +299,11 @@ def _is_point_that_turns(system: System, column: UnknownColumn) -> bool:
     part = system.scope.model.bodies.get(system.motion.links[body].name)
     point = part is None or (part.shape is not None and part.shape.is_point)
     return point and direction > 2
+
+
+def _slope_of(effect: Effect, unknown: Node) -> Effect | None:
+    """What a unit of an unknown load adds to an effect; None where it does not stand in it."""
+    force, couple = (tuple(derivative(x, unknown) for x in v) for v in (effect.force, effect.couple))
+    if all(map(is_zero, (*force, *couple))):
+        return None
+    return Effect(effect.link, vector_of(force), vector_of(couple), effect.arm, effect.place)

@@ -26,6 +26,7 @@ class Link(Constraint):
 
     kind: ClassVar[str] = "link"
     pulls: ClassVar[bool] = True
+    by_squares: ClassVar[bool] = True
     points: TwoPoints
     length: Length | None = None
     unilateral: Flag = False

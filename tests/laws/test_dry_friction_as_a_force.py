@@ -1,0 +1,46 @@
+"""Dry friction that is written as a force, -c*sign(w): where w = 0 it may hold, and no number is told."""
+
+from __future__ import annotations
+
+import pytest
+
+import eomgen
+
+HINGE = """
+eomgen = 1
+space = "plane"
+parameters = { m = 1, l = 1, g = 9.81, Tc = 1 }
+coordinates = { q = { start = 0.1, speed = SPEED } }
+bodies.arm.shape = { kind = "rod", mass = "m", length = "l" }
+bodies.arm.joint = { kind = "revolute", angle = "q - pi/2", torque = "-Tc*LAW" }
+forces.w = { kind = "gravity", acceleration = [0, "-g"] }
+outputs = { qdd = "q''", Rx = "reaction_x(arm)", x = "x(arm.end)" }
+"""
+
+
+def hinge(speed: float, law: str = "sign(q')"):
+    return eomgen.loads(HINGE.replace("SPEED", str(speed)).replace("LAW", law))
+
+
+def test_where_nothing_slides_dry_friction_gives_no_number():
+    """m g l sin(q)/2 = 0.49 N m < Tc: it sticks, and q'' = -1.469 by sign(0) = 0 is none of its accelerations"""
+    found = eomgen.solve(hinge(0))
+    for name in ("qdd", "Rx"):
+        assert found[name].value is None and "tanh(w/eps)" in found[name].message
+    assert found["x"].value is not None
+    told = eomgen.reactions(hinge(0))["reaction_x(arm)"]
+    assert told.value is None and "tanh(w/eps)" in told.message
+
+
+@pytest.mark.parametrize("speed", [0.5, -0.5])
+def test_where_it_slides_dry_friction_has_its_number(speed):
+    """m l^2/3 q'' = -m g l sin(q)/2 - Tc sign(q')"""
+    sign = 1 if speed > 0 else -1
+    expected = -3 * (9.81 * 0.09983341664682815 / 2 + sign)
+    assert float(eomgen.solve(hinge(speed))["qdd"].value) == pytest.approx(expected)
+
+
+def test_the_smooth_law_runs_from_rest():
+    """q'' = -3 m g l sin(q)/2 at tanh(0) = 0"""
+    found = eomgen.solve(hinge(0, "tanh(q'/0.01)"))
+    assert float(found["qdd"].value) == pytest.approx(-3 * 9.81 * 0.09983341664682815 / 2)
