@@ -32,8 +32,7 @@ from eomgen.errors import (
 from eomgen.mechanics.equations.jumps import refuse_jump, signs_of_rates
 from eomgen.mechanics.equations.pieces import Extent
 from eomgen.mechanics.first_integrals.constants_of_motion import stay_constant
-from eomgen.mechanics.first_integrals.integrals import where_integrals_hold
-from eomgen.mechanics.first_integrals.speeds import rates_of
+from eomgen.mechanics.first_integrals.speeds import rates_and_extent
 from eomgen.mechanics.initial_state.initial_state import start_state
 from eomgen.mechanics.initial_state.numeric_value import known_exactly, known_parameters
 from eomgen.mechanics.instant.outputs import asks_motion, asks_of
@@ -310,13 +309,13 @@ class _Solver:
             return replace(answer, value=None, message=jump) if jump else answer
         if not motion.start:
             raise DerivationError("a coordinate at the start has no closed form", mend="ask it at an instant: `at`")
-        rates = rates_of(phase.equations, motion.start, accelerations=phase.accelerations)
-        if rates is None:
+        found = rates_and_extent(phase.equations, motion.start, accelerations=phase.accelerations)
+        if found is None:
             raise DerivationError(
                 "no integrals of the motion give the rates as functions of the coordinates",
                 mend="ask it at an instant: `at`",
             )
-        held = where_integrals_hold(phase.equations)
+        rates, held = found
         self._refuse_leaving(motion, held)
         (scalar,) = substituted((scalar,), rates)
         method = "energy theorem" if held.everywhere else f"energy theorem, while {held.text}"

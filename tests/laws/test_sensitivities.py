@@ -293,7 +293,9 @@ DRIVEN = """
 eomgen = 1
 space = "plane"
 parameters = { r = 0.1, b = 0.3, m = 1 }
-coordinates = { phi = { motion = "5*t + 1" }, be = { dependent = true, near = 0 }, x = { dependent = true, near = 0.3 } }
+coordinates.phi = { motion = "5*t + 1" }
+coordinates.be = { dependent = true, near = 0 }
+coordinates.x = { dependent = true, near = 0.3 }
 bodies.crank = { shape = { kind = "rod", mass = "m", length = "r" }, joint = { kind = "revolute", angle = "phi" } }
 bodies.rod.shape = { kind = "rod", mass = "m", length = "b" }
 bodies.rod.joint = { kind = "revolute", on = "crank.end", angle = "be - phi" }
