@@ -230,3 +230,42 @@ SECTIONS: dict[str, Callable[[Any, Any], None]] = {
 def test_section_forces_that_are_told_otherwise_are_seen(change: str):
     """dM/dx = V, under the heads that are printed."""
     assert wrong_sections(SECTIONS[change])
+
+
+# -- kinds of motion -------------------------------------------------------------------------------------------
+
+GEARS = """
+eomgen = 1
+name = "A wheel on an arm"
+space = "plane"
+
+[parameters]
+w = { value = 2, unit = "rad/s" }
+l = { value = 0.5, unit = "m" }
+
+[coordinates]
+a = { rate = "w" }
+b = { rate = "-w" }
+
+[bodies.arm]
+points = { E = ["l", 0] }
+joint = { kind = "revolute", angle = "a" }
+
+[bodies.plate]
+joint = { kind = "revolute", on = "arm.E", angle = "b" }
+"""
+
+
+@pytest.mark.parametrize("said", ["", "now", "in the long run"])
+def test_a_kind_of_motion_is_that_of_the_spin_and_the_velocities(said: str, monkeypatch: pytest.MonkeyPatch):
+    """A body without spin translates; one that turns about a fixed axis keeps a point of it at rest."""
+    from eomgen.mechanics.instant import body_motion
+
+    if said == "now":
+        monkeypatch.setattr(body_motion, "instant_kind", lambda field: "rotation")
+    elif said:
+        kind = body_motion.Kind("curvilinear translation")
+        monkeypatch.setattr(body_motion.Kinds, "of", lambda self, body: kind)
+    checks = eomgen.kinematics(eomgen.loads(GEARS)).certify().checks
+    name = "kinds of motion are those of the spins and velocities"
+    assert [check.status for check in checks if check.name == name] == ["fails" if said else "holds"]

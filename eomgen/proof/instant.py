@@ -16,6 +16,7 @@ from typing import Any
 import numpy as np
 
 from eomgen.mechanics.equations.system import System
+from eomgen.mechanics.fields.motion_kind import Kind
 from eomgen.mechanics.fields.relative_motion import composition_of
 from eomgen.mechanics.initial_state.values_at_rest import values_of_parameters
 from eomgen.mechanics.instant.body_motion import BodyMotion
@@ -74,6 +75,7 @@ def instant_checks(
         ("any three centres are on one line (Kennedy)", proof.wrong_lines),
         ("centres by drawing and by velocities agree", lambda: state.disagreement),
         ("poles, inflection circles and slowest points are such", lambda: proof.wrong_motions(motions)),
+        ("kinds of motion are those of the spins and velocities", lambda: proof.wrong_kinds(motions)),
         ("v = v_t + v_r, a = a_t + a_r + a_C, each found by itself", lambda: proof.wrong_relative(relative)),
         ("accelerations satisfy the equations of motion", proof.wrong_accelerations),
     ]
@@ -334,6 +336,30 @@ class _Proof:
             first, last, least = motion.slowest
             ends = [seen.velocity(self.here(place)) for _, place in motion.ends]
             yield f"the least speed between {first} and {last}", (self.one(least) - _least(*ends),), 1
+
+    def wrong_kinds(self, motions: Sequence[BodyMotion]) -> str | None:
+        """Of each body what it does at the instant, and what it must then do by its kind in the long run."""
+        for motion in motions:
+            seen, still = self.bodies[motion.body], (0, 0, 0)
+            turns, moves = (self.differs(still, x, 1, self.tolerance) for x in (seen.w, seen.velocity(ZERO)))
+            slides = turns and self.differs(
+                (0,), (dot(seen.w, seen.velocity(ZERO)) / _size(seen.w),), 1, self.tolerance
+            )
+            word = ("helical motion" if slides else "rotation") if turns else "translation" if moves else "rest"
+            if motion.now != word:
+                return f"'{motion.body}' is said to be in {motion.now}, and is in {word}"
+            if motion.kind is not None and (wrong := self._against_kind(motion.kind, seen, turns=turns, moves=moves)):
+                return f"'{motion.body}', {motion.kind.name}: {wrong}"
+        return "" if motions else None
+
+    def _against_kind(self, kind: Kind, seen: Seen, *, turns: bool, moves: bool) -> str:
+        """What its kind does not allow."""
+        still = kind.name == "rest" or "translation" in kind.name
+        if (still and turns) or (kind.name == "rest" and moves):
+            return "it turns, or moves"
+        if kind.at is not None and kind.name in ("rotation about a fixed axis", "rotation about a fixed point"):
+            return "its fixed point moves" if self.differs((0, 0, 0), seen.velocity(self.here(kind.at)), 1) else ""
+        return ""
 
     # -- relative motion -------------------------------------------------------------------------------------
 

@@ -59,7 +59,7 @@ class Kinematics(Result):
         """Check the equations of motion where the motion follows them, and all velocities by differences of places."""
         state = self.state
         base = Certificate(()) if state.equations is None else certify(state.equations)
-        bodies = body_motions(state.system, state.state) if state.accelerated and state.is_short else ()
+        bodies = body_motions(state.system, state.state, self.kinds) if state.accelerated and state.is_short else ()
         return base + instant_checks(state, bodies, self.relative)
 
     @cached_property
