@@ -49,8 +49,9 @@ from eomgen.symbolic.numeric.tolerances import CARRIED, COMPUTED, RUNS_AGREE, SA
 
 WAY = 1.0  # s, of the motion along which functions of the configuration are tried
 ROWS = 21  # of it
-LONG_WAY, LONG_ROWS = 10.0, 401  # of a motion through pieces of min, max, abs, sign, cases and samples
-TRIED = 8  # rows of it that are looked at, about
+LONG_WAY = 10.0  # s, of a motion through pieces of min, max, abs, sign, cases and samples
+TRIED = 8  # rows of it that are looked at, about, and
+LAST = 3  # before it turns
 
 
 class Solver(Protocol):
@@ -341,7 +342,7 @@ class _Proof:
         """A while of the motion; a long one, as far as its steps lead, where it may come into other pieces."""
         with suppress(RunFailed):
             if any(holds_op(x, *PIECEWISE) for x in (*motion.phase.equations.forcing, motion.phase.equations.V)):
-                return run_from_start(motion, LONG_WAY, LONG_ROWS)
+                return run_from_start(motion, LONG_WAY)  # at its own steps: a hard floor is touched for milliseconds
         return run_from_start(motion, WAY, ROWS)
 
     def _along(self, output: Output, found: Quantity) -> str:
@@ -352,7 +353,8 @@ class _Proof:
             return ""  # a function of the state: its number is compared
         nodes, parameters = (*symbols.q, *symbols.u), known_exactly(phase.system.scope)
         one_way = _before_a_turn(run, len(symbols.q))
-        for t, x in list(zip(run.t.tolist(), run.x.tolist(), strict=True))[1 : one_way : max(4, one_way // TRIED)]:
+        rows = list(zip(run.t.tolist(), run.x.tolist(), strict=True))[1:one_way]
+        for t, x in (*rows[:: max(4, one_way // TRIED)], *rows[-LAST:]):
             state = self._state(phase, {symbols.t: t, **dict(zip(nodes, x, strict=True))})
             right = in_unit(state.worth(output.value), output)
             here: dict[Node, Scalar | float] = {**parameters, symbols.t: t, **dict(zip(nodes, x, strict=True))}

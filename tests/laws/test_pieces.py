@@ -10,6 +10,7 @@ import eomgen
 from eomgen.documents.text import render
 from eomgen.errors import UsageError
 from eomgen.mechanics.constraints.closure import norms_of
+from eomgen.mechanics.equations import pieces, wellposed
 from eomgen.mechanics.equations.wellposed import is_conservative, where_conservative
 from eomgen.mechanics.first_integrals.integrals import energy_integral, momentum_integrals
 from eomgen.mechanics.first_integrals.laws import laws_of_motion
@@ -220,6 +221,18 @@ def test_an_answer_by_the_energy_of_one_piece_is_given_where_the_motion_stays_th
     """
     found = eomgen.solve(at(text, tmp_path))["w2"]
     assert found.method == "energy theorem, while theta <= 1" and found.exact is not None
+
+
+@pytest.mark.parametrize("asked", [BALL + FLOOR + '[outputs]\nv2 = { value = "y\'^2", from = "rest" }\n', BUNGEE])
+def test_the_proof_of_answers_sees_an_energy_that_stays_in_one_piece_alone(asked, tmp_path, monkeypatch):
+    """Planted: conservation is decided at random states; y'^2 = 2 g (1 - y) fails where the floor is touched."""
+
+    def at_random(equations, scalars, decide):
+        return pieces.EVERYWHERE if decide(tuple(scalars)) else pieces.NOWHERE
+
+    monkeypatch.setattr(wellposed, "where_holds", at_random)
+    found = eomgen.solve(at(asked, tmp_path))
+    assert found["v2"].exact is not None and found.certify().ok is False
 
 
 def test_stabilization_by_energy_is_refused_where_it_does_not_stay(tmp_path):
