@@ -18,7 +18,7 @@ from eomgen.cli import main
 from eomgen.errors import DerivationError, EomgenError, UsageError
 from eomgen.identification.base_parameters import Group
 from eomgen.identification.fit import noise_of
-from eomgen.identification.proof_of_groups import fit_checked
+from eomgen.identification.proof_of_groups import fit_checked, spread_checked
 from eomgen.identification.regressor import Regressor, regressor_of
 from eomgen.identification.tied_rows import sampled_rows
 from eomgen.model.replaced import with_values
@@ -377,9 +377,22 @@ def test_wrong_groups_and_wrong_regressors_are_contradicted(name: str) -> None:
 def test_a_fit_is_proven_too():
     """That no base parameter could take more of what is left; a coefficient that is off is seen."""
     found = eomgen.identify(eomgen.loads(TWO_LINKS), data_of(eomgen.loads(TWO_LINKS), 3, 200))
-    assert found.certify().ok and found.certify().checks[-1].name.startswith("the fit leaves nothing")
+    assert found.certify().ok and found.certify().checks[-2].name.startswith("the fit leaves nothing")
     rng = np.random.default_rng(2)
     W, beta = rng.normal(size=(50, 4)), np.array([1.0, -2.0, 3.0, 0.5])
     b = W @ beta + 0.1 * rng.normal(size=50)
     best = np.linalg.lstsq(W, b, rcond=None)[0]
     assert fit_checked(W, b, best).ok and not fit_checked(W, b, best * (1 + 1e-6)).ok
+
+
+def test_deviations_condition_and_residual_are_proven_by_another_factorization():
+    """W = Q R: |rows of R^-1| s, s^2 = |left|^2/(n - k); another deviation, condition or residual is seen."""
+    rng = np.random.default_rng(1)
+    W = rng.normal(size=(40, 3)) * [1, 5, 0.1]
+    b = W @ [1, 2, 3] + 0.1 * rng.normal(size=40)
+    left = b - W @ np.linalg.lstsq(W, b, rcond=None)[0]
+    deviations = np.sqrt(np.diag(np.linalg.inv(W.T @ W)) * (left @ left) / 37)
+    told = [deviations, float(np.linalg.cond(W / np.linalg.norm(W, axis=0))), float(np.sqrt(np.mean(left**2)))]
+    assert spread_checked(W, b, *told).ok
+    for k in range(3):
+        assert spread_checked(W, b, *[2 * x if j == k else x for j, x in enumerate(told)]).ok is False

@@ -26,7 +26,7 @@ from eomgen.codegen.program import program_of
 from eomgen.codegen.rhs import compiled, parameter_vector
 from eomgen.errors import UsageError
 from eomgen.identification.consistent import numbers_of, parameters_of
-from eomgen.identification.proof_of_groups import fit_checked
+from eomgen.identification.proof_of_groups import fit_checked, spread_checked
 from eomgen.identification.regressor import Regressor, regressor_of
 from eomgen.mechanics.equations.work import generalized_forces
 from eomgen.model.reader import ModelOrPath, model_at
@@ -138,7 +138,10 @@ def identify(model: ModelOrPath, data: Data) -> Identified:
         float(np.sqrt(np.mean(left**2))),
         float(np.sqrt(np.mean(again**2))),
         dict(zip(formulas, shifts, strict=True)) if shifts else {},
-        (fit_checked(W, stacked.b, beta / lengths),),
+        (
+            fit_checked(W, stacked.b, beta / lengths),
+            spread_checked(W, stacked.b, deviations, float(np.linalg.cond(scaled)), float(np.sqrt(np.mean(left**2)))),
+        ),
     )
 
 

@@ -8,6 +8,7 @@ W^T (b - W beta) = 0                                of the samples: nothing of w
 
 from __future__ import annotations
 
+import math
 from collections.abc import Iterator
 from functools import partial
 from itertools import islice
@@ -23,7 +24,7 @@ from eomgen.mechanics.balance.friction import equations_of_motion
 from eomgen.mechanics.equations.equations_of_motion import EquationsOfMotion
 from eomgen.mechanics.equations.system import System
 from eomgen.mechanics.initial_state.values_at_rest import values_of_parameters
-from eomgen.proof.check import Certificate, Check, Tally, attempted, checked
+from eomgen.proof.check import Certificate, Check, Tally, attempted, checked, first_wrong
 from eomgen.symbolic.exact.equality import equal_at_random_states
 from eomgen.symbolic.expression.derivative import substituted
 from eomgen.symbolic.expression.expressions import parse
@@ -32,6 +33,8 @@ from eomgen.symbolic.expression.rational import Fraction
 from eomgen.symbolic.numeric.evaluation import evaluate, fifty_digits
 from eomgen.symbolic.numeric.tolerances import COMPUTED
 
+POOR = 1e6  # a condition beyond which its square is lost in doubles
+NEARLY = 1e-3  # share by which two ways of least squares may differ
 SEED, STATES = 11, 3  # others than those at which the groups were found
 
 
@@ -110,3 +113,31 @@ def fit_checked(W: np.ndarray, b: np.ndarray, beta: np.ndarray) -> Check:
     worst = float(np.max(np.abs(W.T @ left) / np.where(size > 0, size, 1), initial=0.0))
     wrong = "" if worst <= COMPUTED else f"what is left of the forces lies along a column by {worst:.1e}"
     return checked("the fit leaves nothing that a base parameter could take", wrong, "floating point, all samples")
+
+
+def spread_checked(W: np.ndarray, b: np.ndarray, deviations: np.ndarray, condition: float, residual: float) -> Check:
+    """By W = Q R: beta = R^-1 Q^T b, deviations |rows of R^-1| s, s^2 = |b - Q Q^T b|^2/(n - k); condition by squares.
+
+    The condition is the root of the largest over the least eigenvalue of the Gram matrix of columns of length 1.
+    """
+    n, k = W.shape
+    Q, R = np.linalg.qr(W)
+    left = b - Q @ (Q.T @ b)
+    rms = float(np.sqrt(left @ left / n))
+    s = np.linalg.norm(left) / np.sqrt(max(1, n - k))
+    due = np.linalg.norm(np.linalg.inv(R), axis=1) * s
+    columns = W / np.linalg.norm(W, axis=0)
+    squares = np.linalg.eigvalsh(columns.T @ columns)
+    found = float(np.sqrt(squares[-1] / squares[0])) if squares[0] > 0 else math.inf
+    rounding = COMPUTED * float(np.abs(b).max(initial=0.0))
+    wrong = [
+        f"{what} is {a:.6g} for {right:.6g}"
+        for what, a, right, sure in (
+            *((f"deviation {j + 1}", x, y, s > rounding) for j, (x, y) in enumerate(zip(deviations, due, strict=True))),
+            ("the condition", condition, found, found < POOR),
+            ("the residual", residual, rms, rms > rounding),
+        )
+        if sure and not abs(a - right) <= NEARLY * abs(right)
+    ]
+    name = "deviations, condition and residual of the fit are those of W = Q R"
+    return checked(name, first_wrong(wrong), "floating point, all samples")
