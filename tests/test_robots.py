@@ -15,6 +15,7 @@ import eomgen
 from eomgen.cli import main
 from eomgen.errors import DerivationError, ModelError, ToolMissing
 from eomgen.exported import urdf_of
+from eomgen.proof.imported_urdf import imported_otherwise
 from eomgen.robots.importing import imported
 from eomgen.symbolic.numeric.evaluation import FLOAT, evaluate
 from tests.helpers.sdf_of_urdf import sdf_of_urdf
@@ -531,3 +532,17 @@ def test_coordinates_that_follow_one_another_come_back(tmp_path):
     (tmp_path / "robot.urdf").write_text(urdf_of(model).text)
     second = eomgen.import_robot(tmp_path / "robot.urdf")
     assert second.constraints["mimic_elbow"].gap == first.model.constraints["mimic_elbow"].gap
+
+
+def test_a_robot_that_is_read_otherwise_is_contradicted(tmp_path):
+    """T = (R_z R_y R_x, xyz): angles in another order, a multiplier of the other sign, a centre that is lost."""
+    text = ARM.replace("upper arm", "upper").replace('rpy="0 1.5707963267948966 0"', 'rpy="0.3 -0.5 0.7"')
+    made = robot(tmp_path, text).model
+    assert imported_otherwise(text, made) == ""
+    for old, new, what in (
+        ('rpy="0.3 -0.5 0.7"', 'rpy="0.7 -0.5 0.3"', "does not stand on"),
+        ('multiplier="-2"', 'multiplier="2"', "leaves"),
+        ('xyz="0 0 0.2"', 'xyz="0 0 0.1"', "weighs otherwise"),
+        ('<axis xyz="0 0 1"/>', '<axis xyz="0 0 -1"/>', "does not stand on"),
+    ):
+        assert what in imported_otherwise(text.replace(old, new), made)

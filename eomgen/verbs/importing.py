@@ -9,7 +9,10 @@ from pathlib import Path
 from eomgen import files
 from eomgen.documents.document import Document, lines_document
 from eomgen.errors import UsageError
+from eomgen.model.parts import Model
+from eomgen.proof.imported_urdf import imported_otherwise
 from eomgen.robots.importing import imported
+from eomgen.robots.sdf_models import LARGEST
 
 
 def refuse_other_endings(output: str | None) -> None:
@@ -46,5 +49,13 @@ def import_document(
         "left_out": left_out,
     }
     document = lines_document(lambda: entries, *([output] if output else robot.text.splitlines()))
+    wrong = _otherwise(file, made)
     told = tuple(f"left out: {each}" for each in robot.left_out)
-    return replace(document, notes=(*told, *([f"now try: eomgen check {shlex.quote(output)}"] if output else ())))
+    return replace(
+        document, failed=wrong, notes=(*told, *([f"now try: eomgen check {shlex.quote(output)}"] if output else ()))
+    )
+
+
+def _otherwise(file: str, made: Model) -> str:
+    """What of a URDF file is otherwise in the model, by another reading of it; "" of other files."""
+    return imported_otherwise(files.read(file, LARGEST), made) if Path(file).suffix.lower() == ".urdf" else ""
