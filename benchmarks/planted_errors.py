@@ -44,6 +44,7 @@ from typing import Any
 ROOT = Path(__file__).resolve().parent.parent
 LIST = Path(__file__).with_suffix(".toml")
 CACHE = ".cache"
+VERDICTS = (0, 5)  # exit codes of `verify`: neither says that something is wrong with what it tells
 PATIENCE = 180  # s of one run of a verb; what takes longer counts as refused
 TEST_PATIENCE = 900  # s of the tests of one room
 
@@ -265,16 +266,17 @@ def seen_by_product(planted: Planted) -> tuple[str, str]:
     if not planted.run:
         return "", ""
     right = without(planted.run, planted.model)
-    if right.code != 0:
+    if right.code not in VERDICTS:
         return "broken", f"exit {right.code} without the error: {right.why}"
     wrong = outcome(planted, planted.run, planted.model)
     if wrong.code in (70, 139):
         return "crash", f"exit {wrong.code}: {wrong.why}"
-    if wrong.code != 0:
+    if wrong.code not in VERDICTS:
         return "product", f"exit {wrong.code}: {wrong.why}"
-    if wrong.out == right.out:
+    if wrong.code == right.code and wrong.out == right.out and wrong.files == right.files:
         return "no effect", ""
-    return ("harmless", "") if _same_answers(wrong.out, right.out) else ("", "")
+    same = wrong.code == right.code and wrong.files == right.files and _same_answers(wrong.out, right.out)
+    return ("harmless", "") if same else ("", "")
 
 
 def _same_answers(one: str, other: str) -> bool:

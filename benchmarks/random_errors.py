@@ -36,7 +36,6 @@ ROOT = planted.ROOT
 APART = ("schema", "checks", "reader", "tolerances", "work.py", "errors", "closeness", "suggest", "templates")
 LEFT_OUT = ("proof", "certificate.py", "records.py", "files.py", "kept.py", "errors.py", "version.py", "edge.py")
 READ = ("documents", "scene", "page", "judge", "verbs", "symbolic/print")
-VERDICTS = (0, 5)  # exit codes of `verify`: neither says that something is wrong with what it tells
 QUICK = '-m "not slow" tests'  # the tests that README asks everybody to run
 RUNS = """
 derive arm3; derive whipple_bicycle; derive ball_on_turntable; derive seeds/s1_euler; derive gyrostat; derive four_bar
@@ -221,7 +220,7 @@ def main() -> int:
     called: dict[tuple[str, int], list[str]] = defaultdict(list)
     for run in runs:
         right[run], functions = traced(run)
-        if right[run].code not in VERDICTS:
+        if right[run].code not in planted.VERDICTS:
             print(f"left out: {run}: exit {right[run].code} {right[run].why}", flush=True)
             continue
         for function in functions:
@@ -289,7 +288,7 @@ def drawn(every: list[Drawn], number: int, rng: random.Random, *, evenly: bool) 
 
 def judged(wrong: planted.Outcome, right: planted.Outcome, before: str) -> tuple[str, str]:
     """(who saw it, what was said); `before` where this run is as it should be."""
-    if wrong.code not in (right.code, *VERDICTS):
+    if wrong.code not in (right.code, *planted.VERDICTS):
         return "product", wrong.why
     if wrong.out == right.out and wrong.files == right.files:
         return before, ""

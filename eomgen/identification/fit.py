@@ -129,18 +129,19 @@ def identify(model: ModelOrPath, data: Data) -> Identified:
     again = stacked.b - W @ (K @ np.array([values[name] for name in found.parameters]))
     formulas = [group.formula for group in base.groups]
     shifts = _shifts(stacking, data, kept, beta / lengths, _splined(found.system.symbols, data))
+    condition, residual = float(np.linalg.cond(scaled)), float(np.sqrt(np.mean(left**2)))
     return Identified(
         found,
         {name: (float(x), float(s)) for name, x, s in zip(formulas, beta / lengths, deviations, strict=True)},
         values,
-        float(np.linalg.cond(scaled)),
+        condition,
         len(np.atleast_1d(data["t"])),
-        float(np.sqrt(np.mean(left**2))),
+        residual,
         float(np.sqrt(np.mean(again**2))),
         dict(zip(formulas, shifts, strict=True)) if shifts else {},
         (
             fit_checked(W, stacked.b, beta / lengths),
-            spread_checked(W, stacked.b, deviations, float(np.linalg.cond(scaled)), float(np.sqrt(np.mean(left**2)))),
+            spread_checked(W, stacked.b, deviations, condition, residual),
         ),
     )
 
