@@ -53,7 +53,14 @@ DOUBTFUL = {
         "body 'fly' has no joint",
         "give it a joint",
     ),
-    "masses": ('mass = "m"', "mass = 1e9", "1e+12 times less", "look at the units"),
+    "masses": ("m = 1\n", "m = 1e9\n", "1e+12 times less", "look at the units"),
+    "a parameter": ("m = 1\n", "m = 1\nmass = 2\n", "nothing uses the parameter 'mass'", "use it, or leave it out"),
+    "a point": (
+        "[forces.weight]",
+        "[points]\nwall = [1, 0]\n[forces.weight]",
+        "nothing uses the point 'wall'",
+        "use it, or leave it out",
+    ),
 }
 LIGHT = '[bodies.dust]\nshape = { kind = "particle", mass = 0.001 }\njoint = { kind = "placed", on = "bob.end" }\n'
 
@@ -118,3 +125,94 @@ def test_check_shows_the_units_that_were_inferred(tmp_path):
     model.write_text(PENDULUM)
     found = json.loads(CliRunner().invoke(main, ["check", str(model), "--json"]).stdout)["inferred_units"]
     assert found == {"l": "m", "k": "N*m", "c": "kg*m^2/s", "g": "m/s^2", "m": "kg", "phi": "1"}
+
+
+SLIDER = """
+eomgen = 1
+space = "plane"
+[parameters]
+r = 0.2
+l = 0.5
+w = 20
+[coordinates]
+phi = { motion = "1 + w*t" }
+psi = { dependent = true, GUESS = -0.2 }
+[bodies.crank]
+shape = { kind = "rod", mass = 0, length = "r" }
+joint = { kind = "revolute", angle = "phi" }
+[bodies.rod]
+shape = { kind = "rod", mass = 1, length = "l" }
+joint = { kind = "revolute", on = "crank.end", angle = "psi - phi" }
+[bodies.piston]
+mass = 2
+inertia = 0
+joint = { kind = "revolute", on = "rod.end", angle = "-psi" }
+[constraints.held]
+TIE
+"""
+TIES = {
+    "guide": 'kind = "guide"\npoint = "piston.origin"\nalong = [1, 0]',
+    "support": 'kind = "support"\npoint = "piston.origin"\nnormal = [0, 1]',
+}
+
+
+@pytest.mark.parametrize(("guess", "tie", "told"), [("near", "guide", True), ("start", "guide", False)])
+def test_a_guess_that_would_be_geometry_is_told(guess, tie, told):
+    """A guide lies where its point starts: of `near` that is a guess, of `start` what somebody says"""
+    found = warnings_of(eomgen.loads(SLIDER.replace("GUESS", guess).replace("TIE", TIES[tie])))
+    assert ["where 'held' lies follows from where 'psi' starts" in each.what for each in found] == [True] * told
+
+
+LOCKED = """
+eomgen = 1
+space = "plane"
+[coordinates]
+phi = 0
+[points]
+P = [1, 0]
+[bodies.bar]
+shape = { kind = "rod", mass = 1, length = 1 }
+joint = { kind = "revolute", angle = "phi" }
+[constraints.far]
+kind = "pin"
+points = ["bar.end", "P"]
+"""
+
+
+def test_a_model_that_cannot_move_is_told(tmp_path):
+    """0 degrees of freedom of a coordinate that nobody drives: not "no problems found"; driven it is meant"""
+    model = tmp_path / "locked.toml"
+    for text, told in (
+        (LOCKED, True),
+        (LOCKED + '[constraints.drive]\nkind = "motion"\ncoordinate = "phi"\nvalue = "0*t"\n', False),
+        (LOCKED.replace("phi = 0", 'phi = { motion = "0*t" }'), False),
+    ):
+        model.write_text(text)
+        result = CliRunner().invoke(main, ["check", str(model)])
+        assert ("nothing can move: the ties leave 'phi' no freedom" in result.stderr) is told, text
+        assert ("no problems found" in result.stdout) is not told
+
+
+IN_DEGREES = PENDULUM.replace("phi = 0.3", 'phi = { start = 30, unit = "deg" }').replace(
+    "[bodies.bob]",
+    """
+[outputs]
+v = { value = "phi'", at = "phi = 10" }
+w = { value = "phi'", at = "phi = 10 deg" }
+[bodies.bob]""".lstrip(),
+)
+
+
+@pytest.mark.slow
+def test_a_plain_number_of_an_instant_is_in_the_unit_declared(recwarn):
+    """at = "phi = 10" of an angle in deg is 10 deg, as on the command line; in Python it is in SI, and told"""
+    model = eomgen.loads(IN_DEGREES)
+    answers = eomgen.solve(model)
+    assert answers["v"].value == answers["w"].value
+    assert not [w for w in recwarn if "plain numbers are in SI" in str(w.message)]
+    eomgen.derive(model, start={"phi": 45})
+    assert [w for w in recwarn if "phi = 45 is 45 rad" in str(w.message)]
+    recwarn.clear()
+    for start in (0.4, "45 deg", (45, "deg")):
+        eomgen.derive(model, start={"phi": start})
+    assert not list(recwarn)

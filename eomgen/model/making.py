@@ -58,9 +58,9 @@ def _resolved_tables(model: Any) -> dict[str, Any]:
         own = bodies[name].points or {}
         bodies = Table({**bodies, name: altered(bodies[name], points=Table({**own, **points}))})
     forces = {name: _resolved_force(force) for name, force in model.forces.items()}
-    in_si, in_own = typing_of(model)
-    outputs = {name: _settled(output, in_si, ("at",)) for name, output in model.outputs.items()}
-    given = None if model.given is None else _settled(model.given, in_own, ("velocity", "acceleration"))
+    outputs = {name: _settled(output, typing_of(model, "outputs"), ("at",)) for name, output in model.outputs.items()}
+    typing = typing_of(model, "given")
+    given = None if model.given is None else _settled(model.given, typing, ("velocity", "acceleration"))
     return {
         "bodies": bodies,
         "constraints": constraints,

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+import warnings
 from collections.abc import Iterable, Mapping
 from dataclasses import replace
 from typing import Any
@@ -102,6 +103,8 @@ def with_values(
         _refuse_given(model, name, options[1])
         found = _settled(typing, name, typed, options[1])
         settled.append(found)
+        if not declared:
+            _warn_of_turns(name, typed, found)
         base, value = name.rstrip("'"), replace(found.value, typed=True)
         if name in speeds:
             speeds[name] = altered(speeds[name], start=value)
@@ -124,6 +127,15 @@ def with_values(
     numbers = {**exact_parameters(valued), "pi": math.pi}
     starts = {each.name: value_of(each.value, numbers) for each in settled if each.name in (start or {})}
     return Valued(valued, taken, Table({name: float(x) for name, x in starts.items() if x is not None}))
+
+
+def _warn_of_turns(name: str, typed: Typed, found: Settled) -> None:
+    """A plain number in Python is in SI; of an angle that the file has in degrees more than a turn is hardly meant."""
+    angle = found.unit is not None and found.unit.si == "rad" and found.unit.text != "rad"
+    if angle and isinstance(typed, (int, float)) and abs(typed) > 2 * math.pi:
+        unit = found.unit.text if found.unit is not None else ""
+        told = f"{name} = {typed:g} is {typed:g} rad: plain numbers are in SI; '{typed:g} {unit}' has its unit"
+        warnings.warn(told, RuntimeWarning, stacklevel=5)
 
 
 def _with_value(part: Any, key: str, value: Expression) -> Any:

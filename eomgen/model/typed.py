@@ -139,9 +139,9 @@ class Typing:
             raise ExpressionError(what, clash.one.column, clash.mend, len(clash.one.text))
 
 
-def typing_of(model: Any) -> tuple[Typing, Typing]:
-    """How equations of a model file are read: those of instants in SI; those of [given] in the units declared."""
-    return Typing(model, declared=False), Typing(model, declared=True)
+def typing_of(model: Any, table: str) -> Typing:
+    """How equations of a table are read: in [given] and [outputs] as on the command line, else in SI."""
+    return Typing(model, declared=table in ("given", "outputs"))
 
 
 def _refuse_unfit(of: Expression, unit: Unit, own: Unit | None, needed: Dimension) -> None:

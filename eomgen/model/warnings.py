@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+import re
 from collections.abc import Iterator, Mapping
 from typing import Any
 
@@ -10,7 +11,7 @@ from eomgen.model.arithmetic import AnyNumber, in_order, value_of
 from eomgen.model.catalog import SYMBOL_TABLES, Catalog, owner_of
 from eomgen.model.checks.triangle import possible
 from eomgen.model.dimensions import inferred
-from eomgen.model.fields import Leaf, NameRule
+from eomgen.model.fields import Leaf, NameRule, WrittenEquation
 from eomgen.model.findings import Finding, whereabouts
 from eomgen.model.part import leaves_of
 from eomgen.model.positions import DocumentPath
@@ -27,6 +28,7 @@ def warnings_of(model: Any) -> tuple[Finding, ...]:
     values = _assumed(catalog)
     checks = (_angles(catalog, values), _signs(catalog, values), _weights(catalog, values))
     more = (_impossible(catalog, values), _unheld(catalog), _masses(catalog, values), _symbols_twice(catalog))
+    more = (*more, _unused(catalog), _guessed(catalog))
     return (*inferred(catalog).warnings, *(finding for check in (*checks, *more) for finding in check))
 
 
@@ -139,6 +141,54 @@ def _unheld(catalog: Catalog) -> Iterator[Finding]:
             what = f"body '{name}' has no joint, and no tie holds it"
             mend = 'give it a joint: joint = { kind = "revolute", on = ..., angle = ... }'
             yield Finding(("bodies", name), what, mend, key=True)
+
+
+def _guessed(catalog: Catalog) -> Iterator[Finding]:
+    """Ties whose place follows from a guess: `near` is where a coordinate is sought, and says nothing of geometry."""
+    coordinates, bodies = catalog.table("coordinates"), catalog.table("bodies")
+    guessed = {name for name, q in coordinates.items() if q is not None and q.dependent and q.start is None}
+    for name, tie in catalog.table("constraints").items():
+        if tie is None or not tie.lies_by_start:
+            continue
+        leaves = leaves_of(tie, ("constraints", name))
+        waiting = [owner_of(x) for leaf in leaves for x in _NAME.findall(_written(leaf.value)) if owner_of(x) in bodies]
+        carried: set[str] = set()
+        while waiting:
+            body = bodies[waiting.pop()]
+            if body is not None and body.joint is not None:
+                joint = leaves_of(body.joint, ())
+                carried |= {x for leaf in joint for x in _NAME.findall(_written(leaf.value))} & guessed
+                waiting += [body.joint.parent] if body.joint.parent in bodies else []
+        for q in sorted(carried):
+            what = f"where '{name}' lies follows from where '{q}' starts, and of that there is only the guess `near`"
+            yield Finding(("coordinates", q), what, f"give '{q}' a `start`, or the tie its own place", key=True)
+
+
+PROSE = ("about", "source", "name", "text", "unit", "symbol")
+_NAME = re.compile(r"[^\W\d]\w*(?:\.\w+)?")
+
+
+def _unused(catalog: Catalog) -> Iterator[Finding]:
+    """Parameters and points of the ground that nothing names."""
+    named: dict[str, set[DocumentPath]] = {}
+    for leaf in catalog.leaves:
+        if leaf.path[-1] not in PROSE:
+            for name in _NAME.findall(_written(leaf.value)):
+                named.setdefault(name, set()).add(leaf.path[:2])
+    joints = (body.joint for body in catalog.table("bodies").values() if body is not None)
+    seats = [getattr(joint, "at", None) for joint in joints]  # of a checked model the place stands for the point's name
+    for table, what in (("parameters", "parameter"), ("points", "point")):
+        for name in catalog.table(table):
+            seated = table == "points" and catalog.table(table)[name] in seats
+            if not seated and not named.get(name, set()) - {(table, name)}:
+                yield Finding((table, name), f"nothing uses the {what} '{name}'", "use it, or leave it out", key=True)
+
+
+def _written(value: Any) -> str:
+    """What names can stand in, as one text."""
+    if isinstance(value, (Expression, WrittenEquation)):
+        return value.text
+    return " ".join(map(_written, value)) if isinstance(value, tuple) else value if isinstance(value, str) else ""
 
 
 def _body(leaf: Leaf) -> str:

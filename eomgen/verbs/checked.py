@@ -17,6 +17,7 @@ from eomgen.mechanics.instant.velocity_analysis import mobility_of
 from eomgen.mechanics.statics.contacts_at_start import contacts_at_start
 from eomgen.mechanics.statics.rest_contacts import modes_at_rest
 from eomgen.mechanics.structures.structure import Structure, structure_of
+from eomgen.model.catalog import Catalog
 from eomgen.model.parts import Model
 from eomgen.model.unbuilt import unbuilt
 from eomgen.model.values import exact_parameters
@@ -101,7 +102,7 @@ def checked_model(model: Model) -> Checked:
         mobility=mobility_of(model) if still else None,
         structure=structure_of(system_of(model, modes_at_rest(model))) if still else None,
         start=start,
-        cautions=(*_open(model, start), *(_idle(model, modes) if model.coordinates else ())),
+        cautions=(*_open(model, start), *(_idle(model, modes) if model.coordinates else ()), *_locked(model, freedom)),
         modes=modes,
     )
 
@@ -110,6 +111,16 @@ def _open(model: Model, start: LoopStart) -> tuple[Problem, ...]:
     """Ties that do not close."""
     ties = [name for name in model.constraints if f"'{name}'" in start.refused]
     return (Problem(f"constraints.{ties[0]}" if ties else "constraints", start.refused),) if start.refused else ()
+
+
+def _locked(model: Model, freedom: Freedom) -> tuple[Problem, ...]:
+    """Coordinates that are to move, and ties that let nothing move."""
+    free = [name for name, q in model.coordinates.items() if not (q.driven or q.dependent)]
+    given = any(leaf.path[0] == "constraints" and "t" in x.names for leaf, x in Catalog(model, ()).expressions)
+    if freedom.by_rank != 0 or not free or given:
+        return ()
+    what = f"nothing can move: the ties leave '{free[0]}' no freedom"
+    return (Problem(f"coordinates.{free[0]}", what, mend="look for a hinge that is missing, or a tie too many"),)
 
 
 def _idle(model: Model, modes: ContactModes) -> tuple[Problem, ...]:

@@ -11,10 +11,9 @@ from eomgen.model.typed import typing_of
 
 def equations(catalog: Catalog) -> Iterator[Finding]:
     """Units that do not fit the other side; numbers that may be meant in two units."""
-    typing = typing_of(catalog.model)
     for leaf in catalog.leaves:
         if isinstance(leaf.value, WrittenEquation) and leaf.value.units is not None:
             try:
-                typing[leaf.path[0] == "given"].equation(leaf.value)
+                typing_of(catalog.model, str(leaf.path[0])).equation(leaf.value)
             except ExpressionError as error:
                 yield Finding(leaf.path, error.what, error.mend, error.column, error.length)

@@ -79,6 +79,11 @@ class Constraint(Part, ABC):
         """Whether this row keeps something as it is at the start, and so is closed there, wherever that is."""
         return False
 
+    @property
+    def lies_by_start(self) -> bool:
+        """True if where, or how long, it is follows from where its points start."""
+        return False
+
     def agreeing(self, scene: LoadContext) -> tuple[Scalar, ...]:
         """What is 1 where directions of two bodies agree, -1 where one is turned over, which the rows allow too."""
         return ()

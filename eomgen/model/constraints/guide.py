@@ -31,6 +31,10 @@ class Guide(Constraint):
     def stays(self, component: str) -> bool:
         return True
 
+    @property
+    def lies_by_start(self) -> bool:
+        return True
+
     def rows(self, scene: LoadContext) -> tuple[TieRow, ...]:
         """n . (p - p_start) = 0 for each n across `along`; theta - theta_start = 0, in space as a clamp."""
         place = scene.place(self.point)

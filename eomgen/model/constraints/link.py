@@ -37,6 +37,10 @@ class Link(Constraint):
     def stays(self, component: str) -> bool:
         return self.length is None
 
+    @property
+    def lies_by_start(self) -> bool:
+        return self.length is None
+
     def rows(self, scene: LoadContext) -> tuple[TieRow, ...]:
         """(L - r . r / L) / 2 = 0, r from the first point to the second; a tension 1 pulls the first along r / L.
 

@@ -28,6 +28,10 @@ class Pin(Constraint):
     def stays(self, component: str) -> bool:
         return len(self.points) == 1 and component != "couple"
 
+    @property
+    def lies_by_start(self) -> bool:
+        return len(self.points) == 1
+
     def rows(self, scene: LoadContext) -> tuple[TieRow, ...]:
         """For each further point P of the hinge, e . (p_first - p_P) = 0 along each axis; alone, against its start.
 
