@@ -147,15 +147,13 @@ def test_rotors_of_balls_free_bodies_and_tendons_are_in_m(given, tmp_path):
 
 
 def test_limits_springs_and_plugins_are_told_by_name(tmp_path):
-    """A tendon's limit of force, springs without a linear part, motors of plugins; each with what comes nearest."""
+    """A tendon's limit of force, motors of plugins; each with what comes nearest."""
     limited = 'actuatorfrcrange="-.05 .05" actuatorfrclimited="true"'
-    text = text_of('<actuator><motor name="w" tendon="t2" forcerange="-2 3"/></actuator>', tendon=limited,
-                   ball='stiffness="0 3"', free='stiffness="0 0 2"')  # fmt: skip
+    text = text_of('<actuator><motor name="w" tendon="t2" forcerange="-2 3"/></actuator>', tendon=limited)
     found = robot(tmp_path, text, "xml")
     listed = {each.what: each for each in found.left_out}
     assert told(found)["limits of motors"] == ("w (-2 to 3)", "all at t2 (-0.05 to 0.05)")
-    assert told(found)["springs of free and ball joints"] == ("b", "fr")
-    assert all(listed[what].nearest for what in ("limits of motors", "springs of free and ball joints"))
+    assert "max" in listed["limits of motors"].nearest
     plugin = """<mujoco><extension><plugin plugin="mujoco.pid"><instance name="p">
       <config key="kp" value="40"/></instance></plugin></extension>
       <worldbody><body><joint name="j" type="slide" axis="1 0 0"/><geom size=".1"/></body></worldbody>
@@ -224,3 +222,26 @@ def test_a_few_replicas_are_imported(tmp_path):
     text = """<mujoco><!-- <replicate count="20000"><body/> --><worldbody><replicate count="3" offset="1 0 0">
       <body><joint/><geom size=".1"/></body></replicate></worldbody></mujoco>"""
     assert len(robot(tmp_path, text, "xml").model.bodies) == 3
+
+
+@pytest.mark.parametrize("law", ["2", "0 3", "0 0 2", "1 3 2"])
+def test_springs_and_dampers_of_any_power_push_as_in_mujoco(law, tmp_path):
+    """-(k + k1 x + k2 x^2) x and -(c + c1 |x'| + c2 x'^2) x' of hinges and slides; |d| of balls, free bodies."""
+    text = text_of(ball=f'stiffness="{law}"', free=f'stiffness="{law}"')
+    text = text.replace('name="h" axis', f'name="h" stiffness="{law}" damping="{law}" axis')
+    text = text.replace('name="p" type', f'name="p" springref="0.2" stiffness="{law}" damping="{law}" type')
+    text = text.replace('name="f" pos="1 1 1"', 'name="f" pos="1 1 1" euler="10 20 30"')
+    found = robot(tmp_path, text, "xml")
+    assert not told(found) and agrees(found, text)
+
+
+def test_the_spring_of_a_ball_rests_where_it_is_not_turned(tmp_path):
+    """-k d with d = 2 v at rest: torque 0 there, and its slope is -2 k along each part of the quaternion."""
+    text = """<mujoco><worldbody><body><joint name="b" type="ball" stiffness="3"/><geom size=".1" mass="1"/></body>
+      </worldbody></mujoco>"""
+    equations = eomgen.derive(robot(tmp_path, text, "xml").model)
+    rhs = equations.rhs("numpy")
+    x, I = equations.start(), 0.4 * 0.01
+    assert rhs(0.0, x, rhs.p0, [])[4:] == pytest.approx([0, 0, 0], abs=1e-12)
+    x[:4] = [np.cos(5e-4), 0, np.sin(5e-4), 0]
+    assert rhs(0.0, x, rhs.p0, [])[4:] == pytest.approx([0, -3 * 1e-3 / I, 0], abs=1e-9)

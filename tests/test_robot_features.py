@@ -119,7 +119,7 @@ def test_what_mujoco_has_beyond_a_model_is_listed(tmp_path):
     told = {each.what: each.where for each in robot(tmp_path, text, "xml").left_out}
     assert told["limits of motors"] == ("w (ctrl -1 to 1, force -2 to 2)", "all at h (-1 to 1)")
     assert told["limits of free and ball joints"] == ("b",) and told["motors that are no linear laws"] == ("v",)
-    assert told["springs and dampers that are not linear"] == ("h",)
+    assert told["springs that yield"] == ("h",)
     ratio = '<general name="n" tendon="ten" gear="2" gainprm="-1" biastype="affine" biasprm="0 1 1"/>'  # MuJoCo: nan
     found = robot(tmp_path, BODIES.format(top="", rest=f"<actuator>{ratio}</actuator>"), "xml").left_out
     assert {each.what: each.where for each in found}["motors that are no linear laws"] == ("n",)

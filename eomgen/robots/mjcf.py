@@ -36,6 +36,7 @@ from eomgen.robots.numbers import (
     six,
     tensor_of,
 )
+from eomgen.robots.toml_text import decimal_text
 from eomgen.robots.urdf import free_joint, turned_freely, with_mass
 from eomgen.symbolic.expression.spatial import IDENTITY
 
@@ -187,8 +188,10 @@ def _efforts(r: CompiledRobot, j: int, reference: Decimal) -> Entries:
         keys["damping"] = damping
     if rotor := r.added("joint", j, m.dof_armature[d], r.rotors):
         keys["armature"] = rotor
-    if any([*r.numbers(["jnt_stiffnesspoly", "jnt_springyield"], j), *r.numbers(["dof_dampingpoly"], d)]):
-        r.leave("springs and dampers that are not linear", [q])
+    away = decimal_of_double(m.qpos_spring[m.jnt_qposadr[j]])
+    _bent(r, j, signed_sum([(Decimal(1), q)], -away))
+    if any(r.numbers(["jnt_springyield"], j)):
+        r.leave("springs that yield", [q])
     if m.jnt_actfrclimited[j]:
         low, high = m.jnt_actfrcrange[j]
         r.leave("limits of motors", [f"all at {q} ({low:g} to {high:g})"], "an input has none")
@@ -203,7 +206,7 @@ def _in_space(r: CompiledRobot, j: int, keys: Mapping[str, Any]) -> None:
     places = keys.get("position", [])
     dofs = slice(d, d + len(places) + 3)
     kinds = {
-        "springs": [m.jnt_stiffness[j], *r.numbers(["jnt_stiffnesspoly", "jnt_springyield"], j)],
+        "yielding springs": r.numbers(["jnt_springyield"], j),
         "friction": m.dof_frictionloss[dofs],
         "limits": [m.jnt_limited[j]],
         "dampers that are not linear": r.numbers(["dof_dampingpoly"], dofs),
@@ -213,6 +216,7 @@ def _in_space(r: CompiledRobot, j: int, keys: Mapping[str, Any]) -> None:
             r.leave(f"{what} of free and ball joints", [q])
     rates = [*(f"{x}'" for x in places), *keys["omega"]]
     r.omega[j] = rates
+    _spring_in_space(r, j, keys)
     damping, rotor = (
         [r.added("joint", j, x, of) for x in values[dofs]]
         for values, of in ((m.dof_damping, r.dampers), (m.dof_armature, r.rotors))
@@ -233,6 +237,77 @@ def _in_space(r: CompiledRobot, j: int, keys: Mapping[str, Any]) -> None:
     if parent is not None:
         back = [signed_sum([(c, rate)], weighed=True) for c, rate in zip(damping[-3:], rates[-3:], strict=True)]
         r.found["forces"][r.forces.new(f"{q}_damper")] = {**couple, "body": parent, "couple": back}
+
+
+def _spring_in_space(r: CompiledRobot, j: int, keys: Mapping[str, Any]) -> None:
+    """-(k + k1 |d| + k2 |d|^2) d of the way d of a free joint, and of the turn d of both, a vector in the body's axes.
+
+    d = 2 atan2(|v|, w)/|v| v of the quaternion (w, v) from where the spring rests; |v| is sqrt(v^2 + 1e-30): no double
+    sees the difference, and it has a slope at rest.
+    """
+    m, adr, body = r.m, int(r.m.jnt_qposadr[j]), int(r.m.jnt_bodyid[j])
+    k = [decimal_of_double(x) for x in (m.jnt_stiffness[j], *r.numbers(["jnt_stiffnesspoly"], j), 0, 0)][:3]
+    if not any(k):
+        return
+    name, parent, places = r.body[body], r.body[int(m.body_parentid[body])], keys.get("position", [])
+    rest = [decimal_of_double(x) for x in m.qpos_spring[adr : adr + len(places) + 4]]
+    w, x, y, z, n, a = (r.names.new(f"{r.joint[j]}_{letter}") for letter in "wxyzna")
+
+    def law(size: str) -> str:
+        return signed_sum([(-k[1], size), (-k[2], f"{size}^2")], -k[0], weighed=True)
+
+    if places:
+        away = [
+            f"{one} = {signed_sum([(Decimal(1), q)], -at)}" for one, q, at in zip((x, y, z), places, rest, strict=False)
+        ]
+        head = "; ".join([*away, f"{n} = sqrt({x}^2 + {y}^2 + {z}^2 + 1e-30)"])
+        force = [f"{head}; ({law(n)})*{one}" for one in (x, y, z)]
+        r.found["forces"][r.forces.new(f"{r.joint[j]}_spring")] = {
+            "kind": "force",
+            "point": f"{name}.origin",
+            "force": force,
+        }
+    p, e = rest[-4:], keys["quaternion"]
+    turn = [  # conj(p) e
+        signed_sum(zip(factors, e, strict=True), weighed=True)
+        for factors in (
+            (p[0], p[1], p[2], p[3]),
+            (-p[1], p[0], p[3], -p[2]),
+            (-p[2], -p[3], p[0], p[1]),
+            (-p[3], p[2], -p[1], p[0]),
+        )
+    ]
+    head = "; ".join(
+        [
+            *(f"{one} = {text}" for one, text in zip((w, x, y, z), turn, strict=True)),
+            f"{n} = sqrt({x}^2 + {y}^2 + {z}^2 + 1e-30)",
+            f"{a} = 2*atan2({w}*{n}, {w}^2)/{n}",
+        ]
+    )
+    size = f"(abs({a})*{n})"
+    for owner, sign in ((name, ""), (parent, "-")):
+        if owner is not None and (owner == name or not places):
+            couple = [f"{head}; {sign}({law(size)})*{a}*{one}" for one in (x, y, z)]
+            found = {"kind": "couple", "body": owner, "couple": couple, "axes": name}
+            r.found["forces"][r.forces.new(f"{r.joint[j]}_spring")] = found
+
+
+def _bent(r: CompiledRobot, j: int, x: str) -> None:
+    """What springs and dampers of a hinge or slide have beside their linear part.
+
+    V = k1 x^3/3 + k2 x^4/4;  Q = -(c1 |q'| + c2 q'^2) q'
+    """
+    q = r.joint[j]
+    for at, field in ((j, "jnt_stiffnesspoly"), (int(r.m.jnt_dofadr[j]), "dof_dampingpoly")):
+        k1, k2 = ([decimal_of_double(x) for x in r.numbers([field], at)] + [ZERO] * 2)[:2]
+        if not k1 and not k2:
+            continue
+        if at == j and field == "jnt_stiffnesspoly":
+            terms = [f"{decimal_text(k)}/{n}*({x})^{n}" for k, n in ((k1, 3), (k2, 4)) if k]
+            r.found["forces"][r.forces.new(f"{q}_spring")] = {"kind": "potential", "energy": " + ".join(terms)}
+        else:
+            value = signed_sum([(-k1, f"abs({q}')*{q}'"), (-k2, f"{q}'^3")], weighed=True)
+            r.push(f"{q}_damper", q, value)
 
 
 def _held_up(r: CompiledRobot, name: str, k: int) -> None:
