@@ -39,6 +39,7 @@ from eomgen.robots.numbers import (
 from eomgen.robots.toml_text import decimal_text
 from eomgen.robots.urdf import free_joint, turned_freely, with_mass
 from eomgen.symbolic.expression.spatial import IDENTITY
+from eomgen.symbolic.numeric.tolerances import SLOPE_AT_REST
 
 TABLES = ("points", "coordinates", "speeds", "inputs", "bodies", "constraints", "forces")
 
@@ -242,8 +243,8 @@ def _in_space(r: CompiledRobot, j: int, keys: Mapping[str, Any]) -> None:
 def _spring_in_space(r: CompiledRobot, j: int, keys: Mapping[str, Any]) -> None:
     """-(k + k1 |d| + k2 |d|^2) d of the way d of a free joint, and of the turn d of both, a vector in the body's axes.
 
-    d = 2 atan2(|v|, w)/|v| v of the quaternion (w, v) from where the spring rests; |v| is sqrt(v^2 + 1e-30): no double
-    sees the difference, and it has a slope at rest.
+    d = 2 atan2(|v|, w)/|v| v of the quaternion (w, v) from where the spring rests; |v| has a slope at rest:
+    sqrt(v^2 + SLOPE_AT_REST).
     """
     m, adr, body = r.m, int(r.m.jnt_qposadr[j]), int(r.m.jnt_bodyid[j])
     k = [decimal_of_double(x) for x in (m.jnt_stiffness[j], *r.numbers(["jnt_stiffnesspoly"], j), 0, 0)][:3]
@@ -260,7 +261,7 @@ def _spring_in_space(r: CompiledRobot, j: int, keys: Mapping[str, Any]) -> None:
         away = [
             f"{one} = {signed_sum([(Decimal(1), q)], -at)}" for one, q, at in zip((x, y, z), places, rest, strict=False)
         ]
-        head = "; ".join([*away, f"{n} = sqrt({x}^2 + {y}^2 + {z}^2 + 1e-30)"])
+        head = "; ".join([*away, f"{n} = sqrt({x}^2 + {y}^2 + {z}^2 + {SLOPE_AT_REST:g})"])
         force = [f"{head}; ({law(n)})*{one}" for one in (x, y, z)]
         r.found["forces"][r.forces.new(f"{r.joint[j]}_spring")] = {
             "kind": "force",
@@ -280,7 +281,7 @@ def _spring_in_space(r: CompiledRobot, j: int, keys: Mapping[str, Any]) -> None:
     head = "; ".join(
         [
             *(f"{one} = {text}" for one, text in zip((w, x, y, z), turn, strict=True)),
-            f"{n} = sqrt({x}^2 + {y}^2 + {z}^2 + 1e-30)",
+            f"{n} = sqrt({x}^2 + {y}^2 + {z}^2 + {SLOPE_AT_REST:g})",
             f"{a} = 2*atan2({w}*{n}, {w}^2)/{n}",
         ]
     )

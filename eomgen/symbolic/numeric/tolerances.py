@@ -92,3 +92,6 @@ WIDE_STEP = 1e-4  # of a second difference, near the fourth root of rounding; of
 
 # Of what is printed.
 SMALLEST_PLAIN = 1e-6  # numbers below it are printed with a power of ten
+
+SLOPE_AT_REST = 1e-30
+"""Beside the square of a length of order 1 whose root has no slope at 0: no double sees the difference elsewhere."""
