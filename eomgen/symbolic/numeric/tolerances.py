@@ -17,6 +17,7 @@ CARRIED = 1e-8  # what a run in time carried along, or what was searched twice
 BEST = 1e-15  # [of the unknown] asked of a search that shall go as far as doubles do
 OUTWARDS = 5e-16  # of an end of an interval, by which it is moved outwards: two units in the last place
 ROUNDING_SQUARED = 1e-28  # of a largest pivot that is the square of a length
+SLOPE_AT_REST = 1e-30  # beside the square of a length of order 1, whose root has no slope at 0: no double sees it
 TINIEST = 1e-300  # instead of 0 in a divisor
 FELT = 1e-100  # [of a scaled row] its largest entry: beside one above it what underflows in doubles is nothing
 SLOW = 1e-4  # [of a unit, a second] a rate of this part of 1 is compared as 1 is: smaller ones are mostly rounding
@@ -92,6 +93,3 @@ WIDE_STEP = 1e-4  # of a second difference, near the fourth root of rounding; of
 
 # Of what is printed.
 SMALLEST_PLAIN = 1e-6  # numbers below it are printed with a power of ten
-
-SLOPE_AT_REST = 1e-30
-"""Beside the square of a length of order 1 whose root has no slope at 0: no double sees the difference elsewhere."""
