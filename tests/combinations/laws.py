@@ -926,7 +926,7 @@ def reactions(o: Any, solved: Any, s: Any) -> dict[str, float]:
         units = np.eye(len(kept))
         found |= sure(_of_tie(name, tie, now, [(solved.rows[kept[k]].role, units[k]) for k in mine]))
         if not solved.closed.get(name, True):
-            found |= {key: 0.0 for key in _of_tie(name, tie, now, [("n", units[0])])}
+            found |= {key: 0.0 for key in _of_tie(name, tie, now, [("n", None)])}
         if name in solved.pressed:
             found |= _rubbed(name, tie, now, solved.pressed[name])
     for k, i in enumerate(kept):

@@ -164,7 +164,9 @@ def is_as_the_oracle_says(text: str, _: str) -> None:
 
 
 def derives(text: str, _: str) -> None:
-    assert eomgen.derive(eomgen.loads(text)).certify().ok
+    equations = eomgen.derive(eomgen.loads(text))
+    assert equations.certify().ok
+    assert equations.render("text")
 
 
 EXPECTED: dict[str, Callable[[str, str], None]] = {

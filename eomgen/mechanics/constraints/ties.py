@@ -282,7 +282,7 @@ def _around_start(motion: Motion) -> Iterator[dict[Node, Any]]:
             q: x + digits.number(_aside(rng)) for q, x in zip(symbols.q, evaluate(starts, state, digits), strict=True)
         }
         state |= {x: digits.number(_aside(rng)) for x in (*symbols.u, *symbols.a, *symbols.inputs.values(), symbols.t)}
-        yield state
+        yield state | dict(zip(scope.laws, evaluate(tuple(scope.laws.values()), state, digits), strict=True))
 
 
 def _aside(rng: Random) -> Fraction:
