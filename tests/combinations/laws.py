@@ -861,7 +861,11 @@ def holding(o: Any, solved: Any) -> tuple[list[int], np.ndarray, np.ndarray]:
     """
     now, first = solved.now, 6 * len(o.bodies)
     unheld = UNHELD + (("planar",) if now.model.plane else ())
-    loose = {name for name, b in now.model.bodies.items() if b.get("joint", {"kind": "fixed"})["kind"] in unheld}
+    loose = {
+        name
+        for name, b in now.model.bodies.items()
+        if b.get("joint", {"kind": "fixed"})["kind"] in unheld and not _carried_by_drives(solved, name, o)
+    }
     kept = [i for i, row in enumerate(solved.rows) if row.owner not in loose]
     shut = np.ones(first + len(o.names), bool)
     for i, row in enumerate(solved.rows):
@@ -882,6 +886,15 @@ def holding(o: Any, solved: Any) -> tuple[list[int], np.ndarray, np.ndarray]:
         own[:, columns] = free
         null.append(own)
     return kept, lam, np.vstack(null)
+
+
+def _carried_by_drives(solved: Any, name: str, o: Any) -> bool:
+    """Whether all that a joint moves with is driven: its drives then hold the body against what carries it."""
+    first = 6 * len(o.bodies)
+    rows = [solved.J[i][first:] for i, row in enumerate(solved.rows) if row.owner == name]
+    used = [q for k, q in enumerate(o.names) if any(abs(row[k]) > 1e-12 for row in rows)]
+    kind = solved.now.model.bodies[name]["joint"]["kind"]
+    return kind != "placed" and bool(used) and set(used) <= set(solved.now.model.driven)
 
 
 def _parts(A: np.ndarray) -> list[tuple[np.ndarray, np.ndarray]]:
