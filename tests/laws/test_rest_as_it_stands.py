@@ -97,3 +97,23 @@ def test_velocities_are_put_together_where_a_parameter_without_a_value_does_not_
     found = eomgen.kinematics(eomgen.loads(OPEN))
     assert found.certify().ok
     assert eomgen.kinematics(eomgen.loads(OPEN.replace("k = {}", "k = 1"))).certify().ok
+
+
+BARS = """
+eomgen = 1
+space = "plane"
+parameters = { m = 1, l = 1 }
+coordinates = { a = 0.2, b = 0.5 }
+bodies.r.shape = { kind = "rod", mass = "m", length = "l" }
+bodies.r.joint = { kind = "revolute", angle = "a", stiffness = 4 }
+bodies.s.shape = { kind = "rod", mass = "m", length = "l" }
+bodies.s.joint = { kind = "revolute", on = "r.end", angle = "b" }
+"""
+
+
+@pytest.mark.parametrize(("b", "exact"), [(0.5, True), (0.023907852651880116, False)])
+def test_a_start_with_all_the_digits_of_a_double_stands_in_no_formula(b, exact):
+    """M_aa = m l^2 (5/3 + cos b): cos(1/2) is a formula, cos(5976963162970029/250000000000000000) is a number"""
+    found = eomgen.linearize(eomgen.loads(BARS), start={"b": b})
+    assert ("cos(" in str(found)) == exact and "5976963162970029" not in str(found)
+    assert float(found.modes.small.numbers.M[0][0]) == pytest.approx(5 / 3 + math.cos(b))

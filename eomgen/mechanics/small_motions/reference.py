@@ -26,10 +26,13 @@ from eomgen.model.values import exact_parameters
 from eomgen.records import dataclass
 from eomgen.symbolic.expression.derivative import depends_on, substituted
 from eomgen.symbolic.expression.graph import Node, Scalar, is_zero
+from eomgen.symbolic.expression.rational import Fraction
+from eomgen.symbolic.expression.traversal import order
 from eomgen.symbolic.numeric.evaluation import evaluate, fifty_digits
 from eomgen.symbolic.numeric.tolerances import SOLVED
 
 EQUILIBRIUM, START, STEADY = "equilibrium", "start", "steady"
+LONGEST = 10**9  # of the whole numbers of a fraction that stands in formulas
 
 
 @dataclass(frozen=True)
@@ -130,7 +133,8 @@ def _place(place: Equilibrium) -> ReferenceMotion:
     system = over_rates(place.statics.system)
     symbols = system.symbols
     still: dict[Node, Scalar] = {symbols.t: 0, **dict.fromkeys(symbols.u, 0)}
-    exact = {q: place.exact[q] for q in symbols.q if q in place.exact} | still
+    found = {q: place.exact[q] for q in symbols.q if q in place.exact}
+    exact = (_short(found) if place.numbers else found) | still
     trial = values_of_parameters(system.scope, Random(3))
     numbers: dict[Node, Any] = {**trial, **_numbers(still, trial)}
     for q in symbols.q:
@@ -166,6 +170,7 @@ def at_the_start(system: System, *, at_rest: bool, given: Mapping[str, float] | 
     gaps = [gap for row in system.ties.rows if (gap := _gap(row)) is not None]
     exact |= places_of(substituted(tuple(gaps), exact), sought, located) if sought else {}
     exact = {x: value for x, value in exact.items() if x is symbols.t or located.agrees(value, x)}
+    exact = exact if symbols.parameters.keys() - exact_parameters(model).keys() else _short(exact)
     for x in (*symbols.q, *symbols.u):
         numbers[x] = _numbers({x: exact[x]}, trial)[x] if x in exact else fifty_digits().number(1) * located.numbers[x]
     return _with_inputs(ReferenceMotion(system, EQUILIBRIUM if at_rest else START, exact, numbers))
@@ -175,6 +180,17 @@ def in_closed_form(reference: ReferenceMotion, state: Mapping[Node, Scalar]) -> 
     """The reference with coordinates and speeds that are known as scalars of the parameters."""
     numbers = {**reference.numbers, **_numbers(state, reference.trial)}
     return replace(reference, exact={**reference.exact, **state}, numbers=numbers)
+
+
+def _short(state: Mapping[Node, Scalar]) -> dict[Node, Scalar]:
+    """What a formula can hold of a state: a double with all its digits is a number, and no part of a formula."""
+
+    def is_long(x: Scalar) -> bool:
+        leaves = [a for node in order((x,)) for a in node.args if isinstance(a, Fraction | int)]
+        plain = [x] if isinstance(x, Fraction | int) else leaves
+        return any(max(abs(Fraction(a).numerator), Fraction(a).denominator) > LONGEST for a in plain)
+
+    return {node: x for node, x in state.items() if not is_long(x)}
 
 
 def _gap(row: Row) -> Scalar | None:
