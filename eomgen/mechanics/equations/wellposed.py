@@ -21,6 +21,9 @@ from eomgen.symbolic.expression.node import State
 from eomgen.symbolic.numeric.dense import of_one_length
 from eomgen.symbolic.numeric.evaluation import FLOAT, NoValue, evaluate, fifty_digits
 from eomgen.symbolic.numeric.tolerances import RANK, SHARE, SOLVED, SQUARED_AT_50, SUMMED
+from eomgen.symbolic.print.text import text_size, to_text
+
+LONG = 120  # characters of a balance that is told
 
 
 def is_conservative(equations: EquationsOfMotion) -> bool:
@@ -76,11 +79,12 @@ def refuse_massless(equations: EquationsOfMotion) -> None:
 def massless_motions(equations: EquationsOfMotion) -> tuple[Problem, ...]:
     """The motions that move no mass; () where every acceleration is determined."""
     held = [any(not is_zero(row[k]) for row in equations.J) for k in range(len(equations.M))]
-    moves_nothing = [u.name for k, u in enumerate(equations.symbols.u) if is_zero(equations.M[k][k]) and not held[k]]
-    return tuple(map(_massless, moves_nothing)) or _idle(equations)
+    moves_nothing = [k for k in range(len(held)) if is_zero(equations.M[k][k]) and not held[k]]
+    return tuple(_massless(equations, k) for k in moves_nothing) or _idle(equations)
 
 
-def _massless(speed: str) -> Problem:
+def _massless(equations: EquationsOfMotion, k: int) -> Problem:
+    speed = equations.symbols.u[k].name
     q = speed.rstrip("'")
     if q == speed:
         return Problem(
@@ -91,8 +95,19 @@ def _massless(speed: str) -> Problem:
     return Problem(
         f"coordinates.{q}",
         f"the free coordinate '{q}' moves no mass, so it has no acceleration",
-        mend="give the bodies that it moves a mass, or drive the coordinate by `motion`",
+        mend="give the bodies that it moves a mass, or drive the coordinate by `motion`" + _by_its_balance(equations, k),
     )
+
+
+def _by_its_balance(equations: EquationsOfMotion, k: int) -> str:
+    """How a node between springs, or springs and dampers, follows from its own balance; "" where nothing pushes it."""
+    force, u = equations.forcing[k], equations.symbols.u[k]
+    q = next((q for q in equations.symbols.q if f"{q.name}'" == u.name), None)
+    if q is None or is_zero(force) or text_size(force) > LONG or not depends_on(force, (q, u)):
+        return ""
+    field = "rate" if depends_on(force, equations.symbols.u) else "gap"
+    tie = f'kind = "equation", {field} = "{to_text(force)}"'
+    return f"; where springs and dampers alone push it, mark it `dependent` and give its balance: {{ {tie} }}"
 
 
 # -- motions that move no mass -----------------------------------------------------------------------
