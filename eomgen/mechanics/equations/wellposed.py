@@ -95,7 +95,8 @@ def _massless(equations: EquationsOfMotion, k: int) -> Problem:
     return Problem(
         f"coordinates.{q}",
         f"the free coordinate '{q}' moves no mass, so it has no acceleration",
-        mend="give the bodies that it moves a mass, or drive the coordinate by `motion`" + _by_its_balance(equations, k),
+        mend="give the bodies that it moves a mass, or drive the coordinate by `motion`"
+        + _by_its_balance(equations, k),
     )
 
 

@@ -52,6 +52,8 @@ def _misplaced(catalog: Catalog, leaf: Leaf, name: str, column: int, allowed: fr
         primes = {"coordinate": ("coordinate", "rate", "acceleration"), "speed": ("speed", "acceleration")}
         kind = primes[kind][len(name) - len(base)] if kind in primes else kind
         what, mend = f"'{name}' ({article(kind)}) cannot stand in {where}", f"only {leaf.rule.scope} can stand here"
+        if leaf.path[0] == "constraints" and leaf.path[-1] == "length" and base in catalog.table("coordinates"):
+            mend += f'; a length that changes is a driven joint: kind = "prismatic", displacement = "{base}"'
     return Finding(leaf.path, what, mend, column, len(name))
 
 
