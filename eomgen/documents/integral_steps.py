@@ -10,7 +10,6 @@ from eomgen.documents.energy_steps import energies_by_parts
 from eomgen.documents.reading import Reader
 from eomgen.documents.setting_steps import listed_symbols
 from eomgen.documents.statements import Formula, Law, Name, Partial, Piece, Prose, Statement, Step, prose
-from eomgen.mechanics.bodies.system_scene import given_start
 from eomgen.mechanics.equations.equations_of_motion import EquationsOfMotion
 from eomgen.mechanics.equations.explicit_accelerations import short_accelerations
 from eomgen.mechanics.equations.pieces import Extent
@@ -23,6 +22,7 @@ from eomgen.mechanics.first_integrals.integrals import (
     work_of_constant_forces,
 )
 from eomgen.mechanics.first_integrals.laws import laws_of_motion
+from eomgen.mechanics.initial_state.exact_start import known_start
 from eomgen.symbolic.expression.derivative import depends_on
 from eomgen.symbolic.expression.graph import Node, Scalar
 from eomgen.symbolic.expression.traversal import order
@@ -161,5 +161,5 @@ def _law(reader: Reader, x: Scalar) -> Scalar:
 
 
 def _start(system: System) -> dict[Node, Scalar] | None:
-    """q and u at the start; None where a dependent coordinate is sought by the ties."""
-    return given_start(system.scope) if system.free is None else None
+    """q and u at the start, as every verb takes them; None where it is not known, or coordinates depend on others."""
+    return known_start(system) if system.free is None else None

@@ -12,10 +12,10 @@ from eomgen.documents.reading import LONGEST, TRIED, Reader, free_names, length_
 from eomgen.documents.setting_steps import count, listed_symbols
 from eomgen.documents.statements import Code, Formula, Meaning, Name, Omitted, Prose, Statement, Step, Table, prose
 from eomgen.errors import DerivationError
-from eomgen.mechanics.bodies.system_scene import given_start
 from eomgen.mechanics.equations.equations_of_motion import EquationsOfMotion
 from eomgen.mechanics.equations.system import System
 from eomgen.mechanics.first_integrals.speeds import rates_and_extent
+from eomgen.mechanics.initial_state.exact_start import known_start
 from eomgen.mechanics.reactions.reactions import Reactions, reactions_of
 from eomgen.symbolic.exact.book_form import book_form
 from eomgen.symbolic.expression.derivative import depends_on, substituted
@@ -144,9 +144,9 @@ def _is_clear(x: Scalar) -> bool:
 
 
 def _start(system: System) -> dict[Node, Scalar] | None:
-    """q and u at the start as exact scalars of the parameters; None where a coordinate is driven."""
+    """q and u at the start, as every verb takes them; None where it is not known, or a coordinate is driven."""
     driven = any(part.driven for part in system.scope.model.coordinates.values())
-    return None if driven else given_start(system.scope)
+    return None if driven else known_start(system)
 
 
 # -- what is indeterminate -------------------------------------------------------------------------

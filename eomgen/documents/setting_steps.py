@@ -12,10 +12,12 @@ from eomgen.mechanics.bodies.scope import Scope
 from eomgen.mechanics.constraints.elimination import dependent_coordinates
 from eomgen.mechanics.constraints.integrability import integrability_of
 from eomgen.mechanics.equations.system import System
+from eomgen.mechanics.initial_state.exact_start import ExactStart
 from eomgen.model.parts import Coordinate, Input, Parameter
 from eomgen.model.values import exact_parameters
 from eomgen.symbolic.expression.expressions import Expression
 from eomgen.symbolic.expression.graph import Node, Scalar
+from eomgen.symbolic.print.text import to_text
 
 PARAMETERS = ("parameter", "meaning", "unit", "value")
 COORDINATES = ("coordinate", "meaning", "unit", "start")
@@ -156,6 +158,7 @@ def _coordinates(system: System) -> Step:
     """Coordinates, their rates and accelerations, and what moves as the model says."""
     model, symbols, scope = system.scope.model, system.symbols, system.scope
     values = exact_parameters(model)
+    begun = _begun(system)
     whole = (system.free or system).symbols
     free = {u.name.removesuffix("'"): (u, a) for u, a in zip(whole.u, whole.a, strict=True)}
     rows: list[Meaning] = []
@@ -165,18 +168,19 @@ def _coordinates(system: System) -> Step:
         kind = "dependent coordinate" if part.dependent else "coordinate"
         guessed = part.dependent and part.near is not None
         start = f"near {_start(part, part.near, values)}" if guessed else _start(part, part.start, values)
+        start = begun.get(q.name, start)
         rows.append(Meaning(q, part.about or kind, unit, start))
         if q.name in free:
             u, a = free[q.name]
             speed = "" if part.dependent else _start(part, part.speed, values)
-            rows.append(Meaning(u, "its rate", _per(unit, "s"), speed))
+            rows.append(Meaning(u, "its rate", _per(unit, "s"), begun.get(u.name, speed)))
             if part.dependent or u in symbols.u:
                 rows.append(Meaning(a, "its acceleration", _per(unit, "s^2")))
         for x in (x for x in scope.laws if x.name.rstrip("'") == q.name):
             second = x.name.endswith("''")
             what = "its acceleration, as given" if second else "its rate, as given"
             rows.append(Meaning(x, what, _per(unit, "s^2" if second else "s")))
-    rows += _speeds(system)
+    rows += _speeds(system, begun)
     rows.append(Meaning(symbols.t, "time", "s"))
     statements: list[Statement] = [Table(COORDINATES, tuple(rows))]
     driven: list[Statement] = []
@@ -201,7 +205,24 @@ def _as_given(scope: Scope, q: Node, rate: Scalar) -> list[Statement]:
     return [*motion, Formula((Rate(q), laws.get(f"{q.name}'", rate))), *second]
 
 
-def _speeds(system: System) -> list[Meaning]:
+def _begun(system: System) -> dict[str, str]:
+    """Of each coordinate and speed that does not start as it is written where it does, so that the ties hold."""
+    start = ExactStart(system)
+    try:
+        moved = start.moved
+    except (DerivationError, MissingValues):  # the ties do not close there: whoever needs a state says so
+        return {}
+    coordinates, told = system.scope.model.coordinates, dict[str, str]()
+    for x in (x for x in (*system.symbols.q, *system.symbols.u) if x.name in moved):
+        part = coordinates.get(x.name.removesuffix("'"))
+        if start.numbers:
+            told[x.name] = _in_unit(start.numbers[x], part)
+        elif x in start.exact:
+            told[x.name] = to_text(start.exact[x])
+    return told
+
+
+def _speeds(system: System, begun: Mapping[str, str]) -> list[Meaning]:
     """The speeds that are no rates, and their derivatives."""
     model, symbols = system.scope.model, system.symbols
     values = exact_parameters(model)
@@ -209,7 +230,7 @@ def _speeds(system: System) -> list[Meaning]:
     for u, a in zip(symbols.u, symbols.a, strict=True):
         if u.name in model.speeds:
             part = model.speeds[u.name]
-            start = "" if part.start is None else _shown_value(part.start, values, None)
+            start = begun.get(u.name, "" if part.start is None else _shown_value(part.start, values, None))
             rows += [Meaning(u, part.about or "speed", "", start), Meaning(a, "its derivative", "")]
     return rows
 

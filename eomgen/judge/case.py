@@ -11,7 +11,7 @@ from eomgen.documents.equation_steps import multiplier_forces
 from eomgen.errors import DerivationError, ExpressionError, MissingValues, ModelError
 from eomgen.judge.contributions import Contributions
 from eomgen.judge.corruptions import Corruptions
-from eomgen.judge.decision import Follows, combination, is_zero_everywhere, linear_row
+from eomgen.judge.decision import Follows, combination, is_zero_everywhere, linear_row, vanish_at
 from eomgen.judge.edits import Edits
 from eomgen.judge.reading import MULTIPLIER, HandEquation, Reading, side_value
 from eomgen.mechanics.equations.equations_of_motion import EquationsOfMotion
@@ -21,6 +21,8 @@ from eomgen.mechanics.equilibria.search import Equilibrium, all_equilibria
 from eomgen.mechanics.first_integrals.integrals import where_momenta_hold
 from eomgen.mechanics.first_integrals.speeds import rates_and_extent
 from eomgen.mechanics.first_integrals.speeds_from_momenta import relations_of
+from eomgen.mechanics.initial_state.exact_start import ExactStart
+from eomgen.mechanics.initial_state.numeric_value import known_parameters
 from eomgen.mechanics.instant.outputs import Quantities
 from eomgen.mechanics.statics.contacts_at_start import contacts_at_start
 from eomgen.model.catalog import Catalog
@@ -31,7 +33,7 @@ from eomgen.model.parts import Model, Output
 from eomgen.model.table import Table
 from eomgen.questions import answers
 from eomgen.questions.answers import Answer
-from eomgen.questions.in_phase import PhaseEquations, start_of
+from eomgen.questions.in_phase import PhaseEquations
 from eomgen.questions.motion_from_start import MotionFromStart
 from eomgen.records import dataclass
 from eomgen.simulation.configuration import has_phases
@@ -70,12 +72,22 @@ class Case:
 
     @cached_property
     def start(self) -> Mapping[Node, Scalar]:
-        """t, q and u at the start as scalars of the parameters; {} where that has no closed form."""
-        if self.phase is self.motion.phase:
-            return self.motion.start
-        found = start_of(self.phase, at_rest=self.at_rest)
-        symbols = self.system.symbols
-        return found if all(x in found for x in (*symbols.q, *symbols.u)) else {}
+        """t, q and u at the start as scalars of the parameters, numbers without a closed form; {}: it is not known."""
+        return self.starting.values
+
+    @cached_property
+    def starting(self) -> ExactStart:
+        """The start that every verb takes."""
+        of_motion = self.phase is self.motion.phase
+        return self.motion.begun if of_motion else ExactStart(self.system, self.at_rest)
+
+    def starts_at_zero(self, *scalars: Scalar) -> bool | None:
+        """Whether scalars are 0 at the start, in numbers where it has no closed form; None: it is not known."""
+        if not self.start:
+            return None
+        if self.starting.is_exact:
+            return is_zero_everywhere(self.system, *substituted(scalars, self.start)).holds
+        return vanish_at(scalars, {**known_parameters(self.system.scope), **self.starting.numbers})
 
     @cached_property
     def as_begun(self) -> Case | None:

@@ -29,13 +29,13 @@ class Course:
         known: q and its rates as functions of time.
         left: what is left of the equations of motion that know nothing else.
         holds: whether that is nothing; None: undecided, or they do not decide it alone.
-        begins: whether it starts as the model does.
+        begins: whether it starts as the model does; None: where that starts is not known.
     """
 
     known: Mapping[Node, Scalar]
     left: ScalarRow
     holds: bool | None
-    begins: bool
+    begins: bool | None
 
 
 def course_of(case: Case, written: HandEquation, constants: Mapping[str, Scalar]) -> Course | None:
@@ -63,8 +63,7 @@ def _put_in(case: Case, name: str, x: Scalar, *, any_start: bool) -> Course | No
             known[node] = x
         x = derivative(x, symbols.t)
     given = tuple(scope.names[x.name] - value for x, value in known.items() if not x.name.endswith("''"))
-    start = substituted(given, {**case.start, symbols.t: 0})
-    begins = any_start or not case.start or bool(is_zero_everywhere(case.system, *start).holds)
+    begins = True if any_start else case.starts_at_zero(*given)
     others = [x for x in (*symbols.q, *symbols.u) if x not in known]
     if not case.rows:
         return None
@@ -86,7 +85,7 @@ def of_the_start(case: Case, course: Course) -> str:
     for x, value in course.known.items():
         if x in case.start and not x.name.endswith("''"):
             mine, own = substituted((value, case.start[x]), at)
-            if not is_zero_everywhere(case.system, mine - own).holds:
+            if not case.starts_at_zero(x - mine):
                 texts = (short_text(y, case.system.scope.positive) or "another one" for y in (mine, own))
                 told.append("{} is {}, and not {}".format(x.name, *texts))
     return " and ".join(told)

@@ -25,6 +25,7 @@ from eomgen.symbolic.exact.equality import exact_state
 from eomgen.symbolic.expression.derivative import gradient, symbols_of
 from eomgen.symbolic.expression.graph import Node, Scalar
 from eomgen.symbolic.expression.node import ScalarRow, holds_op
+from eomgen.symbolic.expression.rational import Fraction
 from eomgen.symbolic.expression.traversal import united
 from eomgen.symbolic.numeric.balls import Ball, balls
 from eomgen.symbolic.numeric.evaluation import (
@@ -37,7 +38,14 @@ from eomgen.symbolic.numeric.evaluation import (
     fifty_digits,
 )
 from eomgen.symbolic.numeric.pieces import PIECEWISE, Choices, as_chosen
-from eomgen.symbolic.numeric.tolerances import CERTAIN_AT_50, CLOSED_AT_50, COMPUTED, ELIMINATED_AT_50, ZERO_AT_50
+from eomgen.symbolic.numeric.tolerances import (
+    CARRIED,
+    CERTAIN_AT_50,
+    CLOSED_AT_50,
+    COMPUTED,
+    ELIMINATED_AT_50,
+    ZERO_AT_50,
+)
 
 STATES = 3
 REAL_STATES = 6  # where roots and sizes may hold on one side only: signs are shared out among so many
@@ -217,6 +225,25 @@ def is_zero_everywhere(system: System, *scalars: Scalar) -> Follows:
     return combination(system, scalars, ())
 
 
+def vanish_at(scalars: Sequence[Scalar], numbers: Mapping[Node, float]) -> bool | None:
+    """Whether scalars are 0 at one state whose numbers are rounded; None: something has no value there.
+
+    |f| is held against sum |x df/dx|, what the numbers' last digits make of it.
+    """
+    state = {x: fifty_digits().number(Fraction(value)) for x, value in numbers.items()}
+    held = [x for x in symbols_of(scalars) if x in state]
+    if len(held) < len(symbols_of(scalars)):
+        return None
+    try:
+        for f in scalars:
+            value, *slopes = evaluate((f, *gradient(f, held)), state, fifty_digits())
+            if abs(value) > CARRIED * sum(abs(state[x] * slope) for x, slope in zip(held, slopes, strict=True)):
+                return False
+    except (NoValue, ZeroDivisionError):
+        return None
+    return True
+
+
 def linear_row(x: Scalar, symbols: Sequence[Node]) -> tuple[ScalarRow, bool]:
     """(slopes by the symbols and what is left where they are 0, whether it is linear in them)."""
     from eomgen.symbolic.expression.derivative import depends_on, substituted
@@ -384,8 +411,6 @@ def _either(rng: Random, near: float, attempt: int) -> float:
 
 
 def _rational(x: float) -> Any:
-    from eomgen.symbolic.expression.rational import Fraction
-
     return Fraction(x)
 
 

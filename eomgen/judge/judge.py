@@ -201,6 +201,9 @@ class Judge:
             return None
         if course.holds is None:
             return Verdict(written.given, "law", UNDECIDED, reason="the equations of motion do not decide it alone")
+        if course.holds and course.begins is None:
+            reason = "the equations of motion hold with it, but where the motion starts is not known"
+            return Verdict(written.given, "law", UNDECIDED, reason=reason)
         if course.holds and course.begins:
             told = f"any start, with {', '.join(constants)} constant" if constants else "the motion from the start"
             return Verdict(written.given, "law", RIGHT, told)

@@ -193,10 +193,12 @@ def _integral(case: Case, scalar: Scalar) -> Decided | None:
         return None
     held = EVERYWHERE if follows.holds else follows.held
     constants = [x for x in (symbols.unknowns or {}).values() if depends_on(scalar, (x,))]
-    if constants or not case.start:
+    if constants:
         return Decided(True, f"a first integral of the motion{while_(held)}")
-    (start,) = substituted((scalar,), case.start)
-    if is_zero_everywhere(case.system, start).holds:
+    begins = case.starts_at_zero(scalar)
+    if begins is None:
+        return Decided(None, "it stays constant along the motion, but where this starts is not known")
+    if begins:
         return Decided(True, f"the first integral from the start{while_(held)}")
     return Decided(False, why=CONSTANT) if held.everywhere else None
 
@@ -267,8 +269,7 @@ def _holds_with(case: Case, kind: str, scalar: Scalar, known: Mapping[Node, Scal
         (rate,) = case.system.scope.with_accelerations((plain,))
     except DerivationError:
         return False
-    starts = is_zero_everywhere(case.system, *substituted((plain,), case.start)).holds
-    return bool(starts) and _holds_with(case, "motion", rate, known)
+    return bool(case.starts_at_zero(plain)) and _holds_with(case, "motion", rate, known)
 
 
 def depends_on_one(scalars: Sequence[Scalar], x: Node) -> bool:

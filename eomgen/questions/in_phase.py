@@ -18,7 +18,6 @@ from eomgen.mechanics.balance.balance_solution import values_at_a_state
 from eomgen.mechanics.balance.friction import equations_of_motion
 from eomgen.mechanics.balance.unknown_loads import still
 from eomgen.mechanics.bodies.contact_modes import ContactModes
-from eomgen.mechanics.bodies.system_scene import start_values, with_unit_quaternions
 from eomgen.mechanics.constraints.freedom import freedoms
 from eomgen.mechanics.constraints.ties import holds_identically
 from eomgen.mechanics.equations.equations_of_motion import EquationsOfMotion
@@ -26,7 +25,6 @@ from eomgen.mechanics.equations.explicit_accelerations import bordered_rows, by_
 from eomgen.mechanics.equations.jumps import refuse_jump, signs_of_rates
 from eomgen.mechanics.equations.system import System, system_of
 from eomgen.mechanics.equations.wellposed import refuse_massless
-from eomgen.mechanics.initial_state.initial_state import fixed_by_position, start_speeds
 from eomgen.mechanics.instant.outputs import Quantities, asks_of
 from eomgen.model.outputs.base import BALANCE, MASSES
 from eomgen.model.parts import Model
@@ -275,16 +273,3 @@ def exact_numbers(values: Mapping[Node, Scalar | float]) -> dict[Node, Scalar]:
     """Doubles as the exact numbers that they are; nan is left out."""
     found = {node: Fraction(x) if isinstance(x, float) and math.isfinite(x) else x for node, x in values.items()}
     return {node: x for node, x in found.items() if not isinstance(x, float)}
-
-
-def start_of(phase: PhaseEquations, *, at_rest: bool) -> dict[Node, Scalar]:
-    """The start as exact scalars of the parameters: t, coordinates that are not sought by the ties, and speeds.
-
-    Args:
-        at_rest: all speeds are 0, whatever the model says.
-    """
-    scope, sought = phase.system.scope, set(fixed_by_position(phase.system))
-    given = {scope.symbols.t: 0} | start_values(scope, (q for q in scope.symbols.q if q not in sought))
-    start = with_unit_quaternions(scope, given)
-    speeds = dict.fromkeys(scope.symbols.u, 0) if at_rest else start_speeds(phase.system)
-    return start | dict(zip(scope.symbols.u, substituted(tuple(speeds.values()), start), strict=True))

@@ -18,14 +18,12 @@ from eomgen.errors import DerivationError, EomgenError, MissingValues, RunFailed
 from eomgen.mechanics.bodies.places import Located
 from eomgen.mechanics.constraints.ties import holds_identically
 from eomgen.mechanics.equations.system import system_of
-from eomgen.mechanics.initial_state.initial_state import Start, start_of_motion
-from eomgen.mechanics.initial_state.values_at_rest import speeds_near
+from eomgen.mechanics.initial_state.exact_start import ExactStart
 from eomgen.mechanics.statics.rest_contacts import modes_at_rest
 from eomgen.model.fields import WrittenEquation
 from eomgen.model.parts import Model
-from eomgen.model.values import exact_parameters
 from eomgen.questions.at_instant import StateAtInstant, carried, parameters_of, placed
-from eomgen.questions.in_phase import PhaseEquations, phase_equations_of, start_of
+from eomgen.questions.in_phase import PhaseEquations, phase_equations_of
 from eomgen.records import dataclass
 from eomgen.simulation.configuration import by_the_law, has_phases
 from eomgen.symbolic.expression.derivative import depends_on, substituted
@@ -104,34 +102,17 @@ class MotionFromStart:
     @cached_property
     def numbers(self) -> dict[Node, float]:
         """t, q and u at the start; {} where parameters are missing."""
-        symbols, found = self.phase.system.symbols, self._consistent
-        if found is None or any(x not in exact_parameters(self.model) for x in symbols.parameters):
-            return {}
-        return {symbols.t: 0.0} | {node: found.values[node.name] for node in (*symbols.q, *symbols.u)}
+        return self.begun.numbers
 
     @cached_property
-    def _consistent(self) -> Start | None:
-        """The start at which the ties hold; None where it needs parameters that are missing."""
-        system = self.phase.system
-        try:
-            return start_of_motion(system, start={u.name: 0.0 for u in system.symbols.u} if self.at_rest else {})
-        except MissingValues:
-            return None
+    def begun(self) -> ExactStart:
+        """The start at which the ties hold."""
+        return ExactStart(self.phase.system, self.at_rest)
 
     @cached_property
     def start(self) -> dict[Node, Scalar]:
-        """t, q and u at the start as scalars of the parameters; {} where a coordinate has no closed form there.
-
-        Speeds that the ties changed are numbers where parameters that the start does not need have none.
-        """
-        symbols, found = self.phase.system.symbols, self._consistent
-        moved = {change.name for change in found.changes} if found is not None else set()
-        exact = start_of(self.phase, at_rest=self.at_rest)
-        exact = {x: value for x, value in exact.items() if x.name not in moved}
-        if found is not None and not self.numbers and moved <= {u.name for u in symbols.u}:
-            exact |= speeds_near(self.phase.system, exact, {u: found.values[u.name] for u in symbols.u})
-        known = placed(self.phase, exact, self.numbers)
-        return known if all(x in known for x in (*symbols.q, *symbols.u)) else {}
+        """t, q and u at the start as scalars of the parameters; {} where one has no closed form there."""
+        return dict(self.begun.exact) if self.begun.is_exact else {}
 
     # -- on the way ------------------------------------------------------------------------------
 

@@ -204,12 +204,6 @@ def start_values(scope: Scope, among: Iterable[Node] | None = None) -> dict[Node
     return {q: start_value(scope, q) for q in (scope.symbols.q if among is None else among)}
 
 
-def given_start(scope: Scope) -> dict[Node, Scalar]:
-    """q and u at the start, where every speed is a rate, as expressions of the parameters."""
-    parts = scope.model.coordinates
-    return start_values(scope) | {u: scope.value(parts[u.name.removesuffix("'")].speed) for u in scope.symbols.u}
-
-
 def start_value(scope: Scope, q: Node) -> Scalar:
     """Where a coordinate starts, as an expression of the parameters."""
     coordinate = scope.model.coordinates[q.name]
