@@ -12,7 +12,10 @@ import eomgen
 from eomgen.cli import main
 from eomgen.judge.case import Case
 from eomgen.judge.decision import is_zero_everywhere
+from eomgen.mechanics.initial_state.exact_start import ExactStart
+from eomgen.model.values import exact_parameters
 from eomgen.symbolic.expression.expressions import parse
+from eomgen.symbolic.numeric.evaluation import FLOAT, evaluate
 
 MODELS = Path(__file__).parent.parent / "models"
 
@@ -158,3 +161,205 @@ def test_an_unknown_name_stays_in_the_list_with_exit_code_2():
 def test_the_frequency_of_a_body_that_also_moves_as_a_whole_is_that_of_its_swinging(equation, verdict):
     """det(K - omega^2 M) = 0 has the root 0 of the cart that rolls away: by its letter omega it is not counted."""
     assert eomgen.verify(eomgen.loads(CART), equation).verdict == verdict
+
+
+# -- one start ----------------------------------------------------------------------------------------
+
+ATWOOD = """
+eomgen = 1
+space = "plane"
+parameters = { m1 = 3, m2 = 1, g = 9.81 }
+coordinates = { y1 = { start = 0, speed = 1 }, y2 = 0 }
+points = { A = [-1, 5], B = [1, 5] }
+bodies.L.shape = { kind = "particle", mass = "m1" }
+bodies.L.joint = { kind = "prismatic", axis = [0, -1], at = [-1, 0], displacement = "y1" }
+bodies.R.shape = { kind = "particle", mass = "m2" }
+bodies.R.joint = { kind = "prismatic", axis = [0, -1], at = [1, 0], displacement = "y2" }
+constraints.rope = { kind = "string", path = ["L.center", "A", "B", "R.center"] }
+forces.g = { kind = "gravity", acceleration = [0, "-g"] }
+"""
+SWING = """
+eomgen = 1
+space = "plane"
+coordinates = { x = { start = 0.6, speed = 1 }, y = -0.8 }
+points = { O = [0, 0] }
+bodies.a.shape = { kind = "particle", mass = 1 }
+bodies.a.joint = { kind = "free", x = "x", y = "y", angle = 0 }
+constraints.T = { kind = "link", points = ["O", "a.center"] }
+forces.g = { kind = "gravity", acceleration = [0, -10] }
+outputs.S = { value = "tension(T)", at = "x = 0" }
+"""
+TACKLE = """
+eomgen = 1
+space = "plane"
+parameters = { m1 = 3, m2 = 1.2, m3 = 2, g = 9.81, r = 0.1, v = 2 }
+coordinates = { y1 = { start = -1, speed = "v" }, yP = -2, y2 = -3 }
+[bodies.one]
+shape = { kind = "particle", mass = "m1" }
+joint = { kind = "placed", at = ["-r", "y1"] }
+[bodies.pulley]
+shape = { kind = "disc", mass = "m3", radius = "r" }
+joint = { kind = "placed", at = ["2*r", "yP"] }
+[bodies.two]
+shape = { kind = "particle", mass = "m2" }
+joint = { kind = "placed", at = ["5*r", "y2"] }
+[constraints.rope]
+kind = "string"
+path = [
+  "one.center",
+  { at = [0, 0], radius = "r", turn = "cw", slip = true },
+  { body = "pulley", turn = "ccw", slip = true },
+  { at = ["4*r", 0], radius = "r", turn = "cw", slip = true },
+  "two.center",
+]
+strands = ["up", "down", "up", "down"]
+[forces.weight]
+kind = "gravity"
+acceleration = [0, "-g"]
+"""
+
+
+def told_laws(model: eomgen.Model) -> dict[str, str]:
+    """The laws of motion that `derive` prints."""
+    text = eomgen.derive(model).render("text")
+    lines = text.partition("Laws of motion\n")[2].partition("\n\n")[0].splitlines() if "Laws of motion" in text else []
+    return dict(line.strip().split(" = ") for line in lines if " = " in line)
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize(
+    "text", [ATWOOD, TACKLE, ATWOOD.replace("speed = 1 }, y2 = 0", "speed = 1 }, y2 = { speed = 2 }")]
+)
+def test_the_start_that_ties_complete_is_one_for_every_verb(text):
+    """The rope gives, or changes, speeds: laws of motion, x0, runs and the table of `derive` begin with the same."""
+    model = eomgen.loads(text)
+    equations, run = eomgen.derive(model), eomgen.simulate(model, time=0.1, samples=2, target="numpy")
+    x0 = dict(zip((*equations.graph.symbols.q, *equations.graph.symbols.u), equations.start(), strict=True))
+    start = ExactStart(equations.system)
+    assert start.is_exact
+    known = {equations.graph.symbols.parameters[n]: float(x) for n, x in exact_parameters(model).items()}
+    for symbol, value in x0.items():
+        assert evaluate((start.exact[symbol],), known, FLOAT)[0] == pytest.approx(value, abs=1e-12)
+        assert run[symbol.name][0] == pytest.approx(value, abs=1e-12)
+    laws = told_laws(model)
+    assert laws.keys() == model.coordinates.keys()
+    for q, law in laws.items():
+        at = {n: float(x) for n, x in exact_parameters(model).items()}
+        found = parse(law).evaluate({**at, "t": 0.1})
+        assert float(found) == pytest.approx(run[q][-1], abs=1e-9)
+
+
+@pytest.mark.parametrize(
+    ("text", "equation", "verdict"),
+    [
+        (ATWOOD, "y1 = 5*t + (m1 - m2)*g/(2*(m1 + m2))*t^2", "wrong"),
+        (ATWOOD, "y1 = t + (m1 - m2)*g/(2*(m1 + m2))*t^2", "right"),
+        (ATWOOD, "y2 = -(m1 - m2)*g/(2*(m1 + m2))*t^2", "wrong"),
+        (ATWOOD, "y2 = -t - (m1 - m2)*g/(2*(m1 + m2))*t^2", "right"),
+        (SWING, "kinetic_energy() + 10*y = 1000", "wrong"),
+        (SWING, "kinetic_energy() + 10*y = -7.21875", "right"),
+        (SWING, "tension(T) = -30*y - 14.4375", "right"),
+        (SWING, "tension(T) = -30*y - 14", "wrong"),
+        (TACKLE, "2*yP' = y1' + y2'", "wrong"),
+        (TACKLE, "2*yP' + y1' + y2' = 0", "right"),
+    ],
+)
+def test_the_judge_starts_where_the_motion_does(text, equation, verdict):
+    """x x' + y y' = 0: the rope gives y' = 0.75 at the start, and no other start is right."""
+    assert eomgen.verify(eomgen.loads(text), equation).verdict == verdict
+
+
+def test_a_start_without_a_closed_form_serves_by_its_numbers():
+    """A rope of which two silent speeds share what the third, with a root in its slope, leaves them."""
+    model = eomgen.loads(
+        SWING.replace(
+            "x = { start = 0.6, speed = 1 }, y = -0.8", "x = { start = 0.6 }, y = { start = -0.7, speed = 1 }"
+        ).replace('"a.center"] }', '"a.center"], length = 1 }')
+    )
+    case = Case(model)
+    assert not case.starting.is_exact and case.start
+    state = {x.name: float(v) for x, v in case.start.items()}
+    energy = 0.5 * (state["x'"] ** 2 + state["y'"] ** 2) + 10 * state["y"]
+    assert eomgen.verify(model, f"kinetic_energy() + 10*y = {energy:.15g}").verdict == "right"
+    assert eomgen.verify(model, f"kinetic_energy() + 10*y = {energy + 1e-3:.15g}").verdict == "wrong"
+    assert eomgen.verify(model, f"tension(T) = {2 * energy:.15g} - 30*y").verdict == "right"
+    assert eomgen.verify(model, f"tension(T) = {2 * energy + 0.01:.15g} - 30*y").verdict == "wrong"
+
+
+def test_a_speed_that_has_no_value_stands_in_the_start_of_the_others():
+    """y1' = v, v without a value: y2' = -v, and the law of y2 says so."""
+    model = eomgen.loads(
+        ATWOOD.replace("g = 9.81 }", "g = 9.81, v = { unit = 'm/s' } }").replace("speed = 1", "speed = 'v'")
+    )
+    assert eomgen.verify(model, "y2 = -v*t - (m1 - m2)*g/(2*(m1 + m2))*t^2").verdict == "right"
+    assert eomgen.verify(model, "y2 = -(m1 - m2)*g/(2*(m1 + m2))*t^2").verdict == "wrong"
+    assert "v*t" in told_laws(model)["y2"]
+
+
+LEAVING = """
+eomgen = 1
+space = "plane"
+parameters = { v = SPEED }
+coordinates = { x = { start = 0, speed = 1 }, y = { start = 0, speed = "v" } }
+bodies.a.shape = { kind = "particle", mass = 1 }
+bodies.a.joint = { kind = "free", x = "x", y = "y", angle = 0 }
+constraints.T = { kind = "support", point = "a.origin", normal = [0, 1], unilateral = true }
+forces.g = { kind = "gravity", acceleration = [0, -9.81] }
+outputs.y = "y''"
+outputs.N = "reaction_n(T)"
+"""
+HILL = """
+eomgen = 1
+space = "plane"
+parameters = { m = 2, R = 1, g = 9.81, v = SPEED }
+coordinates = { x = { start = 0, speed = "v" }, y = { start = "R" } }
+points = { O = [0, 0] }
+bodies.a.shape = { kind = "particle", mass = "m" }
+bodies.a.joint = { kind = "free", x = "x", y = "y", angle = 0 }
+constraints.string = { kind = "link", points = ["O", "a.center"], length = "R", unilateral = true }
+forces.g = { kind = "gravity", acceleration = [0, "-g"] }
+outputs.y = "y''"
+outputs.N = "tension(string)"
+"""
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize(
+    ("text", "speed", "force", "acceleration"),
+    [
+        (LEAVING, "1.2", 0, -9.81),
+        (LEAVING, "0", 9.81, 0),
+        (HILL, "4", 2 * (16 - 9.81), -16),
+        (HILL, "1", 0, -9.81),  # v^2 < g R: the string would have to push
+        (HILL, "-1", 0, -9.81),
+    ],
+)
+def test_a_contact_that_leaves_at_once_is_open_in_every_verb(text, speed, force, acceleration):
+    """N < 0 or gap' > 0 at the start: no force, and what is free falls."""
+    model = eomgen.loads(text.replace("SPEED", speed))
+    call = "tension(string)" if "string" in text else "reaction_n(T)"
+    answers = eomgen.solve(model)
+    assert (answers["N"].value, answers["y"].value) == (pytest.approx(force), pytest.approx(acceleration))
+    equations = eomgen.derive(model)
+    rhs = equations.rhs("numpy")
+    assert rhs.x0 is not None and rhs(0.0, rhs.x0, rhs.p0)[3] == pytest.approx(acceleration)
+    assert equations.certify().ok
+    found = eomgen.reactions(model)
+    assert (found[call].value if call in found else 0) == pytest.approx(force)
+    run = eomgen.simulate(model, time=0.01, samples=2, target="numpy")
+    assert run.outputs["y"][0] == pytest.approx(acceleration)
+    assert eomgen.verify(model, f"{call} = 1 + {call}/2").verdict == "wrong"
+    if force == 0:
+        assert eomgen.verify(model, f"{call} = 0").verdict == "right"
+        assert eomgen.verify(model, "y'' = -9.81").verdict == "right"
+        assert eomgen.verify(model, "y'' = 0").verdict == "wrong"
+        law = "y = v*t - 9.81/2*t^2" if text is LEAVING else "y = R - g/2*t^2"
+        assert eomgen.verify(model, law).verdict == "right"
+
+
+def test_whether_a_contact_leaves_is_assumed_where_a_number_is_missing_and_said():
+    """v^2 > g R or not: v has no value. The mass does not matter."""
+    equations = eomgen.derive(eomgen.loads(HILL.replace("SPEED", "{ unit = 'm/s' }")))
+    assert equations.assumptions == ("string assumed closed: v has no value",) and equations.graph.J
+    equations = eomgen.derive(eomgen.loads(HILL.replace("SPEED", "1").replace("m = 2", "m = { unit = 'kg' }")))
+    assert not equations.assumptions and not equations.graph.J

@@ -13,7 +13,6 @@ from eomgen.documents.statements import Formula, Law, Name, Partial, Piece, Pros
 from eomgen.mechanics.equations.equations_of_motion import EquationsOfMotion
 from eomgen.mechanics.equations.explicit_accelerations import short_accelerations
 from eomgen.mechanics.equations.pieces import Extent
-from eomgen.mechanics.equations.system import System
 from eomgen.mechanics.first_integrals.constants_of_motion import Constant, momenta_of_the_whole
 from eomgen.mechanics.first_integrals.integrals import (
     Integral,
@@ -142,11 +141,11 @@ def _laws(equations: EquationsOfMotion, reader: Reader) -> tuple[Step, ...]:
     """q(t) of the coordinates whose equations are solved in closed form."""
     system = equations.system
     symbols = system.symbols
-    start = _start(system)
-    if not 0 < len(symbols.u) <= MOST_SPEEDS or symbols.inputs or start is None:
+    if not 0 < len(symbols.u) <= MOST_SPEEDS or symbols.inputs or system.free is not None:
         return ()
     accelerations = short_accelerations(equations)
-    laws = {} if accelerations is None else laws_of_motion(system, accelerations, start)
+    start = None if accelerations is None else known_start(system)
+    laws = {} if accelerations is None or start is None else laws_of_motion(system, accelerations, start)
     free = {u.name.removesuffix("'") for u in symbols.u}
     found = [(q, laws[q]) for q in symbols.q if q in laws and q.name in free and text_size(laws[q]) <= LONGEST_LAW]
     if not found:
@@ -158,8 +157,3 @@ def _laws(equations: EquationsOfMotion, reader: Reader) -> tuple[Step, ...]:
 def _law(reader: Reader, x: Scalar) -> Scalar:
     """A law as it was found, which is shorter than multiplied out, with symbols for its roots."""
     return reader.with_symbols((x,))[0]
-
-
-def _start(system: System) -> dict[Node, Scalar] | None:
-    """q and u at the start, as every verb takes them; None where it is not known, or coordinates depend on others."""
-    return known_start(system) if system.free is None else None

@@ -111,9 +111,10 @@ def along_the_motion(equations: EquationsOfMotion, reader: Reader, letters: Lett
     """The reactions as functions of the coordinates alone, where first integrals give the speeds and that is short."""
     if equations.system.free is not None:
         return ()
-    readings, start = readings_of(equations, reader), _start(equations.system)
+    readings = readings_of(equations, reader)
     accelerations, positive = readings.accelerations, readings.system.scope.positive
-    if not accelerations or start is None:
+    start = _start(equations.system) if accelerations else None
+    if start is None:
         return ()
     by_integrals = rates_and_extent(equations, start, accelerations=tuple(accelerations.values()))
     if by_integrals is None or sum(text_size(x) for x in by_integrals[0].values()) > TRIED:

@@ -23,7 +23,7 @@ from eomgen.model.values import exact_parameters
 from eomgen.records import dataclass
 from eomgen.symbolic.exact.equality import exact_state
 from eomgen.symbolic.expression.derivative import gradient, symbols_of
-from eomgen.symbolic.expression.graph import Node, Scalar
+from eomgen.symbolic.expression.graph import Node, Scalar, linear_terms
 from eomgen.symbolic.expression.node import ScalarRow, holds_op
 from eomgen.symbolic.expression.rational import Fraction
 from eomgen.symbolic.expression.traversal import united
@@ -242,6 +242,24 @@ def vanish_at(scalars: Sequence[Scalar], numbers: Mapping[Node, float]) -> bool 
     except (NoValue, ZeroDivisionError):
         return None
     return True
+
+
+def vanish_nearly(system: System, scalars: Sequence[Scalar]) -> bool:
+    """Whether scalars that hold rounded numbers are 0 at real states, on the ties, against their terms."""
+    arithmetic, found = fifty_digits(), 0
+    for state in states_of(system, scalars, on_ties=bool(system.ties.J or _gaps(system, scalars))):
+        try:
+            for f in scalars:
+                terms = linear_terms(f)
+                value, *parts = evaluate((f, *(1 if x is None else x for x in terms)), state, arithmetic)
+                if abs(value) > CARRIED * sum(abs(x * k) for x, k in zip(parts, terms.values(), strict=True)):
+                    return False
+        except (NoValue, ZeroDivisionError):
+            continue
+        found += 1
+        if found == REAL_STATES:
+            return True
+    return False
 
 
 def linear_row(x: Scalar, symbols: Sequence[Node]) -> tuple[ScalarRow, bool]:

@@ -8,7 +8,7 @@ from itertools import product
 
 from eomgen.errors import DerivationError
 from eomgen.judge.case import Case
-from eomgen.judge.decision import combination, is_zero_everywhere, linear_row
+from eomgen.judge.decision import combination, is_zero_everywhere, linear_row, vanish_nearly
 from eomgen.judge.reading import HandEquation
 from eomgen.judge.terms import LONG
 from eomgen.mechanics.equations.pieces import EVERYWHERE, Extent
@@ -84,6 +84,10 @@ def _by_integrals(case: Case, scalar: Scalar, known: Mapping[Node, Scalar]) -> s
             continue
         speeds, held = by_integrals
         started = substituted((case.phase.eliminated(scalar),), {**speeds, **known})
+        if not case.starting.is_exact:
+            if held.everywhere and vanish_nearly(case.system, started):
+                return f"{told} from the start"
+            continue
         of_forces = depends_on(scalar, case.system.symbols.a)  # equations of motion hold in every piece
         found = combination(case.system, started, (), within=not of_forces)
         if found.holds:

@@ -19,6 +19,7 @@ from eomgen.mechanics.bodies.places import Located
 from eomgen.mechanics.constraints.ties import holds_identically
 from eomgen.mechanics.equations.system import system_of
 from eomgen.mechanics.initial_state.exact_start import ExactStart
+from eomgen.mechanics.statics.contacts_at_start import contacts_at_start
 from eomgen.mechanics.statics.rest_contacts import modes_at_rest
 from eomgen.model.fields import WrittenEquation
 from eomgen.model.parts import Model
@@ -91,7 +92,7 @@ class MotionFromStart:
         if not self.model.coordinates:
             return phase_equations_of(self.model, modes_at_rest(self.model))
         if self.models is None:
-            return phase_equations_of(self.model)
+            return phase_equations_of(self.model, contacts_at_start(self.model).modes)
         return PhaseEquations(self.models.of(by_the_law(self.model, self._first.configuration)).system)
 
     @property

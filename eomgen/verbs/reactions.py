@@ -148,7 +148,7 @@ def reactions_document(
         *_law_statements(laws),
         *_open_statements(space),
         failed=f"not answered: {listed(failed)}" if failed else broken,
-        notes=() if found else ("nothing reacts: no body is held by joints or ties",),
+        notes=_without_force(system) or (() if found else ("nothing reacts: no body is held by joints or ties",)),
     )
     starting = _at_rest(model, from_rest)
     document = with_start_told(document, starting)
@@ -157,6 +157,12 @@ def reactions_document(
 
         reaction_picture(starting, view, time).save(plot)
     return proven(document, found.certify() if certify and found else None)
+
+
+def _without_force(system: System) -> tuple[str, ...]:
+    """The contacts that are open at the start, in words."""
+    names = [name for name, mode in system.modes.items() if not mode.closed]
+    return (f"open at the start, without a force: {', '.join(names)}",) if names else ()
 
 
 def _function(name: str) -> str:

@@ -101,7 +101,7 @@ class ExactStart:
         """t, q and u as scalars, a number where there is no closed form; {} where one has neither."""
         if self.is_exact:
             return self.exact
-        return {x: Fraction(f"{number:.15g}") for x, number in self.numbers.items()} | (
+        return {x: Fraction(f"{number:.14e}") for x, number in self.numbers.items()} | (
             self.exact if self.numbers else {}
         )
 

@@ -1,6 +1,12 @@
 """Model -> how its contacts are at the start, by numbers of the start alone; nothing is simulated.
 
-A contact that can end is open where its gap is positive there. A bilateral contact with friction pushes along its
+A contact that can end is open where its gap is positive there, or where it opens with the speeds. Of those that touch
+the ones leave at once that would have to pull with the accelerations that follow: of all configurations the first that
+agrees is taken, what holds before what lets go, as a run chooses.
+
+    closed   N >= 0              open     gap'' >= 0
+
+A bilateral contact with friction pushes along its
 normal or against it, by the sign of N there: N with friction for that sign. Where a number is missing, or the start
 does not hold, a contact is taken as closed, pushing along its normal, and that is said.
 """
@@ -10,6 +16,7 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from dataclasses import field
 from functools import cached_property
+from itertools import islice, product
 from random import Random
 
 from eomgen.errors import DerivationError, ModelError, UsageError
@@ -20,7 +27,7 @@ from eomgen.mechanics.constraints.ties import rows_of_tie
 from eomgen.mechanics.equations.accelerations import exact_accelerations
 from eomgen.mechanics.equations.system import System, system_of
 from eomgen.mechanics.initial_state.initial_state import start_state
-from eomgen.mechanics.reactions.reactions import reactions_of
+from eomgen.mechanics.reactions.reactions import Reactions, reactions_of
 from eomgen.mechanics.statics.rest_contacts import modes_at_rest
 from eomgen.model.contacts import Contact, contacts_of
 from eomgen.model.parts import Model
@@ -33,6 +40,9 @@ from eomgen.symbolic.numeric.evaluation import NoValue, evaluate, fifty_digits
 from eomgen.symbolic.numeric.tolerances import CARRIED, COMPUTED
 
 ROUNDS = 4  # of signs of N, each with the friction of the one before
+MOST_TRIED = 256  # configurations of contacts that touch
+SEEDS = tuple(range(11, 17))  # of values for parameters that have none: they must agree on what leaves
+OPEN = ContactMode(closed=False)
 Numbers = Mapping[str, float]
 
 
@@ -60,7 +70,12 @@ def contacts_at_start(model: Model) -> ContactsAtStart:
     if not model.coordinates:
         return ContactsAtStart(dict(modes_at_rest(model)))
     start = _StartNumbers(model)
-    opened = start.open_contacts([c.name for c in contacts if c.unilateral])
+    ending = [c for c in contacts if c.unilateral]
+    opened = start.open_contacts([c.name for c in ending])
+    touching = [c for c in ending if opened.modes.get(c.name, ContactMode()).closed]
+    if touching and not opened.assumptions:
+        let_go = start.leaving(touching, opened.modes)
+        opened = ContactsAtStart({**opened.modes, **let_go.modes}, let_go.assumptions)
     both_ways = [c for c in contacts if c.friction is not None and not c.unilateral and not c.round]
     pushing = start.pushing(both_ways, opened.modes) if both_ways else ContactsAtStart()
     return ContactsAtStart({**opened.modes, **pushing.modes}, (*opened.assumptions, *pushing.assumptions))
@@ -82,6 +97,11 @@ class _StartNumbers:
         rng = Random(11)
         return {name: rng.uniform(0.7, 1.3) for name in self.missing}
 
+    def _far(self, seed: int) -> Numbers:
+        """The same of any size."""
+        rng = Random(seed)
+        return {name: 10 ** rng.uniform(-1, 1) for name in self.missing}
+
     def open_contacts(self, names: Sequence[str]) -> ContactsAtStart:
         """Those of the contacts that can end whose gap is positive; none where the start leaves all of them closed."""
         if not names:
@@ -96,8 +116,8 @@ class _StartNumbers:
 
     def _by_gaps(self, names: Sequence[str]) -> ContactsAtStart:
         try:
-            free = system_of(self.model, {name: ContactMode(closed=False) for name in names})
-            gaps = _gaps(free, names, self.drawn)
+            free = system_of(self.model, dict.fromkeys(names, OPEN))
+            gaps, rates = _gaps(free, names, self.drawn), _rates(free, names, self.drawn)
             others = {p: _gaps(free, names, {**self.drawn, p: 1.7 * self.drawn[p]}) for p in self.missing}
         except (DerivationError, ModelError, UsageError) as error:
             why = _lacking(self.missing) if self.missing else error.what
@@ -107,11 +127,49 @@ class _StartNumbers:
             lacking = [p for p, found in others.items() if abs(found[name] - gap) > COMPUTED * (1 + abs(gap))]
             if lacking:
                 assumptions.append(_closed(name, _lacking(lacking)))
-            elif gap > CARRIED:
-                modes[name] = ContactMode(closed=False)
+            elif gap > CARRIED or (gap >= -CARRIED and rates[name] > CARRIED):
+                modes[name] = OPEN
             elif gap < -CARRIED:
                 assumptions.append(_closed(name, f"the start passes through it, by {-gap:.3g} m"))
         return ContactsAtStart(modes, tuple(assumptions))
+
+    def leaving(self, touching: Sequence[Contact], opened: ContactModes) -> ContactsAtStart:
+        """Those of the contacts that touch and would have to pull: they leave at once."""
+        seeds = SEEDS if self.missing else SEEDS[:1]
+        try:
+            found = [self._let_go(touching, opened, self._far(seed)) for seed in seeds]
+        except (DerivationError, ModelError, UsageError, NoValue, ZeroDivisionError):
+            return ContactsAtStart()  # no force of a contact follows there, or a speed breaks one: all stay as they are
+        if any(each != found[0] for each in found):
+            names = sorted(set().union(*(each or () for each in found)))
+            return ContactsAtStart({}, tuple(_closed(name, _lacking(self.missing)) for name in names))
+        return ContactsAtStart(dict.fromkeys(found[0] or (), OPEN))
+
+    def _let_go(self, touching: Sequence[Contact], opened: ContactModes, drawn: Numbers) -> tuple[str, ...] | None:
+        """The contacts that open by the forces; None where no configuration agrees with them."""
+        still = self._still(opened) if any(c.mu is not None for c in touching) else set()
+        for away in islice(product(*((False, True) for _ in touching)), MOST_TRIED):
+            free = [c for c, opens in zip(touching, away, strict=True) if opens]
+            held = [c for c in touching if c not in free]
+            sticking = {c.name: ContactMode(sense=0) for c in held if c.name in still}
+            if self._agrees({**opened, **sticking, **{c.name: OPEN for c in free}}, held, free, drawn):
+                return tuple(c.name for c in free)
+        return None
+
+    def _agrees(self, modes: ContactModes, held: Sequence[Contact], free: Sequence[Contact], drawn: Numbers) -> bool:
+        """Whether what is held pushes, and what is free opens, with the accelerations at the start."""
+        system = system_of(self.model, modes)
+        equations, reactions, scope = equations_of_motion(system), reactions_of(system), system.scope
+        forces = [x for contact in held for x in _forces(reactions, contact)]
+        state = _state(system, drawn)
+        state |= dict(zip(system.symbols.a, exact_accelerations(equations, state), strict=True))
+        rates = tuple(rows_of_tie(system.motion, contact.name)[0].velocity for contact in free)
+        digits = fifty_digits()
+        pushes = evaluate(forces, state, digits)
+        opening = evaluate(scope.with_accelerations(rates), state, digits) if rates else []
+        size = max(map(abs, (*pushes, *evaluate(equations.forcing, state, digits))), default=0)
+        fastest = max((abs(state[a]) for a in system.symbols.a), default=0)
+        return all(N >= -CARRIED * size for N in pushes) and all(x >= -CARRIED * fastest for x in opening)
 
     def pushing(self, contacts: Sequence[Contact], opened: ContactModes) -> ContactsAtStart:
         """Those of the contacts that push against their normals: N < 0, with the friction of just that."""
@@ -178,6 +236,22 @@ def _gaps(free: System, names: Sequence[str], drawn: Numbers) -> dict[str, float
     gaps = {name: rows_of_tie(free.motion, name)[0].gap for name in names}
     values = evaluate(tuple(0 if gap is None else gap for gap in gaps.values()), state, fifty_digits())
     return {name: float(value) for name, value in zip(gaps, values, strict=True)}
+
+
+def _rates(free: System, names: Sequence[str], drawn: Numbers) -> dict[str, float]:
+    """How fast each contact opens at the start."""
+    values = evaluate(
+        tuple(rows_of_tie(free.motion, name)[0].velocity for name in names), _state(free, drawn), fifty_digits()
+    )
+    return {name: float(value) for name, value in zip(names, values, strict=True)}
+
+
+def _forces(reactions: Reactions, contact: Contact) -> list[Scalar]:
+    """What must not be negative while the contact is closed: N, of a string the tension of every strand."""
+    if not contact.pulls:
+        return [reactions.normal(contact.name)]
+    rows = reactions.balance.system.scope.model.constraints[contact.name].strand_rows()
+    return [reactions.tension(contact.name, k + 1) for k in range(max(1, len(rows)))]
 
 
 def _closed(name: str, why: str) -> str:
