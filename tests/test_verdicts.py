@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+from dataclasses import replace
 from pathlib import Path
 
 import pytest
@@ -12,8 +13,11 @@ import eomgen
 from eomgen.cli import main
 from eomgen.judge.case import Case
 from eomgen.judge.decision import is_zero_everywhere
+from eomgen.judge.judge import Judge
+from eomgen.judge.right import Decided
 from eomgen.mechanics.initial_state.exact_start import ExactStart
 from eomgen.model.values import exact_parameters
+from eomgen.proof.verdicts import verdicts_again
 from eomgen.symbolic.expression.expressions import parse
 from eomgen.symbolic.numeric.evaluation import FLOAT, evaluate
 
@@ -363,3 +367,53 @@ def test_whether_a_contact_leaves_is_assumed_where_a_number_is_missing_and_said(
     assert equations.assumptions == ("string assumed closed: v has no value",) and equations.graph.J
     equations = eomgen.derive(eomgen.loads(HILL.replace("SPEED", "1").replace("m = 2", "m = { unit = 'kg' }")))
     assert not equations.assumptions and not equations.graph.J
+
+
+# -- decided again --------------------------------------------------------------------------------------
+
+
+def turned(model: eomgen.Model, equation: str) -> list[tuple[str, str]]:
+    """What the second decision says of a verdict, and of the verdict turned round."""
+    judge = Judge(Case(model))
+    said = judge.said(judge.verdict(equation))
+    assert said is not None
+    both = (said, replace(said, is_right=not said.is_right, up_to="" if said.is_right else said.up_to))
+    return [(check.status, check.detail) for each in both for check in verdicts_again([each])]
+
+
+@pytest.mark.parametrize(
+    ("text", "equation"),
+    [
+        (PENDULUM, "l*theta'' = -g*sin(theta)"),
+        (PENDULUM, "l*theta'' = g*sin(theta)"),
+        (PENDULUM, r"l \ddot\phi = g \sin\phi"),
+        (PENDULUM, "S = m*g*cos(theta) + m*l*theta'^2"),
+        (PENDULUM, "S = m*g*cos(theta) - m*l*theta'^2"),
+        (PENDULUM, "T = m*l^2*theta'^2/2"),
+        (PENDULUM, "theta'^2 = 2*g/l*(cos(theta) - cos(3/10))"),
+        (PENDULUM, "theta'^2 = 2*g/l*(cos(theta) - cos(1/10))"),
+        (ATWOOD, "y1 = t + (m1 - m2)*g/(2*(m1 + m2))*t^2"),
+        (ATWOOD, "y1 = 5*t + (m1 - m2)*g/(2*(m1 + m2))*t^2"),
+        (SWING, "x*x'' + y*y'' + x'^2 + y'^2 = 0"),
+        (SWING, "tension(T) = -30*y - 14.4375"),
+        (SWING, "kinetic_energy() + 10*y = 1000"),
+    ],
+)
+def test_a_verdict_that_is_turned_round_is_seen_by_numbers(text, equation):
+    """Both sides in doubles at consistent states: they agree where it is right, and nowhere else."""
+    (own, _), (other, why) = turned(eomgen.loads(text), equation)
+    assert (own, other) == ("holds", "fails") and "it is told" in why
+
+
+def test_a_judge_that_errs_fails_its_certificate(monkeypatch):
+    """A decision that takes everything for right: exit code 3, and what differs is said."""
+    monkeypatch.setattr("eomgen.judge.judge.truth_of", lambda *_: Decided(True))
+    result = CliRunner().invoke(main, ["verify", "-", "l*theta'' = g*sin(theta)"], input=PENDULUM)
+    assert result.exit_code == 3 and "it is told right, and its sides differ" in result.output
+
+
+@pytest.mark.parametrize("equation", ["V = -m*g*l*cos(theta) + 7*m", "T + V = E", "omega = sqrt(g/l)", "theta = 0"])
+def test_what_numbers_do_not_decide_is_no_alarm(equation):
+    """Constants of potentials and of integration; small motions and rest, which the solver of outputs decides."""
+    result = CliRunner().invoke(main, ["verify", "-", equation], input=PENDULUM)
+    assert result.exit_code == 0, result.output

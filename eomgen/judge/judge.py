@@ -52,6 +52,7 @@ from eomgen.judge.verdict import RIGHT, UNDECIDED, WRONG, Cause, Verdict
 from eomgen.model.fields import AtRest
 from eomgen.model.reader import ModelOrPath, model_at
 from eomgen.model.replaced import equation_typed
+from eomgen.proof.verdicts import Judged
 from eomgen.records import dataclass
 from eomgen.simulation.configuration import paths_of
 from eomgen.symbolic.expression.derivative import depends_on, substituted
@@ -80,6 +81,10 @@ CONSTANT_LETTER = re.compile(r"(?:[CcEHhK]|const)_?[0-9]?")
 """what an author calls his own constant: of a law that is wrong with it no other letter is taken for one"""
 
 
+BEGUN = ("the first piece of the path", "contacts that slide as they do at the start")
+SAYS_NOTHING = ("what is equated", "the sign")  # of what equations are wrong that hold whatever the system does
+
+
 @dataclass(frozen=True)
 class Judge:
     """What judges equations of one model."""
@@ -102,6 +107,30 @@ class Judge:
             return self._judged(written, known, _instant(self.case, at)).in_letters(written.letters)
         except (DerivationError, RunFailed, MissingValues) as error:
             return Verdict(written.given, known, UNDECIDED, reason=error.what)
+
+    def said(self, verdict: Verdict) -> Judged | None:
+        """A verdict as it is decided again by numbers; None of what is undecided, or wrong because it says nothing."""
+        empty = any(cause.quantity in SAYS_NOTHING for cause in verdict.causes)
+        if verdict.verdict == UNDECIDED or empty:
+            return None
+        begun = self.case.as_begun if any(x in verdict.up_to for x in BEGUN) else None
+        equations = (begun or self.case).equations
+        if equations is None:
+            return None
+        written = self.case.reading.read(verdict.given)
+        names = [name for name in self.case.unknown_names(written) if name not in verdict.substitution]
+        return Judged(
+            verdict.given,
+            written.left,
+            written.right,
+            verdict.kind,
+            verdict.verdict == RIGHT,
+            verdict.up_to,
+            equations,
+            verdict.substitution,
+            tuple(names),
+            self.case.at_rest,
+        )
 
     def _judged(self, written: HandEquation, kind: str, at: Instant) -> Verdict:
         case = self.case
@@ -179,8 +208,7 @@ class Judge:
             with suppress(EomgenError):
                 so = truth_of(begun, begun.value(written.difference), kind)
                 if so.holds:
-                    piece = bool(paths_of(case.model))
-                    told = "the first piece of the path" if piece else "contacts that slide as they do at the start"
+                    told = BEGUN[0] if paths_of(case.model) else BEGUN[1]
                     found = Decided(True, f"{told} and {so.up_to}" if so.up_to else told)
         if found.holds:
             return Verdict(written.given, kind, RIGHT, found.up_to)

@@ -165,7 +165,7 @@ def moving_states(equations: EquationsOfMotion) -> Iterator[NumericState]:
     count = 0
     for _, supply in Trials(equations).states.supplies:
         for place in supply:
-            state = _in_numbers(equations, place)
+            state = state_in_numbers(equations, place)
             try:
                 state.unknowns.keys()
             except (NoValue, ZeroDivisionError, DerivationError):
@@ -183,7 +183,8 @@ def place_of(state: NumericState) -> str:
     return ", ".join(moving[1:4])
 
 
-def _in_numbers(equations: EquationsOfMotion, place: TrialState) -> NumericState:
+def state_in_numbers(equations: EquationsOfMotion, place: TrialState) -> NumericState:
+    """A state at which equations are tried, in doubles."""
     symbols, values = equations.symbols, place.state
     parameters = {node: Fraction(float(values[node])) for node in symbols.parameters.values()}
     return NumericState(equations, parameters, {x: float(values[x]) for x in (symbols.t, *symbols.q, *symbols.u)})

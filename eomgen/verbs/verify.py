@@ -20,6 +20,7 @@ from eomgen.model.fields import AtRest, WrittenEquation
 from eomgen.model.parts import Model
 from eomgen.model.replaced import with_values
 from eomgen.proof.check import Certificate
+from eomgen.proof.verdicts import verdicts_again
 from eomgen.records import dataclass
 
 LARGEST = 1_000_000  # bytes of a file of answers
@@ -71,8 +72,10 @@ def verify_document(
     entries: list[dict[str, Any]] = []
     lines: list[str] = []
     codes: list[int] = []
+    found: list[Verdict] = []
     for each in asked:
-        entry, told, code = _judged(judge, each, at, kind, hint, alone=len(asked) == 1)
+        verdict, entry, told, code = _judged(judge, each, at, kind, hint, alone=len(asked) == 1)
+        found += [verdict]
         entries.append(entry | ({"file": each.file, "line": each.line} if each.file else {}))
         lines += [f"{each.file}:{each.line}: {told[0]}" if each.file else told[0], *told[1:]]
         codes.append(code)
@@ -83,19 +86,22 @@ def verify_document(
     document = plain_document(
         model, lambda: {"name": model.name, "equations": entries}, Lines(tuple(lines)), answer_code=code
     )
-    return proven(document, _certificate(judge) if certify else None)
+    return proven(document, _certificate(judge, found if at is None else ()) if certify else None)
 
 
-def _certificate(judge: Judge) -> Certificate:
-    """The proof of the equations against which the judge holds others."""
+def _certificate(judge: Judge, found: Sequence[Verdict]) -> Certificate:
+    """The proof of the equations against which the judge holds others, and of its verdicts by another decision."""
     equations = judge.case.equations
-    return Certificate(()) if equations is None else certificate_of_equations(equations)
+    if equations is None:
+        return Certificate(())
+    again = [said for verdict in found if (said := judge.said(verdict)) is not None]
+    return certificate_of_equations(equations) + verdicts_again(again)
 
 
 def _judged(
     judge: Judge, each: Answered, at: Any, kind: str | None, hint: int | None, *, alone: bool
-) -> tuple[dict[str, Any], tuple[str, ...], int]:
-    """(for machines, for people, exit code) of one equation."""
+) -> tuple[Verdict, dict[str, Any], tuple[str, ...], int]:
+    """(the verdict, for machines, for people, exit code) of one equation."""
     try:
         verdict = judge.verdict(each.text, at=at, kind=kind)
     except ExpressionError as error:
@@ -105,8 +111,8 @@ def _judged(
             raise UsageError(f"{error.what}\n    {each.text}\n    {caret}", where, error.mend) from error
         told = Verdict(each.text, kind or "", UNDECIDED, reason=f"it cannot be read: {error.what}")
         problem = {"what": error.what, "column": error.column + 1, "mend": error.mend}
-        return told.as_dict() | {"error": problem}, told.lines(), UNREADABLE
-    return verdict.as_dict(hint), verdict.lines(hint), verdict.exit_code
+        return told, told.as_dict() | {"error": problem}, told.lines(), UNREADABLE
+    return verdict, verdict.as_dict(hint), verdict.lines(hint), verdict.exit_code
 
 
 def _typed(text: str) -> Iterator[Answered]:

@@ -17,11 +17,12 @@ from eomgen.mechanics.bodies.places import Located, places_of
 from eomgen.mechanics.equations.articulated import with_accelerations
 from eomgen.mechanics.first_integrals.closed_instant import position_equations
 from eomgen.mechanics.first_integrals.integrals import energy_integral
+from eomgen.mechanics.initial_state.exact_start import declared_start
 from eomgen.mechanics.initial_state.initial_state import start_state
 from eomgen.model.values import numeric_parameters
 from eomgen.questions.at_instant import StateAtInstant
 from eomgen.questions.first_instant import reached
-from eomgen.questions.in_phase import PhaseEquations, phase_equations_of, start_of
+from eomgen.questions.in_phase import PhaseEquations, phase_equations_of
 from eomgen.simulation.event_location import Events
 from eomgen.simulation.integrator import Run, Stepping, march
 from eomgen.symbolic.exact.equality import equal_at_random_states
@@ -171,7 +172,7 @@ def asked(text: str, condition: str) -> tuple[PhaseEquations, StateAtInstant]:
     """The instant at which the condition (= 0) holds."""
     each = phase_equations_of(eomgen.loads(text))
     symbols = each.system.symbols
-    start = start_of(each, at_rest=False)
+    start = declared_start(each.system, at_rest=False)
     numbers: dict = {}
     if not any(part.value is None for part in each.model.parameters.values()):
         values = start_state(each.system)

@@ -1,0 +1,426 @@
+"""Equations that were judged -> whether the verdicts hold, decided once more by numbers alone.
+
+Both sides are worked out in doubles, with a bound of their rounding, at consistent states: beside the start with the
+model's own parameters, at random ones with others, or along a run from the start (Runge-Kutta, order 4, the step
+halved). Accelerations come from dense linear algebra, reactions from the bodies' balance in doubles, functions of the
+motion from their second definitions. A right equation has sides that agree at all of them; a wrong one does not.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+from dataclasses import field, replace
+from functools import cached_property
+from itertools import islice
+from random import Random
+from typing import Any
+
+import numpy as np
+
+from eomgen.codegen.program import right_hand_side
+from eomgen.codegen.rhs import compiled
+from eomgen.mechanics.equations.articulated import with_accelerations
+from eomgen.mechanics.equations.equations_of_motion import EquationsOfMotion
+from eomgen.mechanics.initial_state.initial_state import start_state
+from eomgen.mechanics.instant.outputs import Quantities
+from eomgen.model.outputs import FUNCTIONS
+from eomgen.model.outputs.base import BALANCE
+from eomgen.model.values import exact_parameters
+from eomgen.proof.at_a_state import NumericState, state_in_numbers
+from eomgen.proof.check import Check, Tally
+from eomgen.proof.second_definitions import NearbyStates
+from eomgen.proof.trials import Trials
+from eomgen.records import dataclass
+from eomgen.symbolic.expression.expressions import Call, Expression, parse
+from eomgen.symbolic.expression.graph import Node
+from eomgen.symbolic.expression.rational import Fraction
+from eomgen.symbolic.numeric.evaluation import NoValue, evaluate, fifty_digits
+from eomgen.symbolic.numeric.tolerances import CARRIED, COMPUTED, ITERATED
+
+NEAR, FAR = 5, 2  # states beside the start, and at random with other parameters
+STEPS, TIMES = 48, 4  # of a run; at how many of its instants the sides are compared
+LENGTHS = (0.4, 0.1, 0.02)  # s
+SURE = 30  # times the bound of rounding, from which on two numbers differ
+OF_THE_FILE = ("the values of the file", "what the file says", "rounding", "numbers")
+NOT_DECIDED = ("frequency", "equilibrium", "statics", "inertia")
+MULTIPLIER = "lam"
+NAME = "verdicts, decided again, are the same"
+HOW = "both sides in doubles, at consistent states and along runs from the start"
+
+
+@dataclass(frozen=True)
+class Judged:
+    """An equation with its verdict.
+
+    Args:
+        text: as it was given.
+        left, right: its sides, as they were read.
+        kind: what it is about.
+        is_right: the verdict.
+        up_to: what it is right up to, in words.
+        stands_for: names of the author and what they stand for, as texts.
+        constants: names of the author that stand for nothing.
+        equations: the equations of motion against which it was judged.
+        at_rest: the motion starts with all speeds 0.
+    """
+
+    text: str
+    left: Expression
+    right: Expression
+    kind: str
+    is_right: bool
+    up_to: str
+    equations: EquationsOfMotion
+    stands_for: Mapping[str, str] = field(default_factory=dict)
+    constants: tuple[str, ...] = ()
+    at_rest: bool = False
+
+    @property
+    def is_of_start(self) -> bool:
+        """Whether it holds in the motion from the start alone, or where something is driven by a law of time."""
+        words = ("from the start", "at the start", "first piece", "first integral", "any start")
+        driven = any(q.motion is not None for q in self.equations.system.scope.model.coordinates.values())
+        told = driven or any(word in self.up_to for word in words)
+        names = self.left.names | self.right.names
+        of_places = self.kind not in ("energy", "force", "inertia") and not any(name.endswith("'") for name in names)
+        return told or (not self.is_right and (self.kind == "law" or of_places or self._gains))
+
+    @property
+    def _gains(self) -> bool:
+        """Whether it is an energy theorem: no energy alone is on its left."""
+        return self.kind == "energy" and len(self.left.code) > 1
+
+    @property
+    def may_differ_by_a_constant(self) -> bool:
+        return bool(self.constants) or "a first integral" in self.up_to or "a constant of the potential" in self.up_to
+
+
+def verdicts_again(judged: Iterable[Judged]) -> tuple[Check, ...]:
+    """One check of all verdicts; what cannot be decided so is said."""
+    tally = Tally(NAME, HOW)
+    for each in judged:
+        tally.add(each.text, _Again(each).wrong)
+    return tuple(tally.checks())
+
+
+@dataclass(frozen=True)
+class _Again:
+    judged: Judged
+
+    def wrong(self) -> str:
+        """That the verdict does not hold, in words; "".
+
+        Raises:
+            NoValue: the numbers do not decide it.
+        """
+        each = self.judged
+        if each.kind in NOT_DECIDED:
+            raise NoValue(f"of a {each.kind} the solver of outputs decides, whose numbers `solve` proves")
+        if len(each.constants) > 1 or (each.constants and not each.is_right):
+            raise NoValue("constants of the author's own")
+        return self._of_right() if each.is_right else self._of_wrong()
+
+    def _of_right(self) -> str:
+        states = list(self._along() if self.judged.is_of_start else self._beside())
+        apart = [found for state in states if (found := self._apart(state)) is not None]
+        if not apart:
+            raise NoValue("no state has values for it")
+        if self.judged.may_differ_by_a_constant:
+            first = apart[0]
+            apart = [Rounded(x.value - first.value, x.error + first.error) for x in apart[1:]]
+        off = next((x for x in apart if not x.may_vanish), None)
+        return "" if off is None else f"it is told right, and its sides differ by {off.value:.6g}"
+
+    def _of_wrong(self) -> str:
+        own = list(self._along() if self.judged.is_of_start else self._beside())
+        apart = [found for state in own if (found := self._apart(state)) is not None]
+        if len(apart) < 2:
+            raise NoValue("no state has values for it")
+        return "it is told wrong, and its sides agree" if all(x.may_vanish for x in apart) else ""
+
+    def _apart(self, state: NumericState) -> Rounded | None:
+        return _at(state, self.judged)
+
+    # -- states ------------------------------------------------------------------------------------
+
+    def _beside(self) -> Iterator[NumericState]:
+        """States that satisfy the ties: beside the start, at random."""
+        equations, up_to = self.judged.equations, self.judged.up_to
+        own = any(word in up_to for word in (*OF_THE_FILE, "holds where", "a constant of"))
+        for name, supply in Trials(equations).states.supplies:
+            if name == "at the start" or (name == "at random" and not own):
+                yield from (
+                    state_in_numbers(equations, place) for place in islice(supply, NEAR if name[3] == "t" else FAR)
+                )
+
+    def _along(self) -> Iterator[NumericState]:
+        """States of the motion from the start, with the model's parameters; of what is wrong with others, too."""
+        own = exact_parameters(self.judged.equations.system.scope.model)
+        missing = [name for name in self.judged.equations.system.symbols.parameters if name not in own]
+        if missing:
+            raise NoValue(f"{', '.join(missing)} has no value")
+        yield from self._run({})
+        if not self.judged.is_right:
+            rng, parts = Random(4), self.judged.equations.system.scope.model.parameters
+            given = {n: x for n, x in own.items() if (part := parts.get(n)) is not None and not part.formula}
+            yield from self._run({name: float(x) * rng.uniform(0.9, 1.1) for name, x in given.items()})
+
+    def _run(self, changed: Mapping[str, float]) -> Iterator[NumericState]:
+        """The motion from the start with changed parameters.
+
+        Raises:
+            NoValue: it does not move, or is too fast for these steps.
+        """
+        equations = self.judged.equations
+        system, symbols = equations.system, equations.symbols
+        known = exact_parameters(system.scope.model, changed)
+        parameters = {node: Fraction(float(known[name])) for name, node in symbols.parameters.items()}
+        begun = start_state(system, changed, {u.name: 0.0 for u in symbols.u} if self.judged.at_rest else {})
+        moving = (*symbols.q, *symbols.u)
+        x0 = np.array([begun[node.name] for node in moving])
+        rhs = compiled(right_hand_side(with_accelerations(equations)), "numpy")
+        p = np.array([float(x) for x in parameters.values()])
+
+        def rate(t: float, x: np.ndarray) -> np.ndarray:
+            with np.errstate(all="ignore"):
+                return np.asarray(rhs(t, x, p))[: len(x)]
+
+        for length in LENGTHS:
+            rough, fine = (_runge_kutta(rate, x0, length, steps) for steps in (STEPS, 2 * STEPS))
+            size = np.max(np.abs(fine), axis=0, initial=0.0) + 1e-3
+            if np.all(np.isfinite(fine)) and np.all(np.abs(rough - fine) <= CARRIED * size):
+                break
+        else:
+            raise NoValue("the motion from the start is too fast for the steps of this check")
+        if np.max(np.abs(fine - x0) / size) < 1e-4:
+            raise NoValue("nothing moves from the start")
+        for k in range(1, TIMES + 1):
+            numbers = {symbols.t: length * k / TIMES} | dict(zip(moving, fine[k].tolist(), strict=True))
+            yield NumericState(equations, parameters, numbers)
+
+
+def _runge_kutta(
+    rate: Callable[[float, np.ndarray], np.ndarray], x: np.ndarray, length: float, steps: int
+) -> np.ndarray:
+    """x at TIMES + 1 instants from the start on."""
+    found, h = [x], length / steps
+    for k in range(steps):
+        t = k * h
+        a = rate(t, x)
+        b = rate(t + h / 2, x + h / 2 * a)
+        c = rate(t + h / 2, x + h / 2 * b)
+        d = rate(t + h, x + h * c)
+        x = x + h / 6 * (a + 2 * b + 2 * c + d)
+        if (k + 1) % (steps // TIMES) == 0:
+            found.append(x)
+    return np.array(found)
+
+
+# -- both sides in doubles ---------------------------------------------------------------------------
+
+
+@dataclass(frozen=True)
+class Rounded:
+    """A number and a bound of what it may be off by."""
+
+    value: float
+    error: float
+
+    @property
+    def may_vanish(self) -> bool:
+        return abs(self.value) <= SURE * self.error
+
+
+def _at(state: NumericState, judged: Judged) -> Rounded | None:
+    """Left minus right at a state; None where it has no value there, or another piece is spoken of."""
+    error = CARRIED if judged.is_of_start else ITERATED
+    sides = Sides(state, judged.stands_for, error)
+    try:
+        if any(sides.worked(condition).value <= 0 for condition in _conditions(judged.up_to)):
+            return None
+        return _constant(sides, judged) if judged.constants else sides.difference(judged)
+    except (ZeroDivisionError, OverflowError, ValueError, KeyError):
+        return None
+
+
+def _constant(sides: Sides, judged: Judged) -> Rounded:
+    """The author's constant C at a state, by D(C) = D(0) + C (D(1) - D(0)) = 0."""
+    none, one, two = (replace(sides, constants=dict.fromkeys(judged.constants, float(c))) for c in range(3))
+    D = [each.difference(judged) for each in (none, one, two)]
+    slope = D[1].value - D[0].value
+    if not Rounded(D[2].value - D[0].value - 2 * slope, sum(x.error for x in D)).may_vanish:
+        raise NoValue("the author's constant does not stand there by itself")
+    return _rounded(_BINARY["/"], [Rounded(-D[0].value, D[0].error), Rounded(slope, D[0].error + D[1].error)])
+
+
+def _conditions(up_to: str) -> list[Expression]:
+    """What is positive where it holds: of `what holds where x > 0 and y < 0` x and -y."""
+    _, _, told = up_to.partition("what holds where ")
+    found = []
+    for each in told.split(" and ") if told else ():
+        left, sign, _ = each.partition(" > 0") if " > 0" in each else each.partition(" < 0")
+        found.append(parse(left if sign == " > 0" else f"-({left})"))
+    return found
+
+
+@dataclass(frozen=True)
+class Sides:
+    """The sides of equations at a state.
+
+    Args:
+        state: where.
+        stands_for: names of the author and what they stand for.
+        error: of what is known of the state, relative.
+        constants: values for names of the author that stand for nothing.
+    """
+
+    state: NumericState
+    stands_for: Mapping[str, str]
+    error: float
+    constants: Mapping[str, float] = field(default_factory=dict)
+
+    def difference(self, judged: Judged) -> Rounded:
+        """Left minus right."""
+        left, right = self.worked(judged.left), self.worked(judged.right)
+        return Rounded(left.value - right.value, left.error + right.error)
+
+    def worked(self, side: Expression) -> Rounded:
+        """A side, piece by piece."""
+        stack: list[Rounded] = []
+        for kind, what in side.code:
+            if kind == "number":
+                stack.append(Rounded(float(what), 1e-16 * abs(float(what))))
+            elif kind == "name":
+                stack.append(self._named(what))
+            elif kind == "call":
+                stack.append(self._called(what))
+            elif kind == "neg":
+                x = stack.pop()
+                stack.append(Rounded(-x.value, x.error))
+            elif kind == "function":
+                name, count = what
+                stack[-count:] = [_function(name, stack[-count:])]
+            elif kind in _BINARY:
+                stack[-2:] = [_rounded(_BINARY[kind], stack[-2:])]
+            else:
+                raise NoValue("samples stand in it")
+        return stack[0]
+
+    def _named(self, name: str) -> Rounded:
+        """A name with its primes; of the author's own what it stands for."""
+        bare = name.rstrip("'")
+        if bare in self.stands_for:
+            return self._renamed(parse(self.stands_for[bare]), len(name) - len(bare))
+        if name in self.constants:
+            return Rounded(self.constants[name], 0.0)
+        if name == "pi":
+            return Rounded(math.pi, 1e-16)
+        if name not in self.state.equations.system.scope.names:
+            raise NoValue(f"'{name}' has no value")
+        return self._known(name)
+
+    def _known(self, name: str) -> Rounded:
+        (value,) = evaluate((self.state.equations.system.scope.names[name],), self._values, fifty_digits())
+        return Rounded(float(value), self.error * (abs(float(value)) + self._scale(name)))
+
+    def _scale(self, name: str) -> float:
+        """Of what size numbers of its kind are: what is near 0 is not known better than these."""
+        symbols = self.state.equations.symbols
+        kinds = ((*symbols.a, *symbols.lam), symbols.u, symbols.q)
+        node = self.state.equations.system.scope.names[name]
+        held = next((some for some in kinds if node in some), ())
+        return 1e-3 * max((abs(float(self._values[x])) for x in held), default=0.0)
+
+    def _renamed(self, meant: Expression, dots: int) -> Rounded:
+        """k q + c, or its rate: k q' by the slope of what stands for the name."""
+        if not dots:
+            return self.worked(meant)
+        total, names = Rounded(0.0, 0.0), self.state.equations.system.scope.names
+        for name in (x for x in meant.names if x + "'" * dots in names):
+            slope = self._shifted(meant, name, 1.0) - self._shifted(meant, name, 0.0)
+            rate = self._known(name + "'" * dots)
+            total = Rounded(total.value + slope * rate.value, total.error + abs(slope) * rate.error)
+        return total
+
+    def _shifted(self, meant: Expression, name: str, by: float) -> float:
+        """What a formula is with one name shifted."""
+        lookup = {x: self._named(x).value for x in meant.names}
+        lookup = {**lookup, "pi": math.pi, name: lookup[name] + by}
+        return float(meant.evaluate(lookup))
+
+    @cached_property
+    def _values(self) -> Mapping[Node, Any]:
+        """Of every symbol; accelerations and multipliers by dense linear algebra, where the state has them."""
+        try:
+            return {**self.state.values, **self.state.unknowns}
+        except NoValue:
+            return self.state.values
+
+    def _called(self, call: Call) -> Rounded:
+        """A function of the motion, by its second definition where it has one."""
+        if call.name == MULTIPLIER:
+            label = str(call)
+            node = next(x for x in self.state.equations.symbols.lam if x.name == label)
+            return Rounded(float(self._values[node]), self.error * abs(float(self._values[node])))
+        if call.name not in FUNCTIONS:
+            raise NoValue(f"'{call.name}' is no function of the outputs")
+        function = FUNCTIONS[call.name]
+        if function.source == BALANCE:
+            forces = [abs(x) for x in self.state.reactions.values()]
+            if str(call) not in self.state.reactions:
+                raise NoValue(f"{call} has no value of its own")
+            return Rounded(self.state.reactions[str(call)], self.error * max(forces, default=0.0))
+        if function.second is not None:
+            value = float(function.second(NearbyStates(self.state), call))
+        else:
+            value = float(
+                evaluate((Quantities(self.state.equations.system).value(call),), self._values, fifty_digits())[0]
+            )
+        if not math.isfinite(value):
+            raise NoValue(f"{call} has no value there")
+        return Rounded(value, COMPUTED * abs(value) + self.error * self._size(call))
+
+    def _size(self, call: Call) -> float:
+        """What of a value rounding is measured by: the speeds of the state."""
+        return 1e-3 * max((abs(float(self._values[x])) for x in self.state.equations.symbols.u), default=0.0)
+
+
+_BINARY: Mapping[str, Callable[[float, float], float]] = {
+    "+": lambda a, b: a + b,
+    "-": lambda a, b: a - b,
+    "*": lambda a, b: a * b,
+    "/": lambda a, b: a / b,
+    "^": lambda a, b: a**b if a >= 0 or b == round(b) else math.nan,
+}
+_FUNCTIONS: Mapping[str, Callable[..., float]] = {
+    **{name: getattr(math, name) for name in ("sin", "cos", "tan", "asin", "acos", "atan", "atan2", "sqrt", "exp")},
+    **{name: getattr(math, name) for name in ("sinh", "cosh", "tanh", "log")},
+    "ln": math.log,
+    "abs": abs,
+    "min": min,
+    "max": max,
+    "sign": lambda x: (x > 0) - (x < 0),
+}
+
+
+def _function(name: str, args: Sequence[Rounded]) -> Rounded:
+    if name not in _FUNCTIONS:
+        raise NoValue(f"{name} is not worked out here")
+    return _rounded(_FUNCTIONS[name], args)
+
+
+def _rounded(operation: Callable[..., float], args: Sequence[Rounded]) -> Rounded:
+    """The value, and how far it goes when each argument goes as far as it may be off."""
+    values = [x.value for x in args]
+    value, error = float(operation(*values)), 0.0
+    for k, x in enumerate(args):
+        moved = [*values[:k], x.value + x.error, *values[k + 1 :]]
+        try:
+            error += abs(float(operation(*moved)) - value)
+        except (ValueError, ZeroDivisionError, OverflowError):
+            moved[k] = x.value - x.error
+            error += abs(float(operation(*moved)) - value)
+    if not math.isfinite(value):
+        raise ValueError("no value")
+    return Rounded(value, error + 1e-15 * abs(value))
