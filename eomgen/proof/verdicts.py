@@ -9,6 +9,7 @@ motion from their second definitions. A right equation has sides that agree at a
 from __future__ import annotations
 
 import math
+import re
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from dataclasses import field, replace
 from functools import cached_property
@@ -20,6 +21,7 @@ import numpy as np
 
 from eomgen.codegen.program import right_hand_side
 from eomgen.codegen.rhs import compiled
+from eomgen.errors import ExpressionError
 from eomgen.mechanics.equations.articulated import with_accelerations
 from eomgen.mechanics.equations.equations_of_motion import EquationsOfMotion
 from eomgen.mechanics.initial_state.initial_state import start_state
@@ -41,6 +43,8 @@ from eomgen.symbolic.numeric.tolerances import CARRIED, COMPUTED, ITERATED
 NEAR, FAR = 5, 2  # states beside the start, and at random with other parameters
 STEPS, TIMES = 48, 4  # of a run; at how many of its instants the sides are compared
 LENGTHS = (0.4, 0.1, 0.02)  # s
+STILL = 1e-3  # of the size of a coordinate or speed: a motion that changes less tells nothing apart
+EPSILON = float(np.finfo(float).eps)
 SURE = 30  # times the bound of rounding, from which on two numbers differ
 OF_THE_FILE = ("the values of the file", "what the file says", "rounding", "numbers")
 NOT_DECIDED = ("frequency", "equilibrium", "statics", "inertia")
@@ -117,6 +121,8 @@ class _Again:
         each = self.judged
         if each.kind in NOT_DECIDED:
             raise NoValue(f"of a {each.kind} the solver of outputs decides, whose numbers `solve` proves")
+        if not each.is_right and "while" in each.up_to:
+            raise NoValue(f"it holds {each.up_to}, and not elsewhere")
         if len(each.constants) > 1 or (each.constants and not each.is_right):
             raise NoValue("constants of the author's own")
         return self._of_right() if each.is_right else self._of_wrong()
@@ -149,10 +155,9 @@ class _Again:
         equations, up_to = self.judged.equations, self.judged.up_to
         own = any(word in up_to for word in (*OF_THE_FILE, "holds where", "a constant of"))
         for name, supply in Trials(equations).states.supplies:
-            if name == "at the start" or (name == "at random" and not own):
-                yield from (
-                    state_in_numbers(equations, place) for place in islice(supply, NEAR if name[3] == "t" else FAR)
-                )
+            if name != "at random" or not own:
+                count = NEAR if name == "at the start" else FAR
+                yield from (state_in_numbers(equations, place) for place in islice(supply, count))
 
     def _along(self) -> Iterator[NumericState]:
         """States of the motion from the start, with the model's parameters; of what is wrong with others, too."""
@@ -193,7 +198,7 @@ class _Again:
                 break
         else:
             raise NoValue("the motion from the start is too fast for the steps of this check")
-        if np.max(np.abs(fine - x0) / size) < 1e-4:
+        if np.max(np.abs(fine - x0) / size) < STILL:
             raise NoValue("nothing moves from the start")
         for k in range(1, TIMES + 1):
             numbers = {symbols.t: length * k / TIMES} | dict(zip(moving, fine[k].tolist(), strict=True))
@@ -237,7 +242,7 @@ def _at(state: NumericState, judged: Judged) -> Rounded | None:
     error = CARRIED if judged.is_of_start else ITERATED
     sides = Sides(state, judged.stands_for, error)
     try:
-        if any(sides.worked(condition).value <= 0 for condition in _conditions(judged.up_to)):
+        if any(sides.worked(condition).value < 0 for condition in _conditions(judged.up_to)):
             return None
         return _constant(sides, judged) if judged.constants else sides.difference(judged)
     except (ZeroDivisionError, OverflowError, ValueError, KeyError):
@@ -255,13 +260,26 @@ def _constant(sides: Sides, judged: Judged) -> Rounded:
 
 
 def _conditions(up_to: str) -> list[Expression]:
-    """What is positive where it holds: of `what holds where x > 0 and y < 0` x and -y."""
-    _, _, told = up_to.partition("what holds where ")
+    """What is not negative where it holds: of `what holds where x > 0 and y < 0` x and -y, of `while r <= L` L - r.
+
+    Raises:
+        NoValue: the words are no such conditions.
+    """
+    told = next((up_to.partition(words)[2] for words in ("what holds where ", "while ") if words in up_to), "")
     found = []
     for each in told.split(" and ") if told else ():
-        left, sign, _ = each.partition(" > 0") if " > 0" in each else each.partition(" < 0")
-        found.append(parse(left if sign == " > 0" else f"-({left})"))
+        sides = _COMPARED.fullmatch(each.strip())
+        if sides is None:
+            raise NoValue(f"where it holds is said in other words: {each}")
+        low, high = (sides[3], sides[1]) if sides[2] in (">", ">=") else (sides[1], sides[3])
+        try:
+            found.append(parse(high) - parse(low))
+        except ExpressionError as error:
+            raise NoValue(error.what) from error
     return found
+
+
+_COMPARED = re.compile(r"([^<>=]+?)\s*(<=|>=|<|>)\s*([^<>=]+)")
 
 
 @dataclass(frozen=True)
@@ -290,7 +308,7 @@ class Sides:
         stack: list[Rounded] = []
         for kind, what in side.code:
             if kind == "number":
-                stack.append(Rounded(float(what), 1e-16 * abs(float(what))))
+                stack.append(Rounded(float(what), 0.0 if float(what) == what else EPSILON * abs(float(what))))
             elif kind == "name":
                 stack.append(self._named(what))
             elif kind == "call":
@@ -315,7 +333,7 @@ class Sides:
         if name in self.constants:
             return Rounded(self.constants[name], 0.0)
         if name == "pi":
-            return Rounded(math.pi, 1e-16)
+            return Rounded(math.pi, EPSILON)
         if name not in self.state.equations.system.scope.names:
             raise NoValue(f"'{name}' has no value")
         return self._known(name)
@@ -368,9 +386,10 @@ class Sides:
         function = FUNCTIONS[call.name]
         if function.source == BALANCE:
             forces = [abs(x) for x in self.state.reactions.values()]
-            if str(call) not in self.state.reactions:
-                raise NoValue(f"{call} has no value of its own")
-            return Rounded(self.state.reactions[str(call)], self.error * max(forces, default=0.0))
+            value = self.state.reactions.get(str(call))
+            if value is None:
+                value = self.state.worth(Expression(str(call), (("call", call),), (0,)))
+            return Rounded(value, self.error * max(forces, default=abs(value)))
         if function.second is not None:
             value = float(function.second(NearbyStates(self.state), call))
         else:
@@ -423,4 +442,4 @@ def _rounded(operation: Callable[..., float], args: Sequence[Rounded]) -> Rounde
             error += abs(float(operation(*moved)) - value)
     if not math.isfinite(value):
         raise ValueError("no value")
-    return Rounded(value, error + 1e-15 * abs(value))
+    return Rounded(value, error + 4 * EPSILON * abs(value))
