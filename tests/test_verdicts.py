@@ -417,3 +417,25 @@ def test_what_numbers_do_not_decide_is_no_alarm(equation):
     """Constants of potentials and of integration; small motions and rest, which the solver of outputs decides."""
     result = CliRunner().invoke(main, ["verify", "-", equation], input=PENDULUM)
     assert result.exit_code == 0, result.output
+
+
+SLIDING = """
+eomgen = 1
+space = "plane"
+parameters = { m = 2, mu = 0.2, g = 9.81, v = 3 }
+coordinates = { x = { start = 0, speed = "v" } }
+bodies.block.shape = { kind = "particle", mass = "m" }
+bodies.block.joint = { kind = "placed", at = ["x", 0] }
+constraints.floor = { kind = "support", point = "block.center", normal = [0, 1], friction = "mu" }
+forces.g = { kind = "gravity", acceleration = [0, "-g"] }
+"""
+
+
+@pytest.mark.parametrize(
+    ("equation", "verdict"),
+    [("x = v*t - mu*g/2*t^2", "right"), ("x = v*t + mu*g/2*t^2", "wrong"), ("x = v*t", "wrong")],
+)
+def test_a_law_of_a_body_that_slides_holds_while_it_slides_on(equation, verdict):
+    """sign(v - mu g t) = 1 while v >= mu g t."""
+    found = eomgen.verify(eomgen.loads(SLIDING), equation)
+    assert found.verdict == verdict and ("while" in found.up_to) == (verdict == "right")

@@ -6,10 +6,11 @@ from collections.abc import Iterator, Mapping
 
 from eomgen.errors import DerivationError
 from eomgen.judge.case import Case
-from eomgen.judge.decision import is_zero_everywhere
+from eomgen.judge.decision import combination
 from eomgen.judge.reading import HandEquation
 from eomgen.judge.terms import short_text, term_text
 from eomgen.judge.verdict import Cause
+from eomgen.mechanics.equations.pieces import EVERYWHERE, Extent
 from eomgen.records import dataclass
 from eomgen.symbolic.expression.derivative import depends_on, derivative, substituted
 from eomgen.symbolic.expression.functions import over
@@ -30,12 +31,14 @@ class Course:
         left: what is left of the equations of motion that know nothing else.
         holds: whether that is nothing; None: undecided, or they do not decide it alone.
         begins: whether it starts as the model does; None: where that starts is not known.
+        held: in which pieces it holds.
     """
 
     known: Mapping[Node, Scalar]
     left: ScalarRow
     holds: bool | None
     begins: bool | None
+    held: Extent = EVERYWHERE
 
 
 def course_of(case: Case, written: HandEquation, constants: Mapping[str, Scalar]) -> Course | None:
@@ -76,7 +79,12 @@ def _put_in(case: Case, name: str, x: Scalar, *, any_start: bool) -> Course | No
     mine = substituted(tuple(left), inputs)
     if not mine and name.endswith("'"):
         return None  # its coordinate stands in the equations: this is no course
-    return Course(known, mine, is_zero_everywhere(case.system, *mine).holds if mine else None, begins)
+    if not mine:
+        return Course(known, mine, None, begins)
+    follows = combination(case.system, mine, (), within=True)
+    if follows.holds is False and follows.held:  # friction has its direction as long as the body slides on
+        return Course(known, mine, True, begins, follows.held)
+    return Course(known, mine, follows.holds, begins)
 
 
 def of_the_start(case: Case, course: Course) -> str:

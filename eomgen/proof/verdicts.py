@@ -38,7 +38,7 @@ from eomgen.symbolic.expression.expressions import Call, Expression, parse
 from eomgen.symbolic.expression.graph import Node
 from eomgen.symbolic.expression.rational import Fraction
 from eomgen.symbolic.numeric.evaluation import NoValue, evaluate, fifty_digits
-from eomgen.symbolic.numeric.tolerances import CARRIED, COMPUTED, ITERATED
+from eomgen.symbolic.numeric.tolerances import CARRIED, COMPUTED, ITERATED, ZERO_AT_50
 
 NEAR, FAR = 5, 2  # states beside the start, and at random with other parameters
 STEPS, TIMES = 48, 4  # of a run; at how many of its instants the sides are compared
@@ -340,7 +340,7 @@ class Sides:
 
     def _known(self, name: str) -> Rounded:
         (value,) = evaluate((self.state.equations.system.scope.names[name],), self._values, fifty_digits())
-        return Rounded(float(value), self.error * (abs(float(value)) + self._scale(name)))
+        return Rounded(float(value), self.error * (abs(float(value)) + self._scale(name)) + ZERO_AT_50)
 
     def _scale(self, name: str) -> float:
         """Of what size numbers of its kind are: what is near 0 is not known better than these."""

@@ -14,8 +14,9 @@ from eomgen.mechanics.equations import pieces, wellposed
 from eomgen.mechanics.equations.wellposed import is_conservative, where_conservative
 from eomgen.mechanics.first_integrals.integrals import energy_integral, momentum_integrals
 from eomgen.mechanics.first_integrals.laws import laws_of_motion
+from eomgen.mechanics.initial_state.exact_start import declared_start
 from eomgen.proof.trials import Trials
-from eomgen.questions.in_phase import phase_equations_of, start_of
+from eomgen.questions.in_phase import phase_equations_of
 from eomgen.symbolic.numeric.evaluation import evaluate, fifty_digits
 from eomgen.symbolic.numeric.tolerances import CERTAIN_AT_50
 
@@ -254,7 +255,7 @@ def test_what_begins_later_has_no_law_of_motion_in_closed_form(tmp_path):
     spring = 'joint = { kind = "prismatic", axis = [0, 1], displacement = "y", stiffness = "k" }'
     text = BALL.replace('joint = { kind = "prismatic", axis = [0, 1], displacement = "y" }', spring) + MOTOR
     phase = phase_equations_of(eomgen.load(at(text, tmp_path)))
-    assert laws_of_motion(phase.system, phase.accelerations, start_of(phase, at_rest=False)) == {}
+    assert laws_of_motion(phase.system, phase.accelerations, declared_start(phase.system)) == {}
 
 
 @pytest.mark.parametrize(
