@@ -26,6 +26,7 @@ from eomgen.mechanics.constraints.consistency import is_guess
 from eomgen.mechanics.equations.system import System
 from eomgen.mechanics.formulations import recursive
 from eomgen.mechanics.initial_state.initial_state import Start, fixed_by_position, start_of_motion, start_speeds
+from eomgen.mechanics.initial_state.values_at_rest import speeds_near
 from eomgen.model.values import exact_parameters
 from eomgen.records import dataclass
 from eomgen.symbolic.exact.normal_form import simplest
@@ -33,7 +34,7 @@ from eomgen.symbolic.expression.derivative import depends_on, jacobian, substitu
 from eomgen.symbolic.expression.graph import Node, Scalar, is_zero
 from eomgen.symbolic.expression.rational import Fraction
 from eomgen.symbolic.numeric.evaluation import FLOAT, NoValue, evaluate, fifty_digits
-from eomgen.symbolic.numeric.tolerances import RANK
+from eomgen.symbolic.numeric.tolerances import COMPUTED, RANK
 from eomgen.symbolic.numeric.work import Work
 from eomgen.symbolic.solve.linear_systems import LinearSystem, unique_solution
 
@@ -87,9 +88,20 @@ class ExactStart:
         if not self.is_drawn:
             return sought.exact
         try:
-            return {x: y for x, y in sought.exact.items() if all(each.located.agrees(y, x) for each in others)}
+            found = {x: y for x, y in sought.exact.items() if all(each.located.agrees(y, x) for each in others)}
+            return found | self._beside_what_is_drawn(found)
         except DerivationError:  # lengths drawn at random need not close: nothing is known of the start
             return {}
+
+    def _beside_what_is_drawn(self, found: Mapping[Node, Scalar]) -> dict[Node, Scalar]:
+        """Speeds that do not hang on the parameters without a value, next to their numbers; {} where one does."""
+        symbols, (first, second) = self.system.symbols, (each.begun.values for each in self._sought)
+        open_ = [u for u in symbols.u if u not in found]
+        steady = all(abs(first[u.name] - second[u.name]) <= COMPUTED * (1 + abs(first[u.name])) for u in open_)
+        if not open_ or not steady or any(q not in found for q in symbols.q):
+            return {}
+        places = {x: y for x, y in found.items() if x not in symbols.u}
+        return dict(speeds_near(self.system, places, {u: first[u.name] for u in symbols.u}))
 
     @property
     def is_exact(self) -> bool:
