@@ -85,14 +85,16 @@ class _Search:
         Raises:
             RunFailed: at no trial is the condition met.
         """
-        rng = Random(1)
-        reason: EomgenError = RunFailed("the start has no closed form, and no numbers")
-        parameters = self.phase.system.symbols.parameters.values()
+        symbols, rng = self.phase.system.symbols, Random(1)
+        if not {*symbols.q, *symbols.u} <= self.start.keys():
+            raise RunFailed("the start has no closed form, and no numbers", mend="give the parameters values")
+        reason: EomgenError = RunFailed("no trial was made")
+        parameters = symbols.parameters.values()
         for spread in TRIALS:
             values = {node: spread ** rng.uniform(-1, 1) for node in parameters} | known
             try:
                 numbers = evaluate(tuple(self.start.values()), values, FLOAT)
-                start = {self.phase.system.symbols.t: 0.0, **dict(zip(self.start, map(float, numbers), strict=True))}
+                start = {symbols.t: 0.0, **dict(zip(self.start, map(float, numbers), strict=True))}
                 return replace(self.first(start, values), numbers={})
             except (RunFailed, DerivationError) as error:
                 reason = error

@@ -169,11 +169,16 @@ def derives(text: str, _: str) -> None:
     assert equations.render("text")
 
 
+def is_not_answered(text: str, words: str) -> None:
+    assert any(words in str(answer) for answer in eomgen.solve(eomgen.loads(text)).values())
+
+
 EXPECTED: dict[str, Callable[[str, str], None]] = {
     "refused": is_refused,
     "answers": answers_are,
     "oracle": is_as_the_oracle_says,
     "derives": derives,
+    "unanswered": is_not_answered,
 }
 
 
