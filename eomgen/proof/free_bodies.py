@@ -141,6 +141,7 @@ def moved_otherwise(
     known = state if free is system else _with_free_motion(system, free, state)
     known = known | dict.fromkeys(free.symbols.lam, fifty_digits().number(0))
     needed, J = _demand(free, known), rows_where_closed(free.ties, known)
+    held = np.vstack([J, *_unit_lengths(free, known)])
     a = np.abs([float(known[x]) for x in free.scope.symbols.a])
     for row, line in zip(free.ties.closing, J, strict=True):
         if abs(needed.rates[row.tie, row.number]) > COMPUTED * (1 + abs(line) @ a):
@@ -148,11 +149,24 @@ def moved_otherwise(
     own = [float(x) for x in friction] or [0.0] * len(needed.forces)
     forces = np.array([float(x) - y for x, y in zip(needed.forces, own, strict=True)])
     sizes = np.array([float(x) + abs(y) for x, y in zip(needed.sizes, own, strict=True)])
-    for z in _allowed(J, regular).T:
+    for z in _allowed(held, regular).T:
         if abs(z @ forces) > abs(z) @ (COMPUTED * sizes + ZERO_AT_50):
             most = free.scope.symbols.u[int(np.argmax(abs(z) * sizes))]
             return f"the bodies are not in balance along {most.name}"
     return ""
+
+
+def _unit_lengths(free: System, state: State) -> list[np.ndarray]:
+    """e . e' = 0 of every quaternion among rates: along e nothing moves."""
+    rates = [u.name for u in free.scope.symbols.u]
+    rows = []
+    for four in free.scope.quaternions:
+        row = np.zeros((1, len(rates)))
+        for e in four:
+            if f"{e.name}'" in rates:
+                row[0, rates.index(f"{e.name}'")] = float(state[e])
+        rows += [row] if row.any() else []
+    return rows
 
 
 def _allowed(J: np.ndarray, regular: float) -> np.ndarray:
