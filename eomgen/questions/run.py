@@ -203,16 +203,24 @@ def run_of_a_page(equations: Equations, time: float | None, samples: int) -> tup
 
     Args:
         time: how long [s]; None: PAGE_TIME, or a round time that is over before so many steps are taken.
+    Raises:
+        KeyboardInterrupt: somebody stopped it: a page of a part of it is not what was asked for.
     """
     if time is not None:
-        return run(equations, time=time, samples=samples), ""
-    found = run(equations, time=PAGE_TIME, samples=samples, how=Stepping(most_steps=PAGE_STEPS))
-    if found.status != "too many steps":
+        return _whole(run(equations, time=time, samples=samples)), ""
+    found = _whole(run(equations, time=PAGE_TIME, samples=samples, how=Stepping(most_steps=PAGE_STEPS)))
+    if found.ended != "too many steps":
         return found, ""
     power = 10.0 ** math.floor(math.log10(found.phases[-1].end))
     time = next(factor * power for factor in (5, 2, 1) if factor * power <= found.phases[-1].end)
     words = f"Followed for {time:g} s: {PAGE_TIME:g} s would take more than {PAGE_STEPS} steps; --time says otherwise."
-    return run(equations, time=time, samples=samples), words
+    return _whole(run(equations, time=time, samples=samples)), words
+
+
+def _whole(found: Trajectory) -> Trajectory:
+    if found.ended == "interrupted":
+        raise KeyboardInterrupt
+    return found
 
 
 def finished_run(

@@ -250,3 +250,16 @@ def test_an_interrupted_derivation_says_so(monkeypatch):
     ended = forked(("derive", PENDULUM, "--json"), stopped)
     assert (ended.code, ended.said.strip()) == (130, "interrupted, nothing is kept")
     assert json.loads(ended.out)["error"]["exit_code"] == 130
+
+
+@pytest.mark.parametrize("verb", ["report", "play"])
+def test_a_page_of_an_interrupted_run_is_not_written(verb, monkeypatch, tmp_path):
+    """Who stops the motion stops the page too: exit 130, and no file"""
+    from eomgen.questions import run as runs
+    from eomgen.records import with_fields
+
+    whole = runs.run
+    monkeypatch.setattr(runs, "run", lambda *given, **how: with_fields(whole(*given, **how), ended="interrupted"))
+    page = tmp_path / "page.html"
+    ended = forked((verb, PENDULUM, "--time", "0.1", "-o", str(page)), lambda: None)
+    assert ended.code == 130 and not page.exists()
