@@ -119,6 +119,7 @@ def test_plain_numbers_and_names_without_a_unit_fit_anything(force):
         (PULL.format("k*psi"), "'k*psi' is in N/m"),
         (PULL.format("-2*k*x^2"), "'-2*k*x^2' is in N*m"),
         ('kind = "potential"\nenergy = "1/2*k*x"', "'1/2*k*x' is in N"),
+        (PULL.format("2*k"), "'2*k' is in N/m"),
     ],
 )
 def test_what_only_inference_knows_is_a_warning(force, told):

@@ -324,10 +324,15 @@ class Walk:
         """As it is added or put in: 1 - cos(a) is a plain number, t alone counts seconds; both fit anything."""
         if term.bare or ("t" in term.names and term.names <= TIME):
             return replace(term, dimension=self.inference.unknown())
-        if self.strict and "t" not in term.names and len(term.names) > 1 and term.names & self.declared:
+        divided = any(kind == "/" for kind, _ in self._code_of(term))
+        several = len(term.names) > 1 or not divided  # 0.5/r may be a speed over r
+        if self.strict and several and "t" not in term.names and term.names & self.declared:
             for number in term.numbers:
                 self.inference.equal(number, NUMBER)
         return term
+
+    def _code_of(self, term: Term) -> tuple[tuple[str, Any], ...]:
+        return tuple(self._expression.code[term.first : term.last + 1])
 
     # -- what does not fit ---------------------------------------------------------------------------
 
