@@ -19,6 +19,7 @@ from eomgen.model.fields import (
 )
 from eomgen.model.samples import TimeLawRule
 from eomgen.symbolic.expression.expressions import Expression
+from eomgen.symbolic.expression.splines import SMOOTH
 
 ValueOf = Callable[[Expression], Any]
 """What an expression is worth, in the arithmetic of whoever asks."""
@@ -60,9 +61,9 @@ RateLaw = Annotated[Expression, FormulaRule(None, "", RATES)]
 VelocityLaw = Annotated[Expression, FormulaRule(None, "", SPEEDS, functions=(*PLACES, *VELOCITIES))]
 Pull = Annotated[Expression, FormulaRule("N", "", MOTION, also=("r", "r'"), also_in="m")]
 TimeLaw = Annotated[Expression, TimeLawRule(None, "", TIME)]
-MotionLaw = Annotated[Expression, TimeLawRule(None, "", TIME, ways=("cubic",))]
-MotionOfCoordinate = Annotated[Expression, TimeLawRule(None, "", TIME, same_as="coordinate", ways=("cubic",))]
-RateInTime = Annotated[Expression, TimeLawRule(None, "", TIME, ways=("cubic", "linear"))]
+MotionLaw = Annotated[Expression, TimeLawRule(None, "", TIME, ways=SMOOTH)]
+MotionOfCoordinate = Annotated[Expression, TimeLawRule(None, "", TIME, same_as="coordinate", ways=SMOOTH)]
+RateInTime = Annotated[Expression, TimeLawRule(None, "", TIME, ways=(*SMOOTH, "linear"))]
 
 Place = Annotated[VectorFormula, VectorRule(FormulaRule("m"))]
 MovingPlace = Annotated[VectorFormula, VectorRule(FormulaRule("m", "", CONFIGURATION))]

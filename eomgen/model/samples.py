@@ -1,17 +1,18 @@
 """A function of time given by samples: `{ samples = [[0, 0.1], [0.5, 0.2]], between = "cubic", ends = "rest" }`."""
 
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable, Iterator, Mapping
 from typing import Any
 
 from eomgen.errors import ExpressionError, ModelError, Problem
-from eomgen.model.fields import FormulaRule, TextRule
+from eomgen.model.fields import FormulaRule, Leaf, TextRule
 from eomgen.model.findings import Finding, shown, unknown_keys
+from eomgen.model.part import leaves_of
 from eomgen.model.positions import DocumentPath
 from eomgen.records import dataclass
 from eomgen.symbolic.expression.expressions import Expression, as_expression
 from eomgen.symbolic.expression.rational import Fraction
 from eomgen.symbolic.expression.scalar_operations import is_exact
-from eomgen.symbolic.expression.splines import ENDS, WAYS, DeclaredSamples, Sampled, spline_of
+from eomgen.symbolic.expression.splines import ENDS, SMOOTH, WAYS, DeclaredSamples, Sampled, spline_of
 
 MOST = 10_000  # samples of one function: more make code that is long to compile
 KEYS = ("samples", "between", "ends")
@@ -38,14 +39,15 @@ class TimeLawRule(FormulaRule):
         way = TextRule(self.ways).read(raw.get("between", "cubic"), (*path, "between"), found)
         ends = TextRule(ENDS).read(raw.get("ends", ENDS[0]), (*path, "ends"), found)
         if way in self.ways and way != "cubic" and "ends" in raw:
-            found.append(Finding((*path, "ends"), f"'ends' is for cubics, not for {way}", "leave it out"))
+            found.append(Finding((*path, "ends"), f"'ends' is for 'cubic', not for {way}", "leave it out"))
         pairs = _pairs(raw["samples"], (*path, "samples"), found)
         if pairs is None or way is None or ends is None:
             return None
         times, values = zip(*pairs, strict=True)
         text = f"{way} through {len(pairs)} samples from {_short(times[0])} to {_short(times[-1])} s"
         function = spline_of(times, values, way, ends)
-        return Expression.through_samples(Sampled("f(t)", function, 0, DeclaredSamples(times, values, way, ends)), text)
+        declared = DeclaredSamples(times, values, way, ends, ends_given="ends" in raw)
+        return Expression.through_samples(Sampled("f(t)", function, 0, declared), text)
 
     def schema(self, definitions: dict[str, Any]) -> dict[str, Any]:
         pair = {"type": "array", "items": {"type": "number"}, "minItems": 2, "maxItems": 2}
@@ -74,6 +76,33 @@ def samples(times: Iterable[Any], values: Iterable[Any], between: str = "cubic",
     if found:
         raise ModelError(tuple(Problem(".".join(["samples", *map(str, f.path)]), f.what, mend=f.mend) for f in found))
     return law
+
+
+def laws_through_samples(parts: Any) -> Iterator[tuple[DocumentPath, Sampled, DeclaredSamples]]:
+    """(its path, the function, its samples) of every one that values hold, each with its path."""
+    for path, value in parts:
+        law = value.sampled if isinstance(value, Expression) else None
+        if law is not None and law.declared is not None:
+            yield path, law, law.declared
+
+
+def left_tables(model: Any, end: float) -> tuple[Problem, ...]:
+    """Functions through samples that a run from 0 goes beyond: there a cubic goes straight on, which hardly is meant."""
+    tables = ("coordinates", "inputs", "constraints")
+    leaves = ((leaf.path, leaf.value) for table in tables for leaf in leaves_of_table(model, table))
+    found = []
+    for path, _, given in laws_through_samples(leaves):
+        first, last = float(given.times[0]), float(given.times[-1])
+        if given.way in SMOOTH and not given.ends_given and (first > 0 or last < end):
+            what = f"samples from {first:g} to {last:g} s in a run from 0 to {end:g} s: beyond them it goes on straight"
+            found.append(Problem(".".join(map(str, path)), what, mend="give samples for all of it, or say its `ends`"))
+    return tuple(found)
+
+
+def leaves_of_table(model: Any, table: str) -> Iterator[Leaf]:
+    """Every value of a table of a model."""
+    for name, part in getattr(model, table).items():
+        yield from leaves_of(part, (table, name))
 
 
 def _given_ends(ends: str) -> dict[str, str]:

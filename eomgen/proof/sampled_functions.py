@@ -61,7 +61,7 @@ def _wrong(law: tuple[Sampled, DeclaredSamples]) -> str:
 
 
 def _interpolated(given: DeclaredSamples, t: np.ndarray) -> np.ndarray:
-    from scipy.interpolate import CubicSpline
+    from scipy.interpolate import CubicSpline, PchipInterpolator
 
     times, values = (np.array([float(x) for x in row]) for row in (given.times, given.values))
     inside = np.clip(t, times[0], times[-1])
@@ -70,6 +70,9 @@ def _interpolated(given: DeclaredSamples, t: np.ndarray) -> np.ndarray:
     elif given.way == "steps":
         found = values[np.maximum(np.searchsorted(times, t, side="right") - 1, 0)]
     else:
-        spline = CubicSpline(times, values, bc_type=CONDITIONS[given.ends])
+        monotone = given.way == "pchip"
+        spline = (
+            PchipInterpolator(times, values) if monotone else CubicSpline(times, values, bc_type=CONDITIONS[given.ends])
+        )
         found = spline(inside) + spline(inside, 1) * (t - inside)
     return found

@@ -4,8 +4,10 @@ Between the knots t_k and t_k+1, with values y and slopes d there, h = t_k+1 - t
 
     f = y_k + d_k s + (3 m - 2 d_k - d_k+1)/h s^2 + (d_k + d_k+1 - 2 m)/h^2 s^3
 
-The slopes are those that make f'' continuous. Beyond the ends a cubic goes on straight, anything else stays.
-Source: C. de Boor, A Practical Guide to Splines (2001), ch. IV.
+The slopes are those that make f'' continuous, or those that let f rise and fall only where the samples do ("pchip").
+Beyond the ends a cubic goes on straight, anything else stays.
+Source: C. de Boor, A Practical Guide to Splines (2001), ch. IV; F. N. Fritsch & J. Butland, SIAM J. Sci. Stat. Comput.
+5 (1984), 300-304.
 """
 
 from __future__ import annotations
@@ -21,7 +23,8 @@ from typing import Any
 from eomgen.records import dataclass
 from eomgen.symbolic.expression.rational import Fraction
 
-WAYS = ("cubic", "linear", "steps")
+WAYS = ("cubic", "linear", "steps", "pchip")
+SMOOTH = ("cubic", "pchip")  # f is differentiated twice; of pchip f'' jumps at samples
 ENDS = ("not-a-knot", "natural", "rest")
 LONGEST = 1000  # bits of a denominator
 SplineRow = tuple[Fraction, ...]
@@ -114,6 +117,7 @@ class DeclaredSamples:
     Args:
         way, ends: of `spline_of`.
         factor: by which the values have been multiplied since.
+        ends_given: whether somebody said how it ends.
     """
 
     times: SplineRow
@@ -121,6 +125,7 @@ class DeclaredSamples:
     way: str
     ends: str
     factor: Fraction = Fraction(1)
+    ends_given: bool = False
 
 
 @dataclass(frozen=True, slots=True)
@@ -189,7 +194,8 @@ def sampled_of(number: Any) -> Sampled:
 
 
 def spline_of(times: Sequence[Fraction], values: Sequence[Fraction], way: str = "cubic", ends: str = ENDS[0]) -> Spline:
-    """The function through samples: "cubic" (f'' continuous), "linear", or "steps" (each value until the next).
+    """The function through samples: "cubic" (f'' continuous), "pchip" (cubics, monotone between samples), "linear", or
+    "steps" (each value until the next).
 
     Args:
         times: strictly ascending, two or more.
@@ -198,7 +204,7 @@ def spline_of(times: Sequence[Fraction], values: Sequence[Fraction], way: str = 
     """
     if way == "steps":
         return Spline(tuple(times[1:]), tuple(times), tuple((y,) for y in values), closed=False)
-    slopes = _slopes(times, values, ends) if way == "cubic" else None
+    slopes = None if way == "linear" else _monotone(times, values) if way == "pchip" else _slopes(times, values, ends)
     pieces = [_piece(times[k : k + 2], values[k : k + 2], slopes and slopes[k : k + 2]) for k in range(len(times) - 1)]
     first, last = (slopes[0], slopes[-1]) if slopes else (Fraction(0), Fraction(0))
     zeros = (Fraction(0),) * (len(pieces[0]) - 2)
@@ -237,6 +243,30 @@ def _slopes(times: Sequence[Fraction], values: Sequence[Fraction], ends: str) ->
     inner, own, right = _end(h[::-1], m[::-1], ends)[2:0:-1] + _end(h[::-1], m[::-1], ends)[3:]
     rows.append((inner, own, Fraction(0), right))
     return _tridiagonal(rows)
+
+
+def _monotone(times: Sequence[Fraction], values: Sequence[Fraction]) -> list[Fraction]:
+    """f' at the knots: 0 where the samples turn, else (w + v)/(w/m_k-1 + v/m_k), w = 2 h_k + h_k-1, v = h_k + 2 h_k-1.
+
+    At the ends that of the parabola through three samples, as far as it keeps their sense.
+    """
+    h = [b - a for a, b in pairwise(times)]
+    m = [(b - a) / step for a, b, step in zip(values, values[1:], h, strict=False)]
+    if len(h) == 1:
+        return [m[0], m[0]]
+    inner = [Fraction(0)] * (len(h) - 1)
+    for k in range(1, len(h)):
+        if m[k - 1] * m[k] > 0:
+            w, v = 2 * h[k] + h[k - 1], h[k] + 2 * h[k - 1]
+            inner[k - 1] = _rounded((w + v) / (w / m[k - 1] + v / m[k]))
+    return [_monotone_end(h, m), *inner, _monotone_end(h[::-1], m[::-1])]
+
+
+def _monotone_end(h: Sequence[Fraction], m: Sequence[Fraction]) -> Fraction:
+    found = ((2 * h[0] + h[1]) * m[0] - h[0] * m[1]) / (h[0] + h[1])
+    if found * m[0] <= 0:
+        return Fraction(0)
+    return 3 * m[0] if m[0] * m[1] < 0 and abs(found) > 3 * abs(m[0]) else _rounded(found)
 
 
 def _end(h: Sequence[Fraction], m: Sequence[Fraction], ends: str) -> tuple[Fraction, Fraction, Fraction, Fraction]:
