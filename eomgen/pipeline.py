@@ -19,6 +19,7 @@ from eomgen.mechanics.statics.contacts_at_start import ContactsAtStart, contacts
 from eomgen.model.fields import WrittenEquation
 from eomgen.model.reader import ModelOrPath, model_at
 from eomgen.model.replaced import Values, with_inputs
+from eomgen.model.samples import left_tables
 from eomgen.model.unknowns import refuse_motion
 from eomgen.records import recalled
 from eomgen.symbolic.expression.typed import Typed
@@ -200,6 +201,8 @@ def simulate(
 
 def _warned(model: Model, found: Trajectory) -> Trajectory:
     """The run; what is missing of it is a warning of whoever asked for it."""
+    for problem in left_tables(model, float(found.t[-1]) if len(found.t) else 0.0):
+        warnings.warn(f"{model.name}: {problem.where}: {problem.what}", RuntimeWarning, stacklevel=3)
     if (found.reactions or found.outputs) and found.remark:
         warnings.warn(f"{model.name}: {found.remark}", RuntimeWarning, stacklevel=3)
     return found

@@ -4,19 +4,21 @@ from __future__ import annotations
 
 import json
 import subprocess
+import warnings
 from fractions import Fraction
 from random import Random
 
 import numpy as np
 import pytest
 from click.testing import CliRunner
-from scipy.interpolate import CubicSpline
+from scipy.interpolate import CubicSpline, PchipInterpolator
 
 import eomgen
 from eomgen.cli import main
 from eomgen.codegen.build import compiler
 from eomgen.errors import ModelError, UsageError
 from eomgen.model.samples import samples
+from eomgen.model.warnings import warnings_of
 from eomgen.simulation.solvers import METHODS
 from eomgen.symbolic.expression.graph import Graph
 from eomgen.symbolic.expression.splines import Sampled, number_of_sampled, spline_of
@@ -275,7 +277,7 @@ def test_a_file_without_samples_is_refused(tmp_path, text, what):
         ("{ motion = { samples = [[0, 1], [1, nan]] } }", "nan"),
         ('{ motion = { samples = [[0, 1], [1, 2]], between = "linear" } }', "unknown word 'linear'"),
         ('{ rate = { samples = [[0, 1], [1, 2]], between = "steps" } }', "unknown word 'steps'"),
-        ('{ rate = { samples = [[0, 1], [1, 2]], between = "linear", ends = "rest" } }', "'ends' is for cubics"),
+        ('{ rate = { samples = [[0, 1], [1, 2]], between = "linear", ends = "rest" } }', "'ends' is for 'cubic'"),
         ('{ motion = { samples = [[0, 1], [1, 2]], end = "rest" } }', "unknown key 'end'"),
         ("{ motion = { samples = 3 } }", "a list of 2 to 10000 samples is needed here, not 3"),
         ("{ start = { samples = [[0, 1], [1, 2]] } }", "unknown key 'samples'"),
@@ -296,3 +298,55 @@ def test_the_schema_knows_samples():
     model["coordinates"]["x"]["motion"]["between"] = "steps"
     with pytest.raises(jsonschema.ValidationError):
         jsonschema.validate(model, schema)
+
+
+DWELLS = "[[0, 0], [1, 1.9], [3, 1.9], [4, 0.4], [4.5, 0.5]]"
+
+
+@pytest.mark.parametrize(
+    "rows", [DWELLS, "[[0, 1], [2, 5]]", "[[0, 0], [1, 3], [1.5, 2.9], [4, 2.9]]", "[[-1, 2], [0, 1], [7, 9]]"]
+)
+def test_monotone_cubics_are_those_of_another_program(rows):
+    """Fritsch and Butland's slopes: scipy's PchipInterpolator, f, f' and f'' between all samples"""
+    pairs = np.array(json.loads(rows), dtype=float)
+    law = eomgen.samples(pairs[:, 0], pairs[:, 1], between="pchip").sampled
+    other = PchipInterpolator(*pairs.T)
+    for t in np.linspace(pairs[0, 0], pairs[-1, 0], 23)[1:-1]:
+        function = law
+        for order in range(3):
+            assert float(function.spline.at(Fraction(float(t)))) == pytest.approx(float(other(t, order)), abs=1e-9)
+            function = function.derivative()
+
+
+def test_a_dwell_of_monotone_cubics_stays_and_one_of_cubics_is_warned_of():
+    """f = 1.9 on [1, 3], and nowhere more"""
+    text = 'eomgen = 1\nspace = "plane"\n[coordinates]\nz = {{ motion = {{ samples = {}{} }} }}\n' + (
+        '[bodies.b]\nshape = {{ kind = "particle", mass = 1 }}\n'
+        'joint = {{ kind = "prismatic", axis = [0, 1], displacement = "z" }}\n'
+    )
+    smooth, monotone = (eomgen.loads(text.format(DWELLS, way)) for way in ("", ', between = "pchip"'))
+    law = monotone.coordinates["z"].motion.sampled.spline
+    values = [law.at(Fraction(k, 100)) for k in range(451)]
+    assert max(values) == Fraction(19, 10) and {law.at(Fraction(k, 10)) for k in range(10, 31)} == {Fraction(19, 10)}
+    told = [each.what for each in warnings_of(smooth)]
+    assert len(told) == 1 and "between the equal samples at 1 and 3 s" in told[0]
+    assert warnings_of(monotone) == ()
+
+
+def test_a_run_that_leaves_its_samples_is_warned_of(tmp_path):
+    """Samples to 3 s, run to 5 s: a warning, exit 1 with --strict; none within, and none where `ends` is said"""
+    inside = arm("{ motion = { samples = [[0, 0], [1, 0.7], [2, 0.2], [3, 0.4]] } }")
+    said = arm('{ motion = { samples = [[0, 0], [1, 0.7], [2, 0.2], [3, 0.4]], ends = "natural" } }')
+    for model, time, warned in ((inside, 5, True), (inside, 3, False), (said, 5, False)):
+        with warnings.catch_warnings(record=True) as caught:
+            warnings.simplefilter("always")
+            eomgen.simulate(model, time=time)
+        assert any("beyond them it goes on straight" in str(w.message) for w in caught) is warned
+
+
+def test_a_motion_by_monotone_cubics_is_proven():
+    """Its accelerations jump at the samples, onto which a run steps"""
+    model = arm('{ motion = { samples = [[0, 0], [1, 0.7], [2, 0.7], [3, 0.4]], between = "pchip" } }')
+    assert eomgen.derive(model).certify().ok
+    run = eomgen.simulate(model, time=3)
+    assert run.ok and run.certify().ok and {0.0, 1.0, 2.0, 3.0} <= set(run.phases[0].track[0].tolist())

@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 import re
 from collections.abc import Iterator, Mapping
+from itertools import pairwise
 from typing import Any
 
 from eomgen.model.arithmetic import AnyNumber, in_order, value_of
@@ -15,11 +16,14 @@ from eomgen.model.fields import Leaf, NameRule, WrittenEquation
 from eomgen.model.findings import Finding, whereabouts
 from eomgen.model.part import leaves_of
 from eomgen.model.positions import DocumentPath
+from eomgen.model.samples import laws_through_samples
 from eomgen.symbolic.expression.expressions import Expression
+from eomgen.symbolic.expression.rational import Fraction
 from eomgen.symbolic.numeric.tolerances import MASSES_APART
 from eomgen.symbolic.print.symbols import Symbol, symbol_of
 
 TURN = 2 * math.pi
+DWELL = Fraction(1, 1000)  # of what samples span: by so much a cubic leaves equal ones unseen
 
 
 def warnings_of(model: Any) -> tuple[Finding, ...]:
@@ -28,7 +32,7 @@ def warnings_of(model: Any) -> tuple[Finding, ...]:
     values = _assumed(catalog)
     checks = (_angles(catalog, values), _signs(catalog, values), _weights(catalog, values))
     more = (_impossible(catalog, values), _unheld(catalog), _masses(catalog, values), _symbols_twice(catalog))
-    more = (*more, _unused(catalog), _guessed(catalog))
+    more = (*more, _unused(catalog), _guessed(catalog), _overshoots(catalog))
     return (*inferred(catalog).warnings, *(finding for check in (*checks, *more) for finding in check))
 
 
@@ -162,6 +166,21 @@ def _guessed(catalog: Catalog) -> Iterator[Finding]:
         for q in sorted(carried):
             what = f"where '{name}' lies follows from where '{q}' starts, and of that there is only the guess `near`"
             yield Finding(("coordinates", q), what, f"give '{q}' a `start`, or the tie its own place", key=True)
+
+
+def _overshoots(catalog: Catalog) -> Iterator[Finding]:
+    """Cubics that leave a dwell: between two equal samples they go elsewhere."""
+    for path, law, given in laws_through_samples((leaf.path, leaf.value) for leaf in catalog.leaves):
+        if given.way != "cubic":
+            continue
+        size = max(given.values) - min(given.values)
+        for (t, y), (later, other) in pairwise(zip(given.times, given.values, strict=True)):
+            away = abs(law.spline.at((t + later) / 2) - y * given.factor) if y == other else 0
+            if away > DWELL * size * abs(given.factor):
+                when = f"between the equal samples at {float(t):g} and {float(later):g} s"
+                what = f"{when} {whereabouts(path)} goes elsewhere, by {float(away):.3g} [SI]"
+                yield Finding(path, what, 'write between = "pchip" for what is to dwell')
+                break
 
 
 PROSE = ("about", "source", "name", "text", "unit", "symbol")

@@ -24,6 +24,7 @@ from eomgen.files import is_stream
 from eomgen.model.fields import WrittenEquation
 from eomgen.model.own_units import units_of
 from eomgen.model.parts import Model
+from eomgen.model.samples import left_tables
 from eomgen.proof.run_told import ToldRun, run_told
 from eomgen.questions.run import run as simulated
 from eomgen.simulation.accuracy import Accuracy
@@ -82,6 +83,8 @@ def simulate_document(
         failed="" if run.ok else run.message,
         notes=notes,
     )
+    left = left_tables(model, float(run.t[-1]) if len(run.t) else 0.0)
+    document = replace(document, cautions=(*document.cautions, *left))
     if cut:
         return replace(proven(document, None), interrupted=run.status == "interrupted")
     return proven(
