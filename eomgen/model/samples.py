@@ -87,7 +87,7 @@ def laws_through_samples(parts: Any) -> Iterator[tuple[DocumentPath, Sampled, De
 
 
 def left_tables(model: Any, end: float) -> tuple[Problem, ...]:
-    """Functions through samples that a run from 0 goes beyond: there a cubic goes straight on, which is hardly meant."""
+    """Functions through samples that a run from 0 goes beyond: there a cubic goes straight on, hardly meant."""
     tables = ("coordinates", "inputs", "constraints")
     leaves = ((leaf.path, leaf.value) for table in tables for leaf in leaves_of_table(model, table))
     found = []
