@@ -32,8 +32,8 @@ def warnings_of(model: Any) -> tuple[Finding, ...]:
     values = _assumed(catalog)
     checks = (_angles(catalog, values), _signs(catalog, values), _weights(catalog, values))
     more = (_impossible(catalog, values), _unheld(catalog), _masses(catalog, values), _symbols_twice(catalog))
-    more = (*more, _unused(catalog), _guessed(catalog), _overshoots(catalog))
-    return (*inferred(catalog).warnings, *(finding for check in (*checks, *more) for finding in check))
+    hardly = (_unused(catalog), _guessed(catalog), _overshoots(catalog))
+    return (*inferred(catalog).warnings, *(finding for check in (*checks, *more, *hardly) for finding in check))
 
 
 def _assumed(catalog: Catalog) -> dict[str, AnyNumber]:
