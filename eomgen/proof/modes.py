@@ -6,7 +6,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from functools import cached_property
 from random import Random
 from typing import Any
@@ -18,7 +18,7 @@ from eomgen.mechanics.small_motions.polynomial import Polynomial
 from eomgen.proof.check import Check, attempted, checked, first_wrong
 from eomgen.records import dataclass
 from eomgen.symbolic.expression.graph import Node
-from eomgen.symbolic.numeric.evaluation import NoValue, evaluate, fifty_digits
+from eomgen.symbolic.numeric.evaluation import FLOAT, NoValue, evaluate, fifty_digits
 from eomgen.symbolic.numeric.tolerances import CARRIED, COMPUTED, DIFFERENCE_AT_50, SAME_PLACE, SLOW
 
 SAMPLES = (
@@ -27,6 +27,7 @@ SAMPLES = (
 )  # s, of the geometric mean of all eigenvalues, at which functions of it are compared
 FLOATS = "floating point"
 DRAWS = 24  # of other parameters, at which conditions of stability are compared with roots
+STEPS, MET = 20, 0.1  # looks on a way between parameters; a part of both ends that is near 0
 SURELY = 1e-3  # of the largest root, by which another one surely grows or fades
 
 
@@ -231,7 +232,7 @@ class _Proof:
             return ""
         n = len(polynomial.coefficients)
         c, least = np.array(values[conditions.zeros : n]), min(values[n:])
-        if first * c[-1] <= 0:  # leading coefficients keep their signs, as det M does
+        if first * c[-1] <= 0 or self._meets_zero(trial, drawn):  # leading coefficients keep their signs, as det M does
             return ""
         roots = np.roots(c[::-1])
         grows = float(roots.real.max(initial=-np.inf)) / float(abs(roots).max(initial=1))
@@ -240,6 +241,17 @@ class _Proof:
         if least < 0 and (grows < -SURELY or (not conditions.fading and grows < CARRIED)):
             return "one does not hold for other parameters, and no root grows"
         return ""
+
+    def _meets_zero(self, trial: Mapping[Node, Any], drawn: Mapping[Node, Any]) -> bool:
+        """True if the leading coefficient comes near 0 on the way: (R - r)^2 keeps its sign, and its root does not."""
+        assert self.modes.polynomial is not None
+        leading = self.modes.polynomial.coefficients[-1:]
+        try:
+            ways = [{x: float(v) + k / STEPS * float(drawn[x] - v) for x, v in trial.items()} for k in range(STEPS + 1)]
+            sizes = [abs(float(evaluate(leading, way, FLOAT)[0])) for way in ways]
+        except (NoValue, ZeroDivisionError, OverflowError):
+            return True
+        return min(sizes) < MET * min(sizes[0], sizes[-1])
 
     @property
     def _wrong_here(self) -> str:
