@@ -83,3 +83,36 @@ def test_a_frequency_of_another_number_is_contradicted(monkeypatch):
     assert eomgen.solve(eomgen.loads(text)).certify().ok
     monkeypatch.setattr(Modes, "frequency", lambda self, k: self.frequencies[-k])
     assert eomgen.solve(eomgen.loads(text)).certify().ok is False
+
+
+CRITICAL = """
+eomgen = 1
+space = "plane"
+parameters = { m = 1, k = 100, c = 20 }
+coordinates = { x = 0.1 }
+[bodies.b]
+shape = { kind = "particle", mass = "m" }
+joint = { kind = "prismatic", axis = [1, 0], displacement = "x", stiffness = "k", damping = "c" }
+"""
+GUTTER = """
+eomgen = 1
+space = "plane"
+parameters = { m = 2, r = 0.1, R = 0.5, g = 9.81 }
+coordinates = { q = 0.5 }
+[bodies.roller]
+shape = { kind = "disc", mass = "m", radius = "r" }
+joint = { kind = "placed", at = ["(R - r)*sin(q)", "-(R - r)*cos(q)"], angle = "-(R - r)*q/r" }
+[constraints.gutter]
+kind = "rolling"
+body = "roller"
+circle = { at = [0, 0], radius = "R", inside = true }
+[forces.weight]
+kind = "gravity"
+acceleration = [0, "-g"]
+"""
+
+
+@pytest.mark.parametrize("text", [CRITICAL, GUTTER], ids=["a double eigenvalue with one mode", "a factor (R - r)^2"])
+def test_what_is_right_is_not_contradicted(text):
+    """-c/2m twice, c^2 = 4 k m: numpy's two lie apart by 1e-8; omega^2 = 2 g/(3 (R - r)) is said of R > r alone"""
+    assert eomgen.linearize(eomgen.loads(text)).certify().ok
