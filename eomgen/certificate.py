@@ -61,6 +61,7 @@ def certify(
         *trials.contacts(),
         *trials.threads(),
         *trials.kept_ties(),
+        *trials.slack_springs(),
         *trials.elements(),
         *trials.declared(),
         *trials.energies(),

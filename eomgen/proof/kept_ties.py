@@ -7,13 +7,17 @@ from __future__ import annotations
 
 from typing import Any
 
+from eomgen.errors import DerivationError, MissingValues, ModelError
+from eomgen.mechanics.bodies.loads import Applied
 from eomgen.mechanics.bodies.scope import Scope
 from eomgen.mechanics.constraints.ties import Row
 from eomgen.mechanics.equations.system import System
+from eomgen.mechanics.initial_state.initial_state import start_of_motion
+from eomgen.model.values import exact_parameters
 from eomgen.symbolic.expression.graph import Scalar
 from eomgen.symbolic.expression.node import State
-from eomgen.symbolic.numeric.evaluation import evaluate, fifty_digits
-from eomgen.symbolic.numeric.tolerances import ZERO_AT_50
+from eomgen.symbolic.numeric.evaluation import FLOAT, NoValue, evaluate, fifty_digits
+from eomgen.symbolic.numeric.tolerances import SOLVED, ZERO_AT_50
 
 
 def rows_that_stay(system: System) -> tuple[tuple[Row, Scalar], ...]:
@@ -34,6 +38,35 @@ def open_at_start(system: System, state: State) -> str:
     for (row, _), gap in zip(kept, evaluate([gap for _, gap in kept], begun, fifty_digits()), strict=True):
         if abs(gap) > ZERO_AT_50 * (1 + max(map(abs, begun.values()))):
             return f"'{row.tie}' is open by {float(gap):.10g} where it starts"
+    return ""
+
+
+def springs_of_the_start(system: System) -> tuple[Applied, ...]:
+    """The springs that are slack at the length, or angle, which they have at the start."""
+    forces = system.scope.model.forces
+    elements = ((applied, forces[applied.name].element) for applied in system.loads.applied)
+    return tuple(applied for applied, element in elements if element is not None and element.slack == "start")
+
+
+def pulled_at_start(system: System) -> str:
+    """Which of them is not slack where the motion starts, all ties closed; "" where all are.
+
+    Raises:
+        NoValue: the start is not known in numbers.
+    """
+    try:
+        start = start_of_motion(system).values
+    except (DerivationError, MissingValues, ModelError) as error:
+        raise NoValue(str(error).splitlines()[0]) from None
+    symbols, model = system.symbols, system.scope.model
+    known = exact_parameters(model)
+    state = {node: float(known[name]) for name, node in symbols.parameters.items() if name in known}
+    state |= {node: start.get(node.name, 0.0) for node in (*symbols.q, *symbols.u)} | {symbols.t: 0.0}
+    for applied in springs_of_the_start(system):
+        if applied.potential is not None and evaluate((applied.potential,), state, FLOAT)[0] > SOLVED:
+            guesses = [name for name, q in model.coordinates.items() if q.dependent and q.start is None]
+            named = f", as '{guesses[0]}' is only guessed there: give it a start" if guesses else ""
+            return f"forces.{applied.name} is not slack where the motion starts{named}"
     return ""
 
 

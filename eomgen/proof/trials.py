@@ -30,7 +30,7 @@ from eomgen.proof.free_bodies import Demand, demand_of, moved_otherwise
 from eomgen.proof.friction_laws import other_friction, pushing_otherwise
 from eomgen.proof.in_numbers import FINER_STEP, STEP, way_through
 from eomgen.proof.joint_places import misplaced
-from eomgen.proof.kept_ties import open_at_start, rows_that_stay
+from eomgen.proof.kept_ties import open_at_start, pulled_at_start, rows_that_stay, springs_of_the_start
 from eomgen.proof.named_axes import named_otherwise
 from eomgen.proof.printed import Printed, ReadBack
 from eomgen.proof.states import States, TrialState, consistent_states, in_doubles, is_open, own_start, refuse_open
@@ -351,6 +351,13 @@ class Trials:
         if rows_that_stay(self.equations.system):
             name = "ties that keep what is at the start are closed there"
             yield self._at_states(name, "50 digits", lambda state: open_at_start(self.equations.system, state))
+
+    def slack_springs(self) -> Iterable[Check]:
+        """Springs that keep the length of the start have it there, ties closed; none where nothing is guessed."""
+        system = self.equations.system
+        if springs_of_the_start(system) and any(q.dependent for q in system.scope.model.coordinates.values()):
+            name = "springs that are slack at the start are so where the motion starts"
+            yield attempted(name, "the start that the ties complete", lambda: pulled_at_start(system))
 
     def elements(self) -> Iterable[Check]:
         """Springs, dampers and pulls act as they are declared; none where there are none."""
