@@ -148,7 +148,7 @@ def seat(now: Any, body: dict) -> tuple[Jet, Jet]:
     axes = R
     for one in turned if isinstance(turned, list) else [turned]:
         axes = matmul(axes, ty.turn(_axis(now, one), now.model.number(one["angle"])))
-    return p + matmul(R, at), axes
+    return p + matmul(axes if j["kind"] == "placed" else R, at), axes  # of what is placed `at` is the joint's own
 
 
 def pose(now: Any, body: dict) -> tuple[Jet, Jet]:

@@ -30,7 +30,7 @@ class Placed(Joint):
     """Position `at` and orientation as expressions: s = (at, angle | angles | quaternion), S as of a free body.
 
     Args:
-        at: of `point` in the parent's axes, 2 or 3 [m].
+        at: of `point` in the parent's axes, turned as `turned` says, 2 or 3 [m].
         angle: of the child about `axis` [rad]; in space `orientation` and `angles` instead.
         axis: of `angle`; None: z.
         orientation, angles, quaternion, omega: as of `spherical` (space).
