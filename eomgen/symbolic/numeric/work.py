@@ -49,7 +49,7 @@ class PatienceEnded(Exception):
     """
 
 
-LATE = 1.0  # s, after which what does not ask is stopped, or a tenth of the patience where that is less
+LATE = 1.0  # s, after which what does not ask is stopped; half of it where the patience is short
 SOON = 0.05  # s, after which what was importing is looked at again
 
 
@@ -182,7 +182,7 @@ def _watch(clock: _Clock) -> None:
 
 def _stop_late(clock: _Clock, closed: threading.Event, thread: int) -> None:
     """Throws into a thread that does not ask, again where a library swallowed it."""
-    wait = clock.seconds + min(LATE, clock.seconds / 10)
+    wait = clock.seconds + LATE * min(max(0.5, clock.seconds / 5), 1.0)
     while not closed.wait(wait):
         with clock.lock:
             importing = _imports(thread)
