@@ -15,7 +15,12 @@ def rendered(document: Document, format: str = "text") -> str:
     Raises:
         UsageError: an unknown format.
     """
+    return visible(drawn(document, format))
+
+
+def drawn(document: Document, format: str) -> str:
+    """As of `rendered`, what steers terminals in it as it is: what is read back."""
     formats: dict[str, Callable[[Document], str]] = {member.name: member.render for member in ALL}
     if format not in formats:
         raise UsageError(f"unknown format '{format}'", mend=f"one of {', '.join(formats)}")
-    return visible(formats[format](document))
+    return formats[format](document)

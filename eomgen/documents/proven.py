@@ -9,7 +9,7 @@ from functools import partial
 from random import Random
 from typing import Any
 
-from eomgen.documents import rendered
+from eomgen.documents import drawn
 from eomgen.documents.document import Document, quantities_of
 from eomgen.documents.json_read_back import json_read_back
 from eomgen.documents.quantity import Quantity
@@ -53,7 +53,7 @@ def proven_for_machines(document: Document) -> Document:
     for name, compared in _compared(quantities_of(entries).items(), document.parameters):
         tally.add(name, compared)
     bare = {name: x for name, x in entries.items() if name != "certificate"}
-    page = rendered(replace(document, certificate=None, entries=lambda: bare), "json")
+    page = drawn(replace(document, certificate=None, entries=lambda: bare), "json")
     certificate = _joined(document.certificate, (*tally.checks(), *json_read_back(document, bare, page)))
     found = {**entries, "certificate": certificate.as_dict()}
     return replace(document, certificate=certificate, entries=lambda: found)
@@ -66,7 +66,7 @@ def proven_as(document: Document, form: str) -> Document:
     if document.certificate is None:
         return document
     bare = replace(document, certificate=None)
-    page = rendered(bare, form)
+    page = drawn(bare, form)
     more = text_read_back(bare, page) if form == "text" else page_read_back(bare, page, form)
     return replace(document, certificate=_joined(document.certificate, more))
 
