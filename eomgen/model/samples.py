@@ -86,12 +86,18 @@ def laws_through_samples(parts: Any) -> Iterator[tuple[DocumentPath, Sampled, De
             yield path, law, law.declared
 
 
+def given_samples(model: Any) -> Iterator[tuple[DocumentPath, Sampled, DeclaredSamples]]:
+    """The same of what a model gives as a function of time."""
+    tables = ("coordinates", "inputs", "constraints")
+    yield from laws_through_samples(
+        (leaf.path, leaf.value) for table in tables for leaf in leaves_of_table(model, table)
+    )
+
+
 def left_tables(model: Any, end: float) -> tuple[Problem, ...]:
     """Functions through samples that a run from 0 goes beyond: there a cubic goes straight on, hardly meant."""
-    tables = ("coordinates", "inputs", "constraints")
-    leaves = ((leaf.path, leaf.value) for table in tables for leaf in leaves_of_table(model, table))
     found = []
-    for path, _, given in laws_through_samples(leaves):
+    for path, _, given in given_samples(model):
         first, last = float(given.times[0]), float(given.times[-1])
         if given.way in SMOOTH and not given.ends_given and (first > 0 or last < end):
             what = f"samples from {first:g} to {last:g} s in a run from 0 to {end:g} s: beyond them it goes on straight"

@@ -142,18 +142,28 @@ def moved_otherwise(
     known = known | dict.fromkeys(free.symbols.lam, fifty_digits().number(0))
     needed, J = _demand(free, known), rows_where_closed(free.ties, known)
     held = np.vstack([J, *_unit_lengths(free, known)])
-    a = np.abs([float(known[x]) for x in free.scope.symbols.a])
+    turning = (float(known[x]) ** 2 for x in free.scope.symbols.u)  # what the rate of J brings is of the size J u^2
+    a = np.abs([float(known[x]) for x in free.scope.symbols.a]) + np.fromiter(turning, float)
     for row, line in zip(free.ties.closing, J, strict=True):
         if abs(needed.rates[row.tie, row.number]) > COMPUTED * (1 + abs(line) @ a):
             return f"row {row.number} of '{row.tie}' is torn open"
     own = [float(x) for x in friction] or [0.0] * len(needed.forces)
     forces = np.array([float(x) - y for x, y in zip(needed.forces, own, strict=True)])
     sizes = np.array([float(x) + abs(y) for x, y in zip(needed.sizes, own, strict=True)])
-    for z in _allowed(held, regular).T:
+    allowed = _allowed(held, regular)
+    if free is not system and allowed.shape[1] > _own_motions(system, state, regular):
+        raise NoValue("in a singular position, where more may move than elsewhere")
+    for z in allowed.T:
         if abs(z @ forces) > abs(z) @ (COMPUTED * sizes + ZERO_AT_50):
             most = free.scope.symbols.u[int(np.argmax(abs(z) * sizes))]
             return f"the bodies are not in balance along {most.name}"
     return ""
+
+
+def _own_motions(system: System, state: State, regular: float) -> int:
+    """How many motions of its own a system has at a state, dependent coordinates eliminated."""
+    n, J = len(system.scope.symbols.u), rows_where_closed(system.ties, state)
+    return _allowed(J, regular).shape[1] if len(J) else n
 
 
 def _unit_lengths(free: System, state: State) -> list[np.ndarray]:

@@ -12,6 +12,7 @@ from eomgen.mechanics.bodies.kinematics import Motion
 from eomgen.mechanics.bodies.loads import in_ground_axes
 from eomgen.mechanics.equations.system import System
 from eomgen.model.forces.load import Couple, PointForce
+from eomgen.model.samples import given_samples
 from eomgen.records import dataclass
 from eomgen.symbolic.expression.graph import Scalar
 from eomgen.symbolic.expression.node import State
@@ -31,6 +32,7 @@ from eomgen.symbolic.expression.spatial import (
 from eomgen.symbolic.numeric.evaluation import NoValue, evaluate, fifty_digits
 from eomgen.symbolic.numeric.tolerances import ZERO_AT_50
 
+SAMPLES = "times of samples"
 STEP = fifty_digits().number(1) / 10**15  # of a central difference, whose error is its square
 FINER_STEP = STEP / 10**4  # where the way bends sharply
 SECOND_STEP = fifty_digits().number(1) / 10**12  # [s] of first and second differences: both are sure to 20 digits
@@ -131,22 +133,38 @@ def pushed_otherwise(found: Pushes, due: Pushes, size: Any) -> str:
 
 @dataclass(frozen=True)
 class Way:
-    """The states of a motion a step h before an instant, at it, and a step after."""
+    """The states of a motion a step h before an instant, at it, and a step after.
 
-    states: tuple[State, State, State]
+    Args:
+        side: 1 or -1: at it, and one, two and three steps after or before, where what is given bends at the instant.
+    """
+
+    states: tuple[State, ...]
     h: Any
+    side: int = 0
 
     @property
     def now(self) -> State:
-        return self.states[1]
+        return self.states[0 if self.side else 1]
 
     def along(self, scalars: Sequence[Scalar]) -> tuple[list[Any], list[Any], list[Any]]:
         """(values, rates, second rates), these of a way to second order."""
+        if self.side:
+            return self._beside(scalars)
         early, now, late = (evaluate(tuple(scalars), state, fifty_digits()) for state in self.states)
         second = [(a - 2 * x + b) / self.h**2 for a, x, b in zip(early, now, late, strict=True)]
         return now, [(b - a) / (2 * self.h) for a, b in zip(early, late, strict=True)], second
 
+    def _beside(self, scalars: Sequence[Scalar]) -> tuple[list[Any], list[Any], list[Any]]:
+        """The same to second order by values on one side: (-3 f0 + 4 f1 - f2)/2h, (2 f0 - 5 f1 + 4 f2 - f3)/h^2."""
+        found = [evaluate(tuple(scalars), state, fifty_digits()) for state in self.states]
+        rates = [self.side * (4 * b - 3 * a - c) / (2 * self.h) for a, b, c, _ in zip(*found, strict=True)]
+        second = [(2 * a - 5 * b + 4 * c - d) / self.h**2 for a, b, c, d in zip(*found, strict=True)]
+        return found[0], rates, second
+
     def rates(self, scalars: Sequence[Scalar]) -> list[Any]:
+        if self.side:
+            return self._beside(scalars)[1]
         early, late = (evaluate(tuple(scalars), state, fifty_digits()) for state in self.states[::2])
         return [(b - a) / (2 * self.h) for a, b in zip(early, late, strict=True)]
 
@@ -162,4 +180,17 @@ def way_through(system: System, state: State, h: Any = STEP, *, order: int = 1) 
         moved |= {u: state[u] + t * state[a] for u, a in zip(symbols.u, symbols.a, strict=True) if a in state}
         return {**state, **moved, symbols.t: state[symbols.t] + t}
 
+    if side := _side(system, state):
+        return Way(tuple(later(side * k * h) for k in range(4)), h, side)
     return Way((later(-h), state, later(h)), h)
+
+
+def _side(system: System, state: State) -> int:
+    """On which side of an instant a motion is differentiated: inside the samples of what is given at one of them; else 0."""
+    t = state.get(system.symbols.t, 0)
+    if SAMPLES not in system.found:
+        system.found[SAMPLES] = {given.times for _, _, given in given_samples(system.scope.model)}
+    knots = system.found[SAMPLES]
+    if not any(abs(x - t) < ZERO_AT_50 for times in knots for x in map(fifty_digits().number, times)):
+        return 0
+    return -1 if any(abs(fifty_digits().number(times[-1]) - t) < ZERO_AT_50 for times in knots) else 1

@@ -26,6 +26,7 @@ from eomgen.symbolic.numeric.tolerances import COMPUTED, NINE_DIGITS
 
 NAME, HOW = "what is told of the run is what it went through", "states by their names, texts read back"
 ROWS = 3  # of a file or table that are looked at: its first, middle and last
+FINE = 50  # instants that show how a coordinate goes between them
 _HEAD = re.compile(r"(?P<name>.*?)(?: \[(?P<unit>[^\]]*)\])?")
 
 
@@ -63,7 +64,7 @@ class _RunTold:
             tally.add(head, partial(self._ends, head, texts))
         tally.add("the columns told", self._complete)
         for name in self.run.coordinates:
-            if f"{name}'" in self.own and len(self.run.t) > ROWS:
+            if f"{name}'" in self.own and len(self.run.t) > FINE:
                 tally.add(f"{name}'", partial(self._is_rate, name))
         if self.told.table is not None:
             for k, head in enumerate(self.told.table[0]):
@@ -105,6 +106,8 @@ class _RunTold:
         """A unit that a column has by what it is."""
         if name in ("t", "energy"):
             return {"t": "s", "energy": "J"}[name]
+        if name.startswith("drive("):  # J by the unit of its coordinate, which may be inferred alone
+            return None
         if name in self.run.units:
             return self.run.units[name]
         part = self.model.coordinates.get(name.removesuffix("'")) if name in self.run.coordinates else None
