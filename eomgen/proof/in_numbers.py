@@ -186,7 +186,7 @@ def way_through(system: System, state: State, h: Any = STEP, *, order: int = 1) 
 
 
 def _side(system: System, state: State) -> int:
-    """On which side of an instant a motion is differentiated: inside the samples of what is given at one of them; else 0."""
+    """1 or -1: at a sample of what is given a motion is differentiated inside the samples; 0: elsewhere."""
     t = state.get(system.symbols.t, 0)
     if SAMPLES not in system.found:
         system.found[SAMPLES] = {given.times for _, _, given in given_samples(system.scope.model)}
