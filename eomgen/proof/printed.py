@@ -34,6 +34,7 @@ from eomgen.symbolic.numeric.evaluation import NoValue, evaluate, fifty_digits
 from eomgen.symbolic.numeric.tolerances import COMPUTED
 
 SPINS = ("omega_x", "omega_y", "omega_z")
+LAST = fifty_digits().number(1) / 10**44  # of the numbers of a state: their last digits
 SHOWN = 60  # characters of one that cannot be read
 
 
@@ -224,13 +225,20 @@ class ReadBack:
 
 
 def _unequal(pairs: Sequence[tuple[str, Scalar, Scalar]], state: State) -> str:
-    """The first pair that is not equal at a state, to nine digits, in words."""
+    """The first pair that is not equal at a state, to nine digits, in words; where a side is 0/0 it says nothing."""
     values = iter(evaluate([x for _, *sides in pairs for x in sides], state, fifty_digits()))
-    for where, _, _ in pairs:
+    for where, *sides in pairs:
         a, b = next(values), next(values)
-        if abs(a - b) > COMPUTED * (1 + abs(a) + abs(b)):
+        if abs(a - b) > COMPUTED * (1 + abs(a) + abs(b)) and all(_has_value(x, state) for x in sides):
             return f"{where}: {float(a):.10g} against {float(b):.10g}"
     return ""
+
+
+def _has_value(x: Scalar, state: State) -> bool:
+    """True if it is nearly the same with the last digits of all numbers changed: what is left of 0/0 is not."""
+    beside = {node: value * (1 + (k + 1) * LAST) for k, (node, value) in enumerate(state.items())}
+    (a,), (b,) = (evaluate((x,), each, fifty_digits()) for each in (state, beside))
+    return bool(abs(a - b) <= COMPUTED * (1 + abs(a)))
 
 
 def least_multipliers(equations: EquationsOfMotion, state: State) -> dict[Node, Any]:
