@@ -49,12 +49,12 @@ else:
 
 
 class Pickled:
-    """A function that gives what was made already: pickles carry it in place of the one that makes it."""
+    """A function that gives what was made already, of whatever: pickles carry it in place of the one that makes it."""
 
     def __init__(self, value: Any) -> None:
         self.value = value
 
-    def __call__(self) -> Any:
+    def __call__(self, *_: Any) -> Any:
         return self.value
 
 
