@@ -287,7 +287,7 @@ def test_a_run_that_is_cut_ends_the_sweep_and_is_no_row(status, code, spring, tm
 
     def cut(self, *given):
         made.append(given)
-        return replace(whole(self, *given), status=status if len(made) == 5 else "finished")
+        return replace(whole(self, *given), ended=status if len(made) == 5 else "finished")
 
     with monkeypatch.context() as disturbed:
         disturbed.setattr(SweepKernel, "motion", cut)
