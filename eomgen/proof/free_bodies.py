@@ -15,15 +15,17 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
 from functools import cached_property
+from random import Random
 from typing import Any
 
 import numpy as np
 
+from eomgen.errors import DerivationError, MissingValues, ModelError
 from eomgen.mechanics.bodies.armature import armature_bias, armature_mass
 from eomgen.mechanics.bodies.inertia import mass_properties
 from eomgen.mechanics.bodies.kinematics import BodyLink
 from eomgen.mechanics.bodies.loads import body_wrench, weights
-from eomgen.mechanics.constraints.closure import rows_where_closed
+from eomgen.mechanics.constraints.closure import generic_state, rows_where_closed
 from eomgen.mechanics.equations.system import System
 from eomgen.mechanics.equations.work import joint_forces, placeless_forces
 from eomgen.mechanics.formulations.lagrange import free_rates
@@ -51,6 +53,8 @@ from eomgen.symbolic.numeric.evaluation import NoValue, evaluate, fifty_digits
 from eomgen.symbolic.numeric.tolerances import COMPUTED, NEARLY_SINGULAR, RANK, SUMMED, ZERO_AT_50
 
 PARTS = 18  # numbers of a joint: E^T, r, r', s
+
+ELSEWHERE = "motions at another closed state"
 
 
 @dataclass(frozen=True)
@@ -151,7 +155,7 @@ def moved_otherwise(
     forces = np.array([float(x) - y for x, y in zip(needed.forces, own, strict=True)])
     sizes = np.array([float(x) + abs(y) for x, y in zip(needed.sizes, own, strict=True)])
     allowed = _allowed(held, regular)
-    if free is not system and allowed.shape[1] > _own_motions(system, state, regular):
+    if free is not system and allowed.shape[1] > _motions_elsewhere(free, known, regular):
         raise NoValue("in a singular position, where more may move than elsewhere")
     for z in allowed.T:
         if abs(z @ forces) > abs(z) @ (COMPUTED * sizes + ZERO_AT_50):
@@ -160,10 +164,17 @@ def moved_otherwise(
     return ""
 
 
-def _own_motions(system: System, state: State, regular: float) -> int:
-    """How many motions of its own a system has at a state, dependent coordinates eliminated."""
-    n, J = len(system.scope.symbols.u), rows_where_closed(system.ties, state)
-    return _allowed(J, regular).shape[1] if len(J) else n
+def _motions_elsewhere(free: System, state: State, regular: float) -> float:
+    """How many motions the ties allow at another state in which they hold; without end where none is found."""
+    if ELSEWHERE not in free.found:
+        try:
+            there = state | generic_state(free.ties, Random(1))
+            held = np.vstack([rows_where_closed(free.ties, there), *_unit_lengths(free, there)])
+            free.found[ELSEWHERE] = _allowed(held, regular).shape[1]
+        except (DerivationError, MissingValues, ModelError, NoValue):
+            free.found[ELSEWHERE] = np.inf
+    found: float = free.found[ELSEWHERE]
+    return found
 
 
 def _unit_lengths(free: System, state: State) -> list[np.ndarray]:
