@@ -149,7 +149,7 @@ class _RunTold:
         """The steps of a coordinate are the means of its rate, to second order; jumps of the rate are a few."""
         q, u, h = self.own[name], self.own[f"{name}'"], np.diff(self.run.t)
         apart = np.abs(np.diff(q) - h * (u[1:] + u[:-1]) / 2)
-        allowed = h * np.abs(np.diff(u)) + h * _largest_change(u) + COMPUTED * (1 + np.max(np.abs(q), initial=0.0))
+        allowed = h * np.abs(np.diff(u)) + h * _usual_change(u) + COMPUTED * (1 + np.max(np.abs(q), initial=0.0))
         wrong = np.isfinite(apart) & (apart > allowed)
         return f"it is not the rate of {name}" if np.sum(wrong) > len(h) / 2 else ""
 
@@ -229,7 +229,7 @@ class _Unlike(Exception):
     """A unit of another dimension."""
 
 
-def _largest_change(u: np.ndarray) -> float:
+def _usual_change(u: np.ndarray) -> float:
     return float(np.nanmedian(np.abs(np.diff(u)))) if len(u) > 1 else 0.0
 
 

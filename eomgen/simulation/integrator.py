@@ -274,14 +274,8 @@ def march(
         watched: Watched = (hold, watch, lookout)
         marched = partial(CompiledSteps, f, span, x0, how=how, instants=instants, watched=watched, slope=late)
         solver = in_c(marched, "steps are taken in Python, slower")
-    if solver is not None:
-        pass
-    elif how.method == HEYOKA:
-        program, p = (f.rhs.program, f.p) if isinstance(f, RateFunction) else (None, ())
-        solver = HeyokaSteps(program, p, span, x0, tolerance=how.rtol, breakpoints=how.breakpoints)
-    else:
-        tolerances = {"rtol": how.rtol, "atol": how.atol}
-        solver = ScipySteps(how.method, f, span, x0, breakpoints=how.breakpoints, slope=late, **tolerances)
+    if solver is None:
+        solver = _stepped_outside(f, span, x0, how, late)
     pace = Pace(f, how.method, start, end, how.most_steps)
     try:
         status, message, steps, crossing = _stepped(f, solver, rows, _Watches(watch, lookout), how, pace)
@@ -301,6 +295,17 @@ def march(
     message = " ".join(part for part in (message or reached_words(end), instead, solver.words, hold.remark) if part)
     times, states = np.concatenate(rows.t), np.concatenate(rows.x)
     return Run(times, states, t, x, status, message, steps, solver.nfev, crossing, (rows.track,))
+
+
+def _stepped_outside(
+    f: StateRate, span: tuple[float, float], x0: np.ndarray, how: Stepping, slope: LateSlope
+) -> HeyokaSteps | ScipySteps:
+    """The steps of another program: heyoka's where it is asked for, else scipy's."""
+    if how.method == HEYOKA:
+        program, p = (f.rhs.program, f.p) if isinstance(f, RateFunction) else (None, ())
+        return HeyokaSteps(program, p, span, x0, tolerance=how.rtol, breakpoints=how.breakpoints)
+    tolerances = {"rtol": how.rtol, "atol": how.atol}
+    return ScipySteps(how.method, f, span, x0, breakpoints=how.breakpoints, slope=slope, **tolerances)
 
 
 def _possible(how: Stepping, f: StateRate) -> tuple[Stepping, str]:
