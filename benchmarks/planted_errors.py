@@ -44,6 +44,7 @@ from typing import Any
 ROOT = Path(__file__).resolve().parent.parent
 LIST = Path(__file__).with_suffix(".toml")
 CACHE = ".cache"
+CODE = ""  # a folder of compiled code that runs share; "": each has its own
 VERDICTS = (0, 5)  # exit codes of `verify`: neither says that something is wrong with what it tells
 PATIENCE = 180  # s of one run of a verb; what takes longer counts as refused
 TEST_PATIENCE = 900  # s of the tests of one room
@@ -99,6 +100,10 @@ class Planted:
             raise ValueError(self.gone)
         source = (ROOT / "eomgen" / self.file).read_text(encoding="utf-8")
         return source.replace(self.old, self.new)
+
+    def put_in(self) -> None:
+        """This process has the error."""
+        plant(self)
 
 
 @dataclass(frozen=True)
@@ -197,10 +202,10 @@ def words_of(run: str, model: str, folder: str) -> list[str]:
 def _child(planted: Planted | None, run: str, model: str, pipe: multiprocessing.connection.Connection) -> None:
     """In a process of its own: the verb, with the error."""
     if planted is not None:
-        plant(planted)
+        planted.put_in()
     out, err = io.StringIO(), io.StringIO()
     with tempfile.TemporaryDirectory() as folder, contextlib.redirect_stdout(out), contextlib.redirect_stderr(err):
-        os.environ["XDG_CACHE_HOME"] = os.path.join(folder, CACHE)  # no code of another patch
+        os.environ["XDG_CACHE_HOME"] = CODE or os.path.join(folder, CACHE)  # no code of another patch
         code = 0
         for each in run.split(" then "):
             out.truncate(out.seek(0))

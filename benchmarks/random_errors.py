@@ -1,8 +1,8 @@
 """Errors that nobody chose: one operator, sign, number or comparison of the package is changed; who sees it?
 
 Where `planted_errors.toml` is a list made by hand, here the places are drawn by lot from the functions that a run
-really calls: from every room in turn, so that what a person reads is tried as often as what is computed. Each error is
-put into a copy of the module in memory, and up to three runs that call the function are made again:
+really calls: from every room in turn, so that what a person reads is tried as often as what is computed. The package is
+imported once; a run is a fork of it in which the function has other code, and up to three that call it are made again:
 
     product     the verb says so: exit code other than 0
     tests       by --tests: the quick tests fail
@@ -14,19 +14,31 @@ Totals stand apart for equations and numbers, and for what a person reads (READ)
 The share is of those that do something.
 
     python benchmarks/random_errors.py 200 --seed 1 [-v] [--rooms mechanics,model] [--tests] [--evenly no]
+
+--traced FILE keeps there which functions each run calls: the next draw begins at once. Delete it where some are new.
 """
 
 from __future__ import annotations
 
 import argparse
 import ast
+import contextlib
+import cProfile
+import gc
+import importlib
 import json
 import multiprocessing
+import os
+import pkgutil
 import random
 import sys
+import tempfile
 from collections import Counter, defaultdict
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 from dataclasses import dataclass
+from functools import cache
+from pathlib import Path
+from types import CodeType, FunctionType
 from typing import Any
 
 import planted_errors as planted
@@ -101,14 +113,18 @@ class _Drawn(planted.Planted):
         assert self.place is not None
         return self.place.patched()
 
+    def put_in(self) -> None:
+        assert self.place is not None
+        exchange(self.place)
+
 
 OTHER = {ast.Add: "-", ast.Sub: "+", ast.Mult: "/", ast.Div: "*"}
 SIGNS = {"-": "+", "+": "-", "*": "/", "/": "*"}
 TURNED = {ast.Lt: ">=", ast.Gt: "<=", ast.LtE: ">", ast.GtE: "<", ast.Eq: "!=", ast.NotEq: "=="}
 
 
-def places(file: str, functions: set[int]) -> Iterator[Place]:
-    """What can be changed inside the functions that begin at these lines."""
+def places(file: str, called: set[str]) -> Iterator[tuple[str, Place]]:
+    """(function, what can be changed inside it) of the functions of these qualified names."""
     text = (ROOT / "eomgen" / file).read_bytes()
     starts = [0]
     for line in text.splitlines(keepends=True):
@@ -124,50 +140,97 @@ def places(file: str, functions: set[int]) -> Iterator[Place]:
         if at >= 0 and text[a:b].count(old.encode()) == 1:
             yield Place(file, line, a + at, a + at + len(old), new, what)
 
-    for function in ast.walk(ast.parse(text)):
-        if not isinstance(function, ast.FunctionDef):
-            continue
-        first = min([function.lineno, *(d.lineno for d in function.decorator_list)])
-        if first not in functions:
-            continue
-        for node in (x for statement in function.body for x in ast.walk(statement)):
-            if isinstance(node, ast.BinOp) and type(node.op) in OTHER:
-                new = OTHER[type(node.op)]
-                yield from between(node.left, node.right, SIGNS[new], new, node.lineno, f"{SIGNS[new]} becomes {new}")
-            elif isinstance(node, ast.UnaryOp) and isinstance(node.op, ast.USub):
-                a, _ = span(node)
-                yield Place(file, node.lineno, a, a + 1, "+", "a minus is lost")
-            elif isinstance(node, ast.Constant) and type(node.value) is int and node.value in range(10):
-                a, b = span(node)
-                yield Place(file, node.lineno, a, b, str(node.value + 1), f"{node.value} becomes {node.value + 1}")
-            elif isinstance(node, ast.Compare) and len(node.ops) == 1 and type(node.ops[0]) in TURNED:
-                old = {ast.Lt: "<", ast.Gt: ">", ast.LtE: "<=", ast.GtE: ">=", ast.Eq: "==", ast.NotEq: "!="}
-                word = old[type(node.ops[0])]
-                new = TURNED[type(node.ops[0])]
-                yield from between(node.left, node.comparators[0], word, new, node.lineno, f"{word} becomes {new}")
+    def changes(node: ast.AST) -> Iterator[Place]:
+        if isinstance(node, ast.BinOp) and type(node.op) in OTHER:
+            new = OTHER[type(node.op)]
+            yield from between(node.left, node.right, SIGNS[new], new, node.lineno, f"{SIGNS[new]} becomes {new}")
+        elif isinstance(node, ast.UnaryOp) and isinstance(node.op, ast.USub):
+            a, _ = span(node)
+            yield Place(file, node.lineno, a, a + 1, "+", "a minus is lost")
+        elif isinstance(node, ast.Constant) and type(node.value) is int and node.value in range(10):
+            a, b = span(node)
+            yield Place(file, node.lineno, a, b, str(node.value + 1), f"{node.value} becomes {node.value + 1}")
+        elif isinstance(node, ast.Compare) and len(node.ops) == 1 and type(node.ops[0]) in TURNED:
+            old = {ast.Lt: "<", ast.Gt: ">", ast.LtE: "<=", ast.GtE: ">=", ast.Eq: "==", ast.NotEq: "!="}
+            word = old[type(node.ops[0])]
+            new = TURNED[type(node.ops[0])]
+            yield from between(node.left, node.comparators[0], word, new, node.lineno, f"{word} becomes {new}")
+
+    for name, node in _nodes(ast.parse(text)):
+        if name in called:
+            yield from ((name, place) for place in changes(node))
+
+
+def _nodes(tree: ast.AST, within: str = "") -> Iterator[tuple[str, ast.AST]]:
+    """(qualified name of the function, a node inside it), functions inside functions as part of them."""
+    for child in ast.iter_child_nodes(tree):
+        name = within + getattr(child, "name", "")
+        if isinstance(child, ast.FunctionDef):
+            yield from ((name, node) for statement in child.body for node in ast.walk(statement))
+        else:
+            yield from _nodes(child, f"{name}." if isinstance(child, ast.ClassDef) else within)
+
+
+Function = tuple[str, str]  # (file, qualified name)
+
+
+def warm() -> None:
+    """Import the whole package: an error then is other code of a function that is there."""
+    planted.warm()
+    import eomgen
+
+    for module in pkgutil.walk_packages(eomgen.__path__, "eomgen."):
+        if not module.name.endswith("__main__"):
+            with contextlib.suppress(ImportError):
+                importlib.import_module(module.name)
+    functions()
+
+
+@cache
+def functions() -> dict[str, list[FunctionType]]:
+    """The functions of every file that is loaded."""
+    found: dict[str, list[FunctionType]] = defaultdict(list)
+    for each in gc.get_objects():
+        if type(each) is FunctionType:
+            found[each.__code__.co_filename].append(each)
+    return found
+
+
+def exchange(place: Place) -> None:
+    """Every function of the module that a place changes gets its changed code."""
+    path = str(ROOT / "eomgen" / place.file)
+    new = {(code.co_qualname, code.co_firstlineno): code for code in _codes(compile(place.patched(), path, "exec"))}
+    for function in functions()[path]:
+        if other := new.get((function.__code__.co_qualname, function.__code__.co_firstlineno)):
+            function.__code__ = other
+
+
+def _codes(code: CodeType) -> Iterator[CodeType]:
+    yield code
+    for inner in code.co_consts:
+        if isinstance(inner, CodeType):
+            yield from _codes(inner)
 
 
 def _traced(run: str, pipe: Any) -> None:
-    """In a process of its own: which functions of the package a run calls, by file and first line."""
-    seen: set[tuple[str, int]] = set()
-    home = str(ROOT / "eomgen") + "/"
-
-    def look(frame: Any, event: str, _: Any) -> None:  # None: its lines are not told
-        if event == "call" and frame.f_code.co_filename.startswith(home):
-            seen.add((frame.f_code.co_filename[len(home) :], frame.f_code.co_firstlineno))
+    """In a process of its own: which functions of the package a run calls."""
+    home, profiler = str(ROOT / "eomgen") + "/", cProfile.Profile(builtins=False)
 
     class Kept:
         def send(self, found: Any) -> None:
             self.found = found
 
     kept = Kept()
-    sys.settrace(look)
+    profiler.enable()
     planted._child(None, run, "", kept)  # type: ignore[arg-type]
-    sys.settrace(None)
-    pipe.send((kept.found, seen))
+    profiler.disable()
+    codes = (entry.code for entry in profiler.getstats())
+    seen = {(x.co_filename[len(home) :], x.co_qualname) for x in codes if x.co_filename.startswith(home)}
+    pipe.send((kept.found.code, kept.found.why, seen))
 
 
-def traced(run: str) -> tuple[planted.Outcome, set[tuple[str, int]]]:
+def traced(run: str) -> tuple[int, str, set[Function]]:
+    """(exit code, why it is not 0, which functions a run calls)."""
     context = multiprocessing.get_context("fork")
     here, there = context.Pipe(duplex=False)
     child = context.Process(target=_traced, args=(run, there))
@@ -175,6 +238,26 @@ def traced(run: str) -> tuple[planted.Outcome, set[tuple[str, int]]]:
     found = here.recv()
     child.join()
     return found  # type: ignore[no-any-return]
+
+
+def all_traced(runs: Iterable[str], kept: str) -> dict[str, set[Function]]:
+    """{run: the functions that it calls}, of runs that end well; by the file, where it is given and knows them."""
+    known = json.loads(Path(kept).read_text()) if kept and Path(kept).exists() else {}
+    for run in runs:
+        if run not in known:
+            code, why, functions = traced(run)
+            if code not in planted.VERDICTS:
+                print(f"left out: {run}: exit {code} {why}", flush=True)
+            known[run] = sorted(functions) if code in planted.VERDICTS else []
+            if kept:
+                Path(kept).write_text(json.dumps(known))
+    return {run: {(file, name) for file, name in known[run]} for run in runs}
+
+
+@cache
+def as_it_is(run: str) -> planted.Outcome:
+    """What a run says without an error."""
+    return planted.outcome(None, run)
 
 
 def difference(found: str, right: str) -> str:
@@ -209,41 +292,49 @@ def main() -> int:
     parser.add_argument("--evenly", choices=("yes", "no"), default="yes", help="from every room as many")
     parser.add_argument("--tests", action="store_true", help="run the quick tests on what the product did not see")
     parser.add_argument("--runs", type=int, help="so many of the runs alone, drawn by the seed")
+    parser.add_argument("--of", default="", help="the runs alone in which one of these words stands")
+    parser.add_argument("--traced", default="", help="a file that keeps which functions each run calls")
     parser.add_argument("-v", "--verbose", action="store_true")
     options = parser.parse_args()
-    planted.warm()
+    os.environ["EOMGEN_FRESH"] = "1"
+    warm()
     rng = random.Random(options.seed)
     runs = [run.strip() for run in RUNS.replace("\n", ";").split(";") if run.strip()]
     runs = [run if run.startswith("export") else patient(run) for run in runs]
+    words = [word for word in options.of.split(",") if word]
+    runs = [run for run in runs if any(word in run for word in words)] if words else runs
     runs = random.Random(options.seed).sample(runs, options.runs) if options.runs else runs
-    right: dict[str, planted.Outcome] = {}
-    called: dict[tuple[str, int], list[str]] = defaultdict(list)
-    for run in runs:
-        right[run], functions = traced(run)
-        if right[run].code not in planted.VERDICTS:
-            print(f"left out: {run}: exit {right[run].code} {right[run].why}", flush=True)
-            continue
-        for function in functions:
-            called[function].append(run)
-    by_file: dict[str, set[int]] = defaultdict(set)
+    with tempfile.TemporaryDirectory() as planted.CODE:
+        called: dict[Function, list[str]] = defaultdict(list)
+        for run, mine in all_traced(runs, options.traced).items():
+            for function in sorted(mine):
+                called[function].append(run)
+        rows = counted(called, rng, options)
+    print(f"seed {options.seed}\n{table(rows)}")
+    return 0
+
+
+def counted(
+    called: dict[Function, list[str]], rng: random.Random, options: argparse.Namespace
+) -> Counter[tuple[str, str]]:
+    """{(room, who saw it): how many} of what is drawn."""
+    by_file: dict[str, set[str]] = defaultdict(set)
     rooms = set(filter(None, options.rooms.split(",")))
-    for file, line in called:
+    for file, function in called:
         room = room_of(file)
         if room in rooms or (not rooms and room not in LEFT_OUT and not any(word in file for word in APART)):
-            by_file[file].add(line)
+            by_file[file].add(function)
     every = [
-        (place, called[file, line])
-        for file, lines in sorted(by_file.items())
-        for line in sorted(lines)
-        for place in places(file, {line})
+        (place, called[file, function])
+        for file, functions in sorted(by_file.items())
+        for function, place in places(file, functions)
     ]
-    print(f"{len(every)} places in {len(by_file)} files, {len(right)} runs", flush=True)
+    print(f"{len(every)} places in {len(by_file)} files", flush=True)
     rows: Counter[tuple[str, str]] = Counter()
     for place, mine in drawn(every, options.number, rng, evenly=options.evenly == "yes"):
         seen = "no effect"
         for run in rng.sample(mine, min(3, len(mine))):
-            wrong = planted.outcome(place.planted(), run)
-            seen, said = judged(wrong, right[run], seen)
+            seen, said = judged(planted.outcome(place.planted(), run), as_it_is(run), seen)
             if seen == "open" and options.tests and planted.seen_by_tests(place.planted()):
                 seen = "tests"
             if seen != "no effect" and (options.verbose or seen == "open"):
@@ -251,8 +342,7 @@ def main() -> int:
             if seen not in ("harmless", "no effect"):
                 break
         rows[room_of(place.file), seen] += 1
-    print(f"seed {options.seed}\n{table(rows)}")
-    return 0
+    return rows
 
 
 def patient(run: str) -> str:
