@@ -35,7 +35,7 @@ def outputs_of_state(system: System) -> AskedOutputs:
         why = _of_an_instant(output)
         if not why:
             try:
-                scalar = output.value.evaluate(system.scope.names, quantities.value)
+                scalar = quantities.of(output.value)
                 why = "it holds a multiplier or an unknown load" if depends_on(scalar, unknown) else ""
             except (DerivationError, ExpressionError, MissingValues) as error:
                 why = error.what

@@ -16,6 +16,7 @@ import numpy as np
 from eomgen.codegen.program import right_hand_side
 from eomgen.codegen.rhs import RightHandSide, compiled
 from eomgen.errors import DerivationError
+from eomgen.mechanics.balance.balance_solution import Indeterminate
 from eomgen.mechanics.bodies.loads import weights
 from eomgen.mechanics.constraints.closure import of_50_digits as precise
 from eomgen.mechanics.equations.accelerations import exact_accelerations
@@ -33,13 +34,13 @@ from eomgen.proof.states import TrialState
 from eomgen.proof.trials import Trials, refuse_noise
 from eomgen.records import dataclass
 from eomgen.simulation.reaction_columns import ReactionColumns
-from eomgen.symbolic.expression.derivative import depends_on
+from eomgen.symbolic.expression.derivative import depends_on, substituted
 from eomgen.symbolic.expression.expressions import Call, Expression, parse
 from eomgen.symbolic.expression.graph import Node, Scalar
 from eomgen.symbolic.expression.node import State
 from eomgen.symbolic.expression.rational import Fraction
 from eomgen.symbolic.numeric.evaluation import NoValue, evaluate, fifty_digits
-from eomgen.symbolic.numeric.tolerances import COMPUTED, ROUNDING, SAME_PLACE
+from eomgen.symbolic.numeric.tolerances import COMPUTED, RANK_NEARBY, ROUNDING, SAME_PLACE
 
 MOST = 3  # states at which all formulas are compared
 AWAY = 10  # times what nearby states make of it, by which a number may be off
@@ -90,7 +91,47 @@ class NumericState:
             found = self.reactions.get(str(call)) if FUNCTIONS[call.name].source == BALANCE else None
             return quantities.value(call) if found is None else Fraction(found)
 
-        return self.number(formula.evaluate(self.equations.system.scope.names, value))
+        try:
+            return self.number(formula.evaluate(self.equations.system.scope.names, value))
+        except Indeterminate:
+            return self._together(quantities, formula)
+
+    def _together(self, quantities: Quantities, formula: Expression) -> float:
+        """The formula by reactions of least size that hold every body in balance; what may be added to all of these
+        must leave no trace in it.
+
+        Raises:
+            NoValue: it does.
+        """
+        if quantities.reactions.balance.unknowns:
+            raise NoValue("unknown loads hold it")
+        least, added = self._balancing
+        scalar, symbols = quantities.over_components(formula), quantities.reactions.by_components[1]
+
+        def worth(components: np.ndarray) -> float:
+            numbers = dict(zip(symbols, map(Fraction, components.tolist()), strict=True))
+            return self.number(substituted((scalar,), numbers)[0])
+
+        found, size = worth(least), np.abs(least).max(initial=0.0) or 1.0
+        others = [worth(least + size * column) for column in added.T]
+        if any(abs(x - found) > COMPUTED * size for x in others):
+            raise NoValue(f"the balance of the bodies leaves '{formula.text}' open")
+        return found
+
+    @cached_property
+    def _balancing(self) -> tuple[np.ndarray, np.ndarray]:
+        """(the components of least size with which every body is in balance, what may be added: a column each)."""
+        balance, known = reactions_of(self.equations.system, short=True).balance, self.values
+        if self.equations.symbols.u:
+            known = known | self.unknowns
+        rows = [*((e.coefficients, e.needed) for e in balance.equations), *(({j: 1}, x) for j, x in balance.given.items())]
+        A, b = np.zeros((len(rows), len(balance.names))), np.zeros(len(rows))
+        for i, (row, needed) in enumerate(rows):
+            *entries, right = evaluate((*row.values(), needed), known, fifty_digits())
+            A[i, list(row)], b[i] = [float(x) for x in entries], float(right)
+        U, sizes, V = np.linalg.svd(A)
+        rank = int(np.sum(sizes > RANK_NEARBY * max(sizes, default=0.0)))
+        return V[:rank].T @ ((U[:, :rank].T @ b) / sizes[:rank]), V[rank:].T
 
     def number(self, scalar: Scalar) -> float:
         """A function of the state, of accelerations and multipliers."""

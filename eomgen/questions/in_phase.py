@@ -104,7 +104,7 @@ class PhaseEquations:
 
     def raw(self, formula: Expression) -> Scalar:
         """The formula as it stands: accelerations and multipliers are symbols."""
-        return formula.evaluate(self.system.scope.names, self._quantities.value)
+        return self._quantities.of(formula)
 
     def of_state(self, formula: Expression) -> Scalar:
         """The formula as a function of q, u and t; each function of the motion in it is readable by itself."""
@@ -112,7 +112,7 @@ class PhaseEquations:
         def value(call: Call) -> Scalar:
             return self.simple(self.eliminated(self._quantities.value(call)))
 
-        return self.eliminated(formula.evaluate(self.system.scope.names, value))
+        return self.eliminated(self._quantities.of(formula, value))
 
     def eliminated(self, scalar: Scalar) -> Scalar:
         """A scalar with accelerations and multipliers replaced by the equations of motion, unknowns by the balance."""
@@ -206,7 +206,7 @@ class PhaseEquations:
         """
         state = self.complete(state, formula, readable=readable)
         quantities = Quantities(self.system, state)
-        scalar = formula.evaluate(self.system.scope.names, quantities.value)
+        scalar = quantities.of(formula)
         (scalar,) = substituted((scalar,), state)
         (scalar,) = substituted((self._known(scalar, quantities),), state)
         symbols = self.system.symbols

@@ -17,6 +17,7 @@ import numpy as np
 from eomgen.codegen.program import program_of
 from eomgen.codegen.rhs import RightHandSide, compiled
 from eomgen.errors import DerivationError, ExpressionError, MissingValues
+from eomgen.mechanics.balance.balance_solution import Indeterminate
 from eomgen.mechanics.balance.named_reactions import NamedReaction
 from eomgen.mechanics.equations.system import System
 from eomgen.mechanics.instant.outputs import Quantities, asks_of
@@ -151,7 +152,7 @@ class _Columns:
         made = _Formulas()
         for name, formula in self.formulas.items():
             try:
-                scalar = formula.evaluate(self.system.scope.names, lambda call: self._value(call, made))
+                scalar = self._scalar(formula, made)
                 open_ = [x.name for x in self.system.symbols.unknowns.values() if depends_on(scalar, (x,))]
                 if open_:
                     made.refused[name] = f"'{open_[0]}' is known at rest alone"
@@ -160,6 +161,20 @@ class _Columns:
             except (DerivationError, ExpressionError, MissingValues) as error:
                 made.refused[name] = error.what
         return made
+
+    def _scalar(self, formula: Expression, made: _Formulas) -> Scalar:
+        """A formula, its reactions as symbols; those that have a single value only together, as one.
+
+        Raises:
+            DerivationError: it has no meaning, or no single value at any state.
+        """
+        try:
+            return formula.evaluate(self.system.scope.names, lambda call: self._value(call, made))
+        except Indeterminate:
+            found = self._balance.together(Quantities(self.system, balance=self._balance).over_components(formula))
+            if found is None:
+                raise
+            return self._asked(found[0], 0, formula.text, made) + found[1]
 
     def _value(self, call: Call, made: _Formulas) -> Scalar:
         """One function; a reaction as a symbol, or as a function of its components where it is not linear in these.

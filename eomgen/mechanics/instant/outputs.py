@@ -6,12 +6,13 @@ the symbols a, in which they are linear.
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
-from dataclasses import field
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import field, replace
 from functools import cached_property
 
 from eomgen.errors import DerivationError
 from eomgen.mechanics.balance.balance import refuse_placeless
+from eomgen.mechanics.balance.balance_solution import Indeterminate
 from eomgen.mechanics.bodies.composition import made_of
 from eomgen.mechanics.bodies.inertia import kinetic_energy, mass_properties
 from eomgen.mechanics.bodies.system_scene import SystemScene
@@ -73,6 +74,29 @@ class Quantities:
         if call.name not in FUNCTIONS:
             raise DerivationError(f"'{call}': there is no function '{call.name}'")
         return FUNCTIONS[call.name].value(self, call)
+
+    def of(self, formula: Expression, value: Callable[[Call], Scalar] | None = None) -> Scalar:
+        """A formula, in q, u, a, t and the parameters.
+
+        Reactions that have no single value may have one together: R1 + R2 of two supports in a line.
+
+        Args:
+            value: of each function in it; None: that of `value`.
+        Raises:
+            DerivationError: something in it has no meaning here; no single value.
+        """
+        try:
+            return formula.evaluate(self.names, value or self.value)
+        except Indeterminate:
+            found = self.reactions.together(self.over_components(formula))
+            if found is None:
+                raise
+            return self.reactions.combined(found[0], formula.text) + found[1]
+
+    def over_components(self, formula: Expression) -> Scalar:
+        """The same over the components of the balance, as symbols."""
+        by_components, _ = self.reactions.by_components
+        return formula.evaluate(self.names, replace(self, balance=by_components).value)
 
     # -- places, and how they change ---------------------------------------------------------------
 

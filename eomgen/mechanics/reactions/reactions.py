@@ -24,7 +24,7 @@ from eomgen.mechanics.initial_state.values_at_rest import values_where_at_rest
 from eomgen.mechanics.reactions.unheld import refuse_unheld
 from eomgen.model.driven import driving_ties
 from eomgen.records import dataclass
-from eomgen.symbolic.expression.derivative import substituted
+from eomgen.symbolic.expression.derivative import depends_on, derivative, substituted
 from eomgen.symbolic.expression.functions import sqrt
 from eomgen.symbolic.expression.graph import Node, Scalar, is_zero
 from eomgen.symbolic.expression.spatial import ZERO, Matrix, Vector, apply, plus, product, times, transposed, vector_of
@@ -61,6 +61,18 @@ class Reactions:
         symbols = tuple(graph.symbol(f"component {j} of the balance") for j in range(len(names)))
         constants: dict[int, Scalar] = dict(enumerate(symbols))
         return replace(self, solution=Solution(constants, {j: {} for j in constants}, (), ())), symbols
+
+    def together(self, scalar: Scalar) -> tuple[Combination, Scalar] | None:
+        """({component: factor}, the rest) of a scalar over the symbols of `by_components`; None: it is not linear in
+        what has no single value."""
+        symbols = self.by_components[1]
+        known = {symbols[j]: x for j, x in self.solution.constants.items() if self.solution.determined(j)}
+        (scalar,) = substituted((scalar,), known)
+        factors = {j: derivative(scalar, x) for j, x in enumerate(symbols) if depends_on(scalar, (x,))}
+        if any(depends_on(k, symbols) for k in factors.values()):
+            return None
+        (rest,) = substituted((scalar,), dict.fromkeys(symbols, 0))
+        return factors, rest
 
     @property
     def indeterminate(self) -> tuple[Component, ...]:
