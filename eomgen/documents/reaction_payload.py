@@ -11,12 +11,14 @@ from eomgen.errors import DerivationError
 from eomgen.mechanics.balance.balance_solution import Indeterminate
 from eomgen.mechanics.balance.named_reactions import NamedReaction, named_reactions
 from eomgen.mechanics.equations.equations_of_motion import EquationsOfMotion
+from eomgen.mechanics.reactions.reactions import determinate_sums
 from eomgen.records import dataclass
 from eomgen.symbolic.expression.derivative import depends_on
 from eomgen.symbolic.expression.graph import Scalar, is_zero
 from eomgen.symbolic.expression.traversal import operations
 from eomgen.symbolic.print.text import text_size, to_text, with_definitions
 
+LONGEST_SUM = 200  # characters of a sum of reactions that is told
 LARGEST = 2_000_000  # characters of all reactions together that are written out in full
 NAMED_PART = 200  # characters of a text in which long parts have names
 
@@ -54,6 +56,21 @@ def null_space(equations: EquationsOfMotion) -> list[dict[str, str]]:
     spaces = _null_space(readings, named_reactions(readings.ways[0].balance))
     texts = iter(_texts(readings, [x for space in spaces for x in space.values()], frozenset())[1])
     return [{name: next(texts) for name in space} for space in spaces]
+
+
+def sums_of_open(equations: EquationsOfMotion) -> tuple[tuple[str, str], ...]:
+    """(text as an output asks it, unit) of sums of indeterminate reactions that have one value, as far as short."""
+    readings = readings_of(equations, Reader(positive=equations.system.scope.positive))
+    names = named_reactions(readings.ways[0].balance)
+    units, graph = {named.name: named.unit for named in names}, equations.system.scope.graph
+    found = []
+    for combination in determinate_sums(_null_space(readings, names)):
+        reader, positive = readings.reader, equations.system.scope.positive
+        terms = [readable_value(reader, k, positive) * graph.symbol(name) for name, k in combination.items()]
+        text = to_text(sum(terms, start=0))
+        if len(text) <= LONGEST_SUM:
+            found.append((text, units[next(iter(combination))]))
+    return tuple(found)
 
 
 def _value(readings: Readings, named: NamedReaction) -> Scalar | None:

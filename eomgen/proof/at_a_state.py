@@ -16,6 +16,7 @@ import numpy as np
 from eomgen.codegen.program import right_hand_side
 from eomgen.codegen.rhs import RightHandSide, compiled
 from eomgen.errors import DerivationError
+from eomgen.mechanics.balance.balance import Balance
 from eomgen.mechanics.balance.balance_solution import Indeterminate
 from eomgen.mechanics.bodies.loads import weights
 from eomgen.mechanics.constraints.closure import of_50_digits as precise
@@ -120,18 +121,8 @@ class NumericState:
 
     @cached_property
     def _balancing(self) -> tuple[np.ndarray, np.ndarray]:
-        """(the components of least size with which every body is in balance, what may be added: a column each)."""
-        balance, known = reactions_of(self.equations.system, short=True).balance, self.values
-        if self.equations.symbols.u:
-            known = known | self.unknowns
-        rows = [*((e.coefficients, e.needed) for e in balance.equations), *(({j: 1}, x) for j, x in balance.given.items())]
-        A, b = np.zeros((len(rows), len(balance.names))), np.zeros(len(rows))
-        for i, (row, needed) in enumerate(rows):
-            *entries, right = evaluate((*row.values(), needed), known, fifty_digits())
-            A[i, list(row)], b[i] = [float(x) for x in entries], float(right)
-        U, sizes, V = np.linalg.svd(A)
-        rank = int(np.sum(sizes > RANK_NEARBY * max(sizes, default=0.0)))
-        return V[:rank].T @ ((U[:, :rank].T @ b) / sizes[:rank]), V[rank:].T
+        known = self.values | (self.unknowns if self.equations.symbols.u else {})
+        return balanced_least(reactions_of(self.equations.system, short=True).balance, known)
 
     def number(self, scalar: Scalar) -> float:
         """A function of the state, of accelerations and multipliers."""
@@ -199,6 +190,22 @@ class NumericState:
         moved = ({node: x + sign * turns[node] for node, x in self.numbers.items()} for sign in (1, -1))
         first, last = (replace(self, numbers=numbers) for numbers in moved)
         return first, last
+
+
+def balanced_least(balance: Balance, known: Mapping[Node, Any]) -> tuple[np.ndarray, np.ndarray]:
+    """(the components of least size with which every body is in balance, what may be added to them: a column each).
+
+    Args:
+        known: all symbols with 50 digits, accelerations included.
+    """
+    rows = [*((e.coefficients, e.needed) for e in balance.equations), *(({j: 1}, x) for j, x in balance.given.items())]
+    A, b = np.zeros((len(rows), len(balance.names))), np.zeros(len(rows))
+    for i, (row, needed) in enumerate(rows):
+        *entries, right = evaluate((*row.values(), needed), known, fifty_digits())
+        A[i, list(row)], b[i] = [float(x) for x in entries], float(right)
+    U, sizes, V = np.linalg.svd(A)
+    rank = int(np.sum(sizes > RANK_NEARBY * max(sizes, default=0.0)))
+    return V[:rank].T @ ((U[:, :rank].T @ b) / sizes[:rank]), V[rank:].T
 
 
 def moving_states(equations: EquationsOfMotion) -> Iterator[NumericState]:

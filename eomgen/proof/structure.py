@@ -25,9 +25,10 @@ from eomgen.mechanics.statics.influence import InfluenceLine, InfluenceSpan
 from eomgen.mechanics.statics.member_axis import MemberAxis
 from eomgen.mechanics.statics.member_loads import MemberLoads, place_of
 from eomgen.mechanics.statics.section_forces import KINDS, SectionForces, SectionPiece
-from eomgen.mechanics.statics.two_ways import StaticReactions
+from eomgen.mechanics.statics.two_ways import StaticReactions, StaticSum
 from eomgen.mechanics.structures.blocks import RigidBlock, blocks_of, members_of
 from eomgen.mechanics.structures.velocity_plan import VelocityPlan
+from eomgen.proof.at_a_state import balanced_least
 from eomgen.proof.check import Check, attempted, checked, first_wrong
 from eomgen.proof.declared_work import acting_otherwise
 from eomgen.proof.named_axes import named_otherwise
@@ -59,6 +60,9 @@ def structure_checks(
     yield attempted(name, IN_NUMBERS, lambda: imbalance(found.balance, proof.state, Random(7)))
     name = "reactions that are named by x, y and z are those along the ground's axes"
     yield attempted(name, "50 digits", lambda: named_otherwise(found.balance.balance, proof.state))
+    if found.sums and not found.structure.unknowns:
+        name = "sums that are told have one value, whatever self-stress there is"
+        yield checked(name, first_wrong(map(proof.wrong_sum, found.sums)), IN_NUMBERS)
     if found.structure.system.loads.applied:
         name = "all that is applied pushes as its fields declare"
         yield attempted(name, "50 digits", lambda: acting_otherwise(found.structure.system, proof.state))
@@ -112,6 +116,22 @@ class _Proof:
 
     def numbers(self, scalars: Sequence[Scalar]) -> np.ndarray:
         return np.array([float(x) for x in evaluate(tuple(scalars), self.values, FLOAT)])
+
+    @cached_property
+    def _balancing(self) -> tuple[np.ndarray, np.ndarray]:
+        return balanced_least(self.found.balance.balance, self.state)
+
+    def wrong_sum(self, each: StaticSum) -> str:
+        """Where reactions of least size, or what may be added to them, give a sum another value."""
+        least, added = self._balancing
+        factors = np.zeros(len(least))
+        factors[list(each.combination)] = self.numbers(tuple(each.combination.values()))
+        size = np.abs(factors) @ np.abs(least) + np.abs(factors).max() * np.abs(least).max(initial=0.0)
+        off = abs(factors @ least - self.one(each.value)) > COMPUTED * size
+        names = " + ".join(self.found.structure.names[j] for j in each.combination)
+        if off or np.any(np.abs(factors @ added) > COMPUTED * np.abs(factors).sum()):
+            return f"the sum of {names}"
+        return ""
 
     def one(self, x: Scalar) -> float:
         return float(self.numbers((x,))[0])

@@ -19,7 +19,7 @@ from eomgen.documents.markdown import listing_markdown
 from eomgen.documents.proven import proven
 from eomgen.documents.quantity import Quantity
 from eomgen.documents.reaction_names import said
-from eomgen.documents.reaction_payload import null_space, reaction_formulas
+from eomgen.documents.reaction_payload import null_space, reaction_formulas, sums_of_open
 from eomgen.documents.statements import Found, Lines, Listing, Statement, prose
 from eomgen.documents.statics.result import why_not_at_rest
 from eomgen.equations import Equations
@@ -60,6 +60,8 @@ class FoundReactions(dict[str, Quantity]):
     Args:
         equations: None where unknowns in the loads hold the system.
         proof: of what stands in it.
+        sums: {"reaction_x(A) + reaction_x(B)": its value} of indeterminate ones that have one value together.
+        proof_of_sums: of these.
     """
 
     def __init__(
@@ -67,9 +69,11 @@ class FoundReactions(dict[str, Quantity]):
         found: Mapping[str, Quantity],
         equations: Equations | None,
         proof: Callable[[Mapping[str, Quantity]], Certificate],
+        sums: Mapping[str, Quantity],
+        proof_of_sums: Callable[[Mapping[str, Quantity]], Certificate],
     ) -> None:
         super().__init__(found)
-        self.equations, self._proof = equations, proof
+        self.equations, self.sums, self._proof, self._of_sums = equations, dict(sums), proof, proof_of_sums
 
     def __repr__(self) -> str:
         return f"<reactions: {', '.join(self)}>"
@@ -80,7 +84,10 @@ class FoundReactions(dict[str, Quantity]):
 
     def certify(self) -> Certificate:
         """The equations; the formulas against the balance in numbers, or the numbers against the motion in numbers."""
-        return self._proof(self)
+        proof = self._proof(self)
+        if not self.sums:
+            return proof
+        return proof + (check for check in self._of_sums(self.sums).checks if check not in proof.checks)
 
 
 @doing("the reactions")
@@ -107,11 +114,16 @@ def reactions(
     equations = None if held else pipeline.derive(model, "kinetostatic")
     system = system_of(model) if equations is None else equations.system
     asked = [named for named in named_reactions(balance_of(system)) if _function(named.name) in FUNCTIONS]
+    answered = partial(_answers, _at_rest(model, from_rest), at=at, from_rest=bool(from_rest))
+    found: dict[str, Quantity]
+    proof: Callable[[Mapping[str, Quantity]], Certificate]
     if equations is not None and at is None and not from_rest:
-        return FoundReactions(_formulas(equations, asked), equations, partial(_proof_of_formulas, equations))
-    solved = _answers(_at_rest(model, from_rest), asked, at, bool(from_rest))
-    named = {each.name: replace(answer, unit=each.unit) for each, answer in zip(asked, solved.values(), strict=True)}
-    return FoundReactions(named, equations, partial(_proof_of_answers, solved))
+        found, proof = _formulas(equations, asked), partial(_proof_of_formulas, equations)
+    else:
+        found, proof = answered({named.name: named.unit for named in asked})
+    open_ = any(OPEN in (answer.message or "") for answer in found.values())
+    told = dict(sums_of_open(equations.in_print)) if open_ and equations is not None else {}
+    return FoundReactions(found, equations, proof, *(answered(told) if told else ({}, proof)))
 
 
 def reactions_document(
@@ -141,12 +153,14 @@ def reactions_document(
     space = null_space(equations.graph) if open_ and equations is not None else []
     laws = {} if equations is None else _laws_in(equations, found)
     more = {**({"laws": laws} if laws else {}), **({"null_space": space} if space else {})}
+    more |= {"sums": found.sums} if found.sums else {}
     document = plain_document(
         model,
         lambda: {"name": model.name, "reactions": found, **more},
         _listing(system, asked, found, bool(space)),
         *_law_statements(laws),
         *_open_statements(space),
+        *_sum_statements(found.sums),
         failed=f"not answered: {listed(failed)}" if failed else broken,
         notes=_without_force(system) or (() if found else ("nothing reacts: no body is held by joints or ties",)),
     )
@@ -224,15 +238,21 @@ def _proof_of_formulas(equations: Equations, found: Mapping[str, Quantity]) -> C
 
 
 def _answers(
-    model: Model, asked: list[NamedReaction], at: WrittenEquation | AtRest | str | None, from_rest: bool
-) -> answers.Answers:
-    """The answers to outputs that ask for the reactions, in their order."""
+    model: Model, asked: Mapping[str, str], at: WrittenEquation | AtRest | str | None, from_rest: bool
+) -> tuple[dict[str, Quantity], Callable[[Mapping[str, Quantity]], Certificate]]:
+    """The answers to outputs that ask for reactions, or sums of them, in their order; and their proof.
+
+    Args:
+        asked: {text: unit}.
+    """
     instant = None if at is None else _instant(model, at)
     from_ = "rest" if from_rest else "start" if isinstance(instant, WrittenEquation) else None
-    values = [parse(named.name, references=True) for named in asked]
+    values = [parse(text, references=True) for text in asked]
     outputs = {f"o{k}": Output(value=value, at=instant, from_=from_) for k, value in enumerate(values)}
     model = _checked(model, f"--at {getattr(at, 'text', at)}", outputs=Table(outputs))
-    return answers.solve(model)
+    solved = answers.solve(model)
+    pairs = zip(asked.items(), solved.values(), strict=True)
+    return {text: replace(answer, unit=unit) for (text, unit), answer in pairs}, partial(_proof_of_answers, solved)
 
 
 def _proof_of_answers(solved: answers.Answers, found: Mapping[str, Quantity]) -> Certificate:
@@ -322,6 +342,14 @@ def _open_statements(space: list[dict[str, str]]) -> Iterable[Statement]:
         yield prose("")
         yield prose(f"To these at once may be added, with any number {k}, and rigid bodies stay in balance:")
         yield Lines(tuple(f"    {name}: {_times(share, k)}" for name, share in shares.items()))
+
+
+def _sum_statements(sums: Mapping[str, Quantity]) -> Iterable[Statement]:
+    """What has one value only together."""
+    if sums:
+        yield prose("")
+        yield prose("Sums in which that leaves no trace have one value:")
+        yield Listing(tuple(Found(text, answer) for text, answer in sums.items()))
 
 
 def _times(share: str, k: str) -> str:

@@ -19,7 +19,7 @@ from eomgen.documents.statics.section_steps import (
     sections_of,
     told_sections,
 )
-from eomgen.documents.statics.steps import contacts_step, statics_derivation
+from eomgen.documents.statics.steps import contacts_step, statics_derivation, sum_name
 from eomgen.errors import UsageError
 from eomgen.mechanics.equations.system import System, system_of
 from eomgen.mechanics.equilibria.static_equations import has_freedoms, with_drives_held
@@ -115,7 +115,8 @@ class Statics(Result):
     @cached_property
     def values(self) -> dict[str, float]:
         """{reaction: its number} [N, N m], of those that have one."""
-        return self._numbers([(r.name, r.value) for r in self.found.reactions if r.value is not None])
+        sums = [(sum_name(self.found, each), each.value) for each in self.found.sums]
+        return self._numbers([(r.name, r.value) for r in self.found.reactions if r.value is not None] + sums)
 
     def _numbers(self, pairs: Sequence[tuple[str, Scalar]]) -> dict[str, float]:
         """The scalars in numbers, those whose parameters have values."""
@@ -155,6 +156,12 @@ class Statics(Result):
             "self_stresses": [
                 {structure.names[j]: to_text(x) for j, x in stress.items()} for stress in structure.stresses
             ],
+            "sums": {
+                (name := sum_name(self.found, each)): Quantity(
+                    to_text(each.value), self.values.get(name), each.unit, "equilibrium"
+                )
+                for each in self.found.sums
+            },
             "sections": section_payload(self.sections),
             "influence": None if self.influence is None else influence_payload(self.influence),
             "contacts": [{"tie": c.tie, "kind": c.kind, "margin": to_text(c.margin)} for c in self.conditions],

@@ -11,12 +11,13 @@ from eomgen.documents.statements import Cell, Formula, Grid, Law, Statement, Ste
 from eomgen.documents.statics.work_steps import virtual_work_step
 from eomgen.mechanics.reactions.reactions import Reactions
 from eomgen.mechanics.statics.rest_contacts import RestCondition
-from eomgen.mechanics.statics.two_ways import StaticReaction, StaticReactions
+from eomgen.mechanics.statics.two_ways import StaticReaction, StaticReactions, StaticSum
 from eomgen.mechanics.structures.loose_motion import motion_in_words
 from eomgen.mechanics.structures.structure import Structure
 from eomgen.model.trusses import is_node
 from eomgen.symbolic.expression.graph import Node, Scalar, is_zero
 from eomgen.symbolic.print.symbols import Symbol
+from eomgen.symbolic.print.text import to_text
 
 METHOD = "statics"
 SymbolsByName = Mapping[str, Node]
@@ -34,7 +35,7 @@ def statics_derivation(statics: StaticReactions, values: Mapping[str, float], mo
     steps = (
         data_step(statics.system),
         structure_step(statics),
-        *_open(statics, symbols),
+        *_open(statics, symbols, values),
         static_reactions_step(statics, symbols, values),
         *_works(statics, symbols),
         *agreement_step(statics),
@@ -131,7 +132,7 @@ def _law(formula: str) -> Law:
     return Law(formula, latex)
 
 
-def _open(statics: StaticReactions, symbols: SymbolsByName) -> tuple[Step, ...]:
+def _open(statics: StaticReactions, symbols: SymbolsByName, values: Mapping[str, float]) -> tuple[Step, ...]:
     """Self-stresses of an indeterminate structure, by the names of its reactions."""
     if not statics.structure.indeterminacy:
         return ()
@@ -154,7 +155,21 @@ def _open(statics: StaticReactions, symbols: SymbolsByName) -> tuple[Step, ...]:
     statements.append(
         prose(f"One tie too many for each of these is among: {', '.join(ties)}. What stays determinate is given.")
     )
+    if statics.sums:
+        rows: list[tuple[Cell, ...]] = []
+        for each in statics.sums:
+            shown = sum((k * letters[j] for j, k in each.combination.items()), start=0)
+            name = sum_name(statics, each)
+            rows.append((shown, each.value, f"{values[name]:.7g}" if name in values else "", each.unit))
+        statements.append(prose("Sums in which that leaves no trace have one value:"))
+        statements.append(narrow_grid(("sum", "exact", "value", "unit"), rows))
     return (Step("indeterminate", "Self-stresses", tuple(statements)),)
+
+
+def sum_name(statics: StaticReactions, each: StaticSum) -> str:
+    """As an output asks for it: reaction_x(A) + reaction_x(B)."""
+    graph, names = statics.system.scope.graph, statics.structure.names
+    return to_text(sum((k * graph.symbol(names[j]) for j, k in each.combination.items()), start=0))
 
 
 # -- the reactions -------------------------------------------------------------------------------------

@@ -9,6 +9,7 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from dataclasses import replace
 from functools import cached_property
+from typing import Any
 
 from eomgen.errors import DerivationError
 from eomgen.mechanics.balance.balance import Balance, balance_of
@@ -25,7 +26,7 @@ from eomgen.mechanics.reactions.unheld import refuse_unheld
 from eomgen.model.driven import driving_ties
 from eomgen.records import dataclass
 from eomgen.symbolic.expression.derivative import depends_on, derivative, substituted
-from eomgen.symbolic.expression.functions import sqrt
+from eomgen.symbolic.expression.functions import over, sqrt
 from eomgen.symbolic.expression.graph import Node, Scalar, is_zero
 from eomgen.symbolic.expression.spatial import ZERO, Matrix, Vector, apply, plus, product, times, transposed, vector_of
 from eomgen.symbolic.numeric.work import Work
@@ -292,6 +293,26 @@ class Reactions:
             Indeterminate: it has no single value; `name` says what it is.
         """
         return combined_reaction(self.balance, self.solution, combination, name)
+
+
+def determinate_sums(stresses: Sequence[Mapping[Any, Scalar]]) -> list[dict[Any, Scalar]]:
+    """Of reactions that have no single value, sums that have one: sum of k_i r_i with sum of k_i s_i = 0 for each of
+    the self-stresses s that may be added to them. One for each reaction beside one that belongs to a stress alone.
+
+    Args:
+        stresses: {reaction: share} of each.
+    """
+    names = dict.fromkeys(name for stress in stresses for name in stress)
+    alone: list[Any] = []
+    for stress in stresses:
+        own = [name for name in stress if sum(name in other for other in stresses) == 1]
+        alone.append(min(own, key=lambda name: type(stress[name]) is Node, default=None))
+    found = []
+    for name in names:
+        beside = [(stress, own) for stress, own in zip(stresses, alone, strict=True) if name in stress]
+        if name not in alone and all(own is not None for _, own in beside):
+            found.append({name: 1} | {own: over(-stress[name], stress[own]) for stress, own in beside})
+    return found
 
 
 def reactions_of(

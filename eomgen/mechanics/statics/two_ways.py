@@ -15,7 +15,7 @@ from eomgen.mechanics.balance.balance_solution import Indeterminate
 from eomgen.mechanics.balance.named_reactions import NamedReaction, name_of
 from eomgen.mechanics.constraints.freedom import counted
 from eomgen.mechanics.equations.system import System
-from eomgen.mechanics.reactions.reactions import Reactions, reactions_of
+from eomgen.mechanics.reactions.reactions import Reactions, determinate_sums, reactions_of
 from eomgen.mechanics.statics.virtual_work import (
     WorkEquation,
     asked_reactions,
@@ -32,9 +32,11 @@ from eomgen.symbolic.expression.derivative import substituted
 from eomgen.symbolic.expression.expressions import single_call
 from eomgen.symbolic.expression.graph import Node, Scalar
 from eomgen.symbolic.numeric.work import Work
+from eomgen.symbolic.print.text import text_size
 
 UNITS = {(1, 1, -2): "N", (2, 1, -2): "N*m", (0, 1, -2): "N/m"}
 """By the exponents of m, kg, s."""
+LONGEST_FACTOR = 60  # characters of a factor in a sum that is told
 
 
 @dataclass(frozen=True)
@@ -79,6 +81,21 @@ class StaticReaction:
 
 
 @dataclass(frozen=True)
+class StaticSum:
+    """A sum of indeterminate reactions that is determinate.
+
+    Args:
+        combination: {row of the structure: factor}.
+        value: by the balance of the bodies.
+        unit: that of its first.
+    """
+
+    combination: dict[int, Scalar]
+    value: Scalar
+    unit: str
+
+
+@dataclass(frozen=True)
 class StaticReactions:
     """A structure at rest.
 
@@ -104,6 +121,18 @@ class StaticReactions:
     def open(self) -> tuple[StaticReaction, ...]:
         """The reactions that are statically indeterminate."""
         return tuple(reaction for reaction in self.reactions if reaction.value is None)
+
+    @cached_property
+    def sums(self) -> tuple[StaticSum, ...]:
+        """Sums of those that have one value, as far as they are short."""
+        found = []
+        for combination in determinate_sums(self.structure.stresses):
+            factors = {j: simplest(k, Work.ANSWER, self.system.scope.positive) for j, k in combination.items()}
+            if max(map(text_size, factors.values())) <= LONGEST_FACTOR:
+                value = self.balance.combined(factors, "their sum")
+                unit = next((r.unit for r in self.reactions if r.name == self.structure.names[next(iter(factors))]), "")
+                found.append(StaticSum(factors, simplest(value, Work.ANSWER, self.system.scope.positive), unit))
+        return tuple(found)
 
     @property
     def disagreeing(self) -> tuple[StaticReaction, ...]:
