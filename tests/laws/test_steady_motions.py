@@ -170,3 +170,35 @@ def test_a_steady_motion_is_sought_along_what_velocity_ties_integrate_to():
     found = eomgen.linearize(MODELS / "rolling_disc_and_bar.toml", about="steady", coordinates=["phi"])
     assert found.as_dict()["state"]["phi"]["value"] == pytest.approx(0.2 + 3 * np.sin(0.2), rel=1e-12)
     assert found.certify().ok
+
+
+BESIDE = """
+eomgen = 1
+space = "plane"
+parameters = { m = 2, k = 500, g = 9.81, l = 0.8 }
+coordinates = { y = { start = -0.05, unit = "m" }, q = { start = START } }
+bodies.seat.joint = { kind = "prismatic", axis = [0, 1], displacement = "y", stiffness = "k" }
+bodies.seat.shape = { kind = "particle", mass = "m" }
+bodies.rod.joint = { kind = "revolute", on = "seat", angle = "q - pi/2" }
+bodies.rod.shape = { kind = "rod", mass = "m", length = "l" }
+forces.weight = { kind = "gravity", acceleration = [0, "-g"] }
+linearize.about = "start"
+"""
+
+
+def test_about_a_start_that_is_no_rest_it_is_about_the_rest_near_it_and_says_so():
+    """2 m g = -k y: 0.02848 m below -0.05 m;  K = (k, m g l/2)."""
+    found = eomgen.linearize(eomgen.loads(BESIDE.replace("START", "0.2")))
+    sag = -2 * 2 * 9.81 / 500
+    assert found.entries()["beside_start"]["y"] == {"start": -0.05, "away": pytest.approx(sag + 0.05)}
+    assert found.entries()["beside_start"]["q"]["away"] == pytest.approx(-0.2)
+    assert np.diag(found.K) == pytest.approx([500, 2 * 9.81 * 0.4])
+    text = found.render("text")
+    assert "The start is accelerated. The place of rest near it" in text and "-0.2" in text
+    assert found.certify().ok and "y = -0.07848 for -0.05 at the start" in found.derivation.notes[0]
+
+
+def test_about_a_start_far_from_rest_the_refusal_names_what_is_nearest():
+    """Nearest to q = 0.9 is q = 0, farther than NEARBY."""
+    with pytest.raises(eomgen.DerivationError, match=r"the place of rest nearest to it is not near: .*q = 0 \(-0.9\)"):
+        eomgen.linearize(eomgen.loads(BESIDE.replace("START", "0.9")))

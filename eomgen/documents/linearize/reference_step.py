@@ -23,8 +23,11 @@ def reference_step(modes: Modes) -> Step:
     rows: list[tuple[Cell, ...]] = []
     for x in shown:
         exact: Cell = reference.exact.get(x, "")
-        rows.append((x, exact, _number(float(reference.numbers[x])) if reference.valued else ""))
-    statements: list[Statement] = [prose(_words(reference)), narrow_grid(("quantity", "exact", "value"), rows)]
+        value, beside = float(reference.numbers[x]), reference.beside or {}
+        from_start = (_number(beside[x]), _number(value - beside[x])) if x in beside and reference.valued else ("", "")
+        rows.append((x, exact, _number(value) if reference.valued else "", *from_start))
+    head = ("quantity", "exact", "value", "start", "away from it")
+    statements: list[Statement] = [prose(_words(reference)), narrow_grid(head, rows)]
     if reference.family is not None:
         statements += _family(modes, reference.family)
     if reference.place is not None and reference.place.statics.held:
@@ -37,6 +40,8 @@ def reference_step(modes: Modes) -> Step:
 
 
 def _words(reference: ReferenceMotion) -> str:
+    if reference.beside is not None:
+        return f"The start is accelerated. {_near(reference)} near it, about which this is:"
     if reference.about == STEADY:
         return "The steady motion nearest to the start:"
     if reference.about != EQUILIBRIUM:
@@ -44,6 +49,10 @@ def _words(reference: ReferenceMotion) -> str:
     if reference.moving:
         return "The place of rest beside what moves steadily, nearest to the start:"
     return "The place of rest nearest to the start:"
+
+
+def _near(reference: ReferenceMotion) -> str:
+    return "The steady motion" if reference.about == STEADY else "The place of rest"
 
 
 def _family(modes: Modes, family: Family) -> list[Statement]:

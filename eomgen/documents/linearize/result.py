@@ -237,7 +237,17 @@ class Linearization(Result):
         model = self.model
         given = (*assumption_steps(self.assumptions), data_step(self.small.reference.system))
         steps = (*given, *linearization_steps(self.modes))
-        return document_of(model, METHOD, steps)
+        return replace(document_of(model, METHOD, steps), notes=self._notes)
+
+    @property
+    def _notes(self) -> tuple[str, ...]:
+        """That it is not about the start, which was asked."""
+        reference = self.small.reference
+        if reference.beside is None:
+            return ()
+        away = [(x.name, float(reference.numbers[x]), value) for x, value in reference.beside.items()]
+        told = ", ".join(f"{name} = {x:.6g} for {value:.6g} at the start" for name, x, value in away if x != value)
+        return (f"The start is accelerated: linearized about what is at rest or steady near it, {told}.",)
 
     @property
     def picture(self) -> Picture:
@@ -285,6 +295,12 @@ class Linearization(Result):
             "state": {
                 x.name: _state(reference.exact.get(x), float(reference.numbers[x]), valued=self.valued)
                 for x in (*reference.system.symbols.q, *reference.system.symbols.u)
+            },
+            "beside_start": None
+            if reference.beside is None or not self.valued
+            else {
+                x.name: {"start": value, "away": float(reference.numbers[x]) - value}
+                for x, value in reference.beside.items()
             },
             "family": self._family(reference.family),
             "coordinates": list(self.coordinates),

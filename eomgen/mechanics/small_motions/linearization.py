@@ -25,6 +25,7 @@ from eomgen.mechanics.small_motions.forms import (
 )
 from eomgen.mechanics.small_motions.reduction import LinearEquations, Reducing, unsettled
 from eomgen.mechanics.small_motions.reference import (
+    EQUILIBRIUM,
     START,
     STEADY,
     ReferenceMotion,
@@ -53,6 +54,7 @@ from eomgen.symbolic.numeric.tolerances import COMPUTED, REGULAR
 
 MOST_EXACT = 16  # speeds of equations that are written exactly
 MOST_OPERATIONS = 40_000  # of the derivatives before the reference is put in, of what is written exactly
+NEARBY = 0.5  # of a radian, metre, or of the start's own value: farther away the start means another place
 MOST_FOLLOWING = 8  # dependent coordinates or speeds that are taken out exactly
 
 
@@ -290,13 +292,7 @@ def _balanced(
             wrong = _accelerated(first, reference)
         except (NoValue, ZeroDivisionError) as error:
             raise _without_value(reference) from error
-        if wrong:
-            raise DerivationError(
-                f"the start is no steady motion: '{wrong}' is accelerated there",
-                "linearize.about",
-                'start from a steady motion, or let it be sought: about = "steady"',
-            )
-        return reference, first
+        return _near(system, first, reference, wrong, wanted) if wrong else (reference, first)
     try:
         reference = place_of_rest(system, guess)
         first = first_order_of(reference.system)
@@ -304,6 +300,35 @@ def _balanced(
         return reference, first
     except (DerivationError, NotYet) as error:
         return _other_rest(system, guess, error)
+
+
+def _near(
+    system: System, first: FirstOrder, start: ReferenceMotion, wrong: str, wanted: Sequence[str]
+) -> tuple[ReferenceMotion, FirstOrder]:
+    """The place of rest, or of a start that moves the steady motion, near a start that is none.
+
+    Raises:
+        DerivationError: the start is told, and what is nearest to it where that is far away, or not found.
+    """
+    what = f"the start is no steady motion: '{wrong}' is accelerated there"
+    symbols, number = system.symbols, {x: float(value) for x, value in start.numbers.items()}
+    at_rest = not start.moving and all(number[u] == 0 for u in symbols.u)
+    kind = "place of rest" if at_rest else "steady motion"
+    try:
+        found = place_of_rest(system, {q.name: number[q] for q in symbols.q}) if at_rest else _steady(first, start, wanted)
+        first = first_order_of(found.system)
+        if _accelerated(first, found):
+            raise DerivationError(what)
+    except (DerivationError, NotYet, NoValue, ZeroDivisionError) as error:
+        mend = f'start from a {kind}, or let it be sought: about = "{EQUILIBRIUM if at_rest else STEADY}"'
+        raise DerivationError(f"{what}, and no {kind} was found near it", "linearize.about", mend) from error
+    shown = (*found.system.symbols.q, *(() if at_rest else found.system.symbols.u))
+    away = {x: float(found.numbers[x]) - number[x] for x in shown}
+    if any(abs(d) > NEARBY * max(1.0, abs(number[x])) for x, d in away.items()):
+        values = ", ".join(f"{x.name} = {float(found.numbers[x]):.6g} ({d:+.6g})" for x, d in away.items() if d)
+        mend = f'start there, or ask about = "{EQUILIBRIUM if at_rest else STEADY}"'
+        raise DerivationError(f"{what}; the {kind} nearest to it is not near: {values}", "linearize.about", mend)
+    return replace(found, beside={x: number[x] for x in shown}), first
 
 
 def _refuse_carried(first: FirstOrder, reference: ReferenceMotion) -> None:

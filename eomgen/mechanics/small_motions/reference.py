@@ -46,6 +46,7 @@ class ReferenceMotion:
         numbers: t, q, u, inputs and parameters, with 50 digits; parameters without a value have one to try.
         place: the place of rest, where it was sought.
         family: the steady motions that one belongs to, where it was sought and they could be written.
+        beside: the start, which was asked and is none, and to which this one is near; None where none was asked.
     """
 
     system: System
@@ -54,6 +55,7 @@ class ReferenceMotion:
     numbers: Mapping[Node, Any]
     place: Equilibrium | None = None
     family: Family | None = None
+    beside: Mapping[Node, float] | None = None
 
     @cached_property
     def is_exact(self) -> bool:
