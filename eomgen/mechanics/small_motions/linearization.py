@@ -315,7 +315,9 @@ def _near(
     at_rest = not start.moving and all(number[u] == 0 for u in symbols.u)
     kind = "place of rest" if at_rest else "steady motion"
     try:
-        found = place_of_rest(system, {q.name: number[q] for q in symbols.q}) if at_rest else _steady(first, start, wanted)
+        found = (
+            place_of_rest(system, {q.name: number[q] for q in symbols.q}) if at_rest else _steady(first, start, wanted)
+        )
         first = first_order_of(found.system)
         if _accelerated(first, found):
             raise DerivationError(what)
