@@ -41,7 +41,7 @@ from eomgen.documents.statements import (
 )
 from eomgen.errors import ExpressionError
 from eomgen.proof.check import Check, checked, differing, unchecked
-from eomgen.proof.pages_read import PAGES, PageBlock, PageLine, said_by, spoken, unlike_words
+from eomgen.proof.pages_read import GREEK_LETTERS, PAGES, PageBlock, PageLine, said_by, spoken, unlike_words
 from eomgen.proof.typeset import (
     SetLetters,
     Tokens,
@@ -66,6 +66,8 @@ NAME = "the page, read back, says what was found"
 HOW = "a reader of its own, 50 digits"
 SHOWN = 60  # characters of what is told
 TRIES = 12  # random states, for one at which a formula has a value
+LETTERED = frozenset("sin cos tan arcsin arccos arctan sinh cosh tanh ln min max det".split())
+_SCALED = re.compile(r"(-?\d+(?:\.\d+)?)(?:·10(-?\d+))?")  # 5 · 10^-5
 _NUMBER = re.compile(r"-?\d+(?:\.\d+)?(?:e[-+]?\d+)?")
 
 
@@ -100,16 +102,7 @@ def page_read_back(document: Document, text: str, form: str) -> Iterator[Check]:
     """
     comparison = PageComparison(document)
     wanted = list(_wanted(document, form))
-    blocks = list(PAGES[form](text))
-    try:
-        comparison.of_all(wanted, blocks)
-        comparison.of_values()
-    except Unlike as error:
-        yield checked(NAME, str(error), HOW)
-        return
-    yield Check(NAME, "holds", HOW, f"of {len(wanted)}")
-    for why, names in comparison.left.items():
-        yield unchecked(NAME, f"{', '.join(names[:3])}{', ...' if len(names) > 3 else ''}: {why}", HOW)
+    yield from comparison.checks(wanted, list(PAGES[form](text)))
 
 
 def _wanted(document: Document, form: str) -> Iterator[Wanted]:
@@ -125,10 +118,10 @@ def _wanted(document: Document, form: str) -> Iterator[Wanted]:
         if step.title:
             yield Wanted("heading", (step.title,))
         for statement in step.statements:
-            yield from _of_statement(statement)
+            yield from wanted_of(statement)
 
 
-def _of_statement(statement: Statement) -> Iterator[Wanted]:
+def wanted_of(statement: Statement) -> Iterator[Wanted]:
     if isinstance(statement, Prose):
         if any(not isinstance(piece, str) or piece.strip() for piece in statement.pieces):
             yield Wanted("words", statement.pieces)
@@ -168,6 +161,7 @@ class PageComparison:
         left: {why: what could not be compared}.
         named: quantities that have a letter, by what stands there, and the other way round.
         read: how much was read so far.
+        laws: whether general laws stand in sentences as they are set, letter by letter.
     """
 
     document: Document
@@ -175,6 +169,7 @@ class PageComparison:
     left: dict[str, list[str]] = field(default_factory=dict)
     named: dict[Any, Any] = field(default_factory=dict)
     read: int = 0
+    laws: bool = True
 
     @cached_property
     def notation(self) -> Notation:
@@ -189,6 +184,24 @@ class PageComparison:
         if letters.alike:
             raise Unlike(f"nobody can tell apart {letters.alike[0]}")
         return letters
+
+    @cached_property
+    def leaning_letters(self) -> SetLetters:
+        """The same where nobody says which letters stand upright."""
+        bare = {name: " ".join(_leaning(tokens_of(tex))) for name, tex in self.letters.bare.items()}
+        return SetLetters(bare, self.letters.names)
+
+    def checks(self, wanted: Sequence[Wanted], blocks: Sequence[PageBlock]) -> Iterator[Check]:
+        """Whether each thing on the page is what is to stand there, and what could not be read."""
+        try:
+            self.of_all(wanted, blocks)
+            self.of_values()
+        except Unlike as error:
+            yield checked(NAME, str(error), HOW)
+            return
+        yield Check(NAME, "holds", HOW, f"of {len(wanted)}")
+        for why, names in self.left.items():
+            yield unchecked(NAME, f"{', '.join(names[:3])}{', ...' if len(names) > 3 else ''}: {why}", HOW)
 
     def of_all(self, wanted: Sequence[Wanted], blocks: Sequence[PageBlock]) -> None:
         """Each thing on the page against what is to stand there.
@@ -230,6 +243,9 @@ class PageComparison:
             self._pieces((cell,), line, where)
         elif _NUMBER.fullmatch(cell) and len(line) == 1 and line[0].tex:
             self._number(line[0].tex, float(cell), where)
+        elif _NUMBER.fullmatch(cell) and (said := _SCALED.fullmatch("".join(part.character for part in line))):
+            if wrong := differing(float(f"{said[1]}e{said[2] or 0}"), float(cell)):
+                raise Unlike(f"{where}: {wrong}")
         else:
             self._pieces((cell,), line, where)
 
@@ -251,7 +267,10 @@ class PageComparison:
                 continue
             if k == len(line) or not line[k].tex:
                 raise Unlike(f"{where}: no formula for {_said(piece)}")
-            self._sides((piece,), between_equals(tokens_of(line[k].tex)), where)
+            if self.laws or not isinstance(piece, Law):
+                self._sides((piece,), between_equals(tokens_of(line[k].tex)), where)
+            elif _letters_of(line[k].tex) != _letters_of(piece.latex):
+                raise Unlike(f"{where}: '{line[k].tex}' for {piece.text}")
             k += 1
         if k != len(line):
             raise Unlike(f"{where}: more stands there")
@@ -317,6 +336,11 @@ class PageComparison:
         try:
             return typeset(tokens, self.letters)
         except ExpressionError as error:
+            if self.laws:
+                raise Unlike(f"{where}: {error.what}") from error
+        try:
+            return typeset(_leaning(tokens), self.leaning_letters)
+        except ExpressionError as error:
             raise Unlike(f"{where}: {error.what}") from error
 
     def _text(self, text: str, tokens: Tokens, where: str) -> None:
@@ -331,7 +355,8 @@ class PageComparison:
 
     def _law(self, law: Law, sides: list[Tokens], where: str) -> None:
         """A general law as it stands; where its text is a formula of symbols it is that."""
-        if sides != between_equals(tokens_of(law.latex)):
+        right = between_equals(tokens_of(law.latex))
+        if sides != right and (self.laws or [*map(_unworded, sides)] != [*map(_unworded, right)]):
             raise Unlike(f"{where}: '{''.join(sides[0])}' for {law.text}")
         if _digits(law.text) != _digits(law.latex):
             raise Unlike(f"{where}: '{law.latex}' for {law.text}")
@@ -500,7 +525,8 @@ def _names_of(part: Any) -> list[str]:
 
 def _digits(text: str) -> list[str]:
     """The numbers of a text in their order, 2e-05 as 2 10 5."""
-    return [x.lstrip("0") for x in re.findall(r"\d+(?:\.\d+)?", re.sub(r"(?<=\d)e[-+]?(?=\d)", " 10 ", text))]
+    plain = unicodedata.normalize("NFKC", re.sub(r"([⁰¹²³⁴-⁹]+)", r" \1", text))
+    return [x.lstrip("0") for x in re.findall(r"\d+(?:\.\d+)?", re.sub(r"(?<=\d)e[-+]?(?=\d)", " 10 ", plain))]
 
 
 def _told(wanted: Wanted) -> str:
@@ -518,6 +544,31 @@ def _said(piece: Any) -> str:
     if isinstance(piece, Quantity):
         return piece.exact or piece.number
     return str(piece) if isinstance(piece, str) else getattr(piece, "letter", type(piece).__name__.lower())
+
+
+def _letters_of(tex: str) -> str:
+    """The letters, digits and equality signs of a formula, in their order."""
+    greek = {command: letter for letter, command in GREEK_LETTERS.items()}
+    named = (
+        greek.get(x.replace("var", ""), x[1:] if x[1:] in LETTERED else "" if x[:1] == "\\" else x)
+        for x in tokens_of(tex)
+    )
+    return "".join(c for x in named for c in unicodedata.normalize("NFKC", x) if c.isalnum() or c == "=")
+
+
+def _leaning(tokens: Tokens) -> Tokens:
+    r"""n1 for \mathrm{n1}."""
+    found, k = list(tokens), 0
+    while r"\mathrm" in found[k:]:
+        k = found.index(r"\mathrm", k)
+        end = closing_brace(tuple(found), k + 1)
+        found[k : end + 1] = found[k + 2 : end]
+    return tuple(found)
+
+
+def _unworded(tokens: Tokens) -> Tokens:
+    """Without what says where words begin and end."""
+    return tuple(x for x in tokens if x not in ("$", r"\text", "{", "}"))
 
 
 def _split(tokens: Tokens, between: str) -> list[Tokens]:

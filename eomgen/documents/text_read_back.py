@@ -98,7 +98,7 @@ class TextRead:
         elif isinstance(statement, Prose):
             self._says("".join(map(piece_said, statement.pieces)))
         else:
-            self._says(_formula_said(statement))
+            self._says(formula_said(statement))
 
     def _says(self, wanted: str) -> None:
         """The next lines say this, and no more."""
@@ -174,7 +174,7 @@ def cell_said(cell: Cell) -> str:
     return cell if isinstance(cell, str) else side_said(cell)
 
 
-def _formula_said(formula: Formula) -> str:
+def formula_said(formula: Formula) -> str:
     """a = b; a matrix row by row, cases one below the other."""
     *left, last = formula.sides
     said = [side_said(side) for side in left]

@@ -19,6 +19,7 @@ _CHARACTERS = {
 _CHARACTERS |= {
     rf"\{x.title()}": unicodedata.lookup(f"GREEK CAPITAL LETTER {x.replace('lambda', 'lamda')}") for x in GREEK.split()
 }
+GREEK_LETTERS = {letter: command for command, letter in _CHARACTERS.items()}
 _CHARACTERS |= {r"\varepsilon": "ε", r"\cdot": "·", r"^{\circ}": "°"}
 _COMMANDS = {
     r"\textbackslash": "\\",
@@ -27,7 +28,7 @@ _COMMANDS = {
     r"\textless": "<",
     r"\textgreater": ">",
 }
-_SILENT = frozenset((r"\texttt", r"\textbf", r"\text", r"\textsuperscript"))
+_SILENT = frozenset((r"\texttt", r"\textbf", r"\text", r"\textsuperscript", r"\emph"))
 _RAISED = re.compile(r"\^\{(-?\d+)\}")
 _GROUPING = str.maketrans({"^": "", "(": "", ")": "", "*": "·", "\u2212": "-"})
 _TABLE = re.compile(r"\\begin\{(tabular|longtable)\}")

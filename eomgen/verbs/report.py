@@ -30,10 +30,11 @@ from eomgen.model.replaced import Values
 from eomgen.page.contents import PLAYER, SECTIONS, Attachment, Report, ReportFigure, ReportSection, joint_proof
 from eomgen.page.curves import motion_drawings
 from eomgen.page.figure import figure_of, rest_figure
-from eomgen.page.formats import FORMATS, written_as
+from eomgen.page.formats import FORMATS, FilesByName, written_as
 from eomgen.page.markup import Html, element, in_a_row
 from eomgen.page.player_data import PlayedRun, PlayerOptions
 from eomgen.page.player_page import Playable, player_parts_of
+from eomgen.page.read_back import report_read_back
 from eomgen.page.released import PlayedDisplacements
 from eomgen.proof.check import Certificate
 from eomgen.questions import answers
@@ -190,8 +191,21 @@ def report(
     subject = Subject(model_at(model, parameters, start), lasts, certify, origin, source)
     found = report_of(subject, with_, without)
     if form is not None and path is not None:
-        files.write_all(Path(path).parent, written_as(found, form, Path(path).name))
+        found, texts = _read_back(subject, found, form, Path(path).name)
+        files.write_all(Path(path).parent, texts)
     return found
+
+
+def _read_back(subject: Subject, found: Report, form: str, name: str) -> tuple[Report, FilesByName]:
+    """(the report, with what its files, read again, contradict; its files)."""
+    texts = written_as(found, form, name)
+    if found.certificate is None:
+        return found, texts
+    run = subject.run if "followed" in vars(subject) else None
+    checks = tuple(report_read_back(found, texts, form, run))
+    proof = found.certificate + (c for c in checks if found.certificate.ok is not None or c.ok is False)
+    read = replace(found, head=proven(replace(found.head, certificate=None), proof))
+    return read, texts if proof.ok is not False or found.certificate.ok is False else written_as(read, form, name)
 
 
 def form_of(path: str) -> str:
@@ -219,8 +233,9 @@ def report_document(
 ) -> Document:
     """The report in its file, and what was written."""
     form = form_of(output)
-    found = report_of(Subject(model, time, certify, origin, text), with_, without)
-    paths = files.write_all(Path(output).parent, written_as(found, form, Path(output).name))
+    subject = Subject(model, time, certify, origin, text)
+    found, texts = _read_back(subject, report_of(subject, with_, without), form, Path(output).name)
+    paths = files.write_all(Path(output).parent, texts)
     sections = [section.key for section in found.sections]
     remarks = {section.key: section.remark for section in found.sections if section.remark}
     names = [str(path) for path in paths]

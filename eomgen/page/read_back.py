@@ -1,0 +1,220 @@
+"""Report, its files -> checks: read again they say what the report holds; curves and tables are the run's.
+
+The report's text by the reader of what `derive` prints; every curve by the numbers at its axes; of a table the page
+carries each column by its name.
+"""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from functools import partial
+
+import numpy as np
+
+from eomgen.documents.read_back import HOW, PageComparison, Wanted, wanted_of
+from eomgen.documents.statements import Formula
+from eomgen.documents.text_read_back import flat, formula_said
+from eomgen.page.contents import Report, ReportSection
+from eomgen.page.formats import FilesByName
+from eomgen.proof.check import Check, Tally, checked
+from eomgen.proof.pages_read import PageLine, spoken
+from eomgen.proof.reports_read import (
+    ReadCurves,
+    ReadReport,
+    columns_told,
+    html_report,
+    latex_report,
+    markdown_report,
+    notebook_report,
+)
+from eomgen.proof.typeset import SetLetters, tokens_of, typeset
+from eomgen.simulation.result import Trajectory
+from eomgen.symbolic.expression.units import parse_unit
+from eomgen.symbolic.numeric.tolerances import NINE_DIGITS
+
+CURVES = "curves and tables of the report, read back, are those of the run"
+BY_AXES = "by the numbers at their axes and the names of columns"
+SEEN = 1.5  # units of a picture: a curve may pass its points by that much, corners and rounding together
+_BRACKETS = str.maketrans("", "", "[],;")  # a matrix by rows or whole, cases apart
+_UNIT = re.compile(r" \[([^\]]*)\]")
+READERS: Mapping[str, Callable[[str], ReadReport]] = {
+    ".html": html_report,
+    ".tex": latex_report,
+    ".md": markdown_report,
+    ".ipynb": notebook_report,
+}
+
+
+def report_read_back(report: Report, files: FilesByName, form: str, run: Trajectory | None) -> Iterator[Check]:
+    """Whether the files of a report say what it holds.
+
+    Args:
+        form: the ending; what is no text is not read.
+        run: whose curves and columns they show.
+    """
+    if form not in READERS:
+        return
+    text = next(iter(files.values()))
+    assert isinstance(text, str)
+    try:
+        read = READERS[form](text)
+    except (ValueError, KeyError, IndexError, StopIteration) as error:
+        yield checked("the page, read back, says what was found", f"nobody can read it: {error}", HOW)
+        return
+    comparison = PageComparison(report.as_document, laws=form != ".html")
+    yield from comparison.checks(list(_wanted(report, form)), read.blocks)
+    if form == ".html":
+        yield from _copied(report, read)
+    if run is not None and len(run.t):
+        yield from _of_run(report, comparison.letters, read, run)
+
+
+def _wanted(report: Report, form: str) -> Iterator[Wanted]:
+    """What is to stand in it, in order."""
+    head = report.head
+    yield Wanted("heading", (head.title,))
+    about = [Wanted("words", (head.about,))] if head.about else []
+    source = [Wanted("words", (f"Source: {head.source}.",))] if head.source else []
+    wrong = [Wanted("words", (head.wrong,))] if head.wrong else []
+    yield from (*about, *source, *wrong) if form == ".html" else (*wrong, *about, *source)
+    for section in report.sections if form == ".html" else report.printed:
+        yield from _of_section(section, report, form)
+
+
+def _of_section(section: ReportSection, report: Report, form: str) -> Iterator[Wanted]:
+    yield Wanted("heading", (section.title,))
+    if section.remark and section.live is None:
+        yield Wanted("words", (section.remark,))
+    for step in section.steps:
+        if step.title not in ("", section.title):
+            yield Wanted("heading", (step.title,))
+        for statement in step.statements:
+            yield from wanted_of(statement)
+    for drawing in section.drawings if form != ".ipynb" else ():
+        if form == ".html" or drawing.save is not None:
+            yield Wanted("words", (drawing.caption,))
+    if section.key == "certificate" and report.certificate is not None:
+        yield from _of_proof(report, form)
+
+
+def _of_proof(report: Report, form: str) -> Iterator[Wanted]:
+    assert report.certificate is not None
+    checks = report.certificate.checks
+    if form == ".html":
+        signs = {"holds": "✓", "fails": "✗", "unchecked": "?"}
+        rows = [(signs[c.status], f"{c.name}: {c.detail}" if c.detail else c.name, c.how) for c in checks]
+        yield Wanted("table", rows=(("", "what was checked", "how"), *rows))
+    elif form == ".tex":
+        for c in checks:
+            yield Wanted("words", (f"{c.name} [{c.how}]" + (f": {c.detail}" if c.detail else ""),))
+    else:
+        yield Wanted("lines", lines=tuple(str(report.certificate).split("\n")))
+
+
+def _copied(report: Report, read: ReadReport) -> Iterator[Check]:
+    """What a button copies says the formulas beside it."""
+    formulas = [
+        statement
+        for section in report.sections
+        for step in section.steps
+        for statement in step.statements
+        if isinstance(statement, Formula)
+    ]
+    said = "".join(flat(formula_said(each)) for each in formulas).translate(_BRACKETS)
+    found = "".join(flat(text) for text, _ in read.copied).translate(_BRACKETS)
+    wrong = "" if said == found else "another formula is copied"
+    yield checked("formulas, copied as text, are those of the page", wrong, "texts of the grammar")
+
+
+# -- curves and tables ---------------------------------------------------------------------------------------------
+
+
+def _of_run(report: Report, letters: SetLetters, read: ReadReport, run: Trajectory) -> Iterator[Check]:
+    tally, legends = Tally(CURVES, BY_AXES), dict(read.legends)
+    for caption, curves in read.drawings:
+        named = {style: _named(line, letters) for style, line in legends.get(caption, ())}
+        tally.add(caption.partition(" over")[0], partial(_unlike_curves, run, caption, curves, named))
+    for name, content, columns in read.files:
+        if name.endswith(".csv"):
+            tally.add(name, partial(_unlike_table, run, content, columns))
+        elif name.endswith(".toml"):
+            tally.add(name, partial(_other_text, content, report.source))
+    return tally.checks()
+
+
+def _other_text(content: bytes, right: str) -> str:
+    return "" if content.decode() == right else "another text than the model's"
+
+
+def _named(line: PageLine, letters: SetLetters) -> str:
+    """The name of a column that a legend says."""
+    if len(line) == 1 and line[0].tex:
+        tree = typeset(tokens_of(line[0].tex), letters)
+        return str(tree[1]) if tree[0] == "symbol" else ""
+    return "".join(part.character for part in line)
+
+
+def _unlike_curves(run: Trajectory, caption: str, read: ReadCurves, named: Mapping[str, str]) -> str:
+    """Which curve passes other values than the column of its name, in the unit that the caption says."""
+    unit = _UNIT.search(caption)
+    size = parse_unit(unit[1].replace("·", "*")).size if unit is not None and unit[1] != "s" else 1.0
+    columns = {spoken(name): column / size for name, column in run.columns().items()}
+    energy = columns.pop("energy", None)
+    if energy is not None:
+        columns[""] = energy - energy[0] if "less its value" in caption else energy
+    for style in dict.fromkeys(style for style, _ in read.curves):
+        name = spoken(named.get(style, ""))
+        if name not in columns:
+            return f"a curve of '{name}'"
+        pieces = [places for other, places in read.curves if other == style]
+        if wrong := _off(run.t, columns[name], pieces, read.near):
+            return f"{name or 'energy'}: {wrong}"
+    absent = [name for name in named.values() if spoken(name) in columns and np.isfinite(columns[spoken(name)]).all()]
+    drawn = {named.get(style) for style, _ in read.curves}
+    return next((f"no curve of {name}" for name in absent if name not in drawn), "")
+
+
+def _off(t: np.ndarray, y: np.ndarray, pieces: Sequence[np.ndarray], near: tuple[float, float]) -> str:
+    """Where a curve is away from the values, or these from it."""
+    finite = np.isfinite(y)
+    if not finite.any():
+        return "there are no values"
+    dt, dy = (SEEN * each for each in near)
+    for piece in pieces:
+        low, high = _around(t[finite], y[finite], piece[:, 0], dt)
+        apart = np.maximum(low - piece[:, 1], piece[:, 1] - high)
+        if np.any(apart > dy):
+            k = int(np.argmax(apart))
+            return f"{piece[k, 1]:.4g} for {low[k]:.4g} to {high[k]:.4g} at t = {piece[k, 0]:.4g} s"
+    over = np.concatenate(pieces)
+    if finite.all() and (over[0, 0] > t[0] + dt or over[-1, 0] < t[-1] - dt):
+        return f"drawn from {over[0, 0]:.4g} to {over[-1, 0]:.4g} s"
+    if len(pieces) == 1 and finite.all():
+        low, high = _around(over[:, 0], over[:, 1], t, dt)
+        apart = np.maximum(low - y, y - high)
+        if np.any(apart > dy):
+            return f"it does not pass {y[int(np.argmax(apart))]:.4g} at t = {t[int(np.argmax(apart))]:.4g} s"
+    return ""
+
+
+def _around(t: np.ndarray, y: np.ndarray, at: np.ndarray, dt: float) -> tuple[np.ndarray, np.ndarray]:
+    """The least and the largest value of a line through (t, y) no more than dt from each place."""
+    ends = np.stack([np.interp(at + step, t, y) for step in (-dt, 0.0, dt)])
+    low, high = ends.min(axis=0), ends.max(axis=0)
+    for k, (i, j) in enumerate(zip(np.searchsorted(t, at - dt), np.searchsorted(t, at + dt), strict=True)):
+        if i < j:
+            low[k], high[k] = min(low[k], y[i:j].min()), max(high[k], y[i:j].max())
+    return low, high
+
+
+def _unlike_table(run: Trajectory, content: bytes, columns: Sequence[str]) -> str:
+    """Which column of a table is not that of its name."""
+    right = run.columns()
+    if list(columns) != list(right):
+        return f"columns {', '.join(columns)}"
+    for name, column in columns_told(content).items():
+        size = float(np.max(np.abs(right[name]), where=np.isfinite(right[name]), initial=0.0))
+        if len(column) != len(run.t) or not np.allclose(column, right[name], 0, NINE_DIGITS * size, equal_nan=True):
+            return name
+    return ""

@@ -1,0 +1,423 @@
+r"""A report as it leaves, HTML, LaTeX, Markdown or a notebook -> what stands in it, one thing after the other.
+
+A page of HTML carries its large parts packed; they are unpacked here. Formulas in a line are read from their MathML,
+those that stand alone from the LaTeX that the page shows who runs no program. Curves are read with their axes.
+"""
+
+from __future__ import annotations
+
+import gzip
+import json
+import re
+from base64 import b64decode
+from collections.abc import Iterable, Iterator, Mapping
+from dataclasses import field
+from html.parser import HTMLParser
+
+import numpy as np
+
+from eomgen.proof.pages_read import (
+    GREEK_LETTERS,
+    PageBlock,
+    PageLine,
+    PagePart,
+    displayed,
+    latex_page,
+    markdown_page,
+    spoken,
+)
+from eomgen.records import dataclass
+
+_ACCENTS = {"\u02d9": r"\dot", "\u00a8": r"\ddot", "\u20db": r"\dddot", "~": r"\widetilde"}
+_SIGNS = {"\u2212": "-", "\u22c5": r"\cdot", "\u2061": "", "|": r"\rvert", "\u2264": r"\leq", "\u2202": r"\partial"}
+_LETTERS = GREEK_LETTERS | {"\u03c6": r"\varphi", "\u03d5": r"\phi", "\u03b5": r"\varepsilon", "\u03f5": r"\epsilon"}
+_VOID = frozenset(("br", "img", "input", "link", "meta"))
+_FUNCTIONS = frozenset("sin cos tan sinh cosh tanh arcsin arccos arctan ln min max".split())
+_HEADINGS = frozenset(("h1", "h2", "h3"))
+_STEP = re.compile(r"[a-zA-Z]|-?(?:\d+\.?\d*|\.\d+)(?:e[-+]?\d+)?")
+_CAPTION = re.compile(r"\\begin\{center\}.*\\par\\small (.*)\\end\{center\}")
+_ITEM = re.compile(r"\\item\[.*?\] (.*)")
+
+
+@dataclass
+class Markup:
+    """An element of HTML with what is inside it."""
+
+    tag: str
+    given: dict[str, str] = field(default_factory=dict)
+    inside: list[Markup | str] = field(default_factory=list)
+
+    @property
+    def elements(self) -> Iterator[Markup]:
+        return (x for x in self.inside if isinstance(x, Markup))
+
+    @property
+    def text(self) -> str:
+        """All words inside it."""
+        return "".join(x if isinstance(x, str) else x.text for x in self.inside)
+
+    def all(self, tag: str) -> Iterator[Markup]:
+        """Every element of a kind below it."""
+        for x in self.elements:
+            if x.tag == tag:
+                yield x
+            yield from x.all(tag)
+
+
+class _Builder(HTMLParser):
+    def __init__(self) -> None:
+        super().__init__()
+        self.open = [Markup("")]
+
+    def handle_starttag(self, tag: str, attrs: list[tuple[str, str | None]]) -> None:
+        made = Markup(tag, {name: value or "" for name, value in attrs})
+        self.open[-1].inside.append(made)
+        if tag not in _VOID:
+            self.open.append(made)
+
+    def handle_startendtag(self, tag: str, attrs: list[tuple[str, str | None]]) -> None:
+        self.open[-1].inside.append(Markup(tag, {name: value or "" for name, value in attrs}))
+
+    def handle_endtag(self, tag: str) -> None:
+        while len(self.open) > 1 and self.open.pop().tag != tag:
+            pass
+
+    def handle_data(self, data: str) -> None:
+        self.open[-1].inside.append(data)
+
+
+def markup_of(text: str) -> Markup:
+    """A page, or a part of one, as its elements."""
+    builder = _Builder()
+    builder.feed(text)
+    builder.close()
+    return builder.open[0]
+
+
+@dataclass(frozen=True)
+class ReadCurves:
+    """The curves of a drawing with its axes.
+
+    Args:
+        curves: of each class its path, n x 2, in the units of its axes.
+        near: how far a place may be off along both axes: what a digit of the page is worth.
+    """
+
+    curves: tuple[tuple[str, np.ndarray], ...]
+    near: tuple[float, float]
+
+
+@dataclass(frozen=True)
+class ReadReport:
+    """What stands in a report.
+
+    Args:
+        blocks: one after the other.
+        copied: texts that a button copies, with the formulas beside it.
+        drawings: the curves of each drawing that has some, by its caption.
+        legends: of each drawing its curves by class and name.
+        files: what it carries, by name: content, and the columns that it tells of.
+    """
+
+    blocks: tuple[PageBlock, ...]
+    copied: tuple[tuple[str, tuple[PageBlock, ...]], ...] = ()
+    drawings: tuple[tuple[str, ReadCurves], ...] = ()
+    legends: tuple[tuple[str, tuple[tuple[str, PageLine], ...]], ...] = ()
+    files: tuple[tuple[str, bytes, tuple[str, ...]], ...] = ()
+
+
+def unpacked(text: str) -> bytes:
+    """What a page carries packed: gzip, then base64."""
+    return gzip.decompress(b64decode(text))
+
+
+# -- HTML ----------------------------------------------------------------------------------------------------------
+
+
+class _HtmlReading:
+    """A page of HTML that is read."""
+
+    def __init__(self, page: Markup) -> None:
+        self.page = page
+        apart = next(x for x in page.all("template") if x.given.get("id") == "apart")
+        self.apart: dict[str, list[str]] = json.loads(unpacked(apart.text))
+        self.blocks: list[PageBlock] = []
+        self.copied: list[tuple[str, tuple[PageBlock, ...]]] = []
+        self.drawings: list[tuple[str, ReadCurves]] = []
+        self.legends: list[tuple[str, tuple[tuple[str, PageLine], ...]]] = []
+        self.files: list[tuple[str, bytes, tuple[str, ...]]] = []
+        self.shown = 0  # formulas that stood alone so far
+
+    def whole(self) -> ReadReport:
+        header, main = next(self.page.all("header")), next(self.page.all("main"))
+        for each in header.elements:
+            if each.tag != "nav" and each.given.get("class") != "proven":
+                self._element(each)
+        for section in main.elements:
+            played = section.given.get("id") == "motion" and any(section.all("script"))
+            for each in section.elements:
+                if not (played and each.tag == "p"):  # words of what is played
+                    self._element(each)
+        parts = (self.blocks, self.copied, self.drawings, self.legends, self.files)
+        return ReadReport(*map(tuple, parts))  # type: ignore[arg-type]
+
+    def _element(self, each: Markup) -> None:
+        kind = each.given.get("class", "")
+        if each.tag in _HEADINGS:
+            self.blocks.append(PageBlock("heading", tuple(_line(each))))
+        elif each.tag == "p":
+            self.blocks.append(PageBlock("words", tuple(_line(each))))
+        elif kind == "formula":
+            self._formulas(each)
+        elif kind == "scroll":
+            self._scrolled(each)
+        elif each.tag == "figure":
+            self._figure(each)
+        elif kind == "files":
+            self.files += [_file(link) for link in each.all("a")]
+
+    def _formulas(self, each: Markup) -> None:
+        found: list[PageBlock] = []
+        for pre in each.all("pre"):
+            tex = pre.text.removeprefix(r"\[").removesuffix(r"\]")
+            annotated = next(markup_of(self.apart["formulas"][self.shown]).all("annotation")).text
+            self.shown += 1
+            if annotated != tex:
+                raise ValueError("a formula reads otherwise where no program runs")
+            found += displayed(tex.removeprefix("\\begin{aligned}\n").removesuffix("\n\\end{aligned}"))
+        self.blocks += found
+        for button in each.all("button"):
+            if number := button.given.get("data-copied"):
+                self.copied.append((self.apart["copied"][int(number)], tuple(found)))
+            elif text := button.given.get("data-copy"):
+                self.copied.append((text, tuple(found)))
+
+    def _scrolled(self, each: Markup) -> None:
+        for inner in each.elements:
+            if inner.tag == "table":
+                rows = tuple(tuple(tuple(_line(cell)) for cell in row.elements) for row in inner.all("tr"))
+                self.blocks.append(PageBlock("table", rows=rows))
+            else:
+                self.blocks.append(PageBlock("lines", lines=tuple(inner.text.split("\n"))))
+
+    def _figure(self, each: Markup) -> None:
+        caption = next(each.all("figcaption"))
+        words = "".join(x for x in caption.inside if isinstance(x, str))
+        self.blocks.append(PageBlock("words", tuple(PagePart(x) for x in spoken(words))))
+        named = []
+        for entry in caption.all("li"):
+            style = next(entry.all("path")).given["class"]
+            named.append((style, tuple(_line(Markup("", inside=[x for x in entry.inside if not _is_svg(x)])))))
+        self.legends.append((words, tuple(named)))
+        svg = next(each.all("svg"))
+        number = svg.given.get("data-drawn")
+        inside = svg if number is None else markup_of(self.apart["pictures"][int(number)])
+        if each.given.get("class") == "drawn":
+            self.drawings.append((words, curves_of(inside)))
+
+
+def _is_svg(x: Markup | str) -> bool:
+    return isinstance(x, Markup) and x.tag == "svg"
+
+
+def _file(link: Markup) -> tuple[str, bytes, tuple[str, ...]]:
+    columns = link.given.get("data-columns")
+    content = copies_undone(unpacked(link.given["data-packed"]))
+    return link.text, content, tuple(json.loads(columns)) if columns else ()
+
+
+def copies_undone(content: bytes) -> bytes:
+    """A file in which what stood far back is said by where it stood: first the length of what is said so.
+
+    Of each copy the new bytes before it, how far back it lies, its length; seven bits a byte, the lowest first.
+    """
+    octets, found = iter(content), bytearray()
+
+    def number() -> int:
+        value = shift = 0
+        while (octet := next(octets)) > 127:
+            value |= (octet & 127) << shift
+            shift += 7
+        return value | octet << shift
+
+    numbers, left = list[int](), number()
+    start = len(content) - octets.__length_hint__()  # type: ignore[attr-defined]
+    while len(content) - octets.__length_hint__() < start + left:  # type: ignore[attr-defined]
+        numbers.append(number())
+    new = bytes(octets)
+    k = 0
+    for before, back, length in zip(numbers[::3], numbers[1::3], numbers[2::3], strict=True):
+        found += new[k : k + before]
+        k += before
+        for _ in range(length):
+            found.append(found[-back])
+    return bytes(found) + new[k:]
+
+
+def _line(each: Markup) -> Iterator[PagePart]:
+    """Words and formulas of a line."""
+    for x in each.inside:
+        if isinstance(x, str):
+            yield from (PagePart(c) for c in spoken(x))
+        elif x.tag == "math":
+            yield PagePart(tex=tex_of(x).strip())
+        else:
+            yield from _line(x)
+
+
+def tex_of(math: Markup) -> str:
+    """MathML as the LaTeX that means it."""
+    parts = [tex_of(x) for x in math.elements]
+    if math.tag in ("mi", "mn", "mo", "mtext"):
+        return _letter(math.tag, math.text)
+    if math.tag == "msub":
+        return f"{parts[0]}_{{{parts[1]}}}"
+    if math.tag == "msup":
+        return f"{parts[0]}^{{{parts[1]}}}"
+    if math.tag == "msubsup":
+        return f"{parts[0]}_{{{parts[1]}}}^{{{parts[2]}}}"
+    if math.tag == "mfrac":
+        return rf"\frac{{{parts[0]}}}{{{parts[1]}}}"
+    if math.tag == "msqrt":
+        return rf"\sqrt{{{' '.join(parts)}}}"
+    if math.tag == "mover":
+        accent = next(x for k, x in enumerate(math.elements) if k == 1).text
+        return f"{_ACCENTS.get(accent, accent)}{{{parts[0]}}}"
+    return "" if math.tag == "mspace" else " ".join(parts)
+
+
+def _letter(tag: str, text: str) -> str:
+    if tag == "mtext":
+        return rf"\text{{{text}}}"
+    if tag == "mo":
+        return _SIGNS.get(text, text)
+    if tag == "mi" and text in _FUNCTIONS:
+        return rf"\{text} "
+    if tag == "mi" and len(text) > 1:
+        return rf"\mathrm{{{text}}}"
+    return f"{_LETTERS[text]} " if text in _LETTERS else text
+
+
+# -- curves --------------------------------------------------------------------------------------------------------
+
+
+def curves_of(svg: Markup) -> ReadCurves:
+    """The curves of a drawing, in the units that the numbers at its axes say."""
+    ticks: dict[str, list[tuple[float, float]]] = {"middle": [], "end": []}
+    texts, lines = list(svg.all("text")), [x for x in svg.all("path") if x.given.get("class") == "axis"]
+    for text, line in zip(texts, lines, strict=True):
+        (x, y), _ = _path(line.given["d"])[0][:2]
+        value = float(text.text.replace("\N{MINUS SIGN}", "-"))
+        ticks[text.given["text-anchor"]].append((x if text.given["text-anchor"] == "middle" else y, value))
+    across, up = (_scale(ticks[name]) for name in ("middle", "end"))
+    curves = []
+    for path in svg.all("path"):
+        style = path.given.get("class", "")
+        if style.startswith("curve"):
+            for places in _path(path.given["d"]):
+                xy = np.array(places)
+                curves.append((style, np.column_stack([across[0] + across[1] * xy[:, 0], up[0] + up[1] * xy[:, 1]])))
+    return ReadCurves(tuple(curves), (abs(across[1]) + across[2], abs(up[1]) + up[2]))
+
+
+def _scale(ticks: list[tuple[float, float]]) -> tuple[float, float, float]:
+    """(value at 0, value of a unit of the picture, how far off it may be by the digits of the numbers)."""
+    places, values = np.array(sorted(ticks)).T
+    slope, zero = np.polyfit(places, values, 1) if len(places) > 1 else (0.0, values[0])
+    off = float(np.max(np.abs(zero + slope * places - values)))
+    return float(zero), float(slope), off
+
+
+def _path(d: str) -> list[list[tuple[float, float]]]:
+    """The lines of a path, each as its places."""
+    found: list[list[tuple[float, float]]] = []
+    words, k, command, x, y = _STEP.findall(d), 0, "", 0.0, 0.0
+    while k < len(words):
+        if words[k].isalpha():
+            command, k = words[k], k + 1
+            if command in "Zz":
+                continue
+        if command in "HhVv":
+            step = float(words[k])
+            x = (step if command == "H" else x + step) if command in "Hh" else x
+            y = (step if command == "V" else y + step) if command in "Vv" else y
+            k += 1
+        else:
+            dx, dy = float(words[k]), float(words[k + 1])
+            x, y = (x + dx, y + dy) if command.islower() else (dx, dy)
+            k += 2
+        if command in "Mm":
+            found.append([])
+            command = "l" if command == "m" else "L"
+        found[-1].append((x, y))
+    return found
+
+
+# -- the formats ---------------------------------------------------------------------------------------------------
+
+
+def html_report(text: str) -> ReadReport:
+    """A report as a page of HTML."""
+    return _HtmlReading(markup_of(text)).whole()
+
+
+def latex_report(text: str) -> ReadReport:
+    """A report as LaTeX: what stands under pictures and in its proof as words."""
+    lines = text.split("\n")
+    found = []
+    for line in lines:
+        if title := re.fullmatch(r"\{\\LARGE\\bfseries (.*)\\par\}\\medskip", line):
+            found.append(rf"\section*{{{title[1]}}}")
+        elif caption := _CAPTION.fullmatch(line):
+            found += [caption[1], ""]
+        elif item := _ITEM.fullmatch(line):
+            found += [item[1], ""]
+        elif not line.startswith((r"\begin{itemize}", r"\end{itemize}")):
+            found.append(line)
+    return ReadReport(tuple(latex_page("\n".join(found))))
+
+
+def markdown_report(text: str) -> ReadReport:
+    """A report as Markdown; of a picture the words under it."""
+    bare = re.sub(r"^!\[.*\]\(<.*>\)\n\n", "", text, flags=re.MULTILINE)
+    bare = re.sub(r"^\*([^*].*)\*$", r"\1", bare, flags=re.MULTILINE)  # a remark
+    return ReadReport(tuple(markdown_page(bare)))
+
+
+def notebook_report(text: str) -> ReadReport:
+    """The words of a notebook, without its cells of code."""
+    cells = json.loads(text)["cells"]
+    said = ("".join(cell["source"]) for cell in cells if cell["cell_type"] == "markdown")
+    return markdown_report("\n\n".join(said) + "\n")
+
+
+def columns_told(content: bytes) -> dict[str, np.ndarray]:
+    """The columns of a table that a page carries: a line that tells of them, then their differences.
+
+    A difference is a whole number, its sign the lowest bit, seven bits a byte, the lowest first.
+    """
+    head, _, packed = content.partition(b"\n")
+    told = json.loads(head)
+    return dict(zip(told["names"], columns_unpacked(told, packed), strict=True))
+
+
+def columns_unpacked(told: Mapping[str, object], packed: bytes) -> Iterable[np.ndarray]:
+    """The columns that are told of."""
+    octets = np.frombuffer(packed, dtype=np.uint8)
+    if not len(octets):
+        return
+    last = np.flatnonzero(octets < 128)
+    first = np.concatenate([[0], last[:-1] + 1])
+    weights = (octets & 127).astype(np.int64) << (7 * (np.arange(len(octets)) - np.repeat(first, last - first + 1)))
+    zigzag = np.add.reduceat(weights, first) if len(first) else weights
+    values = np.where(zigzag & 1, -(zigzag + 1) // 2, zigzag // 2)
+    rows, k = int(told["rows"]), 0  # type: ignore[call-overload]
+    for power, order, holes in told["columns"]:  # type: ignore[attr-defined]
+        column = values[k : k + rows]
+        k += rows
+        for _ in range(order):
+            column = np.cumsum(column)
+        found = column * 10.0**power
+        for begin, count, word in holes:
+            found[begin : begin + count] = float(word)
+        yield found

@@ -1,0 +1,132 @@
+"""Reports that leave are read again: text, formulas, numbers, curves and tables are those of what was found."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from functools import cache
+
+import pytest
+
+import eomgen
+from eomgen.page.contents import Report
+from eomgen.page.formats import written_as
+from eomgen.page.read_back import report_read_back
+from eomgen.proof.reports_read import copies_undone, markup_of, tex_of
+from eomgen.simulation.result import Trajectory
+from eomgen.verbs.report import Subject, report_of
+
+SWING = """
+eomgen = 1
+name = "A rod on a slider"
+space = "plane"
+
+[parameters]
+m = { value = 2, unit = "kg" }
+l = { value = 0.5, unit = "m", about = "of the rod" }
+k = { value = 30, unit = "N/m" }
+I = { value = 0.04, unit = "kg*m^2" }
+g = { value = 9.81, unit = "m/s^2" }
+
+[coordinates]
+x = { start = 1, unit = "m", about = "of the slider" }
+theta1 = { start = 0.3, unit = "rad" }
+
+[bodies.slider]
+mass = "m"
+inertia = 0
+joint = { kind = "prismatic", axis = [1, 0], displacement = "x", stiffness = "k" }
+
+[bodies.rod]
+mass = "m"
+center = ["l/2", 0]
+inertia = "I"
+points = { B = ["l", 0] }
+joint = { kind = "revolute", on = "slider", at = [0, 0], angle = "theta1" }
+
+[forces.weight]
+kind = "gravity"
+acceleration = [0, "-g"]
+"""
+FORMS = (".html", ".tex", ".md")
+
+
+@cache
+def subject() -> Subject:
+    found = Subject(eomgen.loads(SWING), 0.5, False, "swing.toml", SWING)
+    vars(found)["followed"] = (eomgen.simulate(found.model, time=0.5, samples=101, target="numpy"), "")
+    return found
+
+
+@cache
+def made() -> Report:
+    return report_of(subject(), without=["motion", "downloads"])
+
+
+@cache
+def page(form: str) -> str:
+    return str(written_as(made(), form, "r" + form)["r" + form])
+
+
+def wrong(form: str, text: str, run: Trajectory | None = None) -> list[str]:
+    """What is contradicted."""
+    checks = report_read_back(made(), {"r" + form: text}, form, run or subject().run)
+    return [f"{check.name}: {check.detail}" for check in checks if check.status == "fails"]
+
+
+@pytest.mark.parametrize("form", FORMS)
+def test_a_report_says_what_was_found(form: str):
+    """read(write(report)) = report"""
+    assert not wrong(form, page(form))
+
+
+CHANGES = {
+    "a digit of a table": ("9.81", "9.18"),
+    "an exponent": ("\\dot{\\theta}_{1}^{2}", "\\dot{\\theta}_{1}^{3}"),
+    "a factor of a formula": (r"\frac{1}{2} m", r"\frac{1}{3} m"),
+    "an index": (r"x_{\mathrm{slider}} ", r"x_{\mathrm{rod}} "),
+    "a heading": ("Kinetic energy", "Potential energy"),
+    "a word": ("of the rod", "of the slider"),
+    "a unit": ("rad/s", "rad/m"),
+}
+
+
+@pytest.mark.parametrize("form", FORMS)
+@pytest.mark.parametrize("change", CHANGES)
+def test_a_change_of_a_report_is_seen(form: str, change: str):
+    """read(changed) != report"""
+    old, new = CHANGES[change]
+    assert old in page(form), f"'{old}' does not stand in {form}"
+    assert wrong(form, page(form).replace(old, new, 1))
+
+
+def test_curves_and_tables_are_those_of_the_run():
+    """What an axis says at a place of a curve is the column's value then, and the table's column is the run's."""
+    run = subject().run
+    for column in (0, 1):
+        x = run.x.copy()
+        x[:, column] = -x[:, column]
+        assert wrong(".html", page(".html"), replace(run, x=x)), f"column {column}"
+    assert wrong(".html", page(".html"), replace(run, t=run.t * 1.1))
+
+
+def test_numbers_at_an_axis_are_read():
+    """A wrong number at an axis moves the curve."""
+    text = page(".html")
+    at = text.index('text-anchor="end">') + len('text-anchor="end">')
+    end = text.index("<", at)
+    assert wrong(".html", text[:at] + str(float(text[at:end].replace("\N{MINUS SIGN}", "-")) + 0.7) + text[end:])
+
+
+def test_mathml_is_read_as_it_is_set():
+    r"""<msub>R, rod</msub> is R_{\mathrm{rod}}; a dot over a letter is its rate; a fraction a fraction."""
+    cases = {
+        "<math><msub><mi>R</mi><mi>rod</mi></msub></math>": r"R_{\mathrm{rod}}",
+        '<math><mover accent="true"><mi>θ</mi><mo>˙</mo></mover></math>': r"\dot{\theta }",
+        "<math><mfrac><mn>1</mn><mn>2</mn></mfrac><mi>m</mi></math>": r"\frac{1}{2} m",
+    }
+    assert {x: tex_of(next(markup_of(x).all("math"))) for x in cases} == cases
+
+
+def test_what_is_said_by_a_place_far_back_is_put_back():
+    """2 new bytes, then 3 from 2 back: abab a, then the rest."""
+    assert copies_undone(bytes([3, 2, 2, 3]) + b"abcd") == b"ababacd"
