@@ -10,6 +10,7 @@ from typing import Any
 
 from eomgen.errors import DerivationError
 from eomgen.mechanics.balance.balance import Balance, BodyEquation
+from eomgen.mechanics.balance.carried_balance import along_carriers, along_ground_again, with_what_is_carried
 from eomgen.mechanics.balance.ground_balance import along_ground
 from eomgen.mechanics.balance.unit_wrenches import Effect
 from eomgen.mechanics.balance.unknown_loads import with_unknowns
@@ -22,6 +23,7 @@ from eomgen.symbolic.exact.normal_form import readable_all
 from eomgen.symbolic.exact.signs import sign_of_terms
 from eomgen.symbolic.expression.derivative import substituted
 from eomgen.symbolic.expression.graph import Node, Scalar, is_zero
+from eomgen.symbolic.expression.node import SparseRow
 from eomgen.symbolic.numeric.evaluation import NoValue, evaluate, fifty_digits
 from eomgen.symbolic.numeric.work import Work
 from eomgen.symbolic.solve.linear import Solution
@@ -47,18 +49,44 @@ def solution_of_balance(
         work: products of terms by which an entry is made readable.
     """
     coefficients, needed = with_unknowns(balance)
-    if not at:
-        coefficients, needed = along_ground(balance, coefficients, needed)
-    coefficients += [{j: 1} for j in balance.given]
-    needed += balance.given.values()
+    pushes = [_pushes(balance, e) for e in balance.equations]
+    if at:
+        return _solved(balance, coefficients, needed, pushes, at, sure=sure, work=work)
+    solution = _solved(balance, *along_ground(balance, coefficients, needed), pushes, sure=sure)
+    if sure is None or not solution.unsure:
+        return solution
+    coefficients, turned = along_carriers(balance, coefficients)
+    rows, needed = with_what_is_carried(balance, coefficients, needed)
+    pushes, _ = with_what_is_carried(balance, pushes, [0] * len(pushes))
+    solution = _solved(balance, *along_ground(balance, rows, needed), pushes, sure=sure, regular=True)
+    return along_ground_again(solution, turned)
+
+
+def _solved(
+    balance: Balance,
+    coefficients: list[SparseRow],
+    needed: list[Scalar],
+    pushes: list[SparseRow],
+    at: Mapping[Node, Scalar] | None = None,
+    *,
+    sure: int | None = SURE,
+    work: int = Work.ANSWER,
+    regular: bool = False,
+) -> Solution:
+    """The solution of such equations.
+
+    Args:
+        pushes: of each the components with friction as they would be without friction.
+        regular: what has no sure pivot is solved by normal equations of any size.
+    """
+    coefficients = coefficients + [{j: 1} for j in balance.given]
+    needed = [*needed, *balance.given.values()]
     entries = [x for row in coefficients for x in row.values()]
-    pushes = [*(_pushes(balance, e) for e in balance.equations), *({} for _ in balance.given)]
+    tests: list[SparseRow] = [*pushes, *({} for _ in balance.given)]
     if at:
         entries = list(readable_all(substituted(tuple(entries), at), work))
         needed = list(readable_all(substituted(tuple(needed), at), work))
-        pushes = [
-            dict(zip(row, readable_all(substituted(tuple(row.values()), at), work), strict=True)) for row in pushes
-        ]
+        tests = [dict(zip(row, readable_all(substituted(tuple(row.values()), at), work), strict=True)) for row in tests]
     flat = iter(entries)
     rows = [{j: next(flat) for j in row} for row in coefficients]
     parameters = frozenset(balance.system.symbols.parameters.values())
@@ -77,7 +105,7 @@ def solution_of_balance(
     values = values_at_a_state(balance.system, entries)
     return general_solution(
         LinearSystem(rows, needed, len(balance.names), values),
-        Pivots(rank=simple, last=last, sure=sure, tests=pushes, factors=parameters, steady=has_sign),
+        Pivots(rank=simple, last=last, sure=sure, tests=tests, factors=parameters, steady=has_sign, regular=regular),
     )
 
 

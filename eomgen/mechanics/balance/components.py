@@ -242,7 +242,7 @@ def sliding_friction(system: System, component: Component) -> tuple[Scalar, Scal
 def _tie_components(system: System, axes: Axes) -> list[Component]:
     found = []
     for row in system.ties.rows:
-        effects = tuple(e for push in row.pushes for e in effects_of_load(axes, push))
+        effects = _tie_effects(axes, row)
         if not effects:
             continue
         found.append(_of_tie(system, row, effects, () if row.round else _friction(axes, row)))
@@ -250,6 +250,24 @@ def _tie_components(system: System, axes: Axes) -> list[Component]:
             along = tuple(e for push in row.tangent for e in effects_of_load(axes, push))
             found.append(Component(row.tie, "tie", "t", row.number + 1, along, bilateral_friction=row.friction))
     return found
+
+
+def seen_by_carriers(system: System) -> dict[int, tuple[str, Component]]:
+    """{component: (the body that carries both bodies of its hinge, the same along that body's axes)}, in space."""
+    motion = system.motion
+    if motion.scope.model.space == "plane":
+        return {}
+    seen: dict[tuple[str, int], tuple[str, Component]] = {}
+    for row in system.ties.rows:
+        if row.carrier is not None and row.component in ("x", "y", "z"):
+            effects = _tie_effects(Axes(motion.seen_from(row.carrier)), row)
+            seen[row.tie, row.number] = (row.carrier, _of_tie(system, row, effects, ()))
+    rows = [(c.owner, c.number) if c.kind == "tie" else ("", 0) for c in components_of(system, Axes(motion))]
+    return {j: seen[row] for j, row in enumerate(rows) if row in seen}
+
+
+def _tie_effects(axes: Axes, row: Row) -> tuple[Effect, ...]:
+    return tuple(e for push in row.pushes for e in effects_of_load(axes, push))
 
 
 def normals_of_round(components: Sequence[Component], friction: Component) -> tuple[int, ...]:

@@ -13,11 +13,13 @@ from __future__ import annotations
 
 from collections import Counter
 from collections.abc import Callable, Collection, Iterable, Mapping, Sequence
+from operator import add
 from typing import Any
 
 import numpy as np
 
 from eomgen.records import dataclass
+from eomgen.symbolic.expression.functions import inner, over
 from eomgen.symbolic.expression.graph import Node, Scalar, is_zero
 from eomgen.symbolic.expression.node import SparseRow
 from eomgen.symbolic.numeric.tolerances import ELIMINATED_AT_50, RANK
@@ -39,6 +41,7 @@ class Solution:
         free: the unknowns that stay free: as many as the equations leave undetermined.
         left: right sides of the rows in which no unknown is left: they must vanish.
         worst: the largest rank of a pivot; None where some pivots came late, or none was sure.
+        unsure: whether something that may vanish at some state, where the equations are regular, was divided by.
     """
 
     constants: dict[int, Scalar]
@@ -46,6 +49,7 @@ class Solution:
     free: tuple[int, ...]
     left: tuple[Scalar, ...]
     worst: int | None = None
+    unsure: bool = False
 
     def determined(self, j: int) -> bool:
         """Whether unknown j has one value only."""
@@ -95,6 +99,7 @@ class Pivots:
         factors: symbols that may stand in common factors of rows and columns, which are taken out first: parameters for
             which the equations are not singular.
         steady: whether an atom of such symbols vanishes nowhere; rows are divided by no other.
+        regular: what waits is solved by normal equations, however many unknowns hang together and depend on others.
     """
 
     rank: Callable[[Scalar], int] = _number_first
@@ -104,6 +109,7 @@ class Pivots:
     tests: Sequence[Mapping[int, Scalar]] = ()
     factors: Collection[Node] = ()
     steady: Callable[[Node], bool] = lambda _: True
+    regular: bool = False
 
 
 def sparse_solution(system: LinearSystem, pivots: Pivots) -> Solution:
@@ -133,11 +139,15 @@ def sparse_solution(system: LinearSystem, pivots: Pivots) -> Solution:
     waits = bool(late) or (sure is not None and any(line.entries for line in lines))
     if sure is not None:
         _normal(lines, order, system.values)
+    if pivots.regular:
+        _squares(lines, order, late, system.values, pivots.tolerance)
+    done = len(order)
     _eliminate(lines, order, lambda line, j, x: ((j in late) + (not tested(line, j)), rank(x)), pivots.tolerance)
     free = tuple(j for j in range(system.unknowns) if j not in {pivot for pivot, _ in order})
     constants, shares = _substituted(order, free, pivots.tolerance)
     worst = None if waits else max((rank(line.entries[j]) for j, line in order), default=0)
-    return Solution(constants, shares, free, tuple(line.right for line in lines), worst)
+    unsure = any(divides(line, j, line.entries[j]) > (sure or 0) for j, line in order[done:])
+    return Solution(constants, shares, free, tuple(line.right for line in lines), worst, unsure)
 
 
 def _lines(system: LinearSystem, pivots: Pivots) -> list[_Line]:
@@ -225,6 +235,78 @@ def _normal(lines: list[_Line], order: list[tuple[int, _Line]], values: ValuesAt
         lines += [_Line({}, {}, _rest(line, known), {}) for line in group[len(unknowns) :]]
 
 
+def _squares(
+    lines: list[_Line], order: list[tuple[int, _Line]], late: Collection[int], values: ValuesAt, tolerance: float
+) -> None:
+    """Solve what is left without friction by its normal equations; unknowns that depend on those before stay free.
+
+    A_S x_S = b - A_F x_F,    A_S^T A_S x_S = A_S^T (b - A_F x_F)
+    """
+    for group, unknowns in (each for each in _groups(lines) if not {*late} & {*each[1]}):
+        own = [unknowns[k] for k in _spanning([[line.shadow.get(j, 0) for line in group] for j in unknowns])]
+        A = [[line.entries.get(j, 0) for line in group] for j in own]
+        factors = _factors(A)
+        x = _least_squares(A, factors, [line.right for line in group])
+        left = [_rest(line, dict(zip(own, x, strict=True))) for line in group]
+        known = dict(zip(own, map(add, x, _least_squares(A, factors, left)), strict=True))  # what rounding left
+        shares: dict[int, SparseRow] = {j: {} for j in own}
+        for f in (j for j in unknowns if j not in known):
+            share = _least_squares(A, factors, [line.entries.get(f, 0) for line in group])
+            for j, y, shadow in zip(own, share, values(share), strict=True):
+                if abs(shadow) > tolerance:
+                    shares[j][f] = y
+        for line in group:
+            lines.remove(line)
+        lines += [_Line({}, {}, _rest(line, known), {}) for line in group[len(own) :]]
+        for j, share_of in shares.items():
+            shadows = dict(zip(share_of, values(list(share_of.values())), strict=True))
+            order.append((j, _Line({j: 1, **share_of}, {j: 1, **shadows}, known[j], {})))
+
+
+def _spanning(columns: Sequence[Sequence[Any]]) -> list[int]:
+    """The columns that do not depend on those before them."""
+    found: list[int] = []
+    basis: list[np.ndarray] = []
+    for k, column in enumerate(columns):
+        whole = np.array([float(x) for x in column])
+        rest = whole / np.linalg.norm(whole)
+        for direction in (*basis, *basis):
+            rest = rest - direction * (direction @ rest)
+        if np.linalg.norm(rest) > RANK:
+            found.append(k)
+            basis.append(rest / np.linalg.norm(rest))
+    return found
+
+
+def _factors(A: Sequence[Sequence[Scalar]]) -> list[list[Scalar]]:
+    """A^T A = L D L^T: each row of L below the diagonal, then of D, which vanishes where columns depend on others.
+
+    Args:
+        A: its columns.
+    """
+    rows: list[list[Scalar]] = []
+    for i, a in enumerate(A):
+        row: list[Scalar] = []  # of L D
+        for k in range(i):
+            row.append(inner(a, A[k]) - inner(row, rows[k][:k]))
+        L = [over(x, rows[k][k]) for k, x in enumerate(row)]
+        rows.append([*L, inner(a, a) - inner(row, L)])
+    return rows
+
+
+def _least_squares(
+    A: Sequence[Sequence[Scalar]], factors: Sequence[Sequence[Scalar]], b: Sequence[Scalar]
+) -> list[Scalar]:
+    """x of A^T A x = A^T b, by the factors."""
+    x: list[Scalar] = []
+    for a, row in zip(A, factors, strict=True):
+        x.append(inner(a, b) - inner(row[:-1], x))
+    x = [over(y, row[-1]) for y, row in zip(x, factors, strict=True)]
+    for i in reversed(range(len(x))):
+        x[i] = x[i] - _sum(factors[k][i] * x[k] for k in range(i + 1, len(x)))
+    return x
+
+
 def _tested(
     group: list[_Line], unknowns: list[int], A: np.ndarray, values: ValuesAt
 ) -> tuple[list[SparseRow], list[Scalar]]:
@@ -275,7 +357,7 @@ def _sum(terms: Iterable[Scalar]) -> Scalar:
 
 def _rest(line: _Line, known: Mapping[int, Scalar]) -> Scalar:
     """b - A x of a line: zero where the equations hold."""
-    return line.right - _sum(x * known[j] for j, x in line.entries.items())
+    return line.right - _sum(x * known[j] for j, x in line.entries.items() if j in known)
 
 
 def _subtract(other: _Line, line: _Line, j: int, tolerance: float) -> None:
@@ -335,6 +417,4 @@ def _add(share: SparseRow, shadow: dict[int, Any], sizes: dict[int, Any], f: int
 def _quotient(a: Scalar, b: Scalar) -> Scalar:
     if type(b) is int and b in (1, -1):
         return a if b == 1 else -a
-    from eomgen.symbolic.expression.functions import over
-
     return over(a, b)
