@@ -21,13 +21,14 @@ from eomgen.errors import DerivationError
 from eomgen.mechanics.balance.friction import with_rest
 from eomgen.mechanics.bodies.scope import Scope
 from eomgen.mechanics.bodies.tree import branches_of
+from eomgen.mechanics.constraints.assembly import fixed_by_position
 from eomgen.mechanics.constraints.closure import gaps_of
 from eomgen.mechanics.constraints.consistency import is_guess, is_typed
 from eomgen.mechanics.constraints.edges import left_of
 from eomgen.mechanics.equations.articulated import with_accelerations
 from eomgen.mechanics.equations.system import System
 from eomgen.mechanics.formulations import recursive
-from eomgen.mechanics.initial_state.initial_state import fixed_by_position, start_speeds
+from eomgen.mechanics.initial_state.initial_state import start_speeds
 from eomgen.model.arithmetic import in_order
 from eomgen.model.parts import Coordinate, Model
 from eomgen.records import dataclass
@@ -189,7 +190,7 @@ class Live:
         declared, model = self.phase.declared, self.model
         q, u, parts = declared.symbols.q, declared.symbols.u, model.coordinates
         standing = set(symbols_of(gaps_of(declared.ties)))
-        sought = fixed_by_position(declared)
+        sought = fixed_by_position(declared.ties)
         return {
             "parameters": list(declared.symbols.parameters),
             "derived": list(self.derived),

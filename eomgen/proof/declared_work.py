@@ -95,7 +95,7 @@ class _Declared(InNumbers):
 
     @property
     def scene(self) -> SystemScene:
-        return SystemScene(self.motion)
+        return SystemScene(self.motion, begun=self.system.loads.begun)
 
     def turned(self, d: Sequence[Any]) -> Way:
         """The states at q +- h N d; nothing else changes."""

@@ -149,7 +149,7 @@ class ActingElement(InNumbers):
 
     @cached_property
     def scene(self) -> SystemScene:
-        return SystemScene(self.motion)
+        return SystemScene(self.motion, begun=self.system.loads.begun)
 
     # -- geometry --------------------------------------------------------------------------------------------
 

@@ -44,8 +44,7 @@ def open_at_start(system: System, state: State) -> str:
 def springs_of_the_start(system: System) -> tuple[Applied, ...]:
     """The springs that are slack at the length, or angle, which they have at the start."""
     forces = system.scope.model.forces
-    elements = ((applied, forces[applied.name].element) for applied in system.loads.applied)
-    return tuple(applied for applied, element in elements if element is not None and element.slack == "start")
+    return tuple(applied for applied in system.loads.applied if forces[applied.name].of_the_start)
 
 
 def pulled_at_start(system: System) -> str:
@@ -58,15 +57,13 @@ def pulled_at_start(system: System) -> str:
         start = start_of_motion(system).values
     except (DerivationError, MissingValues, ModelError) as error:
         raise NoValue(str(error).splitlines()[0]) from None
-    symbols, model = system.symbols, system.scope.model
-    known = exact_parameters(model)
+    symbols = system.symbols
+    known = exact_parameters(system.scope.model)
     state = {node: float(known[name]) for name, node in symbols.parameters.items() if name in known}
     state |= {node: start.get(node.name, 0.0) for node in (*symbols.q, *symbols.u)} | {symbols.t: 0.0}
     for applied in springs_of_the_start(system):
         if applied.potential is not None and evaluate((applied.potential,), state, FLOAT)[0] > SOLVED:
-            guesses = [name for name, q in model.coordinates.items() if q.dependent and q.start is None]
-            named = f", as '{guesses[0]}' is only guessed there: give it a start" if guesses else ""
-            return f"forces.{applied.name} is not slack where the motion starts{named}"
+            return f"forces.{applied.name} is not slack where the motion starts"
     return ""
 
 

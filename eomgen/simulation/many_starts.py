@@ -18,9 +18,10 @@ from eomgen.codegen.program import program_of
 from eomgen.codegen.rhs import RightHandSide, compiled
 from eomgen.codegen.spheres import on_spheres, spheres_of
 from eomgen.mechanics.bodies.system_scene import start_value
+from eomgen.mechanics.constraints.assembly import fixed_by_position
 from eomgen.mechanics.constraints.closure import CLOSING, gaps_of, norms_of
 from eomgen.mechanics.equations.system import System
-from eomgen.mechanics.initial_state.initial_state import fixed_by_position, start_speeds
+from eomgen.mechanics.initial_state.initial_state import start_speeds
 from eomgen.records import dataclass
 from eomgen.simulation.phase_model import PhaseModel
 from eomgen.symbolic.expression.derivative import jacobian
@@ -98,7 +99,7 @@ class ManyStarts:
 
     @cached_property
     def _sought(self) -> list[Node]:
-        return fixed_by_position(self._system)
+        return fixed_by_position(self._system.ties)
 
     @cached_property
     def _phi(self) -> tuple[Scalar, ...]:

@@ -6,6 +6,8 @@ Q_k = sum F . dp/dq_k - dV/dq_k, and wrenches on twists, Q = sum B^T W.
 
 from __future__ import annotations
 
+from collections.abc import Mapping
+from dataclasses import field
 from functools import cached_property
 
 from eomgen.errors import DerivationError, NotYet
@@ -15,7 +17,7 @@ from eomgen.model.forces.load import Couple, GeneralizedForce, Load, PointForce,
 from eomgen.records import dataclass
 from eomgen.symbolic.expression.derivative import depends_on
 from eomgen.symbolic.expression.functions import over
-from eomgen.symbolic.expression.graph import Scalar, is_zero
+from eomgen.symbolic.expression.graph import Node, Scalar, is_zero
 from eomgen.symbolic.expression.rational import Fraction
 from eomgen.symbolic.expression.spatial import ZERO, Vector, Wrench, apply, cross, dot, plus, times, transposed
 
@@ -60,11 +62,16 @@ class JointEffort:
 
 @dataclass(frozen=True)
 class Loads:
-    """All that is applied to the system."""
+    """All that is applied to the system.
+
+    Args:
+        begun: where coordinates start that the ties place, for springs of the start's length.
+    """
 
     motion: Motion
     applied: tuple[Applied, ...]
     efforts: tuple[JointEffort, ...]
+    begun: Mapping[Node, Scalar] = field(default_factory=dict)
 
     @cached_property
     def potential_energy(self) -> Scalar:
@@ -97,18 +104,22 @@ class Loads:
         return tuple(load for force in self.applied for load in force.loads)
 
 
-def loads_of(motion: Motion) -> Loads:
-    """Every applied force of the model, as loads and potentials."""
-    applied = []
+def loads_of(motion: Motion, begun: Mapping[Node, Scalar] | None = None) -> Loads:
+    """Every applied force of the model, as loads and potentials.
+
+    Args:
+        begun: where coordinates start that do not start where they are declared to.
+    """
+    applied, begun = [], begun or {}
     for name, force in motion.scope.model.forces.items():
-        scene = SystemScene(motion, f"forces.{name}")
+        scene = SystemScene(motion, f"forces.{name}", begun)
         if not force.works:
             raise NotYet(f"forces of kind '{force.kind}' are not derived yet", f"forces.{name}")
         loads, spread = tuple(force.loads(scene)), tuple(force.spread(scene))
         applied.append(Applied(name, loads, force.potential(scene), force.placeless, spread))
     efforts = [effort for link in motion.links for effort in _joint_efforts(motion, link)]
     _refuse_accelerations(motion, applied, efforts)
-    return Loads(motion, tuple(applied), tuple(efforts))
+    return Loads(motion, tuple(applied), tuple(efforts), begun)
 
 
 def _refuse_accelerations(motion: Motion, applied: list[Applied], efforts: list[JointEffort]) -> None:

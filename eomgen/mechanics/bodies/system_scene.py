@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import field
 from typing import Any
 
 from eomgen.errors import DerivationError, ModelError
@@ -26,10 +27,16 @@ from eomgen.symbolic.numeric.work import Work
 
 @dataclass(frozen=True)
 class SystemScene:
-    """What the force laws and the ties ask of a system in motion; `where` is the part that asks, for messages."""
+    """What the force laws and the ties ask of a system in motion.
+
+    Args:
+        where: the part that asks, for messages.
+        begun: where coordinates start that do not start where they are declared to.
+    """
 
     motion: Motion
     where: str = ""
+    begun: Mapping[Node, Scalar] = field(default_factory=dict)
 
     def value(self, expression: Expression) -> Scalar:
         return self.motion.scope.value(expression)
@@ -81,7 +88,7 @@ class SystemScene:
 
     def seen_from(self, body: str | None) -> SystemScene:
         """The same as a body sees it that carries what is asked for: its axes stand for the ground's."""
-        return self if body is None else SystemScene(self.motion.seen_from(body), self.where)
+        return self if body is None else SystemScene(self.motion.seen_from(body), self.where, self.begun)
 
     def angle(self, body: str) -> Scalar:
         angle = self.motion.link(body).angle
@@ -151,9 +158,9 @@ class SystemScene:
         return tuple(rows)
 
     def start(self, scalar: Scalar) -> Scalar:
-        """The scalar at the start values of the coordinates and t = 0."""
+        """The scalar where the coordinates start and t = 0."""
         scope = self.motion.scope
-        at = with_unit_quaternions(scope, start_values(scope))
+        at = {**with_unit_quaternions(scope, start_values(scope)), **self.begun}
         return substituted((scalar,), {**at, scope.symbols.t: 0})[0]
 
     def own_place(self, body: str, point: str | None) -> BodyPoint:

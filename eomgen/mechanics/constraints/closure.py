@@ -44,7 +44,7 @@ def generic_state(
         MissingValues, DerivationError: the ties do not close there.
     """
     rng = rng or Random(1)
-    state, q = _still(ties, rng, shaken=shaken)
+    state, q = still_values(ties, rng, shaken=shaken)
     for spread in (*spreads, *SPREADS):
         found = closed(ties, state | _scattered(ties, q, spread, rng), movable(ties))
         if found is not None:
@@ -60,7 +60,7 @@ def begun_state(ties: Ties) -> State:
         MissingValues, DerivationError: the ties do not close there.
     """
     model, symbols = ties.motion.scope.model, ties.motion.scope.symbols
-    state, q = _still(ties, Random(1))
+    state, q = still_values(ties, Random(1))
     numbers = {name: float(state[node]) for name, node in symbols.parameters.items()}
     speeds = start_values(model, numbers)[1]
     given = {node: of_50_digits(q[node.name]) for node in symbols.q}
@@ -75,11 +75,11 @@ def begun_state(ties: Ties) -> State:
 def scattered_state(ties: Ties) -> State:
     """Values of every symbol: near the start, off any special position; the ties need not hold."""
     rng = Random(1)
-    state, q = _still(ties, rng)
+    state, q = still_values(ties, rng)
     return _with_laws(ties, state | _scattered(ties, q, SPREADS[0], rng))
 
 
-def _still(ties: Ties, rng: Random, *, shaken: bool = False) -> tuple[State, dict[str, float]]:
+def still_values(ties: Ties, rng: Random, *, shaken: bool = False) -> tuple[State, dict[str, float]]:
     """(values of every symbol but the coordinates, where the coordinates start)."""
     scope = ties.motion.scope
     model, symbols = scope.model, scope.symbols

@@ -13,6 +13,7 @@ from eomgen.mechanics.bodies.kinematics import Motion, motion_of
 from eomgen.mechanics.bodies.loads import Loads, loads_of
 from eomgen.mechanics.bodies.scope import Scope, scope_of
 from eomgen.mechanics.bodies.simplify import shorter
+from eomgen.mechanics.constraints.assembly import begun_places
 from eomgen.mechanics.constraints.elimination import Elimination, dependent_coordinates, elimination_of
 from eomgen.mechanics.constraints.ties import Ties, holds_identically, ties_of
 from eomgen.model.parts import Model
@@ -92,7 +93,9 @@ def system_of(model: Model, modes: ContactModes | None = None, *, with_laws: boo
 def free_system_of(model: Model, modes: ContactModes | None = None, *, with_laws: bool = False) -> System:
     """Motion, loads and ties of a model in which dependent coordinates are as free as others."""
     motion = motion_of(scope_of(model, with_laws=with_laws))
-    return System(motion, loads_of(motion), ties_of(motion, modes=modes), modes or {})
+    ties = ties_of(motion, modes=modes)
+    begun = begun_places(ties) if any(force.of_the_start for force in model.forces.values()) else {}
+    return System(motion, loads_of(motion, begun), ties, modes or {})
 
 
 def reduced_system(free: System) -> System:
@@ -109,4 +112,4 @@ def reduced_system(free: System) -> System:
         scope, solved = with_declared_speeds(scope, vanishes=holds_identically, shorter=shorter)
     motion = motion_of(scope)
     ties = ties_of(motion, {} if elimination is None else elimination.used, free.modes)
-    return System(motion, loads_of(motion), ties, free.modes, elimination, free, solved)
+    return System(motion, loads_of(motion, free.loads.begun), ties, free.modes, elimination, free, solved)

@@ -48,5 +48,5 @@ def _made_of(free: System, scope: Scope) -> System:
     """The system of another scope over the rates, dependent coordinates eliminated."""
     scope = replace(scope, model=altered(scope.model, speeds=Table({})))
     motion = motion_of(scope)
-    made = System(motion, loads_of(motion), ties_of(motion, modes=free.modes), free.modes)
+    made = System(motion, loads_of(motion, free.loads.begun), ties_of(motion, modes=free.modes), free.modes)
     return reduced_system(made) if dependent_coordinates(scope) else made

@@ -21,11 +21,12 @@ from eomgen.errors import DerivationError
 from eomgen.mechanics.bodies.places import Located, places_of
 from eomgen.mechanics.bodies.system_scene import start_values, with_unit_quaternions
 from eomgen.mechanics.bodies.tree import branches_of
+from eomgen.mechanics.constraints.assembly import SEEDS, fixed_by_position
 from eomgen.mechanics.constraints.closure import of_50_digits
 from eomgen.mechanics.constraints.consistency import is_guess
 from eomgen.mechanics.equations.system import System
 from eomgen.mechanics.formulations import recursive
-from eomgen.mechanics.initial_state.initial_state import Start, fixed_by_position, start_of_motion, start_speeds
+from eomgen.mechanics.initial_state.initial_state import Start, start_of_motion, start_speeds
 from eomgen.mechanics.initial_state.values_at_rest import speeds_near
 from eomgen.model.values import exact_parameters
 from eomgen.records import dataclass
@@ -38,7 +39,6 @@ from eomgen.symbolic.numeric.tolerances import COMPUTED, RANK
 from eomgen.symbolic.numeric.work import Work
 from eomgen.symbolic.solve.linear_systems import LinearSystem, unique_solution
 
-SEEDS = (11, 12)  # of values for parameters that have none: what is no closed form agrees at one of them by chance
 MOST_UNKNOWNS = 8  # speeds and multipliers of speeds that are sought in closed form
 
 
@@ -136,7 +136,7 @@ def declared_start(system: System, *, at_rest: bool = False) -> dict[Node, Scala
     Args:
         at_rest: all speeds are 0, whatever the model says.
     """
-    scope, sought = system.scope, set(fixed_by_position(system))
+    scope, sought = system.scope, set(fixed_by_position(system.ties))
     given = {scope.symbols.t: 0} | start_values(scope, (q for q in scope.symbols.q if q not in sought))
     start = with_unit_quaternions(scope, given)
     speeds = dict.fromkeys(scope.symbols.u, 0) if at_rest else start_speeds(system)

@@ -8,23 +8,22 @@ these do not, the nearest values are taken at which they do (`consistency`), and
 from __future__ import annotations
 
 import math
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Mapping
 from typing import Any
 
 import numpy as np
 
 from eomgen.errors import DerivationError, MissingValues, UsageError
 from eomgen.mechanics.bodies.tree import branches_of
+from eomgen.mechanics.constraints.assembly import fixed_by_position, open_at, that_stay, tiers_of, with_gaps_closed
 from eomgen.mechanics.constraints.bifurcations import Fork, fork_at, is_at_rest, leads_on, speeds_along
-from eomgen.mechanics.constraints.closure import closed, gaps_of, of_50_digits
-from eomgen.mechanics.constraints.consistency import bilateral, is_guess, is_typed, nearest_places, nearest_speeds
+from eomgen.mechanics.constraints.closure import closed, of_50_digits
+from eomgen.mechanics.constraints.consistency import is_guess, is_typed, nearest_speeds
 from eomgen.mechanics.constraints.elimination import dependent_coordinates
-from eomgen.mechanics.constraints.ties import Row, Ties
 from eomgen.mechanics.equations.system import System
 from eomgen.mechanics.formulations import recursive
-from eomgen.mechanics.initial_state.open_ties import excess, quoted_names, refuse_open_gaps, refuse_open_rates
+from eomgen.mechanics.initial_state.open_ties import quoted_names, refuse_open_gaps, refuse_open_rates
 from eomgen.model.begun_speeds import begun_speeds
-from eomgen.model.contacts import contacts_of
 from eomgen.model.own_units import in_own_unit
 from eomgen.model.parts import Model
 from eomgen.model.values import exact_parameters, first_guesses, numeric_parameters, start_values
@@ -122,10 +121,10 @@ def start_of_motion(
     if all(row.identical for row in system.ties.rows):
         return Start(values)
     before = _numbers(system, values, parameters)
-    sought = fixed_by_position(system)
+    sought = fixed_by_position(system.ties)
     state = (closed(system.ties, before, sought) or before) if sought else before
     called = _called(system, start or {})
-    state, open_gaps = _with_gaps_closed(system, state, called)
+    state, open_gaps = with_gaps_closed(system.ties, state, called)
     refuse_open_gaps(system, state)
     state, open_rates = _with_rates_closed(system, state, called, parameters)
     refuse_open_rates(system, state)
@@ -138,32 +137,17 @@ def start_of_motion(
 # -- values at which the ties hold -------------------------------------------------------------------
 
 
-def _with_gaps_closed(system: System, state: State, called: frozenset[str]) -> tuple[State, tuple[str, ...]]:
-    """(the nearest state in which positions agree with the ties, the ties that did not hold)."""
-    rows = [row for row in system.ties.rows if row.gap is not None and not row.identical]
-    apart = _apart(((row, row.gap) for row in rows if row.gap is not None), system.symbols.q, state)
-    ties = _that_stay(system, apart)
-    opened = tuple(name for name in apart if any(row.tie == name for row in ties.rows))
-    if not opened:
-        return state, ()
-    model, standing = system.scope.model, set(symbols_of(gaps_of(ties)))
-    sought = fixed_by_position(system)
-    own = [q for q in system.symbols.q if q in standing and q not in sought and not model.coordinates[q.name].driven]
-    silent, given, typed = _tiers(model, own, called)
-    return nearest_places(ties, state, ([*sought, *silent], given, typed), (*sought, *silent)) or state, opened
-
-
 def _with_rates_closed(
     system: System, state: State, called: frozenset[str], parameters: Mapping[str, Any] | None
 ) -> tuple[State, tuple[str, ...]]:
     """(the nearest state in which speeds agree with the ties, the ties that did not hold)."""
-    apart = _apart(((row, row.velocity) for row in system.ties.closing), system.symbols.u, state)
-    ties = _that_stay(system, apart)
+    apart = open_at(((row, row.velocity) for row in system.ties.closing), system.symbols.u, state)
+    ties = that_stay(system.ties, apart)
     opened = tuple(name for name in apart if any(row.tie == name for row in ties.rows))
     if not opened:
         return state, ()
     M = _inertia(system, state, parameters)
-    tiers = _tiers(system.scope.model, system.symbols.u, called)
+    tiers = tiers_of(system.scope.model, system.symbols.u, called)
     return nearest_speeds(ties, state, tiers, M) or state, opened
 
 
@@ -192,7 +176,7 @@ def _along_a_branch(system: System, state: State, called: frozenset[str]) -> tup
         return state, None, ()
     if fork is None or is_at_rest(system.ties, state) or leads_on(system.ties, fork, state):
         return state, fork, ()
-    found = speeds_along(system.ties, fork, state, _tiers(system.scope.model, system.symbols.u, called))
+    found = speeds_along(system.ties, fork, state, tiers_of(system.scope.model, system.symbols.u, called))
     if found is None:
         what = f"the start lies in {fork.words}, and no motion goes on with its speeds"
         raise DerivationError(what, f"constraints.{fork.ties[0]}", "give other speeds, or start beside that position")
@@ -203,24 +187,6 @@ def _called(system: System, start: Mapping[str, float]) -> frozenset[str]:
     """The coordinates and speeds whose start a person typed, or a caller gave: these are changed last."""
     names = (node.name for node in (*system.symbols.q, *system.symbols.u))
     return frozenset(name for name in names if name in start or is_typed(system.scope.model, name))
-
-
-def _tiers(model: Model, own: Sequence[Node], called: frozenset[str]) -> tuple[list[Node], list[Node], list[Node]]:
-    """Coordinates or speeds in the order in which they are changed: nobody's, those of the model, those called."""
-    silent = [node for node in own if node.name not in called and is_guess(model, node.name)]
-    typed = [node for node in own if node.name in called]
-    return silent, [node for node in own if node not in silent and node not in typed], typed
-
-
-def _apart(pairs: Iterable[tuple[Row, Scalar]], symbols: Sequence[Node], state: State) -> tuple[str, ...]:
-    """The ties whose scalars ought to be zero and are not."""
-    return tuple(dict.fromkeys(row.tie for row, x in pairs if excess(x, symbols, state)))
-
-
-def _that_stay(system: System, apart: Sequence[str]) -> Ties:
-    """All ties but the contacts that are open and may be so."""
-    ending = [contact.name for contact in contacts_of(system.scope.model) if contact.unilateral]
-    return bilateral(system.ties, ending, [name for name in ending if name not in apart])
 
 
 def _changes(
@@ -276,13 +242,6 @@ def _by_rates(system: System, speed: str, rates: Mapping[str, Scalar]) -> Scalar
     return substituted((scope.names[speed],), {**known, scope.symbols.t: 0})[0]
 
 
-def fixed_by_position(system: System) -> list[Node]:
-    """The dependent coordinates that stand in a gap."""
-    names = dependent_coordinates(system.scope)
-    standing = set(symbols_of(gaps_of(system.ties)))
-    return [q for q in system.symbols.q if q.name in names and q in standing]
-
-
 def _given(system: System, parameters: Mapping[str, Any] | None, start: Mapping[str, float]) -> dict[str, float]:
     """The start values as they are written, and those in their place."""
     names = [node.name for node in (*system.symbols.q, *system.symbols.u)]
@@ -291,7 +250,7 @@ def _given(system: System, parameters: Mapping[str, Any] | None, start: Mapping[
         raise UsageError(f"no coordinate or speed '{unknown[0]}'", mend=f"one of {', '.join(names)}")
     q, u = start_values(system.scope.model, parameters)
     guesses = first_guesses(system.scope.model, parameters)
-    sought = {node.name for node in fixed_by_position(system)}
+    sought = {node.name for node in fixed_by_position(system.ties)}
     values = {**q, **u, **{name: x for name, x in guesses.items() if name in sought}, **start}
     values |= _normed(system, values)
     values |= {name: x for name, x in _by_coordinates(system, values, parameters).items() if name not in start}

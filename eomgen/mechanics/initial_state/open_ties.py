@@ -2,11 +2,10 @@
 
 from __future__ import annotations
 
-import operator
-from collections.abc import Callable, Iterable, Sequence
-from typing import Any
+from collections.abc import Iterable, Sequence
 
 from eomgen.errors import DerivationError
+from eomgen.mechanics.constraints.assembly import open_by
 from eomgen.mechanics.constraints.closure import of_50_digits
 from eomgen.mechanics.constraints.elimination import dependent_coordinates
 from eomgen.mechanics.constraints.ties import Row
@@ -15,13 +14,11 @@ from eomgen.mechanics.equations.system import System
 from eomgen.mechanics.initial_state.nearest_miss import nearest_miss
 from eomgen.model.forces.load import PointForce
 from eomgen.model.own_units import in_own_unit
-from eomgen.symbolic.expression.derivative import depends_on, gradient
+from eomgen.symbolic.expression.derivative import depends_on
 from eomgen.symbolic.expression.graph import Node, Scalar
 from eomgen.symbolic.expression.node import State
 from eomgen.symbolic.expression.spatial import minus
-from eomgen.symbolic.expression.traversal import order
-from eomgen.symbolic.numeric.evaluation import NoValue, evaluate, fifty_digits
-from eomgen.symbolic.numeric.tolerances import COMPUTED, OPEN_GAP
+from eomgen.symbolic.numeric.evaluation import evaluate, fifty_digits
 
 
 def refuse_open_gaps(system: System, state: State) -> None:
@@ -115,37 +112,5 @@ def _worst(
     pairs: Iterable[tuple[Row, Scalar]], symbols: Sequence[Node], state: State
 ) -> tuple[Row, Scalar, float] | None:
     """(row, scalar, size) of the largest scalar that ought to be zero and is not; None where all are."""
-    found = [(row, x, excess(x, symbols, state)) for row, x in pairs]
+    found = [(row, x, open_by(x, symbols, state)) for row, x in pairs]
     return max((each for each in found if each[2]), key=lambda each: each[2], default=None)
-
-
-def excess(x: Scalar, symbols: Sequence[Node], state: State) -> float:
-    """|x|, where it is more than rounding: against its terms, and against what the symbols would have to move."""
-    try:
-        slopes = evaluate(gradient(x, symbols), state, fifty_digits())
-        value, terms = _value_and_terms(x, state)
-    except (NoValue, ZeroDivisionError):
-        return float("inf")
-    steepest = float(max((abs(slope) for slope in slopes), default=0))
-    return value if value > OPEN_GAP * terms and value > COMPUTED * steepest else 0.0
-
-
-def _value_and_terms(x: Scalar, state: State) -> tuple[float, float]:
-    """(|x|, the same with every sum taken of absolute values): how large the terms are that cancel."""
-    nodes = order((x,))
-    values = dict(zip(nodes, evaluate(nodes, state, fifty_digits()), strict=True))
-    terms = {node: abs(value) for node, value in values.items()}
-    for node in nodes:
-        if node.op in _OF_TERMS:
-            terms[node] = _OF_TERMS[node.op](
-                *(terms[a] if type(a) is Node else abs(of_50_digits(a)) for a in node.args)
-            )
-    return (float(abs(values[x])), float(terms[x])) if type(x) is Node else (abs(float(x)), 0.0)
-
-
-_OF_TERMS: dict[str, Callable[..., Any]] = {
-    "add": operator.add,
-    "sub": operator.add,
-    "mul": operator.mul,
-    "neg": operator.pos,
-}

@@ -13,9 +13,10 @@ import numpy as np
 from eomgen.errors import DerivationError
 from eomgen.mechanics.bodies.scope import Scope
 from eomgen.mechanics.bodies.system_scene import start_values, with_unit_quaternions
+from eomgen.mechanics.constraints.assembly import fixed_by_position
 from eomgen.mechanics.constraints.consistency import is_guess
 from eomgen.mechanics.equations.system import System
-from eomgen.mechanics.initial_state.initial_state import fixed_by_position, start_speeds
+from eomgen.mechanics.initial_state.initial_state import start_speeds
 from eomgen.model.arithmetic import in_order
 from eomgen.symbolic.expression.derivative import jacobian, tangent
 from eomgen.symbolic.expression.graph import Node, Scalar
@@ -59,7 +60,7 @@ def start_seeds(system: System, numbers: Mapping[Node, Any], seeds: Seeds, own: 
     dq |= {q: Fraction(1) for q in symbols.q if q.name == own}
     rows = [row for row in system.ties.rows if row.gap is not None and not row.identical]
     gaps = [row.gap for row in rows if row.gap is not None]
-    sought = fixed_by_position(system)
+    sought = fixed_by_position(system.ties)
     given = {q for q in symbols.q if scope.model.coordinates[q.name].driven}
     silent = [q for q in symbols.q if q in sought or (q.name != own and is_guess(scope.model, q.name))]
     silent = [q for q in silent if q not in given]

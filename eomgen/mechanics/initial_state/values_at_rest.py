@@ -10,9 +10,10 @@ from eomgen.errors import DerivationError
 from eomgen.mechanics.bodies.places import Located, places_of
 from eomgen.mechanics.bodies.scope import Scope
 from eomgen.mechanics.bodies.system_scene import start_values, with_unit_quaternions
+from eomgen.mechanics.constraints.assembly import fixed_by_position
 from eomgen.mechanics.constraints.closure import gaps_of, of_50_digits
 from eomgen.mechanics.equations.system import System
-from eomgen.mechanics.initial_state.initial_state import fixed_by_position, start_state
+from eomgen.mechanics.initial_state.initial_state import start_state
 from eomgen.model.arithmetic import in_order
 from eomgen.model.values import exact_parameters
 from eomgen.symbolic.expression.derivative import jacobian, substituted, symbols_of
@@ -35,7 +36,7 @@ def values_where_at_rest(system: System, places: Mapping[Node, Scalar] | None = 
         DerivationError: the ties do not close at the start, or not in closed form.
     """
     symbols, scope = system.symbols, system.scope
-    sought = fixed_by_position(system)
+    sought = fixed_by_position(system.ties)
     given = with_unit_quaternions(scope, start_values(scope, (q for q in symbols.q if q not in sought)))
     state = system.standing({**given, **(places or {})})
     left = [q for q in sought if q not in state]

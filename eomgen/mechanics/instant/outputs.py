@@ -254,7 +254,9 @@ class Quantities:
         Raises:
             DerivationError: it acts otherwise.
         """
-        effort = self.system.scope.model.forces[force].effort(SystemScene(self.system.motion, f"forces.{force}"))
+        effort = self.system.scope.model.forces[force].effort(
+            SystemScene(self.system.motion, f"forces.{force}", self.system.loads.begun)
+        )
         if effort is None:
             raise DerivationError(f"force '{force}' acts neither between two points nor between two bodies")
         return effort

@@ -14,8 +14,9 @@ from dataclasses import field, replace
 from functools import cached_property
 
 from eomgen.errors import DerivationError, MissingValues
+from eomgen.mechanics.constraints.assembly import fixed_by_position
 from eomgen.mechanics.equations.system import System, free_system_of, reduced_system
-from eomgen.mechanics.initial_state.initial_state import fixed_by_position, start_state
+from eomgen.mechanics.initial_state.initial_state import start_state
 from eomgen.mechanics.initial_state.values_at_rest import values_where_at_rest
 from eomgen.mechanics.instant.given_rows import (
     GivenRow,
@@ -280,7 +281,7 @@ def snapshot_of(model: Model, *, by_coordinates: bool = False) -> Snapshot:
     """
     free = free_system_of(freed(model))
     places, numbers = _places(free)
-    located = {q: numbers[q.name] for q in fixed_by_position(free) if numbers and q not in places}
+    located = {q: numbers[q.name] for q in fixed_by_position(free.ties) if numbers and q not in places}
     exact = by_coordinates or not located
     still = (
         _still(free, values_where_at_rest(free, {**{q: q for q in located}, **places}))
@@ -301,7 +302,7 @@ def snapshot_of(model: Model, *, by_coordinates: bool = False) -> Snapshot:
 def _places(free: System) -> tuple[State, Mapping[str, float]]:
     """(dependent coordinates in short closed form, {} or, where that is not all of them, the start in numbers)."""
     system = reduced_system(free)
-    sought, found = fixed_by_position(system), State()
+    sought, found = fixed_by_position(system.ties), State()
     if not sought:
         return {}, {}
     try:

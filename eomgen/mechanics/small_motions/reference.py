@@ -11,6 +11,7 @@ from typing import Any
 from eomgen.errors import DerivationError
 from eomgen.mechanics.bodies.places import Located, places_of
 from eomgen.mechanics.bodies.system_scene import start_values
+from eomgen.mechanics.constraints.assembly import fixed_by_position
 from eomgen.mechanics.constraints.ties import Row
 from eomgen.mechanics.equations.equations_of_motion import EquationsOfMotion
 from eomgen.mechanics.equations.system import System
@@ -18,7 +19,7 @@ from eomgen.mechanics.equilibria.search import Equilibrium, nearest_equilibrium
 from eomgen.mechanics.equilibria.standing import over_rates
 from eomgen.mechanics.equilibria.static_equations import StaticEquations, static_equations
 from eomgen.mechanics.first_integrals.closed_instant import position_equations
-from eomgen.mechanics.initial_state.initial_state import fixed_by_position, refuse_lost, start_state
+from eomgen.mechanics.initial_state.initial_state import refuse_lost, start_state
 from eomgen.mechanics.initial_state.values_at_rest import values_of_parameters
 from eomgen.mechanics.small_motions.family import Family
 from eomgen.model.contacts import contacts_of
@@ -157,7 +158,7 @@ def at_the_start(system: System, *, at_rest: bool, given: Mapping[str, float] | 
     parameters = {name: float(trial[node]) for name, node in symbols.parameters.items()}
     state = start_state(system, parameters, given)
     numbers: dict[Node, Any] = {**trial, symbols.t: fifty_digits().number(0)}
-    sought = fixed_by_position(system)
+    sought = fixed_by_position(system.ties)
     exact = {symbols.t: 0} | start_values(scope, (q for q in symbols.q if q not in sought))
     for u in symbols.u:
         speed = model.coordinates[u.name[:-1]].speed if u.name.endswith("'") else model.speeds[u.name].start

@@ -39,6 +39,11 @@ class Force(Part):
         return None
 
     @property
+    def of_the_start(self) -> bool:
+        """Whether it is slack at the length that it has where the motion starts."""
+        return self.element is not None and self.element.slack == "start"
+
+    @property
     def acts(self) -> tuple[Act, ...]:
         """What it does, as it is declared: the proof's way, beside `loads`."""
         return () if self.element is None else (self.element,)

@@ -1,0 +1,87 @@
+"""Springs whose length is that of the start: slack where the motion starts, whoever placed the coordinates there."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+import eomgen
+from eomgen.mechanics.constraints.assembly import begun_places
+from eomgen.mechanics.initial_state.initial_state import start_of_motion
+from eomgen.symbolic.numeric.evaluation import FLOAT, evaluate
+
+TIED = """
+eomgen = 1
+name = "Spring of the start's length"
+space = "plane"
+[parameters]
+m = 1
+k = 40
+L = 0.3
+[coordinates]
+q = { start = 0.4, speed = 0.3 }
+r = R
+[bodies.one]
+shape = { kind = "particle", mass = "m" }
+joint = { kind = "prismatic", axis = [1, 0], displacement = "q" }
+[bodies.two]
+shape = { kind = "particle", mass = "m" }
+joint = { kind = "prismatic", at = [0, 1], axis = [1, 0], displacement = "r" }
+[constraints.tie]
+kind = "equation"
+gap = "GAP"
+[points]
+G = [-1, 0.5]
+[forces.spring]
+kind = "spring"
+points = ["G", "two.center"]
+stiffness = "k"
+length = "start"
+[outputs]
+F = "pull(spring)"
+"""
+GAPS = {"linear": "r - q", "with a parameter": "r - q*L - L^2", "without a closed form": "r + 0.2*sin(3*r)*q - q^2"}
+STARTS = {
+    "dependent": "{ dependent = true, near = 0.45 }",
+    "guessed": "{ near = 0.45 }",
+    "not given": "{ }",
+    "changed": "{ start = 0.45 }",
+}
+
+
+@pytest.mark.parametrize("gap", GAPS)
+@pytest.mark.parametrize("start", STARTS)
+def test_a_spring_of_the_starts_length_is_slack_where_the_ties_put_it(gap, start):
+    """V(q_0) = 0 where phi(q_0) = 0; not at the guess, nor where a value given breaks the ties."""
+    text = TIED.replace("R\n", STARTS[start] + "\n", 1).replace("GAP", GAPS[gap])
+    equations = eomgen.derive(eomgen.loads(text))
+    symbols, begun = equations.graph.symbols, start_of_motion(equations.system).values
+    state = {x: begun[x.name] for x in symbols.q} | {
+        x: {"m": 1, "k": 40, "L": 0.3}[x.name] for x in symbols.parameters.values()
+    }
+    assert begun["r"] != pytest.approx(0.45, abs=1e-3)
+    assert evaluate((equations.graph.V,), state, FLOAT)[0] == pytest.approx(0, abs=1e-25)
+    beside = state | {x: state[x] + 0.1 for x in symbols.q}
+    stretch = np.hypot(beside[symbols.q[1]] + 1, 0.5) - np.hypot(begun["r"] + 1, 0.5)
+    assert evaluate((equations.graph.V,), beside, FLOAT)[0] == pytest.approx(20 * stretch**2)
+
+
+def test_the_length_follows_the_parameters_where_the_start_has_a_closed_form():
+    """r = q L + L^2 at the start: the length does not stay that of one value of L."""
+    system = eomgen.derive(
+        eomgen.loads(TIED.replace("R\n", STARTS["dependent"] + "\n", 1).replace("GAP", GAPS["with a parameter"]))
+    ).system
+    (place,) = begun_places(system.free.ties).values()
+    (L,) = (x for x in system.symbols.parameters.values() if x.name == "L")
+    assert evaluate((place,), {L: 0.5}, FLOAT)[0] == pytest.approx(0.4 * 0.5 + 0.25)
+
+
+def test_a_start_without_closed_form_and_numbers_gives_no_length():
+    """Neither the guess nor a number drawn stands in for it: the parameter that is missing is asked for."""
+    text = (
+        TIED.replace("R\n", STARTS["dependent"] + "\n", 1)
+        .replace("L = 0.3", "L = {}")
+        .replace("GAP", "r + 0.2*sin(3*r)*q - q^2*L")
+    )
+    with pytest.raises(eomgen.EomgenError, match="where 'r' starts has no closed form"):
+        eomgen.derive(eomgen.loads(text))
