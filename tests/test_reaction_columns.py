@@ -12,6 +12,8 @@ from random import Random
 import numpy as np
 import pytest
 from cpu_limit import cpu_limit
+from derivations import equations as equations_of
+from derivations import moving
 from moving import at
 
 import eomgen
@@ -23,7 +25,6 @@ from eomgen.mechanics.balance.named_reactions import named_reactions
 from eomgen.mechanics.constraints.closure import generic_state
 from eomgen.mechanics.equations.accelerations import accelerations_at
 from eomgen.mechanics.instant.outputs import Quantities
-from eomgen.model.unknowns import in_loads
 from eomgen.model.values import numeric_parameters
 from eomgen.simulation.reaction_columns import ReactionColumns
 from eomgen.symbolic.expression.expressions import parse
@@ -34,7 +35,7 @@ pytestmark = pytest.mark.slow
 MODELS = Path(__file__).parent.parent / "models"
 UNPLACED = {"balancing_robot": "ahead", "delta_robot": "platform", "foucault_pendulum": "weight"}
 """Models with forces at no place, or bodies that nothing holds: reactions are refused, with what is to blame."""
-HELD = sorted(path for path in MODELS.rglob("*.toml") if path.stem not in UNPLACED and not in_loads(eomgen.load(path)))
+HELD = [path for path in moving() if path.stem not in UNPLACED]
 
 
 def derived(name: str) -> Equations:
@@ -87,7 +88,7 @@ def test_what_has_no_place_or_is_held_by_nothing_is_named(name, culprit):
 @pytest.mark.parametrize("path", HELD, ids=lambda path: path.stem)
 def test_a_column_is_what_an_output_of_its_name_says(path):
     """reaction_x(B), reaction_n(wall), tension(rope, 2), drive(q): the same number, in the motion through a state."""
-    equations = eomgen.derive(eomgen.load(path))
+    equations = equations_of(path.stem)
     reactions, quantities = equations.reactions, Quantities(equations.system)
     state = generic_state(equations.system.ties, Random(3))
     a = [fifty_digits().number(1) * float(value) for value in accelerations_at(equations.graph, state)]
@@ -126,7 +127,7 @@ def states(equations: Equations, count: int = 6) -> tuple[np.ndarray, np.ndarray
 @pytest.mark.parametrize("path", HELD, ids=lambda path: path.stem)
 def test_rank_in_numbers_and_elimination_in_symbols_give_the_same(path):
     """Columns (the bodies' equations by Q R at each state) against emitted code (solved on the graph): 1e-9."""
-    equations = eomgen.derive(eomgen.load(path))
+    equations = equations_of(path.stem)
     t, x, p = states(equations)
     columns = ReactionColumns(equations.reactions, equations.rhs("numpy"))
     found = dict(zip(columns.names, columns.along(t, x, p).T, strict=True))

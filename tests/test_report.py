@@ -18,6 +18,7 @@ from derivations import (
     equations,
     free_system,
     in_time,
+    model_called,
     on_spheres,
     read_back,
     residuals,
@@ -148,7 +149,7 @@ def is_complete(part: Step) -> bool:
 
 def by_energies(name: str) -> bool:
     """Whether the derivation goes by energies: with declared speeds it goes by projection."""
-    return not equations(name).model.speeds
+    return not model_called(name).speeds
 
 
 @pytest.mark.parametrize("name", [name for name in SMALL if name != "chain5" and by_energies(name)])

@@ -19,7 +19,7 @@ from eomgen.mechanics.equations import articulated
 from eomgen.mechanics.equations.accelerations import accelerations_at
 from eomgen.mechanics.equations.equations_of_motion import EquationsOfMotion
 from eomgen.mechanics.equations.system import System, system_of
-from eomgen.mechanics.formulations import ALL, recursive
+from eomgen.mechanics.formulations import ALL, Formulation, recursive
 from eomgen.model.unbuilt import unbuilt
 from eomgen.symbolic.expression.derivative import depends_on_any
 from eomgen.symbolic.expression.factors import same_number
@@ -31,6 +31,7 @@ MODELS = {path.stem: path for path in sorted((Path(__file__).parents[2] / "model
 RANDOM = [(space, seed) for space in ("plane", "space") for seed in range(100, 110)]
 
 formulations = pytest.mark.parametrize("formulation", ALL, ids=lambda formulation: formulation.name)
+others = pytest.mark.parametrize("formulation", ALL[1:], ids=lambda formulation: formulation.name)
 
 
 @cache
@@ -40,12 +41,17 @@ def system_named(name: str) -> System | None:
     return None if unbuilt(model) else system_of(model)
 
 
+@cache
+def assembled(formulation: Formulation, name: str) -> EquationsOfMotion:
+    """The equations of a model of models/, derived once for all that is asked of them."""
+    return formulation.assemble(system_named(name))
+
+
 @pytest.fixture(params=sorted(MODELS))
-def system(request) -> System:
-    found = system_named(request.param)
-    if found is None:
+def name(request) -> str:
+    if system_named(request.param) is None:
         pytest.skip("a part of the model is not built in this version")
-    return found
+    return request.param
 
 
 def accelerations(equations: EquationsOfMotion, system: System) -> np.ndarray:
@@ -73,14 +79,15 @@ def test_most_models_are_derived():
     assert len(waiting) <= 2, waiting
 
 
-@formulations
-def test_every_formulation_gives_the_same_accelerations(formulation, system):
+@others
+def test_every_formulation_gives_the_same_accelerations(formulation, name):
     """a of M a = forcing + J^T lam, J a + gamma = 0, against those of the first formulation, at a random state."""
-    reference = accelerations(ALL[0].assemble(system), system)
-    assert close(accelerations(formulation.assemble(system), system), reference)
+    system = system_named(name)
+    reference = accelerations(assembled(ALL[0], name), system)
+    assert close(accelerations(assembled(formulation, name), system), reference)
 
 
-@formulations
+@others
 @pytest.mark.parametrize(("space", "seed"), RANDOM)
 def test_every_formulation_gives_the_same_accelerations_of_random_trees(formulation, space, seed):
     """As above, for systems that nobody has thought of."""
@@ -110,7 +117,7 @@ joint = { kind = "prismatic", on = "hand", axis = [3, 4], displacement = "b^2", 
 """
 
 
-@formulations
+@others
 def test_rotors_behind_gears_move_with_the_rate_of_their_joint(formulation):
     """T = armature s'^2 / 2 with s = s(q, t): M gets armature D^T D, c gets armature D^T (d/dt s' at a = 0)."""
     system = written(ROTORS)
@@ -122,9 +129,9 @@ def test_rotors_behind_gears_move_with_the_rate_of_their_joint(formulation):
 
 
 @formulations
-def test_an_assembly_has_the_shapes_that_it_promises(formulation, system):
+def test_an_assembly_has_the_shapes_that_it_promises(formulation, name):
     """N nq x nu; M nu x nu; c, Q, forcing nu; J k x nu; sigma, gamma, phi k."""
-    equations = formulation.assemble(system)
+    system, equations = system_named(name), assembled(formulation, name)
     nq, nu, k = len(system.symbols.q), len(system.symbols.u), len(system.ties.closing)
     assert [len(row) for row in equations.N] == [nu] * nq and len(equations.nu) == nq
     assert [len(row) for row in equations.M] == [nu] * nu
@@ -133,21 +140,22 @@ def test_an_assembly_has_the_shapes_that_it_promises(formulation, system):
     assert [len(row) for row in (equations.sigma, equations.gamma, equations.phi, equations.symbols.lam)] == [k] * 4
 
 
-@formulations
-def test_every_formulation_gives_the_same_energies(formulation, system):
+@others
+def test_every_formulation_gives_the_same_energies(formulation, name):
     """T and V are of the system, not of the way to its equations."""
-    first, other = ALL[0].assemble(system), formulation.assemble(system)
+    first, other = assembled(ALL[0], name), assembled(formulation, name)
     assert equal((first.T, first.V), (other.T, other.V))
 
 
-def test_articulated_bodies_give_the_accelerations_of_the_mass_matrix(system):
+def test_articulated_bodies_give_the_accelerations_of_the_mass_matrix(name):
     """a by O(n) elimination = M^-1 (Q - c), where no row closes and every speed belongs to one joint."""
+    system = system_named(name)
     branches = branches_of(system.motion)
     if system.ties.closing or not articulated.is_articulated(system.motion, branches):
         return
     a = articulated.accelerations(system.loads, branches)
     state = state_of(system)
-    assert close(at(a, state), accelerations_at(ALL[0].assemble(system), state))
+    assert close(at(a, state), accelerations_at(assembled(ALL[0], name), state))
 
 
 @pytest.mark.parametrize("name", ["arm7", "puma560", "space_manipulator", "heavy_top"])

@@ -11,10 +11,10 @@ from typing import Any
 
 from eomgen.documents.derivation import derivation_of
 from eomgen.documents.document import Document
-from eomgen.errors import DerivationError, NotYet
 from eomgen.mechanics.equations.system import System
 from eomgen.model.parts import Model
 from eomgen.model.reader import load, loads
+from eomgen.model.unbuilt import unbuilt
 from eomgen.model.unknowns import in_loads
 from eomgen.pipeline import METHODS, Equations, derive
 from eomgen.symbolic.expression.derivative import substituted
@@ -137,10 +137,26 @@ length = "start"
 """
 
 
+LOOSE = ("balancing_robot", "delta_robot", "foucault_pendulum", "loop")
+"""Models in which nothing holds a body, or a force acts at no place: they have no kineto-statics."""
+
+
 @cache
 def equations(name: str, method: str = "lagrange") -> Equations:
-    """The equations of a model by its name; see `model_called`."""
+    """The equations of a model by its name, derived once in a process; see `model_called`."""
     return derive(model_called(name), method)
+
+
+@cache
+def loaded(path: Path) -> Model:
+    """A model of models/, read once in a process: it is frozen."""
+    return load(path)
+
+
+@cache
+def moving() -> tuple[Path, ...]:
+    """The models that have equations of motion; where a force is asked for there is rest, and no motion."""
+    return tuple(path for path in PATHS if not in_loads(loaded(path)) and not unbuilt(loaded(path)))
 
 
 def model_called(name: str) -> Model:
@@ -149,41 +165,20 @@ def model_called(name: str) -> Model:
         return loads(LOOP if name == "loop" else SPRINGS)
     if name == "chain5":
         return loads(runpy.run_path(str(MODELS / "chain.py"))["chain"](5))
-    return load(next(path for path in PATHS if path.stem == name))
+    return loaded(next(path for path in PATHS if path.stem == name))
 
 
-@cache
 def derivable() -> tuple[str, ...]:
     """The stems of the models that have equations of motion, and those written here."""
-    found = ["loop", "springs", "chain5"]
-    for path in PATHS:
-        model = load(path)
-        try:
-            if in_loads(model):
-                continue  # a force is asked for: there is rest, and no motion
-            derive(model)
-        except NotYet:
-            continue
-        found.append(path.stem)
-    return tuple(found)
+    return ("loop", "springs", "chain5", *(path.stem for path in moving()))
 
 
-@cache
 def by_every_method() -> tuple[tuple[str, str], ...]:
     """(model, method) of everything derivable; what nothing holds has no kineto-statics."""
-    found = []
-    for name in derivable():
-        for method in METHODS:
-            try:
-                equations(name, method)
-            except DerivationError:
-                assert method == "kinetostatic"
-                continue
-            found.append((name, method))
-    return tuple(found)
+    pairs = ((name, method) for name in derivable() for method in METHODS)
+    return tuple(pair for pair in pairs if pair[0] not in LOOSE or pair[1] != "kinetostatic")
 
 
-@cache
 def by_methods() -> tuple[tuple[str, str], ...]:
     """The same, large models by one method alone."""
     return tuple((name, method) for name, method in by_every_method() if name not in LARGE or method == "lagrange")

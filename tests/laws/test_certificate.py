@@ -7,6 +7,8 @@ from pathlib import Path
 from random import Random
 
 import pytest
+from derivations import equations as equations_of
+from derivations import moving
 
 import eomgen
 from eomgen.certificate import certify
@@ -25,7 +27,6 @@ from eomgen.mechanics.reactions import reactions
 from eomgen.mechanics.reactions.equilibrium import imbalance
 from eomgen.model.forces.gravity import Gravity
 from eomgen.model.forces.reach import Reach
-from eomgen.model.unknowns import in_loads
 from eomgen.proof.states import closed_state
 from eomgen.symbolic.expression.graph import Scalar, linear_terms
 from eomgen.symbolic.expression.spatial import times
@@ -34,7 +35,6 @@ from eomgen.symbolic.numeric.evaluation import fifty_digits
 pytestmark = pytest.mark.slow
 
 MODELS = Path(__file__).parents[2] / "models"
-DERIVABLE = sorted(path for path in MODELS.rglob("*.toml") if not in_loads(eomgen.load(path)))
 SMALL = (
     "double_pendulum",
     "elastic_pendulum",
@@ -50,10 +50,10 @@ def derived(name: str) -> Equations:
     return eomgen.derive(eomgen.load(next(MODELS.rglob(f"{name}.toml"))))
 
 
-@pytest.mark.parametrize("path", DERIVABLE, ids=lambda path: path.stem)
+@pytest.mark.parametrize("path", moving(), ids=lambda path: path.stem)
 def test_the_certificate_holds_for_every_model(path):
     """Three routes, the poses, the free bodies, the energy theorem and the emitted code agree."""
-    certificate = eomgen.derive(eomgen.load(path)).certify()
+    certificate = equations_of(path.stem).certify()
     assert certificate.ok, str(certificate)
 
 

@@ -6,13 +6,14 @@ from fractions import Fraction
 from pathlib import Path
 from random import Random
 
+import derivations
 import numpy as np
 import pytest
+from derivations import moving
 
 import eomgen
 from eomgen.equations import Equations
 from eomgen.mechanics.equations.accelerations import accelerations_at
-from eomgen.model.unknowns import in_loads
 from eomgen.proof.states import closed_state, real_state
 from eomgen.symbolic.exact.equality import equal_at_random_states
 from eomgen.symbolic.expression.derivative import depends_on, gradient, substituted
@@ -22,12 +23,11 @@ from eomgen.symbolic.numeric.evaluation import NoValue, evaluate, fifty_digits
 pytestmark = pytest.mark.slow
 
 MODELS = Path(__file__).parents[2] / "models"
-PATHS = sorted(path for path in MODELS.rglob("*.toml") if not in_loads(eomgen.load(path)))
 
 
-@pytest.fixture(scope="module", params=PATHS, ids=lambda path: path.stem)
+@pytest.fixture(scope="module", params=moving(), ids=lambda path: path.stem)
 def equations(request) -> Equations:
-    return eomgen.derive(eomgen.load(request.param))
+    return derivations.equations(request.param.stem)
 
 
 def loads(text: str) -> Equations:
