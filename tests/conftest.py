@@ -10,7 +10,7 @@ from pathlib import Path
 from typing import NoReturn
 
 import pytest
-from quick_set import is_slow
+from quick_set import is_slow, model_of
 
 from eomgen.symbolic.numeric.gc_pause import SELDOM
 
@@ -29,6 +29,12 @@ def pytest_ignore_collect(collection_path: Path, config: pytest.Config) -> bool 
     if config.getoption("markexpr") != "not slow" or collection_path.suffix != ".py":
         return None
     return True if is_slow(collection_path.read_text(encoding="utf-8")) else None
+
+
+@pytest.hookimpl(trylast=True)
+def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
+    """What is asked of one model by several files stands together, first: one process derives it, and once."""
+    items.sort(key=lambda item: (1, "") if item.get_closest_marker("by_model") is None else (0, model_of(item)))
 
 
 def pytest_collection_finish() -> None:

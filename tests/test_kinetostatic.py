@@ -2,13 +2,12 @@
 
 from __future__ import annotations
 
-import json
 import random
 from pathlib import Path
 
 import numpy as np
 import pytest
-from derivations import by_every_method, equations, in_time, model_called, read_back
+from derivations import by_every_method, entries, equations, in_time, model_called, read_back
 
 from eomgen.documents import rendered
 from eomgen.documents.document import Document
@@ -27,7 +26,7 @@ from eomgen.symbolic.expression.derivative import substituted
 from eomgen.symbolic.expression.graph import Node, Scalar, is_zero
 from eomgen.symbolic.numeric.evaluation import FLOAT, evaluate
 
-pytestmark = pytest.mark.slow
+pytestmark = [pytest.mark.slow, pytest.mark.by_model]
 
 GOLDEN = Path(__file__).parent / "golden"
 
@@ -245,8 +244,7 @@ def test_reactions_in_json_read_back_by_the_names_of_outputs(name):
     """{name: text}: the values that an output of that name has, accelerations as theta''"""
     if not is_short_tree(name):
         return
-    derived = equations(name)
-    data = json.loads(json.dumps(derived.entries()))
+    derived, data = equations(name), entries(name)
     motion, also = along_motion(derived), {}
     for symbol, text in [*data.get("definitions", []), *data.get("reaction_definitions", [])]:
         also[symbol] = read_back(text, derived, also)

@@ -23,7 +23,7 @@ from eomgen.documents.statements import Omitted
 from eomgen.symbolic.expression.functions import cos, sin, sqrt
 from eomgen.symbolic.expression.graph import Graph, Scalar
 
-pytestmark = pytest.mark.slow
+pytestmark = [pytest.mark.slow, pytest.mark.by_model]
 
 GOLDEN = Path(__file__).parent / "golden"
 MATHEMATICS = set(

@@ -30,7 +30,7 @@ from eomgen.simulation.reaction_columns import ReactionColumns
 from eomgen.symbolic.expression.expressions import parse
 from eomgen.symbolic.numeric.evaluation import evaluate, fifty_digits
 
-pytestmark = pytest.mark.slow
+pytestmark = [pytest.mark.slow, pytest.mark.by_model]
 
 MODELS = Path(__file__).parent.parent / "models"
 UNPLACED = {"balancing_robot": "ahead", "delta_robot": "platform", "foucault_pendulum": "weight"}

@@ -15,6 +15,7 @@ from derivations import (
     by_every_method,
     by_methods,
     derivable,
+    entries,
     equations,
     free_system,
     in_time,
@@ -49,7 +50,7 @@ from eomgen.symbolic.expression.graph import Graph, Node, Scalar
 from eomgen.symbolic.print.decimals import MOST_DIGITS
 from eomgen.symbolic.print.text import to_text
 
-pytestmark = pytest.mark.slow
+pytestmark = [pytest.mark.slow, pytest.mark.by_model]
 
 GOLDEN = Path(__file__).parent / "golden"
 SMALL = tuple(name for name in derivable() if name not in LARGE)
@@ -259,8 +260,7 @@ def test_kinetic_energies_come_out_as_a_textbook_prints_them(name):
 @pytest.mark.parametrize("name", derivable())
 def test_the_payload_reads_back_as_the_equations(name):
     """N, nu, M, forcing, J, sigma, gamma, phi, T, V, Q and each `lhs = rhs`, through text and back"""
-    derived = equations(name)
-    data = json.loads(json.dumps(derived.entries()))
+    derived, data = equations(name), entries(name)
     graph, also = derived.graph, {}
     for symbol, text in data.get("definitions", []):
         assert symbol not in symbols_named(derived)

@@ -25,7 +25,7 @@ from eomgen.symbolic.expression.derivative import depends_on_any
 from eomgen.symbolic.expression.factors import same_number
 from eomgen.symbolic.numeric.evaluation import NoValue
 
-pytestmark = pytest.mark.slow
+pytestmark = [pytest.mark.slow, pytest.mark.by_model]
 
 MODELS = {path.stem: path for path in sorted((Path(__file__).parents[2] / "models").rglob("*.toml"))}
 RANDOM = [(space, seed) for space in ("plane", "space") for seed in range(100, 110)]

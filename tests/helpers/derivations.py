@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 import re
 import runpy
 from collections.abc import Sequence
@@ -145,6 +146,12 @@ LOOSE = ("balancing_robot", "delta_robot", "foucault_pendulum", "loop")
 def equations(name: str, method: str = "lagrange") -> Equations:
     """The equations of a model by its name, derived once in a process; see `model_called`."""
     return derive(model_called(name), method)
+
+
+@cache
+def entries(name: str) -> dict[str, Any]:
+    """What the derivation of a model carries as JSON, through text and back."""
+    return json.loads(json.dumps(equations(name).entries()))
 
 
 @cache

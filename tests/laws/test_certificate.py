@@ -32,7 +32,7 @@ from eomgen.symbolic.expression.graph import Scalar, linear_terms
 from eomgen.symbolic.expression.spatial import times
 from eomgen.symbolic.numeric.evaluation import fifty_digits
 
-pytestmark = pytest.mark.slow
+pytestmark = [pytest.mark.slow, pytest.mark.by_model]
 
 MODELS = Path(__file__).parents[2] / "models"
 SMALL = (

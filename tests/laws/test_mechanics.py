@@ -20,7 +20,7 @@ from eomgen.symbolic.expression.derivative import depends_on, gradient, substitu
 from eomgen.symbolic.expression.graph import Scalar, is_zero
 from eomgen.symbolic.numeric.evaluation import NoValue, evaluate, fifty_digits
 
-pytestmark = pytest.mark.slow
+pytestmark = [pytest.mark.slow, pytest.mark.by_model]
 
 MODELS = Path(__file__).parents[2] / "models"
 
