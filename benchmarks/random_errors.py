@@ -1,88 +1,53 @@
 """Errors that nobody chose: one operator, sign, number or comparison of the package is changed; who sees it?
 
-Where `planted_errors.toml` is a list made by hand, here the places are drawn by lot from the functions that a run
-really calls: from every room in turn, so that what a person reads is tried as often as what is computed. The package is
-imported once; a run is a fork of it in which the function has other code, and up to three that call it are made again:
+Where `planted_errors.toml` is a list made by hand, here the places are drawn by lot from the functions that a run of
+`random_errors.toml` really calls, of every room in turn: what a person reads is tried as often as what is computed.
+Each error is put into the function in a fork of one process (`error_runs.py`), and up to three runs that call the
+function, shorter ones first in the lot, are made again:
 
     product     the verb says so: exit code other than 0
-    tests       by --tests: the quick tests fail
+    tests       by --tests: one of README's quick tests that call the function fails (`error_tests.py`)
     harmless    every number and formula that is printed is right all the same
     no effect   what is printed, and what is written into files, is the same
-    open        exit code 0, and something that is printed or written differs: read it, by -v
+    open        exit code 0, and something that is printed or written differs: read it, by -v or --log
 
 Totals stand apart for equations and numbers, and for what a person reads (READ).
 The share is of those that do something.
 
     python benchmarks/random_errors.py 200 --seed 1 [-v] [--rooms mechanics,model] [--tests] [--evenly no]
+    python benchmarks/random_errors.py 200 --seed 1 --kind numbers --kept FOLDER --log FILE
 
---traced FILE keeps there which functions each run calls: the next draw begins at once. Delete it where some are new.
+In FOLDER stands what runs say without an error and which functions they and the tests call, of this package as it is.
 """
 
 from __future__ import annotations
 
 import argparse
 import ast
-import contextlib
-import cProfile
-import gc
-import importlib
 import json
-import multiprocessing
-import os
-import pkgutil
 import random
 import sys
 import tempfile
 from collections import Counter, defaultdict
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterator
 from dataclasses import dataclass
-from functools import cache
 from pathlib import Path
-from types import CodeType, FunctionType
 from typing import Any
 
 import planted_errors as planted
+from error_runs import Function, Right, Run, Server, right_of, runs
+from error_tests import first_failing
 
 ROOT = planted.ROOT
 # Of these a change is no wrong law: what is refused, said or bounded, and what looks at results by itself.
 APART = ("schema", "checks", "reader", "tolerances", "work.py", "errors", "closeness", "suggest", "templates")
-LEFT_OUT = ("proof", "certificate.py", "records.py", "files.py", "kept.py", "errors.py", "version.py", "edge.py")
+LEFT_OUT = (
+    *("proof/", "certificate.py", "records.py", "files.py", "kept.py", "errors.py", "version.py", "edge.py"),
+    "__init__.py",
+)
+MOST = 3  # runs of one error
+PAGES = ("report", "animate", "play")
 READ = ("documents", "scene", "page", "judge", "verbs", "symbolic/print")
-QUICK = '-m "not slow" tests'  # the tests that README asks everybody to run
-RUNS = """
-derive arm3; derive whipple_bicycle; derive ball_on_turntable; derive seeds/s1_euler; derive gyrostat; derive four_bar
-derive flyball_governor; derive seeds/ch22_p3; derive block_on_wedge
-derive double_pendulum --text; derive four_bar --format latex --text; derive rolling_disc --format markdown --text
-solve seeds/ch22_p1; solve seeds/ch22_p6; solve seeds/ch20_p3; solve seeds/ch17_p5; solve seeds/ch16_p4
-solve seeds/ch18_p2; solve seeds/ch21_p4; solve seeds/ch13_p1; solve seeds/ch11_p5; solve quick_return; solve arm3
-solve epicyclic_gear; solve double_atwood; solve rolling_cone; solve half_car; solve flyball_governor
-solve skate_on_slope; solve seeds/ch9_p10; solve spherical_pendulum; solve seeds/ch22_p1 --text
-reactions seeds/ch22_p3; reactions four_bar; reactions heavy_top; reactions block_on_wedge; reactions rolling_disc
-reactions slider_crank; reactions seeds/ch20_p5; reactions four_bar --text
-statics gerber_beam; statics three_hinged_arch; statics a_frame; statics fink_truss; statics tripod
-statics strut_frame; statics seeds/ch10_p2; statics bolt_cutter; statics shear_legs; statics gerber_beam --text
-kinematics four_bar; kinematics slider_crank; kinematics quick_return; kinematics epicyclic_gear
-kinematics four_bar --text
-inertia seeds/s1_inertia_tensor; inertia seeds/s1_principal_axes; inertia heavy_top; inertia heavy_top --text
-linearize half_car; linearize double_pendulum; linearize four_bar; linearize two_mass_oscillator
-linearize furuta_pendulum; linearize whipple_bicycle; linearize half_car --text
-simulate double_pendulum --time 1; simulate four_bar --time 0.5; simulate sliding_ladder --time 1.2
-simulate rattleback --time 0.5; simulate tumbling_body --time 0.5; simulate rough_incline --time 0.5
-simulate box_on_two_feet --time 0.5; simulate chaplygin_sleigh --time 1; simulate elastic_pendulum --time 1
-simulate tippe_top --time 0.2; simulate scotch_yoke --time 0.5; simulate disc_leaves_cylinder --time 1
-simulate double_pendulum --time 1 -o @/run.csv; simulate cart_pole --time 1 --text
-check four_bar; check fink_truss --text; check parallelogram_reactions
-verify double_pendulum "2*m1 = 3"; verify simple_pendulum "theta'' = -g/l*sin(theta)"
-verify simple_pendulum "theta'' = g/l*sin(theta)" --text; verify cart_pole "T = m*x'^2/2"
-report simple_pendulum -o @/r.html --time 1; report four_bar -o @/r.md --time 0.5
-report double_pendulum -o @/r.tex --time 1
-animate double_pendulum -o @/a.png --time 1 --frames 3; animate four_bar -o @/a.html --time 0.5 --forces
-play simple_pendulum -o @/p.html --time 1
-codegen double_pendulum --target c -o @/c; codegen four_bar --target javascript -o @/j
-export arm3 -o @/r.urdf then import @/r.urdf -o @/m.toml
-simulate arm3 --time 1 --samples 80 -o @/d.csv then identify arm3 --data @/d.csv; identify arm3
-sweep simple_pendulum --over "l=0.5:1:3" --ask "frequency(1)" -o @/s
-"""
 
 
 @dataclass(frozen=True)
@@ -90,6 +55,7 @@ class Place:
     """A node of a module's text that can be changed: between two offsets `new` is put in, in words `what`."""
 
     file: str
+    function: int  # the line at which it begins
     line: int
     begin: int
     end: int
@@ -100,22 +66,11 @@ class Place:
         source = (ROOT / "eomgen" / self.file).read_bytes()
         return (source[: self.begin] + self.new.encode() + source[self.end :]).decode()
 
-    def planted(self) -> planted.Planted:
-        return _Drawn(self.what, "", self.file, "", "", "", QUICK, place=self)
-
-
-@dataclass(frozen=True)
-class _Drawn(planted.Planted):
-    place: Place | None = None
-
     @property
-    def patched(self) -> str:
-        assert self.place is not None
-        return self.place.patched()
-
-    def put_in(self) -> None:
-        assert self.place is not None
-        exchange(self.place)
+    def lines(self) -> tuple[str, str]:
+        """The line as it is and as it becomes."""
+        old = (ROOT / "eomgen" / self.file).read_text(encoding="utf-8").splitlines()
+        return old[self.line - 1].strip(), self.patched().splitlines()[self.line - 1].strip()
 
 
 OTHER = {ast.Add: "-", ast.Sub: "+", ast.Mult: "/", ast.Div: "*"}
@@ -123,8 +78,8 @@ SIGNS = {"-": "+", "+": "-", "*": "/", "/": "*"}
 TURNED = {ast.Lt: ">=", ast.Gt: "<=", ast.LtE: ">", ast.GtE: "<", ast.Eq: "!=", ast.NotEq: "=="}
 
 
-def places(file: str, called: set[str]) -> Iterator[tuple[str, Place]]:
-    """(function, what can be changed inside it) of the functions of these qualified names."""
+def places(file: str, functions: set[int]) -> Iterator[Place]:
+    """What can be changed inside the functions that begin at these lines; of none given, of all."""
     text = (ROOT / "eomgen" / file).read_bytes()
     starts = [0]
     for line in text.splitlines(keepends=True):
@@ -138,134 +93,31 @@ def places(file: str, called: set[str]) -> Iterator[tuple[str, Place]]:
         a, b = span(left)[1], span(right)[0]
         at = text[a:b].find(old.encode())
         if at >= 0 and text[a:b].count(old.encode()) == 1:
-            yield Place(file, line, a + at, a + at + len(old), new, what)
+            yield Place(file, first, line, a + at, a + at + len(old), new, what)
 
-    def changes(node: ast.AST) -> Iterator[Place]:
-        if isinstance(node, ast.BinOp) and type(node.op) in OTHER:
-            new = OTHER[type(node.op)]
-            yield from between(node.left, node.right, SIGNS[new], new, node.lineno, f"{SIGNS[new]} becomes {new}")
-        elif isinstance(node, ast.UnaryOp) and isinstance(node.op, ast.USub):
-            a, _ = span(node)
-            yield Place(file, node.lineno, a, a + 1, "+", "a minus is lost")
-        elif isinstance(node, ast.Constant) and type(node.value) is int and node.value in range(10):
-            a, b = span(node)
-            yield Place(file, node.lineno, a, b, str(node.value + 1), f"{node.value} becomes {node.value + 1}")
-        elif isinstance(node, ast.Compare) and len(node.ops) == 1 and type(node.ops[0]) in TURNED:
-            old = {ast.Lt: "<", ast.Gt: ">", ast.LtE: "<=", ast.GtE: ">=", ast.Eq: "==", ast.NotEq: "!="}
-            word = old[type(node.ops[0])]
-            new = TURNED[type(node.ops[0])]
-            yield from between(node.left, node.comparators[0], word, new, node.lineno, f"{word} becomes {new}")
-
-    for name, node in _nodes(ast.parse(text)):
-        if name in called:
-            yield from ((name, place) for place in changes(node) if _stands(place, text))
-
-
-def _stands(place: Place, text: bytes) -> bool:
-    """Whether what is changed is there: inside an f-string Python 3.11 does not know where its nodes stand."""
-    old = text[place.begin : place.end].decode(errors="replace")
-    if place.new.isdigit():
-        return old.isdigit() and int(old) + 1 == int(place.new)
-    return old in ("+", "-", "*", "/", "<", ">", "<=", ">=", "==", "!=")
-
-
-def _nodes(tree: ast.AST, within: str = "") -> Iterator[tuple[str, ast.AST]]:
-    """(qualified name of the function, a node inside it), functions inside functions as part of them."""
-    for child in ast.iter_child_nodes(tree):
-        name = within + getattr(child, "name", "")
-        if isinstance(child, ast.FunctionDef):
-            yield from ((name, node) for statement in child.body for node in ast.walk(statement))
-        else:
-            yield from _nodes(child, f"{name}." if isinstance(child, ast.ClassDef) else within)
-
-
-Function = tuple[str, str]  # (file, qualified name)
-
-
-def warm() -> None:
-    """Import the whole package: an error then is other code of a function that is there."""
-    planted.warm()
-    import eomgen
-
-    for module in pkgutil.walk_packages(eomgen.__path__, "eomgen."):
-        if not module.name.endswith("__main__"):
-            with contextlib.suppress(ImportError):
-                importlib.import_module(module.name)
-    functions()
-
-
-@cache
-def functions() -> dict[str, list[FunctionType]]:
-    """The functions of every file that is loaded."""
-    found: dict[str, list[FunctionType]] = defaultdict(list)
-    for each in gc.get_objects():
-        if type(each) is FunctionType:
-            found[each.__code__.co_filename].append(each)
-    return found
-
-
-def exchange(place: Place) -> None:
-    """Every function of the module that a place changes gets its changed code."""
-    path = str(ROOT / "eomgen" / place.file)
-    new = {(code.co_qualname, code.co_firstlineno): code for code in _codes(compile(place.patched(), path, "exec"))}
-    for function in functions()[path]:
-        if other := new.get((function.__code__.co_qualname, function.__code__.co_firstlineno)):
-            function.__code__ = other
-
-
-def _codes(code: CodeType) -> Iterator[CodeType]:
-    yield code
-    for inner in code.co_consts:
-        if isinstance(inner, CodeType):
-            yield from _codes(inner)
-
-
-def _traced(run: str, pipe: Any) -> None:
-    """In a process of its own: which functions of the package a run calls."""
-    home, profiler = str(ROOT / "eomgen") + "/", cProfile.Profile(builtins=False)
-
-    class Kept:
-        def send(self, found: Any) -> None:
-            self.found = found
-
-    kept = Kept()
-    profiler.enable()
-    planted._child(None, run, "", kept)  # type: ignore[arg-type]
-    profiler.disable()
-    codes = (entry.code for entry in profiler.getstats())
-    seen = {(x.co_filename[len(home) :], x.co_qualname) for x in codes if x.co_filename.startswith(home)}
-    pipe.send((kept.found.code, kept.found.why, seen))
-
-
-def traced(run: str) -> tuple[int, str, set[Function]]:
-    """(exit code, why it is not 0, which functions a run calls)."""
-    context = multiprocessing.get_context("fork")
-    here, there = context.Pipe(duplex=False)
-    child = context.Process(target=_traced, args=(run, there))
-    child.start()
-    found = here.recv()
-    child.join()
-    return found  # type: ignore[no-any-return]
-
-
-def all_traced(runs: Iterable[str], kept: str) -> dict[str, set[Function]]:
-    """{run: the functions that it calls}, of runs that end well; by the file, where it is given and knows them."""
-    known = json.loads(Path(kept).read_text()) if kept and Path(kept).exists() else {}
-    for run in runs:
-        if run not in known:
-            code, why, functions = traced(run)
-            if code not in planted.VERDICTS:
-                print(f"left out: {run}: exit {code} {why}", flush=True)
-            known[run] = sorted(functions) if code in planted.VERDICTS else []
-            if kept:
-                Path(kept).write_text(json.dumps(known))
-    return {run: {(file, name) for file, name in known[run]} for run in runs}
-
-
-@cache
-def as_it_is(run: str) -> planted.Outcome:
-    """What a run says without an error."""
-    return planted.outcome(None, run)
+    for function in ast.walk(ast.parse(text)):
+        if not isinstance(function, ast.FunctionDef):
+            continue
+        first = min([function.lineno, *(d.lineno for d in function.decorator_list)])
+        if functions and first not in functions:
+            continue
+        for node in (x for statement in function.body for x in ast.walk(statement)):
+            if isinstance(node, ast.BinOp) and type(node.op) in OTHER:
+                new = OTHER[type(node.op)]
+                yield from between(node.left, node.right, SIGNS[new], new, node.lineno, f"{SIGNS[new]} becomes {new}")
+            elif isinstance(node, ast.UnaryOp) and isinstance(node.op, ast.USub):
+                a, _ = span(node)
+                yield Place(file, first, node.lineno, a, a + 1, "+", "a minus is lost")
+            elif isinstance(node, ast.Constant) and type(node.value) is int and node.value in range(10):
+                a, b = span(node)
+                yield Place(
+                    file, first, node.lineno, a, b, str(node.value + 1), f"{node.value} becomes {node.value + 1}"
+                )
+            elif isinstance(node, ast.Compare) and len(node.ops) == 1 and type(node.ops[0]) in TURNED:
+                old = {ast.Lt: "<", ast.Gt: ">", ast.LtE: "<=", ast.GtE: ">=", ast.Eq: "==", ast.NotEq: "!="}
+                word = old[type(node.ops[0])]
+                new = TURNED[type(node.ops[0])]
+                yield from between(node.left, node.comparators[0], word, new, node.lineno, f"{word} becomes {new}")
 
 
 def difference(found: str, right: str) -> str:
@@ -294,76 +146,136 @@ def _same_text(one: Any, other: Any) -> bool:
 
 def main() -> int:
     parser = argparse.ArgumentParser(description=__doc__.partition("\n")[0])
-    parser.add_argument("number", type=int)
+    parser.add_argument("number", type=int, nargs="?", default=60)
     parser.add_argument("--seed", type=int, default=1)
     parser.add_argument("--rooms", default="", help="these alone, separated by commas")
+    parser.add_argument("--kind", choices=("all", "numbers", "read"), default="all", help="rooms of this kind")
     parser.add_argument("--evenly", choices=("yes", "no"), default="yes", help="from every room as many")
     parser.add_argument("--tests", action="store_true", help="run the quick tests on what the product did not see")
     parser.add_argument("--runs", type=int, help="so many of the runs alone, drawn by the seed")
-    parser.add_argument("--of", default="", help="the runs alone in which one of these words stands")
-    parser.add_argument("--traced", default="", help="a file that keeps which functions each run calls")
+    parser.add_argument("--kept", type=Path, help="a folder for what runs and tests do without an error")
+    parser.add_argument("--again", type=Path, help="instead of a draw what was open in this log, once more")
+    parser.add_argument("--log", type=Path, help="a file of JSON lines: every draw")
     parser.add_argument("-v", "--verbose", action="store_true")
     options = parser.parse_args()
-    os.environ["EOMGEN_FRESH"] = "1"
-    warm()
-    rng = random.Random(options.seed)
-    runs = [run.strip() for run in RUNS.replace("\n", ";").split(";") if run.strip()]
-    runs = [run if run.startswith("export") else patient(run) for run in runs]
-    words = [word for word in options.of.split(",") if word]
-    runs = [run for run in runs if any(word in run for word in words)] if words else runs
-    runs = random.Random(options.seed).sample(runs, options.runs) if options.runs else runs
-    with tempfile.TemporaryDirectory() as planted.CODE:
-        called: dict[Function, list[str]] = defaultdict(list)
-        for run, mine in all_traced(runs, options.traced).items():
-            for function in sorted(mine):
-                called[function].append(run)
-        rows = counted(called, rng, options)
+    planted.warm()
+    with tempfile.TemporaryDirectory() as beside:
+        options.kept = (options.kept or Path(beside)).resolve()
+        options.kept.mkdir(parents=True, exist_ok=True, mode=0o700)
+        found = [*_found(options)]
+        if options.tests:
+            found = [*_with_tests(found, options)]
+    rows = Counter((room_of(place.file), seen) for place, seen, _, _ in found)
     print(f"seed {options.seed}\n{table(rows)}")
     return 0
 
 
-def counted(
-    called: dict[Function, list[str]], rng: random.Random, options: argparse.Namespace
-) -> Counter[tuple[str, str]]:
-    """{(room, who saw it): how many} of what is drawn."""
-    by_file: dict[str, set[str]] = defaultdict(set)
-    rooms = set(filter(None, options.rooms.split(",")))
-    for file, function in called:
-        room = room_of(file)
-        if room in rooms or (not rooms and room not in LEFT_OUT and not any(word in file for word in APART)):
-            by_file[file].add(function)
+Found = tuple[Place, str, str, str]  # who saw it, in which run, what was said
+
+
+def _found(options: argparse.Namespace) -> Iterator[Found]:
+    """Every draw, as the product sees it."""
+    server, rng, chosen = Server(), random.Random(options.seed), runs()
+    if options.again:
+        yield from _again(server, chosen, options)
+        return
+    if options.kind == "numbers":
+        chosen = [run for run in chosen if not run.words.startswith(PAGES)]
+    chosen = random.Random(options.seed).sample(chosen, options.runs) if options.runs else chosen
+    right = right_of(server, chosen, options.kept)
+    called: dict[Function, list[str]] = defaultdict(list)
+    for words, (_, each) in right.items():
+        for function in sorted(each.functions):
+            called[function].append(words)
     every = [
-        (place, called[file, function])
-        for file, functions in sorted(by_file.items())
-        for function, place in places(file, functions)
+        (place, called[function])
+        for function in sorted(called)
+        if _asked(function[0], options)
+        for place in places(function[0], {function[1]})
     ]
-    print(f"{len(every)} places in {len(by_file)} files", flush=True)
-    rows: Counter[tuple[str, str]] = Counter()
+    print(f"{len(every)} places in {len({place.file for place, _ in every})} files, {len(right)} runs", flush=True)
     for place, mine in drawn(every, options.number, rng, evenly=options.evenly == "yes"):
-        seen = "no effect"
-        for run in rng.sample(mine, min(3, len(mine))):
-            seen, said = judged(planted.outcome(place.planted(), run), as_it_is(run), seen)
-            if seen == "open" and options.tests and planted.seen_by_tests(place.planted()):
-                seen = "tests"
-            if seen != "no effect" and (options.verbose or seen == "open"):
-                print(f"{seen:9} {place.file}:{place.line} {place.what} [{run}] {said[:330]}", flush=True)
+        seen, words, said = "no effect", "", ""
+        for each in _by_lot(mine, right, rng):
+            run, without = right[each]
+            wrong = server.outcome(run, options.kept / "compiled", (place.file, place.patched()), cpu=without.cpu)
+            now, told = judged(wrong, without.outcome, seen)
+            if now == "open" and server.outcome(run, options.kept / "compiled") != without.outcome:
+                continue  # it says another thing each time
+            if now != seen:
+                seen, words, said = now, each, told
             if seen not in ("harmless", "no effect"):
                 break
-        rows[room_of(place.file), seen] += 1
-    return rows
+        _tell((place, seen, words, said), options)
+        yield place, seen, words, said
 
 
-def patient(run: str) -> str:
-    """A run that the clock does not end: it is traced, or shares its machine."""
-    line = run.removesuffix(" --text")
-    return f"{line} --patience none{run[len(line) :]}"
+def _again(server: Server, chosen: list[Run], options: argparse.Namespace) -> Iterator[Found]:
+    """The open ones of a log once more, in the runs that showed them."""
+    rows = [json.loads(line) for line in options.again.read_text(encoding="utf-8").splitlines()]
+    rows = [row for row in rows if row["seen"] == "open"]
+    right = right_of(server, [run for run in chosen if run.words in {row["run"] for row in rows}], options.kept)
+    for row in rows:
+        mine = [x for x in places(row["file"], set()) if x.lines == (row["old"], row["new"])]
+        if not mine or row["run"] not in right:
+            print(f"gone      {row['file']}: {row['old']} [{row['run']}]", flush=True)
+            continue
+        run, without = right[row["run"]]
+        wrong = server.outcome(run, options.kept / "compiled", (row["file"], mine[0].patched()), cpu=without.cpu)
+        found = (mine[0], *_seen(wrong, without, run))
+        _tell(found, options)
+        yield found
+
+
+def _seen(wrong: planted.Outcome, without: Right, run: Run) -> tuple[str, str, str]:
+    seen, said = judged(wrong, without.outcome, "no effect")
+    return seen, run.words, said
+
+
+def _asked(file: str, options: argparse.Namespace) -> bool:
+    room, rooms = room_of(file), set(filter(None, options.rooms.split(",")))
+    if rooms:
+        return room in rooms
+    wanted = {"all": True, "numbers": room not in READ, "read": room in READ}[options.kind]
+    return wanted and not file.startswith(LEFT_OUT) and not any(word in file for word in APART)
+
+
+def _by_lot(mine: list[str], right: dict[str, tuple[Run, Right]], rng: random.Random) -> list[str]:
+    """Up to three of the runs, drawn one after another, each the likelier the shorter it takes."""
+    weight = {words: rng.random() ** (0.3 + right[words][1].cpu) for words in mine}
+    return sorted(mine, key=lambda words: -weight[words])[:MOST]
+
+
+def _tell(found: Found, options: argparse.Namespace) -> None:
+    place, seen, words, said = found
+    if options.verbose or seen == "open":
+        print(f"{seen:9} {place.file}:{place.line} {place.what} [{words}] {said[:330]}", flush=True)
+    if options.log:
+        old, new = place.lines
+        each = {"seed": options.seed, "seen": seen, "file": place.file, "line": place.line, "what": place.what}
+        each |= {"old": old, "new": new, "run": words, "said": said[:2000]}
+        with options.log.open("a", encoding="utf-8") as file:
+            file.write(json.dumps(each) + "\n")
+
+
+def _with_tests(found: list[Found], options: argparse.Namespace) -> Iterator[Found]:
+    """With what the tests see of what the product does not."""
+    mine = [place for place, seen, _, _ in found if seen == "open"]
+    seen_by = iter(first_failing([(x.file, x.patched(), x.function) for x in mine], options.kept))
+    for place, seen, words, said in found:
+        test = next(seen_by) if seen == "open" else ""
+        if test:
+            print(f"tests     {place.file}:{place.line} {place.what} {test}", flush=True)
+        yield place, "tests" if test else seen, words, test or said
 
 
 def room_of(file: str) -> str:
     """The room of a file; what prints formulas is a room of its own, options belong to the verbs."""
-    if file.startswith(("symbolic/print", "cli")):
-        return "symbolic/print" if file.startswith("symbolic") else "verbs"
-    return file.split("/")[0]
+    if file.startswith("symbolic/print"):
+        return "symbolic/print"
+    if file.startswith("cli"):
+        return "verbs"
+    return file.split("/")[0] if "/" in file else "doors"
 
 
 Drawn = tuple[Place, list[str]]

@@ -1,0 +1,144 @@
+"""An MJCF file, the model made of it, its equations -> whether it stands, weighs and accelerates as MuJoCo has it.
+
+    T of every body,    M u' = Q - c    against    M u' = actuators + passive forces - bias
+
+at positions and speeds that are nothing special, every input 0.7: MuJoCo computes them, in doubles, by its own way.
+"""
+
+from __future__ import annotations
+
+import importlib
+from collections.abc import Iterator, Sequence
+from typing import Any
+
+import numpy as np
+
+from eomgen.mechanics.equations.equations_of_motion import EquationsOfMotion
+from eomgen.model.joints.base import Joint
+from eomgen.model.parts import Model
+from eomgen.proof.check import first_wrong
+from eomgen.proof.posed_model import PosedModel, poses_differ, quaternion_names
+from eomgen.symbolic.numeric.evaluation import FLOAT, evaluate
+from eomgen.symbolic.numeric.tolerances import CARRIED
+
+FREE, BALL = 0, 1  # the numbers of MuJoCo, of joints
+PUSHED = 0.7  # of every input
+OF_TIES = (  # what is left out and pushes by constraints of MuJoCo alone: it is in none of the forces that are compared
+    *("limits of joints", "limits of tendons", "limits of free and ball joints", "limits of motors", "frictionloss"),
+    *("geoms that touch", "pairs of geoms that touch", "friction of free and ball joints", "inputs of motors"),
+    *("softness of equalities", "equalities that are switched off", "motion of a mocap body"),
+)
+
+
+def mjcf_otherwise(path: str, model: Model, equations: EquationsOfMotion | None, left_out: Sequence[str]) -> str:
+    """Which body is not as MuJoCo has it; "" where all are that are called alike in both.
+
+    Args:
+        equations: of the model; None: no forces are compared.
+        left_out: what of the file changes the motion and has no counterpart.
+    """
+    mujoco: Any = importlib.import_module("mujoco")
+    try:
+        m = mujoco.MjModel.from_xml_path(path)
+    except ValueError:  # files of pictures are missing
+        return ""
+    proof = _Compiled(mujoco, m, model)
+    forces = () if equations is None else proof.accelerates(equations, pushed=not set(left_out) - {*OF_TIES})
+    return first_wrong((*proof.stands(), *proof.weighs(), *forces))
+
+
+class _Compiled:
+    """MuJoCo's model beside ours, at the same positions and speeds."""
+
+    def __init__(self, mujoco: Any, m: Any, model: Model) -> None:
+        self.mujoco, self.m, self.model, self.posed = mujoco, m, model, PosedModel(model)
+        self.data = mujoco.MjData(m)
+        self.speeds: list[str] = []  # by the number of MuJoCo
+        self.all_known = True
+        for j in range(m.njnt):
+            self._set(j)
+
+    def _set(self, j: int) -> None:
+        """A joint's positions are those of ours."""
+        name, at = self.m.joint(j).name, int(self.m.jnt_qposadr[j])
+        if self.m.jnt_type[j] not in (FREE, BALL):
+            q = self.posed.coordinates.get(name or f"joint{j}")
+            self.all_known &= q is not None
+            self.data.qpos[at] = self.posed.values.get(q or "", 0.0)
+            self.speeds.append(f"{q}'")
+            return
+        own = self._turning(self.posed.bodies.get(self.m.body(self.m.jnt_bodyid[j]).name))
+        names = [] if own is None else [*_places(own), *quaternion_names(own)]
+        self.all_known &= bool(names)
+        if own is not None:
+            self.data.qpos[at : at + len(names)] = [self.posed.values[x] for x in names]
+            self.speeds += [*(f"{x}'" for x in _places(own)), *map(str, getattr(own, "omega", ()) or ())]
+
+    def _turning(self, body: str | None) -> Joint | None:
+        own = None if body is None else self.model.bodies[body].joint
+        return own if own is not None and quaternion_names(own) else None
+
+    def stands(self) -> Iterator[str]:
+        """Every body in the ground."""
+        self.mujoco.mj_kinematics(self.m, self.data)
+        for k, name in self._bodies():
+            due = self.data.xmat[k].reshape(3, 3), self.data.xpos[k]
+            off = self.all_known and poses_differ(self.posed.pose(name), due)
+            yield f"'{name}' does not stand where MuJoCo has it" if off else ""
+
+    def weighs(self) -> Iterator[str]:
+        """Mass, mass centre, inertia."""
+        for k, name in self._bodies():
+            R, m = np.zeros(9), float(self.m.body_mass[k])
+            self.mujoco.mju_quat2Mat(R, self.m.body_iquat[k])
+            R = R.reshape(3, 3)
+            I = R @ np.diag(self.m.body_inertia[k]) @ R.T
+            due = np.array([m, *(m * self.m.body_ipos[k]), *I.ravel()])
+            yield f"'{name}' weighs otherwise" if abs(self.posed.weight(name) - due).max() > _fine(due) else ""
+
+    def accelerates(self, equations: EquationsOfMotion, *, pushed: bool) -> Iterator[str]:
+        """M, and Q - c where all that pushes is in the model."""
+        s = equations.symbols
+        order = [x.name for x in s.u]
+        if not self.all_known or sorted(order) != sorted(self.speeds):
+            return
+        rates = {name: 0.2 + 0.13 * k for k, name in enumerate(self.speeds)}
+        self.data.qvel[:] = list(rates.values())
+        self.m.actuator_ctrllimited[:] = self.m.actuator_forcelimited[:] = self.m.jnt_actfrclimited[:] = 0
+        self.data.ctrl[:] = PUSHED
+        self.mujoco.mj_forward(self.m, self.data)
+        full = np.zeros((self.m.nv, self.m.nv))
+        for column, one in zip(full, np.eye(self.m.nv), strict=True):
+            self.mujoco.mj_mulM(self.m, self.data, column, one)
+        n, at = len(order), [self.speeds.index(name) for name in order]
+        due = self.data.qfrc_actuator + self.data.qfrc_passive - self.data.qfrc_bias
+        known = {
+            **self.posed.values_of(s),
+            **{x: rates[x.name] for x in s.u},
+            **dict.fromkeys(s.inputs.values(), PUSHED),
+        }
+        scalars = [
+            *(x for row in equations.M for x in row),
+            *(q - c for q, c in zip(equations.Q, equations.c, strict=True)),
+        ]
+        found = np.array([float(x) for x in evaluate(scalars, known, FLOAT)])
+        M, forces = found[: n * n].reshape(n, n), found[n * n :]
+        full, due = full[np.ix_(at, at)], due[at]
+        for k, name in enumerate(order):
+            yield f"the inertia that {name} meets is otherwise" if abs(M[k] - full[k]).max() > _fine(full) else ""
+            off = pushed and abs(forces[k] - due[k]) > _fine(due)
+            yield f"{name} is pushed by {forces[k]:.9g}, not {due[k]:.9g}" if off else ""
+
+    def _bodies(self) -> Iterator[tuple[int, str]]:
+        for k in range(1, self.m.nbody):
+            name = self.posed.bodies.get(self.m.body(k).name or f"body{k}")
+            if name is not None:
+                yield k, name
+
+
+def _places(joint: Joint) -> list[str]:
+    return [str(getattr(x, "text", x)) for x in getattr(joint, "position", None) or ()]
+
+
+def _fine(values: np.ndarray) -> float:
+    return float(CARRIED * (1 + abs(values).max()))
