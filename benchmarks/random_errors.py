@@ -187,12 +187,11 @@ def _found(options: argparse.Namespace) -> Iterator[Found]:
     for words, (_, each) in right.items():
         for function in sorted(each.functions):
             called[function].append(words)
-    every = [
-        (place, called[function])
-        for function in sorted(called)
-        if _asked(function[0], options)
-        for place in places(function[0], {function[1]})
-    ]
+    lines: dict[str, set[int]] = defaultdict(set)
+    for file, line in sorted(called):
+        if _asked(file, options):
+            lines[file].add(line)
+    every = [(x, called[file, x.function]) for file, mine in lines.items() for x in places(file, mine)]
     print(f"{len(every)} places in {len({place.file for place, _ in every})} files, {len(right)} runs", flush=True)
     for place, mine in drawn(every, options.number, rng, evenly=options.evenly == "yes"):
         seen, words, said = "no effect", "", ""

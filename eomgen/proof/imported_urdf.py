@@ -1,4 +1,4 @@
-"""A URDF file's text, the model made of it -> whether bodies stand, weigh and follow as the file says, in doubles.
+"""A URDF file's text, the model made of it -> whether bodies stand, weigh, follow, yield as the file says, in doubles.
 
     T = (R_z(yaw) R_y(pitch) R_x(roll), xyz) (turn by s about, or slide along, the axis),    q = multiplier q' + offset
 
@@ -7,27 +7,20 @@ The file is read once more, by another program, and each joint is taken by itsel
 
 from __future__ import annotations
 
-import math
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator
 from typing import TYPE_CHECKING
 
 import numpy as np
 
-from eomgen.mechanics.bodies.inertia import mass_properties
-from eomgen.mechanics.bodies.kinematics import motion_of
-from eomgen.mechanics.bodies.scope import scope_of
 from eomgen.model.parts import Model
-from eomgen.model.values import exact_parameters
 from eomgen.proof.check import first_wrong
-from eomgen.symbolic.expression.graph import Node, Scalar
-from eomgen.symbolic.numeric.evaluation import FLOAT, evaluate
+from eomgen.proof.posed_model import Pose, PosedModel, apart, numbers, roll_pitch_yaw, turned
 from eomgen.symbolic.numeric.tolerances import COMPUTED
 
 if TYPE_CHECKING:
     from xml.etree.ElementTree import Element
 
 TURNING, SLIDING = ("revolute", "continuous"), ("prismatic",)
-FIRST, STEP = 0.3, 0.17  # values of the coordinates, one after the other
 
 
 def imported_otherwise(text: str | bytes, model: Model) -> str:
@@ -41,36 +34,28 @@ def imported_otherwise(text: str | bytes, model: Model) -> str:
     joints = [joint for joint in root.iter("joint") if joint.find("child") is not None]
     proof = _Imported(model, joints)
     weights = (proof.weighs(link) for link in root.iter("link"))
-    return first_wrong((*map(proof.stands, joints), *weights, *proof.follows()))
+    return first_wrong((*map(proof.stands, joints), *map(proof.yields, joints), *weights, *proof.posed.follows()))
 
 
 class _Imported:
-    """The model at values of its coordinates that are nothing special, those that follow others set by these."""
+    """The model at values of its coordinates, those that follow others set by these."""
 
     def __init__(self, model: Model, joints: list[Element]) -> None:
-        self.model, self.motion = model, motion_of(scope_of(model))
+        self.model, self.posed = model, PosedModel(model)
         self.hung = {_named(joint, "child") for joint in joints}
         own = {str(joint.get("name")): q for joint in joints if (q := self.coordinate(joint)) is not None}
-        values = {q: FIRST + STEP * k for k, q in enumerate(model.coordinates)}
-        for joint in joints:
-            mimic, q = joint.find("mimic"), own.get(str(joint.get("name")))
-            leader = None if mimic is None else own.get(str(mimic.get("joint")))
-            if mimic is not None and q is not None and leader is not None:
-                values[q] = float(mimic.get("multiplier", 1)) * values[leader] + float(mimic.get("offset", 0))
-        known, symbols = exact_parameters(model), self.motion.scope.symbols
-        self.known: Mapping[Node, float] = {
-            **{node: float(known[name]) for name, node in symbols.parameters.items() if name in known},
-            **{node: values[node.name] for node in symbols.q},
-            symbols.t: 0.0,
-        }
-        self.values = values
+        for joint, leader in _mimics(joints):
+            q, other, mimic = own.get(str(joint.get("name"))), own.get(leader), joint.find("mimic")
+            if q is not None and other is not None and mimic is not None:
+                factor, offset = float(mimic.get("multiplier", 1)), float(mimic.get("offset", 0))
+                self.posed.values[q] = factor * self.posed.values[other] + offset
 
-    def at(self, scalars: tuple[Scalar, ...]) -> np.ndarray:
-        return np.array([float(x) for x in evaluate(scalars, self.known, FLOAT)])
+    def body(self, link: str) -> str | None:
+        return self.posed.bodies.get(link)
 
     def coordinate(self, joint: Element) -> str | None:
-        """By which the child of a hinge or slide moves; None of others, and of one that is called otherwise."""
-        part = self.model.bodies.get(_named(joint, "child"))
+        """By which the child of a hinge or slide moves; None of others."""
+        part = self.model.bodies.get(self.body(_named(joint, "child")) or "")
         if joint.get("type") not in (*TURNING, *SLIDING) or part is None or part.joint is None:
             return None
         (variable,) = part.joint.variables(self.model.space)[:1] or (None,)
@@ -78,59 +63,58 @@ class _Imported:
 
     def stands(self, joint: Element) -> str:
         """Child against parent."""
-        child, parent, kind = _named(joint, "child"), _named(joint, "parent"), joint.get("type")
-        if child not in self.model.bodies or kind not in (*TURNING, *SLIDING, "fixed"):
+        child, kind = self.body(_named(joint, "child")), joint.get("type")
+        parent = self.body(_named(joint, "parent"))
+        if child is None or kind not in (*TURNING, *SLIDING, "fixed"):
             return ""
         own = self.model.bodies[child].joint
         above = None if own is None else own.parent
-        if above != parent and (above is not None or parent in self.model.bodies or parent in self.hung):
+        if above != parent and (above is not None or parent is not None or _named(joint, "parent") in self.hung):
             return ""  # hung elsewhere, as on what its parent is fixed to
         R, p = _origin(joint)
         q = self.coordinate(joint)
         if kind != "fixed":
             if q is None:
                 return ""
-            axis = joint.find("axis")
-            n = np.array([1.0, 0, 0]) if axis is None else _numbers(axis.get("xyz", "1 0 0"))
+            axis, s = joint.find("axis"), self.posed.values[q]
+            n = np.array([1.0, 0, 0]) if axis is None else numbers(axis.get("xyz", "1 0 0"))
             n = n / np.linalg.norm(n)
-            R, p = (R @ _turn(n, self.values[q]), p) if kind in TURNING else (R, p + R @ n * self.values[q])
-        R_here, p_here = self._pose(child)
-        R_above, p_above = (np.eye(3), np.zeros(3)) if above is None else self._pose(above)
-        away = max(abs(R_above.T @ R_here - R).max(), abs(R_above.T @ (p_here - p_above) - p).max())
-        return (
-            f"'{child}' does not stand on '{parent}' as its joint says" if away > COMPUTED * (1 + abs(p).max()) else ""
-        )
+            R, p = (R @ turned(n, s), p) if kind in TURNING else (R, p + R @ n * s)
+        return f"'{child}' does not stand on '{parent}' as its joint says" if self._away(above, child, (R, p)) else ""
 
-    def _pose(self, body: str) -> tuple[np.ndarray, np.ndarray]:
-        pose = self.motion.link(body).pose
-        return self.at(tuple(x for row in pose.R for x in row)).reshape(3, 3), self.at(tuple(pose.p))
+    def _away(self, above: str | None, child: str, due: Pose) -> bool:
+        return apart(self.posed.between(above, child), due)
+
+    def yields(self, joint: Element) -> str:
+        """The damping of a hinge or slide."""
+        child, dynamics = self.body(_named(joint, "child")), joint.find("dynamics")
+        if child is None or self.coordinate(joint) is None:
+            return ""
+        due = 0.0 if dynamics is None else float(dynamics.get("damping", 0))
+        found = self.posed.number(getattr(self.model.bodies[child].joint, "damping", None))
+        return "" if abs(found - due) <= COMPUTED * (1 + abs(due)) else f"the joint of '{child}' is damped otherwise"
 
     def weighs(self, link: Element) -> str:
         """Mass, mass centre, inertia."""
-        name, inertial = str(link.get("name")), link.find("inertial")
-        if inertial is None or name not in self.model.bodies or self._carries(name):
+        name, inertial = self.body(str(link.get("name"))), link.find("inertial")
+        if (
+            inertial is None or name is None or self.model.bodies[name].parts is not None
+        ):  # others may have gone into it
             return ""
         (R, p), mass, tensor = _origin(inertial), inertial.find("mass"), inertial.find("inertia")
         m = 0.0 if mass is None else float(mass.get("value", 0))
         keys = (("ixx", "ixy", "ixz"), ("ixy", "iyy", "iyz"), ("ixz", "iyz", "izz"))
         I = np.array([[0.0 if tensor is None else float(tensor.get(key, 0)) for key in row] for row in keys])
-        own = mass_properties(self.motion.scope, name)
         due = np.array([m, *(m * p), *(R @ I @ R.T).ravel()])
-        found = self.at((own.m, *own.com, *(x for row in own.I for x in row)))
-        found[1:4] *= found[0]
-        return f"'{name}' weighs otherwise" if abs(found - due).max() > COMPUTED * (1 + abs(due).max()) else ""
+        off = abs(self.posed.weight(name) - due).max()
+        return f"'{name}' weighs otherwise" if off > COMPUTED * (1 + abs(due).max()) else ""
 
-    def _carries(self, name: str) -> bool:
-        """Whether other links may have gone into it."""
-        return self.model.bodies[name].parts is not None
 
-    def follows(self) -> Iterator[str]:
-        """Equations between coordinates hold where those that mimic others are set by these."""
-        for name, tie in self.model.constraints.items():
-            gap = getattr(tie, "gap", None)
-            if gap is not None and not gap.calls and name.startswith("mimic"):
-                left = float(self.at((self.motion.scope.value(gap),))[0])
-                yield f"'{name}' leaves {left:.3g}" if abs(left) > COMPUTED * 10 else ""
+def _mimics(joints: list[Element]) -> Iterator[tuple[Element, str]]:
+    """Joints that follow others, after these, with the names of these."""
+    waiting = {str(x.get("name")): (x, str(m.get("joint"))) for x in joints if (m := x.find("mimic")) is not None}
+    while ready := [name for name, (_, leader) in waiting.items() if leader not in waiting]:
+        yield from (waiting.pop(name) for name in ready)
 
 
 def _named(joint: Element, end: str) -> str:
@@ -138,21 +122,8 @@ def _named(joint: Element, end: str) -> str:
     return "" if found is None else str(found.get("link"))
 
 
-def _numbers(text: str) -> np.ndarray:
-    return np.array([float(x) for x in text.split()])
-
-
-def _origin(element: Element) -> tuple[np.ndarray, np.ndarray]:
+def _origin(element: Element) -> Pose:
     origin = element.find("origin")
     if origin is None:
         return np.eye(3), np.zeros(3)
-    roll, pitch, yaw = _numbers(origin.get("rpy", "0 0 0"))
-    X, Y, Z = np.eye(3)
-    return _turn(Z, yaw) @ _turn(Y, pitch) @ _turn(X, roll), _numbers(origin.get("xyz", "0 0 0"))
-
-
-def _turn(n: np.ndarray, angle: float) -> np.ndarray:
-    """1 + sin K + (1 - cos) K^2, K v = n x v."""
-    K = np.array([[0, -n[2], n[1]], [n[2], 0, -n[0]], [-n[1], n[0], 0]])
-    found: np.ndarray = np.eye(3) + math.sin(angle) * K + (1 - math.cos(angle)) * K @ K
-    return found
+    return roll_pitch_yaw(numbers(origin.get("rpy", "0 0 0"))), numbers(origin.get("xyz", "0 0 0"))

@@ -71,15 +71,21 @@ def import_robot(path: str | Path, *, floating: bool = False, model: str | None 
     return imported(path, floating=floating, model=model).model
 
 
+def root_of(data: bytes) -> str:
+    """The name of the first element of an XML file; "" of other texts."""
+    root = ROOT.search(COMMENT.sub(b"", data))
+    return "" if root is None else root[1].decode()
+
+
 def _tables(path: Path, data: bytes, floating: bool, model: str | None) -> Imported:
     """By what the root of the file says."""
-    root = ROOT.search(COMMENT.sub(b"", data))
-    if model is not None and (root is None or root[1] != b"sdf"):
+    root = root_of(data)
+    if model is not None and root != "sdf":
         raise UsageError("only SDF files have several models to choose from", mend="leave --model out")
-    if root is not None and root[1] == b"mujoco":
+    if root == "mujoco":
         return mjcf(path)
-    if root is not None and root[1] == b"sdf":
+    if root == "sdf":
         return sdf(data, str(path), model)
-    if root is not None and root[1] == b"mujocoinclude":
+    if root == "mujocoinclude":
         raise ModelError("a part of an MJCF file", f"{path}:1:1", "import the file with <mujoco> that includes it")
     return urdf(data, str(path), floating=floating)

@@ -10,9 +10,12 @@ from eomgen import files
 from eomgen.documents.document import Document, lines_document
 from eomgen.errors import UsageError
 from eomgen.model.parts import Model
+from eomgen.proof.imported_sdf import sdf_otherwise
 from eomgen.proof.imported_urdf import imported_otherwise
-from eomgen.robots.importing import imported
+from eomgen.robots.importing import imported, root_of
 from eomgen.robots.sdf_models import LARGEST
+
+OTHERWISE = {"robot": imported_otherwise, "sdf": sdf_otherwise}
 
 
 def refuse_other_endings(output: str | None) -> None:
@@ -57,5 +60,7 @@ def import_document(
 
 
 def _otherwise(file: str, made: Model) -> str:
-    """What of a URDF file is otherwise in the model, by another reading of it; "" of other files."""
-    return imported_otherwise(files.read(file, LARGEST), made) if Path(file).suffix.lower() == ".urdf" else ""
+    """What of a robot's file is otherwise in the model, by another reading of it; "" where nothing is."""
+    text = files.read(file, LARGEST)
+    root = root_of(text)
+    return OTHERWISE[root](text, made) if root in OTHERWISE else ""

@@ -1,0 +1,272 @@
+"""An SDF file's text, the model made of it -> whether bodies stand, weigh, move and yield as the file says, in doubles.
+
+    T_child = T_parent (T_parent^-1 T_child at 0) T_joint (turn by s about, slide by s along, or both) T_joint^-1
+
+T_joint of the joint in its child; where all coordinates are 0 each link stands where the file has it. The file is read
+once more, by another program: one model that holds no other; of others nothing is said.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from eomgen.model.joints.base import Joint
+from eomgen.model.parts import Model
+from eomgen.proof.check import first_wrong
+from eomgen.proof.posed_model import (
+    Pose,
+    PosedModel,
+    apart,
+    back,
+    joints_of,
+    moved,
+    numbers,
+    quaternion_of,
+    roll_pitch_yaw,
+    turned,
+)
+from eomgen.symbolic.numeric.tolerances import COMPUTED
+
+if TYPE_CHECKING:
+    from xml.etree.ElementTree import Element
+
+AXES = {"revolute": 1, "continuous": 1, "prismatic": 1, "screw": 1, "universal": 2, "revolute2": 2}
+FELT = (("damping", "damping"), ("spring_stiffness", "stiffness"))
+SHAPES = ("box", "cylinder", "sphere")
+WATER, YES = 1000.0, ("true", "1")  # kg/m^3, what SDF takes where it is told no density
+FIXED: Pose = (np.eye(3), np.zeros(3))
+
+
+def sdf_otherwise(text: str | bytes, model: Model) -> str:
+    """Which body is not as the file has it; "" where all are that are called alike in both, and of what is not read."""
+    from xml.etree import ElementTree
+
+    try:
+        root = ElementTree.fromstring(text.strip())
+    except ElementTree.ParseError:  # what our reader forgives
+        return ""
+    chosen = next((x for x in root.iter("model") if x.get("name") == model.name), None)
+    if chosen is None or _nested(chosen) or _old(root):
+        return ""
+    proof = _Imported(model, chosen)
+    joints = chosen.findall("joint")
+    links = (y for link in chosen.findall("link") for y in (proof.stands(link), proof.weighs(link)))
+    moving = (y for joint in joints for y in (proof.moves(joint), *proof.yields(joint)))
+    return first_wrong((*links, *moving, *proof.follows()))
+
+
+def _nested(model: Element) -> bool:
+    return any(model.find(tag) is not None for tag in ("model", "include")) or model.get("placement_frame") is not None
+
+
+def _old(root: Element) -> bool:
+    """Whether axes may stand in other frames than today's."""
+    version = [int(x) for x in root.get("version", "1.7").split(".")[:2]]
+    return version < [1, 7] or next(root.iter("use_parent_model_frame"), None) is not None
+
+
+class _Imported:
+    """The file's frames and the model, at values of coordinates and where all of them are 0."""
+
+    def __init__(self, model: Model, chosen: Element) -> None:
+        self.model, self.chosen = model, chosen
+        self.named = {str(x.get("name")): x for tag in ("frame", "joint", "link") for x in chosen.findall(tag)}
+        self.posed, self.rest = PosedModel(model), PosedModel(model, self._rest())
+
+    def _rest(self) -> dict[str, float]:
+        """Every coordinate 0, what nothing holds where it starts."""
+        free = [joint for joint in joints_of(self.model) if joint.kind == "free"]
+        names = [
+            str(x)
+            for joint in free
+            for x in (*map(_name, getattr(joint, "position", None) or ()), *quaternion_of(joint))
+        ]
+        first = PosedModel(self.model)
+        starts = {q: first.number(self.model.coordinates[q].start) for q in names}
+        balls = {e: float(k == 0) for joint in joints_of(self.model) for k, e in enumerate(quaternion_of(joint))}
+        return {q: 0.0 for q in self.model.coordinates} | balls | starts
+
+    def body(self, link: str) -> str | None:
+        return self.posed.bodies.get(link)
+
+    def frame(self, name: str, below: tuple[str, ...] = ()) -> Pose:
+        """Of a link, joint or frame in the model."""
+        if name in ("", "__model__"):
+            return FIXED
+        if name == "world":
+            return back(_pose(self.chosen.find("pose")))
+        element = self.named[name]
+        assert name not in below
+        base = {"joint": _text(element, "child"), "frame": element.get("attached_to", "")}.get(element.tag, "")
+        pose = element.find("pose")
+        base = base if pose is None else pose.get("relative_to", base)
+        return moved(self.frame(base, (*below, name)), _pose(pose))
+
+    def stands(self, link: Element) -> str:
+        """Where all coordinates are 0, the link in the world."""
+        name = self.body(str(link.get("name")))
+        if name is None:
+            return ""
+        due = moved(_pose(self.chosen.find("pose")), self.frame(str(link.get("name"))))
+        return f"'{name}' does not stand where its link does" if apart(self.rest.pose(name), due) else ""
+
+    def moves(self, joint: Element) -> str:
+        """The child against the parent, away from 0."""
+        child, kind = self.body(self._link(_text(joint, "child"))), str(joint.get("type"))
+        if child is None or kind not in AXES:
+            return ""
+        parent = self._link(_text(joint, "parent"))
+        above = self.body(parent)
+        at = self.frame(str(joint.get("name")))
+        steps = [self._step(joint, tag, at, kind) for tag in ("axis", "axis2")[: AXES[kind]]]
+        if None in [q for q, _ in steps]:
+            return ""
+        R, p = moved(back(self.frame(parent)), at, *(step for _, step in steps), back(at))
+        due = moved((R, p), self.frame(self._link(_text(joint, "child"))))
+        found = self.posed.between(above, child)
+        return f"'{child}' does not move as its joint '{joint.get('name')}' says" if apart(found, due) else ""
+
+    def _step(self, joint: Element, tag: str, at: Pose, kind: str) -> tuple[str | None, Pose]:
+        axis, q = joint.find(tag), self._coordinate(joint, tag)
+        xyz = None if axis is None else axis.find("xyz")
+        n = np.array([0.0, 0, 1]) if xyz is None else numbers(str(xyz.text))
+        other = None if xyz is None else xyz.get("expressed_in")
+        if other:
+            n = at[0].T @ self.frame(other)[0] @ n
+        n, s = n / np.linalg.norm(n), self.posed.values.get(q or "", 0.0)
+        if kind == "prismatic":
+            return q, (np.eye(3), n * s)
+        pitch = _float(joint, "screw_thread_pitch", 0.0) if kind == "screw" else 0.0
+        return q, (turned(n, s), n * s * pitch / (2 * math.pi))
+
+    def _coordinate(self, joint: Element, tag: str) -> str | None:
+        q = self.posed.coordinates.get(str(joint.get("name")))
+        return q if tag == "axis" or q is None else next((x for x in (f"{q}_2",) if x in self.model.coordinates), None)
+
+    def _link(self, name: str) -> str:
+        """The link with which a frame moves."""
+        element = self.named.get(name)
+        if element is None or element.tag == "link":
+            return name
+        above = _text(element, "child") if element.tag == "joint" else element.get("attached_to")
+        return self._link(above or next(str(x.get("name")) for x in self.chosen.findall("link")))
+
+    def yields(self, joint: Element) -> Iterator[str]:
+        """Dampers and springs of hinges and slides."""
+        own = {q: part for part in joints_of(self.model) for q in _angles(part)}
+        for tag in ("axis", "axis2")[: AXES.get(str(joint.get("type")), 0)]:
+            q, dynamics = self._coordinate(joint, tag), joint.find(f"{tag}/dynamics")
+            if q is None or q not in own or dynamics is None:
+                continue
+            for theirs, ours in FELT:
+                due, found = _float(dynamics, theirs, 0.0), self.posed.number(getattr(own[q], ours, None))
+                yield "" if abs(found - due) <= COMPUTED * (1 + abs(due)) else f"{ours} of '{q}' is {found:.9g}"
+            rest = _float(dynamics, "spring_reference", 0.0)
+            if _float(dynamics, "spring_stiffness", 0.0):
+                found = self.posed.number(getattr(own[q], "rest", None))
+                yield "" if abs(found - rest) <= COMPUTED * (1 + abs(rest)) else f"rest of '{q}' is {found:.9g}"
+
+    def follows(self) -> Iterator[str]:
+        """q = multiplier (leader - reference) + offset leaves nothing."""
+        posed = PosedModel(self.model)
+        for joint in self.chosen.findall("joint"):
+            for tag in ("axis", "axis2"):
+                mimic, q = joint.find(f"{tag}/mimic"), self._coordinate(joint, tag)
+                other = None if mimic is None else self.named.get(str(mimic.get("joint")))
+                if mimic is None or other is None or q is None:
+                    continue
+                leader = self._coordinate(other, mimic.get("axis", "axis"))
+                if leader is None:
+                    continue
+                factor, offset, reference = (_float(mimic, name, 0.0) for name in ("multiplier", "offset", "reference"))
+                posed.values[q] = factor * (posed.values[leader] - reference) + offset
+        yield from posed.follows()
+
+    def weighs(self, link: Element) -> str:
+        """Mass, mass centre, inertia; of shapes by their densities where the file asks for that."""
+        name, inertial = self.body(str(link.get("name"))), link.find("inertial")
+        if name is None or inertial is None or (inertial.get("auto") in YES and not _all_solid(link)):
+            return ""
+        due = _by_density(link, inertial) if inertial.get("auto") in YES else _as_said(inertial)
+        off = abs(self.posed.weight(name) - due).max()
+        return f"'{name}' weighs otherwise" if off > COMPUTED * (1 + abs(due).max()) else ""
+
+
+def _as_said(inertial: Element) -> np.ndarray:
+    """m, m c, the inertia about the mass centre in the link's axes."""
+    (R, p), m = _pose(inertial.find("pose")), _float(inertial, "mass", 1.0)
+    rows = (("ixx", "ixy", "ixz"), ("ixy", "iyy", "iyz"), ("ixz", "iyz", "izz"))
+    I = np.array([[_float(inertial, f"inertia/{key}", float(key[1] == key[2])) for key in row] for row in rows])
+    return np.array([m, *(m * p), *(R @ I @ R.T).ravel()])
+
+
+def _all_solid(link: Element) -> bool:
+    """Whether each of its collisions is of a kind that is measured here, in axes of the link."""
+    shapes = link.findall("collision")
+    poses = [shape.find("pose") for shape in shapes]
+    known = all(any(shape.find(f"geometry/{tag}") is not None for tag in SHAPES) for shape in shapes)
+    return known and not any(pose is not None and pose.get("relative_to") for pose in poses)
+
+
+def _by_density(link: Element, inertial: Element) -> np.ndarray:
+    """The same, of boxes, cylinders and spheres by volume; a mass that is given too scales it."""
+    parts = []
+    for shape in link.findall("collision"):
+        (R, p), (volume, squares) = _pose(shape.find("pose")), _solid(shape)
+        m = volume * _float(shape, "density", _float(inertial, "density", WATER))
+        I = R @ (m * (np.eye(3) * squares.sum() - np.diag(squares))) @ R.T
+        parts.append((m, p, I))
+    m = sum(each for each, _, _ in parts)
+    c = sum(each * p for each, p, _ in parts) / m
+    I = sum(I + each * ((p - c) @ (p - c) * np.eye(3) - np.outer(p - c, p - c)) for each, p, I in parts)
+    wanted = _float(inertial, "mass", m)
+    return np.array([wanted, *(wanted * c), *(I * wanted / m).ravel()])
+
+
+def _solid(shape: Element) -> tuple[float, np.ndarray]:
+    """(volume, mean of x^2, y^2, z^2 over it)."""
+    found = {tag: shape.find(f"geometry/{tag}") for tag in SHAPES}
+    if (box := found["box"]) is not None:
+        size = numbers(_text(box, "size"))
+        return float(np.prod(size)), size**2 / 12
+    if (cylinder := found["cylinder"]) is not None:
+        r, length = _float(cylinder, "radius", 0), _float(cylinder, "length", 0)
+        return math.pi * r * r * length, np.array([r * r / 4, r * r / 4, length**2 / 12])
+    sphere = found["sphere"]
+    assert sphere is not None
+    r = _float(sphere, "radius", 0)
+    return 4 / 3 * math.pi * r**3, np.full(3, r * r / 5)
+
+
+def _pose(pose: Element | None) -> Pose:
+    """x y z roll pitch yaw, or x y z and a quaternion, scalar last."""
+    if pose is None or not (pose.text or "").strip():
+        return FIXED
+    found = numbers(str(pose.text))
+    if pose.get("rotation_format") == "quat_xyzw":
+        v = found[3:6]
+        return turned(v / (np.linalg.norm(v) or 1.0), 2 * math.atan2(float(np.linalg.norm(v)), found[6])), found[:3]
+    return roll_pitch_yaw(np.radians(found[3:]) if pose.get("degrees") in YES else found[3:]), found[:3]
+
+
+def _text(element: Element, path: str) -> str:
+    return (element.findtext(path) or "").strip()
+
+
+def _float(element: Element, path: str, otherwise: float) -> float:
+    text = _text(element, path)
+    return float(text) if text else otherwise
+
+
+def _name(expression: object) -> str:
+    return str(getattr(expression, "text", expression))
+
+
+def _angles(joint: Joint) -> tuple[str, ...]:
+    """The names of coordinates by which a hinge, a slide or a screw moves."""
+    found = (getattr(joint, key, None) for key in ("angle", "displacement"))
+    return tuple(_name(x) for x in found if x is not None)
