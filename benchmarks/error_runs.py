@@ -21,7 +21,7 @@ import time
 import tomllib
 import warnings
 from collections import defaultdict
-from collections.abc import Iterable, Mapping
+from collections.abc import Callable, Iterable, Mapping
 from dataclasses import dataclass, field
 from pathlib import Path
 from types import CodeType, FunctionType
@@ -34,7 +34,7 @@ LIST = Path(__file__).with_name("random_errors.toml")
 SHORT = 5.0  # s of CPU that a run may take while it is traced
 LONGEST, SLOWER = 12.0, 6  # s of CPU that a run with an error may take, and so many times what it takes without
 MEMORY = 8 * 2**30  # bytes of address space
-Function = tuple[str, int]  # a file below eomgen/, and the line at which a function begins
+Function = tuple[str, str]  # a file below eomgen/, and the qualified name of a function in it
 
 
 @dataclass(frozen=True)
@@ -51,11 +51,12 @@ class Run:
 
 
 @dataclass(frozen=True)
-class Right:
-    """What a run says without an error, which functions it calls, and its CPU time [s]."""
+class Calls:
+    """Which functions a run calls, its exit code with what it says of that, and its CPU time [s]."""
 
-    outcome: planted.Outcome
     functions: frozenset[Function]
+    code: int
+    why: str
     cpu: float
 
 
@@ -111,10 +112,9 @@ class Server:
         found = _forked(_told, self, run, cache, error, max(LONGEST, SLOWER * cpu))
         return found if isinstance(found, planted.Outcome) else planted.Outcome(139, str(found))
 
-    def right(self, run: Run, cache: Path) -> Right:
-        """What a run says without an error."""
+    def calls(self, run: Run, cache: Path) -> Calls:
         found = _forked(_watched, self, run, cache)
-        return found if isinstance(found, Right) else Right(planted.Outcome(139, str(found)), frozenset(), 0.0)
+        return found if isinstance(found, Calls) else Calls(frozenset(), 139, str(found), 0.0)
 
 
 def _import_all() -> None:
@@ -147,7 +147,7 @@ class _Telling:
 
     def __call__(self, args: Any, words: Any) -> Any:
         self.function.__code__ = self.code
-        self.found.add((self.code.co_filename.removeprefix(PACKAGE), self.code.co_firstlineno))
+        self.found.add((self.code.co_filename.removeprefix(PACKAGE), self.code.co_qualname))
         return self.function(*args, **words)
 
 
@@ -183,10 +183,10 @@ def _forked(work: Any, *args: Any) -> Any:
         child.join()
 
 
-def _watched(server: Server, run: Run, cache: Path) -> Right:
+def _watched(server: Server, run: Run, cache: Path) -> Calls:
     start, calls = time.process_time(), server.watched()
     found = _told(server, run, cache, None, SHORT)
-    return Right(found, frozenset(calls), time.process_time() - start)
+    return Calls(frozenset(calls), found.code, found.why, time.process_time() - start)
 
 
 def _told(server: Server, run: Run, cache: Path, error: tuple[str, str] | None, cpu: float) -> planted.Outcome:
@@ -238,26 +238,55 @@ def _code(run: Run, folder: str, out: io.StringIO) -> int:
     return 0
 
 
-def right_of(server: Server, chosen: Iterable[Run], kept: Path) -> dict[str, tuple[Run, Right]]:
-    """Of each run what it says without an error; kept from one time to the next for the same package."""
+@dataclass(frozen=True)
+class Kept:
+    """A folder for what does not depend on an error.
+
+    Args:
+        compiled: code of compilers.
+        package: the digest of all that the runs run.
+    """
+
+    folder: Path
+    package: str
+
+    @property
+    def compiled(self) -> Path:
+        place = self.folder / "compiled"
+        place.mkdir(parents=True, exist_ok=True, mode=0o700)
+        return place
+
+    def calls(self, server: Server, chosen: Iterable[Run]) -> dict[str, tuple[Run, Calls]]:
+        """What each run calls; those that fail without an error are told, and left out. Once made it is kept."""
+        found: dict[str, tuple[Run, Calls]] = {}
+        for run in chosen:
+            calls = self._once(f"calls-{_named_by(run)}", lambda run=run: server.calls(run, self.compiled))
+            if calls.code in planted.VERDICTS:
+                found[run.words] = run, calls
+            else:
+                print(f"left out: {run.words[:100]}: {calls.code} {calls.why[-300:]}", flush=True)
+        return found
+
+    def right(self, server: Server, run: Run) -> planted.Outcome:
+        """What a run says without an error, of this package."""
+        name = f"{self.package}-{_named_by(run)}"
+        return self._once(name, lambda: server.outcome(run, self.compiled, cpu=LONGEST))
+
+    def _once(self, name: str, made: Callable[[], Any]) -> Any:
+        path = self.folder / f"{name}.pickle"
+        if not path.exists():
+            path.write_bytes(pickle.dumps(made()))
+        return pickle.loads(path.read_bytes())
+
+
+def _named_by(run: Run) -> str:
+    return hashlib.sha256(repr((run.words, run.model, sorted(run.files.items()))).encode()).hexdigest()[:24]
+
+
+def kept_in(folder: Path) -> Kept:
     whole = hashlib.sha256()
     for path in sorted(Path(PACKAGE).rglob("*")):
         if path.is_file() and path.suffix != ".pyc":
             whole.update(path.read_bytes())
-    cache = kept / "compiled"
-    cache.mkdir(parents=True, exist_ok=True, mode=0o700)
-    found: dict[str, tuple[Run, Right]] = {}
-    for run in chosen:
-        name = hashlib.sha256(pickle.dumps((whole.hexdigest(), run))).hexdigest()[:24]
-        path = kept / f"{name}.pickle"
-        if path.exists():
-            right = pickle.loads(path.read_bytes())
-        else:
-            right = server.right(run, cache)
-            path.write_bytes(pickle.dumps(right))
-            print(f"{right.cpu:.1f} s {run.words[:80]!r}", flush=True)
-        if right.outcome.code not in planted.VERDICTS:
-            print(f"left out: {run.words[:100]}: {right.outcome.code} {right.outcome.why}", flush=True)
-        else:
-            found[run.words] = run, right
-    return found
+    folder.mkdir(parents=True, exist_ok=True, mode=0o700)
+    return Kept(folder, whole.hexdigest()[:24])

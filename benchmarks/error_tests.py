@@ -23,7 +23,7 @@ import pytest
 ROOT = Path(__file__).resolve().parent.parent
 LONGEST = 60.0  # s of CPU of the tests of one error
 MAP, ERRORS = "EOMGEN_ERRORS_MAP", "EOMGEN_ERRORS"
-Error = tuple[str, str, int]  # file, its text, the line at which its function begins
+Error = tuple[str, str, str]  # file, its text, the qualified name of its function
 
 
 def first_failing(errors: Sequence[Error], kept: Path) -> list[str]:
@@ -50,7 +50,7 @@ class Mapped:
 
     def __init__(self) -> None:
         self.server: Any = None
-        self.tests: dict[str, tuple[float, frozenset[tuple[str, int]]]] = {}
+        self.tests: dict[str, tuple[float, frozenset[tuple[str, str]]]] = {}
 
     @pytest.hookimpl(hookwrapper=True)
     def pytest_runtest_protocol(self, item: pytest.Item) -> Any:
@@ -82,9 +82,9 @@ class Asked:
         items, server = {x.nodeid: x for x in session.items}, Server()
         place = Path(os.environ[ERRORS])
         found = []
-        for file, text, line in json.loads(place.read_text(encoding="utf-8")):
+        for file, text, function in json.loads(place.read_text(encoding="utf-8")):
             mine = sorted(
-                (cpu, name) for name, (cpu, calls) in known.items() if (file, line) in calls and name in items
+                (cpu, name) for name, (cpu, calls) in known.items() if (file, function) in calls and name in items
             )
             found.append(_in_a_fork(self, server, (file, text), [(cpu, items[name]) for cpu, name in mine]))
             place.with_suffix(".found").write_text(json.dumps(found), encoding="utf-8")

@@ -17,7 +17,7 @@ The share is of those that do something.
     python benchmarks/random_errors.py 200 --seed 1 [-v] [--rooms mechanics,model] [--tests] [--evenly no]
     python benchmarks/random_errors.py 200 --seed 1 --kind numbers --kept FOLDER --log FILE
 
-In FOLDER stands what runs say without an error and which functions they and the tests call, of this package as it is.
+In FOLDER stands what runs say without an error, of this package as it is, and which functions they and the tests call.
 """
 
 from __future__ import annotations
@@ -30,12 +30,12 @@ import sys
 import tempfile
 from collections import Counter, defaultdict
 from collections.abc import Iterator
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
 
 import planted_errors as planted
-from error_runs import Function, Right, Run, Server, right_of, runs
+from error_runs import Function, Kept, Run, Server, kept_in, runs
 from error_tests import first_failing
 
 ROOT = planted.ROOT
@@ -55,7 +55,7 @@ class Place:
     """A node of a module's text that can be changed: between two offsets `new` is put in, in words `what`."""
 
     file: str
-    function: int  # the line at which it begins
+    function: str  # its qualified name
     line: int
     begin: int
     end: int
@@ -78,8 +78,8 @@ SIGNS = {"-": "+", "+": "-", "*": "/", "/": "*"}
 TURNED = {ast.Lt: ">=", ast.Gt: "<=", ast.LtE: ">", ast.GtE: "<", ast.Eq: "!=", ast.NotEq: "=="}
 
 
-def places(file: str, functions: set[int]) -> Iterator[Place]:
-    """What can be changed inside the functions that begin at these lines; of none given, of all."""
+def places(file: str, functions: set[str]) -> Iterator[Place]:
+    """What can be changed inside the functions of these qualified names; of none given, of all."""
     text = (ROOT / "eomgen" / file).read_bytes()
     starts = [0]
     for line in text.splitlines(keepends=True):
@@ -93,13 +93,10 @@ def places(file: str, functions: set[int]) -> Iterator[Place]:
         a, b = span(left)[1], span(right)[0]
         at = text[a:b].find(old.encode())
         if at >= 0 and text[a:b].count(old.encode()) == 1:
-            yield Place(file, first, line, a + at, a + at + len(old), new, what)
+            yield Place(file, name, line, a + at, a + at + len(old), new, what)
 
-    for function in ast.walk(ast.parse(text)):
-        if not isinstance(function, ast.FunctionDef):
-            continue
-        first = min([function.lineno, *(d.lineno for d in function.decorator_list)])
-        if functions and first not in functions:
+    for name, function in _functions(ast.parse(text), ""):
+        if functions and name not in functions:
             continue
         for node in (x for statement in function.body for x in ast.walk(statement)):
             if isinstance(node, ast.BinOp) and type(node.op) in OTHER:
@@ -107,17 +104,26 @@ def places(file: str, functions: set[int]) -> Iterator[Place]:
                 yield from between(node.left, node.right, SIGNS[new], new, node.lineno, f"{SIGNS[new]} becomes {new}")
             elif isinstance(node, ast.UnaryOp) and isinstance(node.op, ast.USub):
                 a, _ = span(node)
-                yield Place(file, first, node.lineno, a, a + 1, "+", "a minus is lost")
+                yield Place(file, name, node.lineno, a, a + 1, "+", "a minus is lost")
             elif isinstance(node, ast.Constant) and type(node.value) is int and node.value in range(10):
                 a, b = span(node)
                 yield Place(
-                    file, first, node.lineno, a, b, str(node.value + 1), f"{node.value} becomes {node.value + 1}"
+                    file, name, node.lineno, a, b, str(node.value + 1), f"{node.value} becomes {node.value + 1}"
                 )
             elif isinstance(node, ast.Compare) and len(node.ops) == 1 and type(node.ops[0]) in TURNED:
                 old = {ast.Lt: "<", ast.Gt: ">", ast.LtE: "<=", ast.GtE: ">=", ast.Eq: "==", ast.NotEq: "!="}
                 word = old[type(node.ops[0])]
                 new = TURNED[type(node.ops[0])]
                 yield from between(node.left, node.comparators[0], word, new, node.lineno, f"{word} becomes {new}")
+
+
+def _functions(node: ast.AST, above: str) -> Iterator[tuple[str, ast.FunctionDef]]:
+    """Every function by its qualified name; what stands inside another counts to that one."""
+    for child in ast.iter_child_nodes(node):
+        if isinstance(child, ast.FunctionDef):
+            yield f"{above}{child.name}", child
+        else:
+            yield from _functions(child, f"{above}{child.name}." if isinstance(child, ast.ClassDef) else above)
 
 
 def difference(found: str, right: str) -> str:
@@ -161,7 +167,6 @@ def main() -> int:
     planted.warm()
     with tempfile.TemporaryDirectory() as beside:
         options.kept = (options.kept or Path(beside)).resolve()
-        options.kept.mkdir(parents=True, exist_ok=True, mode=0o700)
         found = [*_found(options)]
         if options.tests:
             found = [*_with_tests(found, options)]
@@ -170,65 +175,79 @@ def main() -> int:
     return 0
 
 
+Drawn = tuple[Place, list[str]]  # runs that call its function
 Found = tuple[Place, str, str, str]  # who saw it, in which run, what was said
 
 
 def _found(options: argparse.Namespace) -> Iterator[Found]:
     """Every draw, as the product sees it."""
-    server, rng, chosen = Server(), random.Random(options.seed), runs()
-    if options.again:
-        yield from _again(server, chosen, options)
-        return
-    if options.kind == "numbers":
-        chosen = [run for run in chosen if not run.words.startswith(PAGES)]
-    chosen = random.Random(options.seed).sample(chosen, options.runs) if options.runs else chosen
-    right = right_of(server, chosen, options.kept)
-    called: dict[Function, list[str]] = defaultdict(list)
-    for words, (_, each) in right.items():
-        for function in sorted(each.functions):
-            called[function].append(words)
-    lines: dict[str, set[int]] = defaultdict(set)
-    for file, line in sorted(called):
-        if _asked(file, options):
-            lines[file].add(line)
-    every = [(x, called[file, x.function]) for file, mine in lines.items() for x in places(file, mine)]
-    print(f"{len(every)} places in {len({place.file for place, _ in every})} files, {len(right)} runs", flush=True)
-    for place, mine in drawn(every, options.number, rng, evenly=options.evenly == "yes"):
+    product = _Product(Server(), kept_in(options.kept))
+    for place, words in _again(options) if options.again else _drawn(product, options):
+        found = (place, *product.seen(place, words))
+        _tell(found, options)
+        yield found
+
+
+@dataclass
+class _Product:
+    """The product, and its runs."""
+
+    server: Server
+    kept: Kept
+    runs: dict[str, Run] = field(default_factory=lambda: {run.words: run for run in runs()})
+    cpu: dict[str, float] = field(default_factory=dict)
+
+    def seen(self, place: Place, mine: list[str]) -> tuple[str, str, str]:
+        """(who sees it, in which of the runs, what is said)."""
         seen, words, said = "no effect", "", ""
-        for each in _by_lot(mine, right, rng):
-            run, without = right[each]
-            wrong = server.outcome(run, options.kept / "compiled", (place.file, place.patched()), cpu=without.cpu)
-            now, told = judged(wrong, without.outcome, seen)
-            if now == "open" and server.outcome(run, options.kept / "compiled") != without.outcome:
+        for each in mine:
+            run, right = self.runs[each], self.kept.right(self.server, self.runs[each])
+            error = place.file, place.patched()
+            wrong = self.server.outcome(run, self.kept.compiled, error, cpu=self.cpu.get(each, 0))
+            now, told = judged(wrong, right, seen)
+            if now == "open" and self.server.outcome(run, self.kept.compiled) != right:
                 continue  # it says another thing each time
             if now != seen:
                 seen, words, said = now, each, told
             if seen not in ("harmless", "no effect"):
                 break
-        _tell((place, seen, words, said), options)
-        yield place, seen, words, said
+        return seen, words, said
 
 
-def _again(server: Server, chosen: list[Run], options: argparse.Namespace) -> Iterator[Found]:
+def _drawn(product: _Product, options: argparse.Namespace) -> list[Drawn]:
+    """The places, each with up to three runs that call its function, by lot: the likelier the shorter they take."""
+    chosen, rng = list(product.runs.values()), random.Random(options.seed)
+    if options.kind == "numbers":
+        chosen = [run for run in chosen if not run.words.startswith(PAGES)]
+    chosen = random.Random(options.seed).sample(chosen, options.runs) if options.runs else chosen
+    known = product.kept.calls(product.server, chosen)
+    product.cpu |= {words: calls.cpu for words, (_, calls) in known.items()}
+    called: dict[Function, list[str]] = defaultdict(list)
+    for words, (_, calls) in sorted(known.items()):
+        for function in calls.functions:
+            called[function].append(words)
+    names: dict[str, set[str]] = defaultdict(set)
+    for file, name in sorted(called):
+        if _asked(file, options):
+            names[file].add(name)
+    every = [(x, called[file, x.function]) for file, mine in names.items() for x in places(file, mine)]
+    print(f"{len(every)} places in {len(names)} files, {len(known)} runs", flush=True)
+    found = []
+    for place, mine in drawn(every, options.number, rng, evenly=options.evenly == "yes"):
+        weight = {words: rng.random() ** (0.3 + product.cpu[words]) for words in mine}
+        found.append((place, sorted(mine, key=lambda words: -weight[words])[:MOST]))
+    return found
+
+
+def _again(options: argparse.Namespace) -> Iterator[Drawn]:
     """The open ones of a log once more, in the runs that showed them."""
-    rows = [json.loads(line) for line in options.again.read_text(encoding="utf-8").splitlines()]
-    rows = [row for row in rows if row["seen"] == "open"]
-    right = right_of(server, [run for run in chosen if run.words in {row["run"] for row in rows}], options.kept)
-    for row in rows:
-        mine = [x for x in places(row["file"], set()) if x.lines == (row["old"], row["new"])]
-        if not mine or row["run"] not in right:
-            print(f"gone      {row['file']}: {row['old']} [{row['run']}]", flush=True)
-            continue
-        run, without = right[row["run"]]
-        wrong = server.outcome(run, options.kept / "compiled", (row["file"], mine[0].patched()), cpu=without.cpu)
-        found = (mine[0], *_seen(wrong, without, run))
-        _tell(found, options)
-        yield found
-
-
-def _seen(wrong: planted.Outcome, without: Right, run: Run) -> tuple[str, str, str]:
-    seen, said = judged(wrong, without.outcome, "no effect")
-    return seen, run.words, said
+    for line in options.again.read_text(encoding="utf-8").splitlines():
+        row = json.loads(line)
+        if row["seen"] == "open":
+            mine = [x for x in places(row["file"], set()) if x.lines == (row["old"], row["new"])]
+            if not mine:
+                print(f"gone      {row['file']}: {row['old']}", flush=True)
+            yield from ((place, [row["run"]]) for place in mine[:1])
 
 
 def _asked(file: str, options: argparse.Namespace) -> bool:
@@ -237,12 +256,6 @@ def _asked(file: str, options: argparse.Namespace) -> bool:
         return room in rooms
     wanted = {"all": True, "numbers": room not in READ, "read": room in READ}[options.kind]
     return wanted and not file.startswith(LEFT_OUT) and not any(word in file for word in APART)
-
-
-def _by_lot(mine: list[str], right: dict[str, tuple[Run, Right]], rng: random.Random) -> list[str]:
-    """Up to three of the runs, drawn one after another, each the likelier the shorter it takes."""
-    weight = {words: rng.random() ** (0.3 + right[words][1].cpu) for words in mine}
-    return sorted(mine, key=lambda words: -weight[words])[:MOST]
 
 
 def _tell(found: Found, options: argparse.Namespace) -> None:
@@ -275,9 +288,6 @@ def room_of(file: str) -> str:
     if file.startswith("cli"):
         return "verbs"
     return file.split("/")[0] if "/" in file else "doors"
-
-
-Drawn = tuple[Place, list[str]]
 
 
 def drawn(every: list[Drawn], number: int, rng: random.Random, *, evenly: bool) -> list[Drawn]:
