@@ -20,14 +20,14 @@ from eomgen.proof.check import first_wrong
 from eomgen.proof.posed_model import (
     Pose,
     PosedModel,
-    apart,
-    back,
-    joints_of,
-    moved,
-    numbers,
-    quaternion_of,
-    roll_pitch_yaw,
-    turned,
+    every_joint,
+    figures_in,
+    pose_back,
+    posed_further,
+    poses_differ,
+    quaternion_names,
+    turn_about,
+    turn_by_three,
 )
 from eomgen.symbolic.numeric.tolerances import COMPUTED
 
@@ -79,15 +79,15 @@ class _Imported:
 
     def _rest(self) -> dict[str, float]:
         """Every coordinate 0, what nothing holds where it starts."""
-        free = [joint for joint in joints_of(self.model) if joint.kind == "free"]
+        free = [joint for joint in every_joint(self.model) if joint.kind == "free"]
         names = [
             str(x)
             for joint in free
-            for x in (*map(_name, getattr(joint, "position", None) or ()), *quaternion_of(joint))
+            for x in (*map(_name, getattr(joint, "position", None) or ()), *quaternion_names(joint))
         ]
         first = PosedModel(self.model)
         starts = {q: first.number(self.model.coordinates[q].start) for q in names}
-        balls = {e: float(k == 0) for joint in joints_of(self.model) for k, e in enumerate(quaternion_of(joint))}
+        balls = {e: float(k == 0) for joint in every_joint(self.model) for k, e in enumerate(quaternion_names(joint))}
         return {q: 0.0 for q in self.model.coordinates} | balls | starts
 
     def body(self, link: str) -> str | None:
@@ -98,21 +98,21 @@ class _Imported:
         if name in ("", "__model__"):
             return FIXED
         if name == "world":
-            return back(_pose(self.chosen.find("pose")))
+            return pose_back(_pose(self.chosen.find("pose")))
         element = self.named[name]
         assert name not in below
         base = {"joint": _text(element, "child"), "frame": element.get("attached_to", "")}.get(element.tag, "")
         pose = element.find("pose")
         base = base if pose is None else pose.get("relative_to", base)
-        return moved(self.frame(base, (*below, name)), _pose(pose))
+        return posed_further(self.frame(base, (*below, name)), _pose(pose))
 
     def stands(self, link: Element) -> str:
         """Where all coordinates are 0, the link in the world."""
         name = self.body(str(link.get("name")))
         if name is None:
             return ""
-        due = moved(_pose(self.chosen.find("pose")), self.frame(str(link.get("name"))))
-        return f"'{name}' does not stand where its link does" if apart(self.rest.pose(name), due) else ""
+        due = posed_further(_pose(self.chosen.find("pose")), self.frame(str(link.get("name"))))
+        return f"'{name}' does not stand where its link does" if poses_differ(self.rest.pose(name), due) else ""
 
     def moves(self, joint: Element) -> str:
         """The child against the parent, away from 0."""
@@ -125,15 +125,15 @@ class _Imported:
         steps = [self._step(joint, tag, at, kind) for tag in ("axis", "axis2")[: AXES[kind]]]
         if None in [q for q, _ in steps]:
             return ""
-        R, p = moved(back(self.frame(parent)), at, *(step for _, step in steps), back(at))
-        due = moved((R, p), self.frame(self._link(_text(joint, "child"))))
+        R, p = posed_further(pose_back(self.frame(parent)), at, *(step for _, step in steps), pose_back(at))
+        due = posed_further((R, p), self.frame(self._link(_text(joint, "child"))))
         found = self.posed.between(above, child)
-        return f"'{child}' does not move as its joint '{joint.get('name')}' says" if apart(found, due) else ""
+        return f"'{child}' does not move as its joint '{joint.get('name')}' says" if poses_differ(found, due) else ""
 
     def _step(self, joint: Element, tag: str, at: Pose, kind: str) -> tuple[str | None, Pose]:
         axis, q = joint.find(tag), self._coordinate(joint, tag)
         xyz = None if axis is None else axis.find("xyz")
-        n = np.array([0.0, 0, 1]) if xyz is None else numbers(str(xyz.text))
+        n = np.array([0.0, 0, 1]) if xyz is None else figures_in(str(xyz.text))
         other = None if xyz is None else xyz.get("expressed_in")
         if other:
             n = at[0].T @ self.frame(other)[0] @ n
@@ -141,7 +141,7 @@ class _Imported:
         if kind == "prismatic":
             return q, (np.eye(3), n * s)
         pitch = _float(joint, "screw_thread_pitch", 0.0) if kind == "screw" else 0.0
-        return q, (turned(n, s), n * s * pitch / (2 * math.pi))
+        return q, (turn_about(n, s), n * s * pitch / (2 * math.pi))
 
     def _coordinate(self, joint: Element, tag: str) -> str | None:
         q = self.posed.coordinates.get(str(joint.get("name")))
@@ -157,7 +157,7 @@ class _Imported:
 
     def yields(self, joint: Element) -> Iterator[str]:
         """Dampers and springs of hinges and slides."""
-        own = {q: part for part in joints_of(self.model) for q in _angles(part)}
+        own = {q: part for part in every_joint(self.model) for q in _angles(part)}
         for tag in ("axis", "axis2")[: AXES.get(str(joint.get("type")), 0)]:
             q, dynamics = self._coordinate(joint, tag), joint.find(f"{tag}/dynamics")
             if q is None or q not in own or dynamics is None:
@@ -231,7 +231,7 @@ def _solid(shape: Element) -> tuple[float, np.ndarray]:
     """(volume, mean of x^2, y^2, z^2 over it)."""
     found = {tag: shape.find(f"geometry/{tag}") for tag in SHAPES}
     if (box := found["box"]) is not None:
-        size = numbers(_text(box, "size"))
+        size = figures_in(_text(box, "size"))
         return float(np.prod(size)), size**2 / 12
     if (cylinder := found["cylinder"]) is not None:
         r, length = _float(cylinder, "radius", 0), _float(cylinder, "length", 0)
@@ -246,11 +246,11 @@ def _pose(pose: Element | None) -> Pose:
     """x y z roll pitch yaw, or x y z and a quaternion, scalar last."""
     if pose is None or not (pose.text or "").strip():
         return FIXED
-    found = numbers(str(pose.text))
+    found = figures_in(str(pose.text))
     if pose.get("rotation_format") == "quat_xyzw":
         v = found[3:6]
-        return turned(v / (np.linalg.norm(v) or 1.0), 2 * math.atan2(float(np.linalg.norm(v)), found[6])), found[:3]
-    return roll_pitch_yaw(np.radians(found[3:]) if pose.get("degrees") in YES else found[3:]), found[:3]
+        return turn_about(v / (np.linalg.norm(v) or 1.0), 2 * math.atan2(float(np.linalg.norm(v)), found[6])), found[:3]
+    return turn_by_three(np.radians(found[3:]) if pose.get("degrees") in YES else found[3:]), found[:3]
 
 
 def _text(element: Element, path: str) -> str:

@@ -14,7 +14,7 @@ import numpy as np
 
 from eomgen.model.parts import Model
 from eomgen.proof.check import first_wrong
-from eomgen.proof.posed_model import Pose, PosedModel, apart, numbers, roll_pitch_yaw, turned
+from eomgen.proof.posed_model import Pose, PosedModel, figures_in, poses_differ, turn_about, turn_by_three
 from eomgen.symbolic.numeric.tolerances import COMPUTED
 
 if TYPE_CHECKING:
@@ -77,13 +77,13 @@ class _Imported:
             if q is None:
                 return ""
             axis, s = joint.find("axis"), self.posed.values[q]
-            n = np.array([1.0, 0, 0]) if axis is None else numbers(axis.get("xyz", "1 0 0"))
+            n = np.array([1.0, 0, 0]) if axis is None else figures_in(axis.get("xyz", "1 0 0"))
             n = n / np.linalg.norm(n)
-            R, p = (R @ turned(n, s), p) if kind in TURNING else (R, p + R @ n * s)
+            R, p = (R @ turn_about(n, s), p) if kind in TURNING else (R, p + R @ n * s)
         return f"'{child}' does not stand on '{parent}' as its joint says" if self._away(above, child, (R, p)) else ""
 
     def _away(self, above: str | None, child: str, due: Pose) -> bool:
-        return apart(self.posed.between(above, child), due)
+        return poses_differ(self.posed.between(above, child), due)
 
     def yields(self, joint: Element) -> str:
         """The damping of a hinge or slide."""
@@ -126,4 +126,4 @@ def _origin(element: Element) -> Pose:
     origin = element.find("origin")
     if origin is None:
         return np.eye(3), np.zeros(3)
-    return roll_pitch_yaw(numbers(origin.get("rpy", "0 0 0"))), numbers(origin.get("xyz", "0 0 0"))
+    return turn_by_three(figures_in(origin.get("rpy", "0 0 0"))), figures_in(origin.get("xyz", "0 0 0"))

@@ -20,6 +20,7 @@ from eomgen.model.joints.base import Joint
 from eomgen.model.parts import Model
 from eomgen.model.values import exact_parameters
 from eomgen.symbolic.expression.graph import Node, Scalar
+from eomgen.symbolic.expression.symbols import Symbols
 from eomgen.symbolic.numeric.evaluation import FLOAT, evaluate
 from eomgen.symbolic.numeric.tolerances import COMPUTED
 
@@ -34,7 +35,7 @@ class PosedModel:
     def __init__(self, model: Model, values: Mapping[str, float] | None = None) -> None:
         self.model, self.motion = model, motion_of(scope_of(model))
         self.values = {q: FIRST + STEP * k for k, q in enumerate(model.coordinates)} | dict(values or {})
-        for turn in map(quaternion_of, joints_of(model)):
+        for turn in map(quaternion_names, every_joint(model)):
             size = math.hypot(*(self.values[e] for e in turn))
             self.values |= {e: self.values[e] / size for e in turn}
         self.bodies = _by_remark(model.bodies)
@@ -42,7 +43,11 @@ class PosedModel:
 
     @property
     def known(self) -> Mapping[Node, float]:
-        known, symbols = exact_parameters(self.model), self.motion.scope.symbols
+        return self.values_of(self.motion.scope.symbols)
+
+    def values_of(self, symbols: Symbols) -> dict[Node, float]:
+        """Parameters, coordinates and the time as symbols of a graph, with their numbers."""
+        known = exact_parameters(self.model)
         return {
             **{node: float(known[name]) for name, node in symbols.parameters.items() if name in known},
             **{node: self.values[node.name] for node in symbols.q},
@@ -84,16 +89,16 @@ class PosedModel:
                 yield f"'{name}' leaves {left:.3g}" if abs(left) > COMPUTED * 10 else ""
 
 
-def quaternion_of(joint: Joint) -> tuple[str, ...]:
+def quaternion_names(joint: Joint) -> tuple[str, ...]:
     """The names of its quaternion, scalar first; () of other joints."""
     return tuple(getattr(joint, "quaternion", None) or ())
 
 
-def joints_of(model: Model) -> Iterator[Joint]:
+def every_joint(model: Model) -> Iterator[Joint]:
     return (body.joint for body in model.bodies.values() if body.joint is not None)
 
 
-def moved(pose: Pose, *further: Pose) -> Pose:
+def posed_further(pose: Pose, *further: Pose) -> Pose:
     """T T' ..., each in the axes of the one before."""
     R, p = pose
     for R1, p1 in further:
@@ -101,29 +106,29 @@ def moved(pose: Pose, *further: Pose) -> Pose:
     return R, p
 
 
-def back(pose: Pose) -> Pose:
+def pose_back(pose: Pose) -> Pose:
     """T^-1."""
     R, p = pose
     return R.T, -R.T @ p
 
 
-def apart(found: Pose, due: Pose) -> bool:
+def poses_differ(found: Pose, due: Pose) -> bool:
     """Whether two poses differ."""
     away = max(abs(found[0] - due[0]).max(), abs(found[1] - due[1]).max())
     return bool(away > COMPUTED * (1 + abs(due[1]).max()))
 
 
-def numbers(text: str) -> np.ndarray:
+def figures_in(text: str) -> np.ndarray:
     return np.array([float(x) for x in text.split()])
 
 
-def roll_pitch_yaw(angles: np.ndarray) -> np.ndarray:
+def turn_by_three(angles: np.ndarray) -> np.ndarray:
     X, Y, Z = np.eye(3)
     roll, pitch, yaw = angles
-    return turned(Z, yaw) @ turned(Y, pitch) @ turned(X, roll)
+    return turn_about(Z, yaw) @ turn_about(Y, pitch) @ turn_about(X, roll)
 
 
-def turned(n: np.ndarray, angle: float) -> np.ndarray:
+def turn_about(n: np.ndarray, angle: float) -> np.ndarray:
     """1 + sin K + (1 - cos) K^2, K v = n x v."""
     K = np.array([[0, -n[2], n[1]], [n[2], 0, -n[0]], [-n[1], n[0], 0]])
     found: np.ndarray = np.eye(3) + math.sin(angle) * K + (1 - math.cos(angle)) * K @ K

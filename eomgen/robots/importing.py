@@ -71,7 +71,7 @@ def import_robot(path: str | Path, *, floating: bool = False, model: str | None 
     return imported(path, floating=floating, model=model).model
 
 
-def root_of(data: bytes) -> str:
+def first_element(data: bytes) -> str:
     """The name of the first element of an XML file; "" of other texts."""
     root = ROOT.search(COMMENT.sub(b"", data))
     return "" if root is None else root[1].decode()
@@ -79,7 +79,7 @@ def root_of(data: bytes) -> str:
 
 def _tables(path: Path, data: bytes, floating: bool, model: str | None) -> Imported:
     """By what the root of the file says."""
-    root = root_of(data)
+    root = first_element(data)
     if model is not None and root != "sdf":
         raise UsageError("only SDF files have several models to choose from", mend="leave --model out")
     if root == "mujoco":

@@ -9,12 +9,14 @@ from pathlib import Path
 from eomgen import files
 from eomgen.documents.document import Document, lines_document
 from eomgen.errors import UsageError
-from eomgen.model.parts import Model
+from eomgen.pipeline import derive
+from eomgen.proof.imported_mjcf import mjcf_otherwise
 from eomgen.proof.imported_sdf import sdf_otherwise
 from eomgen.proof.imported_urdf import imported_otherwise
-from eomgen.robots.importing import imported, root_of
+from eomgen.robots.importing import ImportedRobot, first_element, imported
 from eomgen.robots.sdf_models import LARGEST
 
+MOST_COMPARED = 12  # coordinates of a robot whose forces are derived to be compared
 OTHERWISE = {"robot": imported_otherwise, "sdf": sdf_otherwise}
 
 
@@ -52,15 +54,20 @@ def import_document(
         "left_out": left_out,
     }
     document = lines_document(lambda: entries, *([output] if output else robot.text.splitlines()))
-    wrong = _otherwise(file, made)
+    wrong = _otherwise(file, robot)
     told = tuple(f"left out: {each}" for each in robot.left_out)
     return replace(
         document, failed=wrong, notes=(*told, *([f"now try: eomgen check {shlex.quote(output)}"] if output else ()))
     )
 
 
-def _otherwise(file: str, made: Model) -> str:
+def _otherwise(file: str, robot: ImportedRobot) -> str:
     """What of a robot's file is otherwise in the model, by another reading of it; "" where nothing is."""
     text = files.read(file, LARGEST)
-    root = root_of(text)
-    return OTHERWISE[root](text, made) if root in OTHERWISE else ""
+    root = first_element(text)
+    if root == "mujoco":
+        small = len(robot.model.coordinates) <= MOST_COMPARED
+        equations = derive(robot.model).graph if small and robot.model.coordinates else None
+        left = [each.what for each in robot.left_out if each.nearest is not None]
+        return mjcf_otherwise(file, robot.model, equations, left)
+    return OTHERWISE[root](text, robot.model) if root in OTHERWISE else ""
