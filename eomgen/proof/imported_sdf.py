@@ -18,7 +18,7 @@ from eomgen.model.joints.base import Joint
 from eomgen.model.parts import Model
 from eomgen.proof.check import first_wrong
 from eomgen.proof.posed_model import (
-    Pose,
+    FloatPose,
     PosedModel,
     every_joint,
     figures_in,
@@ -38,7 +38,7 @@ AXES = {"revolute": 1, "continuous": 1, "prismatic": 1, "screw": 1, "universal":
 FELT = (("damping", "damping"), ("spring_stiffness", "stiffness"))
 SHAPES = ("box", "cylinder", "sphere")
 WATER, YES = 1000.0, ("true", "1")  # kg/m^3, what SDF takes where it is told no density
-FIXED: Pose = (np.eye(3), np.zeros(3))
+FIXED: FloatPose = (np.eye(3), np.zeros(3))
 
 
 def sdf_otherwise(text: str | bytes, model: Model) -> str:
@@ -93,7 +93,7 @@ class _Imported:
     def body(self, link: str) -> str | None:
         return self.posed.bodies.get(link)
 
-    def frame(self, name: str, below: tuple[str, ...] = ()) -> Pose:
+    def frame(self, name: str, below: tuple[str, ...] = ()) -> FloatPose:
         """Of a link, joint or frame in the model."""
         if name in ("", "__model__"):
             return FIXED
@@ -130,7 +130,7 @@ class _Imported:
         found = self.posed.between(above, child)
         return f"'{child}' does not move as its joint '{joint.get('name')}' says" if poses_differ(found, due) else ""
 
-    def _step(self, joint: Element, tag: str, at: Pose, kind: str) -> tuple[str | None, Pose]:
+    def _step(self, joint: Element, tag: str, at: FloatPose, kind: str) -> tuple[str | None, FloatPose]:
         axis, q = joint.find(tag), self._coordinate(joint, tag)
         xyz = None if axis is None else axis.find("xyz")
         n = np.array([0.0, 0, 1]) if xyz is None else figures_in(str(xyz.text))
@@ -242,7 +242,7 @@ def _solid(shape: Element) -> tuple[float, np.ndarray]:
     return 4 / 3 * math.pi * r**3, np.full(3, r * r / 5)
 
 
-def _pose(pose: Element | None) -> Pose:
+def _pose(pose: Element | None) -> FloatPose:
     """x y z roll pitch yaw, or x y z and a quaternion, scalar last."""
     if pose is None or not (pose.text or "").strip():
         return FIXED

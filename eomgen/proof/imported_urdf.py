@@ -14,7 +14,7 @@ import numpy as np
 
 from eomgen.model.parts import Model
 from eomgen.proof.check import first_wrong
-from eomgen.proof.posed_model import Pose, PosedModel, figures_in, poses_differ, turn_about, turn_by_three
+from eomgen.proof.posed_model import FloatPose, PosedModel, figures_in, poses_differ, turn_about, turn_by_three
 from eomgen.symbolic.numeric.tolerances import COMPUTED
 
 if TYPE_CHECKING:
@@ -82,7 +82,7 @@ class _Imported:
             R, p = (R @ turn_about(n, s), p) if kind in TURNING else (R, p + R @ n * s)
         return f"'{child}' does not stand on '{parent}' as its joint says" if self._away(above, child, (R, p)) else ""
 
-    def _away(self, above: str | None, child: str, due: Pose) -> bool:
+    def _away(self, above: str | None, child: str, due: FloatPose) -> bool:
         return poses_differ(self.posed.between(above, child), due)
 
     def yields(self, joint: Element) -> str:
@@ -122,7 +122,7 @@ def _named(joint: Element, end: str) -> str:
     return "" if found is None else str(found.get("link"))
 
 
-def _origin(element: Element) -> Pose:
+def _origin(element: Element) -> FloatPose:
     origin = element.find("origin")
     if origin is None:
         return np.eye(3), np.zeros(3)

@@ -26,7 +26,7 @@ from eomgen.symbolic.numeric.tolerances import COMPUTED
 
 FIRST, STEP = 0.3, 0.17  # values of the coordinates, one after the other
 REMARKED = ("link", "joint", "body")  # "link upper arm, from ...": what something was called
-Pose = tuple[np.ndarray, np.ndarray]
+FloatPose = tuple[np.ndarray, np.ndarray]
 
 
 class PosedModel:
@@ -61,14 +61,14 @@ class PosedModel:
         """What a field of the model is worth; 0 of none."""
         return 0.0 if expression is None else float(self.at((self.motion.scope.value(expression),))[0])
 
-    def pose(self, body: str | None) -> Pose:
+    def pose(self, body: str | None) -> FloatPose:
         """Of a body in the ground; of the ground itself."""
         if body is None:
             return np.eye(3), np.zeros(3)
         pose = self.motion.link(body).pose
         return self.at(tuple(x for row in pose.R for x in row)).reshape(3, 3), self.at(tuple(pose.p))
 
-    def between(self, above: str | None, body: str) -> Pose:
+    def between(self, above: str | None, body: str) -> FloatPose:
         """Of a body in the axes of another."""
         (R, p), (R0, p0) = self.pose(body), self.pose(above)
         return R0.T @ R, R0.T @ (p - p0)
@@ -98,7 +98,7 @@ def every_joint(model: Model) -> Iterator[Joint]:
     return (body.joint for body in model.bodies.values() if body.joint is not None)
 
 
-def posed_further(pose: Pose, *further: Pose) -> Pose:
+def posed_further(pose: FloatPose, *further: FloatPose) -> FloatPose:
     """T T' ..., each in the axes of the one before."""
     R, p = pose
     for R1, p1 in further:
@@ -106,13 +106,13 @@ def posed_further(pose: Pose, *further: Pose) -> Pose:
     return R, p
 
 
-def pose_back(pose: Pose) -> Pose:
+def pose_back(pose: FloatPose) -> FloatPose:
     """T^-1."""
     R, p = pose
     return R.T, -R.T @ p
 
 
-def poses_differ(found: Pose, due: Pose) -> bool:
+def poses_differ(found: FloatPose, due: FloatPose) -> bool:
     """Whether two poses differ."""
     away = max(abs(found[0] - due[0]).max(), abs(found[1] - due[1]).max())
     return bool(away > COMPUTED * (1 + abs(due[1]).max()))
