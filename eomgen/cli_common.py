@@ -20,7 +20,7 @@ import click
 from eomgen import files
 from eomgen.cli_options import form_asked
 from eomgen.edge import INTERRUPTED, Placed, failure, guarded, problems_of, say
-from eomgen.errors import EomgenError, UsageError
+from eomgen.errors import DerivationError, EomgenError, ModelError, RunFailed, UsageError
 from eomgen.records import dataclass
 from eomgen.symbolic.expression.habits import other_words
 from eomgen.symbolic.numeric.gc_pause import growing, seldom
@@ -243,7 +243,8 @@ def reading(path: str) -> Iterator[Source]:
     try:
         yield Source(loads(data, name, title), data, name)
     except EomgenError as error:  # the edge: whatever is wrong is told at its place in the file
-        problems = tuple(located(problem, data, name) for problem in problems_of(error))
+        of_model = isinstance(error, (ModelError, DerivationError, RunFailed))  # no option, file or tool
+        problems = tuple(located(problem, data, name, by_name=of_model) for problem in problems_of(error))
         raise Placed(error.exit_code, problems) from error
 
 

@@ -98,8 +98,11 @@ class MissingValues(ModelError):
     def __init__(self, names: tuple[str, ...], where: str = "") -> None:
         self.names = tuple(names)
         listed = ", ".join(f"'{name}'" for name in self.names)
-        what = f"no value for {'parameter' if len(self.names) == 1 else 'parameters'} {listed}"
-        super().__init__(what, where, f"give {'it a value' if len(self.names) == 1 else 'them values'} in [parameters]")
+        mend = "give it a value in [parameters]"
+        each = (Problem(where or f"parameters.{x}", f"no value for parameter '{x}'", mend=mend) for x in self.names)
+        super().__init__(tuple(each))
+        if len(self.names) > 1:
+            self.what, self.mend = f"no value for parameters {listed}", "give them values in [parameters]"
 
 
 class ExpressionError(EomgenError):

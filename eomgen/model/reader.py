@@ -81,14 +81,30 @@ def loads(text: str | bytes, name: str = "<text>", title: str = "model") -> Mode
     return _loads(data, name, title)
 
 
-def located(problem: Problem, data: bytes, name: str) -> Problem:
-    """A problem that names a part of the model by its path ("bodies.arm.joint"), at that part's place in the text."""
-    path = tuple(problem.where.split("."))
-    if path[0] not in TABLES:
-        return problem
+def located(problem: Problem, data: bytes, name: str, *, by_name: bool = False) -> Problem:
+    """A problem that names a part of the model by its path ("bodies.arm.joint"), at that part's place in the text.
+
+    Args:
+        by_name: one without a path is at the place of the first thing that it names: "'x' leaves all bounds".
+    """
     index = index_of(_text(data, name))
+    path = _named(problem.what, index) if by_name and not problem.where else tuple(problem.where.split("."))
+    if not path or path[0] not in TABLES:
+        return problem
     key = path if path in index.keys else path[:2]
     return _problem(Finding(path, problem.what, problem.mend), index.nearest(key, key=True), index, name)
+
+
+_QUOTED = re.compile(r"'([^\W\d]\w*)'*'")
+
+
+def _named(what: str, index: Index) -> tuple[str, ...]:
+    """The path of the first thing that a message names in quotes; () where there is none, or are several so called."""
+    for name in _QUOTED.findall(what):
+        found = [(table, name) for table in TABLES if (table, name) in index.keys]
+        if found:
+            return found[0] if len(found) == 1 else ()
+    return ()
 
 
 def warned(model: Model, data: bytes, name: str) -> tuple[Problem, ...]:
