@@ -38,6 +38,7 @@ from eomgen.equations import Equations
 from eomgen.errors import DerivationError, RunFailed, ToolMissing, UsageError, visible
 from eomgen.identification.regressor import Regressor, regressor_of
 from eomgen.mechanics.balance.named_reactions import named_reactions
+from eomgen.mechanics.formulations.massless_nodes import with_nodes_balanced
 from eomgen.model.contacts import contacts_of
 from eomgen.model.parts import Model
 from eomgen.model.reader import ModelOrPath, model_at
@@ -384,7 +385,7 @@ def generate(
     Raises:
         UsageError: a language that there is none; an integrator of what is not in C, or whose contacts change.
     """
-    model = model_at(model, parameters, start)
+    model = with_nodes_balanced(model_at(model, parameters, start))
     if integrator:
         _refuse_integrator(model, targets)
     doubles = [target for target in targets if target_named(target).single is None]  # refuses what is none

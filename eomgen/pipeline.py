@@ -14,6 +14,7 @@ from eomgen.mechanics.balance.friction import equations_of_motion
 from eomgen.mechanics.bodies.contact_modes import ContactModes
 from eomgen.mechanics.equations.system import system_of
 from eomgen.mechanics.formulations import METHODS
+from eomgen.mechanics.formulations.massless_nodes import told_of_nodes, with_nodes_balanced
 from eomgen.mechanics.reactions.reactions import reactions_of
 from eomgen.mechanics.statics.contacts_at_start import ContactsAtStart, contacts_at_start
 from eomgen.model.fields import WrittenEquation
@@ -58,7 +59,7 @@ def derive(
         DerivationError: the model has no equations of motion, or a force in it is unknown; by "kinetostatic", a body is
             held by nothing, or a force acts at no place.
     """
-    model = model_at(model, parameters, start)
+    model = with_nodes_balanced(model_at(model, parameters, start))
     if method not in METHODS:
         raise UsageError(f"unknown method '{method}'", mend=f"one of {', '.join(METHODS)}")
     refuse_motion(model)
@@ -72,7 +73,7 @@ def _derived(model: Model, method: str, at_start: ContactsAtStart) -> Equations:
     if method == "kinetostatic":
         reactions_of(system)  # refuses joints and ties that cannot carry the motion
     equations = equations_of_motion(system)
-    return Equations(model, method, equations, at_start.assumptions)
+    return Equations(model, method, equations, (*told_of_nodes(model), *at_start.assumptions))
 
 
 def inverse_dynamics(
@@ -104,7 +105,7 @@ def simulator(
     from eomgen.simulation.integrator import Stepping
 
     how = Stepping(method=method, rtol=rtol, atol=atol, stabilization=stabilization)
-    return Simulator(model_at(model), derive, how, target)
+    return Simulator(with_nodes_balanced(model_at(model)), derive, how, target)
 
 
 def simulate_many(
@@ -176,7 +177,7 @@ def simulate(
     from eomgen.questions.simulator import OUTPUTS, REACTIONS
     from eomgen.simulation.integrate import SAMPLES
 
-    model = model_at(model, parameters, start)
+    model = with_nodes_balanced(model_at(model, parameters, start))
     controllers = controllers_of(model, inputs or {})
     model = with_inputs(model, {name: value for name, value in (inputs or {}).items() if name not in controllers})
     if controllers:

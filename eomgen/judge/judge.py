@@ -50,6 +50,7 @@ from eomgen.judge.small import small_motions
 from eomgen.judge.targets import Meanings, loosened_targets, targets_of
 from eomgen.judge.unsupported import unsupported
 from eomgen.judge.verdict import RIGHT, UNDECIDED, WRONG, Cause, Verdict
+from eomgen.mechanics.formulations.massless_nodes import with_nodes_balanced
 from eomgen.model.fields import AtRest
 from eomgen.model.reader import ModelOrPath, model_at
 from eomgen.model.replaced import equation_typed
@@ -74,7 +75,7 @@ def verify(
     Raises:
         ExpressionError: it cannot be read; column and length say where.
     """
-    model = model_at(model)
+    model = with_nodes_balanced(model_at(model))
     return Judge(Case(model, bool(from_rest))).verdict(equation, at=at, kind=kind)
 
 

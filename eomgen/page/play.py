@@ -13,6 +13,7 @@ from eomgen import files, pipeline
 from eomgen.codegen.rhs import compiled
 from eomgen.codegen.targets.base import TestVector
 from eomgen.errors import ExpressionError, RunFailed, ToolMissing, UsageError
+from eomgen.mechanics.formulations.massless_nodes import with_nodes_balanced
 from eomgen.model.parts import Model
 from eomgen.model.ranges import TypedNumbers
 from eomgen.model.reader import ModelOrPath, model_at
@@ -121,7 +122,7 @@ def play(
     Raises:
         UsageError: nothing moves; a slider of what there is not.
     """
-    model = model_at(model, parameters, start)
+    model = with_nodes_balanced(model_at(model, parameters, start))
     ranges, _ = slider_ranges(model, sliders, declared=False)
     options = PlayerOptions(ranges, True, trail, forces, speed)
     found = played(model, None if time is None else seconds(time), options)

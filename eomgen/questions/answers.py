@@ -33,6 +33,7 @@ from eomgen.mechanics.equations.jumps import refuse_jump, signs_of_rates
 from eomgen.mechanics.equations.pieces import Extent
 from eomgen.mechanics.first_integrals.constants_of_motion import stay_constant
 from eomgen.mechanics.first_integrals.speeds import rates_and_extent
+from eomgen.mechanics.formulations.massless_nodes import with_nodes_balanced
 from eomgen.mechanics.initial_state.initial_state import start_state
 from eomgen.mechanics.initial_state.numeric_value import known_exactly, known_parameters
 from eomgen.mechanics.instant.outputs import asks_motion, asks_of
@@ -122,7 +123,7 @@ def solve(model: ModelOrPath, *, parameters: Values | None = None, start: Values
     Raises:
         ModelError: none can be answered as the model is wrong: accelerations of a coordinate that moves no mass.
     """
-    model = model_at(model, parameters, start)
+    model = with_nodes_balanced(model_at(model, parameters, start))
     solver, found, wrong, stopped = _Solver(model), dict[str, Answer](), [], ""
     for name, output in model.outputs.items():
         if stopped:

@@ -7,6 +7,7 @@ from collections.abc import Iterator
 from eomgen.mechanics.bodies.kinematics import BodyLink
 from eomgen.mechanics.equations.equations_of_motion import EquationsOfMotion
 from eomgen.mechanics.equations.system import System, system_of
+from eomgen.mechanics.formulations.massless_nodes import with_nodes_balanced
 from eomgen.mechanics.statics.contacts_at_start import contacts_at_start
 from eomgen.model.reader import ModelOrPath, model_at
 from eomgen.model.trusses import is_node
@@ -52,7 +53,7 @@ def scene_of_system(system: System, equations: EquationsOfMotion | None = None) 
 
 def scene_of(model: ModelOrPath) -> Scene:
     """What can be drawn of a model at a state, forces left out."""
-    model = model_at(model)
+    model = with_nodes_balanced(model_at(model))
     return scene_of_system(system_of(model, contacts_at_start(model).modes))
 
 

@@ -20,6 +20,7 @@ from eomgen.documents.quantity import Quantity
 from eomgen.documents.result import Result
 from eomgen.documents.statements import Found, Listing
 from eomgen.errors import DerivationError, EomgenError, UsageError
+from eomgen.mechanics.formulations.massless_nodes import with_nodes_balanced
 from eomgen.mechanics.initial_state.initial_state import start_state
 from eomgen.mechanics.initial_state.start_slopes import Seeds, parameter_seeds, start_seeds
 from eomgen.mechanics.instant.outputs import asks_of
@@ -190,7 +191,7 @@ def sensitivity(
         MissingValues: a parameter without a value.
         NotYet: contacts may change along the run, or a force jumps.
     """
-    model = model_at(model, parameters, start)
+    model = with_nodes_balanced(model_at(model, parameters, start))
     asking = _Asking(model)
     names = (to,) if isinstance(to, str) else tuple(to) or tuple(model.parameters)
     wanted = (of,) if isinstance(of, str) else tuple(of)

@@ -27,6 +27,7 @@ from eomgen.documents.statics.work_steps import virtual_work_step
 from eomgen.errors import UsageError
 from eomgen.mechanics.equations.system import system_of
 from eomgen.mechanics.equilibria.static_equations import has_freedoms, with_drives_held
+from eomgen.mechanics.formulations.massless_nodes import with_nodes_balanced
 from eomgen.mechanics.statics.rest_contacts import modes_at_rest
 from eomgen.mechanics.statics.two_ways import released_in
 from eomgen.mechanics.structures.loose_motion import refuse_loose
@@ -181,7 +182,7 @@ def virtual_displacement(
         UsageError: another ending; there is no such reaction.
         DerivationError: released, nothing can move; bodies can move that no coordinate describes.
     """
-    found, _ = released(model_at(model, parameters, start), reaction)
+    found, _ = released(with_nodes_balanced(model_at(model, parameters, start)), reaction)
     if path is None:
         return PlayerFrame(_displacement_page(found))
     refuse_ending(str(path))

@@ -8,6 +8,7 @@ from typing import Any
 from eomgen.documents.document import Document, plain_document
 from eomgen.documents.statements import Lines
 from eomgen.mechanics.constraints.freedom import Freedom
+from eomgen.mechanics.formulations.massless_nodes import told_of_nodes, with_nodes_balanced
 from eomgen.mechanics.structures.structure import Structure
 from eomgen.model.dimensions import inferred_units
 from eomgen.model.parts import Model, Truss
@@ -21,6 +22,7 @@ from eomgen.verbs.outcome import listed
 
 def check_document(model: Model) -> Document:
     """The model's parts and its degrees of freedom, by rank beside the count by formula."""
+    model = with_nodes_balanced(model)
     found = checked_model(model)
     lines = [*_declared_lines(found), *freedom_lines(model, found.freedom), *_start_lines(found), *_rest_lines(found)]
     wrong = counted_otherwise(model, found.modes, found.freedom)
@@ -43,6 +45,7 @@ def _declared_lines(found: Checked) -> list[str]:
     lines += [f"unknowns: {listed(model.unknowns)}"] if model.unknowns else []
     lines += [f"parameters without a value: {listed(missing)}"] if missing else []
     units = inferred_units(model)
+    lines += [f"node: {words}" for words in told_of_nodes(model)]
     return [*lines, f"units inferred: {listed(f'{name} [{unit}]' for name, unit in units.items())}"] if units else lines
 
 

@@ -28,6 +28,7 @@ from eomgen.mechanics.balance.balance import balance_of
 from eomgen.mechanics.balance.named_reactions import NamedReaction, named_reactions
 from eomgen.mechanics.equations.jumps import refuse_jump
 from eomgen.mechanics.equations.system import System, system_of
+from eomgen.mechanics.formulations.massless_nodes import with_nodes_balanced
 from eomgen.mechanics.initial_state.numeric_value import known_exactly
 from eomgen.model.fields import AtRest, WrittenEquation
 from eomgen.model.outputs import FUNCTIONS
@@ -109,7 +110,7 @@ def reactions(
         UsageError: no equation, or no coordinate of that name.
         DerivationError: a body is held by nothing; a force acts at no place.
     """
-    model = model_at(model, parameters, start)
+    model = with_nodes_balanced(model_at(model, parameters, start))
     held = bool(in_loads(model))
     equations = None if held else pipeline.derive(model, "kinetostatic")
     system = system_of(model) if equations is None else equations.system

@@ -23,6 +23,7 @@ from eomgen.documents.statics.result import Statics, statics
 from eomgen.equations import Equations
 from eomgen.errors import DerivationError, MissingValues, RunFailed, UsageError
 from eomgen.generated import Generated
+from eomgen.mechanics.formulations.massless_nodes import with_nodes_balanced
 from eomgen.model.own_units import units_of
 from eomgen.model.parts import Model
 from eomgen.model.reader import ModelOrPath, bytes_at, loads, model_at
@@ -188,7 +189,7 @@ def report(
     source = bytes_at(str(model)).decode() if is_file else ""
     origin = Path(str(model)).name if is_file else ""
     lasts = None if time is None else seconds(time)
-    subject = Subject(model_at(model, parameters, start), lasts, certify, origin, source)
+    subject = Subject(with_nodes_balanced(model_at(model, parameters, start)), lasts, certify, origin, source)
     found = report_of(subject, with_, without)
     if form is not None and path is not None:
         found, texts = _read_back(subject, found, form, Path(path).name)

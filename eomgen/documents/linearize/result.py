@@ -20,6 +20,7 @@ from eomgen.documents.result import Result
 from eomgen.documents.setting_steps import assumption_steps, data_step
 from eomgen.errors import DerivationError, UsageError
 from eomgen.mechanics.equations.system import system_of
+from eomgen.mechanics.formulations.massless_nodes import told_of_nodes, with_nodes_balanced
 from eomgen.mechanics.initial_state.numeric_value import known_exactly
 from eomgen.mechanics.small_motions.family import Family
 from eomgen.mechanics.small_motions.field import Entries
@@ -437,7 +438,7 @@ def linearize(
         UsageError: a coordinate that the model does not have.
         DerivationError: no place of rest; the start is no steady motion; the coordinates do not move by themselves.
     """
-    model = model_at(model, parameters, start)
+    model = with_nodes_balanced(model_at(model, parameters, start))
     part = model.linearize
     asked = coordinates or (part.coordinates if part is not None else None) or ()
     wanted = tuple(dict.fromkeys((asked,) if isinstance(asked, str) else asked))
@@ -447,4 +448,4 @@ def linearize(
     about = about or (part.about if part is not None else "equilibrium")
     contacts = contacts_at_start(model)
     modes = Modes(small_motions_of(system_of(model, contacts.modes), about, wanted))
-    return Linearization(model, modes, assumptions=contacts.assumptions)
+    return Linearization(model, modes, assumptions=(*told_of_nodes(model), *contacts.assumptions))

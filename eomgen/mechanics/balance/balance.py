@@ -15,6 +15,7 @@ from functools import cached_property
 from eomgen.errors import DerivationError
 from eomgen.mechanics.balance.components import Component, components_of
 from eomgen.mechanics.balance.unit_wrenches import Axes, effects_of_load, joint_effects
+from eomgen.mechanics.bodies.inertia import kinetic_energy
 from eomgen.mechanics.bodies.kinematics import BodyLink
 from eomgen.mechanics.bodies.loads import weights
 from eomgen.mechanics.constraints.ties import holds_identically, slide_power
@@ -24,7 +25,7 @@ from eomgen.model.driven import driven_coordinates, driving_ties
 from eomgen.model.forces.load import PointForce
 from eomgen.model.unknowns import in_loads
 from eomgen.records import dataclass
-from eomgen.symbolic.expression.derivative import depends_on, gradient
+from eomgen.symbolic.expression.derivative import depends_on, derivative, gradient
 from eomgen.symbolic.expression.graph import Node, Scalar, is_zero
 from eomgen.symbolic.expression.spatial import Vector, apply, cross, in_turned_axes, plus, times, vector_of
 
@@ -172,7 +173,8 @@ def _idle_rows(system: System) -> set[str]:
     moved = [any(not is_zero(B[i][k]) for B in free.motion.B for i in range(6)) for k in range(len(Q))]
     alone = [k for k, force in enumerate(Q) if is_zero(force) and not moved[k]]
     left = {row.label: line for row, line in zip(free.ties.closing, free.ties.J, strict=True)}
-    found: set[str] = set()
+    found = balances_of_nodes(free)
+    left = {label: line for label, line in left.items() if label not in found}
     while more := {
         label
         for label, line in left.items()
@@ -184,6 +186,20 @@ def _idle_rows(system: System) -> set[str]:
         found |= more
         left = {label: line for label, line in left.items() if label not in more}
     return found
+
+
+def balances_of_nodes(free: System) -> set[str]:
+    """The labels of rows that say 0 = Q_k of coordinates that move no mass: nothing else acts along these, lam = 0."""
+    T, Q, ties = kinetic_energy(free.motion), generalized_forces(free.loads), free.ties
+    idle = [k for k, u in enumerate(free.symbols.u) if is_zero(derivative(T, u)) and not is_zero(Q[k])]
+    rows: dict[int, str] = {}
+    for row, line, sigma in zip(ties.closing, ties.J, ties.sigma, strict=True) if idle else ():
+        rate = sum((x * u for x, u in zip(line, free.symbols.u, strict=True)), start=sigma)
+        law = rate if row.gap is None else row.gap
+        rows |= {k: row.label for k in idle if not row.pushes and k not in rows and holds_identically(law - Q[k])}
+    others = [line for row, line in zip(ties.closing, ties.J, strict=True) if row.label not in rows.values()]
+    touched = {k for k in rows if any(not is_zero(line[k]) for line in others)}
+    return set() if touched else set(rows.values())
 
 
 def _pushes_along(system: System, power: Scalar) -> bool:

@@ -12,7 +12,7 @@ from typing import Any
 import numpy as np
 
 from eomgen.errors import DerivationError
-from eomgen.mechanics.balance.balance import DIRECTIONS, Balance
+from eomgen.mechanics.balance.balance import DIRECTIONS, Balance, balances_of_nodes
 from eomgen.mechanics.bodies.inertia import mass_properties
 from eomgen.mechanics.constraints.closure import generic_state
 from eomgen.mechanics.constraints.freedom import freedoms
@@ -92,8 +92,14 @@ def _virtual_motions(balance: Balance) -> tuple[np.ndarray, np.ndarray]:
 
 
 def _allowed(balance: Balance, numbers: Any) -> np.ndarray:
-    """Velocity of mass centre and spin along each row of the balance, per unit of every speed that the ties allow."""
-    system = balance.system
+    """Velocity of mass centre and spin along each row of the balance, per unit of every speed that the ties allow.
+
+    Nodes that follow from their own balance may move: the forces on them are in balance along these motions too.
+    """
+    free = balance.system.free or balance.system
+    nodes = balances_of_nodes(free)
+    system = free if nodes else balance.system
+    kept = [line for row, line in zip(system.ties.closing, system.ties.J, strict=True) if row.label not in nodes]
     motion = system.motion
     plane = motion.scope.model.space == "plane"
     columns = []
@@ -106,8 +112,8 @@ def _allowed(balance: Balance, numbers: Any) -> np.ndarray:
         v = R @ (B[3:] + np.cross(B[:3].T, r).T)
         columns.append(np.vstack([v, R @ B[:3]])[e.direction])
     moved = np.array(columns)
-    if not system.ties.closing:
+    if not kept:
         return moved
-    J = np.array(numbers([x for row in system.ties.J for x in row])).reshape(len(system.ties.closing), -1)
+    J = np.array(numbers([x for row in kept for x in row])).reshape(len(kept), -1)
     _, sizes, V = np.linalg.svd(J)
     return np.asarray(moved @ V[int(np.sum(sizes > RANK_NEARBY * max(sizes, default=1.0))) :].T)

@@ -51,6 +51,11 @@ class Equation(Constraint):
         return law is not None and any(len(call.args) < 2 or str(call.args[1]) == "ground" for call in law.calls)
 
 
+@dataclass(frozen=True, kw_only=True)
+class NodeBalance(Equation):
+    """That what pushes a node without mass is in balance: nobody declares it, and its multiplier is 0."""
+
+
 def _pushes(measured: Mapping[Call, Measured], slopes: Mapping[Call, AnyScalar]) -> tuple[Push, ...]:
     return tuple(push for call, k in slopes.items() for push in measured[call].pushed(k))
 
