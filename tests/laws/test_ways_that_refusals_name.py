@@ -1,13 +1,13 @@
-"""Refusals that name the way, and the way they name: nodes without mass, ropes that are hauled in."""
+"""Nodes without mass, which follow from their balance; refusals that name the way: ropes that are hauled in."""
 
 from __future__ import annotations
 
-import re
-
 import pytest
+from scipy.integrate import solve_ivp
 
 import eomgen
 from eomgen.errors import ModelError
+from eomgen.verbs.reactions import reactions
 
 NODE = """
 eomgen = 1
@@ -37,17 +37,48 @@ constraints.rope = { kind = "link", points = ["O", "load.center"], length = "l" 
         ('damping = "c"', [0, *(-300 / 14 + s * ((300 / 14) ** 2 - 300) ** 0.5 for s in (1, -1))]),
     ],
 )
-def test_a_node_without_mass_follows_from_the_balance_that_is_told(held, roots):
+def test_a_node_without_mass_follows_from_its_balance(held, roots):
     """k1 n = k2 (x - n), or c n' = k2 (x - n); m x'' = -k2 (x - n)"""
-    text = NODE.replace("HELD", held)
-    with pytest.raises(ModelError, match="moves no mass") as refused:
-        eomgen.simulate(eomgen.loads(text.replace("START", "0")), time=1, target="numpy")
-    told = re.search(r"\{ kind = .* \}", str(refused.value))
-    way = text.replace("START", "{ dependent = true, start = 0 }") + f"constraints.balance = {told.group(0)}\n"
-    values = eomgen.linearize(eomgen.loads(way)).modes.spectrum.eigenvalues
-    assert sorted(values, key=lambda x: (x.real, x.imag)) == pytest.approx(
+    model = eomgen.loads(NODE.replace("HELD", held).replace("START", "0"))
+    found = eomgen.linearize(model)
+    assert sorted(found.modes.spectrum.eigenvalues, key=lambda x: (x.real, x.imag)) == pytest.approx(
         sorted(map(complex, roots), key=lambda x: (x.real, x.imag)), abs=1e-9
     )
+    assert found.certify().ok
+    equations = eomgen.derive(model)
+    assert equations.certify().ok and "n moves no mass" in equations.assumptions[0]
+    told = reactions(model)
+    assert told["reaction_n(node)"].value == 0 and told.certify().ok
+
+
+@pytest.mark.parametrize(
+    ("held", "node", "rate"),
+    [
+        ('stiffness = "k1"', lambda t, x: 3 * x / 4, None),
+        ('stiffness = "k1", force = "10*t"', lambda t, x: (300 * x + 10 * t) / 400, None),
+        ('damping = "c"', None, lambda n, x: 300 * (x - n) / 7),
+    ],
+)
+def test_a_run_of_a_node_without_mass_is_that_of_its_balance(held, node, rate):
+    """(k1 + k2) n = k2 x + f(t), or n' = k2 (x - n)/c;  m x'' = -k2 (x - n): integrated apart, from x = 0.3."""
+
+    def motion(t, z):
+        n = z[2] if node is None else node(t, z[0])
+        return [z[1], -300 * (z[0] - n), 0.0 if rate is None else rate(n, z[0])]
+
+    apart = solve_ivp(motion, (0, 0.5), [0.3, 0.0, 0.0], rtol=1e-10, atol=1e-12).y[:, -1]
+    model = eomgen.loads(NODE.replace("HELD", held).replace("START", "0"))
+    run = eomgen.simulate(model, time=0.5, target="numpy")
+    assert run.ok and run.columns()["x"][-1] == pytest.approx(apart[0], abs=1e-7)
+    n = apart[2] if node is None else node(0.5, apart[0])
+    assert run.columns()["n"][-1] == pytest.approx(n, abs=1e-7)
+
+
+def test_a_node_that_a_nonlinear_damper_holds_is_refused_by_name():
+    """c n' |n'| = k2 (x - n) is not linear in n': no tie says so."""
+    text = NODE.replace("HELD", "force = \"-c*n'*abs(n')\"").replace("START", "0")
+    with pytest.raises(ModelError, match="the free coordinate 'n' moves no mass"):
+        eomgen.simulate(eomgen.loads(text), time=1, target="numpy")
 
 
 def test_a_rope_that_is_hauled_in_is_a_driven_joint():
