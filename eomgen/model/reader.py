@@ -87,9 +87,12 @@ def located(problem: Problem, data: bytes, name: str, *, by_name: bool = False) 
     Args:
         by_name: one without a path is at the place of the first thing that it names: "'x' leaves all bounds".
     """
+    path = tuple(problem.where.split("."))
+    if path[0] not in TABLES and (problem.where or not by_name):
+        return problem
     index = index_of(_text(data, name))
-    path = _named(problem.what, index) if by_name and not problem.where else tuple(problem.where.split("."))
-    if not path or path[0] not in TABLES:
+    path = path if problem.where else _named(problem.what, index)
+    if not path:
         return problem
     key = path if path in index.keys else path[:2]
     return _problem(Finding(path, problem.what, problem.mend), index.nearest(key, key=True), index, name)
