@@ -5,6 +5,7 @@ from __future__ import annotations
 import gc
 import os
 import shutil
+import sys
 from collections.abc import Iterator
 from pathlib import Path
 from typing import NoReturn
@@ -33,8 +34,12 @@ def pytest_ignore_collect(collection_path: Path, config: pytest.Config) -> bool 
 
 @pytest.hookimpl(trylast=True)
 def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
-    """What is asked of one model by several files stands together, first: one process derives it, and once."""
+    """What is asked of one model by several files stands together, first: one process derives it, and once.
+
+    Tests that import jax come last, in each worker too: its threads hold locks that a forked process waits for.
+    """
     items.sort(key=lambda item: (1, "") if item.get_closest_marker("by_model") is None else (0, model_of(item)))
+    items.sort(key=lambda item: "jax" in item.name)
 
 
 def pytest_collection_finish() -> None:
@@ -48,7 +53,20 @@ def pytest_runtest_protocol(item: pytest.Item) -> Iterator[None]:
     with pytest.MonkeyPatch.context() as patch:
         if item.get_closest_marker("slow") is None:
             patch.setattr("eomgen.codegen.build._kept", _compiled_in_a_quick_test)
+        if hasattr(os, "fork"):
+            patch.setattr(os, "fork", _forked_without_threads)
         yield
+
+
+_fork = getattr(os, "fork", None)
+
+
+def _forked_without_threads() -> int:
+    """As os.fork, in a process without the threads of jax: beside them the child may wait for a lock for ever."""
+    if "jax" in sys.modules:
+        pytest.fail("forked where jax was imported: name the test that imports it '...jax...'", pytrace=False)
+    assert _fork is not None
+    return _fork()
 
 
 def _compiled_in_a_quick_test(*_: object) -> NoReturn:

@@ -13,6 +13,7 @@ import signal
 import subprocess
 import sys
 import time
+from collections.abc import Iterator
 from contextlib import suppress
 from dataclasses import replace
 from functools import cache
@@ -30,6 +31,8 @@ PATIENCE = 20  # seconds of work: under what a verb has in all, so that numpy st
 SHARE = 0.5  # of the time that a user still waits, for one compilation: what runs without it needs the other half
 LOOK = 0.1  # seconds between two looks at a compiler at work
 IDLE = 20  # seconds in which a compiler that does nothing has stopped; a loaded machine gives each its turn sooner
+ENDING = 2.0  # seconds in which what was killed is gone: on a loaded machine it takes its turn
+ENDED = "ZX"  # states of processes that only wait to be asked how they ended
 TURN = 0.05  # seconds of work that are something
 _GIVEN_UP: dict[str, str] = {}  # what took a compiler too long in this process, and why: nobody waits for it twice
 MOST_SAID = 2000  # characters of a compiler
@@ -233,8 +236,7 @@ def _ran(command: list[str], by: Compiler, place: Path) -> tuple[int, str]:
         said = _awaited(started, by)
         return started.returncode, said.strip()[:MOST_SAID]
     finally:
-        if started.poll() is None:
-            _end(started)
+        _end(started)
 
 
 def _awaited(started: subprocess.Popen[str], by: Compiler) -> str:
@@ -266,22 +268,36 @@ def _awaited(started: subprocess.Popen[str], by: Compiler) -> str:
 
 def _work_of(session: int) -> float | None:
     """CPU seconds of all processes of a session, ended ones included; None where the system does not tell."""
-    ticks, found = 0, False
-    for stat in Path("/proc").glob("[0-9]*/stat"):
-        with suppress(OSError, ValueError, IndexError):
-            fields = stat.read_text().rpartition(")")[2].split()
-            if int(fields[3]) == session:
-                ticks, found = ticks + sum(map(int, fields[11:15])), True
-    return ticks / os.sysconf("SC_CLK_TCK") if found else None
+    ticks = [sum(map(int, fields[11:15])) for fields in _stats_of(session)]
+    return sum(ticks) / os.sysconf("SC_CLK_TCK") if ticks else None
 
 
 def _end(started: subprocess.Popen[str]) -> None:
-    """Kill a process with its children (on Windows without these)."""
-    with suppress(OSError):
+    """Kill a process with all that it started, though it has ended itself; they are gone then (on Windows it alone)."""
+    left = False
+    with suppress(OSError):  # there is nothing left of it
         if hasattr(os, "killpg"):
             os.killpg(started.pid, signal.SIGKILL)
         else:
             started.kill()
+        left = True
     started.wait()
     if started.stderr is not None:
         started.stderr.close()
+    given_up = time.monotonic() + ENDING
+    while left and _is_running(started.pid) and time.monotonic() < given_up:
+        time.sleep(LOOK / 100)
+
+
+def _is_running(session: int) -> bool:
+    """Whether a process of a session has not ended, as far as the system tells."""
+    return any(fields[0] not in ENDED for fields in _stats_of(session))
+
+
+def _stats_of(session: int) -> Iterator[list[str]]:
+    """What the system tells of each process of a session, from its state on; nothing where it does not tell."""
+    for stat in Path("/proc").glob("[0-9]*/stat"):
+        with suppress(OSError, IndexError):
+            fields = stat.read_text().rpartition(")")[2].split()
+            if fields[3] == str(session):
+                yield fields

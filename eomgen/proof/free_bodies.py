@@ -217,17 +217,84 @@ def _with_free_motion(system: System, free: System, state: State, h: Any = STEP)
 
 def _demand(system: System, state: State, h: Any = STEP) -> Demand:
     """The same where every tie that closes has its multiplier."""
-    u, closing = system.scope.symbols.u, system.ties.closing
-    bodies = _Bodies(system, state, h)
-    direct = [x + y for x, y in zip(joint_forces(system.loads), placeless_forces(system.loads), strict=True)]
-    rotors = armature_bias(system.motion, len(u))
-    forces = bodies.at(tuple(y - x for x, y in zip(direct, rotors, strict=True)))
+    closing, bodies = system.ties.closing, _Bodies(system, state, h)
+    forces = bodies.at(bodies.formulas.direct)
     sizes = [abs(x) for x in forces]
     others = ((k, x, abs(x)) for k, x in (*bodies.of_rotors(), *bodies.of_equations()))
     for k, x, size in (*bodies.along_joints(), *others):
         forces[k], sizes[k] = forces[k] + x, sizes[k] + size
-    _, rates = bodies.along_motion(tuple(row.velocity for row in closing))
+    _, rates = bodies.along_motion(bodies.formulas.rates)
     return Demand(forces, sizes, {(r.tie, r.number): x for r, x in zip(closing, rates, strict=True)})
+
+
+@dataclass(frozen=True)
+class _Formulas:
+    """What is put into numbers at every state, made once."""
+
+    system: System
+
+    @cached_property
+    def _by_joints(self) -> list[tuple[Scalar, ...]]:
+        """Of every joint E^T by rows, r and r' in the parent's axes, s in the body's."""
+        found = []
+        for link in self.system.motion.links:
+            r = link.local.point(times(-1, link.point))
+            spin = ZERO
+            for rate, (w, _) in zip(link.s_rate, link.S, strict=True):
+                spin = plus(spin, times(rate, w))
+            rows = (x for row in link.local.R for x in row)
+            found.append((*rows, *r, *self.system.scope.time_derivative(r), *spin))
+        return found
+
+    @cached_property
+    def joints(self) -> tuple[Scalar, ...]:
+        return tuple(x for joint in self._by_joints for x in joint)
+
+    @cached_property
+    def speeds(self) -> list[list[Node]]:
+        """Of every joint those on which r' and s depend."""
+        place = frozenset(self.system.scope.symbols.u)
+        return [[x for x in symbols_of(joint[12:]) if x in place] for joint in self._by_joints]
+
+    @cached_property
+    def columns(self) -> tuple[Scalar, ...]:
+        """Of r' and s, entry by entry, the slopes along those."""
+        pairs = zip(self._by_joints, self.speeds, strict=True)
+        return tuple(x for joint, own in pairs for y in joint[12:] for x in gradient(y, own))
+
+    @cached_property
+    def masses(self) -> tuple[Scalar, ...]:
+        """m, c and I of every body."""
+        masses = [mass_properties(self.system.scope, link.name) for link in self.system.motion.links]
+        return tuple(x for mass in masses for x in (mass.m, *mass.com, *(y for row in mass.I for y in row)))
+
+    @cached_property
+    def pushes(self) -> list[tuple[str, Wrench, Node | None]]:
+        """(body, wrench about its origin in its axes, lam by which it goes): loads and weights, then closing rows."""
+        ties, loads = self.system.ties, self.system.loads
+        found = [body_wrench(self.system.motion, load) for load in (*loads.placed, *weights(loads))]
+        rows = zip(ties.closing, self.system.symbols.lam, strict=True)
+        of_rows = [(body, wrench, lam) for row, lam in rows for body, wrench in row.wrenches]
+        return [*((*pair, None) for pair in found if pair is not None), *of_rows]
+
+    @cached_property
+    def direct(self) -> tuple[Scalar, ...]:
+        """Along every speed the bias of rotors, less what acts at no place."""
+        loads = self.system.loads
+        acting = [x + y for x, y in zip(joint_forces(loads), placeless_forces(loads), strict=True)]
+        rotors = armature_bias(self.system.motion, len(self.system.scope.symbols.u))
+        return tuple(y - x for x, y in zip(acting, rotors, strict=True))
+
+    @cached_property
+    def rates(self) -> tuple[Scalar, ...]:
+        """Of closing rows."""
+        return tuple(row.velocity for row in self.system.ties.closing)
+
+    @cached_property
+    def slopes(self) -> tuple[Scalar, ...]:
+        """Of what no twist sees of closing rows, along every speed."""
+        u = self.system.scope.symbols.u
+        return tuple(x for row in self.system.ties.closing for x in gradient(row.direct, u))
 
 
 @dataclass(frozen=True)
@@ -235,6 +302,13 @@ class _Bodies(InNumbers):
     """The free bodies of a system at a state; h is the step of differences."""
 
     h: Any = STEP
+
+    @cached_property
+    def formulas(self) -> _Formulas:
+        if _Formulas not in self.system.found:
+            self.system.found[_Formulas] = _Formulas(self.system)
+        found: _Formulas = self.system.found[_Formulas]
+        return found
 
     @property
     def links(self) -> tuple[BodyLink, ...]:
@@ -249,22 +323,9 @@ class _Bodies(InNumbers):
         return way_through(self.system, self.state, self.h)
 
     @cached_property
-    def _joints(self) -> list[tuple[Scalar, ...]]:
-        """Of every joint E^T by rows, r and r' in the parent's axes, s in the body's."""
-        found = []
-        for link in self.links:
-            r = link.local.point(times(-1, link.point))
-            spin = ZERO
-            for rate, (w, _) in zip(link.s_rate, link.S, strict=True):
-                spin = plus(spin, times(rate, w))
-            rows = (x for row in link.local.R for x in row)
-            found.append((*rows, *r, *self.system.scope.time_derivative(r), *spin))
-        return found
-
-    @cached_property
     def _moving(self) -> tuple[list[list[Any]], list[list[Any]]]:
         """(values, rates) of every joint."""
-        values, rates = self.along_motion([x for joint in self._joints for x in joint])
+        values, rates = self.along_motion(self.formulas.joints)
         return _in_parts(values, PARTS), _in_parts(rates, PARTS)
 
     @cached_property
@@ -289,9 +350,7 @@ class _Bodies(InNumbers):
     @cached_property
     def _masses(self) -> list[list[Any]]:
         """m, c and I of every body."""
-        masses = [mass_properties(self.system.scope, link.name) for link in self.links]
-        flat = [x for mass in masses for x in (mass.m, *mass.com, *(y for row in mass.I for y in row))]
-        return _in_parts(self.at(flat), 13)
+        return _in_parts(self.at(self.formulas.masses), 13)
 
     @property
     def _inertia_sizes(self) -> list[tuple[Any, Any]]:
@@ -314,15 +373,12 @@ class _Bodies(InNumbers):
     @cached_property
     def _pushes(self) -> list[tuple[str, Wrench]]:
         """(body, load, weight or push of a closing row on it, about its origin in its axes)."""
-        ties, loads = self.system.ties, self.system.loads
-        found = [body_wrench(self.system.motion, load) for load in (*loads.placed, *weights(loads))]
-        pushes = [(*pair, 1) for pair in found if pair is not None]
-        rows = zip(ties.closing, self.system.symbols.lam, strict=True)
-        pushes += [(body, wrench, self.state[lam]) for row, lam in rows for body, wrench in row.wrenches]
+        pushes = self.formulas.pushes
         values = _in_parts(self.at([x for _, wrench, _ in pushes for x in (*wrench.tau, *wrench.f)]), 6)
+        sizes = [1 if lam is None else self.state[lam] for *_, lam in pushes]
         return [
-            (body, Wrench(times(lam, vector_of(x[:3])), times(lam, vector_of(x[3:]))))
-            for (body, _, lam), x in zip(pushes, values, strict=True)
+            (body, Wrench(times(size, vector_of(x[:3])), times(size, vector_of(x[3:]))))
+            for (body, *_), size, x in zip(pushes, sizes, values, strict=True)
         ]
 
     @property
@@ -364,11 +420,9 @@ class _Bodies(InNumbers):
     def along_joints(self) -> Iterator[tuple[int, Any, Any]]:
         """(speed, what a joint gives along it, of which size): the columns of s and r' by each speed, on its wrench."""
         place = {symbol: k for k, symbol in enumerate(self.system.scope.symbols.u)}
-        speeds = [[x for x in symbols_of(joint[12:]) if x in place] for joint in self._joints]
-        columns = [gradient(y, own) for joint, own in zip(self._joints, speeds, strict=True) for y in joint[12:]]
-        values = iter(self.at([x for column in columns for x in column]))
+        values = iter(self.at(self.formulas.columns))
         for own, joint, wrench, (f, tau) in zip(
-            speeds, self._moving[0], self._through_joints, self._sizes, strict=True
+            self.formulas.speeds, self._moving[0], self._through_joints, self._sizes, strict=True
         ):
             for k, y in enumerate((*apply(_turn(joint), wrench.f), *wrench.tau)):
                 for symbol in own:
@@ -383,8 +437,7 @@ class _Bodies(InNumbers):
 
     def of_equations(self) -> Iterator[tuple[int, Any]]:
         """-lam of every row along what no twist sees: the slide of points in their bodies, ties of coordinates."""
-        closing, u = self.system.ties.closing, self.system.scope.symbols.u
-        slopes = _in_parts(self.at([x for row in closing for x in gradient(row.direct, u)]), len(u) or 1)
+        slopes = _in_parts(self.at(self.formulas.slopes), len(self.system.scope.symbols.u) or 1)
         for lam, slope in zip(self.system.symbols.lam, slopes, strict=False):
             yield from ((k, -x * self.state[lam]) for k, x in enumerate(slope))
 

@@ -6,6 +6,7 @@ q(t +- h) = q +- h q' + h^2 q''/2,   u +- h u',   t +- h;     x' = (x+ - x-)/2h,
 from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
+from functools import cached_property
 from typing import Any
 
 from eomgen.mechanics.bodies.kinematics import Motion
@@ -18,6 +19,7 @@ from eomgen.symbolic.expression.graph import Scalar
 from eomgen.symbolic.expression.node import State
 from eomgen.symbolic.expression.spatial import (
     ZERO,
+    Matrix,
     Numbers,
     apply,
     cross,
@@ -80,18 +82,29 @@ class InNumbers:
         """A place or direction of a body; the ground's is itself."""
         if body is None:
             return place
-        pose = self.motion.link(body).pose
-        own = self.at([*(x for row in pose.R for x in row), *pose.p])
-        turned = apply(matrix_of((own[0:3], own[3:6], own[6:9])), place)
-        return turned if direction else plus(vector_of(own[9:12]), turned)
+        R, p = self._stand(body)
+        turned = apply(R, place)
+        return turned if direction else plus(p, turned)
+
+    @cached_property
+    def _stands(self) -> dict[str, tuple[Matrix, Numbers]]:
+        return {}
+
+    def _stand(self, body: str) -> tuple[Matrix, Numbers]:
+        """R and p of a body, worked once."""
+        if body not in self._stands:
+            pose = self.motion.link(body).pose
+            own = self.at([*(x for row in pose.R for x in row), *pose.p])
+            self._stands[body] = matrix_of((own[0:3], own[3:6], own[6:9])), vector_of(own[9:12])
+        return self._stands[body]
 
     def velocity(self, body: str | None, P: Numbers) -> Numbers:
         """Of the material point of a body at P: R (v + w x R^T (P - p))."""
         if body is None:
             return ZERO
-        link = self.motion.link(body)
-        own = self.at([*(x for row in link.pose.R for x in row), *link.pose.p, *link.twist.w, *link.twist.v])
-        R, p, w, v = matrix_of((own[0:3], own[3:6], own[6:9])), *(vector_of(own[k : k + 3]) for k in (9, 12, 15))
+        (R, p), twist = self._stand(body), self.motion.link(body).twist
+        own = self.at((*twist.w, *twist.v))
+        w, v = vector_of(own[:3]), vector_of(own[3:])
         return apply(R, plus(v, cross(w, apply(transposed(R), minus(P, p)))))
 
 

@@ -9,6 +9,7 @@ component does to a body stands in the axes of its equations, which the balance 
 from __future__ import annotations
 
 from collections.abc import Iterable
+from functools import cached_property
 from random import Random
 from typing import Any
 
@@ -46,7 +47,7 @@ def named_otherwise(balance: Balance, state: State) -> str:
 class _Named(InNumbers):
     balance: Balance
 
-    @property
+    @cached_property
     def values(self) -> list[Any]:
         """Of every component, at random."""
         rng = Random(17)

@@ -25,6 +25,7 @@ from eomgen.symbolic.numeric.pieces import Switch, switches_of
 from eomgen.symbolic.numeric.tolerances import COMPUTED, LARGEST_AT_50, LARGEST_SQUARED
 
 CONSISTENT = (11,)  # seeds of states at which all ties hold
+OWN_START = "own start"
 TRIES = 20  # random states, for one with a value
 NEAR = (0.001, 0.01, 0.1, 0.5)  # how far from the start another is looked for, twice each
 MOST = 12  # pieces of one quantity that are visited, evenly spread; 1000 samples are one formula
@@ -113,8 +114,8 @@ class States:
 
     def _at_the_start(self) -> Iterator[TrialState]:
         """The model's own start and numbers, then states near it."""
-        rng = Random(5)
-        start = _own_state(self.system, rng)
+        rng = Random(8)
+        start = own_start(self.system)
         if start is not None:
             yield from self._if_inside(start)
             for spread in (*NEAR, *NEAR):
@@ -130,7 +131,7 @@ class States:
     def _pieces(self) -> Iterator[Iterator[TrialState]]:
         """Of every piece of every quantity its states, in motion and with the model's own numbers."""
         rng = Random(6)
-        start = _own_state(self.system, rng) if self.switches else None
+        start = own_start(self.system) if self.switches else None
         if start is None:
             return
         visited: set[tuple[int, int]] = set()
@@ -179,12 +180,17 @@ class States:
 
 
 def own_start(system: System) -> State | None:
-    """The model at its own start, with its own numbers, these drawn where there are none; None: it does not hold."""
-    return _own_state(system, Random(5))
+    """The model at its own start, with its own numbers, these drawn where there are none; None: it does not hold.
+
+    One state for all that ask: what is found of it, its accelerations, is found once.
+    """
+    if OWN_START not in system.found:
+        system.found[OWN_START] = _own_state(system, Random(5))
+    found: State | None = system.found[OWN_START]
+    return found
 
 
 def _own_state(system: System, rng: Random) -> State | None:
-    """The model at its own start, with its own numbers, these drawn where there are none; None: it does not hold."""
     model, symbols = system.scope.model, system.symbols
     known = exact_parameters(model)
     drawn = {name: round(rng.uniform(0.7, 1.3), 6) for name in symbols.parameters if name not in known}

@@ -72,9 +72,10 @@ def test_a_compiler_that_lies_is_named_and_numpy_runs(how, cache, tmp_path, monk
         assert list(cache.iterdir()) == []
 
 
-def test_a_compiler_that_hangs_is_ended_with_all_that_it_started(cache, tmp_path, monkeypatch):
-    """A shell that waits for another process, which holds its streams: both are gone, soon."""
-    compiler(tmp_path, monkeypatch, f"sleep 1000 & echo $! > {tmp_path}/child; wait")
+@pytest.mark.parametrize("then", ["wait", "exit 0"])
+def test_a_compiler_that_hangs_is_ended_with_all_that_it_started(then, cache, tmp_path, monkeypatch):
+    """A shell that waits for another process, or has left it, which holds its streams: both are gone by then."""
+    compiler(tmp_path, monkeypatch, f"sleep 1000 & echo $! > {tmp_path}/child; {then}")
     begun = time.monotonic()
     with pytest.raises(RunFailed, match=r"did not come back: it did nothing for 0\.5 s"):
         build.library(TEXT, by=replace(build.C, patience=0.5))

@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 import operator
 from collections.abc import Callable, Iterable, Mapping, Sequence
-from functools import cache, lru_cache
+from functools import cache, cached_property, lru_cache
 from functools import partial as partial_of
 from itertools import chain, count
 from typing import Any
@@ -19,6 +19,8 @@ from eomgen.symbolic.expression.traversal import order
 from eomgen.symbolic.numeric.work import LARGEST_OF_50_DIGITS, check_patience
 
 WAYS_KEPT = 16  # of evaluations that may come again
+NUMBERS_KEPT = 4096  # exact numbers that are known with 50 digits
+NONE = frozenset[Node]()
 _Step = tuple[Node, str, tuple[int, ...]]
 PRIME = 2305843009213682039  # 61 bits, 7 mod 8; 2, 3, 5, ..., 37 are squares modulo it
 
@@ -62,7 +64,12 @@ def evaluate(outputs: Sequence[Scalar], values: Mapping[Node, Any], arithmetic: 
         NoValue: outside the domain (floats give nan instead).
     """
     check_patience()
-    way = _way(tuple(outputs), frozenset(x for x in values if x.op != "symbol"))
+    outputs = tuple(outputs)
+    if Node not in map(type, outputs):
+        return list(map(arithmetic.number, outputs))
+    way = _way(outputs, NONE)
+    if not way.computed.isdisjoint(values):
+        way = _way(outputs, frozenset(x for x in values if x.op != "symbol"))
     missing = [x.name for x in way.symbols if x not in values]
     if missing:
         raise DerivationError(f"no value for {', '.join(repr(name) for name in missing)}")
@@ -126,6 +133,10 @@ class _Way:
     given: tuple[Node, ...]
     steps: tuple[_Step, ...]
     outputs: tuple[int, ...]
+
+    @cached_property
+    def computed(self) -> frozenset[Node]:
+        return frozenset([x for x, _, _ in self.steps])
 
 
 @lru_cache(maxsize=WAYS_KEPT)
@@ -323,6 +334,7 @@ def fifty_digits(partial: bool = False) -> Arithmetic:
     names = "sqrt sin cos tan asin acos atan sinh cosh tanh exp log atan2".split()
     functions = {op: real(getattr(mp, op)) for op in names}
 
+    @lru_cache(maxsize=NUMBERS_KEPT)
     def number(c: Number) -> Any:
         return mp.mpf(c.numerator) / c.denominator
 
