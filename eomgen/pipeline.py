@@ -202,8 +202,11 @@ def simulate(
 
 def _warned(model: Model, found: Trajectory) -> Trajectory:
     """The run; what is missing of it is a warning of whoever asked for it."""
+    from eomgen.simulation.result import OnDemand
+
     for problem in left_tables(model, float(found.t[-1]) if len(found.t) else 0.0):
         warnings.warn(f"{model.name}: {problem.where}: {problem.what}", RuntimeWarning, stacklevel=3)
-    if (found.reactions or found.outputs) and found.remark:
-        warnings.warn(f"{model.name}: {found.remark}", RuntimeWarning, stacklevel=3)
+    missing = found.told if isinstance(found.reactions, OnDemand) else found.remark  # which waits as they do
+    if missing and (found.reactions or found.outputs):
+        warnings.warn(f"{model.name}: {missing}", RuntimeWarning, stacklevel=3)
     return found

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import csv
 import dataclasses
+import pickle
 import warnings
 from math import cos, sin
 from pathlib import Path
@@ -298,3 +299,22 @@ def test_a_picture_shows_the_largest_reactions_only(tmp_path):
         over_time(run, "", {}).save(tmp_path / f"{name}.svg")
         text = (tmp_path / f"{name}.svg").read_text()  # beside the outlines of a text its words
         assert words in text and text.count("reactions [N") == panels, name
+
+
+def test_reactions_that_joints_alone_carry_wait_to_be_read_and_are_whole_where_they_leave(monkeypatch, tmp_path):
+    """simulate: no balance solved; run[name], a pickle, a CSV: the columns that `simulator` gives when it is asked"""
+    model, solved = eomgen.load(MODELS / "double_pendulum.toml"), []
+    along = ReactionColumns.along
+    monkeypatch.setattr(ReactionColumns, "along", lambda *given: solved.append(1) or along(*given))
+    due = eomgen.simulator(model)(1.0, samples=7, columns=("reactions",))
+    run = eomgen.simulate(model, time=1.0, samples=7)
+    assert not solved and list(run.reactions) == list(due.reactions) and run.ok and "reaction_x(" in "".join(run.units)
+    name = next(iter(run.reactions))
+    assert run[name].tolist() == due[name].tolist() and len(solved) == 2
+    run.to_csv(tmp_path / "run.csv")
+    lines = (tmp_path / "run.csv").read_text().splitlines()
+    assert name in lines[0] and len(lines) == 8 and len(solved) == 2
+    fresh = eomgen.simulate(model, time=1.0, samples=7)
+    again = pickle.loads(pickle.dumps(fresh))
+    assert type(again.reactions) is dict and again.remark == ""
+    assert all(again[x].tolist() == due[x].tolist() for x in due.reactions)

@@ -33,7 +33,7 @@ from eomgen.proof.in_numbers import STEP, InNumbers, Way, way_through
 from eomgen.records import dataclass
 from eomgen.symbolic.expression.derivative import gradient, pullback, symbols_of
 from eomgen.symbolic.expression.graph import Scalar
-from eomgen.symbolic.expression.node import State
+from eomgen.symbolic.expression.node import Node, State
 from eomgen.symbolic.expression.spatial import (
     ZERO,
     Matrix,

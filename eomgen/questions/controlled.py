@@ -190,7 +190,7 @@ def controlled_run(
     whole = WholeRun(model, [run for run, _, _ in phases], plan, values, [end for _, end, _ in phases])
     found = finished_run(equations, phases[-1][2], whole, how, instants)
     told = f"{', '.join(functions)} set by Python functions: stepped by scipy, one call of Python an evaluation."
-    return replace(found, remark=" ".join(filter(None, [told if functions else "", found.remark])))
+    return replace(found, told=" ".join(filter(None, [told if functions else "", found.told])))
 
 
 def _control(models: PhaseModels, here: PhaseStart, controllers: Mapping[str, Controller]) -> _Control:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import replace
 from functools import cache
 from itertools import accumulate
@@ -19,7 +19,7 @@ from eomgen.simulation.phase_model import PhaseModel
 from eomgen.simulation.phase_models import PhaseModels
 from eomgen.simulation.phase_run import PhaseRun
 from eomgen.simulation.reaction_columns import ReactionColumns, begun
-from eomgen.simulation.result import Kept, Phase, Trajectory
+from eomgen.simulation.result import Kept, OnDemand, Phase, Trajectory
 from eomgen.symbolic.expression.expressions import Expression
 
 
@@ -82,20 +82,36 @@ def _open(runs: Sequence[PhaseRun]) -> tuple[float | None, float | None]:
 def with_reactions(full: Trajectory, runs: Sequence[PhaseRun]) -> Trajectory:
     """The trajectory with its reactions as columns; what has none, and why, in its remark.
 
-    In each phase they are those of the phase's own equations; a contact that is open has the reaction 0.
+    In each phase they are those of the phase's own equations; a contact that is open has the reaction 0. Where nothing
+    but joints holds the bodies each has a value at every state: nothing is missing, and they wait to be read.
     """
     try:
-        made = {id(s.phase): _reaction_columns(s.phase) for s in runs}
+        made = [_reaction_columns(s.phase) for s in runs]
     except DerivationError as error:
-        return replace(full, remark=f"No reactions: {error.what}.")
-    found: dict[str, np.ndarray] = {}
-    for s, phase in zip(runs, full.phases, strict=True):
-        columns, model, t = made[id(s.phase)], s.phase, s.run.t
-        x = begun(t, model.functions.inner(s.run.x), model.functions.rhs.at(model.p), model.slowest)
-        for name, column in zip(columns.names, columns.along(t, x, model.parameters_along(t, s.run.x)).T, strict=True):
-            found.setdefault(name, np.zeros(len(full.t)))[slice(*phase.rows)] = column
-    always = dict.fromkeys(name for columns in made.values() for name in columns.indeterminate)
-    return replace(full, reactions=found, units=_units(made.values()), remark=_remark(full.t, found, tuple(always)))
+        return replace(full, told=f"No reactions: {error.what}.")
+    t, rows = full.t, [phase.rows for phase in full.phases]
+
+    @cache
+    def columns() -> dict[str, np.ndarray]:
+        found: dict[str, np.ndarray] = {}
+        for s, own, where in zip(runs, made, rows, strict=True):
+            for name, column in _of_phase(s, own):
+                found.setdefault(name, np.zeros(len(t)))[slice(*where)] = column
+        return found
+
+    always = tuple(dict.fromkeys(name for own in made for name in own.indeterminate))
+    told = f"Statically indeterminate: {_few(always)}." if always else ""
+    names = tuple(dict.fromkeys(name for own in made for name in own.names))
+    waits = all(s.phase.projection is None and not s.phase.equations.system.ties.rows for s in runs)
+    reactions = OnDemand(names, columns) if waits else columns()
+    return replace(full, reactions=reactions, units=_units(made), told=told, gaps=lambda: _gaps(t, columns(), always))
+
+
+def _of_phase(s: PhaseRun, columns: ReactionColumns) -> Iterator[tuple[str, np.ndarray]]:
+    """(name, column) of every reaction in a phase."""
+    model, t = s.phase, s.run.t
+    x = begun(t, model.functions.inner(s.run.x), model.functions.rhs.at(model.p), model.slowest)
+    return zip(columns.names, columns.along(t, x, model.parameters_along(t, s.run.x)).T, strict=True)
 
 
 def _reaction_columns(phase: PhaseModel) -> ReactionColumns:
@@ -122,7 +138,7 @@ def with_outputs(full: Trajectory, runs: Sequence[PhaseRun], formulas: Mapping[s
         for name, why in refused.items()
     ]
     given = {name: column for name, column in found.items() if name not in nowhere}
-    return replace(full, outputs=given, remark=" ".join(filter(None, (full.remark, *told))))
+    return replace(full, outputs=given, told=" ".join(filter(None, (full.told, *told))))
 
 
 def thinned(full: Trajectory, instants: np.ndarray | None, **more: Any) -> Trajectory:
@@ -159,12 +175,19 @@ def thinned(full: Trajectory, instants: np.ndarray | None, **more: Any) -> Traje
     if all_kept:
         whole: Trajectory = with_fields(full, **more)
         return whole
-    reactions, outputs = (
-        {name: column[kept] for name, column in table.items()} for table in (full.reactions, full.outputs)
-    )
+    reactions, outputs = (_at_rows(table, kept) for table in (full.reactions, full.outputs))
     energies = None if full.energies is None else lambda: full["energy"][kept]
     more |= {"t": full.t[kept], "x": full.x[kept], "energies": energies, "reactions": reactions, "outputs": outputs}
     return replace(full, **more)
+
+
+def _at_rows(table: Mapping[str, np.ndarray], kept: np.ndarray) -> Mapping[str, np.ndarray]:
+    """The columns at these rows; what waits to be read goes on waiting."""
+
+    def found() -> dict[str, np.ndarray]:
+        return {name: column[kept] for name, column in table.items()}
+
+    return OnDemand(tuple(table), found) if isinstance(table, OnDemand) else found()
 
 
 def phase_text(models: PhaseModels, phase_run: PhaseRun) -> str:
@@ -183,17 +206,14 @@ def _units(columns: Iterable[ReactionColumns]) -> dict[str, str]:
     return {named.name: named.unit for each in columns for named in each.asked}
 
 
-def _remark(t: np.ndarray, found: dict[str, np.ndarray], always: tuple[str, ...]) -> str:
-    """What is nan, and since when."""
-    parts = []
-    if always:
-        parts.append(f"Statically indeterminate: {_few(always)}.")
+def _gaps(t: np.ndarray, found: Mapping[str, np.ndarray], always: tuple[str, ...]) -> str:
+    """What is nan though not always, and since when."""
     at_times = {name: np.isnan(column) for name, column in found.items() if name not in always}
     singular = [name for name, gone in at_times.items() if gone.any()]
-    if singular:
-        first = t[int(np.any([at_times[name] for name in singular], axis=0).argmax())]
-        parts.append(f"No single value in singular positions, first at t = {first:.6g} s: {_few(singular)}.")
-    return " ".join(parts)
+    if not singular:
+        return ""
+    first = t[int(np.any([at_times[name] for name in singular], axis=0).argmax())]
+    return f"No single value in singular positions, first at t = {first:.6g} s: {_few(singular)}."
 
 
 def _few(names: Sequence[str]) -> str:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import io
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import field
 from functools import cached_property
 from importlib import import_module
@@ -34,6 +34,34 @@ RunStatus = Literal[
     "singular",
     "contradicted",
 ]
+
+
+class OnDemand(Mapping[str, np.ndarray]):
+    """Columns by name, worked out where somebody reads one of them; of a pickle they are all there."""
+
+    def __init__(self, names: Sequence[str], make: Callable[[], Mapping[str, np.ndarray]]) -> None:
+        self.names, self.make = dict.fromkeys(names), make
+
+    @cached_property
+    def _made(self) -> Mapping[str, np.ndarray]:
+        return self.make()
+
+    def __getitem__(self, name: str) -> np.ndarray:
+        if name not in self.names:
+            raise KeyError(name)
+        return self._made[name]
+
+    def __iter__(self) -> Iterator[str]:
+        return iter(self.names)
+
+    def __len__(self) -> int:
+        return len(self.names)
+
+    def __repr__(self) -> str:
+        return f"<columns {', '.join(self.names)}>"
+
+    def __reduce__(self) -> tuple[Any, ...]:
+        return dict, (dict(self),)
 
 
 @dataclass(frozen=True)
@@ -117,7 +145,8 @@ class Trajectory:
         reactions: of joints and ties, n each [N, N m]: nan where one has no single value; {} where there are none.
         units: of the reactions, by name.
         outputs: of the model, n each [SI]: nan where one has no value; one that has no column is in the remark.
-        remark: what is missing among them, and why; or "".
+        told: what is missing among them whatever the state is, and why; or "".
+        gaps: -> the same of single states, found where somebody asks for it.
         carried: the start and the end of each crossing of a singular position (a change point, a dead centre).
         assembled: what was changed of the start values so that the ties hold there, and of which; or "".
         proof: the run -> its certificate; None where nobody knows its equations.
@@ -141,7 +170,8 @@ class Trajectory:
     reactions: Mapping[str, np.ndarray] = field(default_factory=dict)
     units: Mapping[str, str] = field(default_factory=dict)
     outputs: Mapping[str, np.ndarray] = field(default_factory=dict)
-    remark: str = ""
+    told: str = ""
+    gaps: Callable[[], str] = field(default=Pickled(""), repr=False)
     carried: tuple[tuple[float, float], ...] = ()
     assembled: str = ""
     proof: Callable[[Trajectory], Any] | None = None
@@ -154,6 +184,7 @@ class Trajectory:
         """All its numbers. What asks the equations again (`certify`, `ask`, `accuracy`) does not go into a pickle."""
         own = {name: self.__dict__[name] for name in self.__dataclass_fields__}
         own |= {"energies": None if self.energies is None else Pickled(self.energy), "measure": Pickled(self.kept)}
+        own["gaps"] = Pickled(self.gaps())
         return own | {"proof": None, "whole": None, "estimate": None, "watch": Pickled(self.watched)}
 
     @cached_property
@@ -180,6 +211,11 @@ class Trajectory:
     def gap_rate(self) -> float | None:
         """Of their velocities, as of `Kept`."""
         return self.kept.gap_rate
+
+    @cached_property
+    def remark(self) -> str:
+        """What is missing among the reactions and outputs, and why; or ""."""
+        return " ".join(filter(None, (self.told, self.gaps())))
 
     @cached_property
     def accuracy(self) -> Any:
