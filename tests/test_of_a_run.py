@@ -192,6 +192,20 @@ def test_outputs_of_a_run_stand_in_text_and_json_and_solve_leaves_them(tmp_path)
     assert answers["w"]["value"] is None and "of a whole run" in answers["w"]["message"]
 
 
+def test_an_extreme_that_falls_between_few_samples_is_no_contradiction():
+    """Swings after a blow, written once a period at x = A sin 0.25: the integrator's own steps saw A."""
+    text = OSCILLATOR.replace(
+        '"F*cos(2*t)"', '{ value = { samples = [[0, 0], [0.05, 400], [0.1, 0], [4, 0]], between = "linear" } }'
+    )
+    text = (
+        text.replace("x = 0.3", "x = 0").replace("length = 0", "length = 0, along = [1, 0]")
+        + 'outputs.push = "max(abs(x))"\n'
+    )
+    run = eomgen.simulate(eomgen.loads(text), time=2 * math.pi, samples=6)
+    assert run.quantities["push"].value > 2 * np.max(np.abs(run["x"]))
+    assert [check.status for check in run.proof.whole.checks()] == ["holds"]
+
+
 def test_a_wrong_extreme_fails_the_proof(monkeypatch):
     """A sample above the maximum contradicts it."""
     model = replace(eomgen.loads(PENDULUM), outputs=Table({"peak": eomgen.Output(value="max(q')")}))

@@ -350,3 +350,29 @@ def test_a_motion_by_monotone_cubics_is_proven():
     assert eomgen.derive(model).certify().ok
     run = eomgen.simulate(model, time=3)
     assert run.ok and run.certify().ok and {0.0, 1.0, 2.0, 3.0} <= set(run.phases[0].track[0].tolist())
+
+
+def test_samples_at_instants_that_no_double_holds_are_met_by_the_proof():
+    """0.3 < 3/10 and 1.2 < 6/5 as doubles: there code, symbols and declared steps take the same piece."""
+    bent = arm('{ motion = { samples = [[0, 0], [0.3, 0.7], [0.9, 0.7], [2, 0.4]], between = "pchip" } }')
+    run = eomgen.simulate(bent, time=0.3)
+    assert run.t[-1] == 0.3
+    assert run.certify().ok
+    stepped = arm(
+        "0.2",
+        'push = { kind = "couple", body = "arm", couple = "M" }\n'
+        '[inputs]\nM = { value = { samples = [[0, 0], [0.4, 3], [1.2, 0]], between = "steps" } }',
+    )
+    assert eomgen.derive(stepped).certify().ok
+
+
+def test_second_definitions_of_outputs_hold_at_the_first_sample():
+    """|v| = l theta', |a|^2 = l^2 (theta''^2 + theta'^4) by differences inside the table."""
+    law = "{ motion = { samples = [[0, 0.1], [1, 0.7], [2, 0.4], [3, 0.4]] } }"
+    asked = '[outputs]\nv = "speed(arm.end)"\na = "acceleration(arm.end)"\nseen = "ax(arm.center)"'
+    answers = eomgen.solve(arm(law, asked))
+    theta = CubicSpline([0, 1, 2, 3], [0.1, 0.7, 0.4, 0.4])
+    rate, second = float(theta(0, 1)), float(theta(0, 2))
+    assert answers["v"].value == pytest.approx(0.8 * abs(rate))
+    assert answers["a"].value == pytest.approx(0.8 * np.hypot(second, rate**2))
+    assert answers.certify().ok

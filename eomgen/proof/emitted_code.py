@@ -21,7 +21,7 @@ from eomgen.mechanics.equations.system import System
 from eomgen.mechanics.formulations.lagrange import free_rates
 from eomgen.proof.check import Check, checked, unchecked
 from eomgen.proof.free_bodies import moved_otherwise
-from eomgen.proof.in_numbers import with_inputs
+from eomgen.proof.in_numbers import instant_of, with_inputs
 from eomgen.records import dataclass
 from eomgen.symbolic.expression.graph import Node, Scalar
 from eomgen.symbolic.expression.node import State
@@ -65,9 +65,9 @@ class PhaseMotion:
     def values(self, at: TriedState) -> State:
         """Every symbol but a and lam at a state, with 50 digits; the inputs as the model says, or as they are given."""
         symbols = self.equations.symbols
-        nodes = (symbols.t, *symbols.q, *symbols.u, *symbols.parameters.values())
-        numbers = (at.t, *at.x, *at.p)
-        found = {node: precise(float(value)) for node, value in zip(nodes, numbers, strict=True)}
+        nodes = (*symbols.q, *symbols.u, *symbols.parameters.values())
+        found = {node: precise(float(value)) for node, value in zip(nodes, (*at.x, *at.p), strict=True)}
+        found[symbols.t] = instant_of(self.equations.system, float(at.t))
         given = {symbols.inputs[name]: precise(float(x)) for name, x in at.inputs.items()}
         return with_inputs(self.equations.system, found | given)
 

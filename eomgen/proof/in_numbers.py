@@ -198,12 +198,27 @@ def way_through(system: System, state: State, h: Any = STEP, *, order: int = 1) 
     return Way((later(-h), state, later(h)), h)
 
 
-def _side(system: System, state: State) -> int:
-    """1 or -1: at a sample of what is given a motion is differentiated inside the samples; 0: elsewhere."""
-    t = state.get(system.symbols.t, 0)
+def _times_of_samples(system: System) -> set[tuple[Any, ...]]:
+    """Of each thing that samples give."""
     if SAMPLES not in system.found:
         system.found[SAMPLES] = {given.times for _, _, given in given_samples(system.scope.model)}
-    knots = system.found[SAMPLES]
+    found: set[tuple[Any, ...]] = system.found[SAMPLES]
+    return found
+
+
+def instant_of(system: System, t: float) -> Any:
+    """A time of doubles with 50 digits; that of a sample where it is the double next to it.
+
+    0.3 is less than 3/10: read as it stands it would lie before the sample at which code takes the piece after.
+    """
+    number = fifty_digits().number
+    at = (number(x) for times in _times_of_samples(system) for x in times if float(x) == t)
+    return next(at, number(1) * t)
+
+
+def _side(system: System, state: State) -> int:
+    """1 or -1: at a sample of what is given a motion is differentiated inside the samples; 0: elsewhere."""
+    t, knots = state.get(system.symbols.t, 0), _times_of_samples(system)
     if not any(abs(x - t) < ZERO_AT_50 for times in knots for x in map(fifty_digits().number, times)):
         return 0
     return -1 if any(abs(fifty_digits().number(times[-1]) - t) < ZERO_AT_50 for times in knots) else 1

@@ -20,7 +20,7 @@ from eomgen.symbolic.numeric.tolerances import COMPUTED
 
 CONDITIONS = {"not-a-knot": "not-a-knot", "natural": "natural", "rest": "clamped"}  # our ends, by scipy's names
 MOST = 50  # gaps between samples in which a function is looked at, evenly spread
-PARTS = (0.0, 0.3, 0.8)  # of a gap
+PARTS = (Fraction(0), Fraction(3, 10), Fraction(4, 5))  # of a gap
 
 
 def other_functions(model: Model) -> Iterator[Check]:
@@ -46,18 +46,18 @@ def _sampled(law: Expression) -> tuple[Sampled, DeclaredSamples] | None:
 def _wrong(law: tuple[Sampled, DeclaredSamples]) -> str:
     """Where the function is another one, or ""."""
     function, given = law
-    times = np.array([float(x) for x in given.times])
+    times = given.times
     gaps = np.unique(np.linspace(0, len(times) - 2, MOST).astype(int))
     places = [times[k] + part * (times[k + 1] - times[k]) for k in gaps for part in PARTS]
     span = times[-1] - times[0]
-    places += [times[-1], times[0] - 0.2 * span, times[-1] + 0.2 * span]
-    due = _interpolated(given, np.array(places)) * float(given.factor)
-    found = np.array([float(function.spline.at(Fraction(float(t)))) for t in places])
+    places += [times[-1], times[0] - span / 5, times[-1] + span / 5]
+    due = _interpolated(given, np.array([float(t) for t in places])) * float(given.factor)
+    found = np.array([float(function.spline.at(t)) for t in places])
     away = abs(found - due)
     k = int(np.argmax(away))
     if away[k] <= COMPUTED * (1 + abs(due).max()):
         return ""
-    return f"{found[k]:.10g} at t = {places[k]:.6g} s for {due[k]:.10g}"
+    return f"{found[k]:.10g} at t = {float(places[k]):.6g} s for {due[k]:.10g}"
 
 
 def _interpolated(given: DeclaredSamples, t: np.ndarray) -> np.ndarray:

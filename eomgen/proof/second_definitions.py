@@ -86,8 +86,9 @@ class NearbyStates:
 
     def around(self, place: Vector) -> tuple[Numbers, Numbers, Numbers]:
         """A place a moment before, now, and a moment later."""
-        early, now, late = (vector_of(evaluate(place, each, fifty_digits())) for each in self._way.states)
-        return early, now, late
+        now, first, second = map(vector_of, self._way.along(place))
+        moved, bent = times(SECOND_STEP, first), times(SECOND_STEP**2 / 2, second)
+        return minus(plus(now, bent), moved), now, plus(plus(now, bent), moved)
 
     def particles(self, body: str, *, still: bool = False) -> list[tuple[Any, Numbers, Numbers]]:
         """(m, r, v): with P the integral of d d^T dm about the mass centre C, at C +- e_i and C +- (e_i + e_j)

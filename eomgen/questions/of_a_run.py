@@ -131,8 +131,9 @@ class WholeRun:
         return _not_at(curves, when[0], told, size)
 
     def _sampled(self, formula: Expression) -> list[_Curve]:
-        """(t, the formula) at the states of each phase."""
-        return [(run.run.t, self._columns(formula, run).along(run.run.t, run.run.x)["asked"]) for run in self.runs]
+        """(t, the formula) at the states of each phase: those asked for, between them much happens, and the steps."""
+        states = [(run, *run.measured) for run in self.runs]
+        return [(t, self._columns(formula, run).along(t, x)["asked"]) for run, t, x in states]
 
     def _mean_against_samples(self, told: float, curves: Sequence[_Curve], power: int) -> str:
         pairs = [(t, y**power) for t, y in curves]

@@ -150,6 +150,28 @@ def test_every_description_is_certified(name):
     assert certificate.ok, str(certificate)
 
 
+def test_a_free_particle_needs_no_orientation():
+    """m r'' = m g + T u on a thread of length l: T = m (v^2/l + g cos a), at rest in the vertical m g."""
+    text = "[parameters]\nm = 0.7\ng = 9.81\n[coordinates]\nx = 0\ny = 0\nz = -2\n" + WEIGHT
+    text += '[bodies.bob]\nshape = { kind = "particle", mass = "m" }\n'
+    text += 'joint = { kind = "free", position = ["x", "y", "z"] }\n'
+    thread = '[points]\nO = [0, 0, 0]\n[constraints.thread]\nkind = "link"\npoints = ["O", "bob.center"]\n'
+    moving = text.replace("x = 0", "x = { speed = 3 }") + thread + '[outputs]\nT = "tension(thread)"\n'
+    answers = eomgen.solve(eomgen.loads(HEAD + moving))
+    assert answers["T"].value == pytest.approx(0.7 * (9.81 + 9 / 2))
+    assert answers.certify().ok
+    run = eomgen.simulate(eomgen.loads(HEAD + text), time=1, samples=2)
+    assert run["z"][-1] == pytest.approx(-2 - 9.81 / 2)
+    assert eomgen.freedom_of(eomgen.loads(HEAD + text)).by_rank == 3
+
+
+def test_a_free_body_that_can_turn_needs_an_orientation():
+    """A box without one is an error that names it."""
+    text = "[coordinates]\nx = 0\ny = 0\nz = 0\n" + INERTIA + body('kind = "free", position = ["x", "y", "z"]')
+    with pytest.raises(eomgen.ModelError, match="has no 'orientation'"):
+        eomgen.loads(HEAD + text)
+
+
 def test_a_nut_screws_itself_down():
     """(C + m h^2) a'' = -m g h, and the thread carries m (g + h a'')."""
     text = INERTIA + "[coordinates]\na = 0\n" + body('kind = "screw", axis = [0, 0, 1], angle = "a", pitch = "d"')

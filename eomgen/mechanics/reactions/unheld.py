@@ -55,7 +55,7 @@ def refuse_unheld(balance: Balance, solution: Solution) -> None:
     mend = (
         f"{joined}, and nothing named joins them: name the constraint that does"
         if joined
-        else "what is placed carries no reaction: name the constraint that holds it"
+        else "what is placed carries no reaction: name the constraint that holds it, or hang it by joints"
     )
     raise DerivationError(f"{called(equation.body)} is {what}", declared_at(equation.body), mend)
 

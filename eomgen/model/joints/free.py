@@ -24,7 +24,7 @@ from eomgen.model.kinds import Angle, Displacement, ValueOf
 from eomgen.model.positions import DocumentPath
 from eomgen.records import dataclass
 from eomgen.symbolic.expression.expressions import Expression, as_expression
-from eomgen.symbolic.expression.spatial import Pose, apply, transposed, vector_of
+from eomgen.symbolic.expression.spatial import IDENTITY, Matrix, Pose, apply, transposed, vector_of
 
 Position = Annotated[tuple[Expression, ...], VectorRule(FormulaRule("m", "", CONFIGURATION), length=3)]
 
@@ -36,7 +36,8 @@ class Free(Joint):
     """In the plane s = (x, y, angle), as `planar` but with no wrench left in it.
 
     In space s = (position, angles or quaternion), X = (R, position),
-    S = (0, R^T e_x), (0, R^T e_y), (0, R^T e_z), (columns as of `spherical`), W = ().
+    S = (0, R^T e_x), (0, R^T e_y), (0, R^T e_z), (columns as of `spherical`), W = (). A particle needs no orientation:
+    s = position, R = 1.
 
     Args:
         x, y, angle: of `point` in the parent's axes [m], and of the child [rad] (plane).
@@ -59,7 +60,7 @@ class Free(Joint):
         """The fields of this space, all of them."""
         plane = catalog.model.space == "plane"
         yield from other_space(self, ("position",) if plane else IN_PLANE, path, catalog.model.space)
-        for key in IN_PLANE if plane else ("position", "orientation"):
+        for key in IN_PLANE if plane else ("position",) if _is_point(path, catalog) else ("position", "orientation"):
             if getattr(self, key) is None and (*path, key) not in catalog.broken:
                 yield Finding(path, f"the joint of body '{path[1]}' has no '{key}'", f"give '{key}'")
         yield from turning_findings(self, path, catalog)
@@ -75,9 +76,10 @@ class Free(Joint):
         return tuple(as_expression(name) for name in names) or (() if self.angle is None else (self.angle,))
 
     def moves(self) -> tuple[Move, ...]:
-        if self.orientation is None:
+        if self.position is None:
             return (SlideAlong(X, self.x), SlideAlong(Y, self.y), TurnAbout(None, self.angle))
-        return (*map(SlideAlong, (X, Y, Z), self.position or ()), *turning_moves(self))
+        turning = () if self.orientation is None else turning_moves(self)
+        return (*map(SlideAlong, (X, Y, Z), self.position), *turning)
 
     def variables(self, space: str) -> tuple[Expression, ...]:
         if space == "space":
@@ -88,19 +90,29 @@ class Free(Joint):
         return s[2]
 
     def pose(self, s: Scalars, value: ValueOf) -> Pose:
-        if self.orientation is None:
+        if self.position is None:
             return in_plane(s)
-        return Pose(rotation_of(self.orientation, s[3:]), vector_of(s[:3]))
+        return Pose(self._rotation(s), vector_of(s[:3]))
 
     def subspace(self, s: Scalars, value: ValueOf) -> tuple[Column, ...]:
-        if self.orientation is None:
+        if self.position is None:
             return plane_subspace(s)
-        R_CP = transposed(rotation_of(self.orientation, s[3:]))
-        along = (linear(apply(R_CP, e)) for e in (X, Y, Z))
-        return (*along, *columns_of(self.orientation, s[3:]))
+        along = (linear(apply(transposed(self._rotation(s)), e)) for e in (X, Y, Z))
+        return (*along, *(() if self.orientation is None else columns_of(self.orientation, s[3:])))
 
     def complement(self, s: Scalars, value: ValueOf) -> tuple[Column, ...]:
-        return PLANE_COMPLEMENT if self.orientation is None else ()
+        return PLANE_COMPLEMENT if self.position is None else ()
 
     def efforts(self) -> tuple[Effort | None, ...]:
         return ()
+
+    def _rotation(self, s: Scalars) -> Matrix:
+        return IDENTITY if self.orientation is None else rotation_of(self.orientation, s[3:])
+
+
+def _is_point(path: DocumentPath, catalog: Catalog) -> bool:
+    """True if the body has no extent that could turn: a particle, or a mass without inertia."""
+    body = catalog.table("bodies").get(path[1])
+    if body is None or body.inertia is not None or body.parts:
+        return False
+    return body.shape is None or body.shape.kind == "particle"

@@ -1,0 +1,54 @@
+"""Machines as their engineers write them, each of features that rarely meet, against the oracle of the combinations.
+
+Accelerations, determinate reactions and energies of every machine are those of maximal coordinates, at its start and at
+states near it that keep every tie; what `solve`, `reactions`, runs, small motions and code say of one quantity is one
+number, the oracle's.
+"""
+
+from __future__ import annotations
+
+import sys
+from pathlib import Path
+
+import pytest
+
+sys.path.insert(0, str(Path(__file__).parents[1] / "combinations"))
+
+import compare
+import cross
+
+import eomgen
+
+MACHINES = {path.stem: path for path in sorted((Path(__file__).parent / "machines").glob("*.toml"))}
+QUICK = (  # of every kind of feature one
+    "bascule_bridge", "cable_robot", "cam_valve", "chairlift", "differential", "geneva_drive", "governor_on_turntable",
+    "quarter_car", "road_train", "screw_press", "washing_machine",
+)  # fmt: skip
+EACH = [pytest.param(name, marks=() if name in QUICK else pytest.mark.slow) for name in MACHINES]
+
+
+def test_there_are_thirty_machines_and_each_says_what_it_is():
+    """A sentence on the first line of every file."""
+    assert len(MACHINES) >= 30
+    assert all(path.read_text(encoding="utf-8").startswith("# ") for path in MACHINES.values())
+
+
+@pytest.mark.parametrize("name", EACH)
+def test_a_machine_moves_as_free_bodies_do(name):
+    """M z'' = F + J^T lam, J z'' + gamma = 0 in maximal coordinates: the same accelerations, reactions and energies."""
+    found = compare.of_model(MACHINES[name].read_text(encoding="utf-8"), 1, count=1)
+    assert found.numbers > 10
+    assert not [x for x in found.skipped if x.startswith("oracle: ")]
+    assert not found.faults
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("name", MACHINES)
+def test_what_is_said_of_a_machine_is_one_number_and_proven(name):
+    """`solve`, `reactions`, a run's columns, eigenvalues, inverse dynamics against the oracle; a green certificate."""
+    product = compare.product_of(MACHINES[name].read_text(encoding="utf-8"))
+    found = cross.across(product)
+    assert found.numbers > 5
+    assert not found.faults
+    with compare.quiet():
+        assert eomgen.derive(product.equations.model).certify().ok
