@@ -43,6 +43,7 @@ class Movie:
         trails: name of a point -> its places, FINE of them a frame, d each.
         title: what is said above it.
         timed: the times of frames are told.
+        scene: of which it is a drawing.
     """
 
     drawing: Drawing
@@ -51,6 +52,7 @@ class Movie:
     trails: Mapping[str, np.ndarray]
     title: str = ""
     timed: bool = True
+    scene: Scene | None = None
 
     @property
     def stands_still(self) -> bool:
@@ -131,7 +133,8 @@ def _trails(
 
 def _movie(numbers: SceneNumbers, times: np.ndarray, trails: Mapping[str, np.ndarray], title: str = "") -> Movie:
     plane = numbers.scene.plane
-    return Movie((plane_drawing if plane else space_drawing)(numbers), times, plane, trails, title)
+    drawing = (plane_drawing if plane else space_drawing)(numbers)
+    return Movie(drawing, times, plane, trails, title, scene=numbers.scene)
 
 
 def mode_movies(modes: Modes, count: int, frames: int) -> list[Movie]:

@@ -20,7 +20,8 @@ from eomgen.model.reader import ModelOrPath, model_at
 from eomgen.model.replaced import Taken, Values
 from eomgen.page.contents import framed
 from eomgen.page.player_data import PlayedRun, PlayerOptions, SliderRange
-from eomgen.page.player_page import player_page
+from eomgen.page.player_page import player_page_of
+from eomgen.page.player_read_back import player_read_back
 from eomgen.proof.check import Certificate, Check, checked, unchecked
 from eomgen.questions.run import run_of_a_page
 from eomgen.records import dataclass
@@ -47,7 +48,7 @@ class Played:
     @cached_property
     def html(self) -> str:
         """The page."""
-        return player_page(self.played.run, self.played.options)
+        return player_page_of(self.played)
 
     @property
     def rests(self) -> str:
@@ -72,7 +73,7 @@ class Played:
     def certify(self) -> Certificate:
         """The proof of the run that the page begins with, and of the programs in the page, run by node."""
         certificate: Certificate = self.played.run.certify()
-        return certificate + self._programs()
+        return certificate + (*self._programs(), *player_read_back(self.played, self.html))
 
     def _programs(self) -> Iterator[Check]:
         live, how = self.played.live, "run by node at the page's own test vectors, of 50 digits"

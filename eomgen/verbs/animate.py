@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import warnings
-from collections.abc import Sequence
+from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import replace
 from pathlib import Path
 
@@ -35,9 +35,15 @@ from eomgen.mechanics.structures.structure import structure_of
 from eomgen.model.parts import Model
 from eomgen.model.reader import ModelOrPath, model_at
 from eomgen.model.replaced import Values
+from eomgen.page.player_data import PlayedRun, PlayerOptions
+from eomgen.page.player_page import player_page_of
+from eomgen.page.player_read_back import player_read_back
+from eomgen.proof.check import Check
+from eomgen.proof.pictures_told import pictures_told, states_shown
 from eomgen.questions.run import PAGE_TIME
 from eomgen.questions.run import run as simulated
 from eomgen.records import dataclass
+from eomgen.scene.told import picture_told
 from eomgen.scene.virtual import VirtualDisplacement
 from eomgen.simulation.integrator import Stepping
 from eomgen.simulation.result import Trajectory
@@ -142,11 +148,27 @@ def animate_document(
         samples = FINE * max(len(times) - 1, 1) + 1
         run = simulated(pipeline.derive(model), time=time, samples=samples, how=Stepping())
         movies, summary = [_shown(run, times, showing, _ending(output) == ".png")], run.summary()
+    checks: Iterable[Check] = ()
     if _ending(output) == ".html" and run is not None:
-        files.write(output, player(run, showing))
+        played = _played(run, showing)
+        page = player_page_of(played)
+        files.write(output, page)
+        checks = player_read_back(played, page)
     else:
         write_movies(movies, output, showing, on_stderr)
-    return _told(model, summary, movies, output, showing, run)
+        checks = () if run is None else movie_read_back(run, movies[0])
+    told = _told(model, summary, movies, output, showing, run)
+    wrong = "; ".join(f"{check.name}: {check.detail}" for check in checks if check.ok is False)
+    return replace(told, failed="; ".join(filter(None, (told.failed, wrong))))
+
+
+def movie_read_back(run: Trajectory, movie: Movie) -> Iterator[Check]:
+    """Whether frames show the run."""
+    if movie.scene is None:
+        return iter(())
+    return pictures_told(
+        (state, picture_told(movie.drawing, movie.scene, frame)) for frame, state in states_shown(run, movie.times)
+    )
 
 
 def _virtual_document(model: Model, reaction: str, output: str, showing: Showing) -> Document:
@@ -191,7 +213,6 @@ def virtual_displacement(
 
 
 def _displacement_page(found: VirtualDisplacement) -> str:
-    from eomgen.page.player_page import player_page_of
     from eomgen.page.released import PlayedDisplacements
 
     return player_page_of(PlayedDisplacements((found,)))
@@ -288,11 +309,12 @@ def _run_of(
 
 def player(run: Trajectory, showing: Showing) -> str:
     """The page with the run's player."""
-    from eomgen.page.player_data import PlayerOptions
-    from eomgen.page.player_page import player_page
+    return player_page_of(_played(run, showing))
 
+
+def _played(run: Trajectory, showing: Showing) -> PlayedRun:
     trail = showing.trail[0] if showing.trail else ""
-    return player_page(run, PlayerOptions(trail=trail, forces=showing.forces, speed=showing.speed))
+    return PlayedRun(run, PlayerOptions(trail=trail, forces=showing.forces, speed=showing.speed))
 
 
 def refuse_ending(path: str) -> None:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import io
 import zipfile
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import replace
 from functools import cache, cached_property
 from pathlib import Path
@@ -21,7 +21,7 @@ from eomgen.documents.result import Result
 from eomgen.documents.statements import Lines
 from eomgen.documents.statics.result import Statics, statics
 from eomgen.equations import Equations
-from eomgen.errors import DerivationError, MissingValues, RunFailed, UsageError
+from eomgen.errors import DerivationError, MissingValues, RunFailed, ToolMissing, UsageError
 from eomgen.generated import Generated
 from eomgen.mechanics.formulations.massless_nodes import with_nodes_balanced
 from eomgen.model.own_units import units_of
@@ -35,9 +35,10 @@ from eomgen.page.formats import FORMATS, FilesByName, written_as
 from eomgen.page.markup import Html, element, in_a_row
 from eomgen.page.player_data import PlayedRun, PlayerOptions
 from eomgen.page.player_page import Playable, player_parts_of
+from eomgen.page.player_read_back import player_read_back
 from eomgen.page.read_back import report_read_back
 from eomgen.page.released import PlayedDisplacements
-from eomgen.proof.check import Certificate
+from eomgen.proof.check import Certificate, Check
 from eomgen.questions import answers
 from eomgen.questions.run import PAGE_TIME, run_of_a_page
 from eomgen.questions.velocities import kinematics
@@ -203,7 +204,8 @@ def _read_back(subject: Subject, found: Report, form: str, name: str) -> tuple[R
     if found.certificate is None:
         return found, texts
     run = subject.run if "followed" in vars(subject) else None
-    checks = tuple(report_read_back(found, texts, form, run))
+    checks = [*report_read_back(found, texts, form, run)]
+    checks += [] if form != ".html" or run is None else _player_read_back(subject, found)
     proof = found.certificate + (c for c in checks if found.certificate.ok is not None or c.ok is False)
     read = replace(found, head=proven(replace(found.head, certificate=None), proof))
     return read, texts if proof.ok is not False or found.certificate.ok is False else written_as(read, form, name)
@@ -219,6 +221,16 @@ def form_of(path: str) -> str:
     if form not in FORMATS:
         raise UsageError(f"no report can be written as '{path}'", mend=f"endings are {', '.join(FORMATS)}")
     return form
+
+
+def _player_read_back(subject: Subject, found: Report) -> Iterator[Check]:
+    """Whether the player of the page holds the run."""
+    live = next((section.live for section in found.sections if section.key == "motion" and section.live), None)
+    try:
+        page = "" if live is None else live()
+    except ToolMissing:  # the page says so
+        return iter(())
+    return player_read_back(PlayedRun(subject.run, PlayerOptions()), page) if page else iter(())
 
 
 def report_document(

@@ -1,0 +1,117 @@
+"""PlayedRun, its page -> checks: read again the page holds the run, its parameters and sliders, and draws the model."""
+
+from __future__ import annotations
+
+import json
+import re
+from base64 import b64decode
+from collections.abc import Iterator, Mapping
+from functools import partial
+from typing import Any
+
+import numpy as np
+
+from eomgen.page.player_data import PlayedRun
+from eomgen.proof.at_a_state import NumericState
+from eomgen.proof.check import Check, Tally, differing
+from eomgen.proof.pictures_told import picture_of_page, pictures_told, states_shown
+from eomgen.proof.reports_read import columns_unpacked, unpacked
+from eomgen.symbolic.expression.units import parse_unit
+from eomgen.symbolic.numeric.evaluation import NoValue, evaluate, fifty_digits
+from eomgen.symbolic.numeric.tolerances import COMPUTED, SEVEN_DIGITS
+
+NAME, HOW = "what the page is told, read back, is the run and what the model declares", "its columns and numbers"
+_PACKED = re.compile(r'atob\("([A-Za-z0-9+/=]+)"\)')
+_BEGUN = "begun(document.getElementById("
+
+
+def player_told(page: str) -> Mapping[str, Any]:
+    """What the player in a page is told.
+
+    Raises:
+        ValueError: there is none.
+    """
+    packed = _PACKED.search(page)
+    text = page if packed is None else unpacked(packed[1]).decode()
+    begin = text.index("{", text.index(_BEGUN))
+    found: Mapping[str, Any] = json.JSONDecoder().raw_decode(text[begin:])[0]
+    return found
+
+
+def player_read_back(played: PlayedRun, page: str) -> Iterator[Check]:
+    """Whether a page holds the run that it plays, and draws its model."""
+    told, tally = player_told(page), Tally(NAME, HOW)
+    for what, wrong in _compared(played, told):
+        tally.add(what, wrong)
+    yield from tally.checks()
+    if not played.changes:
+        yield from pictures_told(
+            (state, picture_of_page(told["scene"], _slots(played, state)))
+            for _, state in states_shown(played.run, played.run.t)
+        )
+
+
+def _slots(played: PlayedRun, state: NumericState) -> list[float]:
+    """The numbers of a frame."""
+    try:
+        unknowns = state.unknowns
+    except NoValue:  # then what hangs on accelerations is not compared
+        unknowns = {}
+    known = {**dict.fromkeys((*state.equations.symbols.a, *state.equations.symbols.lam), np.nan), **unknowns}
+    return [float(x) for x in evaluate(played.scene.values, state.values | known, fifty_digits(partial=True))]
+
+
+def _compared(played: PlayedRun, told: Mapping[str, Any]) -> Iterator[tuple[str, Any]]:
+    run = played.run
+    yield "time", partial(differing, told["time"], run.phases[-1].end)
+    names = [*run.coordinates, *run.speeds]
+    yield "names", lambda: "" if list(told["names"]) == names else ", ".join(told["names"])
+    yield "instants", partial(_other_column, told["run"]["t"], [run.t])
+    yield "states", partial(_other_column, told["run"]["x"], list(_states(played).T))
+    model, p = played.model, dict(zip(played.phase.declared.symbols.parameters, played.phase.p, strict=True))
+    for each in told["parameters"]:
+        yield f"parameter {each['name']}", partial(_other_value, each, p.get(each["name"]))
+    first = dict(zip(names, run.x[0].tolist(), strict=True))
+    for each in told["sliders"]:
+        yield f"slider {each['name']}", partial(_other_slider, each, p | first)
+    parts = {**model.parameters, **model.coordinates}
+    for each in (*told["sliders"], *told["plotted"]):
+        part = parts.get(each["name"])
+        declared = "" if part is None or part.unit is None else part.unit.text
+        yield f"unit of {each['name']}", partial(_other_unit, each, declared)
+
+
+def _states(played: PlayedRun) -> np.ndarray:
+    """As they are integrated; of contacts that change as they are named."""
+    if played.changes or played.run.phases[0].track is None:
+        return played.run.x
+    t, x = played.run.phases[0].track
+    return np.array([x[int(np.argmin(np.abs(t - each)))] for each in played.run.t])
+
+
+def _other_column(told: Mapping[str, Any], right: list[np.ndarray]) -> str:
+    found = list(columns_unpacked(told, b64decode(told["content"])))
+    if len(found) != len(right):
+        return f"{len(found)} columns for {len(right)}"
+    for k, (a, b) in enumerate(zip(found, right, strict=True)):
+        size = float(np.max(np.abs(b), where=np.isfinite(b), initial=0.0))
+        if len(a) != len(b) or not np.allclose(a, b, 0, SEVEN_DIGITS * size, equal_nan=True):
+            return f"column {k + 1}"
+    return ""
+
+
+def _other_value(each: Mapping[str, Any], right: float | None) -> str:
+    return "there is no such one" if right is None else differing(each["value"], float(right))
+
+
+def _other_slider(each: Mapping[str, Any], known: Mapping[str, float]) -> str:
+    if not each["min"] - COMPUTED <= each["value"] <= each["max"] + COMPUTED or each["min"] == each["max"]:
+        return f"{each['value']:.6g} is not between {each['min']:.6g} and {each['max']:.6g}"
+    return _other_value(each, known.get(each["name"]))
+
+
+def _other_unit(each: Mapping[str, Any], declared: str) -> str:
+    if declared and each["unit"] != declared:
+        return f"[{each['unit']}] for [{declared}]"
+    size = parse_unit(each["unit"]).size if each["unit"] else 1.0
+    return differing(float(each["size"]), float(size))

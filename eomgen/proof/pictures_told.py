@@ -1,0 +1,358 @@
+"""What a picture shows at a state -> a check: bodies, springs and arrows are where and as long as the model says.
+
+    R^T (r - p) of what is drawn of a body fills the box of its shape, by places inside it as its mass is summed up;
+    without a shape it joins the body's own places, and where others hang on it
+    a spring goes from its one end to the other;   an arrow is k F, one k for all of one kind, and is at the place of F
+
+What is drawn is taken as it is: places on the ground, from the strokes of a picture, or the marks that a page is told.
+"""
+
+from __future__ import annotations
+
+import itertools
+from collections.abc import Iterable, Iterator, Mapping, Sequence
+from functools import cached_property, partial
+from typing import Any
+
+import numpy as np
+
+from eomgen.mechanics.bodies.kinematics import BodyLink
+from eomgen.mechanics.bodies.system_scene import SystemScene
+from eomgen.model.composite import pose_of
+from eomgen.model.forces.element import PushAt
+from eomgen.model.shapes import Shape
+from eomgen.proof.at_a_state import NumericState
+from eomgen.proof.check import Check, Tally
+from eomgen.proof.in_numbers import InNumbers
+from eomgen.proof.run_columns import state_of_row
+from eomgen.records import dataclass
+from eomgen.simulation.result import Trajectory
+from eomgen.symbolic.numeric.evaluation import NoValue
+from eomgen.symbolic.numeric.tolerances import COMPUTED, DRAWN
+
+NAME = "what is drawn is where the model says"
+HOW = "poses and places in 50 digits, shapes by places inside them"
+GRID = np.linspace(0.0, 1.0, 9)  # places inside a shape, along each of its parameters
+Corners = tuple[np.ndarray, np.ndarray]
+
+
+@dataclass(frozen=True)
+class ToldArrow:
+    """An arrow.
+
+    Args:
+        role: "force" or "reaction".
+        of: the force, joint or tie that it stands for.
+        begin, tip: its ends, d.
+    """
+
+    role: str
+    of: str
+    begin: np.ndarray
+    tip: np.ndarray
+
+
+@dataclass(frozen=True)
+class ToldPicture:
+    """What a picture shows at one state, places of the ground's axes, d = 2 or 3 each.
+
+    Args:
+        bodies: of each body that is drawn by lengths its places, n x d.
+        ends: of each spring, damper or pull between points (first place, last).
+        arrows: of single forces, and the resultants of reactions.
+        points: named points.
+        size: of all that is drawn [m].
+    """
+
+    bodies: Mapping[str, np.ndarray]
+    ends: Mapping[str, tuple[np.ndarray, np.ndarray]]
+    arrows: Sequence[ToldArrow]
+    points: Mapping[str, np.ndarray]
+    size: float
+
+
+def pictures_told(told: Iterable[tuple[NumericState, ToldPicture]]) -> Iterator[Check]:
+    """Of each state what is shown of it."""
+    tally = Tally(NAME, HOW)
+    for state, picture in told:
+        shown = _Shown(state.equations.system, state.values, state, picture)
+        for name in picture.bodies:
+            tally.add(f"'{name}'", partial(shown.wrong_body, name))
+        for name in picture.ends:
+            tally.add(f"'{name}'", partial(shown.wrong_ends, name))
+        for name in picture.points:
+            tally.add(f"'{name}'", partial(shown.wrong_point, name))
+        for role in dict.fromkeys(arrow.role for arrow in picture.arrows):
+            tally.add(f"arrows of {role}s", partial(shown.wrong_arrows, role))
+    return tally.checks()
+
+
+def states_shown(run: Trajectory, times: np.ndarray) -> Iterator[tuple[int, NumericState]]:
+    """(frame, state) of the first, the middle and the last frame, where it is a row of the run."""
+    for frame in dict.fromkeys((0, len(times) // 2, len(times) - 1)) if len(times) else ():
+        row = int(np.argmin(np.abs(run.t - times[frame])))
+        phase = next((x for x in run.phases if x.rows[0] <= row < x.rows[1]), None)
+        on_row = abs(float(run.t[row] - times[frame])) <= COMPUTED * (1 + abs(float(times[frame])))
+        if on_row and phase is not None and phase.model is not None and phase.track is not None:
+            yield frame, state_of_row(run, phase, row)
+
+
+@dataclass(frozen=True)
+class _Shown(InNumbers):
+    """A picture at its state."""
+
+    numeric: NumericState
+    picture: ToldPicture
+
+    @property
+    def near(self) -> float:
+        """How far a place may be off."""
+        return DRAWN * self.picture.size
+
+    @property
+    def d(self) -> int:
+        return 2 if self.system.scope.model.space == "plane" else 3
+
+    def placed(self, v: Sequence[Any]) -> np.ndarray:
+        """Numbers of a vector, d."""
+        return np.array([float(x) for x in self.at(v)[: self.d]])
+
+    @cached_property
+    def scene(self) -> SystemScene:
+        return SystemScene(self.motion)
+
+    # -- bodies ----------------------------------------------------------------------------------------------
+
+    def wrong_body(self, name: str) -> str:
+        link = self.motion.link(name)
+        pose = [float(x) for x in self.at((*(x for row in link.pose.R for x in row), *link.pose.p))]
+        R, p = np.reshape(pose[:9], (3, 3))[: self.d, : self.d], np.array(pose[9:])[: self.d]
+        drawn = self.picture.bodies[name]
+        own = (drawn[np.isfinite(drawn).all(axis=1)] - p) @ R
+        if not len(own):
+            return ""
+        part = self.system.scope.model.bodies[name]
+        shapes = [shape for shape in self._shapes(name) if not shape[0].is_point]
+        if part.shape is not None or part.parts is not None:
+            if not shapes:
+                return ""
+            return self._apart((own.min(axis=0), own.max(axis=0)), self._box(shapes))
+        return self._unknown_place(link, own)
+
+    def _shapes(self, name: str) -> list[tuple[Shape, np.ndarray, np.ndarray]]:
+        """(shape, R, p) of a body or of its pieces that are no holes."""
+        part, value = self.system.scope.model.bodies[name], self.system.scope.value
+        if part.parts is None:
+            return [] if part.shape is None else [(part.shape, np.eye(3), np.zeros(3))]
+        found = []
+        for piece in part.parts:
+            if not piece.hole:
+                pose = pose_of(piece, value)
+                flat = [float(x) for x in self.at((*(x for row in pose.R for x in row), *pose.p))]
+                found.append((piece.shape, np.reshape(flat[:9], (3, 3)), np.array(flat[9:])))
+        return found
+
+    def _box(self, shapes: Sequence[tuple[Shape, np.ndarray, np.ndarray]]) -> Corners:
+        """The corners of the box around places inside shapes."""
+        clouds = []
+        for shape, R, p in shapes:
+            at = [shape.filled(self._number, s) for s in itertools.product(GRID.tolist(), repeat=shape.dimension)]
+            clouds.append(np.array([[float(x) for x in place] for place in at]) @ R.T + p)
+        cloud = np.concatenate(clouds)[:, : self.d]
+        return cloud.min(axis=0), cloud.max(axis=0)
+
+    def _number(self, expression: Any) -> float:
+        return float(self.one(self.system.scope.value(expression)))
+
+    def _apart(self, found: Corners, right: Corners) -> str:
+        """Which corner is elsewhere; what is round may reach a little beyond places on a grid."""
+        near = 0.03 * float(np.max(right[1] - right[0])) + self.near
+        off = max(float(np.max(np.abs(a - b))) for a, b in zip(found, right, strict=True))
+        sizes = [" x ".join(f"{x:.4g}" for x in high - low) for low, high in (found, right)]
+        return "" if off <= near else f"fills {sizes[0]} m for {sizes[1]} m, or elsewhere"
+
+    def _unknown_place(self, link: BodyLink, own: np.ndarray) -> str:
+        """That a body's lines end where nothing of it is, or leave out a point of it."""
+        part, points = self.system.scope.model.bodies[link.name], self.motion.points[link.name]
+        hung = [other.before.p for other in self.motion.links if other.parent == self.motion.index[link.name]]
+        declared = [points[name] for name in part.points]
+        seated = link.joint is not None and link.joint.carries_reaction
+        known = [*declared, *hung, *points.values(), *([link.point] if seated else []), (0, 0, 0)]
+        places = np.array([self.placed(place) for place in known])
+        off = np.min(np.linalg.norm(own[:, None, :] - places[None, :, :], axis=2), axis=1)
+        if float(np.max(off)) > self.near:
+            return "a line of it ends where none of its points is"
+        low, high = own.min(axis=0) - self.near, own.max(axis=0) + self.near
+        outside = [k for k in range(len(declared)) if np.any(places[k] < low) or np.any(places[k] > high)]
+        return f"its point {list(part.points)[outside[0]]} is left out" if outside else ""
+
+    # -- springs, points, arrows -----------------------------------------------------------------------------
+
+    def wrong_ends(self, name: str) -> str:
+        right = self._ends_of(name)
+        if len(right) != 2:
+            return "there is no such spring"
+        off = max(float(np.linalg.norm(a - b)) for a, b in zip(self.picture.ends[name], right, strict=True))
+        return f"ends {off:.4g} m beside its points" if off > self.near else ""
+
+    def _ends_of(self, name: str) -> list[np.ndarray]:
+        """Of a spring or damper: its points; of one in a joint where this sits, and where the body is held."""
+        force = self.system.scope.model.forces.get(name)
+        if force is not None:
+            points = () if force.element is None else force.element.points
+            return [self.placed(self.scene.position(self.scene.place(point))) for point in points]
+        link = self.motion.link(name)
+        above = None if link.parent < 0 else self.motion.links[link.parent].name
+        return [self.placed(self.motion.position(x)) for x in ((above, link.before.p), (name, link.point))]
+
+    def wrong_point(self, name: str) -> str:
+        right = self.placed(self.scene.position(self.scene.place(name)))
+        off = float(np.linalg.norm(self.picture.points[name] - right))
+        return f"{off:.4g} m beside its place" if off > self.near else ""
+
+    def wrong_arrows(self, role: str) -> str:
+        """That an arrow goes another way than its force, is of another scale than the others, or elsewhere."""
+        scales: list[tuple[str, float]] = []
+        largest = 0.0
+        for arrow in self.picture.arrows:
+            known = self._force(arrow.of) if arrow.role == role == "force" else self._reaction(arrow.of)
+            if arrow.role != role or known is None:
+                continue
+            at, force = known
+            along, size = arrow.tip - arrow.begin, float(np.linalg.norm(force))
+            largest = max(largest, size)
+            length = float(np.linalg.norm(along))
+            if at is not None and min(np.linalg.norm(arrow.tip - at), np.linalg.norm(arrow.begin - at)) > self.near:
+                return f"that of {arrow.of} is not where it acts"
+            if np.linalg.norm(along * size - force * length) > 1e-3 * size * length + 1e-9:
+                return f"that of {arrow.of} goes another way"
+            scales.append((arrow.of, length / size if size else 0.0))
+        if not scales:
+            raise NoValue("their forces are not known apart")
+        common = float(np.median([scale for _, scale in scales if scale] or [0.0]))
+        off = next((of for of, scale in scales if scale and abs(scale - common) > 1e-3 * common), "")
+        return f"that of {off} is of another scale" if off else ""
+
+    def _force(self, name: str) -> tuple[np.ndarray | None, np.ndarray] | None:
+        """(place, force) of a force at one point; None of others."""
+        force = self.system.scope.model.forces.get(name)
+        acts = () if force is None else tuple(force.acts)
+        if len(acts) != 1 or not isinstance(acts[0], PushAt) or self.system.symbols.unknowns:
+            return None
+        (act,) = acts
+        place = self.scene.place(act.point)
+        own = self.vector(self.scene.vector(act.force))
+        pushed = self.carried(None if act.axes == "ground" else act.axes, own, direction=True)
+        at = self.placed(self.scene.position(place))
+        return at, np.array([float(x) for x in pushed[: self.d]])
+
+    def _reaction(self, owner: str) -> tuple[np.ndarray | None, np.ndarray] | None:
+        """(place, resultant) of the reactions of a joint or tie; None where some have no single value."""
+        names = [f"reaction_{axis}({owner})" for axis in "xyz"[: self.d]]
+        found = [self.numeric.reactions.get(name) for name in names]
+        if any(x is None or not np.isfinite(x) for x in found):
+            return None
+        at = None
+        if owner in self.motion.index:
+            at = self.placed(self.motion.position((owner, self.motion.link(owner).point)))
+        return at, np.array([float(x) for x in found if x is not None])
+
+
+# -- what a page is told -------------------------------------------------------------------------------------------
+
+
+def picture_of_page(told: Mapping[str, Any], slots: Sequence[float]) -> ToldPicture:
+    """What a page draws by the scene that it is told, with the numbers of a frame in its slots."""
+    return _Page(told, slots).picture
+
+
+@dataclass(frozen=True)
+class _Page:
+    told: Mapping[str, Any]
+    slots: Sequence[float]
+
+    def number(self, x: Any) -> float:
+        return float(self.slots[x[0]] if isinstance(x, list) else x)
+
+    def spot(self, at: Sequence[Any]) -> np.ndarray:
+        return np.array([self.number(x) for x in at])
+
+    @cached_property
+    def poses(self) -> list[tuple[np.ndarray, np.ndarray]]:
+        plane = self.told["space"] == "plane"
+        d = 2 if plane else 3
+        found: list[tuple[np.ndarray, np.ndarray]] = []
+        for frame in self.told["frames"]:
+            R, p = np.eye(d), np.zeros(d)
+            if frame["pose"] is not None:
+                numbers = self.spot(frame["pose"])
+                p = numbers[:d]
+                R = (
+                    np.array([[numbers[2], -numbers[3]], [numbers[3], numbers[2]]])
+                    if plane
+                    else numbers[3:].reshape(3, 3)
+                )
+            if frame["parent"] >= 0:
+                above, origin = found[frame["parent"]]
+                R, p = above @ R, origin + above @ p
+            found.append((R, p))
+        return found
+
+    @property
+    def picture(self) -> ToldPicture:
+        bodies: dict[str, list[np.ndarray]] = {}
+        ends, arrows, left = {}, [], set[str]()
+        for mark in self.told["marks"]:
+            R, p = self.poses[mark["frame"]]
+            role, of, kind = mark["role"], mark["of"], mark["kind"]
+            if role == "body":
+                own = self._own(kind, mark)
+                if own is None:
+                    left.add(of)
+                else:
+                    bodies.setdefault(of, []).append(own @ R.T + p)
+            elif kind in ("spring", "damper"):
+                ends[of] = (R @ self.spot(mark["a"]) + p, R @ self.spot(mark["b"]) + p)
+            elif kind == "arrow" and role in ("force", "reaction"):
+                at, way = R @ self.spot(mark["at"]) + p, R @ self.spot(mark["vector"])
+                arrows.append(
+                    ToldArrow(role, of, at, at + way) if mark["outward"] else ToldArrow(role, of, at - way, at)
+                )
+        points = {point["name"]: self.spot(point["at"]) for point in self.told["points"]}
+        shown = {name: np.concatenate(clouds) for name, clouds in bodies.items() if name not in left}
+        cloud = np.concatenate([*(x for each in bodies.values() for x in each), *(x[None] for x in points.values())])
+        finite = cloud[np.isfinite(cloud).all(axis=1)]
+        size = float(np.max(np.ptp(finite, axis=0))) if len(finite) else 1.0
+        return ToldPicture(shown, ends, arrows, points, size or 1.0)
+
+    def _own(self, kind: str, mark: Mapping[str, Any]) -> np.ndarray | None:
+        """The places of a form in its own axes that reach farthest; None of what has no length of its own."""
+        if kind in ("line", "polygon", "polyhedron"):
+            return np.array([self.spot(at) for at in mark["points"]])
+        if kind == "rod":
+            return np.array([self.spot(mark["a"]), self.spot(mark["b"])])
+        if kind == "point":
+            return self.spot(mark["at"])[None]
+        if kind == "arc":
+            return self._arc(mark)
+        if kind in ("box", "ellipsoid"):
+            half = self.spot(mark["size"]) * (0.5 if kind == "box" else 1.0)
+            signs = itertools.product((-1, 1), repeat=3) if kind == "box" else (*np.eye(3), *-np.eye(3))
+            return np.array([self.spot(mark["at"]) + half * np.array(sign) for sign in signs])
+        if kind == "revolution":
+            rims = [(self.number(r), self.number(z)) for r, z in mark["profile"]]
+            around = [(r * x, r * y, z) for r, z in rims for x, y in ((1, 0), (0, 1), (-1, 0), (0, -1))]
+            return self.spot(mark["at"]) + np.array(around)
+        if kind == "prism":
+            low, high = self.number(mark["low"]), self.number(mark["high"])
+            return np.array([(self.number(x), self.number(y), z) for x, y in mark["points"] for z in (low, high)])
+        return None
+
+    def _arc(self, mark: Mapping[str, Any]) -> np.ndarray:
+        start = 0.0 if mark["start"] is None else self.number(mark["start"])
+        end = start + 2 * np.pi if mark["end"] is None else self.number(mark["end"])
+        end += 2 * np.pi * (end < start)
+        turn = np.linspace(start, end, 73)
+        at, x, y = self.spot(mark["at"]), self.number(mark["radius"]), self.number(mark["radius_y"])
+        rim = np.column_stack([x * np.cos(turn), y * np.sin(turn), *([np.zeros(73)] if len(at) == 3 else [])])
+        return np.concatenate([at + rim, *([at[None]] if mark["close"] == "center" else [])])
