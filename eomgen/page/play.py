@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Iterator, Sequence
 from functools import cached_property
+from itertools import chain
 from pathlib import Path
 
 import numpy as np
@@ -73,7 +74,7 @@ class Played:
     def certify(self) -> Certificate:
         """The proof of the run that the page begins with, and of the programs in the page, run by node."""
         certificate: Certificate = self.played.run.certify()
-        return certificate + (*self._programs(), *player_read_back(self.played, self.html))
+        return certificate + chain(self._programs(), player_read_back(self.played, self.html))
 
     def _programs(self) -> Iterator[Check]:
         live, how = self.played.live, "run by node at the page's own test vectors, of 50 digits"

@@ -75,9 +75,10 @@ def _compared(played: PlayedRun, told: Mapping[str, Any]) -> Iterator[tuple[str,
     for each in told["sliders"]:
         yield f"slider {each['name']}", partial(_other_slider, each, p | first)
     parts = {**model.parameters, **model.coordinates}
-    for each in (*told["sliders"], *told["plotted"]):
-        part = parts.get(each["name"])
-        declared = "" if part is None or part.unit is None else part.unit.text
+    plotted = [each for each in told["plotted"] if each["name"] in model.coordinates]
+    for each in (*told["sliders"], *plotted):
+        unit = getattr(parts.get(each["name"]), "unit", None)
+        declared = "" if unit is None else unit.text
         yield f"unit of {each['name']}", partial(_other_unit, each, declared)
 
 

@@ -28,7 +28,7 @@ from eomgen.proof.run_columns import state_of_row
 from eomgen.records import dataclass
 from eomgen.simulation.result import Trajectory
 from eomgen.symbolic.numeric.evaluation import NoValue
-from eomgen.symbolic.numeric.tolerances import COMPUTED, DRAWN
+from eomgen.symbolic.numeric.tolerances import BETWEEN_PLACES, COMPUTED, DRAWN, SAME_ARROW
 
 NAME = "what is drawn is where the model says"
 HOW = "poses and places in 50 digits, shapes by places inside them"
@@ -129,6 +129,7 @@ class _Shown(InNumbers):
         R, p = np.reshape(pose[:9], (3, 3))[: self.d, : self.d], np.array(pose[9:])[: self.d]
         drawn = self.picture.bodies[name]
         own = (drawn[np.isfinite(drawn).all(axis=1)] - p) @ R
+        seat = (self._ends_of(name)[0] - p) @ R  # from there it may have slid
         if not len(own):
             return ""
         part = self.system.scope.model.bodies[name]
@@ -136,8 +137,14 @@ class _Shown(InNumbers):
         if part.shape is not None or part.parts is not None:
             if not shapes:
                 return ""
+            ends = np.array([seat, self.placed(link.point)])
+            off = np.min(np.linalg.norm(own[:, None, :] - ends[None, :, :], axis=2), axis=1)
+            own = own[off > self.near] if self.d == 3 and np.any(off > self.near) else own
             return self._apart((own.min(axis=0), own.max(axis=0)), self._box(shapes))
-        return self._unknown_place(link, own)
+        slides = link.joint is not None and link.joint.straight
+        if slides and link.parent < 0 and self.d == 2:
+            return ""  # a block, or the wedge under what slides on it
+        return self._unknown_place(link, own, seat)
 
     def _shapes(self, name: str) -> list[tuple[Shape, np.ndarray, np.ndarray]]:
         """(shape, R, p) of a body or of its pieces that are no holes."""
@@ -157,7 +164,7 @@ class _Shown(InNumbers):
         clouds = []
         for shape, R, p in shapes:
             at = [shape.filled(self._number, s) for s in itertools.product(GRID.tolist(), repeat=shape.dimension)]
-            clouds.append(np.array([[float(x) for x in place] for place in at]) @ R.T + p)
+            clouds.append(np.array(at, dtype=float) @ R.T + p)
         cloud = np.concatenate(clouds)[:, : self.d]
         return cloud.min(axis=0), cloud.max(axis=0)
 
@@ -166,19 +173,23 @@ class _Shown(InNumbers):
 
     def _apart(self, found: Corners, right: Corners) -> str:
         """Which corner is elsewhere; what is round may reach a little beyond places on a grid."""
-        near = 0.03 * float(np.max(right[1] - right[0])) + self.near
+        near = BETWEEN_PLACES * float(np.max(right[1] - right[0])) + self.near
         off = max(float(np.max(np.abs(a - b))) for a, b in zip(found, right, strict=True))
         sizes = [" x ".join(f"{x:.4g}" for x in high - low) for low, high in (found, right)]
         return "" if off <= near else f"fills {sizes[0]} m for {sizes[1]} m, or elsewhere"
 
-    def _unknown_place(self, link: BodyLink, own: np.ndarray) -> str:
-        """That a body's lines end where nothing of it is, or leave out a point of it."""
+    def _unknown_place(self, link: BodyLink, own: np.ndarray, seat: np.ndarray) -> str:
+        """That a body's lines end where nothing of it is, or leave out a point of it.
+
+        Args:
+            seat: where its joint sits, in its axes.
+        """
         part, points = self.system.scope.model.bodies[link.name], self.motion.points[link.name]
         hung = [other.before.p for other in self.motion.links if other.parent == self.motion.index[link.name]]
         declared = [points[name] for name in part.points]
         seated = link.joint is not None and link.joint.carries_reaction
         known = [*declared, *hung, *points.values(), *([link.point] if seated else []), (0, 0, 0)]
-        places = np.array([self.placed(place) for place in known])
+        places = np.array([*(self.placed(place) for place in known), seat])
         off = np.min(np.linalg.norm(own[:, None, :] - places[None, :, :], axis=2), axis=1)
         if float(np.max(off)) > self.near:
             return "a line of it ends where none of its points is"
@@ -224,22 +235,22 @@ class _Shown(InNumbers):
             length = float(np.linalg.norm(along))
             if at is not None and min(np.linalg.norm(arrow.tip - at), np.linalg.norm(arrow.begin - at)) > self.near:
                 return f"that of {arrow.of} is not where it acts"
-            if np.linalg.norm(along * size - force * length) > 1e-3 * size * length + 1e-9:
+            if np.linalg.norm(along * size - force * length) > SAME_ARROW * size * length + COMPUTED:
                 return f"that of {arrow.of} goes another way"
             scales.append((arrow.of, length / size if size else 0.0))
         if not scales:
             raise NoValue("their forces are not known apart")
         common = float(np.median([scale for _, scale in scales if scale] or [0.0]))
-        off = next((of for of, scale in scales if scale and abs(scale - common) > 1e-3 * common), "")
+        off = next((of for of, scale in scales if scale and abs(scale - common) > SAME_ARROW * common), "")
         return f"that of {off} is of another scale" if off else ""
 
     def _force(self, name: str) -> tuple[np.ndarray | None, np.ndarray] | None:
         """(place, force) of a force at one point; None of others."""
         force = self.system.scope.model.forces.get(name)
         acts = () if force is None else tuple(force.acts)
-        if len(acts) != 1 or not isinstance(acts[0], PushAt) or self.system.symbols.unknowns:
+        act = acts[0] if len(acts) == 1 else None
+        if not isinstance(act, PushAt) or self.system.symbols.unknowns:
             return None
-        (act,) = acts
         place = self.scene.place(act.point)
         own = self.vector(self.scene.vector(act.force))
         pushed = self.carried(None if act.axes == "ground" else act.axes, own, direction=True)
@@ -341,8 +352,9 @@ class _Page:
             return np.array([self.spot(mark["at"]) + half * np.array(sign) for sign in signs])
         if kind == "revolution":
             rims = [(self.number(r), self.number(z)) for r, z in mark["profile"]]
-            around = [(r * x, r * y, z) for r, z in rims for x, y in ((1, 0), (0, 1), (-1, 0), (0, -1))]
-            return self.spot(mark["at"]) + np.array(around)
+            rings = [(r * x, r * y, z) for r, z in rims for x, y in ((1, 0), (0, 1), (-1, 0), (0, -1))]
+            rims_of: np.ndarray = np.array(rings) + self.spot(mark["at"])[None]
+            return rims_of
         if kind == "prism":
             low, high = self.number(mark["low"]), self.number(mark["high"])
             return np.array([(self.number(x), self.number(y), z) for x, y in mark["points"] for z in (low, high)])
@@ -355,4 +367,5 @@ class _Page:
         turn = np.linspace(start, end, 73)
         at, x, y = self.spot(mark["at"]), self.number(mark["radius"]), self.number(mark["radius_y"])
         rim = np.column_stack([x * np.cos(turn), y * np.sin(turn), *([np.zeros(73)] if len(at) == 3 else [])])
-        return np.concatenate([at + rim, *([at[None]] if mark["close"] == "center" else [])])
+        found: np.ndarray = np.concatenate([at + rim, *([at[None]] if mark["close"] == "center" else [])])
+        return found

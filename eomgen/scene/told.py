@@ -16,7 +16,8 @@ def picture_told(drawing: Drawing, scene: Scene, frame: int) -> ToldPicture:
     """What the strokes of a drawing show at a frame."""
     d = 2 if scene.plane else 3
     symbols = {mark.of for mark in scene.marks if mark.role == "body" and mark.form.kind not in LENGTHS}
-    springs = {mark.of: mark.form.kind for mark in scene.marks if mark.form.kind in ("spring", "damper")}
+    whole = ("spring", "damper") if scene.plane else ("spring",)  # in space a damper has several parts
+    springs = {mark.of: mark.form.kind for mark in scene.marks if mark.form.kind in whole}
     clouds: dict[str, list[np.ndarray]] = {}
     ends = {}
     for stroke in drawing.strokes:
