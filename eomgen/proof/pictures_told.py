@@ -27,6 +27,7 @@ from eomgen.proof.in_numbers import InNumbers
 from eomgen.proof.run_columns import state_of_row
 from eomgen.records import dataclass
 from eomgen.simulation.result import Trajectory
+from eomgen.symbolic.expression.graph import is_zero
 from eomgen.symbolic.numeric.evaluation import NoValue
 from eomgen.symbolic.numeric.tolerances import BETWEEN_PLACES, COMPUTED, DRAWN, SAME_ARROW
 
@@ -133,15 +134,15 @@ class _Shown(InNumbers):
         if not len(own):
             return ""
         part = self.system.scope.model.bodies[name]
+        slides = any(all(map(is_zero, w)) for w, _ in link.S)
         shapes = [shape for shape in self._shapes(name) if not shape[0].is_point]
         if part.shape is not None or part.parts is not None:
             if not shapes:
                 return ""
             ends = np.array([seat, self.placed(link.point)])
             off = np.min(np.linalg.norm(own[:, None, :] - ends[None, :, :], axis=2), axis=1)
-            own = own[off > self.near] if self.d == 3 and np.any(off > self.near) else own
+            own = own[off > self.near] if self.d == 3 and slides and np.any(off > self.near) else own
             return self._apart((own.min(axis=0), own.max(axis=0)), self._box(shapes))
-        slides = link.joint is not None and link.joint.straight
         if slides and link.parent < 0 and self.d == 2:
             return ""  # a block, or the wedge under what slides on it
         return self._unknown_place(link, own, seat)

@@ -1,0 +1,146 @@
+"""Pictures are read again: bodies, springs and arrows are drawn where the model says, and as long."""
+
+from __future__ import annotations
+
+import json
+from dataclasses import replace
+from functools import cache
+from typing import Any
+
+import numpy as np
+import pytest
+
+import eomgen
+from eomgen.documents.motion_frames import Movie, movie_of
+from eomgen.page.player_data import PlayedRun, PlayerOptions
+from eomgen.page.player_page import player_page_of
+from eomgen.page.player_read_back import player_read_back, player_told
+from eomgen.simulation.result import Trajectory
+from eomgen.verbs.animate import movie_read_back
+
+CART = """
+eomgen = 1
+name = "A rod on a cart"
+space = "plane"
+
+[parameters]
+l = { value = 0.8, unit = "m" }
+k = { value = 50, unit = "N/m" }
+F = { value = 3, unit = "N" }
+
+[coordinates]
+x = { start = 0.2, unit = "m" }
+phi = { start = 40, unit = "deg" }
+
+[points]
+wall = [-1, 0]
+
+[bodies.cart]
+shape = { kind = "rectangle", width = 0.4, height = 0.2, mass = 2 }
+joint = { kind = "prismatic", axis = [1, 0], displacement = "x" }
+
+[bodies.rod]
+shape = { kind = "rod", length = "l", mass = 1 }
+joint = { kind = "revolute", on = "cart", at = [0, 0], angle = "phi" }
+
+[forces.spring]
+kind = "spring"
+points = ["wall", "cart.origin"]
+stiffness = "k"
+length = 1
+
+[forces.push]
+kind = "force"
+point = "rod.end"
+force = ["F", "2*F"]
+
+[forces.weight]
+kind = "gravity"
+acceleration = [0, -9.81]
+"""
+
+
+@cache
+def run() -> Trajectory:
+    return eomgen.simulate(eomgen.loads(CART), time=0.4, samples=9, target="numpy")
+
+
+@cache
+def movie() -> Movie:
+    return movie_of(run(), run().t[[0, 4, 8]], forces=True)
+
+
+def wrong(shown: Movie) -> str:
+    return "; ".join(check.detail for check in movie_read_back(run(), shown) if check.ok is False)
+
+
+def moved(role: str, change: Any) -> Movie:
+    """The movie with the paths of one role changed."""
+    strokes = (
+        replace(stroke, path=change(stroke.path)) if stroke.role == role else stroke
+        for stroke in movie().drawing.strokes
+    )
+    return replace(movie(), drawing=replace(movie().drawing, strokes=tuple(strokes)))
+
+
+def test_a_movie_shows_the_run():
+    """R^T (r - p) fills the shape; a spring joins its points; an arrow is k F at its point."""
+    assert wrong(movie()) == ""
+
+
+@pytest.mark.parametrize("role", ["body", "spring", "force", "reaction"])
+def test_what_is_drawn_elsewhere_is_seen(role: str):
+    """r + (0.1, 0) m"""
+    assert wrong(moved(role, lambda path: path + np.array([0.1, 0.0])))
+
+
+@pytest.mark.parametrize("role", ["body", "spring", "force"])
+def test_what_is_drawn_too_large_is_seen(role: str):
+    """1.2 r about the middle of what is drawn"""
+    assert wrong(moved(role, lambda path: path * 1.2))
+
+
+@cache
+def page() -> tuple[PlayedRun, str]:
+    played = PlayedRun(run(), PlayerOptions({}, True))
+    return played, player_page_of(played)
+
+
+def wrong_page(change: Any) -> str:
+    """What is contradicted of a page that is told something else."""
+    played, text = page()
+    told = json.loads(json.dumps(player_told(text)))
+    change(told)
+    begin = text.index("{", text.index("begun(document.getElementById("))
+    _, end = json.JSONDecoder().raw_decode(text[begin:])
+    checks = player_read_back(played, text[:begin] + json.dumps(told) + text[begin + end :])
+    return "; ".join(check.detail for check in checks if check.ok is False)
+
+
+def marks(told: Any, kind: str) -> Any:
+    return next(mark for mark in told["scene"]["marks"] if mark["kind"] == kind)
+
+
+def plotted(told: Any, name: str) -> Any:
+    return next(each for each in told["plotted"] if each["name"] == name)
+
+
+CHANGES = {
+    "nothing": lambda told: None,
+    "a parameter": lambda told: told["parameters"][0].update(value=0.9),
+    "the size of a unit": lambda told: plotted(told, "phi").update(size=1.0),
+    "a unit": lambda told: plotted(told, "phi").update(unit="rad"),
+    "a slider that ends before its value": lambda told: told["sliders"][0].update(max=0.1),
+    "a power of ten of a column": lambda told: told["run"]["x"]["columns"][0].__setitem__(0, -10),
+    "a name": lambda told: told.update(names=told["names"][::-1]),
+    "a corner of a body": lambda told: marks(told, "polygon")["points"][0].__setitem__(0, 0.3),
+    "where a spring begins": lambda told: marks(told, "spring").update(a=[-0.9, 0]),
+    "the pose of a body": lambda told: told["scene"]["frames"][1]["pose"].__setitem__(1, 0.1),
+    "where a point is": lambda told: told["scene"]["points"][0].update(at=[1, 0]),
+}
+
+
+@pytest.mark.parametrize("change", CHANGES)
+def test_what_a_page_is_told_is_the_run_and_the_model(change: str):
+    """read(page) = (run, parameters, units, scene)"""
+    assert bool(wrong_page(CHANGES[change])) == (change != "nothing")
