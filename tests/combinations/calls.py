@@ -1,7 +1,8 @@
 """Verbs, formats and doors, asked of a drawn model in this process; what each must keep.
 
-A call is right when its exit code has a meaning, no internal error leaves, a certificate that is told holds, what is
-refused is told with a place or a name, and a line that `derive` printed is not called wrong by `verify`.
+A call is right when its exit code has a meaning, no internal error leaves, a certificate that is told holds, a refusal
+names an object of the model or the feature, its place and what to do (`refusals.py`), and a line that `derive` printed
+is not called wrong by `verify`.
 """
 
 from __future__ import annotations
@@ -17,11 +18,12 @@ from pathlib import Path
 from random import Random
 from typing import Any
 
-import numpy as np
 from click.testing import CliRunner
 from compare import filled, quiet
+from refusals import lacking
 
 import eomgen
+import eomgen.edge
 from eomgen.cli import main
 
 SECONDS = 20  # of CPU that one call may take
@@ -81,8 +83,16 @@ def limit(seconds: float) -> Iterator[None]:
         signal.signal(signal.SIGVTALRM, old)
 
 
-def commands(text: str, rng: Random) -> list[list[str]]:
-    """The command lines of one model: each verb once, with its ways in turn."""
+SYMBOLIC = ("check", "derive", "solve", "reactions", "statics", "kinematics", "inertia", "linearize")
+WEIGHTS = {
+    "statics": 2, "kinematics": 2, "inertia": 2, "linearize": 2, "codegen": 3, "report": 1, "animate": 1, "play": 1,
+    "sweep": 2, "export": 1, "identify": 1, "simulate": 1,
+}  # fmt: skip
+PAGES = ("r.html", "r.ipynb", "r.md", "r.tex", "r.pdf")
+
+
+def commands(text: str, rng: Random, more: int = 3) -> list[list[str]]:
+    """The command lines of one model: what everybody asks, and of the rest some, with their ways in turn."""
     form = lambda: ["--format", rng.choice(FORMATS)]  # noqa: E731
     first = re.search(r"^\[coordinates\]\n(\w+) =", text, re.M)
     q = first[1] if first else "q"
@@ -90,34 +100,36 @@ def commands(text: str, rng: Random) -> list[list[str]]:
     method = rng.choice(("lagrange", "projection", "kinetostatic"))
     way = rng.choice(("projection", "energy", "baumgarte", "none"))
     run = ["--time", "0.4", "--samples", "5", "--target", "numpy"]
+    swept = rng.choice((["--over", f"{number}=1,1.2"], ["--random", f"{number}=uniform(1, 1.2)", "--runs", "2"]))
     found = [
         ["check", "MODEL", *rng.choice(([], ["--json"]))],
         ["derive", "MODEL", "--method", method, *form(), *rng.choice(([], ["--units"]))],
-        ["solve", "MODEL", *form()],
-        ["reactions", "MODEL", *form()],
         ["simulate", "MODEL", *run, "--stabilize", way, *form()],
+        rng.choice((["solve", "MODEL", *form()], ["reactions", "MODEL", *form()])),
     ]
-    rest = [
-        ["statics", "MODEL", *form()],
-        ["kinematics", "MODEL", *form()],
-        ["inertia", "MODEL", *form()],
-        ["linearize", "MODEL", *form(), *rng.choice(([], ["--about", "start"], ["--about", "steady"]))],
-        ["codegen", "MODEL", "-o", "OUT/code", "--target", rng.choice(LANGUAGES)],
-        ["report", "MODEL", "-o", "OUT/" + rng.choice(("r.html", "r.ipynb", "r.md", "r.tex")), "--time", "0.3"],
-        ["animate", "MODEL", "-o", "OUT/a.html", "--time", "0.2", "--forces"],
-        ["play", "MODEL", "-o", "OUT/p.html", "--time", "0.3"],
-        ["sweep", "MODEL", "-o", "OUT/sweep", "--over", f"{number}=1,1.2", "--ask", f"max({q})", "--time", "0.2"],
-        ["export", "MODEL", "-o", "OUT/robot.urdf"],
-        ["simulate", "MODEL", *run, "-o", "OUT/run.csv", "--units"],
-    ]
-    rng.shuffle(rest)
-    return found + rest[:5]
+    rest = {
+        "statics": ["statics", "MODEL", *form()],
+        "kinematics": ["kinematics", "MODEL", *form()],
+        "inertia": ["inertia", "MODEL", *form()],
+        "linearize": ["linearize", "MODEL", *form(), *rng.choice(([], ["--about", "start"], ["--about", "steady"]))],
+        "codegen": ["codegen", "MODEL", "-o", "OUT/code", "--target", rng.choice(LANGUAGES)],
+        "report": ["report", "MODEL", "-o", "OUT/" + rng.choice(PAGES), "--time", "0.3"],
+        "animate": ["animate", "MODEL", "-o", "OUT/a.html", "--time", "0.2", "--forces"],
+        "play": ["play", "MODEL", "-o", "OUT/p.html", "--time", "0.3"],
+        "sweep": ["sweep", "MODEL", "-o", "OUT/sweep", *swept, "--ask", f"last({q})", "--time", "0.2"],
+        "export": ["export", "MODEL", "-o", "OUT/robot.urdf"],
+        "identify": ["identify", "MODEL", *form()],
+        "simulate": ["simulate", "MODEL", *run, "-o", "OUT/run.csv", "--units"],
+    }
+    drawn = sorted(rest, key=lambda verb: rng.random() ** (1 / WEIGHTS[verb]), reverse=True)
+    return found + [rest[verb] for verb in drawn[:more]]
 
 
 def by_command(text: str, words: list[str], folder: Path) -> Outcome:
-    """One command line."""
+    """One command line; of what runs, a parameter without a value gets one."""
     path = folder / "model.toml"
-    path.write_text(text, encoding="utf-8")
+    asked = text if words[0] in SYMBOLIC else filled(text)
+    path.write_text(asked, encoding="utf-8")
     (folder / "out").mkdir(exist_ok=True)
     known = {"MODEL": str(path)}
     arguments = [known.get(w, w.replace("OUT", str(folder / "out"))) for w in words]
@@ -125,13 +137,35 @@ def by_command(text: str, words: list[str], folder: Path) -> Outcome:
         arguments += ["--patience", "none"]
     call, begin = " ".join(words), time.process_time()
     try:
-        with limit(SECONDS):
+        with limit(SECONDS), told_problems() as problems:
             result = CliRunner().invoke(main, arguments)
     except TooLong:
         return Outcome(call, -1, "slow", f"more than {SECONDS} s of CPU", time.process_time() - begin)
+    if result.exit_code == 130:
+        raise KeyboardInterrupt
     seconds = time.process_time() - begin
     fault, detail = _fault(words, result)
-    return Outcome(call, result.exit_code, fault, detail, seconds, _refusal(result))
+    note = str(problems[0]).splitlines()[0][:200] if problems else _refusal(result)
+    if result.exit_code and not fault and not result.stdout.strip():
+        left = lacking(problems, asked)
+        fault, detail = ("refusal", f"{left}: {note}") if left else ("", "")
+    return Outcome(call, result.exit_code, fault, detail, seconds, note)
+
+
+@contextmanager
+def told_problems() -> Iterator[list[Any]]:
+    """What the command line tells as wrong within it."""
+    own, found = eomgen.edge._told, []  # type: ignore[var-annotated]
+
+    def told(code: int, problems: Any, *rest: Any) -> int:
+        found.extend(problems)
+        return own(code, problems, *rest)
+
+    eomgen.edge._told = told  # type: ignore[assignment]
+    try:
+        yield found
+    finally:
+        eomgen.edge._told = own
 
 
 def _fault(words: list[str], result: Any) -> tuple[str, str]:
@@ -143,7 +177,7 @@ def _fault(words: list[str], result: Any) -> tuple[str, str]:
     if result.exit_code not in (0, 1, 2, 3, 4):
         return "exit code", str(result.exit_code)
     if "FAILS" in out or '"ok": false' in out or "FAILS" in err:
-        lines = [x for x in (out + err).splitlines() if "FAILS" in x or '"fails"' in x]
+        lines = [x for x in (out + err).splitlines() if "FAIL " in x or '"fails"' in x]
         return "certificate", (lines or ["a certificate does not hold"])[0].strip()[:300]
     if result.exit_code and not err.strip() and '"error"' not in out:
         return "said nothing", f"exit {result.exit_code} without a word"
@@ -159,27 +193,37 @@ def _refusal(result: Any) -> str:
     return lines[0][:200] if lines else ""
 
 
-def judged(text: str) -> Iterator[Outcome]:
-    """`verify` of the equations that derive prints: none may be called wrong."""
-    begin = time.process_time()
+def _refused(call: str, no: eomgen.EomgenError, text: str, seconds: float) -> Outcome:
+    """A refusal in Python: as the command line's."""
+    left = lacking(eomgen.edge.problems_of(no), text)
+    first = str(no).splitlines()[0][:200]
+    return Outcome(call, 1, "refusal" if left else "", f"{left}: {first}" if left else "", seconds, first)
+
+
+def judged(text: str, rng: Random, most: int = 2) -> Iterator[Outcome]:
+    """`verify` of lines of equations that derive prints: none may be called wrong."""
     try:
         with quiet(), limit(SECONDS):
             model = eomgen.loads(text)
-            e = eomgen.derive(model)
-            told = e.render("text") if hasattr(e, "render") else str(e)
-            lines = [x.strip() for x in told.splitlines() if re.match(r"^ {4,}\S.* = ", x) and "..." not in x]
-            lines = [x for x in lines if len(x) < 300 and not re.search(r"\[[^\]]*\]$", x)]
-            for line in lines[-6:]:
+            told = eomgen.derive(model).render("text")
+    except (TooLong, eomgen.EomgenError):
+        return  # told by `derive`
+    lines = [x.strip() for x in told.splitlines() if re.match(r"^ {4,}\S.* = ", x) and "..." not in x]
+    lines = [x for x in lines if len(x) < 300 and not re.search(r"\[[^\]]*\]$", x)]
+    for line in [lines[-1], *rng.sample(lines[:-1], min(most - 1, len(lines) - 1))] if lines else []:
+        begin = time.process_time()
+        spent = lambda: time.process_time() - begin  # noqa: B023, E731
+        try:
+            with quiet(), limit(SECONDS):
                 verdict = eomgen.verify(model, line)
-                wrong = verdict.verdict == "wrong"
-                spent, begin = time.process_time() - begin, time.process_time()
-                yield Outcome("verify", 0, "judged wrong" if wrong else "", line[:200], spent, verdict.verdict)
-    except TooLong:
-        yield Outcome("verify", -1, "slow", f"more than {SECONDS} s of CPU", time.process_time() - begin)
-    except eomgen.EomgenError as no:
-        yield Outcome("verify", 1, "", "", time.process_time() - begin, str(no).splitlines()[0][:200])
-    except Exception as error:
-        yield Outcome("verify", 70, "internal error", f"{type(error).__name__}: {str(error)[:160]}")
+            wrong = verdict.verdict == "wrong"
+            yield Outcome("verify", 0, "judged wrong" if wrong else "", line[:200], spent(), verdict.verdict)
+        except TooLong:
+            yield Outcome("verify", -1, "slow", f"{line[:160]}: more than {SECONDS} s of CPU", spent())
+        except eomgen.EomgenError as no:
+            yield Outcome("verify", 1, "", line[:200], spent(), "unread: " + str(no).splitlines()[0][:160])
+        except Exception as error:
+            yield Outcome("verify", 70, "internal error", f"{type(error).__name__}: {str(error)[:160]}: {line[:80]}")
 
 
 PYTHON: dict[str, Callable[[Any], Any]] = {
@@ -229,7 +273,7 @@ def by_python(text: str, names: list[str]) -> Iterator[Outcome]:
         with quiet():
             model = eomgen.loads(text)
     except eomgen.EomgenError as no:
-        yield Outcome("python loads", 1, "", "", 0.0, str(no).splitlines()[0][:200])
+        yield _refused("python loads", no, text, 0.0)
         return
     for name in names:
         begin = time.process_time()
@@ -240,21 +284,11 @@ def by_python(text: str, names: list[str]) -> Iterator[Outcome]:
         except TooLong:
             yield Outcome(f"python {name}", -1, "slow", f"more than {SECONDS} s of CPU", time.process_time() - begin)
         except eomgen.EomgenError as no:
-            yield Outcome(f"python {name}", 1, "", "", time.process_time() - begin, str(no).splitlines()[0][:200])
+            yield _refused(f"python {name}", no, text, time.process_time() - begin)
         except Exception as error:
             detail = f"{type(error).__name__}: {str(error)[:160]}"
             yield Outcome(f"python {name}", 70, "internal error", detail, time.process_time() - begin)
 
 
-def python_doors(rng: Random, count: int = 3) -> list[str]:
+def python_doors(rng: Random, count: int = 2) -> list[str]:
     return rng.sample(sorted(PYTHON), count)
-
-
-def columns_of_a_run(text: str) -> Any:
-    """A short run of a model, or the reason why there is none."""
-    with quiet(), limit(SECONDS):
-        return eomgen.simulate(eomgen.loads(filled(text)), time=0.5, samples=4)
-
-
-def finite(x: Any) -> bool:
-    return bool(np.all(np.isfinite(np.asarray(x, dtype=float))))

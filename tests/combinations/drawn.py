@@ -505,6 +505,9 @@ class Drawing:
         if extra == "point":
             joint["point"] = "P"
         getattr(self, f"joint_{how}", self.joint_revolute)(joint)
+        if self.levels["speeds"] == "omega" and "omega" not in joint:  # refused by the product
+            joint["omega"] = ["w0", "w1", "w2"]
+            self.speeds |= {f"w{k}": {"start": 0.1} for k in range(3)}
         if extra == "spring_damper":
             turning = how in ("revolute", "screw")
             joint |= {"stiffness": "kt" if turning else "k", "rest": 0.1, "damping": "ct" if turning else "c"}
@@ -521,8 +524,6 @@ class Drawing:
             else:
                 joint["force"] = f"F0 - c*{joint['displacement']}'"
         self.bodies["tool"] = {**self.shaped(self.levels["shape"]), "joint": joint}
-        if how in ("placed", "path") and "shape" in self.bodies["tool"]:
-            pass
 
     def joint_revolute(self, joint: dict) -> None:
         joint |= {"angle": self.coordinate("j1", "angle", 0.4, self.number(-1, 1)), **self.axis()}
@@ -612,8 +613,12 @@ class Drawing:
         self.forces["own_weight"] = {"kind": "gravity", "acceleration": down, "bodies": ["puck"]}
         if how == "ending":
             y = self.coordinate("p2", "length", -0.5, 0.0)
-            self.particle("puck", {"kind": "planar", "x": x, "y": y, "angle": 0})
-            self.points["peg"] = [0, 0]
+            if self.plane:
+                self.particle("puck", {"kind": "planar", "x": x, "y": y, "angle": 0})
+            else:
+                z = self.coordinate("p3", "length", 0.0, 0.3)
+                self.particle("puck", {"kind": "placed", "at": [x, z, y], "angle": 0})
+            self.points["peg"] = self.v(0, 0, 0)
             self.constraints["thread"] = {
                 "kind": "link",
                 "points": ["peg", "puck.center"],

@@ -87,13 +87,15 @@ FORBIDDEN: tuple[Forbidden, ...] = (
         "in space it stands in the joint",
         "no single angle in space",
     ),
-    Forbidden(("space", "plane"), ("speeds", "omega"), "omega needs three components"),
+    Forbidden(("space", "plane"), ("speeds", "omega"), "omega needs three components", "omega"),
     *_each(
         ("speeds", "omega"),
         "joint",
-        tuple(x for x in FACTORS["joint"] if x not in ("quaternion", "free")),
+        tuple(x for x in FACTORS["joint"] if x not in ("quaternion", "free", "placed")),
         "no quaternion",
+        "omega",
     ),
+    Forbidden(("speeds", "omega"), ("joint", "placed"), "no quaternion", "moves no mass"),
     *_each(
         ("joint_with", "spring_damper"),
         "joint",
@@ -128,28 +130,31 @@ FORBIDDEN: tuple[Forbidden, ...] = (
         "contact",
         ("open", "closed", "sliding", "ending", "viscous"),
         "nothing is free that could leave a contact",
+        "nothing that is free moves it",
     ),
     *_each(
         ("base", "all_driven"),
         "loop",
         ("four_bar", "slider_crank", "two_loops", "on_base"),
         "loops determine what would be driven",
+        "nothing that is free moves it",
     ),
     *_each(
         ("base", "all_driven"),
         "tie",
         tuple(x for x in FACTORS["tie"] if x != "none"),
         "ties determine what would be driven",
+        "nothing that is free moves it",
     ),
-    *_each(("base", "all_driven"), "joint", ("quaternion",), "a quaternion is free"),
+    *_each(("base", "all_driven"), "joint", ("quaternion",), "a quaternion is free", "is driven"),
     *_each(("base", "all_driven"), "speeds", ("declared", "omega"), "no rate is free that a speed could stand for"),
     *_each(("base", "ground"), "loop", ("on_base",), "there is no base that moves"),
     Forbidden(("joint", "spherical"), ("shape", "particle"), "its turn about itself moves no mass", "moves no mass"),
     Forbidden(("joint", "spherical"), ("shape", "rod"), "its turn about itself moves no mass", "no inertia"),
     Forbidden(("joint", "quaternion"), ("shape", "particle"), "its turn about itself moves no mass", "moves no mass"),
     Forbidden(("joint", "quaternion"), ("shape", "rod"), "its turn about itself moves no mass", "moves no mass"),
-    Forbidden(("speeds", "omega"), ("shape", "particle"), "its turn about itself moves no mass"),
-    Forbidden(("speeds", "omega"), ("shape", "rod"), "its turn about itself moves no mass"),
+    Forbidden(("speeds", "omega"), ("shape", "particle"), "its turn about itself moves no mass", "moves no mass"),
+    Forbidden(("speeds", "omega"), ("shape", "rod"), "its turn about itself moves no mass", "moves no mass"),
     *(
         Forbidden(
             ("contact", contact),
@@ -176,7 +181,6 @@ FORBIDDEN: tuple[Forbidden, ...] = (
         "acts on coordinates",
     ),
     *_each(("space", "space"), "tie", ("string",), "drawn in the plane only"),
-    *_each(("space", "space"), "contact", ("ending",), "drawn in the plane only"),
 )
 
 

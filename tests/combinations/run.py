@@ -30,8 +30,11 @@ import cross  # noqa: E402
 from covering import rows  # noqa: E402
 from drawn import text_of  # noqa: E402
 from features import all_pairs, pairs_of, possible_pairs, why_not  # noqa: E402
+from refusals import lacking  # noqa: E402
+from shared import one_model  # noqa: E402
 
 import eomgen  # noqa: E402
+from eomgen.edge import problems_of  # noqa: E402
 
 LANGUAGES = ((), ("c",), ("javascript",))
 
@@ -42,7 +45,11 @@ def seed_of(levels: dict[str, str]) -> int:
 
 def of_model(levels: dict[str, str], seed: int, *, through_verbs: bool = True) -> dict[str, Any]:
     """All that one model shows: its faults, its calls, and whether it covers its pairs."""
-    text = text_of(levels, seed)
+    with one_model():
+        return _of_model(text_of(levels, seed), levels, seed, through_verbs)
+
+
+def _of_model(text: str, levels: dict[str, str], seed: int, through_verbs: bool) -> dict[str, Any]:
     begin = time.process_time()
     row: dict[str, Any] = {
         "levels": levels,
@@ -69,6 +76,8 @@ def of_model(levels: dict[str, str], seed: int, *, through_verbs: bool = True) -
         row["faults"] += [["oracle: " + kind, what] for kind, what in found.faults[:5]]
     except eomgen.EomgenError as no:
         row["refused"] = f"{type(no).__name__}: {str(no).splitlines()[0][:200]}"
+        left = lacking(problems_of(no), text)
+        row["faults"] += [["refusal", f"{left}: {row['refused']}"]] if left else []
     except calls.TooLong:
         row["faults"].append(["slow", "derive and the comparison take more than 120 s"])
     except Exception as error:
@@ -79,8 +88,8 @@ def of_model(levels: dict[str, str], seed: int, *, through_verbs: bool = True) -
         with tempfile.TemporaryDirectory() as folder:
             outcomes += [calls.by_command(text, words, Path(folder)) for words in calls.commands(text, rng)]
         outcomes += calls.by_python(text, calls.python_doors(rng))
-        if not row["refused"] and rng.random() < 0.5:
-            outcomes += calls.judged(text)
+        if not row["refused"] and rng.random() < 0.3:
+            outcomes += calls.judged(text, rng)
     row["calls"] += [[o.call, o.code, round(o.seconds, 2), o.note] for o in outcomes]
     row["faults"] += [[o.fault, f"{o.call}: {o.detail}"] for o in outcomes if o.fault]
     row["covers"] = not row["refused"]
@@ -128,6 +137,7 @@ def totals(out: Path) -> dict[str, Any]:
         "pairs that cannot be": sum(bool(why_not(*pair)) for pair in all_pairs()),
         "models with faults": sum(bool(row["faults"]) for row in lines),
         "faults": dict(faults.most_common()),
+        "lines of derive judged": sum(c[0] == "verify" for r in lines for c in r["calls"]),
         "unread lines": sum(
             c[0] == "verify" and "wrong" not in c[3] and "right" not in c[3] for r in lines for c in r["calls"]
         ),
