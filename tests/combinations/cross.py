@@ -24,8 +24,16 @@ import eomgen
 NO = (NoAnswer, NotCovered, laws.NoSliding)
 
 
-def across(product: Product, *, languages: tuple[str, ...] = ()) -> Found:
-    """The verbs of one model against the oracle and so against one another."""
+def across(product: Product, *, languages: tuple[str, ...] = (), parts: tuple[str, ...] = ()) -> Found:
+    """The verbs of one model against the oracle and so against one another.
+
+    Args:
+        parts: which of PARTS, () for all.
+    """
+    return _parts(product, [PARTS[part] for part in parts or PARTS] + [LANGUAGES[name] for name in languages])
+
+
+def _parts(product: Product, parts: list[Any]) -> Found:
     found, e = Found(), product.equations
     x0 = next(iter(product.functions.values())).x0
     if x0 is None:
@@ -39,18 +47,14 @@ def across(product: Product, *, languages: tuple[str, ...] = ()) -> Found:
     except NO as no:
         found.skipped.append(f"oracle: {no}")
         return found
-    model = e.model
-    for part in (_answers, _reactions, _run, _small, _inverse):
+    for part in parts:
         try:
             with quiet():
-                part(found, model, product, oracle, s, solved)
+                part(found, e.model, product, oracle, s, solved)
         except eomgen.EomgenError as no:
             found.skipped.append(f"{part.__name__[1:]}: {str(no).splitlines()[0][:120]}")
         except NO as no:
             found.skipped.append(f"oracle in {part.__name__[1:]}: {no}")
-    for language in languages:
-        with quiet():
-            LANGUAGES[language](found, model, product, oracle, s, solved)
     return found
 
 
@@ -120,8 +124,7 @@ def _run(found: Found, model: Any, product: Product, oracle: Oracle, s: State, s
 def _small(found: Found, model: Any, product: Product, oracle: Oracle, s: State, solved: Solved) -> None:
     """Eigenvalues of the small motions against those of the oracle's differences."""
     if (
-        oracle.model.driven
-        or oracle.model.speeds
+        not oracle.stands()
         or oracle.modes
         or any(
             "rate" in tie or (tie["kind"] in ("rolling", "skate", "motion") and not tie.get("slip"))
@@ -131,6 +134,7 @@ def _small(found: Found, model: Any, product: Product, oracle: Oracle, s: State,
         return
     told = eomgen.linearize(model).as_dict()
     at = {name: x["value"] for name, x in told["state"].items()}
+    at |= {q: float(oracle.model.driven_at(q, 0.0)[0]) for q in oracle.model.driven}
     if any(q not in at for q in oracle.names):
         return
     A = oracle.small(np.array([at[q] for q in oracle.names]))
@@ -145,24 +149,19 @@ def _small(found: Found, model: Any, product: Product, oracle: Oracle, s: State,
 
 
 def _inverse(found: Found, model: Any, product: Product, oracle: Oracle, s: State, solved: Solved) -> None:
-    """tau of given accelerations, of a system whose ties are open."""
+    """tau of given accelerations: of all that is free, with ties along what these leave free."""
     e = product.equations
-    if oracle.model.constraints or oracle.model.speeds:
+    if oracle.model.speeds or oracle.modes or not {f"{q}'" for q in oracle.names} >= set(e.speeds):
         return
-    inverse = e.inverse_dynamics()
-    function = inverse.function("numpy")
-    free = [q for q in oracle.names if q not in oracle.model.driven]
-    if len(free) != len(e.speeds):
-        return
-    a = np.array([solved.a[k] if q not in free else 0.3 + 0.1 * k for k, q in enumerate(oracle.names)])
-    now = oracle.maximal(s)
-    inputs = [oracle.model.input(i, now) for i in e.inputs]
-    rhs = next(iter(product.functions.values()))
-    u, _ = oracle.speeds_of(s, e.speeds)
-    got = function(0.0, np.concatenate([s.q, u]), [a[oracle.names.index(q)] for q in free], rhs.p0, inputs)
-    want = oracle.wanted(s, a)
-    for q, x in zip(free, got, strict=True):
-        found.same("inverse dynamics", f"tau of {q}", x, want[oracle.names.index(q)])
+    a, actuated = oracle.other_accelerations(s, solved)
+    inverse = e.inverse_dynamics(actuated if oracle.model.constraints else ())
+    x, p, inputs = _given(product, oracle, s)
+    got = inverse.function("numpy")(0.0, x, [a[oracle.names.index(u[:-1])] for u in e.speeds], p, inputs)
+    want = oracle.wanted(s, a, actuated)
+    size = 1.0 + 1e-3 * max((abs(x) for x in want.values()), default=0.0)
+    for q, tau in zip(inverse.tau, got, strict=True):
+        if q in want:
+            found.same("inverse dynamics", f"tau of {q}", tau, want[q], size)
 
 
 def _right(found: Found, language: str, got: Any, product: Product, oracle: Oracle, s: State, solved: Solved) -> None:
@@ -210,4 +209,5 @@ def _javascript(found: Found, model: Any, product: Product, oracle: Oracle, s: S
     _right(found, "JavaScript", json.loads(told.stdout), product, oracle, s, solved)
 
 
+PARTS = {"answers": _answers, "reactions": _reactions, "run": _run, "small motions": _small, "inverse": _inverse}
 LANGUAGES = {"c": _c, "javascript": _javascript}

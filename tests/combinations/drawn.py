@@ -61,6 +61,9 @@ DIMENSIONS = {
 }
 
 
+RUBS = ("sliding", "sticking", "viscous")
+
+
 class Drawing:
     """A model under construction."""
 
@@ -431,8 +434,9 @@ class Drawing:
         one = self.coordinate("s1", "length", -0.6, self.number(-1, 1))
         two = self.coordinate("s2", "length", -0.8)
         three = self.coordinate("s3", "angle", 0.0)
-        self.particle("left", self.joint("prismatic", at=["-h", 0], axis=[0, 1], displacement=one))
-        self.particle("right", self.joint("prismatic", at=["h", 0], axis=[0, 1], displacement=two), "2*m")
+        up = self.v(0, 1, 0)
+        self.particle("left", self.joint("prismatic", at=self.v("-h", 0, 0), axis=up, displacement=one))
+        self.particle("right", self.joint("prismatic", at=self.v("h", 0, 0), axis=up, displacement=two), "2*m")
         self.bodies["pulley"] = {
             "shape": {"kind": "disc", "mass": "m", "radius": "h"},
             "joint": self.joint("revolute", angle=three),
@@ -498,7 +502,7 @@ class Drawing:
         moving = [q for q, kind in self.kinds.items() if kind == "length" and q in self.coordinates]
         fixed_at = self.v("l/4", "h", "-h/2")
         joint["at"] = self.v(f"l/4 + {moving[0]}/5", "h", "0") if extra == "moving_seat" and moving else fixed_at
-        if extra == "moving_seat" and (not moving or self.levels["contact"] in ("sliding", "viscous")):
+        if extra == "moving_seat" and (not moving or self.levels["contact"] in RUBS):
             joint["at"] = self.v("l/4", "h + B*sin(w*t)", "0")
         if extra == "turned":
             joint["turned"] = {"angle": "pi/5"} if self.plane else {"axis": [1, 2, 2], "angle": 0.6}
@@ -608,7 +612,7 @@ class Drawing:
         how = self.levels["contact"]
         if how == "none":
             return
-        x = self.coordinate("p1", "length", 0.0, 0.8 if how != "open" else 0.2)
+        x = self.coordinate("p1", "length", 0.0, {"open": 0.2, "sticking": 0.0}.get(how, 0.8))
         down = self.v(0, "-g") if self.plane else [0, 0, "-g"]
         self.forces["own_weight"] = {"kind": "gravity", "acceleration": down, "bodies": ["puck"]}
         if how == "ending":
@@ -635,12 +639,15 @@ class Drawing:
         place: list = [x, y]
         normal: list = [0, 1]
         if not self.plane:
-            z = self.coordinate("p3", "length", 0.0, 0.3)
+            z = self.coordinate("p3", "length", 0.0, 0.0 if how == "sticking" else 0.3)
             place, normal = [x, z, y], [0, 0, 1]
         self.particle("puck", {"kind": "placed", "at": place, "angle": 0})
         tie = {"kind": "support", "point": "puck.center", "at": self.v(0, 0, 0), "normal": normal, "unilateral": True}
-        if how in ("sliding",):
+        if how in ("sliding", "sticking"):
             tie["friction"] = "mu"
+        if how == "sticking":
+            side = self.v("mu*m*g/3", "-mu*m*g/4") if self.plane else ["mu*m*g/3", "mu*m*g/4", "-mu*m*g/5"]
+            self.forces["own_push"] = {"kind": "force", "point": "puck.center", "force": side}
         if how == "viscous":
             tie["friction"] = {"viscous": 0.3}
             if self.levels["units"] != "none":
@@ -665,9 +672,13 @@ class Drawing:
         q = rng.choice([x for x in free if self.kinds[x] != "pure"] or list(self.coordinates))
         unit = "d*" if self.kinds[q] == "length" else ""
         strength = "F1" if "F1" in self.inputs else "F0*sin(w*t)"
-        if other == "anchor" and how in ("spring", "spring_along", "spring_start", "damper", "damper_along", "between"):
+        if other == "anchor" and how.startswith(("spring", "damper", "between")):
             self.points["anchor"] = self.v(-1.3, 0.9, 0.7)
         two = [other, point]
+        if how == "spring_moved":
+            self.bodies["tool"].setdefault("points", {})["S"] = self.v(
+                f"l/3 + {unit or 'h*'}{q}/5".replace("d*", ""), "h", 0
+            )
         made: dict[str, Any] | None = {
             "gravity": {"kind": "gravity", "acceleration": self.v(0, "-g", 0) if plane else [0, 0, "-g"]},
             "force": {
@@ -696,6 +707,7 @@ class Drawing:
                 "along": self.v(3, 4, 0),
             },
             "spring_start": {"kind": "spring", "points": two, "stiffness": "k", "length": "start"},
+            "spring_moved": {"kind": "spring", "points": [other, "tool.S"], "stiffness": "k", "length": "l"},
             "damper": {"kind": "damper", "points": two, "damping": "c"},
             "damper_along": {"kind": "damper", "points": two, "damping": "c", "along": self.v(1, 2, 2)},
             "torsion_spring": {"kind": "torsion_spring", "body": body, "stiffness": "kt", "rest": 0.1},

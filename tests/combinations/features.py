@@ -17,7 +17,7 @@ SHAPES = (
 )  # fmt: skip
 
 FORCES = (
-    "gravity", "force", "follower", "couple", "distributed", "spring", "spring_along", "spring_start", "damper",
+    "gravity", "force", "follower", "couple", "distributed", "spring", "spring_along", "spring_start", "spring_moved", "damper",
     "damper_along", "torsion_spring", "torsion_damper", "between", "potential", "kinetic", "generalized", "none",
 )  # fmt: skip
 
@@ -41,7 +41,7 @@ FACTORS: dict[str, tuple[str, ...]] = {
     "shape": SHAPES,
     "force": FORCES,
     "second_force": FORCES,
-    "contact": ("none", "open", "closed", "sliding", "ending", "viscous"),
+    "contact": ("none", "open", "closed", "sliding", "sticking", "ending", "viscous"),
     "speeds": ("rates", "declared", "omega"),
     "input": ("none", "expression", "table", "steps", "controller"),
     "units": ("none", "si", "other"),
@@ -128,7 +128,7 @@ FORBIDDEN: tuple[Forbidden, ...] = (
     *_each(
         ("base", "all_driven"),
         "contact",
-        ("open", "closed", "sliding", "ending", "viscous"),
+        ("open", "closed", "sliding", "sticking", "ending", "viscous"),
         "nothing is free that could leave a contact",
         "nothing that is free moves it",
     ),
@@ -162,25 +162,24 @@ FORBIDDEN: tuple[Forbidden, ...] = (
             "friction needs reactions, which do not follow",
             "acts on coordinates",
         )
-        for contact in ("sliding", "viscous")
+        for contact in ("sliding", "sticking", "viscous")
         for factor in ("force", "second_force")
         for force in ("potential", "kinetic", "generalized")
     ),
     *_each(
         ("tie", "gap"),
         "contact",
-        ("sliding", "viscous"),
+        ("sliding", "sticking", "viscous"),
         "friction needs reactions, which do not follow",
         "acts on coordinates",
     ),
     *_each(
         ("tie", "rate"),
         "contact",
-        ("sliding", "viscous"),
+        ("sliding", "sticking", "viscous"),
         "friction needs reactions, which do not follow",
         "acts on coordinates",
     ),
-    *_each(("space", "space"), "tie", ("string",), "drawn in the plane only"),
 )
 
 

@@ -348,6 +348,14 @@ def _skate(name: str, tie: dict, now: Any, o: Any) -> Rows:
     return [(dot(_times(n, 1.0 / ty.norm(n)), v), True, "n")]
 
 
+def _beside(now: Any, items: list) -> Callable[[Jet], Jet]:
+    """The left of a direction of a strand: seen along the axis of the wrap at one of its ends."""
+    wrap = next((x for x in items if not isinstance(x, str)), {})
+    axis = _unit(now, wrap["axis"]) if "axis" in wrap else np.array(Z)
+    R = jet(np.eye(3)) if now.model.plane or "body" not in wrap else now.frame(wrap["body"])[1]
+    return lambda d: cross(matmul(R, vector(axis)), d)
+
+
 def _touch(now: Any, item: Any) -> tuple[Jet, str | None, float]:
     """(centre, body, signed radius) of an item of a string's path; cw is positive."""
     if isinstance(item, str):
@@ -367,6 +375,7 @@ def _string(name: str, tie: dict, now: Any, o: Any) -> Rows:
     items, tensions, keeping = tie["path"], [], []
     for k, (one, two) in enumerate(itertools.pairwise(items)):
         (A, body_a, s_a), (B, body_b, s_b) = _touch(now, one), _touch(now, two)
+        left = _beside(now, [one, two])
         if "strands" in tie:
             given = tie["strands"][k]
             way = np.array(DIRECTIONS[given]) if isinstance(given, str) else _unit(now, given)
@@ -378,13 +387,13 @@ def _string(name: str, tie: dict, now: Any, o: Any) -> Rows:
             if s_a or s_b:
                 sine = (s_a - s_b) / length
                 cosine = ty.sqrt(1.0 - sine * sine)
-                d = _times(d, cosine) - _times(_left(d), sine)
-        a, b = A + _times(_left(d), s_a), B + _times(_left(d), s_b)
+                d = _times(d, cosine) - _times(left(d), sine)
+        a, b = A + _times(left(d), s_a), B + _times(left(d), s_b)
         v = now.velocity_at(body_b, b) if not isinstance(two, str) else now.point(two).rate()
         w = now.velocity_at(body_a, a) if not isinstance(one, str) else now.point(one).rate()
         tensions.append(-dot(d, v - w))
         if "strands" in tie:
-            keeping.append(dot(_left(d), b - a))
+            keeping.append(dot(left(d), b - a))
     joined: Rows = []
     for k, (item, row) in enumerate(zip(items[:-1], tensions, strict=True)):
         through = k > 0 and (isinstance(item, str) or item.get("slip"))
@@ -446,7 +455,7 @@ def tie_rows(name: str, tie: dict, now: Any, o: Any) -> Rows:
 
 @dataclass
 class Load:
-    """What acts: on a body at a place (ground axes), or on coordinates."""
+    """What acts: on a body at a place (ground axes), or on coordinates; a place may move in its body (`moving`)."""
 
     name: str
     body: str | None = None
@@ -454,6 +463,7 @@ class Load:
     force: np.ndarray | None = None
     torque: np.ndarray | None = None
     along: dict[str, float] | None = None
+    moving: Jet | None = None
 
     def on(self, o: Any, now: Any) -> np.ndarray:
         """Its part of F."""
@@ -471,7 +481,13 @@ class Load:
         )
         F[6 * i : 6 * i + 3] += f
         F[6 * i + 3 : 6 * i + 6] += R.T @ torque
+        first = 6 * len(o.bodies)
+        if self.moving is not None and self.moving.c.shape[-1] == 2 + len(F):
+            F[first:] += MOVING["point"](f, self.moving.c[1][:, 2 + first :])
         return F
+
+
+MOVING: dict[str, Callable] = {"point": lambda f, slopes: f @ slopes}  # along coordinates that move a point in its body
 
 
 def _now(x: Jet) -> np.ndarray:
@@ -497,7 +513,7 @@ def _pair(name: str, now: Any, points: list[str], pull: Callable, along: Any = N
     for p, place, sense in ((points[0], a, 1), (points[1], b, -1)):
         body = _split(now, p)
         if body is not None:
-            found.append(Load(name, body, _now(place), sense * strength * e))
+            found.append(Load(name, body, _now(place), sense * strength * e, moving=place))
     return found
 
 
@@ -516,7 +532,8 @@ def _force(name: str, f: dict, now: Any, o: Any, s: Any) -> list[Load]:
     force = _now(now.vector(f["force"]))
     if f.get("axes", "ground") != "ground":
         force = _now(now.poses[f["axes"]][1]) @ force
-    return [Load(name, body, _now(now.point(f["point"])), force)] if body else []
+    place = now.point(f["point"])
+    return [Load(name, body, _now(place), force, moving=place)] if body else []
 
 
 def _couple(name: str, f: dict, now: Any, o: Any, s: Any) -> list[Load]:
@@ -765,15 +782,32 @@ def potential(o: Any, now: Any) -> float | None:
 
 
 def frictions(o: Any, now: Any, rows: list) -> list[tuple[int, np.ndarray]]:
-    """(row, force per unit of |N|) of each contact that rubs."""
-    found = []
+    """(row, force per unit of |N|) of each contact that rubs; one that sticks has rows of its own instead."""
+    found, stuck = [], {row.owner for row in rows if row.role in ("stick t", "stick s")}
     for i, row in enumerate(rows):
         tie = now.model.constraints.get(row.owner)
-        if tie is None or row.role != "n" or "friction" not in tie:
+        if tie is None or row.role != "n" or "friction" not in tie or row.owner in stuck:
             continue
         if tie["kind"] == "rolling" and not tie.get("slip"):
             continue
         found.append((i, rubbing(o, now, tie)))
+    return found
+
+
+def sticking(o: Any, now: Any, rows: list) -> list[tuple[str, bool, Any]]:
+    """(tie, its row of rates, mu) of each closed contact with dry friction at rest: nothing slides there."""
+    found = []
+    for name in dict.fromkeys(row.owner for row in rows if row.role == "n"):
+        tie = now.model.constraints.get(name, {})
+        if not isinstance(tie.get("friction", {}), (int, float, str)) or (
+            tie["kind"] == "rolling" and not tie.get("slip")
+        ):
+            continue
+        place, body, on, tangents = _sliding(now, tie)
+        v = now.velocity_at(body, place) - now.velocity_at(on, place)
+        slips = [dot(e, v) for e in tangents]
+        if max(abs(float(x.c[0][0])) for x in slips) < 1e-9:
+            found += [(name, x, role) for x, role in zip(slips, "ts", strict=False)]
     return found
 
 
@@ -996,8 +1030,24 @@ def _guiding(name: str, now: Any) -> dict[str, np.ndarray]:
     return {f"reaction_n({name})": np.array([-way[1], way[0], 0])}
 
 
+def holds(o: Any, solved: Any) -> bool:
+    """Whether every contact that sticks is held by less than mu N."""
+    kept, lam, _ = holding(o, solved)
+    by_role = {(solved.rows[i].owner, solved.rows[i].role): x for i, x in zip(kept, lam, strict=True)}
+    for name in {owner for owner, role in by_role if role.startswith("stick")}:
+        mu = solved.now.model.number(solved.now.model.constraints[name]["friction"])
+        along = [x for (owner, role), x in by_role.items() if owner == name and role.startswith("stick")]
+        if np.linalg.norm(along) > STICKING["least"](mu, abs(by_role[name, "n"])):
+            return False
+    return True
+
+
+STICKING: dict[str, Callable] = {"least": lambda mu, N: mu * N * (1 + 1e-9)}
+
+
 def _of_tie(name: str, tie: dict, now: Any, rows: list[tuple[str, Any]]) -> dict[str, Any]:
     kind = tie["kind"]
+    rows = [(role.removeprefix("stick "), x) for role, x in rows]
     plane = now.model.plane
     if not rows:
         return {}

@@ -318,6 +318,7 @@ class Oracle:
         now = self.maximal(s)
         drives = self.drives(s.t)
         rows = self.joint_rows(now) + self.tie_rows(now, closed)
+        rows += [Row(name, slip, True, f"stick {role}") for name, slip, role in laws.sticking(self, now, rows)]
         first = 6 * len(self.bodies)
         rows += [Row(f"drive {name}", now.q[name], role="drive") for name in drives]
         parts = [row.parts() for row in rows]
@@ -335,7 +336,7 @@ class Oracle:
 
         bare = found(np.zeros(len(F)))
         if not rubbing:
-            return bare
+            return self._held(bare)
         N0 = self._pressed(bare, rubbing)
         A = np.array([self._pressed(found(column), rubbing) - N0 for _, column in rubbing]).T
         kept = []
@@ -350,6 +351,11 @@ class Oracle:
             raise NoAnswer(f"friction has {len(kept)} answers")
         solved = found(sum(P * column for P, (_, column) in zip(kept[0], rubbing, strict=True)))
         solved.pressed = {rows[i].owner: P for P, (i, _) in zip(kept[0], rubbing, strict=True)}
+        return self._held(solved)
+
+    def _held(self, solved: Solved) -> Solved:
+        if not laws.holds(self, solved):
+            raise NoAnswer("a contact that would stick is held by too little")
         return solved
 
     def _pressed(self, solved: Solved, rubbing: list) -> np.ndarray:
@@ -425,12 +431,31 @@ class Oracle:
             found += [*ty.vee(ty.matmul(ty.transpose(R), R.rate())).c[0][:, 0]]
         return np.array(found + [now.q[q].c[1][0] for q in self.names])
 
-    def wanted(self, s: State, a: np.ndarray) -> np.ndarray:
-        """tau along each coordinate that the accelerations a take, of a system whose ties are open."""
+    def other_accelerations(self, s: State, solved: Solved) -> tuple[np.ndarray, list[str]]:
+        """(accelerations beside those of the motion that keep the ties and drives, the coordinates free by these)."""
+        free = [k for k, name in enumerate(self.names) if name not in self.model.driven]
+        J, _ = self._velocity_rows(s, self.closed_at_start())
+        J = J[:, free] if len(J) else np.zeros((0, len(free)))
+        along = np.array([0.3 + 0.1 * k for k in free])
+        a = solved.a.copy()
+        a[free] += along - np.linalg.pinv(J, rcond=1e-9) @ (J @ along)
+        dependent = _pivots(J) if len(J) else []
+        return a, [self.names[k] for i, k in enumerate(free) if i not in dependent]
+
+    def wanted(self, s: State, a: np.ndarray, actuated: list[str]) -> dict[str, float]:
+        """The forces along actuated coordinates that the accelerations a take, where they have one value."""
         now = self.maximal(s)
         M, F = self._masses(now, s)
         B, z = self._columns(s, a)
-        return B.T @ (M @ z - F)
+        need = B.T @ (M @ z - F)
+        J, _ = self._velocity_rows(s, self.closed_at_start())
+        free = [k for k, name in enumerate(self.names) if name not in self.model.driven]
+        E = np.eye(len(self.names))[:, [self.names.index(q) for q in actuated]]
+        A = np.hstack([E, J.T])[free] if len(J) else E[free]
+        x, null = least_squares(A, need[free])
+        if np.max(np.abs(A @ x - need[free]), initial=0.0) > 1e-7 * (1 + np.max(np.abs(need))):
+            raise NoAnswer("these accelerations take forces along what is not actuated")
+        return {q: float(x[k]) for k, q in enumerate(actuated) if not len(null) or np.max(np.abs(null[:, k])) < 1e-7}
 
     def _columns(self, s: State, a: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
         """(B, z'') of z' = B q' + ...: from the joints as functions of the coordinates."""
@@ -445,14 +470,19 @@ class Oracle:
             acc += [*(2 * center.c[2][:, 0]), *w.c[1][:, 0]]
         return np.array([*B, *np.eye(len(self.names))]), np.array([*acc, *a])
 
+    def stands(self) -> bool:
+        """Whether all that is driven stays where it is."""
+        return all(np.max(np.abs(x[1:])) < 1e-12 for t in (0.0, 0.31, 1.7) for x in self.drives(t).values())
+
     def small(self, q: np.ndarray, h: float = 1e-5) -> np.ndarray:
         """A of x' = A x about rest at q, x = independent coordinates and their rates, by differences.
 
         The ties are positions alone; the rest follows from the independent ones, which the rows of J choose.
         """
         J = self._velocity_rows(State(0.0, q, np.zeros(len(q))), None)[0]
-        dependent = _pivots(J) if len(J) else []
-        own = [k for k in range(len(q)) if k not in dependent]
+        free = [k for k, name in enumerate(self.names) if name not in self.model.driven]
+        dependent = [free[k] for k in _pivots(J[:, free])] if len(J) else []
+        own = [k for k, name in enumerate(self.names) if k not in dependent and name not in self.model.driven]
 
         def slope(x: np.ndarray) -> np.ndarray:
             places, rates = np.array(q, dtype=float), np.zeros(len(q))
