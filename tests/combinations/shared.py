@@ -1,7 +1,7 @@
 """All calls of one drawn model share what the product keeps with a frozen model, and its proofs.
 
-A call by the command line reads the file anew; here the same text gives the same frozen model, so that its equations are
-derived once (`records.recalled`), and the proof of the same equations is made once. What a call adds (its printed
+A call by the command line reads the file anew; here the same text gives the same frozen model, so that its equations
+are derived once (`records.recalled`), and the proof of the same equations is made once. What a call adds (its printed
 formulas, its code, another way of derivation) is proven in each.
 """
 

@@ -88,7 +88,7 @@ def planted(table: str, law: str) -> Callable:
         return 2 * M, 2 * bias
 
     if table == "STICKING":
-        return lambda *arguments: 0.3 * own(*arguments)
+        return lambda *arguments: 0.1 * own(*arguments)
     by_table = {"JOINTS": joint, "TIES": tie, "FORCES": force}
     return by_table.get(table, kinetic if law == "kinetic" else lambda *arguments: 1.5 * own(*arguments))
 
