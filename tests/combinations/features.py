@@ -18,7 +18,8 @@ SHAPES = (
 
 FORCES = (
     "gravity", "force", "follower", "couple", "distributed", "spring", "spring_along", "spring_start", "spring_moved",
-    "damper", "damper_along", "torsion_spring", "torsion_damper", "between", "potential", "kinetic", "generalized", "none",
+    "damper", "damper_along", "torsion_spring", "torsion_damper", "between", "potential", "kinetic", "generalized",
+    "none",
 )  # fmt: skip
 
 FACTORS: dict[str, tuple[str, ...]] = {
