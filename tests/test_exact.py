@@ -9,9 +9,10 @@ from hypothesis import given
 from random_expressions import on_graph, smooth, trigonometric
 
 from eomgen.errors import DerivationError
-from eomgen.symbolic.exact.equality import equal_at_random_states, exact_state
+from eomgen.symbolic.exact.equality import equal_at_random_states, equal_at_real_states, exact_state
 from eomgen.symbolic.expression.graph import Graph
-from eomgen.symbolic.numeric.evaluation import PRIME_FIELD, RATIONAL, NoMeaning, evaluate
+from eomgen.symbolic.expression.rational import Fraction
+from eomgen.symbolic.numeric.evaluation import PRIME_FIELD, RATIONAL, NoMeaning, evaluate, fifty_digits
 
 
 @pytest.fixture
@@ -149,3 +150,13 @@ def test_a_root_that_exists_only_where_one_symbol_is_largest_finds_a_state(graph
     for root in (height, depth):
         assert equal_at_random_states([((root + 1) * x, x * root + x)]).equal
         assert not equal_at_random_states([(root, root + x / 1000)]).equal
+
+
+def test_a_state_at_which_rounding_decides_says_nothing(graph):
+    """(1/x + y)^2 - 1/x^2 - 2 y/x = y^2 where no digit of y is left, x = 1e-66; y^2 and y differ at the next one."""
+    x, y = graph.symbol("x"), graph.symbol("y")
+    digits = fifty_digits()
+    rows = [[{x: digits.number(z), y: digits.number(2)} for z in (Fraction(1, 10**66), 3)]]
+    same = (1 / x + y) * (1 / x + y) - 1 / (x * x) - 2 * y / x
+    assert equal_at_real_states([(same, y * y)], given=rows).equal
+    assert not equal_at_real_states([(same, y)], given=rows).equal

@@ -36,10 +36,10 @@ from eomgen.proof.printed import Printed, ReadBack
 from eomgen.proof.states import States, TrialState, consistent_states, in_doubles, is_open, own_start, refuse_open
 from eomgen.proof.strands import strung_otherwise, threads_of
 from eomgen.records import dataclass
+from eomgen.symbolic.exact.equality import rounding_decides
 from eomgen.symbolic.expression.functions import inner
 from eomgen.symbolic.expression.graph import Scalar, is_zero
 from eomgen.symbolic.expression.node import State
-from eomgen.symbolic.expression.rational import Fraction
 from eomgen.symbolic.expression.spatial import apply, dot, matrix_of, transposed, vector_of
 from eomgen.symbolic.numeric.evaluation import NoValue, evaluate, fifty_digits, floats_of
 from eomgen.symbolic.numeric.tolerances import COMPUTED, DIFFERENCE_AT_50, ZERO_AT_50
@@ -454,10 +454,7 @@ def refuse_noise(scalars: Sequence[Scalar], state: State) -> None:
     Raises:
         NoValue: they do not: 0/0 at the state, where rounding stands for both zeros.
     """
-    beside = {x: value + fifty_digits().number(Fraction(1, 10**30)) for x, value in state.items()}
-    here, there = (evaluate(scalars, at, fifty_digits()) for at in (state, beside))
-    size = max(map(abs, here), default=0)
-    if any(abs(x - y) > ZERO_AT_50 + COMPUTED * size for x, y in zip(here, there, strict=True)):
+    if rounding_decides(scalars, state):
         raise NoValue("rounding decides")
 
 

@@ -24,7 +24,7 @@ from eomgen.symbolic.expression.node import State
 from eomgen.symbolic.numeric.dense import closed_entries
 from eomgen.symbolic.numeric.evaluation import NoValue, evaluate, fifty_digits, floats_of
 from eomgen.symbolic.numeric.newton import Newton
-from eomgen.symbolic.numeric.tolerances import CLOSED_AT_50, LEAST_CHANGE, SUMMED
+from eomgen.symbolic.numeric.tolerances import CLOSED_AT_50, LEAST_CHANGE, ROUNDED_AWAY, SUMMED
 
 CLOSING = Newton(enough=CLOSED_AT_50, stalls=SUMMED, damped=True, again=True)
 SPREADS = (0.1, 0.01, 0.001)  # how far from the start a generic configuration is looked for
@@ -164,12 +164,17 @@ def norms_of(ties: Ties) -> tuple[Scalar, ...]:
 def closed(ties: Ties, state: State, free: Sequence[Node], sizes: np.ndarray | None = None) -> State | None:
     """The nearest state with phi = 0, quaternions of norm 1, by moving the free coordinates; None where none is near.
 
+    What rounding alone would move stays: a distance that is 0 is 0, and what is divided by it has no value.
+
     Args:
         sizes: what counts as the same change of each of the free coordinates (None: 1 of each).
 
     The way is damped: see `symbolic.numeric.newton`.
     """
-    return nearest_root((*gaps_of(ties), *norms_of(ties)), state, free, sizes)
+    found = nearest_root((*gaps_of(ties), *norms_of(ties)), state, free, sizes)
+    if found is None:
+        return None
+    return found | {q: state[q] for q in free if abs(found[q] - state[q]) < ROUNDED_AWAY}
 
 
 def nearest_root(
