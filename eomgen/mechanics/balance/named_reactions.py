@@ -11,13 +11,15 @@ from collections.abc import Callable, Container, Iterable, Sequence
 
 from eomgen.mechanics.balance.balance import Balance
 from eomgen.mechanics.balance.components import Component
-from eomgen.mechanics.balance.unit_wrenches import Effect, efforts_of
+from eomgen.mechanics.balance.unit_wrenches import Axes, Effect, efforts_of
+from eomgen.mechanics.bodies.kinematics import BodyLink
+from eomgen.mechanics.constraints.ties import holds_identically
 from eomgen.model.constraints.members import ends_asked
 from eomgen.records import dataclass
-from eomgen.symbolic.expression.derivative import derivative
+from eomgen.symbolic.expression.derivative import depends_on, derivative
 from eomgen.symbolic.expression.expressions import Call, Expression, Reference
-from eomgen.symbolic.expression.graph import Scalar, is_zero
-from eomgen.symbolic.expression.spatial import ZERO, Vector, apply, plus
+from eomgen.symbolic.expression.graph import Node, Scalar, is_zero
+from eomgen.symbolic.expression.spatial import ZERO, Vector, apply, cross, dot, plus, vector_of
 
 FORCE, COUPLE = "N", "N*m"
 OWN = frozenset(("n", "t", "s", "tension", ""))  # components that are asked for as they are, in space too
@@ -134,10 +136,52 @@ def _name(balance: Balance, component: Component) -> str:
 
 
 def _drives(balance: Balance, j: int, component: Component) -> dict[int, Scalar]:
-    """What drives a coordinate: of every joint that follows it D_k ds_k/dq, s_k the joint's variable."""
+    """What drives a coordinate q: the work of all reactions on the bodies as q alone changes, that of ties left out.
+
+    sum over joints of D_k ds_k/dq, s_k the variable of the joint; of joints whose seat it moves what the seat takes;
+    of ties sum f . dp/dq - dphi/dq, what acts on places that it moves and that belong to no body.
+    """
     if not component.side:
         return {j: 1}
     motion = balance.system.motion
     (q,) = (x for x in motion.scope.symbols.q if x.name == component.side)
-    mine = [(i, c) for i, c in enumerate(balance.components) if c.kind == "drive" and c.side == q.name]
-    return {i: derivative(motion.link(c.owner).s[c.number - 1], q) for i, c in mine}
+    gaps = {(row.tie, row.number): row.gap for row in balance.system.ties.rows if row.gap is not None}
+    found: dict[int, Scalar] = {}
+    for i, c in enumerate(balance.components):
+        if c.kind == "drive" and c.side == q.name:
+            found[i] = derivative(motion.link(c.owner).s[c.number - 1], q)
+        elif c.kind == "joint" and _moves_seat(motion.link(c.owner), q):
+            found[i] = _work(balance, c, q)
+        elif c.kind == "tie" and depends_on(gap := gaps.get((c.owner, c.number), 0), (q,)):
+            left = _work(balance, c, q) - derivative(gap, q)
+            found |= {} if is_zero(left) or holds_identically(left) else {i: left}
+    return {i: k for i, k in found.items() if not is_zero(k)}
+
+
+def _moves_seat(link: BodyLink, q: Node) -> bool:
+    """Whether a coordinate moves the seat of a joint in its parent, or the joint's point in its body."""
+    seat = (*link.before.p, *link.point, *(x for row in link.before.R for x in row))
+    return any(depends_on(x, (q,)) for x in seat)
+
+
+def _work(balance: Balance, component: Component, q: Node) -> Scalar:
+    """f . dp/dq + n . dtheta/dq: the work of a unit of a component on the bodies as q alone changes."""
+    axes = Axes(balance.system.motion)
+    total: Scalar = 0
+    for effect in component.effects:
+        link = balance.system.motion.links[effect.link]
+        turn = _turn(link, q)
+        if effect.place is not None:  # of the body, wherever q moves what acts there
+            p = plus(vector_of(derivative(x, q) for x in link.pose.p), cross(turn, apply(link.pose.R, effect.place)))
+            total = total + dot(effect.force, axes.of_ground(link, p))
+        total = total + dot(effect.couple, axes.of_ground(link, turn))
+    return total
+
+
+def _turn(link: BodyLink, q: Node) -> Vector:
+    """dtheta/dq of a body, ground axes: the vector of dR/dq R^T."""
+    if link.angle is not None:
+        return (0, 0, derivative(link.angle, q))
+    R = link.pose.R
+    slope = [vector_of(derivative(x, q) for x in row) for row in R]
+    return (dot(slope[2], R[1]), dot(slope[0], R[2]), dot(slope[1], R[0]))
