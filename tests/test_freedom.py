@@ -9,8 +9,10 @@ import pytest
 
 import eomgen
 from eomgen.documents import rendered
+from eomgen.mechanics.constraints.freedom import freedom_of
 from eomgen.proof.freedoms import counted_otherwise
 from eomgen.verbs.check import check_document
+from eomgen.verbs.checked import checked_model
 
 HEAD = """
 eomgen = 1
@@ -187,3 +189,39 @@ def test_a_count_that_is_another_one_is_contradicted_by_the_rank_of_differences(
         replace(found, by_formula=7),
     )
     assert all(counted_otherwise(model, {}, each) for each in wrong)
+
+
+HINGED = """
+eomgen = 1
+space = "space"
+coordinates = { a = { start = 0.7, speed = 1 }, b = 0.4 }
+bodies.arm.shape = { kind = "box", mass = 1, size = [0.5, 0.1, 0.1] }
+bodies.arm.points.tip = [0.25, 0, 0]
+bodies.arm.joint = { kind = "revolute", axis = [0, 0, 1], angle = "a" }
+bodies.door.shape = { kind = "box", mass = 2, size = [0.5, 0.1, 0.3] }
+bodies.door.points.side = [-0.25, 0, 0]
+bodies.door.joint = { kind = "revolute", on = "arm.tip", point = "side", axis = [0, 1, 0], angle = "b" }
+constraints.hinge = { kind = "pin", points = ["door.side", "arm.tip"], axis = AXIS }
+"""
+
+
+def test_a_hinge_with_its_axis_in_a_body_turns_with_it():
+    """Along y of the door it is the joint's own axis, at any start: 2 freedoms and the same accelerations; in the
+    ground's axes it is another line where the arm is turned: 1 freedom, of which `check` warns."""
+    fixed = eomgen.loads(HINGED.replace("AXIS", "[0, 1, 0]"))
+    own = eomgen.loads(HINGED.replace("AXIS", '[0, 1, 0], axes = "door"'))
+    assert (freedom_of(fixed).by_rank, freedom_of(own).by_rank) == (1, 2)
+    (warning,) = checked_model(fixed).cautions
+    assert "leaves 1 degree of freedom" in warning.what and warning.mend.endswith('it leaves 2: axes = "door"')
+    assert checked_model(own).cautions == ()
+    without = eomgen.loads(HINGED.partition("constraints.")[0])
+    rates = [eomgen.derive(m).rhs("numpy")(0, [0.7, 0.4, 1, 0.3], []) for m in (own, without)]
+    assert rates[0] == pytest.approx(rates[1])
+
+
+def test_axes_of_a_hinge_are_those_of_its_bodies():
+    """A body that it does not hold, axes without an axis."""
+    with pytest.raises(eomgen.ModelError, match="'hinge' does not hold body 'third'"):
+        eomgen.loads(HINGED.replace("AXIS", '[0, 1, 0], axes = "third"') + "[bodies.third]\njoint.kind = 'fixed'\n")
+    with pytest.raises(eomgen.ModelError, match="'hinge' has no axis"):
+        eomgen.loads(HINGED.replace("axis = AXIS", 'axes = "door"'))

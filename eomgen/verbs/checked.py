@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from dataclasses import field
+from collections.abc import Iterator
+from dataclasses import field, replace
 from functools import cached_property
 
 from eomgen.errors import DerivationError, MissingValues, ModelError, Problem
@@ -19,6 +20,7 @@ from eomgen.mechanics.statics.rest_contacts import modes_at_rest
 from eomgen.mechanics.structures.structure import Structure, structure_of
 from eomgen.model.catalog import Catalog
 from eomgen.model.parts import Model
+from eomgen.model.table import Table
 from eomgen.model.unbuilt import unbuilt
 from eomgen.model.values import exact_parameters
 from eomgen.records import dataclass
@@ -102,7 +104,12 @@ def checked_model(model: Model) -> Checked:
         mobility=mobility_of(model) if still else None,
         structure=structure_of(system_of(model, modes_at_rest(model))) if still else None,
         start=start,
-        cautions=(*_open(model, start), *(_idle(model, modes) if model.coordinates else ()), *_locked(model, freedom)),
+        cautions=(
+            *_open(model, start),
+            *(_idle(model, modes) if model.coordinates else ()),
+            *_locked(model, freedom),
+            *_stiff(model, modes, freedom),
+        ),
         modes=modes,
     )
 
@@ -121,6 +128,22 @@ def _locked(model: Model, freedom: Freedom) -> tuple[Problem, ...]:
         return ()
     what = f"nothing can move: the ties leave '{free[0]}' no freedom"
     return (Problem(f"coordinates.{free[0]}", what, mend="look for a hinge that is missing, or a tie too many"),)
+
+
+def _stiff(model: Model, modes: ContactModes, freedom: Freedom) -> Iterator[Problem]:
+    """Ties with a direction in ground axes that would leave more freedoms if it turned with one of their bodies."""
+    for name, tie in model.constraints.items() if freedom.by_rank is not None and model.space == "space" else ():
+        for written, other in tie.turned():
+            try:
+                found = freedom_of(replace(model, constraints=Table({**model.constraints, name: other})), modes).by_rank
+            except (DerivationError, ModelError):  # its ties do not close so
+                continue
+            if found is not None and freedom.by_rank is not None and found > freedom.by_rank:
+                count = f"{freedom.by_rank} degree{'' if freedom.by_rank == 1 else 's'} of freedom"
+                what = f"the axis of '{name}' is in the ground's axes, and leaves {count}"
+                mend = f"in a body's own axes it leaves {found}: {written}"
+                yield Problem(f"constraints.{name}", what, mend=mend)
+                break
 
 
 def _idle(model: Model, modes: ContactModes) -> tuple[Problem, ...]:

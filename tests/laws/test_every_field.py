@@ -283,6 +283,9 @@ SPACE = {
     "free by a quaternion": QUATERNION.replace("[speeds]", "x = 1\ny = 0\nz = { speed = 1 }\n[speeds]")
     + f'joint = {{ kind = "free", position = ["x", "y", "z"], {BY_QUATERNION} }}\n',
     "pin": tie("kind = 'pin'\npoints = ['plate.P', 'drum.M']", loose() + DRUM_3),
+    "hinge_in_a_body": tie(
+        "kind = 'pin'\npoints = ['plate.P', 'drum.M']\naxis = [1, 1, 0]\naxes = 'drum'", loose() + DRUM_3
+    ),
     "hinge": tie("kind = 'pin'\npoints = ['plate.P']\naxis = [1, 1, 0]", loose()),
     "support": tie("kind = 'support'\npoint = 'plate.P'\nnormal = [1, 2, 2]\nfriction = 'mu'", loose(", speed = 1")),
     "clamp": tie("kind = 'clamp'\npoints = ['plate.P', 'drum.M']", loose() + DRUM_3),

@@ -2,7 +2,7 @@
 
 from abc import ABC, abstractmethod
 from collections.abc import Iterator
-from typing import ClassVar
+from typing import Any, ClassVar
 
 from eomgen.model.catalog import Catalog
 from eomgen.model.constraints.meeting import Meeting, Thread
@@ -54,6 +54,10 @@ class Constraint(Part, ABC):
     def strands_at(self, scene: LoadContext) -> tuple[Strand, ...]:
         """The straight pieces of a string; () where it is no string."""
         return ()
+
+    def turned(self) -> Iterator[tuple[str, Any]]:
+        """(how it is written, the same tie) with a direction in the axes of a body, where it stands in the ground's."""
+        yield from ()
 
     def leans_on_ground(self) -> bool:
         """Whether the ground guides what the tie holds, though it pushes on no place of the ground."""

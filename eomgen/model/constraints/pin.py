@@ -1,12 +1,17 @@
 """Pin: a hinge of points."""
 
-from typing import ClassVar
+from collections.abc import Iterator
+from dataclasses import replace
+from typing import Any, ClassVar
 
+from eomgen.model.catalog import Catalog, owner_of
 from eomgen.model.constraints.base import Constraint
 from eomgen.model.constraints.row import AXIS_NAMES, TieRow, scene_axes
+from eomgen.model.findings import Finding
 from eomgen.model.forces.load import BodyPoint, Couple, LoadContext, PointForce
 from eomgen.model.joints.base import across, unit
-from eomgen.model.kinds import Points, SpaceDirection
+from eomgen.model.kinds import AxesName, Points, SpaceDirection
+from eomgen.model.positions import DocumentPath
 from eomgen.records import dataclass
 from eomgen.symbolic.expression.graph import Scalar
 from eomgen.symbolic.expression.spatial import IDENTITY, Vector, apply, cross, dot, matrix_of, minus, times, transposed
@@ -18,12 +23,29 @@ class Pin(Constraint):
 
     Args:
         points: the hinge's points, one of each body.
-        axis: in space, the hinge's axis in the ground's axes at the start (None: a ball joint).
+        axis: in space, the hinge's axis at the start (None: a ball joint).
+        axes: "ground", or the body of the hinge in whose axes that is given.
     """
 
     kind: ClassVar[str] = "pin"
     points: Points
     axis: SpaceDirection | None = None
+    axes: AxesName = "ground"
+
+    def findings(self, path: DocumentPath, catalog: Catalog) -> Iterator[Finding]:
+        """Axes of a body that the hinge does not hold, or of no axis."""
+        holds = [owner_of(point) for point in self.points]
+        if self.axes in catalog.table("bodies") and self.axes not in holds:
+            what = f"'{path[1]}' does not hold body '{self.axes}'"
+            yield Finding((*path, "axes"), what, f"one of {', '.join(holds)}")
+        elif self.axes != "ground" and self.axis is None:
+            yield Finding((*path, "axes"), f"'{path[1]}' has no axis", "give the axis, or leave 'axes' out", key=True)
+
+    def turned(self) -> Iterator[tuple[str, Any]]:
+        """The same hinge with its axis in the axes of each body that it holds."""
+        if self.axis is not None and self.axes == "ground":
+            for body in dict.fromkeys(owner_of(point) for point in self.points if "." in point):
+                yield f'axes = "{body}"', replace(self, axes=body)
 
     def stays(self, component: str) -> bool:
         return len(self.points) == 1 and component != "couple"
@@ -43,7 +65,7 @@ class Pin(Constraint):
             rows += held_together(scene, first, other)
             if self.axis is not None and not scene.plane:
                 bodies = first[0], other[0]
-                n = unit(as_carried(scene, scene.carrier_of(*bodies), scene.vector(self.axis)))
+                n = unit(as_carried(scene, scene.carrier_of(*bodies), self._axis_at_start(scene)))
                 rows += [across_from(scene, bodies, e, n) for e in across(n)]
         return tuple(rows)
 
@@ -52,8 +74,16 @@ class Pin(Constraint):
         if self.axis is None or scene.plane:
             return ()
         first, *_ = named = [scene.place(point) for point in self.points]
-        n = unit(scene.vector(self.axis))
+        n = unit(self._axis_at_start(scene))
         return tuple(alike(scene, (first[0], other[0]), n) for other in others_of(scene, named))
+
+    def _axis_at_start(self, scene: LoadContext) -> Vector:
+        """In ground axes."""
+        assert self.axis is not None, "asked of a hinge"
+        n = scene.vector(self.axis)
+        if self.axes == "ground":
+            return n
+        return apply(matrix_of((scene.start(x) for x in row) for row in scene.orientation(self.axes)), n)
 
 
 def others_of(scene: LoadContext, named: list[BodyPoint]) -> list[BodyPoint]:
