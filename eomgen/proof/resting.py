@@ -49,6 +49,19 @@ def _unbalanced(place: Equilibrium) -> str:
     for i, (x, usual) in enumerate(zip(left, _usual(statics, known), strict=True)):
         if abs(x) > COMPUTED * usual + ZERO_AT_50:
             return f"{float(x):.3g} is left of equation {i + 1}"
+    return _unbalanced_along(place, known)
+
+
+def _unbalanced_along(place: Equilibrium, known: Mapping[Node, Any]) -> str:
+    """The same at places of the curve that it stands for."""
+    statics, digits = place.statics, fifty_digits()
+    points = [] if place.curve is None else place.curve.points[:: 1 + len(place.curve.points) // MOST]
+    for z in points:
+        there = {**known, **{x: digits.number(1) * float(v) for x, v in zip(statics.unknowns, z, strict=True)}}
+        left = evaluate(statics.equations, there, digits)
+        for x, usual in zip(left, _usual(statics, there), strict=True):
+            if abs(x) > SAME_PLACE * usual + ZERO_AT_50:
+                return f"{float(x):.3g} is left along the family, at {statics.q[0].name} = {z[0]:.6g}"
     return ""
 
 

@@ -17,6 +17,7 @@ from eomgen.documents.setting_steps import data_step
 from eomgen.documents.statics.equilibrium_steps import equilibrium_steps
 from eomgen.errors import DerivationError, ModelError, RunFailed
 from eomgen.mechanics.equations.system import System
+from eomgen.mechanics.equilibria.families import Curve
 from eomgen.mechanics.equilibria.resting_reactions import ReactionsOrWhy, reactions_or_why
 from eomgen.mechanics.equilibria.search import Equilibria, Equilibrium, all_equilibria
 from eomgen.mechanics.equilibria.stability import Stability
@@ -116,7 +117,14 @@ def _place(place: Equilibrium) -> dict[str, Any]:
         "multipliers": {lam.name: _of(place, lam) for lam in place.statics.lam},
         "stability": _stability(place.stability),
         "pulling": list(place.pulling),
+        "family": None if place.curve is None else _family(place, place.curve),
     }
+
+
+def _family(place: Equilibrium, curve: Curve) -> dict[str, Any]:
+    """The places of the curve that were met along it, by coordinate [SI]."""
+    columns = {q.name: curve.points[:, k].tolist() for k, q in enumerate(place.statics.q)}
+    return {"closed": curve.closed, "places": columns}
 
 
 def _reactions(place: Equilibrium, those: ReactionsOrWhy) -> dict[str, Any]:

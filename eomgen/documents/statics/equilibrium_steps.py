@@ -2,19 +2,29 @@
 
 from __future__ import annotations
 
+import math
+from collections.abc import Mapping
+
+import numpy as np
+
 from eomgen.documents.bounded import page
 from eomgen.documents.naming import Written, with_roots_named
 from eomgen.documents.reaction_names import said
 from eomgen.documents.reading import Reader
 from eomgen.documents.setting_steps import count, listed_symbols
 from eomgen.documents.statements import Cell, Entry, Formula, Law, Name, Piece, Statement, Step, narrow_grid, prose
+from eomgen.mechanics.equilibria.families import Curve
 from eomgen.mechanics.equilibria.resting_reactions import ReactionsOrWhy, RestingReaction
 from eomgen.mechanics.equilibria.search import Equilibria, Equilibrium
 from eomgen.mechanics.equilibria.stability import Stability
 from eomgen.mechanics.equilibria.static_equations import StaticEquations
 from eomgen.mechanics.initial_state.numeric_value import known_exactly, shown_numbers
 from eomgen.mechanics.reactions.reactions import Reactions
+from eomgen.model.own_units import in_own_unit
+from eomgen.model.parts import Model
 from eomgen.symbolic.expression.graph import Scalar
+from eomgen.symbolic.expression.units import Unit
+from eomgen.symbolic.numeric.tolerances import SAME_PLACE
 
 REST = Law("Q_k = 0", "Q_{k} = 0")
 REST_WITH_TIES = Law("Q_k + (J^T*lam)_k = 0", r"Q_{k} + \left(J^{\mathsf{T}} \lambda\right)_{k} = 0")
@@ -95,9 +105,39 @@ def _places(found: Equilibria) -> Step:
     if not found.found:
         statements.append(prose(_how_many(found)))
         return Step("places", "Places of rest", tuple(statements))
-    rows = [row for k, place in enumerate(found.found, start=1) for row in _rows(k, place)]
-    grid = narrow_grid(("place", "coordinate", "exact", "value", "stability"), rows)
-    return Step("places", "Places of rest", (*statements, prose(_how_many(found)), grid))
+    units = _declared_units(found.statics.system.scope.model)
+    rows = [row for k, place in enumerate(found.found, start=1) for row in _rows(k, place, units)]
+    grid = narrow_grid(("place", "coordinate", "exact", "value", "unit", "stability"), rows)
+    curves = [_curve(k, place, place.curve) for k, place in enumerate(found.found, start=1) if place.curve is not None]
+    return Step("places", "Places of rest", (*statements, prose(_how_many(found)), grid, *curves))
+
+
+def _declared_units(model: Model) -> dict[str, Unit]:
+    """Of the coordinates that have one in the file."""
+    return {name: q.unit for name, q in model.coordinates.items() if q.unit is not None}
+
+
+def _curve(number: int, place: Equilibrium, curve: Curve) -> Statement:
+    """What moves along a curve of places of rest, what follows it, what stays."""
+    model, names = place.statics.system.scope.model, [q.name for q in place.statics.q]
+    points = curve.points[:, : len(names)]
+    moved = np.max(points, axis=0) - np.min(points, axis=0)
+    first = int(np.flatnonzero(moved >= np.max(moved) / 2)[0])
+    low, high = (in_own_unit(model, names[first], float(end(points[:, first])), 4) for end in (np.min, np.max))
+    told = [f"{names[first]} may be anything" if curve.closed else f"{names[first]} was followed from {low} to {high}"]
+    for k, name in enumerate(names):
+        if k == first:
+            continue
+        if moved[k] <= SAME_PLACE:
+            told.append(f"{name} = {in_own_unit(model, name, place.numbers.get(place.statics.q[k], 0.0), 9)} stays")
+            continue
+        offsets = {sign: points[:, k] - sign * points[:, first] for sign in (1, -1)}
+        sign = next((s for s, x in offsets.items() if np.ptp(x) <= SAME_PLACE), 0)
+        away = in_own_unit(model, name, float(abs(offsets[sign or 1][0])), 9)
+        plus = "+" if float(offsets[sign or 1][0]) >= 0 else "-"
+        other = f"{'-' if sign < 0 else ''}{names[first]} {plus} {away}"
+        told.append(f"{name} = {other}" if sign else f"{name} follows it")
+    return prose(f"Place {number} is one of a curve of places of rest, a family: {', '.join(told)}.")
 
 
 def _how_many(found: Equilibria) -> str:
@@ -116,12 +156,18 @@ def _places_in_words(n: int) -> str:
     return "none" if n == 0 else count(n, "place of rest", "places of rest")
 
 
-def _rows(number: int, place: Equilibrium) -> list[tuple[Cell, ...]]:
+def _rows(number: int, place: Equilibrium, units: Mapping[str, Unit]) -> list[tuple[Cell, ...]]:
+    """A coordinate a row, in the unit that the file declares."""
     rows: list[tuple[Cell, ...]] = []
     for k, q in enumerate(place.statics.system.symbols.q):
         exact: Cell = place.exact.get(q, "")
-        value = f"{place.numbers[q]:.9g}" if q in place.numbers else ""
-        rows.append((str(number) if k == 0 else "", q, exact, value, place.stability.kind if k == 0 else ""))
+        unit = units.get(q.name)
+        number_there = place.numbers.get(q)
+        if number_there is not None and unit is not None:
+            number_there = float(unit.from_si(number_there, math.pi))
+        value = "" if number_there is None else f"{number_there:.9g}"
+        shown = "" if unit is None or not value else unit.text
+        rows.append((str(number) if k == 0 else "", q, exact, value, shown, place.stability.kind if k == 0 else ""))
     return rows
 
 

@@ -12,6 +12,7 @@ import numpy as np
 
 from eomgen.mechanics.equilibria.guesses import unit_of_length
 from eomgen.mechanics.equilibria.static_equations import StaticEquations
+from eomgen.model.own_units import in_own_unit
 from eomgen.records import dataclass
 from eomgen.symbolic.exact.normal_form import readable
 from eomgen.symbolic.expression.derivative import depends_on, depends_on_any, jacobian, substituted, symbols_of
@@ -222,7 +223,8 @@ class _Search:
         angles = [q.name for q in self.statics.q if q in self._angles and q not in self._turning]
         lengths = [name for name in names if name not in angles]
         parts = [f"{', '.join(angles)} within one turn of the start"] if angles else []
-        parts += [f"{', '.join(lengths)} within {REACH:g} of the start"] if lengths else []
+        model = self.statics.system.scope.model
+        parts += [f"{name} within {in_own_unit(model, name, REACH)} of the start" for name in lengths]
         return " and ".join(parts) if parts else "in one turn"
 
     def _scattered(self) -> np.ndarray:

@@ -22,7 +22,7 @@ from eomgen.mechanics.bodies.system_scene import start_values
 from eomgen.mechanics.equations.system import System
 from eomgen.mechanics.equilibria.closed_rest import ClosedForms
 from eomgen.mechanics.equilibria.coordinates_at_rest import Chosen, chosen_coordinates, holds_velocities, unheld
-from eomgen.mechanics.equilibria.families import each_once, nearest_first
+from eomgen.mechanics.equilibria.families import Curve, along_curves, each_once, nearest_first
 from eomgen.mechanics.equilibria.guesses import Guess
 from eomgen.mechanics.equilibria.locked import is_balanced_in_locked
 from eomgen.mechanics.equilibria.one_sided import pulling_contacts
@@ -51,12 +51,14 @@ class Equilibrium:
         exact: coordinates, and multipliers of closing ties, as scalars of the parameters; those that are known so.
         numbers: all of them as numbers; {} without values of all parameters.
         stability: whether it stays there when it is disturbed.
+        curve: of places of rest, of which it is one; None where it is alone.
     """
 
     statics: StaticEquations
     exact: State
     numbers: Mapping[Node, float]
     stability: Stability
+    curve: Curve | None = None
 
     @property
     def is_exact(self) -> bool:
@@ -267,7 +269,10 @@ class _Search:
     def equilibria(self) -> Equilibria:
         places = self._places
         places = replace(places, found=tuple(each_once(self.statics, places.found, self.floats)))
-        found = [each for z in places.found if (each := self._equilibrium(z, self._forms)) is not None]
+        curves = along_curves(self.statics, places.found, self.floats, places.turning)
+        places = replace(places, found=tuple(z for z, _ in curves))
+        pairs = [(self._equilibrium(z, self._forms), curve) for z, curve in curves]
+        found = [replace(each, curve=curve) for each, curve in pairs if each is not None]
         complete = places.complete and (self.valued or len(found) == len(places.found))
         certain = self.valued or places.where == ANYWHERE
         where = places.where if certain else f"{places.where}, for values like those tried for the parameters"
