@@ -14,9 +14,11 @@ ROOT = Path(__file__).parents[2]
 COMMAND = """
 import sys
 sys.path[:0] = ["benchmarks", "."]
-from planted_errors import judged, sample, warm
+from planted_errors import outcome, sample, seen_by_product, warm
 warm()
-print(*sorted({seen for _, seen, _ in judged(sample(20), tests=False, verbose=False)}))
+for planted in sample(20):  # what a certificate contradicts; a refusal may be that of the right product too
+    contradicted = outcome(planted, planted.run, planted.model).code == 3
+    print("product" if contradicted else seen_by_product(planted)[0] or planted.name)
 """
 
 
@@ -32,4 +34,4 @@ def test_each_old_text_stands_where_the_list_says():
 def test_the_product_sees_a_sample_of_planted_errors():
     """The verb that uses the wrong law ends in exit 3, or refuses."""
     done = subprocess.run([sys.executable, "-c", COMMAND], cwd=ROOT, capture_output=True, text=True, timeout=900)
-    assert done.stdout.split() == ["product"], done.stdout + done.stderr
+    assert done.stdout.splitlines() == ["product"] * 20, done.stdout + done.stderr
