@@ -10,6 +10,8 @@ from functools import cache
 from pathlib import Path
 from typing import Any
 
+from slow_run import usual
+
 from eomgen.documents.derivation import derivation_of
 from eomgen.documents.document import Document
 from eomgen.mechanics.equations.system import System
@@ -181,8 +183,13 @@ def derivable() -> tuple[str, ...]:
 
 
 def by_every_method() -> tuple[tuple[str, str], ...]:
-    """(model, method) of everything derivable; what nothing holds has no kineto-statics."""
-    pairs = ((name, method) for name in derivable() for method in METHODS)
+    """(model, method) of everything derivable, by energies all, by the other methods a third, in the slow run all.
+
+    What nothing holds has no kineto-statics. How a model reads by a method is proven with each derivation besides.
+    """
+    energies, *others = METHODS
+    asked = set(usual(derivable(), 3))
+    pairs = ((name, method) for name in derivable() for method in (energies, *(others if name in asked else ())))
     return tuple(pair for pair in pairs if pair[0] not in LOOSE or pair[1] != "kinetostatic")
 
 

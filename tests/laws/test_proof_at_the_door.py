@@ -7,10 +7,10 @@ By default a fifth of the models of models/; all of them by
 
 from __future__ import annotations
 
-import os
 from pathlib import Path
 
 import pytest
+from slow_run import usual
 
 import eomgen
 from eomgen.documents.document import Document
@@ -18,7 +18,7 @@ from eomgen.documents.proven import proven, proven_for_machines
 from eomgen.errors import EomgenError
 
 MODELS = sorted((Path(__file__).parents[2] / "models").rglob("*.toml"))
-ASKED = MODELS if os.environ.get("EOMGEN_ALL_MODELS") else MODELS[::5]
+ASKED = usual(MODELS, 5)
 VERBS = ("inertia", "kinematics", "linearize", "statics")
 
 

@@ -7,7 +7,6 @@ By default a tenth of the models of models/; all of them by
 
 from __future__ import annotations
 
-import os
 from collections.abc import Iterable
 from functools import cache
 from pathlib import Path
@@ -15,6 +14,7 @@ from random import Random
 
 import numpy as np
 import pytest
+from slow_run import usual
 from transformed_models import (
     SCALES,
     Tables,
@@ -35,7 +35,6 @@ from eomgen.model.values import exact_parameters
 pytestmark = pytest.mark.slow
 
 MODELS = Path(__file__).parents[2] / "models"
-ALL = bool(os.environ.get("EOMGEN_ALL_MODELS"))
 TRANSFORMATIONS = {"turned": turned, "ground shifted": shifted, "reordered": reordered, "origins moved": other_origins}
 IN_UNITS = ("double_pendulum", "cart_pole", "elastic_pendulum", "simple_pendulum", "spherical_pendulum")
 
@@ -55,7 +54,7 @@ MOVING = list(with_motion())
 
 def pairs() -> Iterable[tuple[Path, str]]:
     """(model, transformation) that can be said of it."""
-    for path in MOVING if ALL else MOVING[3::10]:
+    for path in usual(MOVING, 10, first=3):
         for how, change in TRANSFORMATIONS.items():
             try:
                 change(tables_of(path))
@@ -120,7 +119,7 @@ def is_conservative(path: Path) -> bool:
 REVERSIBLE = [path for path in MOVING if is_conservative(path)]
 
 
-@pytest.mark.parametrize("path", REVERSIBLE if ALL else REVERSIBLE[1::8], ids=lambda p: p.stem)
+@pytest.mark.parametrize("path", usual(REVERSIBLE, 8, first=1), ids=lambda p: p.stem)
 def test_a_conservative_motion_runs_backwards_on_its_own_path(path):
     """q(T) reached with u(T): from there with -u(T), the start comes back after T, with -u(0)."""
     model = eomgen.load(path)
