@@ -1,4 +1,9 @@
-"""Driven mechanisms at nice angles, where formulas cancel: places differentiated, every body cut free by hand."""
+"""Driven mechanisms at nice angles, where formulas cancel: places differentiated, every body cut free by hand.
+
+By default each second one; all by
+
+    EOMGEN_ALL_MODELS=1 python -m pytest -q tests/laws/test_driven_mechanisms_by_hand.py
+"""
 
 from __future__ import annotations
 
@@ -6,6 +11,7 @@ import numpy as np
 import pytest
 from by_hand import Collection, Free, Known, agree, balance, differences, meeting
 from mpmath import asin, atan2, cos, sin, sqrt
+from slow_run import usual
 
 pytestmark = pytest.mark.slow
 
@@ -534,7 +540,7 @@ def chebyshev_line(n, alpha, b0, c0):
     return Known({"x": p[0], "y": p[1], "vx": v[0], "vy": v[1], "ax": a[0], "ay": a[1], "rho": rho})
 
 
-@pytest.mark.parametrize("name", SYSTEMS)
+@pytest.mark.parametrize("name", usual(list(SYSTEMS), 2))
 def test_a_driven_mechanism_moves_and_pushes_as_by_hand(name):
     """Velocities and accelerations by differences of places in 40 digits, forces by the balance of every body."""
     agree(SYSTEMS[name])
