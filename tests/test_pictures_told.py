@@ -12,9 +12,13 @@ import pytest
 
 import eomgen
 from eomgen.documents.motion_frames import Movie, movie_of
+from eomgen.documents.rest_picture import drawing_at_rest
 from eomgen.page.player_data import PlayedRun, PlayerOptions
 from eomgen.page.player_page import player_page_of
 from eomgen.page.player_read_back import player_read_back, player_told
+from eomgen.proof.pictures_told import pictures_told, states_shown
+from eomgen.scene.making import scene_of
+from eomgen.scene.told import picture_told
 from eomgen.simulation.result import Trajectory
 from eomgen.verbs.animate import movie_read_back
 
@@ -98,6 +102,25 @@ def test_what_is_drawn_elsewhere_is_seen(role: str):
 def test_what_is_drawn_too_large_is_seen(role: str):
     """1.2 r about the middle of what is drawn"""
     assert wrong(moved(role, lambda path: path * 1.2))
+
+
+def test_a_body_that_is_not_drawn_is_seen():
+    """Each body has its strokes."""
+    kept = tuple(stroke for stroke in movie().drawing.strokes if stroke.of != "rod")
+    assert "is not drawn" in wrong(replace(movie(), drawing=replace(movie().drawing, strokes=kept)))
+
+
+def test_dimension_lines_are_as_long_as_what_stands_beside_them():
+    """|c - d| = l beside l, an arc of phi beside phi"""
+    scene = scene_of(eomgen.loads(CART))
+    told = picture_told(drawing_at_rest(scene), scene, 0)
+    assert dict(told.lengths)["l"] == pytest.approx(0.8)
+    assert dict(told.angles)["phi"] == pytest.approx(np.radians(40))
+    (_, state), *_ = states_shown(run(), run().t[:1])
+    longer = replace(told, lengths=[(name, 1.1 * x) for name, x in told.lengths])
+    wider = replace(told, angles=[(name, 1.1 * x) for name, x in told.angles])
+    found = [[c.detail for c in pictures_told([(state, x)]) if c.ok is False] for x in (told, longer, wider)]
+    assert [bool(x) for x in found] == [False, True, True]
 
 
 @cache

@@ -11,7 +11,8 @@ import eomgen
 from eomgen.documents import rendered
 from eomgen.documents.document import Document
 from eomgen.documents.json_read_back import json_read_back
-from eomgen.documents.read_back import page_read_back
+from eomgen.documents.latex_names import Notation
+from eomgen.documents.read_back import misspelt, page_read_back
 from eomgen.documents.text_read_back import text_read_back
 from eomgen.proof.typeset import SetLetters, tokens_of, typeset, worth
 from eomgen.symbolic.numeric.evaluation import FLOAT
@@ -162,3 +163,11 @@ def test_a_change_of_what_machines_get_is_seen(change: str):
 
     assert not wrong(page) and old in page
     assert wrong(page.replace(old, new, 1)) and wrong(f"{last[0]}{new}{last[2]}")
+
+
+def test_an_index_that_is_not_set_is_seen():
+    r"""R_{\mathrm{bar},x} is R_bar_x, R_{\mathrm{bar}} is not; what is declared is set as it is declared."""
+    assert not misspelt(
+        {name: Notation().latex(name) for name in ("R_bar_x", "theta_1'", "mu_0", "x_left")}, Notation()
+    )
+    assert misspelt({"R_bar_x": r"R_{\mathrm{bar}}"}, Notation())

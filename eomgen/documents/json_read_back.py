@@ -8,7 +8,7 @@ from typing import Any
 
 from eomgen.documents.document import Document
 from eomgen.documents.quantity import Quantity
-from eomgen.documents.read_back import NAME, Unlike
+from eomgen.documents.read_back import NAME, Unlike, misspelt
 from eomgen.documents.statements import Formula, Grid, Lines, Prose, Statement, Table
 from eomgen.documents.text_read_back import cell_said, flat, piece_said, row_said, side_said
 from eomgen.proof.check import Check, checked
@@ -81,6 +81,8 @@ def _steps(document: Document, told: Mapping[str, Any]) -> int:
     letters = list(told["symbols"].values())
     if len(set(letters)) != len(letters):
         raise Unlike("two symbols are set alike")
+    if wrong := misspelt(told["symbols"], document.notation):
+        raise Unlike(wrong)
     return count
 
 

@@ -183,6 +183,8 @@ class PageComparison:
         letters = SetLetters({(bare := name.rstrip("'")): self.notation.latex(bare) for name in names}, tuple(names))
         if letters.alike:
             raise Unlike(f"nobody can tell apart {letters.alike[0]}")
+        if wrong := misspelt(letters.bare, self.document.notation):
+            raise Unlike(wrong)
         return letters
 
     @cached_property
@@ -582,6 +584,24 @@ def _split(tokens: Tokens, between: str) -> list[Tokens]:
         else:
             found[-1].append(x)
     return [tuple(part) for part in found]
+
+
+def misspelt(letters: Mapping[str, str], notation: Notation) -> str:
+    """The first symbol in whose letters an index of its name is missing, R_{bar} of R_bar_x; "" of none.
+
+    Args:
+        letters: LaTeX by name.
+        notation: what is declared is set as it is declared.
+    """
+    for name, tex in letters.items():
+        bare = name.rstrip("'")
+        if bare in notation.symbols or not bare.isidentifier():
+            continue
+        tokens = tokens_of(tex)
+        indices = [piece for piece in bare.split("_")[1:] if piece and piece not in notation.indices]
+        if not all(_spells(tokens, piece) for piece in indices):
+            return f"'{tex}' for {name}"
+    return ""
 
 
 def _spells(tokens: Tokens, name: str) -> bool:

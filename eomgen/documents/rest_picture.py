@@ -14,7 +14,7 @@ from eomgen.scene.making import scene_of
 from eomgen.scene.plane_strokes import plane_drawing
 from eomgen.scene.scene import Scene
 from eomgen.scene.space_strokes import space_drawing
-from eomgen.scene.strokes import SceneNumbers
+from eomgen.scene.strokes import Drawing, SceneNumbers
 
 WIDTHS, HEIGHT, TITLE = (3.4, 8.0), 4.2, 0.4  # [inches]
 
@@ -28,11 +28,15 @@ def rest_picture(model: Model) -> Picture:
     return picture_of_scene(scene_of(model))
 
 
+def drawing_at_rest(scene: Scene) -> Drawing:
+    """A scene at the start of its model, with its dimensions."""
+    numbers = SceneNumbers(scene, frame_at(scene, drawn_start(scene.system))[None, :])
+    return (plane_drawing if scene.plane else space_drawing)(numbers, dimensions=True)
+
+
 def picture_of_scene(scene: Scene) -> Picture:
     """A scene at the start of its model."""
-    numbers = SceneNumbers(scene, frame_at(scene, drawn_start(scene.system))[None, :])
-    drawing = (plane_drawing if scene.plane else space_drawing)(numbers, dimensions=True)
-
+    drawing = drawing_at_rest(scene)
     low, high = limits(drawing) if scene.plane else page_limits(drawing)
     ratio = float(high[0] - low[0]) / float(high[1] - low[1])
     width = min(max(HEIGHT * ratio, WIDTHS[0]), WIDTHS[1])

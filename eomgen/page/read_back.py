@@ -135,12 +135,21 @@ def _of_run(report: Report, letters: SetLetters, read: ReadReport, run: Trajecto
     for caption, curves in read.drawings:
         named = {style: _named(line, letters) for style, line in legends.get(caption, ())}
         tally.add(caption.partition(" over")[0], partial(_unlike_curves, run, caption, curves, named))
+    if read.drawings and not any("not drawn" in words or "the largest" in words for words in legends):
+        tally.add("drawings", partial(_left_out, run, legends, letters))
     for name, content, columns in read.files:
         if name.endswith(".csv"):
             tally.add(name, partial(_unlike_table, run, content, columns))
         elif name.endswith(".toml"):
             tally.add(name, partial(_other_text, content, report.source))
     return tally.checks()
+
+
+def _left_out(run: Trajectory, legends: Mapping[str, Sequence[tuple[str, PageLine]]], letters: SetLetters) -> str:
+    """Which coordinate or reaction has no curve."""
+    drawn = {spoken(_named(line, letters)) for named in legends.values() for _, line in named}
+    known = [*run.coordinates, *(name for name, column in run.reactions.items() if np.isfinite(column).any())]
+    return next((f"no curve of {name}" for name in known if spoken(name) not in drawn), "")
 
 
 def _other_text(content: bytes, right: str) -> str:

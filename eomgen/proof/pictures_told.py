@@ -63,6 +63,8 @@ class ToldPicture:
         arrows: of single forces, and the resultants of reactions.
         points: named points.
         size: of all that is drawn [m].
+        otherwise: bodies that are shown by symbols, or whose lines have a thickness.
+        lengths, angles: (name, how large it is drawn) of dimension lines and arcs.
     """
 
     bodies: Mapping[str, np.ndarray]
@@ -70,6 +72,9 @@ class ToldPicture:
     arrows: Sequence[ToldArrow]
     points: Mapping[str, np.ndarray]
     size: float
+    otherwise: frozenset[str] = frozenset()
+    lengths: Sequence[tuple[str, float]] = ()
+    angles: Sequence[tuple[str, float]] = ()
 
 
 def pictures_told(told: Iterable[tuple[NumericState, ToldPicture]]) -> Iterator[Check]:
@@ -77,12 +82,17 @@ def pictures_told(told: Iterable[tuple[NumericState, ToldPicture]]) -> Iterator[
     tally = Tally(NAME, HOW)
     for state, picture in told:
         shown = _Shown(state.equations.system, state.values, state, picture)
-        for name in picture.bodies:
-            tally.add(f"'{name}'", partial(shown.wrong_body, name))
+        for name in state.equations.system.scope.model.bodies:
+            if name not in picture.otherwise:
+                tally.add(f"'{name}'", partial(shown.wrong_body, name))
         for name in picture.ends:
             tally.add(f"'{name}'", partial(shown.wrong_ends, name))
         for name in picture.points:
             tally.add(f"'{name}'", partial(shown.wrong_point, name))
+        for name, drawn in picture.lengths:
+            tally.add(f"length {name}", partial(shown.wrong_length, name, drawn))
+        for name, drawn in picture.angles:
+            tally.add(f"angle {name}", partial(shown.wrong_angle, name, drawn))
         for role in dict.fromkeys(arrow.role for arrow in picture.arrows):
             tally.add(f"arrows of {role}s", partial(shown.wrong_arrows, role))
     return tally.checks()
@@ -128,23 +138,25 @@ class _Shown(InNumbers):
         link = self.motion.link(name)
         pose = [float(x) for x in self.at((*(x for row in link.pose.R for x in row), *link.pose.p))]
         R, p = np.reshape(pose[:9], (3, 3))[: self.d, : self.d], np.array(pose[9:])[: self.d]
-        drawn = self.picture.bodies[name]
+        drawn = self.picture.bodies.get(name, np.zeros((0, self.d)))
         own = (drawn[np.isfinite(drawn).all(axis=1)] - p) @ R
         seat = (self._ends_of(name)[0] - p) @ R  # from there it may have slid
-        if not len(own):
-            return ""
         part = self.system.scope.model.bodies[name]
         slides = any(all(map(is_zero, w)) for w, _ in link.S)
         shapes = [shape for shape in self._shapes(name) if not shape[0].is_point]
         if part.shape is not None or part.parts is not None:
             if not shapes:
                 return ""
+            if not len(own):
+                return "is not drawn"
             ends = np.array([seat, self.placed(link.point)])
             off = np.min(np.linalg.norm(own[:, None, :] - ends[None, :, :], axis=2), axis=1)
             own = own[off > self.near] if self.d == 3 and slides and np.any(off > self.near) else own
             return self._apart((own.min(axis=0), own.max(axis=0)), self._box(shapes))
         if slides and link.parent < 0 and self.d == 2:
             return ""  # a block, or the wedge under what slides on it
+        if not len(own):
+            return "is not drawn" if part.points or self._hung(link) else ""
         return self._unknown_place(link, own, seat)
 
     def _shapes(self, name: str) -> list[tuple[Shape, np.ndarray, np.ndarray]]:
@@ -186,17 +198,22 @@ class _Shown(InNumbers):
             seat: where its joint sits, in its axes.
         """
         part, points = self.system.scope.model.bodies[link.name], self.motion.points[link.name]
-        hung = [other.before.p for other in self.motion.links if other.parent == self.motion.index[link.name]]
-        declared = [points[name] for name in part.points]
+        declared = {f"its point {name}": points[name] for name in part.points}
+        declared |= {f"where '{x.name}' hangs on it": x.before.p for x in self._hung(link)}
         seated = link.joint is not None and link.joint.carries_reaction
-        known = [*declared, *hung, *points.values(), *([link.point] if seated else []), (0, 0, 0)]
+        known = [*declared.values(), *points.values(), *([link.point] if seated else []), (0, 0, 0)]
         places = np.array([*(self.placed(place) for place in known), seat])
         off = np.min(np.linalg.norm(own[:, None, :] - places[None, :, :], axis=2), axis=1)
         if float(np.max(off)) > self.near:
             return "a line of it ends where none of its points is"
         low, high = own.min(axis=0) - self.near, own.max(axis=0) + self.near
         outside = [k for k in range(len(declared)) if np.any(places[k] < low) or np.any(places[k] > high)]
-        return f"its point {list(part.points)[outside[0]]} is left out" if outside else ""
+        return f"{list(declared)[outside[0]]} is left out" if outside else ""
+
+    def _hung(self, link: BodyLink) -> list[BodyLink]:
+        """The bodies that hang on a place of a body that does not move in it."""
+        others = (other for other in self.motion.links if other.parent == self.motion.index[link.name])
+        return [other for other in others if not self.motion.moves(other.before.p)]
 
     # -- springs, points, arrows -----------------------------------------------------------------------------
 
@@ -221,6 +238,24 @@ class _Shown(InNumbers):
         right = self.placed(self.scene.position(self.scene.place(name)))
         off = float(np.linalg.norm(self.picture.points[name] - right))
         return f"{off:.4g} m beside its place" if off > self.near else ""
+
+    def wrong_length(self, name: str, drawn: float) -> str:
+        """That a dimension line is longer or shorter than what stands beside it."""
+        right = abs(self._named(name))
+        return f"{drawn:.6g} m for {right:.6g} m" if abs(drawn - right) > self.near else ""
+
+    def wrong_angle(self, name: str, drawn: float) -> str:
+        """That an arc is another angle than what stands beside it, whole turns apart."""
+        right = self._named(name)
+        off = min(abs((drawn - turned + np.pi) % (2 * np.pi) - np.pi) for turned in (right, -right))
+        return f"{drawn:.6g} for {right:.6g}" if off > DRAWN else ""
+
+    def _named(self, name: str) -> float:
+        symbols = self.system.symbols
+        found = {**symbols.parameters, **{q.name: q for q in symbols.q}}
+        if name not in found:
+            raise NoValue("nobody knows it")
+        return float(self.one(found[name]))
 
     def wrong_arrows(self, role: str) -> str:
         """That an arrow goes another way than its force, is of another scale than the others, or elsewhere."""
@@ -335,7 +370,7 @@ class _Page:
         cloud = np.concatenate([*(x for each in bodies.values() for x in each), *(x[None] for x in points.values())])
         finite = cloud[np.isfinite(cloud).all(axis=1)]
         size = float(np.max(np.ptp(finite, axis=0))) if len(finite) else 1.0
-        return ToldPicture(shown, ends, arrows, points, size or 1.0)
+        return ToldPicture(shown, ends, arrows, points, size or 1.0, frozenset(left))
 
     def _own(self, kind: str, mark: Mapping[str, Any]) -> np.ndarray | None:
         """The places of a form in its own axes that reach farthest; None of what has no length of its own."""

@@ -29,7 +29,27 @@ def picture_told(drawing: Drawing, scene: Scene, frame: int) -> ToldPicture:
     faced = {stroke.of for stroke in drawing.strokes if stroke.faces and stroke.role == "body"}
     shaped = {name for name, part in scene.system.scope.model.bodies.items() if part.shape or part.parts}
     bodies = {name: np.concatenate(each) for name, each in clouds.items() if name not in faced or name in shaped}
-    return ToldPicture(bodies, ends, tuple(_arrows(drawing, scene, frame)), {}, drawing.sizes.extent)
+    arrows, otherwise = tuple(_arrows(drawing, scene, frame)), frozenset(symbols | (faced - shaped))
+    lengths, angles = _sizes(drawing, scene, frame) if drawing.sizes.dimensions else ([], [])
+    return ToldPicture(bodies, ends, arrows, {}, drawing.sizes.extent, otherwise, lengths, angles)
+
+
+def _sizes(drawing: Drawing, scene: Scene, frame: int) -> tuple[list[tuple[str, float]], list[tuple[str, float]]]:
+    """(name, how large) of dimension lines: between the tips of both heads; of arcs: from their legs' middle."""
+    strokes = iter([stroke for stroke in drawing.strokes if stroke.role == "dimension"])
+    lengths, angles = [], []
+    for mark in (mark for mark in scene.marks if mark.form.kind in ("dimension", "angle")):
+        name: str = getattr(mark.form, "text", "")
+        if mark.form.kind == "dimension":
+            _, _, first, _, second = (next(strokes) for _ in range(5))
+            length = float(np.linalg.norm(_tip(first, frame) - _tip(second, frame)))
+            lengths += [(name, length)] if np.isfinite(length) else []
+        else:
+            legs, arc, _ = (next(strokes) for _ in range(3))
+            x, y = (arc.path[frame] - legs.path[frame][0]).T
+            turned = float(np.unwrap(np.arctan2(y, x))[-1] - np.arctan2(y[0], x[0]))
+            angles += [(name, turned)] if np.isfinite(turned) else []
+    return lengths, angles
 
 
 def _arrows(drawing: Drawing, scene: Scene, frame: int) -> list[ToldArrow]:

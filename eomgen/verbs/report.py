@@ -17,6 +17,7 @@ from eomgen.documents.inertia.result import inertia
 from eomgen.documents.latex import with_listings_typeset
 from eomgen.documents.linearize.result import linearize
 from eomgen.documents.proven import proven
+from eomgen.documents.rest_picture import drawing_at_rest
 from eomgen.documents.result import Result
 from eomgen.documents.statements import Lines
 from eomgen.documents.statics.result import Statics, statics
@@ -39,10 +40,13 @@ from eomgen.page.player_read_back import player_read_back
 from eomgen.page.read_back import report_read_back
 from eomgen.page.released import PlayedDisplacements
 from eomgen.proof.check import Certificate, Check
+from eomgen.proof.pictures_told import pictures_told, states_shown
 from eomgen.questions import answers
 from eomgen.questions.run import PAGE_TIME, run_of_a_page
 from eomgen.questions.velocities import kinematics
 from eomgen.records import dataclass
+from eomgen.scene.making import scene_of
+from eomgen.scene.told import picture_told
 from eomgen.scene.virtual import VirtualDisplacement
 from eomgen.simulation.result import Trajectory
 from eomgen.symbolic.expression.typed import Typed, seconds
@@ -206,6 +210,7 @@ def _read_back(subject: Subject, found: Report, form: str, name: str) -> tuple[R
     run = subject.run if "followed" in vars(subject) else None
     checks = [*report_read_back(found, texts, form, run)]
     checks += [] if form != ".html" or run is None else _player_read_back(subject, found)
+    checks += [] if run is None else _figure_read_back(subject, run)
     proof = found.certificate + (c for c in checks if found.certificate.ok is not None or c.ok is False)
     read = replace(found, head=proven(replace(found.head, certificate=None), proof))
     return read, texts if proof.ok is not False or found.certificate.ok is False else written_as(read, form, name)
@@ -221,6 +226,14 @@ def form_of(path: str) -> str:
     if form not in FORMATS:
         raise UsageError(f"no report can be written as '{path}'", mend=f"endings are {', '.join(FORMATS)}")
     return form
+
+
+def _figure_read_back(subject: Subject, run: Trajectory) -> Iterator[Check]:
+    """Whether the picture of the model shows where its motion starts."""
+    scene = scene_of(subject.model)
+    for _, state in states_shown(run, run.t[:1]):
+        if [q.name for q in state.equations.symbols.q] == [q.name for q in scene.system.symbols.q]:
+            yield from pictures_told([(state, picture_told(drawing_at_rest(scene), scene, 0))])
 
 
 def _player_read_back(subject: Subject, found: Report) -> Iterator[Check]:
