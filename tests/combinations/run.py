@@ -1,6 +1,7 @@
 """The combinations, by a command: models of a covering array against the oracle, and through verbs, formats and doors.
 
     python tests/combinations/run.py --shard 3/40 --out DIR     one shard; what is in DIR already is passed over
+    python tests/combinations/run.py --structures 20 --out DIR  structures at rest, so many of each kind
     python tests/combinations/run.py --totals --out DIR         what all shards found
 
 One line of JSON a model is written into DIR/shard_K_of_N_SEED.jsonl, and each model that shows a fault beside it.
@@ -9,6 +10,7 @@ One line of JSON a model is written into DIR/shard_K_of_N_SEED.jsonl, and each m
 from __future__ import annotations
 
 import argparse
+import itertools
 import json
 import os
 import sys
@@ -27,6 +29,7 @@ os.environ.setdefault("EOMGEN_PATIENCE", "none")
 import calls  # noqa: E402
 import compare  # noqa: E402
 import cross  # noqa: E402
+import structures  # noqa: E402
 from covering import rows  # noqa: E402
 from drawn import text_of  # noqa: E402
 from features import all_pairs, pairs_of, possible_pairs, why_not  # noqa: E402
@@ -116,6 +119,29 @@ def shard(number: int, count: int, seed: int, out: Path, *, most: int | None, al
         made += 1
 
 
+def at_rest(count: int, seed: int, out: Path) -> None:
+    """Structures without coordinates, `count` of each kind, by the balance of their bodies."""
+    out.mkdir(parents=True, exist_ok=True)
+    with (out / f"structures_{seed}.jsonl").open("w") as file:
+        for kind, number in itertools.product(structures.KINDS, range(count)):
+            begin = time.process_time()
+            text = structures.structure(kind, Random(f"{kind}{seed}{number}"))
+            row: dict[str, Any] = {"kind": kind, "number": number, "numbers": 0, "faults": [], "refused": ""}
+            try:
+                with calls.limit(60):
+                    found = structures.compared(text)
+                row["numbers"], row["faults"] = found.numbers, [[f"structure: {k}", x] for k, x in found.faults[:5]]
+            except (eomgen.EomgenError, structures.NoAnswer) as no:
+                row["refused"] = str(no).splitlines()[0][:200]
+            except calls.TooLong:
+                row["faults"].append(["slow", "a structure takes more than 60 s"])
+            except Exception as error:
+                row["faults"].append(["internal error", f"{type(error).__name__}: {str(error)[:200]}"])
+            if row["faults"]:
+                (out / f"structure_{seed}_{kind}_{number}.toml").write_text(text)
+            file.write(json.dumps({**row, "seconds": round(time.process_time() - begin, 2)}) + "\n")
+
+
 def totals(out: Path) -> dict[str, Any]:
     """Over all shards: models, calls, pairs covered of those that can be, faults by kind, the slowest calls."""
     ledgers = sorted(out.glob("oracle_*.jsonl")) + sorted(out.glob("shard_*.jsonl"))
@@ -125,13 +151,17 @@ def totals(out: Path) -> dict[str, Any]:
     for row in lines:
         if row["covers"]:
             covered |= pairs_of(row["levels"])
-    faults = Counter(kind for row in lines for kind, _ in row["faults"])
+    resting = [json.loads(x) for path in out.glob("structures_*.jsonl") for x in path.read_text().splitlines()]
+    faults = Counter(kind for row in [*lines, *resting] for kind, _ in row["faults"])
     slow = sorted((c[2], c[0], row["array"], row["index"]) for row in lines for c in row["calls"] if c[2] > calls.SLOW)
     return {
         "models": len(lines),
         "refused": sum(bool(row["refused"]) for row in lines),
         "calls": sum(len(row["calls"]) for row in lines),
         "numbers against the oracle": sum(row["numbers"] for row in lines),
+        "structures": len(resting),
+        "of them refused": sum(bool(row["refused"]) for row in resting),
+        "their numbers against the balance": sum(row["numbers"] for row in resting),
         "pairs covered": len(covered & possible_pairs()),
         "pairs that can be": len(possible_pairs()),
         "pairs that cannot be": sum(bool(why_not(*pair)) for pair in all_pairs()),
@@ -153,10 +183,14 @@ def main() -> None:
     parser.add_argument("--out", type=Path, required=True, help="the folder of the ledgers")
     parser.add_argument("--most", type=int, help="at most so many models now")
     parser.add_argument("--alone", action="store_true", help="the oracle alone, without verbs: a fifth of the time")
+    parser.add_argument("--structures", type=int, help="so many structures at rest of each kind")
     parser.add_argument("--totals", action="store_true", help="tell what is in the ledgers")
     given = parser.parse_args()
     if given.totals:
         print(json.dumps(totals(given.out), indent=1))
+        return
+    if given.structures:
+        at_rest(given.structures, given.seed, given.out)
         return
     number, count = map(int, given.shard.split("/"))
     shard(number, count, given.seed, given.out, most=given.most, alone=given.alone)
