@@ -117,7 +117,7 @@ def against(product: Product, seed: int, count: int = 2) -> Found:
 
 def _at(found: Found, name: str, s: State, oracle: Oracle, e: Any, functions: dict) -> None:
     solved = oracle.solve(s)
-    if any(row.role.startswith("stick") for row in solved.rows):
+    if solved.sticks:
         found.skipped.append("a contact sticks: code has friction by the law of sliding, runs and `solve` stick")
         return
     u, du = oracle.speeds_of(s, e.speeds, solved.a)

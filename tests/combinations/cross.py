@@ -166,6 +166,8 @@ def _inverse(found: Found, model: Any, product: Product, oracle: Oracle, s: Stat
 
 def _right(found: Found, language: str, got: Any, product: Product, oracle: Oracle, s: State, solved: Solved) -> None:
     e = product.equations
+    if solved.sticks:
+        return  # code has friction by the law of sliding
     _, du = oracle.speeds_of(s, e.speeds, solved.a)
     want = [*s.v, *du]
     size = 1.0 + 1e-3 * float(np.max(np.abs(du), initial=0.0))

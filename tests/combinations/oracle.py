@@ -77,6 +77,11 @@ class Solved:
     closed: dict[str, bool] = field(default_factory=dict)
     pressed: dict[str, float] = field(default_factory=dict)  # |N| of what rubs
 
+    @property
+    def sticks(self) -> bool:
+        """Whether friction holds some contact at rest."""
+        return any(row.role.startswith("stick") for row in self.rows)
+
 
 class Oracle:
     """The oracle of one model file."""
