@@ -15,7 +15,12 @@ from moving import solved, written
 
 import eomgen
 from eomgen.errors import EomgenError, ModelError
+from eomgen.mechanics.bodies.scope import primitive
 from eomgen.mechanics.constraints.freedom import freedom_of
+from eomgen.symbolic.expression.derivative import gradient
+from eomgen.symbolic.expression.functions import function
+from eomgen.symbolic.expression.graph import Graph
+from eomgen.symbolic.numeric.evaluation import FLOAT, evaluate
 
 pytestmark = pytest.mark.slow
 
@@ -628,6 +633,47 @@ def test_an_integral_is_given_with_the_constant_of_the_start(tmp_path):
         assert expression.evaluate({"x": x, "theta": theta, "R": R}) == pytest.approx(0, abs=1e-12)
     assert abs(expression.evaluate({"x": 1, "theta": 0, "R": 1})) > 0.1
     assert json.dumps(found["position_freedoms"]) == "3"
+
+
+WAVY = """
+[parameters]
+m = { value = 1, unit = "kg", positive = true }
+r = { value = 0.2, unit = "m", positive = true }
+A = { value = 0.3, unit = "m", positive = true }
+k = { value = 1.2, unit = "1/m", positive = true }
+[coordinates]
+s = { start = 0.2, speed = 1.5, unit = "m" }
+phi = { start = 0, dependent = true, unit = "rad" }
+[bodies.disc]
+shape = { kind = "disc", mass = "m", radius = "r" }
+[bodies.disc.joint]
+kind = "placed"
+at = ["s - r*A*k*cos(k*s)/sqrt(1 + (A*k*cos(k*s))^2)", "A*sin(k*s) + r/sqrt(1 + (A*k*cos(k*s))^2)"]
+angle = "phi"
+[constraints.roll]
+kind = "equation"
+rate = "(vx(disc.center) + vy(disc.center)*A*k*cos(k*s))/sqrt(1 + (A*k*cos(k*s))^2) + r*omega(disc)"
+"""
+
+
+def test_no_rules_are_sought_for_an_elliptic_integral(monkeypatch):
+    """phi' = f(s) s' is holonomic; f(s) ds with roots of cos(k s) has no closed form: no rule of sympy's is tried"""
+    tried = []
+    monkeypatch.setattr("sympy.integrals.manualintegrate.manualintegrate", lambda *given: tried.append(given))
+    (row,) = freedom_of(model_of(WAVY, "plane")).integrability.rows
+    assert row.integrable and row.integral is None and not tried
+
+
+def test_short_integrals_of_roots_of_sines_are_given():
+    """d/dx of the integral of sin(x) sqrt(1 + cos(x)) is it, at random x"""
+    graph = Graph()
+    x = graph.symbol("x")
+    f = function("sin", x) * function("sqrt", 1 + function("cos", x))
+    F = primitive(f, x)
+    (slope,) = gradient(F, (x,))
+    for at in (0.3, 1.1):
+        value, due = evaluate((slope, f), {x: at}, FLOAT)
+        assert value == pytest.approx(due, rel=1e-12)
 
 
 def test_a_ball_that_rolls_reaches_all_five_freedoms():

@@ -26,6 +26,7 @@ from eomgen.symbolic.expression.derivative import depends_on, derivative, substi
 from eomgen.symbolic.expression.expressions import Expression
 from eomgen.symbolic.expression.functions import function, over
 from eomgen.symbolic.expression.graph import Graph, Node, Scalar
+from eomgen.symbolic.expression.node import holds_op
 from eomgen.symbolic.expression.rational import Fraction
 from eomgen.symbolic.expression.scalar_operations import through_samples
 from eomgen.symbolic.expression.spatial import Vector, vector_of
@@ -269,6 +270,9 @@ def parameters_of_zero(model: Model) -> frozenset[str]:
 LONGEST_INTEGRAND = 300  # operations: rules are sought for every part of it, and for products of parts
 
 
+LONGEST_ROOTED = 16  # operations, where sines stand under a root: most have no closed form, which takes seconds to see
+
+
 def primitive(f: Scalar, x: Node, zero: Container[str] | None = None) -> Scalar | None:
     """A function of x whose derivative is f, or None where no closed form was found.
 
@@ -278,7 +282,7 @@ def primitive(f: Scalar, x: Node, zero: Container[str] | None = None) -> Scalar 
     """
     if not depends_on(f, (x,)):
         return f * x
-    if len(order((f,))) > LONGEST_INTEGRAND:
+    if len(order((f,))) > (LONGEST_ROOTED if _has_rooted_sines(f, x) else LONGEST_INTEGRAND):
         return None
     from sympy import Eq, Integral, Ne, false, true
     from sympy.integrals.manualintegrate import manualintegrate
@@ -296,6 +300,12 @@ def primitive(f: Scalar, x: Node, zero: Container[str] | None = None) -> Scalar 
         return scalar_from_sympy(found, lookup)
     except DerivationError:  # a function that the graph does not have
         return None
+
+
+def _has_rooted_sines(f: Scalar, x: Node) -> bool:
+    """Whether sines or cosines of x stand under a root: integrals of such are elliptic but for a few."""
+    under = [a for node in order((f,)) if node.op == "sqrt" for a in node.args if holds_op(a, "sin", "cos")]
+    return any(depends_on(node, (x,)) for node in order(under) if node.op in ("sin", "cos"))
 
 
 BENT = ("max", "min", "abs", "sign")

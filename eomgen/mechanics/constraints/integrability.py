@@ -25,7 +25,7 @@ from eomgen.mechanics.constraints.closure import generic_state
 from eomgen.mechanics.constraints.ties import Row, Ties, holds_identically
 from eomgen.records import dataclass
 from eomgen.symbolic.exact.normal_form import simplest
-from eomgen.symbolic.expression.derivative import gradient, jacobian, tangent
+from eomgen.symbolic.expression.derivative import depends_on, gradient, jacobian, tangent
 from eomgen.symbolic.expression.functions import over
 from eomgen.symbolic.expression.graph import Node, Scalar, is_zero
 from eomgen.symbolic.expression.node import State
@@ -202,7 +202,7 @@ def integral_of(ties: Ties, form: DifferentialForm) -> Scalar | None:
     entries = [simplest(x, Work.FORMULA, positive) for x in form]
     if sum(text_size(x) for x in entries) > LONGEST:
         return None
-    for factor in _factors(entries):
+    for factor in _factors(entries, y):
         try:
             found = _potential([simplest(x * factor, Work.FORMULA, positive) for x in entries], y)
         except (DerivationError, NoValue, ZeroDivisionError):  # no closed form
@@ -212,8 +212,9 @@ def integral_of(ties: Ties, form: DifferentialForm) -> Scalar | None:
     return None
 
 
-def _factors(entries: Sequence[Scalar]) -> list[Scalar]:
-    own = [x for x in entries if type(x) is Node]
+def _factors(entries: Sequence[Scalar], y: Sequence[Node]) -> list[Scalar]:
+    """1, and what is no constant of the others: a constant times an integral is one."""
+    own = [x for x in entries if depends_on(x, y)]
     return [1, *(over(1, x) for x in own), *(over(1, a * b) for a, b in combinations_with_replacement(own, 2))]
 
 
