@@ -10,6 +10,7 @@ import derivations
 import numpy as np
 import pytest
 from derivations import moving
+from slow_run import usual
 
 import eomgen
 from eomgen.equations import Equations
@@ -82,8 +83,13 @@ def test_forcing_is_Q_minus_c(equations):
     assert equal_at_random_states((f, Q - c) for f, Q, c in zip(graph.forcing, graph.Q, graph.c, strict=True)).equal
 
 
-def test_the_emitted_code_gives_the_accelerations_of_the_symbols(equations):
-    """rhs(t, x, p) = (N u + nu, a) with M a = forcing + J^T lam, J a + gamma = 0, in C."""
+@pytest.mark.parametrize("name", usual([path.stem for path in moving()], 3))
+def test_the_emitted_code_gives_the_accelerations_of_the_symbols(name):
+    """rhs(t, x, p) = (N u + nu, a) with M a = forcing + J^T lam, J a + gamma = 0, in C.
+
+    Of a third of the models, of all in the slow run; each certificate looks at the emitted code besides.
+    """
+    equations = derivations.equations(name)
     graph, symbols = equations.graph, equations.graph.symbols
     for seed in range(1, 20):
         state, _ = closed_state(equations.system, Random(seed))

@@ -1,0 +1,18 @@
+"""Which items of a long sweep every run asks, and which the slow run alone.
+
+EOMGEN_ALL_MODELS=1 python -m pytest -q -n 2        # all items of all sweeps: before an issue is closed
+"""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Sequence
+from typing import TypeVar
+
+Item = TypeVar("Item")
+ALL = bool(os.environ.get("EOMGEN_ALL_MODELS"))
+
+
+def usual(items: Sequence[Item], every: int, first: int = 0) -> Sequence[Item]:
+    """Each `every`-th item from the `first` on; in the slow run all of them."""
+    return items if ALL else items[first::every]
