@@ -15,7 +15,14 @@ import numpy as np
 
 from eomgen.errors import DerivationError, MissingValues, UsageError
 from eomgen.mechanics.bodies.tree import branches_of
-from eomgen.mechanics.constraints.assembly import fixed_by_position, open_at, that_stay, tiers_of, with_gaps_closed
+from eomgen.mechanics.constraints.assembly import (
+    fixed_by_position,
+    open_at,
+    open_by,
+    that_stay,
+    tiers_of,
+    with_gaps_closed,
+)
 from eomgen.mechanics.constraints.bifurcations import Fork, fork_at, is_at_rest, leads_on, speeds_along
 from eomgen.mechanics.constraints.closure import closed, of_50_digits
 from eomgen.mechanics.constraints.consistency import is_guess, is_typed, nearest_speeds
@@ -24,6 +31,7 @@ from eomgen.mechanics.equations.system import System
 from eomgen.mechanics.formulations import recursive
 from eomgen.mechanics.initial_state.open_ties import quoted_names, refuse_open_gaps, refuse_open_rates
 from eomgen.model.begun_speeds import begun_speeds
+from eomgen.model.contacts import contacts_of
 from eomgen.model.own_units import in_own_unit
 from eomgen.model.parts import Model
 from eomgen.model.values import exact_parameters, first_guesses, numeric_parameters, start_values
@@ -63,18 +71,23 @@ class Start:
         changes: of those that are not dependent, so that the ties hold.
         ties: the names of the ties that did not hold at the values given.
         fork: where branches meet there.
+        hit: the one-sided ties into which the given speeds lead: an impact without rebound, M (u+ - u-) = J^T Lam.
     """
 
     values: dict[str, float]
     changes: tuple[Change, ...] = ()
     ties: tuple[str, ...] = ()
     fork: Fork | None = None
+    hit: tuple[str, ...] = ()
 
     @property
     def words(self) -> str:
         """What was changed, or only found where nobody gave it, and why; "" where nothing was."""
         if not self.changes:
             return ""
+        if self.hit:
+            changes = ", ".join(map(str, self.changes))
+            return f"changed by an impact without rebound on {quoted_names(self.hit)}: {changes}"
         names, how = quoted_names(self.ties), "changed" if any(change.given for change in self.changes) else "completed"
         hold = "holds" if len(self.ties) == 1 else "hold"
         return f"{how} so that {names} {hold} at the start: {', '.join(map(str, self.changes))}"
@@ -127,11 +140,12 @@ def start_of_motion(
     state, open_gaps = with_gaps_closed(system.ties, state, called)
     refuse_open_gaps(system, state)
     state, open_rates = _with_rates_closed(system, state, called, parameters)
+    state, hit = _after_impact(system, state, parameters)
     refuse_open_rates(system, state)
     state, fork, turned = _along_a_branch(system, state, called)
-    names = tuple(dict.fromkeys((*open_gaps, *open_rates, *turned)))
+    names = tuple(dict.fromkeys((*open_gaps, *open_rates, *hit, *turned)))
     found = {node.name: _rounded(state[node], values[node.name]) for node in (*system.symbols.q, *system.symbols.u)}
-    return Start(found, _changes(system, values, found, called) if names else (), names, fork)
+    return Start(found, _changes(system, values, found, called) if names else (), names, fork, hit)
 
 
 # -- values at which the ties hold -------------------------------------------------------------------
@@ -149,6 +163,28 @@ def _with_rates_closed(
     M = _inertia(system, state, parameters)
     tiers = tiers_of(system.scope.model, system.symbols.u, called)
     return nearest_speeds(ties, state, tiers, M) or state, opened
+
+
+def _after_impact(system: System, state: State, parameters: Mapping[str, Any] | None) -> tuple[State, tuple[str, ...]]:
+    """(the state after the impact on one-sided ties into which its speeds lead, these ties); as it is without one.
+
+    M (u+ - u-) = J^T Lam with J u+ + sigma = 0 of all that holds and Lam >= 0 of what can only push, or pull.
+    """
+    one_sided = {contact.name for contact in contacts_of(system.scope.model) if contact.unilateral}
+    rows = [(k, row) for k, row in enumerate(system.ties.closing) if row.tie in one_sided and row.number == 1]
+    u = system.symbols.u
+    broken = [row for _, row in rows if open_by(row.velocity, u, state)]
+    hit = tuple(row.tie for row in broken if evaluate((row.velocity,), state, fifty_digits())[0] < 0)
+    M = _inertia(system, state, parameters) if hit and len(hit) == len(broken) else None
+    after = None if M is None else nearest_speeds(system.ties, state, [(), u], M)
+    if M is None or after is None:
+        return state, ()
+    J = np.array([[float(x) for x in evaluate(row, state, fifty_digits())] for row in system.ties.J])
+    moved = M @ np.array([float(after[x] - state[x]) for x in u])
+    impulses = np.linalg.lstsq(J.T, moved, rcond=None)[0]
+    if any(impulses[k] < -COMPUTED * np.max(np.abs(impulses)) for k, _ in rows):  # another one would have to hold on
+        return state, ()
+    return after, hit
 
 
 def _inertia(system: System, state: State, parameters: Mapping[str, Any] | None) -> np.ndarray | None:
