@@ -153,7 +153,7 @@ class Verdict:
             "given": self.given,
             "kind": self.kind,
             "verdict": self.verdict,
-            "up_to": self.up_to or None,
+            "up_to": [self.up_to] if self.up_to else [],
             "substitution": dict(self.substitution) or None,
             "difference": self.difference or None,
             "causes": [cause.as_dict() for cause in self.causes],

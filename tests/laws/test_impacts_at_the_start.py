@@ -1,4 +1,4 @@
-"""Speeds at the start that lead into a floor or against a taut rope: an impact without rebound, in every verb the same."""
+"""Speeds at the start that lead into a floor or against a taut rope: one impact without rebound, in every verb."""
 
 from __future__ import annotations
 
@@ -42,7 +42,7 @@ def rod() -> eomgen.Model:
 
 
 def test_a_rod_thrown_on_its_end_begins_after_the_impact_in_every_verb(rod):
-    """m (y+ + v) = Lam, m l^2/12 theta+ = -l/2 Lam, y+ - l/2 theta+ = 0: y+ = -3/4 v, theta+ = -3/2 v/l, T = 3/8 m v^2"""
+    """m (y+ + v) = Lam, m l^2/12 theta+ = -l/2 Lam, y+ = l/2 theta+: y+ = -3/4 v, theta+ = -3/2 v/l, T = 3/8 m v^2"""
     y, theta = -9 / 4, -7.5
     answers = eomgen.solve(rod)
     assert answers["omega"].value == pytest.approx(theta) and answers["T"].value == pytest.approx(3 / 8 * 2 * 9)
