@@ -29,7 +29,9 @@ from eomgen.symbolic.print.decimals import decimal_of, number_text
         (Fraction(1, 100000), "1e-5"),
         (Fraction(5001, 50), "100.02"),
         (Fraction(49, 120000), "49/120000"),  # no end
-        (Fraction(123456789, 10**12), "123456789/1000000000000"),  # too many digits
+        (Fraction(123456789, 10**12), "0.000123456789"),
+        (Fraction(49886778961576569, 10**18), "0.049886778961576569"),  # of a file of another program
+        (Fraction(1, 2**30), "1/1073741824"),  # its decimal is longer
     ],
 )
 def test_a_number_is_a_decimal_where_that_is_short_and_its_fraction_is_not(number, text):

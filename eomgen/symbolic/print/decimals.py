@@ -8,7 +8,7 @@ from functools import lru_cache
 from eomgen.errors import DerivationError
 from eomgen.symbolic.expression.exact_numbers import Number
 
-MOST_DIGITS = 8  # of a decimal
+MOST_DIGITS = 8  # of a decimal that may be longer than its fraction
 LONGEST_FRACTION = 100  # the smallest denominator of a fraction that reads worse than its decimal
 MUCH_LONGER = 2  # characters by which a decimal may be longer than its fraction
 MOST_PRINTED = 4000  # digits of a whole number: Python prints 4300
@@ -45,16 +45,18 @@ def _is_long(c: Number) -> bool:
 def decimal_of(c: Number) -> tuple[str, int] | None:
     """(digits, power of ten) with c = digits * 10^power exactly; None where a fraction or a whole number reads better.
 
-    33/400 is 0.0825 and 1/25 is 0.04; 1/12, 27/2, 3/80 and 1/128 stay fractions.
+    33/400 is 0.0825 and 1/25 is 0.04; 1/12, 27/2, 3/80 and 1/128 stay fractions. One of many digits, as a file of
+    another program has it, is the decimal that it was where that is shorter.
     """
     if _is_long(c) or (c.denominator < LONGEST_FRACTION and c.denominator % 25):
         return None
     places = _places(c.denominator)
     digits = "" if places is None else str(abs(c.numerator) * 10**places // c.denominator)
-    if places is None or len(digits) > MOST_DIGITS:
+    if places is None:
         return None
     text, power = _placed(digits, places)
-    if len(text) + (len(f"e{power}") if power else 0) > len(str(abs(c))) + MUCH_LONGER:
+    longer = MUCH_LONGER if len(digits) <= MOST_DIGITS else -1
+    if len(text) + (len(f"e{power}") if power else 0) > len(str(abs(c))) + longer:
         return None
     return ("-" if c < 0 else "") + text, power
 
