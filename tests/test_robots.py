@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import importlib
 import json
+import re
 import sys
 from typing import Any
 
@@ -546,3 +547,18 @@ def test_a_robot_that_is_read_otherwise_is_contradicted(tmp_path):
         ('<axis xyz="0 0 1"/>', '<axis xyz="0 0 -1"/>', "does not stand on"),
     ):
         assert what in imported_otherwise(text.replace(old, new), made)
+
+
+def test_the_inertia_of_a_turned_link_stands_as_it_was_written_or_as_a_number(tmp_path):
+    """R I R^T by rpy: decimals in T, no fractions of 18 digits; principal moments in numbers, no roots of such."""
+    path = tmp_path / "turned.urdf"
+    path.write_text(
+        '<robot name="turned"><link name="base"/><link name="c"><inertial><origin xyz="0.1 0 0" rpy="0.3 0.2 0.1"/>'
+        '<mass value="2"/><inertia ixx="0.1" iyy="0.2" izz="0.25" ixy="0.01" ixz="0.02" iyz="0"/></inertial></link>'
+        '<joint name="j" type="continuous"><parent link="base"/><child link="c"/><axis xyz="0 1 0"/></joint></robot>'
+    )
+    model = eomgen.import_robot(path)
+    found = eomgen.inertia(model)
+    text = found.render("text") + eomgen.derive(model).render("text")
+    assert re.search(r"\d{10,}/\d{6,}|sqrt\(\d{10,}", text) is None
+    assert re.search(r"I_1 = 0\.\d+\n", text) and found.certify().ok

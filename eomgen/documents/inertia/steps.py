@@ -13,10 +13,11 @@ from eomgen.documents.statements import Cell, Formula, Grid, Law, Side, Statemen
 from eomgen.mechanics.masses.principal import Principal, principal_of
 from eomgen.model.outputs.moments_of_inertia import about_axis, polar, second_moments
 from eomgen.records import dataclass
+from eomgen.symbolic.expression.derivative import symbols_of
 from eomgen.symbolic.expression.functions import over, sqrt
-from eomgen.symbolic.expression.graph import Scalar, is_zero
+from eomgen.symbolic.expression.graph import Node, Scalar, is_zero
 from eomgen.symbolic.expression.spatial import Matrix, Vector
-from eomgen.symbolic.expression.traversal import order
+from eomgen.symbolic.expression.traversal import holds_many_digits, order
 from eomgen.symbolic.print.text import text_size
 
 AXES = "xyz"
@@ -94,9 +95,10 @@ def line(section: Section, result: InertiaEntry) -> Formula:
     """name = exact = number."""
     sides: list[Side] = [result.label]
     value = number(section, result.value)
-    if text_size(result.value) <= LONGEST_LINE or not value:
+    of_digits = type(result.value) is Node and not symbols_of((result.value,)) and holds_many_digits(result.value)
+    if (text_size(result.value) <= LONGEST_LINE and not of_digits) or not value:
         sides.append(result.value)
-    if value and text_size(result.value) > len(value):
+    if value and (of_digits or text_size(result.value) > len(value)):
         sides.append(Law(value, value))
     return Formula(tuple(sides))
 

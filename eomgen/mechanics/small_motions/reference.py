@@ -27,13 +27,11 @@ from eomgen.model.values import exact_parameters
 from eomgen.records import dataclass
 from eomgen.symbolic.expression.derivative import depends_on, substituted
 from eomgen.symbolic.expression.graph import Node, Scalar, is_zero
-from eomgen.symbolic.expression.rational import Fraction
-from eomgen.symbolic.expression.traversal import order
+from eomgen.symbolic.expression.traversal import holds_many_digits
 from eomgen.symbolic.numeric.evaluation import evaluate, fifty_digits
 from eomgen.symbolic.numeric.tolerances import SOLVED
 
 EQUILIBRIUM, START, STEADY = "equilibrium", "start", "steady"
-LONGEST = 10**9  # of the whole numbers of a fraction that stands in formulas
 
 
 @dataclass(frozen=True)
@@ -187,13 +185,7 @@ def in_closed_form(reference: ReferenceMotion, state: Mapping[Node, Scalar]) -> 
 
 def _short(state: Mapping[Node, Scalar]) -> dict[Node, Scalar]:
     """What a formula can hold of a state: a double with all its digits is a number, and no part of a formula."""
-
-    def is_long(x: Scalar) -> bool:
-        leaves = [a for node in order((x,)) for a in node.args if isinstance(a, Fraction | int)]
-        plain = [x] if isinstance(x, Fraction | int) else leaves
-        return any(max(abs(Fraction(a).numerator), Fraction(a).denominator) > LONGEST for a in plain)
-
-    return {node: x for node, x in state.items() if not is_long(x)}
+    return {node: x for node, x in state.items() if not holds_many_digits(x)}
 
 
 def _gap(row: Row) -> Scalar | None:

@@ -12,6 +12,7 @@ from typing import Any
 from eomgen.records import dataclass
 from eomgen.symbolic.expression.graph import CONSTANTS, Node, Scalar
 from eomgen.symbolic.expression.node import Owner, op_bits
+from eomgen.symbolic.expression.rational import Fraction
 
 FREE = frozenset(("symbol", "pi", "neg"))
 _INDEX = attrgetter("index")
@@ -33,6 +34,16 @@ class Count:
 def order(outputs: Iterable[Scalar], given: Mapping[Node, Any] | frozenset[Node] = frozenset()) -> list[Node]:
     """Every node that the outputs need, arguments before results; what is `given` is not looked into."""
     return sorted(_needed(outputs, given), key=_INDEX)
+
+
+MOST_WHOLE = 10**9  # of the whole numbers of a fraction that stands in formulas
+
+
+def holds_many_digits(x: Scalar) -> bool:
+    """Whether a number with all its digits, as of a double, stands in a scalar: a number, and no part of a formula."""
+    leaves = [a for node in order((x,)) for a in node.args if isinstance(a, Fraction | int)]
+    plain = [x] if isinstance(x, Fraction | int) else leaves
+    return any(max(abs(Fraction(a).numerator), Fraction(a).denominator) > MOST_WHOLE for a in plain)
 
 
 def _needed(outputs: Iterable[Scalar], given: Mapping[Node, Any] | frozenset[Node] = frozenset()) -> set[Node]:
