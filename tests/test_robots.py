@@ -559,6 +559,7 @@ def test_the_inertia_of_a_turned_link_stands_as_it_was_written_or_as_a_number(tm
     )
     model = eomgen.import_robot(path)
     found = eomgen.inertia(model)
-    text = found.render("text") + eomgen.derive(model).render("text")
+    energy = [line for line in eomgen.derive(model).render("text").splitlines() if line.startswith("    T")]
+    text = "\n".join([found.render("text"), *energy])
     assert re.search(r"\d{10,}/\d{6,}|sqrt\(\d{10,}", text) is None
     assert re.search(r"I_1 = 0\.\d+\n", text) and found.certify().ok
