@@ -148,7 +148,7 @@ def _of_run(report: Report, letters: SetLetters, read: ReadReport, run: Trajecto
 def _left_out(run: Trajectory, legends: Mapping[str, Sequence[tuple[str, PageLine]]], letters: SetLetters) -> str:
     """Which coordinate or reaction has no curve."""
     drawn = {spoken(_named(line, letters)) for named in legends.values() for _, line in named}
-    known = [*run.coordinates, *(name for name, column in run.reactions.items() if np.isfinite(column).any())]
+    known = [*run.coordinates, *(name for name, column in run.reactions.items() if np.nan_to_num(column).any())]
     return next((f"no curve of {name}" for name in known if spoken(name) not in drawn), "")
 
 
