@@ -31,6 +31,7 @@ from eomgen.proof.reports_read import (
 from eomgen.proof.typeset import SetLetters, tokens_of, typeset
 from eomgen.simulation.result import Trajectory
 from eomgen.symbolic.expression.units import parse_unit
+from eomgen.symbolic.numeric.evaluation import NoValue
 from eomgen.symbolic.numeric.tolerances import NINE_DIGITS
 
 CURVES = "curves and tables of the report, read back, are those of the run"
@@ -166,6 +167,8 @@ def _named(line: PageLine, letters: SetLetters) -> str:
 
 def _unlike_curves(run: Trajectory, caption: str, read: ReadCurves, named: Mapping[str, str]) -> str:
     """Which curve passes other values than the column of its name, in the unit that the caption says."""
+    if not np.isfinite(read.near).all():
+        raise NoValue("numbers at an axis are alike")
     unit = _UNIT.search(caption)
     size = parse_unit(unit[1].replace("·", "*")).size if unit is not None and unit[1] != "s" else 1.0
     columns = {spoken(name): column / size for name, column in run.columns().items()}

@@ -325,6 +325,8 @@ def _scale(ticks: list[tuple[float, float]]) -> tuple[float, float, float]:
     places, values = np.array(sorted(ticks)).T
     slope, zero = np.polyfit(places, values, 1) if len(places) > 1 else (0.0, values[0])
     off = float(np.max(np.abs(zero + slope * places - values)))
+    if len(set(values)) < len(values):  # of numbers that are alike nobody can tell the places apart
+        off = np.inf
     return float(zero), float(slope), off
 
 
