@@ -380,11 +380,19 @@ class _Solver:
         values = {"t": 0.0, **known}
         moving = {x.name for x in (*system.symbols.q, *system.symbols.u)}
         if names & moving:
-            values |= start_state(system)
+            values |= self._begun
         for name in names & self.model.inputs.keys():
             state = {x: values[x.name] for x in symbols_of((system.inputs[name],))}
             values[name] = number_of(system.inputs[name], state)
         return number_of(scalar, {x: values[x.name] for x in symbols_of((scalar,))})
+
+    @cached_property
+    def _begun(self) -> dict[str, Scalar | float]:
+        """Coordinates and speeds at the start, exact where they have a closed form: what is 0 there is 0."""
+        values: dict[str, Scalar | float] = {**start_state(self.phase.system)}
+        exact = {**self.motions[False].begun.exact, **self.phase.system.loads.begun}
+        closed = zip(exact, substituted(tuple(exact.values()), self._parameters), strict=True)
+        return values | {x.name: value for x, value in closed if x.name in values and not symbols_of((value,))}
 
     @cached_property
     def _parameters(self) -> dict[Node, Scalar]:

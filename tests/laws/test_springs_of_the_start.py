@@ -85,3 +85,10 @@ def test_a_start_without_closed_form_and_numbers_gives_no_length():
     )
     with pytest.raises(eomgen.EomgenError, match="where 'r' starts has no closed form"):
         eomgen.derive(eomgen.loads(text))
+
+
+@pytest.mark.parametrize("gap", GAPS)
+def test_what_is_zero_at_the_start_is_told_as_zero(gap):
+    """k (l(q_0) - l_0) = 0, and no rounding of q_0, where the start has a closed form and where it has none."""
+    text = TIED.replace("R\n", STARTS["dependent"] + "\n", 1).replace("GAP", GAPS[gap])
+    assert eomgen.solve(eomgen.loads(text))["F"].value == 0
