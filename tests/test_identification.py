@@ -397,3 +397,29 @@ def test_deviations_condition_and_residual_are_proven_by_another_factorization()
     assert spread_checked(W, b, *told).ok
     for k in range(3):
         assert spread_checked(W, b, *[2 * x if j == k else x for j, x in enumerate(told)]).ok is False
+
+
+@pytest.mark.slow
+def test_a_motion_without_a_known_force_tells_no_parameters():
+    """Y pi = 0 holds of pi = 0 and of every multiple of a solution, under gravity too: refused, and no row of zeros."""
+    pendulum = """
+eomgen = 1
+name = "free"
+space = "plane"
+coordinates = { q = 0.4 }
+forces.weight = { kind = "gravity", acceleration = [0, -9.81] }
+[bodies.a]
+mass = 2
+center = [0.2, 0]
+inertia = 0.1
+joint = { kind = "revolute", angle = "q" }
+"""
+    model = eomgen.loads(pendulum)
+    run = eomgen.simulate(model, time=1.0)
+    data = {"t": run.t, "q": run["q"], "q'": run["q'"]}
+    with pytest.raises(UsageError, match="nothing known acts in this motion"):
+        eomgen.identify(model, data)
+    driven = eomgen.loads(pendulum.replace('angle = "q"', 'angle = "q", torque = 0.3'))
+    run = eomgen.simulate(driven, time=1.0)
+    found = eomgen.identify(driven, {"t": run.t, "q": run["q"], "q'": run["q'"]})
+    assert all(value for value, _ in found.base.values())

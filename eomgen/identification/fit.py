@@ -104,7 +104,7 @@ def identify(model: ModelOrPath, data: Data) -> Identified:
         data: arrays by name, in SI: t, the coordinates, their rates (`q'`), accelerations (`q''`) and the inputs. Rates
             and accelerations that are not there are those of a cubic spline; inputs that are not there the model's.
     Raises:
-        UsageError: a coordinate without samples, or fewer samples than parameters.
+        UsageError: a coordinate without samples, fewer samples than parameters, or nothing known that acts.
     """
     found = regressor_of(derive(model_at(model)).system)
     stacking = stacking_of(found)
@@ -119,6 +119,11 @@ def identify(model: ModelOrPath, data: Data) -> Identified:
     if not lengths.all():
         names = ", ".join(base.groups[k].name for k in np.flatnonzero(lengths == 0))
         raise UsageError(f"this motion does not excite {names}", mend="move every coordinate, with accelerations")
+    if not stacked.b.any():
+        raise UsageError(
+            "nothing known acts in this motion: it tells the ratios of the parameters, and all fit it that are 0",
+            mend="measure a motion with a force or couple of known size: an input, a spring, a load",
+        )
     scaled = W / lengths
     beta = np.linalg.lstsq(scaled, stacked.b, rcond=None)[0]
     left = stacked.b - scaled @ beta
