@@ -14,6 +14,7 @@ from functools import cached_property
 from typing import Any
 
 from eomgen.errors import DerivationError
+from eomgen.mechanics.balance.friction import frictions
 from eomgen.mechanics.bodies.inertia import armature_energy
 from eomgen.mechanics.bodies.loads import JointEffort, weights
 from eomgen.mechanics.instant.outputs import Quantities
@@ -187,7 +188,7 @@ class NearbyStates:
         system, digits = equations.system, fifty_digits()
         if not system.scope.model.coordinates[coordinate].driven:
             raise NoValue("a tie drives it")
-        if equations.friction:
+        if frictions(system):  # of what is driven alone too, where no equation of motion holds it
             raise NoValue("there is friction")
         free = with_drive_let_go(system, coordinate)
         known = self.state.values | self.state.unknowns

@@ -293,3 +293,26 @@ def test_what_the_ties_hold_has_no_rate():
     assert "theta'" not in found["cable"].exact
     values = eomgen.statics(eomgen.loads(BOOM)).values
     assert found["cable"].value == pytest.approx(values["tension(cable)"], rel=1e-12)
+
+
+DRIVEN_ON_A_FLOOR = """
+eomgen = 1
+name = "driven on a floor"
+space = "plane"
+coordinates = { s = { motion = "0.4*sin(3*t)" }, h = { dependent = true, near = 0.1 } }
+bodies.a.shape = { kind = "particle", mass = 2 }
+bodies.a.joint = { kind = "planar", x = "s", y = "h", angle = 0 }
+constraints.floor = { kind = "support", point = "a.center", at = [0, 0], normal = [0, 1], friction = 0.3 }
+forces.weight = { kind = "gravity", acceleration = [0, -9.81] }
+outputs = { D = "drive(s)" }
+"""
+
+
+def test_friction_under_what_is_all_driven_is_refused_at_rest_and_answered_where_it_slides():
+    """mu m g moves it while s' > 0; at rest friction and drive share one force: the reason is named."""
+    model = eomgen.loads(DRIVEN_ON_A_FLOOR)
+    with pytest.raises(eomgen.EomgenError, match="'floor' cannot stick: what is driven slides it"):
+        eomgen.statics(model)
+    found = eomgen.solve(model)
+    assert found["D"].value == pytest.approx(0.3 * 2 * 9.81)
+    assert found.certify().ok is not False

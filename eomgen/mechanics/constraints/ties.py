@@ -172,6 +172,13 @@ def _held_on_path(motion: Motion, link: BodyLink) -> TieRow:
     return TieRow(pushes, None, component="t", material=True)
 
 
+def _dragged(name: str) -> DerivationError:
+    """That what is driven slides a contact which was to stick."""
+    what = f"'{name}' cannot stick: what is driven slides it, and nothing that is free moves it"
+    mend = "at rest its friction and the drive share one force: leave the friction out, or ask `solve`, where it slides"
+    return DerivationError(what, f"constraints.{name}", mend)
+
+
 def _row(motion: Motion, name: str, number: int, row: TieRow, *, used: bool) -> Row:
     seen, pushes = (motion, row.pushes) if row.carrier is None else (motion.seen_from(row.carrier), row.carried)
     wrenches = _wrenches(seen, pushes)
@@ -194,6 +201,8 @@ def _row(motion: Motion, name: str, number: int, row: TieRow, *, used: bool) -> 
     across = _dual(motion, row, row.cross_tangent) if row.cross_tangent else None
     status = "eliminated" if used else _status(motion, velocity, row.gap)
     if status == "closing" and not depends_on(velocity, motion.scope.symbols.u):
+        if row.gap is None and row.rate is None:
+            raise _dragged(name)
         what, mend = "nothing that is free moves it", "put its points where they meet, or give the bodies more freedom"
         off = "" if row.gap is None or text_size(row.gap) > LONG else f" (it is {to_text(row.gap)} off)"
         raise DerivationError(f"row {number} of '{name}' cannot hold: {what}{off}", f"constraints.{name}", mend)

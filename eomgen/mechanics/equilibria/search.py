@@ -16,9 +16,11 @@ from typing import Any
 
 import numpy as np
 
-from eomgen.errors import DerivationError
+from eomgen.errors import DerivationError, MissingValues
 from eomgen.mechanics.bodies.places import Located
 from eomgen.mechanics.bodies.system_scene import start_values
+from eomgen.mechanics.constraints.closure import generic_state
+from eomgen.mechanics.constraints.ties import Ties
 from eomgen.mechanics.equations.system import System
 from eomgen.mechanics.equilibria.closed_rest import ClosedForms
 from eomgen.mechanics.equilibria.coordinates_at_rest import Chosen, chosen_coordinates, holds_velocities, unheld
@@ -115,12 +117,18 @@ class Equilibria:
             DerivationError: there is none.
         """
         if not self.found:
-            raise nowhere(self.complete)
+            raise nowhere(self.complete, self.statics.system.ties)
         return self.found[0]
 
 
-def nowhere(complete: bool) -> DerivationError:
-    """That there is no place of rest, or that none was found."""
+def nowhere(complete: bool, ties: Ties) -> DerivationError:
+    """That there is no place of rest, that none was found, or that ties do not close anywhere near."""
+    try:
+        generic_state(ties)
+    except DerivationError as error:
+        return error
+    except MissingValues:  # whether they close cannot be told without values
+        pass
     return DerivationError("no place was found at which all forces balance" + (": there is none" if complete else ""))
 
 
@@ -263,7 +271,7 @@ class _Search:
         each = (self._equilibrium(z, self._forms) for z in self._places.found)
         found = next((place for place in each if place is not None), None)
         if found is None:
-            raise nowhere(self._places.complete)
+            raise nowhere(self._places.complete, self.system.ties)
         return found
 
     def equilibria(self) -> Equilibria:
