@@ -225,3 +225,22 @@ def test_axes_of_a_hinge_are_those_of_its_bodies():
         eomgen.loads(HINGED.replace("AXIS", '[0, 1, 0], axes = "third"') + "[bodies.third]\njoint.kind = 'fixed'\n")
     with pytest.raises(eomgen.ModelError, match="'hinge' has no axis"):
         eomgen.loads(HINGED.replace("axis = AXIS", 'axes = "door"'))
+
+
+BOWL = """
+eomgen = 1
+space = "plane"
+points.C = [0, 1]
+coordinates = { x = 0, y = 0.15, phi = 0 }
+bodies.ball.shape = { kind = "disc", mass = 1, radius = 0.1 }
+bodies.ball.joint = { kind = "free", x = "x", y = "y", angle = "phi" }
+constraints.bowl = { kind = "rolling", body = "ball", circle = { at = "C", radius = 1, inside = false } }
+"""
+
+
+def test_a_bowl_without_inside_is_warned_of():
+    """|c - C| = 0.85 < R: it would come to lie below the bowl; with `inside`, or on a hill, nothing is said."""
+    (warning,) = checked_model(eomgen.loads(BOWL)).cautions
+    assert "'ball' starts within the circle of 'bowl'" in warning.what and "inside = true" in warning.mend
+    assert checked_model(eomgen.loads(BOWL.replace("false", "true"))).cautions == ()
+    assert checked_model(eomgen.loads(BOWL.replace("y = 0.15", "y = -0.15"))).cautions == ()

@@ -8,6 +8,9 @@ from functools import cached_property
 
 from eomgen.errors import DerivationError, MissingValues, ModelError, Problem
 from eomgen.mechanics.bodies.contact_modes import ContactModes
+from eomgen.mechanics.bodies.kinematics import motion_of
+from eomgen.mechanics.bodies.scope import scope_of
+from eomgen.mechanics.bodies.system_scene import SystemScene
 from eomgen.mechanics.constraints.freedom import Freedom, freedom_of
 from eomgen.mechanics.equations.system import system_of
 from eomgen.mechanics.equations.wellposed import massless_motions
@@ -109,6 +112,7 @@ def checked_model(model: Model) -> Checked:
             *(_idle(model, modes) if model.coordinates else ()),
             *_locked(model, freedom),
             *_stiff(model, modes, freedom),
+            *_misplaced(model),
         ),
         modes=modes,
     )
@@ -144,6 +148,18 @@ def _stiff(model: Model, modes: ContactModes, freedom: Freedom) -> Iterator[Prob
                 mend = f"in a body's own axes it leaves {found}: {written}"
                 yield Problem(f"constraints.{name}", what, mend=mend)
                 break
+
+
+def _misplaced(model: Model) -> Iterator[Problem]:
+    """Ties whose start lies where hardly anybody means it: in a bowl that is rolled on outside."""
+    try:
+        motion = motion_of(scope_of(model))
+        for name, tie in model.constraints.items():
+            what, mend = tie.misplaced(SystemScene(motion, f"constraints.{name}"))
+            if what:
+                yield Problem(f"constraints.{name}", what, mend=mend)
+    except (DerivationError, ModelError):  # verbs that need equations of motion tell it
+        return
 
 
 def _idle(model: Model, modes: ContactModes) -> tuple[Problem, ...]:

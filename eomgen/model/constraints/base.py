@@ -59,6 +59,10 @@ class Constraint(Part, ABC):
         """(how it is written, the same tie) with a direction in the axes of a body, where it stands in the ground's."""
         yield from ()
 
+    def misplaced(self, scene: LoadContext) -> tuple[str, str]:
+        """(where the start lies that hardly was meant, what says so otherwise), ("", "") as it should be."""
+        return "", ""
+
     def leans_on_ground(self) -> bool:
         """Whether the ground guides what the tie holds, though it pushes on no place of the ground."""
         return False

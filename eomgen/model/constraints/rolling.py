@@ -145,6 +145,20 @@ class Rolling(Constraint):
         surface = RoundSurface(self.on, track.at, track.radius, bool(track.inside), track.axis)
         return Meeting(body, surface, not self.slip)
 
+    def misplaced(self, scene: LoadContext) -> tuple[str, str]:
+        """Within a circle that is rolled on outside."""
+        if self.circle is None or self.circle.inside:
+            return "", ""
+        track = self._curved(scene)
+        out = minus(scene.position(scene.own_place(self.body, self._hub)), scene.position(track.anchor))
+        along = 0 if track.axis is None else dot(track.axis, out)
+        away, r = scene.worth(dot(out, out) - along * along), scene.worth(track.r)
+        if away is None or r is None or away >= r * r:
+            return "", ""
+        name = scene.where.rpartition(".")[2]
+        what = f"'{self.body}' starts within the circle of '{name}', and would roll on its outside"
+        return what, "inside = true, where it rolls in it"
+
     def rows(self, scene: LoadContext) -> tuple[TieRow, ...]:
         """The normal row, gap = 0, n pushing the body off its track; unless it slips, e . (v - v_track) = 0 along it.
 
