@@ -28,7 +28,7 @@ from eomgen.model.kinds import BodyName, Flag, Length, OwnPlace, Radius, Size, S
 from eomgen.model.part import PartRule
 from eomgen.model.positions import DocumentPath
 from eomgen.records import dataclass
-from eomgen.symbolic.expression.spatial import AnyScalar, minus
+from eomgen.symbolic.expression.spatial import AnyScalar, dot, minus
 
 TrackField = Annotated[Track, PartRule(Track)]
 CircleField = Annotated[Circle, PartRule(Circle)]
