@@ -33,6 +33,7 @@ PREFIX = ".eomgen-"
 LEFT = re.compile(re.escape(PREFIX) + "[0-9a-f]{16}")
 HOUR = 3600.0  # seconds after which a folder beside is nobody's, where locks cannot tell
 SILENCE = 30.0  # seconds after which nothing more is awaited of a pipe
+LOOK = 0.1  # seconds between two looks at a silent pipe
 TRIES = 10  # another process may take a new folder away before it is locked
 WAITING = [getattr(signal, name) for name in ("SIGINT", "SIGTERM", "SIGHUP") if hasattr(signal, name)]
 
@@ -104,11 +105,16 @@ def read_stdin(most: int) -> bytes:
 
 
 def _through(handle: int, most: int) -> bytes:
-    """Part by part; where as many bytes came as are wanted the next part is empty, as it is at the end."""
+    """Part by part; where as many bytes came as are wanted the next part is empty, as it is at the end.
+
+    It is awaited look by look: between two of them whoever waits less long stops it (--patience).
+    """
     data = b""
     while True:
-        if not select.select([handle], [], [], SILENCE)[0]:
-            raise TimeoutError(errno.ETIMEDOUT, f"nothing came through it for {SILENCE:g} s")
+        given_up = time.monotonic() + SILENCE
+        while not select.select([handle], [], [], min(LOOK, SILENCE))[0]:
+            if time.monotonic() > given_up:
+                raise TimeoutError(errno.ETIMEDOUT, f"nothing came through it for {SILENCE:g} s")
         part = os.read(handle, most + 1 - len(data))
         if not part:
             return data

@@ -351,6 +351,9 @@ def test_reading_ends_where_a_model_would_be_too_long(tmp_path):
     for words in (("check", str(fifo)), ("check", "-")):
         ended = forked(words, lambda: (quick(), os.dup2(silent, 0)))
         assert ended.code == 1 and "nothing came through it" in ended.said
+    awaited = time.monotonic()
+    ended = forked(("check", "-", "--patience", "1"), lambda: os.dup2(silent, 0))
+    assert ended.code == 3 and "given up after 1 s" in ended.said and time.monotonic() - awaited < files.SILENCE
     os.close(silent)
     if (pid := os.fork()) == 0:
         fifo.write_text("eomgen = 1\nbad\n")
