@@ -77,3 +77,10 @@ def test_the_energy_of_a_linkage_is_kept_beside_its_ties(target):
 def test_what_does_not_keep_its_energy_is_refused():
     with pytest.raises(UsageError, match="energy is not kept"):
         eomgen.simulate(MODELS / "cart_pole.toml", time=1, stabilization="energy")
+
+
+def test_a_run_that_ends_at_an_event_keeps_its_digits():
+    """Both runs end at theta = 0, some 1e-12 s apart: that is one end, not a motion that goes another way."""
+    run = eomgen.simulate(MODELS / "simple_pendulum.toml", time=5, until="theta = 0", target="numpy")
+    found = run.accuracy
+    assert run.t[-1] < 5 and found.until is None and found.digits >= 8

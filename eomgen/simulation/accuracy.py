@@ -12,7 +12,7 @@ import numpy as np
 
 from eomgen.records import dataclass
 from eomgen.simulation.result import Trajectory
-from eomgen.symbolic.numeric.tolerances import BEST, LEAST_RTOL
+from eomgen.symbolic.numeric.tolerances import BEST, LEAST_RTOL, SAME_PLACE
 
 FINER = 100.0  # times
 FEWEST, DECADES = 6, 3.0  # instants that show a pace; powers of ten by which errors grow where motions part
@@ -64,11 +64,14 @@ def accuracy_of(run: Trajectory, other: Trajectory, share: float) -> Accuracy | 
     common, mine, its = np.intersect1d(run.t, other.t, return_indices=True)
     if run.coordinates + run.speeds != other.coordinates + other.speeds or not len(common):
         return None
+    ended = common[-1] < run.t[-1]  # the other came to another end
+    if ended and abs(run.t[-1] - other.t[-1]) <= SAME_PLACE * (run.t[-1] - run.t[0]):  # both at the same event
+        common, ended = np.append(common, run.t[-1]), False
+        mine, its = np.append(mine, len(run.t) - 1), np.append(its, len(other.t) - 1)
     largest = np.max(np.abs(run.x), axis=0, initial=0.0)
     apart = np.abs(run.x[mine] - other.x[its]) / np.where(largest > 0, largest, 1.0)
     errors = np.nan_to_num(share * np.max(apart, axis=1, initial=0.0), nan=np.inf, posinf=np.inf)
     lost = np.flatnonzero(~(errors < LOST))
-    ended = len(run.t) and common[-1] < run.t[-1]  # the other came to another end
     until = float(common[lost[0]]) if lost.size else float(common[-1]) if ended else None
     return Accuracy(
         float(errors[-1]), until, until is not None and _part_steadily(errors[: lost[0]] if lost.size else errors)
