@@ -795,3 +795,23 @@ def test_what_follows_from_the_file_is_right(equation, up_to):
     assert found.verdict == "right" and up_to in found.up_to
     left, right = equation.split(" = ")
     assert eomgen.verify(model, f"{left} = {right} + {left}/100").verdict == "wrong"
+
+
+@pytest.mark.parametrize(
+    "wrong, right", [("y = R - 9.81*t^2", "y = R - 9.81/2*t^2"), ("y = 3 - g/2*t^2", "y = 2 - g/2*t^2")]
+)
+def test_a_course_may_hold_values_of_the_file(wrong, right):
+    """R - 9.81/2 t^2 is R - g/2 t^2, and y(0) = 2 is y(0) = R, with the values of the file; others are wrong."""
+    fall = """
+eomgen = 1
+name = "fall"
+space = "plane"
+parameters = { R = 2, m = 1, g = 9.81 }
+coordinates = { y = "R" }
+bodies.a.shape = { kind = "particle", mass = "m" }
+bodies.a.joint = { kind = "prismatic", axis = [0, 1], displacement = "y" }
+forces.weight = { kind = "gravity", acceleration = [0, "-g"] }
+"""
+    found = eomgen.verify(eomgen.loads(fall), right)
+    assert found.verdict == "right" and "the values of the file" in found.up_to, found
+    assert eomgen.verify(eomgen.loads(fall), wrong).verdict == "wrong"

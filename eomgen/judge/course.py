@@ -3,11 +3,13 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
+from dataclasses import field
 
 from eomgen.errors import DerivationError
 from eomgen.judge.case import Case
 from eomgen.judge.decision import combination
 from eomgen.judge.reading import HandEquation
+from eomgen.judge.right import meant_by_numbers
 from eomgen.judge.terms import short_text, term_text
 from eomgen.judge.verdict import Cause
 from eomgen.mechanics.equations.pieces import EVERYWHERE, Extent
@@ -32,6 +34,7 @@ class Course:
         holds: whether that is nothing; None: undecided, or they do not decide it alone.
         begins: whether it starts as the model does; None: where that starts is not known.
         held: in which pieces it holds.
+        values: of the file, that its numbers are: it holds with these.
     """
 
     known: Mapping[Node, Scalar]
@@ -39,6 +42,7 @@ class Course:
     holds: bool | None
     begins: bool | None
     held: Extent = EVERYWHERE
+    values: Mapping[Node, Scalar] = field(default_factory=dict)
 
 
 def course_of(case: Case, written: HandEquation, constants: Mapping[str, Scalar]) -> Course | None:
@@ -54,11 +58,25 @@ def course_of(case: Case, written: HandEquation, constants: Mapping[str, Scalar]
         return None
     if coordinates[name.removesuffix("'")].driven:
         return None
-    return _put_in(case, name, case.value(written.right, constants), any_start=bool(constants))
+    x = case.value(written.right, constants)
+    found = _put_in(case, name, x, any_start=bool(constants))
+    if found is None or (found.holds and found.begins is not False):
+        return found
+    values = meant_by_numbers(case, written, (x, *case.rows, *case.start.values()))
+    other = _put_in(case, name, x, any_start=bool(constants), values=values) if values else None
+    return other if other is not None and other.holds and other.begins else found
 
 
-def _put_in(case: Case, name: str, x: Scalar, *, any_start: bool) -> Course | None:
-    """A coordinate or its rate, by its name, as a function of time put into the equations of motion."""
+def _put_in(
+    case: Case, name: str, x: Scalar, *, any_start: bool, values: Mapping[Node, Scalar] | None = None
+) -> Course | None:
+    """A coordinate or its rate, by its name, as a function of time put into the equations of motion.
+
+    Args:
+        values: of parameters, put in too.
+    """
+    values = values or {}
+    (x,) = substituted((x,), values)
     symbols, scope, known = case.system.symbols, case.system.scope, dict[Node, Scalar]()
     for rate in (name, f"{name}'", f"{name}''")[: 3 - name.count("'")]:
         node = scope.names[rate]
@@ -66,25 +84,26 @@ def _put_in(case: Case, name: str, x: Scalar, *, any_start: bool) -> Course | No
             known[node] = x
         x = derivative(x, symbols.t)
     given = tuple(scope.names[x.name] - value for x, value in known.items() if not x.name.endswith("''"))
+    given = substituted(substituted(given, case.start), values) if values else given
     begins = True if any_start else case.starts_at_zero(*given)
     others = [x for x in (*symbols.q, *symbols.u) if x not in known]
     if not case.rows:
         return None
-    left = [row for row in substituted(case.rows, known) if not depends_on(row, (*others, *case.forced))]
+    left = [row for row in substituted(case.rows, {**known, **values}) if not depends_on(row, (*others, *case.forced))]
     a = scope.names[name.removesuffix("'") + "''"]
     if not left and type(a) is Node and a in known:  # the others move with it: what is left of all equations together
-        (found,) = substituted((known[a] - case.phase.eliminated(a),), known)
+        (found,) = substituted((known[a] - case.phase.eliminated(a),), {**known, **values})
         left = [] if depends_on(found, others) else [found]
     inputs = {node: case.system.inputs[n] for n, node in symbols.inputs.items()}
     mine = substituted(tuple(left), inputs)
     if not mine and name.endswith("'"):
         return None  # its coordinate stands in the equations: this is no course
     if not mine:
-        return Course(known, mine, None, begins)
+        return Course(known, mine, None, begins, values=values)
     follows = combination(case.system, mine, (), within=True)
     if follows.holds is False and follows.held:  # friction has its direction as long as the body slides on
-        return Course(known, mine, True, begins, follows.held)
-    return Course(known, mine, follows.holds, begins)
+        return Course(known, mine, True, begins, follows.held, values)
+    return Course(known, mine, follows.holds, begins, values=values)
 
 
 def of_the_start(case: Case, course: Course) -> str:

@@ -42,6 +42,7 @@ from eomgen.judge.right import (
     on_one_side,
     says_nothing,
     truth_of,
+    values_told,
     while_,
     with_definitions,
     with_values_of_file,
@@ -236,7 +237,8 @@ class Judge:
             return Verdict(written.given, "law", UNDECIDED, reason=reason)
         if course.holds and course.begins:
             told = f"any start, with {', '.join(constants)} constant" if constants else "the motion from the start"
-            return Verdict(written.given, "law", RIGHT, f"{told}{while_(course.held)}")
+            with_values = f", with {values_told(course.values)}" if course.values else ""
+            return Verdict(written.given, "law", RIGHT, f"{told}{with_values}{while_(course.held)}")
         rest = "" if course.holds else excess(case, course.left[0] if len(course.left) == 1 else 0)
         target = implied_by_course(case, course.known) if not course.holds else None
         found = simplest_explanation([target] if target is not None else [])[1]

@@ -212,21 +212,29 @@ def _integral(case: Case, scalar: Scalar) -> Decided | None:
 
 def with_values_of_file(case: Case, written: HandEquation, kind: str, scalar: Scalar) -> Decided | None:
     """Right where the numbers in it are values of the file: of parameters that it does not name."""
+    missing = meant_by_numbers(case, written, (scalar, *case.rows))
+    if not missing or not _holds_with(case, kind, scalar, missing):
+        return None
+    return Decided(True, values_told(missing))
+
+
+def meant_by_numbers(case: Case, written: HandEquation, scalars: Sequence[Scalar]) -> dict[Node, Scalar]:
+    """Values of parameters in scalars that an equation does not name; {} where none of its numbers is one of these."""
     parameters = case.system.symbols.parameters
     known = {name: exact(x) for name, x in exact_parameters(case.model).items() if not isinstance(x, float)}
     missing: dict[Node, Scalar] = {
         x: known[n]
         for n, x in parameters.items()
-        if n in known and n not in written.names and depends_on_one((scalar, *case.rows), x)
+        if n in known and n not in written.names and depends_on_one(scalars, x)
     }
     sides = (written.left, written.right)
-    numbers = {abs(what) for side in sides for kind_, what in side.code if kind_ == "number"}
-    if not numbers & {abs(x) for x in missing.values() if x not in (0, 1, -1)}:
-        return None
-    if not _holds_with(case, kind, scalar, missing):
-        return None
-    told = ", ".join(f"{x.name} = {readable_text(missing[x])}" for x in missing)
-    return Decided(True, f"the values of the file: {told}")
+    numbers = {abs(what) for side in sides for kind, what in side.code if kind == "number"}
+    return missing if numbers & {abs(x) for x in missing.values() if x not in (0, 1, -1)} else {}
+
+
+def values_told(values: Mapping[Node, Scalar]) -> str:
+    """the values of the file: m = 1, g = 9.81"""
+    return "the values of the file: " + ", ".join(f"{x.name} = {readable_text(value)}" for x, value in values.items())
 
 
 def with_definitions(case: Case, kind: str, scalar: Scalar) -> Decided | None:
