@@ -241,3 +241,32 @@ def test_a_heavy_rod_on_two_supports_hangs_through_like_a_line_load():
     root, middle, N = exact(text, "bending_moment(rod, 0)", "bending_moment(rod, l/2)", "axial_force(rod, 0)")
     assert (root, middle) == ("-1/4*m*g*l", "-1/16*m*g*l")  # -m g cos(pi/3) l/2, a quarter of that
     assert N == "-1/2*sqrt(3)*m*g" and sin(pi / 3) == pytest.approx(3**0.5 / 2)
+
+
+RESTS_BY_AN_EYE = (
+    HEAD
+    + """
+parameters = { P = 6, c = 1.5, L = 4 }
+[bodies.wall]
+points = { s0 = [0, 0], s3 = ["L", 0] }
+line = ["s0", "s3"]
+[bodies.slide]
+points = { t = ["c", 0], e = ["c", 2], f = ["c + 2", 2] }
+[constraints]
+A = { kind = "clamp", points = ["wall.s0"] }
+E = { kind = "slider", point = "slide.t", on = "wall" }
+B = { kind = "pin", points = ["slide.f"] }
+[forces]
+load = { kind = "force", point = "slide.e", force = [0, "-P"] }
+"""
+)
+
+
+def test_an_eye_pushes_its_rail_where_it_is():
+    """V = P, M = P (x - c) before the eye at c, nothing behind it; not where the line of the rail begins."""
+    system = system_of(eomgen.loads(RESTS_BY_AN_EYE))
+    before, behind = section_forces(reactions_of(system), "wall").pieces
+    values = {x: 6 if x.name == "P" else 1.5 if x.name == "c" else 4 for x in system.symbols.parameters.values()}
+    told = [[piece.value(kind, x) for kind in KINDS] for piece, x in ((before, Fraction(1, 2)), (behind, 3))]
+    assert evaluate(tuple(told[0]), values, FLOAT) == pytest.approx([0, 6, 6 * (0.5 - 1.5)])
+    assert evaluate(tuple(told[1]), values, FLOAT) == pytest.approx([0, 0, 0])

@@ -44,6 +44,7 @@ class Effect:
         force, couple: on it.
         arm: from its mass centre to the place [m].
         place: the same place in body axes [m]; None of a couple that acts on the body as a whole.
+        beyond: how far from there it really acts, body axes; of a couple, of the force whose moment it is.
     """
 
     link: int
@@ -51,6 +52,7 @@ class Effect:
     couple: Vector
     arm: Vector
     place: Vector | None = None
+    beyond: Vector | None = None
 
     @cached_property
     def six(self) -> tuple[Scalar, ...]:
@@ -59,7 +61,7 @@ class Effect:
 
     def times(self, k: Scalar) -> Effect:
         """k units of it."""
-        return Effect(self.link, times(k, self.force), times(k, self.couple), self.arm, self.place)
+        return Effect(self.link, times(k, self.force), times(k, self.couple), self.arm, self.place, self.beyond)
 
 
 @dataclass(frozen=True)
@@ -179,6 +181,7 @@ def effects_of_load(axes: Axes, load: PointForce | Couple) -> tuple[Effect, ...]
         if load.axes == body and not axes.plane
         else axes.of_ground(link, in_ground_axes(axes.motion, given, load.axes))
     )
+    beyond = None if load.beyond is None else apply(transposed(link.pose.R), load.beyond)
     if isinstance(load, Couple):
-        return (Effect(i, ZERO, vector, ZERO, None if load.place is None else load.place[1]),)
-    return (Effect(i, vector, ZERO, axes.arm(i, load.place[1]), load.place[1]),)
+        return (Effect(i, ZERO, vector, ZERO, None if load.place is None else load.place[1], beyond),)
+    return (Effect(i, vector, ZERO, axes.arm(i, load.place[1]), load.place[1], beyond),)

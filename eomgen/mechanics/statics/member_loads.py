@@ -79,9 +79,10 @@ class MemberLoads:
         link = system.motion.index[self.body]
         for j, component in enumerate(self.reactions.components):
             for effect in (*component.effects, *component.friction_effects):
-                if effect.link == link:
-                    effect = replace(effect, place=self._place_of(effect, component.owner))
-                    yield effect.times(self.reactions.value(j))
+                if effect.link == link and not (effect.place is None and effect.beyond is not None):
+                    place = self._place_of(effect, component.owner)
+                    place = place if effect.beyond is None else plus(place, effect.beyond)
+                    yield replace(effect, place=place).times(self.reactions.value(j))
         for force in system.loads.applied:
             if not force.spread and not system.scope.model.forces[force.name].by_mass:
                 placed = [load for load in force.loads if isinstance(load, (PointForce, Couple))]

@@ -306,4 +306,4 @@ def _slope_of(effect: Effect, unknown: Node) -> Effect | None:
     force, couple = (tuple(derivative(x, unknown) for x in v) for v in (effect.force, effect.couple))
     if all(map(is_zero, (*force, *couple))):
         return None
-    return Effect(effect.link, vector_of(force), vector_of(couple), effect.arm, effect.place)
+    return Effect(effect.link, vector_of(force), vector_of(couple), effect.arm, effect.place, effect.beyond)

@@ -49,10 +49,12 @@ class Touch:
         """The force, as the same force at the place and its moment."""
         body, _ = self.place
         moment = cross(self.arm, force)
-        at_place = PointForce(self.place, force)
-        if body is None or all(type(x) is int and x == 0 for x in moment):
+        if body is None or all(type(x) is int and x == 0 for x in self.arm):
+            return (PointForce(self.place, force),)
+        at_place = PointForce(self.place, force, beyond=self.arm)
+        if all(type(x) is int and x == 0 for x in moment):
             return (at_place,)
-        return (at_place, Couple(body, moment))
+        return (at_place, Couple(body, moment, beyond=self.arm))
 
 
 def opposite(touch: Touch, other: Touch, force: Vector) -> tuple[Push, ...]:

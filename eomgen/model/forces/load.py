@@ -14,24 +14,30 @@ BodyPoint = tuple["str | None", Vector]
 
 @dataclass(frozen=True)
 class PointForce:
-    """A force on a body at a place of it; `axes` names the body in whose axes it is written, None the ground's [N]."""
+    """A force on a body at a place of it; `axes` names the body in whose axes it is written, None the ground's [N].
+
+    What touches beyond the place, by `beyond` in ground axes, has its moment as a couple beside it that names the same.
+    """
 
     place: BodyPoint
     force: Vector
     axes: str | None = None
+    beyond: Vector | None = None
 
 
 @dataclass(frozen=True)
 class Couple:
     """A couple on a body; `axes` names the body in whose axes it is written, None the ground's [N m].
 
-    Where it acts matters inside the body alone: `place` is None where nobody said it.
+    Where it acts matters inside the body alone: `place` is None where nobody said it. One that is the moment of a force
+    beside it, which acts beyond its place, says by how much.
     """
 
     body: str
     couple: Vector
     axes: str | None = None
     place: BodyPoint | None = None
+    beyond: Vector | None = None
 
 
 @dataclass(frozen=True)
