@@ -17,7 +17,7 @@ from golden_formulas import (
     ours_of,
 )
 
-pytestmark = pytest.mark.slow
+pytestmark = [pytest.mark.slow, pytest.mark.by_model]
 
 LIMIT = 1.3  # of our length over the author's
 MEDIAN = 1.0

@@ -12,6 +12,7 @@ from typing import Any
 
 from slow_run import usual
 
+from eomgen import solve
 from eomgen.documents.derivation import derivation_of
 from eomgen.documents.document import Document
 from eomgen.mechanics.equations.system import System
@@ -20,6 +21,7 @@ from eomgen.model.reader import load, loads
 from eomgen.model.unbuilt import unbuilt
 from eomgen.model.unknowns import in_loads
 from eomgen.pipeline import METHODS, Equations, derive
+from eomgen.questions.answers import Answers
 from eomgen.symbolic.expression.derivative import substituted
 from eomgen.symbolic.expression.expressions import Call, Reference, parse
 from eomgen.symbolic.expression.functions import over
@@ -156,6 +158,17 @@ def entries(name: str) -> dict[str, Any]:
     return json.loads(json.dumps(equations(name).entries()))
 
 
+def model_path(name: str) -> Path:
+    """Where a model of models/ stands, by its file's stem."""
+    return next(path for path in PATHS if path.stem == name)
+
+
+@cache
+def answers(path: Path) -> Answers:
+    """What `solve` answers of a model of models/, once in a process."""
+    return solve(loaded(path))
+
+
 @cache
 def loaded(path: Path) -> Model:
     """A model of models/, read once in a process: it is frozen."""
@@ -174,7 +187,7 @@ def model_called(name: str) -> Model:
         return loads(LOOP if name == "loop" else SPRINGS)
     if name == "chain5":
         return loads(runpy.run_path(str(MODELS / "chain.py"))["chain"](5))
-    return loaded(next(path for path in PATHS if path.stem == name))
+    return loaded(model_path(name))
 
 
 def derivable() -> tuple[str, ...]:

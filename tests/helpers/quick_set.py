@@ -16,5 +16,6 @@ def is_slow(text: str) -> bool:
 def model_of(item: Any) -> str:
     """The name of the model that a test over many models is asked of; "" where it is of none."""
     given = getattr(getattr(item, "callspec", None), "params", {})
-    found = next((given[key] for key in ("name", "path", "equations") if key in given), "")
+    found = next((given[key] for key in ("name", "path", "equations", "system", "golden") if key in given), "")
+    found = getattr(found, "path", found)  # of a formula of a textbook
     return found.stem if isinstance(found, Path) else str(found)

@@ -11,7 +11,8 @@ from typing import Any
 
 import pytest
 from answers_of_chapters_11_13_21 import ANSWERS, AS_PRINTED
-from derivations import MODELS
+from derivations import answers as answers_of
+from derivations import model_path
 from oracle_of_chapters_11_13_21 import ORACLES
 from other_units import grown
 
@@ -20,7 +21,7 @@ from eomgen.symbolic.expression.expressions import as_expression, parse
 from eomgen.symbolic.expression.graph import Graph
 from eomgen.symbolic.numeric.evaluation import evaluate, fifty_digits
 
-pytestmark = pytest.mark.slow
+pytestmark = [pytest.mark.slow, pytest.mark.by_model]
 
 ASKED = [(system, output) for system in ANSWERS for output in ANSWERS[system]]
 UNITS = (  # (system and output, as a pattern): the unit that is asked for
@@ -45,7 +46,7 @@ BOOKS = {"p": "N/m", "P": "N", "a": "m"}  # units of what chapter 21 leaves in l
 @cache
 def model_of(system: str, other: bool = False) -> eomgen.Model:
     """The model file; or the same with every parameter another number."""
-    model = eomgen.load(MODELS / "seeds" / f"{system}.toml")
+    model = eomgen.load(model_path(system))
     return with_numbers(model, numbers_of(system, other)) if other else model
 
 
@@ -65,7 +66,7 @@ def numbers_of(system: str, other: bool = False) -> dict[str, Fraction]:
 
 @cache
 def answers(system: str, other: bool = False) -> dict[str, Any]:
-    return eomgen.solve(model_of(system, other))
+    return answers_of(model_path(system)) if not other else eomgen.solve(model_of(system, other))
 
 
 def found_by_the_oracle(system: str, other: bool) -> dict[str, float]:

@@ -13,7 +13,8 @@ import oracle_of_chapters_18_20_22 as oracle
 import pytest
 from alternatives_of_chapters_18_20_22 import ALTERNATIVES, CLOSURES, HEAD
 from answers_of_chapters_18_20_22 import ANSWERS, LINEARIZED
-from derivations import MODELS
+from derivations import answers as answers_of
+from derivations import model_path
 
 import eomgen
 from eomgen.model.values import start_values
@@ -21,7 +22,7 @@ from eomgen.symbolic.expression.expressions import as_expression, parse
 from eomgen.symbolic.expression.graph import Graph
 from eomgen.symbolic.numeric.evaluation import evaluate, fifty_digits
 
-pytestmark = pytest.mark.slow
+pytestmark = [pytest.mark.slow, pytest.mark.by_model]
 
 ASKED = [(system, output) for system in ANSWERS for output in ANSWERS[system]]
 STATES = 3  # random states of a comparison
@@ -30,7 +31,7 @@ STATES = 3  # random states of a comparison
 @cache
 def model_of(system: str, other: bool = False) -> eomgen.Model:
     """The model file; or the same with every parameter another number."""
-    model = eomgen.load(MODELS / "seeds" / f"{system}.toml")
+    model = eomgen.load(model_path(system))
     return with_numbers(model, others(model)) if other else model
 
 
@@ -50,7 +51,7 @@ def with_numbers(model: eomgen.Model, numbers: dict[str, Fraction]) -> eomgen.Mo
 
 @cache
 def answers(system: str, other: bool = False) -> dict[str, Any]:
-    return eomgen.solve(model_of(system, other))
+    return answers_of(model_path(system)) if not other else eomgen.solve(model_of(system, other))
 
 
 def parameters_of(model: eomgen.Model, other: bool) -> dict[str, Fraction]:

@@ -11,6 +11,9 @@ from typing import Any
 
 import mpmath
 import pytest
+from derivations import answers as answers_of
+from derivations import loaded as loaded_model
+from derivations import model_path
 
 import eomgen
 from eomgen.model.values import numeric_parameters
@@ -18,7 +21,7 @@ from eomgen.symbolic.expression.expressions import parse
 from eomgen.symbolic.expression.graph import Graph
 from eomgen.symbolic.numeric.evaluation import evaluate, fifty_digits
 
-pytestmark = pytest.mark.slow
+pytestmark = [pytest.mark.slow, pytest.mark.by_model]
 
 MODELS = Path(__file__).parents[2] / "models"
 HEIGHT = "(L*sin(alpha) + R*(1 - cos(alpha)))"
@@ -72,8 +75,8 @@ ASKED = [(name, output) for name, outputs in KNOWN.items() for output in outputs
 
 @cache
 def loaded(name: str) -> tuple[eomgen.Model, dict[str, Any]]:
-    model = eomgen.load(MODELS / f"{name}.toml")
-    return model, eomgen.solve(model)
+    path = model_path(name)
+    return loaded_model(path), answers_of(path)
 
 
 def value_of(text: str, state: dict[str, Any]) -> Any:
@@ -123,7 +126,7 @@ def test_the_ladder_takes_its_time_to_the_wall():
 @pytest.mark.parametrize("path", sorted(MODELS.glob("*.toml")), ids=lambda path: path.stem)
 def test_the_outputs_of_every_classic_are_answered(path):
     """Exactly or as a number."""
-    left = {name: answer.message for name, answer in eomgen.solve(eomgen.load(path)).items() if not answer.answered}
+    left = {name: answer.message for name, answer in answers_of(path).items() if not answer.answered}
     assert not left
 
 

@@ -10,7 +10,8 @@ from typing import Any
 
 import pytest
 from answers_of_turning_bodies import ANSWERS, INFERRED, UNITS
-from derivations import MODELS
+from derivations import answers as answers_of
+from derivations import model_path
 from oracle_of_turning_bodies import ORACLES
 from other_units import grown
 
@@ -19,7 +20,7 @@ from eomgen.symbolic.expression.expressions import as_expression, parse
 from eomgen.symbolic.expression.graph import Graph
 from eomgen.symbolic.numeric.evaluation import evaluate, fifty_digits
 
-pytestmark = pytest.mark.slow
+pytestmark = [pytest.mark.slow, pytest.mark.by_model]
 
 ASKED = [(system, output) for system in ANSWERS for output in ANSWERS[system]]
 BY_HAND = [(system, output) for system, output in ASKED if ANSWERS[system][output] is not None]
@@ -30,7 +31,7 @@ ALL_UNITS = {system: UNITS.get(system, {}) | INFERRED.get(system, {}) for system
 @cache
 def model_of(system: str, other: bool = False) -> eomgen.Model:
     """The model file; or the same with every parameter another number."""
-    model = eomgen.load(MODELS / "seeds" / f"{system}.toml")
+    model = eomgen.load(model_path(system))
     if not other:
         return model
     changed = {
@@ -49,7 +50,7 @@ def numbers_of(system: str, other: bool = False) -> dict[str, Fraction]:
 
 @cache
 def answers(system: str, other: bool = False) -> dict[str, Any]:
-    return eomgen.solve(model_of(system, other))
+    return answers_of(model_path(system)) if not other else eomgen.solve(model_of(system, other))
 
 
 @cache
