@@ -40,5 +40,7 @@ def test_each_old_text_stands_where_the_list_says():
 
 def test_the_product_sees_a_sample_of_planted_errors():
     """The verb that uses the wrong law ends in exit 3, or refuses."""
-    done = subprocess.run([sys.executable, "-c", COMMAND, str(COUNT)], cwd=ROOT, capture_output=True, text=True, timeout=900)
+    done = subprocess.run(
+        [sys.executable, "-c", COMMAND, str(COUNT)], cwd=ROOT, capture_output=True, text=True, timeout=900
+    )
     assert done.stdout.splitlines() == ["product"] * COUNT, done.stdout + done.stderr
