@@ -23,7 +23,7 @@ import sys
 sys.path[:0] = ["benchmarks", "."]
 from planted_errors import outcome, sample, seen_by_product, warm
 warm()
-for planted in sample(int(sys.argv[1])):  # what a certificate contradicts; a refusal may be that of the right product too
+for planted in sample(int(sys.argv[1])):  # a refusal may be that of the right product too
     contradicted = outcome(planted, planted.run, planted.model).code == 3
     print("product" if contradicted else seen_by_product(planted)[0] or planted.name)
 """
