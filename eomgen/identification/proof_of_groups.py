@@ -31,11 +31,12 @@ from eomgen.symbolic.expression.expressions import parse
 from eomgen.symbolic.expression.node import ScalarRow
 from eomgen.symbolic.expression.rational import Fraction
 from eomgen.symbolic.numeric.evaluation import evaluate, fifty_digits
-from eomgen.symbolic.numeric.tolerances import COMPUTED
+from eomgen.symbolic.numeric.tolerances import COMPUTED, RANK
 
 POOR = 1e6  # a condition beyond which its square is lost in doubles
 NEARLY = 1e-3  # share by which two ways of least squares may differ
 SEED, STATES = 11, 3  # others than those at which the groups were found
+ENOUGH = 2  # rows of a base parameter by which they are told apart
 
 
 class LinearForces(Protocol):
@@ -77,6 +78,9 @@ def _groups(found: LinearForces) -> Iterator[Check]:
     for k, (state, along) in enumerate(islice(tied_states(found.system, Random(SEED)), STATES)):
         tally.add(f"state {k + 1}", partial(_another_force, found, state, along, Random(SEED + k)))
     yield from tally.checks()
+    yield attempted(
+        "no base parameter follows from the others", "50 digits, singular values", partial(_followers, found)
+    )
     tally = Tally("formulas of base parameters, read back, give their numbers", "our grammar, 50 digits")
     for group in found.base.groups:
         tally.add(group.name, partial(_misread, found, group))
@@ -95,6 +99,21 @@ def _another_force(found: LinearForces, state: Any, along: np.ndarray, rng: Rand
         if abs(whole - short) > COMPUTED * size:
             return f"{float(short):.10g} for {float(whole):.10g}"
     return ""
+
+
+def _followers(found: LinearForces) -> str:
+    """How many columns of Y_base follow from the others at many states, each of size 1; ""."""
+    leads = [found.parameters.index(group.name) for group in found.base.groups]
+    rows: list[np.ndarray] = []
+    for state, along in tied_states(found.system, Random(SEED + STATES)):
+        Y = columns_along(found.system, found.rows, range(len(found.parameters)), state, along)
+        rows += [np.array([float(row[k]) for k in leads]) for row in Y]
+        if len(rows) > ENOUGH * len(leads):
+            break
+    sizes = np.linalg.norm(rows, axis=0)
+    values = np.linalg.svd(np.array(rows) / np.where(sizes > 0, sizes, 1), compute_uv=False)
+    few = len(leads) - int(np.count_nonzero(values > RANK * values[0])) if len(values) else 0
+    return f"{few} of {len(leads)} follow" if few and len(rows) >= len(leads) else ""
 
 
 def _misread(found: LinearForces, group: Group) -> str:

@@ -44,7 +44,7 @@ def mjcf_otherwise(path: str, model: Model, equations: EquationsOfMotion | None,
         return ""
     proof = _Compiled(mujoco, m, model)
     forces = () if equations is None else proof.accelerates(equations, pushed=not set(left_out) - {*OF_TIES})
-    return first_wrong((*proof.stands(), *proof.weighs(), *forces))
+    return first_wrong((*proof.has(left_out), *proof.stands(), *proof.weighs(), *forces))
 
 
 class _Compiled:
@@ -77,6 +77,25 @@ class _Compiled:
     def _turning(self, body: str | None) -> Joint | None:
         own = None if body is None else self.model.bodies[body].joint
         return own if own is not None and quaternion_names(own) else None
+
+    def has(self, left_out: Sequence[str]) -> Iterator[str]:
+        """What is said to be left out."""
+        m = self.m
+        there = {
+            "motors by plugins": m.nplugin,
+            "filters of motors": (m.actuator_dyntype != 0).any(),
+            "fluid": m.opt.density or m.opt.viscosity,
+            "motors that are switched off": m.opt.disableactuator,
+            "tendons through places": m.ntendon,
+            "limits of motors": m.actuator_ctrllimited.any()
+            or m.actuator_forcelimited.any()
+            or m.jnt_actfrclimited.any(),
+            "limits of tendons": m.tendon_limited.any(),
+            "limits of joints": m.jnt_limited.any(),
+            "frictionloss": m.dof_frictionloss.any(),
+            "pairs of geoms that touch": m.npair,
+        }
+        yield from (f"'{what}' are left out, and there are none" for what in left_out if not there.get(what, True))
 
     def stands(self) -> Iterator[str]:
         """Every body in the ground."""

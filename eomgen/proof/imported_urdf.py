@@ -7,6 +7,7 @@ The file is read once more, by another program, and each joint is taken by itsel
 
 from __future__ import annotations
 
+import re
 from collections.abc import Iterator
 from typing import TYPE_CHECKING
 
@@ -20,6 +21,13 @@ from eomgen.symbolic.numeric.tolerances import COMPUTED
 if TYPE_CHECKING:
     from xml.etree.ElementTree import Element
 
+UNLIMITED = 1e9  # what is written where a format wants a limit and there is none
+LIMITS = {  # as the remark of a coordinate tells them
+    "lower": re.compile(r"from (\S+) to "),
+    "upper": re.compile(r"from \S+ to (\S+) "),
+    "effort": re.compile(r"at most (\S+) N(?:\*m)?(?=,|$)"),
+    "velocity": re.compile(r"at most (\S+) (?:rad|m)/s"),
+}
 TURNING, SLIDING = ("revolute", "continuous"), ("prismatic",)
 
 
@@ -33,8 +41,9 @@ def imported_otherwise(text: str | bytes, model: Model) -> str:
         return ""
     joints = [joint for joint in root.iter("joint") if joint.find("child") is not None]
     proof = _Imported(model, joints)
+    moving = (y for joint in joints for y in (proof.stands(joint), proof.yields(joint), proof.bounded(joint)))
     weights = (proof.weighs(link) for link in root.iter("link"))
-    return first_wrong((*map(proof.stands, joints), *map(proof.yields, joints), *weights, *proof.posed.follows()))
+    return first_wrong((*moving, *weights, *proof.posed.follows()))
 
 
 class _Imported:
@@ -69,7 +78,9 @@ class _Imported:
             return ""
         own = self.model.bodies[child].joint
         above = None if own is None else own.parent
-        if above != parent and (above is not None or parent is not None or _named(joint, "parent") in self.hung):
+        if above != parent and parent is not None:
+            return f"'{child}' hangs on '{above}', not on '{parent}'"
+        if above != parent and (above is not None or _named(joint, "parent") in self.hung):
             return ""  # hung elsewhere, as on what its parent is fixed to
         R, p = _origin(joint)
         q = self.coordinate(joint)
@@ -93,6 +104,26 @@ class _Imported:
         due = 0.0 if dynamics is None else float(dynamics.get("damping", 0))
         found = self.posed.number(getattr(self.model.bodies[child].joint, "damping", None))
         return "" if abs(found - due) <= COMPUTED * (1 + abs(due)) else f"the joint of '{child}' is damped otherwise"
+
+    def bounded(self, joint: Element) -> str:
+        """The limits of a hinge or slide, as the remark of its coordinate tells them."""
+        q, limit = self.coordinate(joint), joint.find("limit")
+        if q is None:
+            return ""
+        about = self.model.coordinates[q].about or ""
+        told = {key: x.findall(about) for key, x in LIMITS.items()}
+        due: dict[str, float] = {}
+        if limit is not None:
+            ends = [] if joint.get("type") == "continuous" else [key for key in ("lower", "upper") if limit.get(key)]
+            due = {key: float(limit.get(key, 0)) for key in ("lower", "upper")} if ends else {}
+            due = {} if due.get("upper", 0) >= UNLIMITED else due
+            due |= {key: float(x) for key in ("effort", "velocity") if (x := limit.get(key)) is not None}
+        else_none = {"lower": -UNLIMITED, "upper": UNLIMITED, "effort": UNLIMITED, "velocity": UNLIMITED}
+        for key, none in else_none.items():
+            found, wanted = float(told[key][0]) if told[key] else none, due.get(key, none)
+            if abs(found - wanted) > COMPUTED * abs(wanted) and not (key not in due and not told[key]):
+                return f"the limits of '{q}' are told otherwise"
+        return ""
 
     def weighs(self, link: Element) -> str:
         """Mass, mass centre, inertia."""

@@ -11,6 +11,7 @@ from eomgen.documents.statements import Lines
 from eomgen.errors import UsageError
 from eomgen.exported import urdf_of
 from eomgen.model.parts import Model
+from eomgen.proof.imported_urdf import imported_otherwise
 
 
 def refuse_strange_endings(output: str) -> None:
@@ -24,7 +25,7 @@ def refuse_strange_endings(output: str) -> None:
 
 
 def export_document(model: Model, *, output: str) -> Document:
-    """The URDF, written; what URDF cannot say.
+    """The URDF, written, and read again by another program; what URDF cannot say.
 
     Raises:
         DerivationError: a joint that URDF does not have.
@@ -34,4 +35,5 @@ def export_document(model: Model, *, output: str) -> Document:
     files.write(output, found.text)
     left_out = [each.as_dict() for each in found.left_out]
     document = plain_document(model, lambda: {"file": output, "left_out": left_out}, Lines((output,)))
-    return replace(document, notes=tuple(f"left out: {each}" for each in found.left_out))
+    wrong = imported_otherwise(found.text, model)
+    return replace(document, failed=wrong, notes=tuple(f"left out: {each}" for each in found.left_out))
