@@ -235,13 +235,17 @@ def put(text: str, output: str | None = None) -> None:
 def reading(path: str) -> Iterator[Source]:
     """The model of a file (- is stdin); what a verb finds wrong with one of its parts is told at its place there."""
     from eomgen.model.reader import bytes_at, loads, located
+    from eomgen.proof.declared_numbers import numbers_otherwise
 
     if path == "-" and sys.stdin is None:
         raise UsageError("there is no model on stdin: it is closed", mend="name a file")
     data = bytes_at(path)
     name, title = ("<stdin>", "model") if path == "-" else (path, Path(path).stem)
     try:
-        yield Source(loads(data, name, title), data, name)
+        model = loads(data, name, title)
+        if wrong := numbers_otherwise(data, model):
+            raise DerivationError(wrong, mend="this is a mistake of eomgen, not of your model")
+        yield Source(model, data, name)
     except EomgenError as error:  # the edge: whatever is wrong is told at its place in the file
         of_model = isinstance(error, (ModelError, DerivationError, RunFailed))  # no option, file or tool
         problems = tuple(located(problem, data, name, by_name=of_model) for problem in problems_of(error))

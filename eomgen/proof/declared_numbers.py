@@ -1,0 +1,124 @@
+"""A model's file, the model read from it -> whether its numbers, in SI, are those that stand there, in doubles.
+
+The text is read once more, by tomllib; units are products of the few that stand here, formulas of parameters are worked
+out by Python. What is not understood that way says nothing: our reader's own refusals know more.
+"""
+
+from __future__ import annotations
+
+import ast
+import math
+import operator
+import re
+import tomllib
+from collections.abc import Callable, Iterator, Mapping
+from typing import Any
+
+from eomgen.model.parts import Model
+from eomgen.model.values import exact_parameters
+from eomgen.proof.check import first_wrong
+from eomgen.symbolic.numeric.tolerances import COMPUTED
+
+SIZES = {  # of one of it, in SI
+    **{"1": 1, "m": 1, "km": 1e3, "dm": 0.1, "cm": 0.01, "mm": 1e-3, "kg": 1, "g": 1e-3, "t": 1e3, "s": 1, "ms": 1e-3},
+    **{"min": 60, "h": 3600, "N": 1, "kN": 1e3, "J": 1, "W": 1, "kW": 1e3, "Pa": 1, "MPa": 1e6, "GPa": 1e9, "rad": 1},
+    **{"deg": math.pi / 180, "rev": 2 * math.pi, "rpm": math.pi / 30},
+}
+PIECE = re.compile(r"([*/]?)([A-Za-z]+|1)(?:\^(-?\d+))?")
+PLAIN = re.compile(r"[^()/]+(/[^()/]+|/\([^()/]+\))?")  # N*s/m, N/(m*s)
+SIGNS: Mapping[type, Callable[..., Any]] = {
+    **{ast.Add: operator.add, ast.Sub: operator.sub, ast.Mult: operator.mul, ast.Div: operator.truediv},
+    **{ast.Pow: operator.pow, ast.USub: operator.neg, ast.UAdd: operator.pos},
+}
+FUNCTIONS: Mapping[str, Callable[..., float]] = {
+    name: getattr(math, name) for name in ("sqrt", "sin", "cos", "tan", "asin", "acos", "atan", "atan2", "exp", "log")
+}
+
+
+def numbers_otherwise(data: bytes, model: Model) -> str:
+    """Which number of the file is another one in the model; "" where all are the same."""
+    try:
+        found = tomllib.loads(data.decode("utf-8-sig").replace("\r\n", "\n"))
+    except (ValueError, RecursionError):  # what our reader forgives
+        return ""
+    return first_wrong((*_parameters(found, model), *_starts(found, model)))
+
+
+def _parameters(found: Mapping[str, Any], model: Model) -> Iterator[str]:
+    known = {name: float(x) for name, x in exact_parameters(model).items()}
+    for name, entry in _table(found, "parameters"):
+        value, unit = (entry.get("value"), entry.get("unit", "1")) if isinstance(entry, dict) else (entry, "1")
+        due, size = _worth(value, known), _size(unit)
+        if name in known and due is not None and size is not None:
+            yield _apart(name, known[name], due * size)
+
+
+def _starts(found: Mapping[str, Any], model: Model) -> Iterator[str]:
+    """Of coordinates and inputs what is written as a plain number."""
+    for table, parts, keys in (
+        ("coordinates", model.coordinates, ("start", "speed", "near")),
+        ("inputs", model.inputs, ("value",)),
+    ):
+        for name, entry in _table(found, table):
+            if not isinstance(entry, dict) or name not in parts:
+                continue
+            size = _size(entry.get("unit", "1"))
+            for key in keys:
+                due, own = entry.get(key), getattr(parts[name], key, None)
+                if isinstance(due, (int, float)) and size is not None and own is not None and not own.names - {"pi"}:
+                    yield _apart(f"{name}.{key}", float(own.evaluate({"pi": math.pi})), due * size)
+
+
+def _table(found: Mapping[str, Any], name: str) -> Iterator[tuple[str, Any]]:
+    table = found.get(name)
+    yield from table.items() if isinstance(table, dict) else ()
+
+
+def _apart(name: str, found: float, due: float) -> str:
+    same = abs(found - due) <= COMPUTED * abs(due)
+    return "" if same else f"the file's number of '{name}' is {due:.10g} in SI, and {found:.10g} was read"
+
+
+def _size(text: Any) -> float | None:
+    """Of a unit; None of one that is not understood."""
+    if not isinstance(text, str):
+        return None
+    size, at, below, whole = 1.0, 0, False, text.replace(" ", "")
+    if not PLAIN.fullmatch(whole):
+        return None
+    flat = whole.replace("(", "").replace(")", "")
+    for piece in PIECE.finditer(flat):
+        if piece.start() != at or piece[2] not in SIZES or (at and not piece[1]):
+            return None
+        below = (below and "(" in whole) or piece[1] == "/"
+        size *= SIZES[piece[2]] ** ((-1 if below else 1) * int(piece[3] or 1))
+        at = piece.end()
+    return size if at == len(flat) and at else None
+
+
+def _worth(value: Any, known: Mapping[str, float]) -> float | None:
+    """Of a number, or of a formula of parameters; None of what Python does not read."""
+    if isinstance(value, (int, float)) and not isinstance(value, bool):
+        return float(value)
+    if not isinstance(value, str):
+        return None
+    try:
+        return float(_evaluated(ast.parse(value.replace("^", "**"), mode="eval").body, {**known, "pi": math.pi}))
+    except (SyntaxError, ValueError, ArithmeticError, KeyError, TypeError, RecursionError):
+        return None
+
+
+def _evaluated(node: ast.expr, known: Mapping[str, float]) -> float:
+    """Of sums, products, powers and functions; anything else is no key of what is known here."""
+    match node:
+        case ast.Constant(value=int() | float() as value):
+            return float(value)
+        case ast.Name(id=name):
+            return known[name]
+        case ast.UnaryOp(op=op, operand=x):
+            return float(SIGNS[type(op)](_evaluated(x, known)))
+        case ast.BinOp(left=x, op=op, right=y):
+            return float(SIGNS[type(op)](_evaluated(x, known), _evaluated(y, known)))
+        case ast.Call(func=ast.Name(id=name), args=args, keywords=[]):
+            return FUNCTIONS[name](*(_evaluated(x, known) for x in args))
+    raise KeyError(type(node).__name__)
