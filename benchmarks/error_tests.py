@@ -1,68 +1,70 @@
-"""Who sees an error: of the quick tests those that call the function in which it is, each error in a fork.
+"""Who sees an error: of README's quick tests those of its subject, each error in a fork of one process of pytest.
 
-A plugin of pytest. It keeps which functions each test calls (EOMGEN_ERRORS_MAP names the file), or, where that is
-kept already, plants one error after another (EOMGEN_ERRORS: a file of JSON lines) and writes the first test that
-fails of each beside them.
+A test file is of the subject of a module where its text names the module, a public function or class of it, or its
+room; so many as run in LONGEST, the nearest first. What they do not see others may: it counts as open.
 """
 
 from __future__ import annotations
 
+import ast
 import json
 import multiprocessing
 import os
-import pickle
+import re
 import subprocess
 import sys
 import time
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
+from itertools import islice
 from pathlib import Path
 from typing import Any
 
 import pytest
 
 ROOT = Path(__file__).resolve().parent.parent
-LONGEST = 60.0  # s of CPU of the tests of one error
-MAP, ERRORS = "EOMGEN_ERRORS_MAP", "EOMGEN_ERRORS"
-Error = tuple[str, str, str]  # file, its text, the qualified name of its function
+LONGEST, NEAREST = 30.0, 8  # s of CPU of the tests of one error; test files
+ERRORS = "EOMGEN_ERRORS"  # names a file: the errors as JSON
+Error = tuple[str, str]  # file, its text
 
 
 def first_failing(errors: Sequence[Error], kept: Path) -> list[str]:
     """Of each error the test that sees it; "" of what none sees."""
-    place, asked = kept / "tests.pickle", kept / "errors.json"
-    environment = {**os.environ, MAP: str(place), "PYTHONPATH": f"{ROOT}{os.pathsep}{Path(__file__).parent}"}
+    asked = kept / "errors.json"
+    chosen = [[*islice(near(file), NEAREST)] for file, _ in errors]
+    every = sorted({name for mine in chosen for name in mine})
+    if not every:
+        return ["" for _ in errors]
+    asked.write_text(json.dumps([(*error, mine) for error, mine in zip(errors, chosen, strict=True)]), encoding="utf-8")
+    environment = {**os.environ, ERRORS: str(asked), "PYTHONPATH": f"{ROOT}{os.pathsep}{Path(__file__).parent}"}
     environment |= {"EOMGEN_FRESH": "1", "XDG_CACHE_HOME": str(kept / "cache")}
     command = [sys.executable, "-m", "pytest", "-q", "-p", "error_tests", "-p", "no:cacheprovider", "-n", "0"]
-    command += ["-m", "not slow", "tests"]
-    if not place.exists():
-        subprocess.run(command, cwd=ROOT, env=environment, check=False)
-    asked.write_text(json.dumps(errors), encoding="utf-8")
-    subprocess.run(command, cwd=ROOT, env={**environment, ERRORS: str(asked)}, check=False, stdout=subprocess.DEVNULL)
+    subprocess.run([*command, "-m", "not slow", *every], cwd=ROOT, env=environment, check=False, capture_output=True)
     found: list[str] = json.loads(asked.with_suffix(".found").read_text(encoding="utf-8"))
     return found
 
 
+def near(file: str) -> Iterator[str]:
+    """Test files of the subject of a module, the nearest first."""
+    module = "eomgen." + file.removesuffix(".py").replace("/", ".")
+    tree = ast.parse((ROOT / "eomgen" / file).read_text(encoding="utf-8"))
+    names = [x.name for x in tree.body if isinstance(x, (ast.FunctionDef, ast.ClassDef)) and x.name[0] != "_"]
+    room = file.split("/")[0].removesuffix(".py")
+    words = [
+        f"\\b{re.escape(module)}\\b",
+        rf"\b({'|'.join(names) or module})\b",
+        rf"\beomgen\.{room}\b|\b{room.rstrip('s')}",
+    ]
+    texts = {path: path.read_text(encoding="utf-8") for path in sorted((ROOT / "tests").rglob("test_*.py"))}
+    told = set()
+    for word in words:
+        for path, text in texts.items():
+            if path not in told and re.search(word, text):
+                told.add(path)
+                yield str(path.relative_to(ROOT))
+
+
 def pytest_configure(config: pytest.Config) -> None:
-    config.pluginmanager.register(Asked() if ERRORS in os.environ else Mapped())
-
-
-class Mapped:
-    """Which functions each test calls, and how long it takes [s]."""
-
-    def __init__(self) -> None:
-        self.server: Any = None
-        self.tests: dict[str, tuple[float, frozenset[tuple[str, str]]]] = {}
-
-    @pytest.hookimpl(hookwrapper=True)
-    def pytest_runtest_protocol(self, item: pytest.Item) -> Any:
-        from error_runs import Server
-
-        self.server = self.server or Server()
-        start, calls = time.process_time(), self.server.watched()
-        yield
-        self.tests[item.nodeid] = time.process_time() - start, frozenset(calls)
-
-    def pytest_sessionfinish(self) -> None:
-        Path(os.environ[MAP]).write_bytes(pickle.dumps(self.tests))
+    config.pluginmanager.register(Asked())
 
 
 class Asked:
@@ -78,27 +80,29 @@ class Asked:
     def pytest_runtestloop(self, session: pytest.Session) -> bool:
         from error_runs import Server
 
-        known = pickle.loads(Path(os.environ[MAP]).read_bytes())
-        items, server = {x.nodeid: x for x in session.items}, Server()
-        place = Path(os.environ[ERRORS])
+        server, place = Server(), Path(os.environ[ERRORS])
+        by_file: dict[str, list[pytest.Item]] = {}
+        for item in session.items:
+            by_file.setdefault(str(item.path.relative_to(ROOT)), []).append(item)
         found = []
-        for file, text, function in json.loads(place.read_text(encoding="utf-8")):
-            mine = sorted(
-                (cpu, name) for name, (cpu, calls) in known.items() if (file, function) in calls and name in items
-            )
-            found.append(_in_a_fork(self, server, (file, text), [(cpu, items[name]) for cpu, name in mine]))
+        for file, text, names in json.loads(place.read_text(encoding="utf-8")):
+            mine = [x for name in names for x in by_file.get(name, ())]
+            failing = _in_a_fork(self, server, (file, text), mine)
+            same = [x for x in mine if x.nodeid == failing]
+            found.append("" if same and _in_a_fork(self, server, None, same) else failing)  # it fails at all times
             place.with_suffix(".found").write_text(json.dumps(found), encoding="utf-8")
         return True
 
 
-def _in_a_fork(asked: Asked, server: Any, error: tuple[str, str], tests: Sequence[tuple[float, pytest.Item]]) -> str:
+def _in_a_fork(asked: Asked, server: Any, error: tuple[str, str] | None, tests: Sequence[pytest.Item]) -> str:
     context = multiprocessing.get_context("fork")
     here, there = context.Pipe(duplex=False)
 
     def sent() -> None:
-        server.plant(*error)
+        if error is not None:
+            server.plant(*error)
         start = time.process_time()
-        for _, item in tests:
+        for item in tests:
             item.ihook.pytest_runtest_protocol(item=item, nextitem=None)
             if asked.failed or time.process_time() - start > LONGEST:
                 break

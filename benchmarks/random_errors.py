@@ -17,7 +17,7 @@ The share is of those that do something.
     python benchmarks/random_errors.py 200 --seed 1 [-v] [--rooms mechanics,model] [--tests] [--evenly no]
     python benchmarks/random_errors.py 200 --seed 1 --kind numbers --kept FOLDER --log FILE
 
-In FOLDER stands what runs say without an error, of this package as it is, and which functions they and the tests call.
+In FOLDER stands what runs say without an error, of this package as it is, and which functions they call.
 """
 
 from __future__ import annotations
@@ -298,7 +298,7 @@ def _tell(found: Found, options: argparse.Namespace) -> None:
 def _with_tests(found: list[Found], options: argparse.Namespace) -> Iterator[Found]:
     """With what the tests see of what the product does not."""
     mine = [place for place, seen, _, _ in found if seen == "open"]
-    seen_by = iter(first_failing([(x.file, x.patched(), x.function) for x in mine], options.kept))
+    seen_by = iter(first_failing([(x.file, x.patched()) for x in mine], options.kept))
     for place, seen, words, said in found:
         test = next(seen_by) if seen == "open" else ""
         if test:

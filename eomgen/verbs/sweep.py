@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping
 from dataclasses import replace
 from pathlib import Path
 from typing import Any
@@ -16,6 +16,7 @@ from eomgen.model.ranges import range_of
 from eomgen.model.table import Table
 from eomgen.pipeline import simulate
 from eomgen.proof.check import Certificate, Check
+from eomgen.proof.drawn_values import drawn_otherwise, told_of_all
 from eomgen.questions.answers import solve
 from eomgen.questions.of_a_run import asked_of, asked_typed
 from eomgen.records import dataclass
@@ -28,6 +29,7 @@ from eomgen.verbs.assignments import assignments, typed
 
 FEW = 5  # failed runs that are named
 MOST_IN_JSON = 10_000  # runs whose rows stand in it
+MOST_PROVEN = 10_000  # runs whose rows are looked at one by one
 
 
 @dataclass(frozen=True)
@@ -184,7 +186,19 @@ def _proof(found: Sweep) -> Certificate | None:
     again = Check(
         "a run made again has the same bits", "holds" if same else "fails", f"run {first[0]}, by the same kernel"
     )
-    return Certificate((*certificate.checks, *slopes, again))
+    return Certificate((*certificate.checks, *slopes, again, *_rows_proven(found)))
+
+
+def _rows_proven(found: Sweep) -> Iterator[Check]:
+    """What is set in every run, and what is told of all of them."""
+    plan, rows, names = found.plan, list(found.ledger.rows()), found.columns
+    if len(rows) > MOST_PROVEN:
+        return
+    last = 4 + len(plan.runs.names)
+    yield drawn_otherwise(plan.over, plan.random, plan.draws, plan.design, [(*row[:2], *row[4:last]) for row in rows])
+    columns = {name: [row[k] for row in rows] for k, name in enumerate(names) if k >= 4}
+    summary = {name: found.ledger.summary(names.index(name)) for name in columns}
+    yield told_of_all(columns, summary, found.remarks, plan.critical, plan.how.rtol, names[last:])
 
 
 def replay_document(folder: str, run: int, *, output: str | None, samples: int | None) -> Document:
