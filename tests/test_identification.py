@@ -19,7 +19,7 @@ from eomgen.cli import main
 from eomgen.errors import DerivationError, EomgenError, UsageError
 from eomgen.identification.base_parameters import Group
 from eomgen.identification.fit import noise_of
-from eomgen.identification.proof_of_groups import fit_checked, spread_checked
+from eomgen.identification.proof_of_groups import certify_regressor, fit_checked, spread_checked
 from eomgen.identification.regressor import Regressor, regressor_of
 from eomgen.identification.tied_rows import sampled_rows
 from eomgen.model.replaced import with_values
@@ -423,3 +423,16 @@ joint = { kind = "revolute", angle = "q" }
     run = eomgen.simulate(driven, time=1.0)
     found = eomgen.identify(driven, {"t": run.t, "q": run["q"], "q'": run["q'"]})
     assert all(value for value, _ in found.base.values())
+
+
+def test_a_base_parameter_that_follows_from_the_others_is_told():
+    """Columns of Y_base at many states are independent: rank = their number."""
+    found = eomgen.regressor(MODELS / "arm3.toml")
+    assert certify_regressor(found).ok is True
+    group = found.base.groups[0]
+    other = next(name for name in found.parameters if name not in [x.name for x in found.base.groups])
+    more = replace(found.base, groups=(*found.base.groups, replace(group, name=other, terms={}, numbers={})))
+    wrong = replace(found)
+    wrong.__dict__["base"] = more
+    failing = [x.name for x in certify_regressor(wrong).checks if x.status == "fails"]
+    assert failing == ["no base parameter follows from the others"]

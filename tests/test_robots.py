@@ -16,6 +16,8 @@ import eomgen
 from eomgen.cli import main
 from eomgen.errors import DerivationError, ModelError, ToolMissing
 from eomgen.exported import urdf_of
+from eomgen.proof.imported_mjcf import mjcf_otherwise
+from eomgen.proof.imported_sdf import sdf_otherwise
 from eomgen.proof.imported_urdf import imported_otherwise
 from eomgen.robots.importing import imported
 from eomgen.symbolic.numeric.evaluation import FLOAT, evaluate
@@ -563,3 +565,101 @@ def test_the_inertia_of_a_turned_link_stands_as_it_was_written_or_as_a_number(tm
     text = "\n".join([found.render("text"), *energy])
     assert re.search(r"\d{10,}/\d{6,}|sqrt\(\d{10,}", text) is None
     assert re.search(r"I_1 = 0\.\d+\n", text) and found.certify().ok
+
+
+def test_a_base_that_floats_and_links_of_other_names_are_no_contradiction(tmp_path):
+    """|e| = 1 of the quaternion at which a robot is looked at; "link upper arm" is upper_arm."""
+    text = ARM.replace('"upper arm"', '"upper-arm"')
+    assert imported_otherwise(text, robot(tmp_path, text, floating=True).model) == ""
+    assert imported_otherwise(FOLLOWING, robot(tmp_path, FOLLOWING).model) == ""
+    made = robot(tmp_path, FOLLOWING).model
+    for old, new, what in (
+        ('multiplier="2"', 'multiplier="3"', "leaves"),
+        ('upper="1e-1"', 'upper="1"', "limits"),
+        ('<parent link="upper arm"/>', '<parent link="base"/>', "hangs on"),
+    ):
+        assert what in imported_otherwise(FOLLOWING.replace(old, new), made)
+
+
+SDF_ARM = """<sdf version="1.9"><model name="arm"><pose>0.1 0 0.2 0 0 0.3</pose>
+  <link name="base"><inertial><mass>3</mass></inertial></link>
+  <link name="upper"><pose relative_to="hinge">0 0 0 0.1 0.2 0.3</pose>
+    <inertial><pose>.1 0 .2 .1 .2 .3</pose><mass>2</mass>
+    <inertia><ixx>.1</ixx><iyy>.2</iyy><izz>.25</izz><ixy>.01</ixy><ixz>.02</ixz><iyz>.03</iyz></inertia></inertial>
+  </link>
+  <link name="fore"><pose relative_to="slide"/><inertial auto="true"><density>700</density></inertial>
+    <collision name="c"><pose>0.1 0 0 0 0 0.4</pose><geometry><box><size>0.2 0.1 0.3</size></box></geometry></collision>
+    <collision name="d"><geometry><cylinder><radius>0.1</radius><length>0.3</length></cylinder></geometry></collision>
+  </link>
+  <joint name="stand" type="fixed"><parent>world</parent><child>base</child></joint>
+  <joint name="hinge" type="revolute"><pose relative_to="base">0 0.1 0.5 0.2 0 0</pose><parent>base</parent>
+    <child>upper</child><axis><xyz>0 0.6 0.8</xyz><dynamics><damping>0.2</damping><spring_stiffness>3</spring_stiffness>
+    <spring_reference>0.1</spring_reference></dynamics></axis></joint>
+  <joint name="slide" type="prismatic"><pose relative_to="upper">0 0 0.7 0 0.3 0</pose><parent>upper</parent>
+    <child>fore</child><axis><xyz>1 0 0</xyz></axis></joint></model></sdf>"""
+
+
+def test_an_sdf_robot_that_is_read_otherwise_is_contradicted(tmp_path):
+    """T_child = T_parent T_joint (turn, slide) T_joint^-1; masses by density; springs and dampers; the rest at 0."""
+    for text in (SDF_ARM, SDF):
+        assert sdf_otherwise(text, robot(tmp_path, text, "sdf").model) == ""
+    made = robot(tmp_path, SDF_ARM, "sdf").model
+    for old, new, what in (
+        ("0 0.1 0.5 0.2 0 0", "0 0.1 0.5 0 0.2 0", "stand"),
+        ("0 0.6 0.8", "0 0.8 0.6", "does not move"),
+        ("<density>700", "<density>800", "weighs"),
+        ("<ixz>.02", "<ixz>-.02", "weighs"),
+        ("<damping>0.2", "<damping>0.4", "damping"),
+        ("<spring_reference>0.1", "<spring_reference>-0.1", "rest"),
+        ("0.1 0 0.2 0 0 0.3</pose>\n  <link", "0.1 0 0.2 0 0.3 0</pose>\n  <link", "stand"),
+    ):
+        assert what in sdf_otherwise(SDF_ARM.replace(old, new), made)
+    rover = robot(tmp_path, SDF, "sdf").model
+    assert "leaves" in sdf_otherwise(SDF.replace("<offset>0.5", "<offset>0.6"), rover)
+    assert "does not move" in sdf_otherwise(SDF.replace("0.02</screw", "0.03</screw"), rover)
+
+
+@pytest.mark.slow
+@needs(".mujoco", what="mujoco")
+def test_an_mjcf_robot_that_is_read_otherwise_is_contradicted(tmp_path):
+    """T, M and Q - c are MuJoCo's; what is left out is there."""
+    found = robot(tmp_path, MJCF_ARM, "xml")
+    equations, path = eomgen.derive(found.model).graph, tmp_path / "other.xml"
+
+    def wrong(old: str, new: str, left: tuple[str, ...] = ()) -> str:
+        path.write_text(MJCF_ARM.replace(old, new))
+        return mjcf_otherwise(str(path), found.model, equations, left)
+
+    assert wrong("", "") == ""
+    for old, new, what in (
+        ('axis="0 1 0"', 'axis="0 0 1"', "does not stand"),
+        ('pos="0.3 0 0"', 'pos="0.2 0 0"', "weighs"),
+        ('armature="0.1"', 'armature="0.2"', "inertia"),
+        ('damping="0.3"', 'damping="0.4"', "pushed"),
+        ('gear="3"', 'gear="-3"', "pushed"),
+        ('stiffness="5"', 'stiffness="6"', "pushed"),
+    ):
+        assert what in wrong(old, new), old
+    assert "there are none" in wrong("", "", ("motors by plugins",))
+
+
+MJCF_ARM = """<mujoco><worldbody><body name="a" pos="0 0 1">
+  <joint name="h" axis="0 1 0" stiffness="5" damping="0.3" armature="0.1"/><geom size="0.1" pos="0.3 0 0"/>
+  <body name="b" pos="0.5 0 0" euler="10 20 30"><joint name="p" type="slide" axis="1 0 .5"/>
+  <geom type="box" size=".1 .2 .3"/></body></body>
+  <body name="c" pos="1 0 2"><freejoint name="fly"/><geom type="ellipsoid" size="0.1 0.2 0.3"/></body></worldbody>
+  <actuator><motor name="w" joint="p" gear="3"/></actuator></mujoco>"""
+
+
+def test_what_is_exported_is_read_again(tmp_path):
+    """Poses, weights, limits of the URDF are those of the model that it was written of."""
+    (tmp_path / "first.toml").write_text(robot(tmp_path, FOLLOWING).text)
+    model = eomgen.load(tmp_path / "first.toml")
+    text = urdf_of(model).text
+    assert imported_otherwise(text, model) == ""
+    for old, new, what in (
+        ('type="revolute"', 'type="continuous"', "limits"),
+        ('xyz="0.0 0.0 0.4"', 'xyz="0.0 0.0 0.3"', "stand"),
+        ('mass value="2.5"', 'mass value="2"', "weighs"),
+    ):
+        assert old in text and what in imported_otherwise(text.replace(old, new), model)

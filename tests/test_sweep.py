@@ -25,6 +25,7 @@ from scipy import stats
 import eomgen
 from eomgen.cli import main
 from eomgen.errors import UsageError
+from eomgen.proof.drawn_values import drawn_otherwise, told_of_all
 from eomgen.sweeps import kernel, workers
 from eomgen.sweeps.design import DESIGNS, Design, DrawnValues, spread_of
 from eomgen.sweeps.kernel import SweepKernel
@@ -528,3 +529,24 @@ def test_a_million_runs_are_planned_by_their_numbers():
     (seed,), values = design.runs(10**6 - 1, 10**6)
     assert seed > 0 and values[0, 0] == 999
     assert kernel.finite(math.nan) is None
+
+
+def test_what_is_set_and_told_is_of_its_laws(tmp_path):
+    """F(value) = u of the seed, one in each stratum; least, mean and largest are of the rows."""
+    laws = (("a", "normal", (0.5, 0.1)), ("b", "triangular", (1.0, 1.2, 3.0)), ("c", "lognormal", (2.0, 0.1)))
+    for kind in DESIGNS:
+        spreads = tuple(DrawnValues(*law) for law in laws)
+        seeds, values = Design({"x": (1.0, 2.0), "y": (5.0, 6.0)}, spreads, 4, kind, 7).runs(0, 16)
+        rows = [(k, seed, *row) for k, (seed, row) in enumerate(zip(seeds, values.tolist(), strict=True))]
+        over = {"x": (1.0, 2.0), "y": (5.0, 6.0)}
+        assert drawn_otherwise(over, laws, 4, kind, rows).status == "holds"
+        assert drawn_otherwise({"x": (1.0, 2.0), "y": (6.0, 5.0)}, laws, 4, kind, rows).status == "fails"
+        for k in range(3):
+            moved = [(*row[: 4 + k], row[4 + k] * 1.3, *row[5 + k :]) for row in rows]
+            assert drawn_otherwise(over, laws, 4, kind, moved).status == "fails", (kind, k)
+    columns, right = {"x": [1.0, 2.0, None], "z": [3.0, 3.0, 3.0]}, {"x": (2, 1.0, 1.5, 2.0), "z": (3, 3.0, 3.0, 3.0)}
+    same = ("'z' is 3 in all runs: nothing that is set changes it",)
+    assert told_of_all(columns, right, same, "", 1e-9, ["x", "z"]).status == "holds"
+    assert told_of_all(columns, right | {"x": (2, 1.0, 1.4, 2.0)}, same, "", 1e-9, ["x", "z"]).status == "fails"
+    assert told_of_all(columns, right, (), "", 1e-9, ["x", "z"]).status == "fails"
+    assert told_of_all(columns, right, ("'x' is 2 in all runs", *same), "", 1e-9, ["x", "z"]).status == "fails"
