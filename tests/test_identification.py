@@ -17,8 +17,10 @@ from slow_run import usual
 import eomgen
 from eomgen.cli import main
 from eomgen.errors import DerivationError, EomgenError, UsageError
+from eomgen.identification import fit
 from eomgen.identification.base_parameters import Group
-from eomgen.identification.fit import noise_of
+from eomgen.identification.consistent import numbers_of
+from eomgen.identification.fit import _begun_checked, noise_of
 from eomgen.identification.proof_of_groups import certify_regressor, fit_checked, spread_checked
 from eomgen.identification.regressor import Regressor, regressor_of
 from eomgen.identification.tied_rows import sampled_rows
@@ -436,3 +438,11 @@ def test_a_base_parameter_that_follows_from_the_others_is_told():
     wrong.__dict__["base"] = more
     failing = [x.name for x in certify_regressor(wrong).checks if x.status == "fails"]
     assert failing == ["no base parameter follows from the others"]
+
+
+def test_bodies_from_which_a_search_begins_are_those_of_the_model(monkeypatch):
+    """parameters(numbers(body)) = body, of positive density."""
+    found = eomgen.regressor(MODELS / "arm3.toml")
+    assert _begun_checked(found).status == "holds"
+    monkeypatch.setattr(fit, "numbers_of", lambda own, size: numbers_of({**own, "m": 2 * own["m"]}, size))
+    assert _begun_checked(found).status == "fails"

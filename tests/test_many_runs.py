@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -210,3 +211,13 @@ def test_runs_as_tables():
     found = runs.to_xarray()
     assert isinstance(found, xarray.Dataset) and dict(found.sizes) == {"run": 2, "time": 3}
     assert found["l1"].values.tolist() == [1.0, 2.0] and found["status"].values.tolist() == ["finished"] * 2
+
+
+@pytest.mark.slow
+def test_a_run_without_numbers_is_not_finished():
+    """status = "finished" where x is finite at all instants, and there alone."""
+    found = eomgen.simulate_many(MODELS / "simple_pendulum.toml", time=0.1, parameters={"l": [1, 2]})
+    x = found.x.copy()
+    x[1, -1] = np.nan
+    failing = [each.name for each in replace(found, x=x).certify().checks if each.status == "fails"]
+    assert found.certify().ok and failing == ["runs that are finished have numbers at all instants"]

@@ -31,12 +31,12 @@ from eomgen.identification.regressor import Regressor, regressor_of
 from eomgen.mechanics.equations.work import generalized_forces
 from eomgen.model.reader import ModelOrPath, model_at
 from eomgen.pipeline import derive
-from eomgen.proof.check import Certificate, Check
+from eomgen.proof.check import Certificate, Check, checked
 from eomgen.records import dataclass
 from eomgen.symbolic.expression.derivative import substituted
 from eomgen.symbolic.expression.symbols import Symbols
 from eomgen.symbolic.numeric.evaluation import FLOAT, evaluate
-from eomgen.symbolic.numeric.tolerances import LEAST_DENSITY, RANK_NEARBY, TOWARD_THE_MODEL
+from eomgen.symbolic.numeric.tolerances import CARRIED, LEAST_DENSITY, RANK_NEARBY, TOWARD_THE_MODEL
 
 Data = Mapping[str, Any]
 
@@ -93,6 +93,7 @@ class Stacked:
 Stacking = Callable[[Data], Stacked]
 NEIGHBOURS = (-3, -2, -1, 1, 2, 3)
 LEAST_SAMPLES = 20  # of which the noise can be told
+NEARLY_A_POINT = 1e-6  # of the largest parameter: of a body whose extent is lost in it nothing is said
 DRAWS = 4  # of noise: n samples each
 NORMAL_MEDIAN = 1.4826  # standard deviation over the median of |x|
 
@@ -147,6 +148,7 @@ def identify(model: ModelOrPath, data: Data) -> Identified:
         (
             fit_checked(W, stacked.b, beta / lengths),
             spread_checked(W, stacked.b, deviations, condition, residual),
+            _begun_checked(found),
         ),
     )
 
@@ -297,6 +299,35 @@ def _consistent(
 
     best = least_squares(left, z0, method="trf", x_scale="jac", max_nfev=200)
     return values(best.x)
+
+
+def _begun_checked(found: Regressor) -> Check:
+    """The bodies of the model, by the numbers from which the search begins, are those of the model.
+
+    Of bodies of positive density in every direction; others begin as small ones.
+    """
+    size, own = 2 if found.model.space == "plane" else 3, _own_values(found)
+    wrong = []
+    for body in (name[2:-1] for name in found.parameters if name.startswith("m(")):
+        part = {n.split("(")[0]: own[n] for n in found.parameters if _of_body(n, [body])}
+        again, largest = parameters_of(numbers_of(part, size), size), max(map(abs, part.values()))
+        if _least_extent(part, size) > NEARLY_A_POINT * largest:
+            wrong += [
+                f"{n}({body}) is {again[n]:.6g}" for n, x in part.items() if abs(again[n] - x) > CARRIED * largest
+            ]
+    return checked("the search for bodies begins at those of the model", "; ".join(wrong[:2]), "floating point")
+
+
+def _least_extent(part: Mapping[str, float], size: int) -> float:
+    """The least principal integral of x^2 dm about the mass centre; in the plane that of r^2."""
+    if part["m"] <= 0:
+        return 0.0
+    h = np.array([part[name] for name in ("mx", "my", "mz")[:size]])
+    if size == 2:
+        return float(part["Izz"] - h @ h / part["m"])
+    rows = (("Ixx", "Ixy", "Izx"), ("Ixy", "Iyy", "Iyz"), ("Izx", "Iyz", "Izz"))
+    I = np.array([[part[name] for name in row] for row in rows])
+    return float(np.linalg.eigvalsh(np.trace(I) / 2 * np.eye(3) - I - np.outer(h, h) / part["m"])[0])
 
 
 def _of_body(name: str, bodies: Sequence[str]) -> bool:

@@ -10,7 +10,7 @@ from typing import Any
 import numpy as np
 
 from eomgen.errors import UsageError
-from eomgen.proof.check import Certificate
+from eomgen.proof.check import Certificate, checked
 from eomgen.records import dataclass
 from eomgen.simulation.result import NO_EQUATIONS
 
@@ -67,7 +67,12 @@ class Runs:
         """
         if self.proof is None:
             raise UsageError(NO_EQUATIONS, mend="take eomgen.simulate_many(model), in the process that asks")
-        return self.proof()
+        finished = self.status == "finished"
+        whole = np.isfinite(self.x).all(axis=(1, 2))
+        lost = [str(k) for k in np.flatnonzero(finished != whole)]
+        wrong = f"not of run {', '.join(lost[:3])}" if lost else ""
+        more = [checked("runs that are finished have numbers at all instants", wrong, "every run")]
+        return self.proof() + more
 
     def to_pandas(self) -> Any:
         """All runs as one DataFrame over (run, t) (needs pandas)."""

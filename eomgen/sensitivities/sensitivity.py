@@ -6,6 +6,7 @@ one, as a number always, by differentiating the equations that define it: no ste
 
 from __future__ import annotations
 
+import math
 import re
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import field, replace
@@ -35,7 +36,7 @@ from eomgen.model.reader import ModelOrPath, model_at
 from eomgen.model.replaced import Values
 from eomgen.model.table import Table
 from eomgen.model.values import numeric_parameters
-from eomgen.proof.check import Certificate, Check
+from eomgen.proof.check import Certificate, Check, checked
 from eomgen.questions.in_phase import PhaseEquations, phase_equations_of
 from eomgen.questions.of_a_run import asked_of
 from eomgen.records import dataclass
@@ -52,7 +53,7 @@ from eomgen.symbolic.expression.rational import Fraction
 from eomgen.symbolic.expression.typed import Typed, seconds
 from eomgen.symbolic.expression.units import Unit, parse_unit
 from eomgen.symbolic.numeric.evaluation import evaluate, fifty_digits, floats_of
-from eomgen.symbolic.numeric.tolerances import RANK_NEARBY
+from eomgen.symbolic.numeric.tolerances import COMPUTED, RANK_NEARBY
 from eomgen.symbolic.numeric.work import Work, doing
 from eomgen.symbolic.print.text import LONGEST_RESULT, readable_text, text_size
 
@@ -128,8 +129,23 @@ class Sensitivity(Result):
         return pandas.DataFrame(self.matrix, index=list(self.of), columns=list(self.to))
 
     def certify(self) -> Certificate:
-        """Each derivative against central differences of the whole computation, made anew at other values."""
-        return checks_of(self.model, self.in_si, self.run)
+        """Each derivative against central differences of the whole computation, made anew at other values.
+
+        And as it is told, in its unit, against its number in SI.
+        """
+        off = (
+            f"{named(*pair)} is {found.value * parse_unit(found.unit or '1').size:.9g} in SI for {self.in_si[pair]:.9g}"
+            for pair, found in self.slopes.items()
+            if found.value is not None and pair in self.in_si and not self._as_told(pair, found)
+        )
+        told = [checked("derivatives as they are told are those in SI", next(off, ""), "floating point")]
+        return checks_of(self.model, self.in_si, self.run) + told
+
+    def _as_told(self, pair: tuple[str, str], found: Quantity) -> bool:
+        due = self.in_si[pair]
+        return found.value is not None and math.isclose(
+            found.value * parse_unit(found.unit or "1").size, due, rel_tol=COMPUTED, abs_tol=COMPUTED**2
+        )
 
 
 def named(of: str, to: str) -> str:

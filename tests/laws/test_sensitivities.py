@@ -311,3 +311,13 @@ def test_a_driven_linkage_follows_its_parameters():
     c, s, root = np.cos(1), np.sin(1), np.sqrt(0.09 - 0.01 * np.sin(1) ** 2)
     slopes = [float(found["x", to].value) for to in ("r", "b", "m")]
     assert slopes == pytest.approx([c - 0.1 * s * s / root, 0.3 / root, 0])
+
+
+def test_a_derivative_that_is_told_in_another_unit_is_contradicted():
+    """told value times the size of its unit = the number in SI."""
+    found = eomgen.sensitivity(eomgen.loads(SWING), "x at equilibrium", "L")
+    pair = ("x at equilibrium", "L")
+    wrong = replace(found, slopes={pair: replace(found[pair], value=found[pair].value * 100)})
+    assert found.certify().ok and [x.name for x in wrong.certify().checks if x.status == "fails"] == [
+        "derivatives as they are told are those in SI"
+    ]
