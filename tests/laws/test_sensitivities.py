@@ -315,8 +315,8 @@ def test_a_driven_linkage_follows_its_parameters():
 
 def test_a_derivative_that_is_told_in_another_unit_is_contradicted():
     """told value times the size of its unit = the number in SI."""
-    found = eomgen.sensitivity(eomgen.loads(SWING), "x at equilibrium", "L")
-    pair = ("x at equilibrium", "L")
+    found = eomgen.sensitivity(eomgen.loads(SWING), "x at equilibrium", "m")
+    pair = ("x at equilibrium", "m")
     wrong = replace(found, slopes={pair: replace(found[pair], value=found[pair].value * 100)})
     assert found.certify().ok and [x.name for x in wrong.certify().checks if x.status == "fails"] == [
         "derivatives as they are told are those in SI"
