@@ -36,6 +36,7 @@ from eomgen.codegen.targets.c_integrator import RUN_USE, integrator_files
 from eomgen.codegen.vectors import vectors
 from eomgen.equations import Equations
 from eomgen.errors import DerivationError, RunFailed, ToolMissing, UsageError, visible
+from eomgen.identification.proof_of_groups import groups_checked
 from eomgen.identification.regressor import Regressor, regressor_of
 from eomgen.mechanics.balance.named_reactions import named_reactions
 from eomgen.mechanics.formulations.massless_nodes import with_nodes_balanced
@@ -247,7 +248,9 @@ class Generated:
     def certify(self) -> Certificate:
         """The equations by independent routes; every function's text, run here, against the symbols."""
         equations = pipeline.derive(self.model)
-        return certify(equations.graph) + self._checks(equations)
+        groups = groups_checked(self._regressor) if self.linear else ()
+        more = [*groups, *self._checks(equations)]
+        return certify(equations.graph) + more
 
     def _checks(self, plain: Equations) -> Iterator[Check]:
         """Of every function in every language.

@@ -36,7 +36,7 @@ from eomgen.records import dataclass
 from eomgen.symbolic.expression.derivative import substituted
 from eomgen.symbolic.expression.symbols import Symbols
 from eomgen.symbolic.numeric.evaluation import FLOAT, evaluate
-from eomgen.symbolic.numeric.tolerances import CARRIED, LEAST_DENSITY, RANK_NEARBY, TOWARD_THE_MODEL
+from eomgen.symbolic.numeric.tolerances import CARRIED, LEAST_DENSITY, NEARLY_A_POINT, RANK_NEARBY, TOWARD_THE_MODEL
 
 Data = Mapping[str, Any]
 
@@ -93,7 +93,6 @@ class Stacked:
 Stacking = Callable[[Data], Stacked]
 NEIGHBOURS = (-3, -2, -1, 1, 2, 3)
 LEAST_SAMPLES = 20  # of which the noise can be told
-NEARLY_A_POINT = 1e-6  # of the largest parameter: of a body whose extent is lost in it nothing is said
 DRAWS = 4  # of noise: n samples each
 NORMAL_MEDIAN = 1.4826  # standard deviation over the median of |x|
 

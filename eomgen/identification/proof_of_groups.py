@@ -59,7 +59,7 @@ def certify_regressor(found: LinearForces) -> Certificate:
     equations = equations_of_motion(found.system)
     name = "Y pi + y0 are the forces that motions take"
     checks = [attempted(name, "prime field, or 50 digits", partial(_other_forces, found, equations))]
-    checks += _groups(found)
+    checks += groups_checked(found)
     return Certificate((*certify(equations).checks, *checks))
 
 
@@ -72,7 +72,7 @@ def _other_forces(found: LinearForces, equations: EquationsOfMotion) -> str:
     return "" if verdict.equal else f"row {(verdict.culprit or 0) + 1} is another force"
 
 
-def _groups(found: LinearForces) -> Iterator[Check]:
+def groups_checked(found: LinearForces) -> Iterator[Check]:
     """Y pi against Y_base K pi, and the texts of K."""
     tally = Tally("base parameters give the forces that all parameters give", "50 digits, any parameters")
     for k, (state, along) in enumerate(islice(tied_states(found.system, Random(SEED)), STATES)):

@@ -22,12 +22,16 @@ from eomgen.symbolic.numeric.evaluation import FLOAT, evaluate
 from eomgen.symbolic.numeric.tolerances import CARRIED
 
 FREE, BALL = 0, 1  # the numbers of MuJoCo, of joints
+JOINT_WRAP, TENDON = 1, 3  # of what a tendon is of, and what a motor pulls
+OTHER_THINGS = "motors on other things than joints, tendons between two places, and sites"
 PUSHED = 0.7  # of every input
 OF_TIES = (  # what is left out and pushes by constraints of MuJoCo alone: it is in none of the forces that are compared
     *("limits of joints", "limits of tendons", "limits of free and ball joints", "limits of motors", "frictionloss"),
     *("geoms that touch", "pairs of geoms that touch", "friction of free and ball joints", "inputs of motors"),
     *("softness of equalities", "equalities that are switched off", "motion of a mocap body"),
 )
+
+IN_TIME = ("filters of motors", "delays of motors")  # what pushes nothing where inputs are and were 0
 
 
 def mjcf_otherwise(path: str, model: Model, equations: EquationsOfMotion | None, left_out: Sequence[str]) -> str:
@@ -43,7 +47,9 @@ def mjcf_otherwise(path: str, model: Model, equations: EquationsOfMotion | None,
     except ValueError:  # files of pictures are missing
         return ""
     proof = _Compiled(mujoco, m, model)
-    forces = () if equations is None else proof.accelerates(equations, pushed=not set(left_out) - {*OF_TIES})
+    more = set(left_out) - {*OF_TIES}
+    push = PUSHED if not more else 0.0 if more <= {*IN_TIME} else None
+    forces = () if equations is None else proof.accelerates(equations, push)
     return first_wrong((*proof.has(left_out), *proof.stands(), *proof.weighs(), *forces))
 
 
@@ -86,7 +92,8 @@ class _Compiled:
             "filters of motors": (m.actuator_dyntype != 0).any(),
             "fluid": m.opt.density or m.opt.viscosity,
             "motors that are switched off": m.opt.disableactuator,
-            "tendons through places": m.ntendon,
+            "tendons through places": (m.wrap_type != JOINT_WRAP).any(),
+            OTHER_THINGS: not {*m.actuator_trntype} <= {0, 1, TENDON} or (m.wrap_type != JOINT_WRAP).any(),
             "limits of motors": m.actuator_ctrllimited.any()
             or m.actuator_forcelimited.any()
             or m.jnt_actfrclimited.any(),
@@ -115,8 +122,8 @@ class _Compiled:
             due = np.array([m, *(m * self.m.body_ipos[k]), *I.ravel()])
             yield f"'{name}' weighs otherwise" if abs(self.posed.weight(name) - due).max() > _fine(due) else ""
 
-    def accelerates(self, equations: EquationsOfMotion, *, pushed: bool) -> Iterator[str]:
-        """M, and Q - c where all that pushes is in the model."""
+    def accelerates(self, equations: EquationsOfMotion, push: float | None) -> Iterator[str]:
+        """M, and Q - c with every input so large; None where something else pushes."""
         s = equations.symbols
         order = [x.name for x in s.u]
         if not self.all_known or sorted(order) != sorted(self.speeds):
@@ -124,7 +131,7 @@ class _Compiled:
         rates = {name: 0.2 + 0.13 * k for k, name in enumerate(self.speeds)}
         self.data.qvel[:] = list(rates.values())
         self.m.actuator_ctrllimited[:] = self.m.actuator_forcelimited[:] = self.m.jnt_actfrclimited[:] = 0
-        self.data.ctrl[:] = PUSHED
+        self.data.ctrl[:] = push or 0.0
         self.mujoco.mj_forward(self.m, self.data)
         full = np.zeros((self.m.nv, self.m.nv))
         for column, one in zip(full, np.eye(self.m.nv), strict=True):
@@ -134,7 +141,7 @@ class _Compiled:
         known = {
             **self.posed.values_of(s),
             **{x: rates[x.name] for x in s.u},
-            **dict.fromkeys(s.inputs.values(), PUSHED),
+            **dict.fromkeys(s.inputs.values(), push or 0.0),
         }
         scalars = [
             *(x for row in equations.M for x in row),
@@ -145,7 +152,7 @@ class _Compiled:
         full, due = full[np.ix_(at, at)], due[at]
         for k, name in enumerate(order):
             yield f"the inertia that {name} meets is otherwise" if abs(M[k] - full[k]).max() > _fine(full) else ""
-            off = pushed and abs(forces[k] - due[k]) > _fine(due)
+            off = push is not None and abs(forces[k] - due[k]) > _fine(due)
             yield f"{name} is pushed by {forces[k]:.9g}, not {due[k]:.9g}" if off else ""
 
     def _bodies(self) -> Iterator[tuple[int, str]]:

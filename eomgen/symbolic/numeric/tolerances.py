@@ -77,6 +77,7 @@ ROUNDED_AWAY = 1e-30  # [SI] a place, a sine or an inertia by 40 digits: what is
 SAME_TURN = 1e-14  # [1 or rad] of ratios and angles that were doubles: so near, they are what a person writes
 FOLLOWS_AT_50 = 1e-22  # of a column over its largest entry, with 50 digits: what is left of one that follows
 LEAST_DENSITY = 1e-6  # of a body's own size: a thin one is taken as thick as this, so that all of it has mass
+NEARLY_A_POINT = 1e-6  # [of its largest parameter] of a body whose extent is lost in that nothing is said
 TOWARD_THE_MODEL = 1e-7  # of the forces: what pulls parameters to the model's where data do not tell
 
 # Accuracy that is asked of a run in time: rtol and atol of a step.
