@@ -74,9 +74,11 @@ class _Imported:
         """Child against parent."""
         child, kind = self.body(_named(joint, "child")), joint.get("type")
         parent = self.body(_named(joint, "parent"))
+        own = None if child is None else self.model.bodies[child].joint
+        if kind == "floating" and own is not None and own.kind != "free":
+            return f"'{child}' is held"
         if child is None or kind not in (*TURNING, *SLIDING, "fixed"):
             return ""
-        own = self.model.bodies[child].joint
         above = None if own is None else own.parent
         if above != parent and parent is not None:
             return f"'{child}' hangs on '{above}', not on '{parent}'"
