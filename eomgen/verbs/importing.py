@@ -16,7 +16,7 @@ from eomgen.proof.imported_urdf import imported_otherwise
 from eomgen.robots.importing import ImportedRobot, first_element, imported
 from eomgen.robots.sdf_models import LARGEST
 
-MOST_COMPARED = 12  # coordinates of a robot whose forces are derived to be compared
+MOST_COMPARED = 20  # coordinates of a robot whose forces are derived to be compared
 OTHERWISE = {"robot": imported_otherwise, "sdf": sdf_otherwise}
 
 
