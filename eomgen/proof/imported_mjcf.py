@@ -115,9 +115,9 @@ class _Compiled:
     def weighs(self) -> Iterator[str]:
         """Mass, mass centre, inertia."""
         for k, name in self._bodies():
-            R, m = np.zeros(9), float(self.m.body_mass[k])
-            self.mujoco.mju_quat2Mat(R, self.m.body_iquat[k])
-            R = R.reshape(3, 3)
+            rows, m = np.zeros(9), float(self.m.body_mass[k])
+            self.mujoco.mju_quat2Mat(rows, self.m.body_iquat[k])
+            R = rows.reshape(3, 3)
             I = R @ np.diag(self.m.body_inertia[k]) @ R.T
             due = np.array([m, *(m * self.m.body_ipos[k]), *I.ravel()])
             yield f"'{name}' weighs otherwise" if abs(self.posed.weight(name) - due).max() > _fine(due) else ""

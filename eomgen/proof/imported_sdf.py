@@ -222,9 +222,11 @@ def _by_density(link: Element, inertial: Element) -> np.ndarray:
         parts.append((m, p, I))
     m = sum(each for each, _, _ in parts)
     c = sum(each * p for each, p, _ in parts) / m
-    I = sum(I + each * ((p - c) @ (p - c) * np.eye(3) - np.outer(p - c, p - c)) for each, p, I in parts)
+    total = np.zeros((3, 3))
+    for each, p, I in parts:
+        total = total + I + each * ((p - c) @ (p - c) * np.eye(3) - np.outer(p - c, p - c))
     wanted = _float(inertial, "mass", m)
-    return np.array([wanted, *(wanted * c), *(I * wanted / m).ravel()])
+    return np.array([wanted, *(wanted * c), *(total * wanted / m).ravel()])
 
 
 def _solid(shape: Element) -> tuple[float, np.ndarray]:

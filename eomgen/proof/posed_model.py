@@ -125,7 +125,8 @@ def figures_in(text: str) -> np.ndarray:
 def turn_by_three(angles: np.ndarray) -> np.ndarray:
     X, Y, Z = np.eye(3)
     roll, pitch, yaw = angles
-    return turn_about(Z, yaw) @ turn_about(Y, pitch) @ turn_about(X, roll)
+    found: np.ndarray = turn_about(Z, yaw) @ turn_about(Y, pitch) @ turn_about(X, roll)
+    return found
 
 
 def turn_about(n: np.ndarray, angle: float) -> np.ndarray:
