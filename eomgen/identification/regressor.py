@@ -20,7 +20,7 @@ from eomgen.errors import DerivationError
 from eomgen.identification.base_parameters import BaseParameters, base_of
 from eomgen.identification.proof_of_groups import certify_regressor
 from eomgen.identification.transfers import MOMENTS, PLACES, named_entries
-from eomgen.mechanics.balance.friction import has_friction
+from eomgen.mechanics.balance.friction import frictions, has_friction
 from eomgen.mechanics.bodies.armature import given_inertia, joint_row
 from eomgen.mechanics.bodies.inertia import mass_properties
 from eomgen.mechanics.equations.system import System
@@ -128,9 +128,11 @@ def regressor_of(system: System) -> Regressor:
     if not system.symbols.u:
         raise DerivationError("nothing moves: no force tells a mass", mend="give a joint a coordinate that is free")
     if has_friction(system):
+        name = frictions(system)[0][0]
         raise DerivationError(
-            "Coulomb friction of a contact is not linear in the parameters: its normal force depends on them",
-            mend="say it by a force with a parameter of its own",
+            f"the friction of '{name}' is not linear in the parameters: its normal force depends on them",
+            f"{'constraints' if name in system.scope.model.constraints else 'bodies'}.{name}",
+            "say it by a force with a parameter of its own",
         )
     size = len(system.symbols.u)
     columns = [*_bodies(system), *_joints(system)]

@@ -24,6 +24,7 @@ from eomgen.model.part import altered, part_of_values
 from eomgen.model.parts import Given, Model
 from eomgen.model.reader import ModelOrPath, model_at
 from eomgen.model.replaced import Values, equation_typed
+from eomgen.model.values import exact_parameters
 from eomgen.questions.at_instant import StateAtInstant, parameters_of
 from eomgen.questions.in_phase import PhaseEquations, exact_numbers
 from eomgen.questions.motion_from_start import MotionFromStart
@@ -127,9 +128,13 @@ def _on_the_way(model: Model, at: WrittenEquation | None) -> KinematicState:
     whole = all(node in exact for node in needed) and (not numbers or sum(map(text_size, exact.values())) <= LONG)
     moving = dict(exact) if whole else exact_numbers(numbers)
     if not moving and (symbols.q or symbols.u):
+        model = phase.system.scope.model
+        known = exact_parameters(model)
+        names = ", ".join(f"'{name}'" for name in model.parameters if name not in known) or "all parameters"
         raise DerivationError(
-            "the state has no closed form, and without values of all parameters no number",
-            mend="give the parameters values",
+            f"the state has no closed form, and without values of {names} no number",
+            "parameters",
+            "give the parameters values",
         )
     moving = {**{symbols.t: 0}, **moving}
     refuse_undetermined(phase.system.elimination, phase.system.scope, moving, when)

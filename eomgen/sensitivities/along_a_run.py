@@ -19,7 +19,7 @@ from eomgen.mechanics.equations.system import System
 from eomgen.mechanics.initial_state.start_slopes import Seeds
 from eomgen.questions.in_phase import PhaseEquations
 from eomgen.records import dataclass
-from eomgen.simulation.configuration import has_phases
+from eomgen.simulation.configuration import changing, has_phases
 from eomgen.simulation.solvers import breakpoints_of, solver_of, step
 from eomgen.symbolic.expression.derivative import depends_on, substituted, tangent
 from eomgen.symbolic.expression.expressions import Expression
@@ -99,7 +99,8 @@ def _own_inputs(system: System) -> dict[Node, Scalar]:
 
 def _refuse_jumps(system: System, rates: Sequence[Scalar]) -> None:
     if has_phases(system.scope.model):
-        what = "contacts may open, stick or slide along the way: a motion in phases has no derivative here"
+        names = ", ".join(f"'{x}'" for x in changing(system.scope.model))
+        what = f"{names} may change along the way (open, stick, slide): a motion in phases has no derivative here"
         raise NotYet(what, mend="differences of two runs, or a stretch of one phase as a model of its own")
     moving = (*system.symbols.q, *system.symbols.u, *system.symbols.parameters.values())
     if any(node.op in JUMPS and depends_on(node, moving) for node in order(rates)):

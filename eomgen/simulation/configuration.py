@@ -45,7 +45,12 @@ def by_the_law(model: Model, configuration: Configuration) -> Configuration:
 
 def has_phases(model: Model) -> bool:
     """Whether the model has anything that can change as it moves."""
-    return bool(contacts_of(model)) or any(len(pieces_of(body)) > 1 for body in model.bodies.values())
+    return bool(changing(model))
+
+
+def changing(model: Model) -> tuple[str, ...]:
+    """What can change as the model moves: contacts, and bodies on a path of several pieces."""
+    return tuple(dict.fromkeys((*(contact.name for contact in contacts_of(model)), *paths_of(model))))
 
 
 def paths_of(model: Model) -> tuple[str, ...]:

@@ -181,8 +181,6 @@ def _fault(words: list[str], result: Any) -> tuple[str, str]:
         return "certificate", (lines or ["a certificate does not hold"])[0].strip()[:300]
     if result.exit_code and not err.strip() and '"error"' not in out:
         return "said nothing", f"exit {result.exit_code} without a word"
-    if result.exit_code == 2 and "energy is not kept" not in err:
-        return "usage", err.strip().splitlines()[-1][:200]
     return "", ""
 
 

@@ -4,13 +4,16 @@ from __future__ import annotations
 
 import re
 import sys
+import tomllib
 from collections.abc import Callable
 from functools import cache
 from pathlib import Path
 from random import Random
 from typing import Any
 
+import numpy as np
 import pytest
+from click.testing import CliRunner
 
 sys.path.insert(0, str(Path(__file__).parent))
 
@@ -22,9 +25,11 @@ import taylor as ty
 from covering import _row
 from drawn import text_of
 from features import FACTORS, FORBIDDEN, possible_pairs
+from oracle import Oracle, State
 from refusals import lacking
 
 import eomgen
+from eomgen.cli import main
 from eomgen.edge import problems_of
 
 pytestmark = pytest.mark.slow
@@ -142,6 +147,75 @@ def test_a_sample_of_combinations_moves_as_the_oracle_says(number):
         row = _row(rng, dict(rng.choice(pairs)), set(pairs))
     found = compare.of_model(text_of(row, number), number)
     assert not found.faults, (found.faults, row)
+
+
+REFUSED = {
+    "regressor with friction": ({"contact": "sliding"}, lambda m: eomgen.regressor(m)),
+    "sensitivity of a motion in phases": (
+        {"contact": "closed"},
+        lambda m: eomgen.sensitivity(m, "b", "m", time=0.1, samples=2),
+    ),
+    "rest of what is pushed": (
+        {"base": "sliding", "joint": "fixed", "force": "gravity"},
+        lambda m: eomgen.statics(m),
+    ),
+    "energy of what is driven": (
+        {"base": "by_formula", "joint": "prismatic"},
+        lambda m: eomgen.simulate(m, time=0.1, samples=2, stabilization="energy"),
+    ),
+}
+
+
+@pytest.mark.parametrize("what", REFUSED)
+def test_a_refusal_names_an_object_its_place_and_what_to_do(what):
+    """What cannot be asked of a model is refused by a name of the model, and with a mend."""
+    levels, ask = REFUSED[what]
+    text = text_of(PLAIN | levels, 1)
+    model = eomgen.loads(text)
+    with pytest.raises(eomgen.EomgenError) as told:
+        ask(model)
+    assert not lacking(problems_of(told.value), text)
+
+
+EXPORTED = (
+    {"space": "space", "joint": "revolute"},
+    {"space": "space", "base": "sliding", "joint": "prismatic", "joint_with": "turned"},
+    {"space": "space", "joint": "fixed", "shape": "box"},
+)
+
+
+@pytest.mark.parametrize("levels", EXPORTED, ids=lambda levels: levels["joint"])
+def test_a_robot_written_and_read_again_moves_as_the_oracle_says_of_the_first(tmp_path, levels):
+    """Kinetic energy, weight and accelerations of the imported model are the oracle's of the one that was exported."""
+    text = text_of(PLAIN | levels | {"force": "gravity"}, 2)
+    source, robot, again = tmp_path / "model.toml", tmp_path / "robot.urdf", tmp_path / "again.toml"
+    source.write_text(text, encoding="utf-8")
+    for words in (["export", str(source), "-o", str(robot)], ["import", str(robot), "-o", str(again)]):
+        assert CliRunner().invoke(main, words).exit_code == 0
+    first = Oracle(text, np.zeros(len(tomllib.loads(text)["coordinates"])))
+    e = eomgen.derive(eomgen.load(again))
+    rhs = e.rhs("numpy")
+    assert e.coordinates == tuple(first.names)
+    rng = Random(3)
+    for _ in range(3):
+        q, v = (np.array([rng.uniform(-1, 1) for _ in first.names]) for _ in range(2))
+        want = first.solve(State(0.0, q, v)).a
+        assert rhs(0.0, [*q, *v], rhs.p0, [0.0] * len(e.inputs))[len(q) :] == pytest.approx(want, rel=1e-6, abs=1e-6)
+
+
+def test_parameters_identified_from_the_oracles_motion_are_those_of_the_model():
+    """Of states and accelerations by the oracle least squares leave nothing: the groups have the model's values."""
+    known = product(joint="prismatic", joint_with="spring_damper", space="space")
+    e, rng = known.equations, Random(5)
+    oracle = Oracle(known.text, next(iter(known.functions.values())).x0[: len(e.coordinates)])
+    rows = []
+    for k in range(60):
+        q, v = (np.array([rng.uniform(-1, 1) for _ in oracle.names]) for _ in range(2))
+        rows.append([0.1 * k, *q, *v, *oracle.solve(State(0.1 * k, q, v)).a])
+    names = ["t", *(q + mark for mark in ("", "'", "''") for q in oracle.names)]
+    found = eomgen.identify(e.model, dict(zip(names, np.array(rows).T, strict=True)))
+    assert found.residual < 1e-9
+    assert found.certify().ok
 
 
 FINDS = sorted((Path(__file__).parent / "finds").glob("*.toml"))

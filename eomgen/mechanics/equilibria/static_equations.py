@@ -133,7 +133,9 @@ class StaticEquations:
             if q in dropped and not is_zero(force) and not vanishes(force):
                 if not depends_on(force, self.unknowns):
                     raise DerivationError(
-                        f"nothing balances the force along '{q.name}': it is at rest nowhere", f"coordinates.{q.name}"
+                        f"nothing balances the force along '{q.name}': it is at rest nowhere",
+                        f"coordinates.{q.name}",
+                        "hold it by a spring or a tie, or take away what pushes it",
                     )
                 beside.append(force)
         kept = [k for k, q in enumerate(self.q) if q not in dropped]
