@@ -205,7 +205,7 @@ def test_a_robot_written_and_read_again_moves_as_the_oracle_says_of_the_first(tm
 
 def test_parameters_identified_from_the_oracles_motion_are_those_of_the_model():
     """Of states and accelerations by the oracle least squares leave nothing: the groups have the model's values."""
-    known = product(joint="prismatic", joint_with="spring_damper", space="space")
+    known = product(joint="prismatic", joint_with="spring_damper", space="space", force="force", input="expression")
     e, rng = known.equations, Random(5)
     oracle = Oracle(known.text, next(iter(known.functions.values())).x0[: len(e.coordinates)])
     rows = []
