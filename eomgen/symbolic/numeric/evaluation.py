@@ -66,7 +66,7 @@ def evaluate(outputs: Sequence[Scalar], values: Mapping[Node, Any], arithmetic: 
     check_patience()
     outputs = tuple(outputs)
     if Node not in map(type, outputs):
-        return list(map(arithmetic.number, outputs))
+        return [arithmetic.number(x) for x in outputs if type(x) is not Node]
     way = _way(outputs, NONE)
     if not way.computed.isdisjoint(values):
         way = _way(outputs, frozenset(x for x in values if x.op != "symbol"))
