@@ -21,8 +21,9 @@ import eomgen
 
 MACHINES = {path.stem: path for path in sorted((Path(__file__).parent / "machines").glob("*.toml"))}
 QUICK = (  # of every kind of feature one
-    "bascule_bridge", "cable_robot", "cam_valve", "chairlift", "differential", "geneva_drive", "governor_on_turntable",
-    "quarter_car", "road_train", "screw_press", "washing_machine",
+    "balanced_arm", "bascule_bridge", "cable_robot", "cam_valve", "chairlift", "differential", "double_cardan",
+    "geneva_drive", "governor_on_turntable", "quarter_car", "road_train", "screw_press", "stewart_on_ship",
+    "washing_machine",
 )  # fmt: skip
 EACH = [pytest.param(name, marks=() if name in QUICK else pytest.mark.slow) for name in MACHINES]
 
