@@ -53,6 +53,7 @@ ROUNDS = 3  # of entering pieces from those found
 STEPS, LONG = 24, 0.1  # steps along the own motion, and of how many seconds
 AROUND = (0.1, 1.0, 3.0)  # of the size of a coordinate and 1: how far from the start states are drawn
 DRAWN = 4  # at each of these distances
+OPEN = 2  # draws that close no ties, each by several roots, after which ties that do not close at the start are left
 
 
 @dataclass(frozen=True)
@@ -289,12 +290,16 @@ class _Search:
         if begun is not None:
             yield begun
             yield from self._along(begun, LONG)
-        rng = Random(8)
+        rng, failed, closes = Random(8), 0, begun is not None
         for spread in AROUND:
             for _ in range(DRAWN):
                 state = self._around(begun, spread, rng)
                 if state is not None:
+                    closes = True
                     yield state
+                failed += state is None
+                if failed == OPEN and not closes:
+                    return
 
     def _around(self, begun: State | None, spread: float, rng: Random) -> State | None:
         ties, symbols = self._system.ties, self._system.symbols
