@@ -104,6 +104,12 @@ def test_what_is_drawn_too_large_is_seen(role: str):
     assert wrong(moved(role, lambda path: path * 1.2))
 
 
+def test_a_symbol_that_has_no_place_or_is_too_large_is_seen():
+    """0 < its size < half of the picture"""
+    assert wrong(moved("joint", lambda path: path + np.nan))
+    assert wrong(moved("joint", lambda path: path * 50))
+
+
 def test_a_body_that_is_not_drawn_is_seen():
     """Each body has its strokes."""
     kept = tuple(stroke for stroke in movie().drawing.strokes if stroke.of != "rod")
@@ -144,6 +150,10 @@ def marks(told: Any, kind: str) -> Any:
     return next(mark for mark in told["scene"]["marks"] if mark["kind"] == kind)
 
 
+def joint(told: Any) -> Any:
+    return next(mark for mark in told["scene"]["marks"] if mark.get("symbol") == "hinge")
+
+
 def plotted(told: Any, name: str) -> Any:
     return next(each for each in told["plotted"] if each["name"] == name)
 
@@ -159,6 +169,8 @@ CHANGES = {
     "a corner of a body": lambda told: marks(told, "polygon")["points"][0].__setitem__(0, 0.3),
     "where a spring begins": lambda told: marks(told, "spring").update(a=[-0.9, 0]),
     "the pose of a body": lambda told: told["scene"]["frames"][1]["pose"].__setitem__(1, 0.1),
+    "the symbol of a joint": lambda told: joint(told).update(symbol="pin"),
+    "where a joint is": lambda told: joint(told).update(at=[0.1, 0]),
     "where a point is": lambda told: told["scene"]["points"][0].update(at=[1, 0]),
 }
 

@@ -11,7 +11,7 @@ import eomgen
 from eomgen.page.contents import Report
 from eomgen.page.formats import written_as
 from eomgen.page.read_back import report_read_back
-from eomgen.proof.reports_read import copies_undone, markup_of, tex_of
+from eomgen.proof.reports_read import copies_undone, curves_of, markup_of, tex_of
 from eomgen.simulation.result import Trajectory
 from eomgen.verbs.report import Subject, report_of
 
@@ -115,6 +115,22 @@ def test_numbers_at_an_axis_are_read():
     at = text.index('text-anchor="end">') + len('text-anchor="end">')
     end = text.index("<", at)
     assert wrong(".html", text[:at] + str(float(text[at:end].replace("\N{MINUS SIGN}", "-")) + 0.7) + text[end:])
+
+
+DRAWING = """<svg><path d="M10 0V50" class="axis"></path><text text-anchor="middle">0</text>
+<path d="M90 0V50" class="axis"></path><text text-anchor="middle">4</text>
+<path d="M10 40H90" class="axis"></path><text text-anchor="end">\N{MINUS SIGN}1</text>
+<path d="M10 20H90" class="axis"></path><text text-anchor="end">1</text>
+<path d="m10 30 40 -10 30 20" class="curve c0"></path></svg>"""
+
+
+def test_a_curve_is_read_by_the_numbers_at_its_axes():
+    """t = 4 (x - 10) / 80, y = (30 - y) / 10"""
+    ((style, places),) = curves_of(markup_of(DRAWING), "0 0 100 50").curves
+    assert style == "curve c0"
+    assert places.tolist() == [pytest.approx(x) for x in ([0, 0], [2, 1], [3.5, -1])]
+    with pytest.raises(ValueError, match="leaves its drawing"):
+        curves_of(markup_of(DRAWING), "0 0 70 50")
 
 
 def test_mathml_is_read_as_it_is_set():

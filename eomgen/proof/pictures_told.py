@@ -33,6 +33,7 @@ from eomgen.symbolic.numeric.tolerances import BETWEEN_PLACES, COMPUTED, DRAWN, 
 
 NAME = "what is drawn is where the model says"
 HOW = "poses and places in 50 digits, shapes by places inside them"
+LARGE_SYMBOL = 0.5  # of all that is drawn; a symbol is a tenth of it
 GRID = np.linspace(0.0, 1.0, 9)  # places inside a shape, along each of its parameters
 Corners = tuple[np.ndarray, np.ndarray]
 
@@ -63,7 +64,9 @@ class ToldPicture:
         arrows: of single forces, and the resultants of reactions.
         points: named points.
         size: of all that is drawn [m].
+        joints: (symbol, body, place) of the symbols of joints.
         otherwise: bodies that are shown by symbols, or whose lines have a thickness.
+        symbols: (what it belongs to, its places) of what is drawn of one size in every picture.
         lengths, angles: (name, how large it is drawn) of dimension lines and arcs.
     """
 
@@ -73,6 +76,8 @@ class ToldPicture:
     points: Mapping[str, np.ndarray]
     size: float
     otherwise: frozenset[str] = frozenset()
+    joints: Sequence[tuple[str, str, np.ndarray]] = ()
+    symbols: Sequence[tuple[str, np.ndarray]] = ()
     lengths: Sequence[tuple[str, float]] = ()
     angles: Sequence[tuple[str, float]] = ()
 
@@ -89,6 +94,10 @@ def pictures_told(told: Iterable[tuple[NumericState, ToldPicture]]) -> Iterator[
             tally.add(f"'{name}'", partial(shown.wrong_ends, name))
         for name in picture.points:
             tally.add(f"'{name}'", partial(shown.wrong_point, name))
+        for symbol, body, at in picture.joints:
+            tally.add(f"the joint of '{body}'", partial(shown.wrong_joint, symbol, body, at))
+        for name, places in picture.symbols:
+            tally.add(f"the symbol of '{name}'", partial(shown.wrong_symbol, places))
         for name, drawn in picture.lengths:
             tally.add(f"length {name}", partial(shown.wrong_length, name, drawn))
         for name, drawn in picture.angles:
@@ -234,6 +243,23 @@ class _Shown(InNumbers):
         above = None if link.parent < 0 else self.motion.links[link.parent].name
         return [self.placed(self.motion.position(x)) for x in ((above, link.before.p), (name, link.point))]
 
+    def wrong_joint(self, symbol: str, body: str, at: np.ndarray) -> str:
+        """That the symbol of a joint stands elsewhere, or is one of the ground's where nothing of it is the ground."""
+        link = self.motion.link(body)
+        places = self._ends_of(body)
+        if min(float(np.linalg.norm(at - place)) for place in places) > self.near:
+            return "stands elsewhere"
+        grounded = {"pin": True, "clamp": True, "hinge": False, "weld": False}.get(symbol) if self.d == 2 else None
+        return f"is shown as a {symbol}" if grounded is not None and grounded != (link.parent < 0) else ""
+
+    def wrong_symbol(self, places: np.ndarray) -> str:
+        """That a symbol has no place, or is as large as all the rest."""
+        finite = places[np.isfinite(places).all(axis=1)]
+        if not len(finite):
+            return "has no place"
+        size = float(np.max(np.ptp(finite, axis=0)))
+        return f"is {size:.4g} m large" if size > LARGE_SYMBOL * self.picture.size else ""
+
     def wrong_point(self, name: str) -> str:
         right = self.placed(self.scene.position(self.scene.place(name)))
         off = float(np.linalg.norm(self.picture.points[name] - right))
@@ -348,7 +374,7 @@ class _Page:
     @property
     def picture(self) -> ToldPicture:
         bodies: dict[str, list[np.ndarray]] = {}
-        ends, arrows, left = {}, [], set[str]()
+        ends, arrows, left, joints = {}, [], set[str](), []
         for mark in self.told["marks"]:
             R, p = self.poses[mark["frame"]]
             role, of, kind = mark["role"], mark["of"], mark["kind"]
@@ -358,6 +384,8 @@ class _Page:
                     left.add(of)
                 else:
                     bodies.setdefault(of, []).append(own @ R.T + p)
+            elif kind == "symbol" and role in ("support", "joint") and of in self._bodies:
+                joints.append((mark["symbol"], of, R @ self.spot(mark["at"]) + p))
             elif kind in ("spring", "damper"):
                 ends[of] = (R @ self.spot(mark["a"]) + p, R @ self.spot(mark["b"]) + p)
             elif kind == "arrow" and role in ("force", "reaction"):
@@ -370,7 +398,11 @@ class _Page:
         cloud = np.concatenate([*(x for each in bodies.values() for x in each), *(x[None] for x in points.values())])
         finite = cloud[np.isfinite(cloud).all(axis=1)]
         size = float(np.max(np.ptp(finite, axis=0))) if len(finite) else 1.0
-        return ToldPicture(shown, ends, arrows, points, size or 1.0, frozenset(left))
+        return ToldPicture(shown, ends, arrows, points, size or 1.0, frozenset(left), joints)
+
+    @property
+    def _bodies(self) -> set[str]:
+        return {frame["name"] for frame in self.told["frames"]} - {""}
 
     def _own(self, kind: str, mark: Mapping[str, Any]) -> np.ndarray | None:
         """The places of a form in its own axes that reach farthest; None of what has no length of its own."""

@@ -213,7 +213,7 @@ class _HtmlReading:
         number = svg.given.get("data-drawn")
         inside = svg if number is None else markup_of(self.apart["pictures"][int(number)])
         if each.given.get("class") == "drawn":
-            self.drawings.append((words, curves_of(inside)))
+            self.drawings.append((words, curves_of(inside, svg.given["viewbox"])))
 
 
 def _is_svg(x: Markup | str) -> bool:
@@ -301,8 +301,14 @@ def _letter(tag: str, text: str) -> str:
 # -- curves --------------------------------------------------------------------------------------------------------
 
 
-def curves_of(svg: Markup) -> ReadCurves:
-    """The curves of a drawing, in the units that the numbers at its axes say."""
+def curves_of(svg: Markup, box: str) -> ReadCurves:
+    """The curves of a drawing, in the units that the numbers at its axes say.
+
+    Args:
+        box: its viewBox: 0 0, width and height.
+    Raises:
+        ValueError: a curve leaves it.
+    """
     ticks: dict[str, list[tuple[float, float]]] = {"middle": [], "end": []}
     texts, lines = list(svg.all("text")), [x for x in svg.all("path") if x.given.get("class") == "axis"]
     for text, line in zip(texts, lines, strict=True):
@@ -311,11 +317,14 @@ def curves_of(svg: Markup) -> ReadCurves:
         ticks[text.given["text-anchor"]].append((x if text.given["text-anchor"] == "middle" else y, value))
     across, up = (_scale(ticks[name]) for name in ("middle", "end"))
     curves = []
+    width, height = map(float, box.split()[2:])
     for path in svg.all("path"):
         style = path.given.get("class", "")
         if style.startswith("curve"):
             for places in _path(path.given["d"]):
                 xy = np.array(places)
+                if np.any(xy < 0) or np.any(xy > (width, height)):
+                    raise ValueError("a curve leaves its drawing")
                 curves.append((style, np.column_stack([across[0] + across[1] * xy[:, 0], up[0] + up[1] * xy[:, 1]])))
     return ReadCurves(tuple(curves), (abs(across[1]) + across[2], abs(up[1]) + up[2]))
 

@@ -30,8 +30,13 @@ def picture_told(drawing: Drawing, scene: Scene, frame: int) -> ToldPicture:
     shaped = {name for name, part in scene.system.scope.model.bodies.items() if part.shape or part.parts}
     bodies = {name: np.concatenate(each) for name, each in clouds.items() if name not in faced or name in shaped}
     arrows, otherwise = tuple(_arrows(drawing, scene, frame)), frozenset(symbols | (faced - shaped))
+    signs = [
+        (stroke.of, stroke.path[frame].reshape(-1, d))
+        for stroke in drawing.strokes
+        if stroke.role in ("support", "joint") and stroke.path.size
+    ]
     lengths, angles = _sizes(drawing, scene, frame) if drawing.sizes.dimensions else ([], [])
-    return ToldPicture(bodies, ends, arrows, {}, drawing.sizes.extent, otherwise, lengths, angles)
+    return ToldPicture(bodies, ends, arrows, {}, drawing.sizes.extent, otherwise, (), signs, lengths, angles)
 
 
 def _sizes(drawing: Drawing, scene: Scene, frame: int) -> tuple[list[tuple[str, float]], list[tuple[str, float]]]:
