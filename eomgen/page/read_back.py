@@ -15,6 +15,7 @@ import numpy as np
 from eomgen.documents.read_back import HOW, PageComparison, Wanted, wanted_of
 from eomgen.documents.statements import Formula
 from eomgen.documents.text_read_back import flat, formula_said
+from eomgen.errors import ExpressionError
 from eomgen.page.contents import Report, ReportSection
 from eomgen.page.formats import FilesByName
 from eomgen.proof.check import Check, Tally, checked
@@ -165,7 +166,10 @@ def _other_text(content: bytes, right: str) -> str:
 def _named(line: PageLine, letters: SetLetters) -> str:
     """The name of a column that a legend says."""
     if len(line) == 1 and line[0].tex:
-        tree = typeset(tokens_of(line[0].tex), letters)
+        try:
+            tree = typeset(tokens_of(line[0].tex), letters)
+        except ExpressionError:  # of no column
+            return ""
         return str(tree[1]) if tree[0] == "symbol" else ""
     return "".join(part.character for part in line)
 
