@@ -198,7 +198,8 @@ def balanced_least(balance: Balance, known: Mapping[Node, Any]) -> tuple[np.ndar
     Args:
         known: all symbols with 50 digits, accelerations included.
     """
-    rows = [*((e.coefficients, e.needed) for e in balance.equations), *(({j: 1}, x) for j, x in balance.given.items())]
+    rows: list[tuple[Mapping[int, Scalar], Scalar]] = [(e.coefficients, e.needed) for e in balance.equations]
+    rows += [({j: 1}, x) for j, x in balance.given.items()]
     A, b = np.zeros((len(rows), len(balance.names))), np.zeros(len(rows))
     for i, (row, needed) in enumerate(rows):
         *entries, right = evaluate((*row.values(), needed), known, fifty_digits())

@@ -56,7 +56,7 @@ def _unbalanced_along(place: Equilibrium, known: Mapping[Node, Any]) -> str:
     """The same at places of the curve that it stands for."""
     statics, digits = place.statics, fifty_digits()
     curve = place.curve
-    points: Sequence[Any] = () if curve is None else curve.points[:: 1 + len(curve.points) // MOST]
+    points: Any = () if curve is None else curve.points[:: 1 + len(curve.points) // MOST]
     for z in points:
         there = {**known, **{x: digits.number(1) * float(v) for x, v in zip(statics.unknowns, z, strict=True)}}
         left = evaluate(statics.equations, there, digits)
