@@ -221,7 +221,7 @@ def _by_density(link: Element, inertial: Element) -> np.ndarray:
         I = R @ (m * (np.eye(3) * squares.sum() - np.diag(squares))) @ R.T
         parts.append((m, p, I))
     m = sum(each for each, _, _ in parts)
-    c = sum(each * p for each, p, _ in parts) / m
+    c: np.ndarray = np.sum([each * p for each, p, _ in parts], axis=0) / m
     total = np.zeros((3, 3))
     for each, p, I in parts:
         total = total + I + each * ((p - c) @ (p - c) * np.eye(3) - np.outer(p - c, p - c))
