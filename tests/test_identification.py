@@ -191,6 +191,48 @@ def test_a_parallelogram_tells_three_groups():
     assert groups["my(left)"] == pytest.approx({"my(left)": 1, "my(right)": 1})
 
 
+CHAIN = """
+eomgen = 1
+space = "space"
+parameters = { l = 0.4, g = 9.81 }
+coordinates = { q1 = 0.1, q2 = 0.4, q3 = -0.7 }
+forces.weight = { kind = "gravity", acceleration = [0, 0, "-g"] }
+[bodies.base]
+inertia = [1, 1, 1]
+joint = { kind = "revolute", axis = [0, 0, 1], angle = "q1" }
+[bodies.upper]
+mass = 2
+center = [0.2, 0, 0]
+inertia = [0.1, 1, 1]
+points = { tip = ["l", 0, 0] }
+joint = { kind = "revolute", on = "base", at = [0, 0, "l"], axis = [0, 1, 0], angle = "q2" }
+[bodies.fore]
+mass = 1
+center = [0.1, 0, 0]
+inertia = [0.1, 1, 1]
+joint = { kind = "revolute", on = "upper.tip", axis = [0, 1, 0], angle = "q3" }
+"""
+
+
+@pytest.mark.parametrize(("text", "axes", "arithmetic"), [(FOUR_BAR, "xy", "50 digits"), (CHAIN, "xyz", "prime field")])
+def test_what_moves_beside_a_system_leaves_its_base_parameters(text: str, axes: str, arithmetic: str) -> None:
+    """Y of parts that do not act on one another is diag(Y_1, Y_2, ...): K is diag(K_1, K_2, ...)."""
+    alone = eomgen.regressor(eomgen.loads(text))
+    places = [[f"p{k}{axis}" for axis in axes] for k in range(8)]
+    coordinates = "".join(f"{name} = 0, " for place in places for name in place)
+    bodies = "".join(
+        f'bodies.bead{k} = {{ mass = 1, joint = {{ kind = "placed", at = {place}, angle = 0 }} }}\n'
+        for k, place in enumerate(places)
+    )
+    whole = text.replace("coordinates = { ", "coordinates = { " + coordinates).replace("[bodies", bodies + "[bodies", 1)
+    beside = eomgen.regressor(eomgen.loads(whole))
+    groups = {group.name: group.numbers for group in beside.base.groups}
+    beads = [f"m(bead{k})" for k in range(8)]
+    assert [groups.pop(name) for name in beads] == [{name: 1.0} for name in beads]
+    assert groups == {group.name: pytest.approx(group.numbers) for group in alone.base.groups}
+    assert beside.base.arithmetic == arithmetic and not _fails(beside)
+
+
 @pytest.mark.slow
 def test_a_loop_tells_its_groups_as_formulas_of_its_lengths():
     """By hand: the coupler is two particles at its pins and a moment of inertia; slider-crank and delta robot alike."""

@@ -98,34 +98,46 @@ def base_of(system: System, names: Sequence[str], rows: Sequence[ScalarRow], see
     """The base parameters of a regressor."""
     moving = [j for j in range(len(names)) if not all(is_zero(row[j]) for row in rows)]
     entries = tuple(row[j] for row in rows for j in moving)
-    kept = None if system.ties.closing or system.scope.quaternions else _kept_in_field(system, entries, moving, seed)
+    closed = system.ties.closing or system.scope.quaternions
+    kept, states = (None, 0) if closed else _kept_in_field(system, entries, moving, seed)
     found = _numbers(system, rows, moving, seed, kept or ())
     exact = found.kept == kept
     if kept is not None and not exact:
         found = _numbers(system, rows, moving, seed)
     texts = by_transfers(system, names, rows, moving, found)
     if exact and not texts:
-        texts = _polynomials(system, entries, found, len(moving), seed)
+        texts = _polynomials(system, entries, found, (states, len(moving)), seed)
     return _grouped(names, moving, found, texts, PRIME_FIELD.name if exact else "50 digits")
 
 
-def _kept_in_field(system: System, entries: ScalarRow, moving: list[int], seed: int) -> list[int] | None:
-    """The columns that stay, by random points of the prime field; None: it has no value of a root, a sign, a curve."""
+def _kept_in_field(system: System, entries: ScalarRow, moving: list[int], seed: int) -> tuple[list[int] | None, int]:
+    """(the columns that stay, by random points of the prime field, the states that this takes).
+
+    None: it has no value of a root, a sign, a curve. The states are enough where the last brings no row that is new.
+    """
     own = {system.symbols.parameters[name]: x for name, x in exact_parameters(system.scope.model).items()}
+    given = substituted(entries, {x: Fraction(own[x]) for x in own})
+    width = len(moving)
+    height = len(entries) // max(width, 1)
+    states = (width + MORE) // max(height, 1) + 2
     try:
-        W = _sampled(system, substituted(entries, {x: Fraction(own[x]) for x in own}), len(moving), seed)
+        while True:
+            W = _sampled(system, given, (states, width), seed)
+            kept, fewer = (_echelon_form(rows)[0] for rows in (W, W[:-height]))
+            if kept == fewer or states > width + MORE:
+                return kept, states
+            states *= 2
     except (NoMeaning, NoValue, ValueError):
-        return None
-    return _echelon_form(W)[0]
+        return None, 0
 
 
 def _polynomials(
-    system: System, entries: ScalarRow, found: Dependence, width: int, seed: int
+    system: System, entries: ScalarRow, found: Dependence, size: tuple[int, int], seed: int
 ) -> dict[tuple[int, int], str]:
     """The factors as polynomials in the lengths; {} where they are none, or are not worth their numbers."""
     lengths = [node for node in system.symbols.parameters.values() if node in set(symbols_of(entries))]
     few = len(lengths) <= MOST_LENGTHS
-    formulas = _formulas(system, entries, lengths, found.kept, width, seed) if few else {}
+    formulas = _formulas(system, entries, lengths, found.kept, size, seed) if few else {}
     values = {x.name: value for x, value in found.state.items() if x in lengths}
     same = (_agree(found.K.get(place, 0), terms, values) for place, terms in formulas.items())
     return {place: _polynomial(terms) for place, terms in formulas.items()} if all(same) else {}
@@ -137,14 +149,15 @@ def _agree(number: Any, terms: LengthTerms, values: Mapping[str, Any]) -> bool:
     return bool(abs(worth - number) <= FOLLOWS_AT_50 * (1 + abs(number)))
 
 
-def _sampled(system: System, entries: ScalarRow, width: int, seed: int, given: Any = None) -> list[list[int]]:
-    """W modulo the prime: the entries at several states, in which the parameters are the same.
+def _sampled(
+    system: System, entries: ScalarRow, size: tuple[int, int], seed: int, given: Any = None
+) -> list[list[int]]:
+    """W modulo the prime: the entries at so many states, in rows so wide; the parameters are the same in all.
 
     The states are one: each has coordinates, speeds and accelerations of its own name.
     """
     symbols = system.symbols
-    height = len(entries) // width
-    copies = (width + MORE) // height + 2
+    copies, width = size
     own = (symbols.t, *symbols.q, *symbols.u, *symbols.a)
     flat: list[Scalar] = []
     for k in range(copies):
@@ -189,7 +202,7 @@ def _rational(x: int) -> Fraction:
 
 
 def _formulas(
-    system: System, entries: ScalarRow, lengths: list[Node], kept: list[int], width: int, seed: int
+    system: System, entries: ScalarRow, lengths: list[Node], kept: list[int], size: tuple[int, int], seed: int
 ) -> dict[tuple[int, int], LengthTerms]:
     """The entries of K as polynomials of second degree in the model's lengths; {} where other columns stay, or they
     are no such polynomials: proven at as many points more.
@@ -199,7 +212,7 @@ def _formulas(
     points, found = [], []
     for k in range(len(monomials) + 2):
         point = [rng.randrange(1, PRIME) for _ in lengths]
-        W = _sampled(system, entries, width, seed + k, dict(zip(lengths, point, strict=True)))
+        W = _sampled(system, entries, size, seed + k, dict(zip(lengths, point, strict=True)))
         own, K = _echelon_form(W)
         if own != kept:
             return {}

@@ -11,7 +11,7 @@ from typing import Any
 import numpy as np
 
 from eomgen.errors import EomgenError
-from eomgen.identification.tied_rows import columns_along, in_50_digits, tied_states
+from eomgen.identification.tied_rows import Reduced, columns_along, in_50_digits, tied_states
 from eomgen.identification.transfers import Transfer, transfers_of
 from eomgen.mechanics.equations.system import System
 from eomgen.records import dataclass
@@ -100,27 +100,6 @@ def _vanishes(W: np.ndarray, by: Sequence[Any]) -> bool:
     """Whether a combination of columns is 0."""
     terms = W * np.array(by, dtype=object)
     return not terms.size or max(map(abs, terms.sum(axis=1))) <= FOLLOWS_AT_50 * max(map(abs, terms.flat))
-
-
-@dataclass(frozen=True)
-class Reduced:
-    """Sparse rows of 50 digits, each without the pivots of those before it."""
-
-    rows: dict[int, dict[int, Any]]
-
-    def takes(self, row: Mapping[int, Any]) -> bool:
-        """Whether a row does not follow from these, which it then joins."""
-        left = dict(row)
-        for pivot, other in self.rows.items():
-            if factor := left.pop(pivot, 0):
-                for j, x in other.items():
-                    left[j] = left.get(j, 0) - factor * x
-        pivot = max(left, key=lambda j: abs(left[j]), default=-1)
-        if pivot < 0 or abs(left[pivot]) <= FOLLOWS_AT_50 * max(map(abs, row.values())):
-            return False
-        size = left.pop(pivot)
-        self.rows[pivot] = {j: x / size for j, x in left.items()}
-        return True
 
 
 def number_text(x: Any) -> str:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from random import Random
 from typing import Any
 
@@ -11,13 +11,15 @@ import numpy as np
 from eomgen.mechanics.constraints.closure import gaps_of, generic_state, movable, norms_of
 from eomgen.mechanics.equations.system import System
 from eomgen.mechanics.initial_state.values_at_rest import values_of_parameters
+from eomgen.records import dataclass
 from eomgen.symbolic.expression.derivative import jacobian
 from eomgen.symbolic.expression.node import ScalarRow, State
 from eomgen.symbolic.expression.rational import Fraction
 from eomgen.symbolic.numeric.evaluation import evaluate, fifty_digits
-from eomgen.symbolic.numeric.tolerances import FOLLOWS_AT_50
+from eomgen.symbolic.numeric.tolerances import FOLLOWS_AT_50, ROUNDED_AWAY
 
 MORE = 6  # beyond its columns
+QUIET = 2  # states in a row that must bring no row that is new: then no state does
 FAR = (0.4,)  # from the start, of states at which columns are told apart: near to it they are nearly one
 STEPS = 3  # of Newton's method from a root with 30 digits: each doubles them
 
@@ -25,13 +27,22 @@ STEPS = 3  # of Newton's method from a root with 30 digits: each doubles them
 def sampled_rows(
     system: System, rows: Sequence[ScalarRow], columns: Sequence[int], seed: int
 ) -> tuple[np.ndarray, State]:
-    """(W at generic states that keep the ties, along the motions that these allow, the last of these); 50 digits."""
+    """(W at generic states that keep the ties, along the motions that these allow, the last of these); 50 digits.
+
+    Of a part that moves by itself a state gives only as many rows as that has motions, however many the system has:
+    states are added until they bring nothing new.
+    """
     parts: list[np.ndarray] = []
-    have = 0
+    have = quiet = 0
+    reduced = Reduced({})
     for state, along in tied_states(system, Random(seed)):
         parts.append(columns_along(system, rows, columns, state, along))
         have += len(along)
-        if not len(along) or have >= len(columns) + MORE:
+        least = ROUNDED_AWAY * max(map(abs, parts[-1].flat), default=0)
+        new = [reduced.takes({j: x for j, x in enumerate(row) if abs(x) > least}) for row in parts[-1]]
+        quiet = 0 if any(new) else quiet + 1
+        told_apart = len(reduced.rows) == len(columns) or quiet >= QUIET
+        if not len(along) or (told_apart and have >= len(columns) + MORE):
             break
     return np.vstack(parts) if have else np.zeros((0, len(columns)), dtype=object), state
 
@@ -92,6 +103,27 @@ def _allowed(J: np.ndarray, right: np.ndarray, size: int, rng: Random | None) ->
     for i in kept:
         x[i] = x[i] - K.get((i, size), number(0))
     return along, x
+
+
+@dataclass(frozen=True)
+class Reduced:
+    """Sparse rows of 50 digits, each without the pivots of those before it."""
+
+    rows: dict[int, dict[int, Any]]
+
+    def takes(self, row: Mapping[int, Any]) -> bool:
+        """Whether a row does not follow from these, which it then joins."""
+        left = dict(row)
+        for pivot, other in self.rows.items():
+            if factor := left.pop(pivot, 0):
+                for j, x in other.items():
+                    left[j] = left.get(j, 0) - factor * x
+        pivot = max(left, key=lambda j: abs(left[j]), default=-1)
+        if pivot < 0 or abs(left[pivot]) <= FOLLOWS_AT_50 * max(map(abs, row.values()), default=0):
+            return False
+        size = left.pop(pivot)
+        self.rows[pivot] = {j: x / size for j, x in left.items()}
+        return True
 
 
 def echelon_in_digits(W: np.ndarray, right: np.ndarray | None = None) -> tuple[list[int], dict[tuple[int, int], Any]]:
