@@ -30,6 +30,7 @@ from eomgen.mechanics.equations.jumps import refuse_jump
 from eomgen.mechanics.equations.system import System, system_of
 from eomgen.mechanics.formulations.massless_nodes import with_nodes_balanced
 from eomgen.mechanics.initial_state.numeric_value import known_exactly
+from eomgen.mechanics.statics.contacts_at_start import resting_contacts
 from eomgen.model.fields import AtRest, WrittenEquation
 from eomgen.model.outputs import FUNCTIONS
 from eomgen.model.parts import Model, Output
@@ -118,7 +119,9 @@ def reactions(
     answered = partial(_answers, _at_rest(model, from_rest), at=at, from_rest=bool(from_rest))
     found: dict[str, Quantity]
     proof: Callable[[Mapping[str, Quantity]], Certificate]
-    if equations is not None and at is None and not from_rest:
+    if at is None and not from_rest and resting_contacts(model):
+        found, proof = answered({named.name: named.unit for named in asked}, at="t = 0")
+    elif equations is not None and at is None and not from_rest:
         found, proof = _formulas(equations, asked), partial(_proof_of_formulas, equations)
     else:
         found, proof = answered({named.name: named.unit for named in asked})
@@ -151,6 +154,7 @@ def reactions_document(
     open_ = [name for name, answer in found.items() if OPEN in (answer.message or "")]
     failed = [name for name, answer in found.items() if not answer.answered and name not in open_]
     broken = why_not_at_rest(model, system)
+    starting = _at_rest(model, from_rest)
     space = null_space(equations.graph) if open_ and equations is not None else []
     laws = {} if equations is None else _laws_in(equations, found)
     more = {**({"laws": laws} if laws else {}), **({"null_space": space} if space else {})}
@@ -163,9 +167,9 @@ def reactions_document(
         *_open_statements(space),
         *_sum_statements(found.sums),
         failed=f"not answered: {listed(failed)}" if failed else broken,
-        notes=_without_force(system) or (() if found else ("nothing reacts: no body is held by joints or ties",)),
+        notes=(*_without_force(system), *(() if at or from_rest else _without_sliding(starting)))
+        or (() if found else ("nothing reacts: no body is held by joints or ties",)),
     )
-    starting = _at_rest(model, from_rest)
     document = with_start_told(document, starting)
     if plot is not None:
         from eomgen.verbs.reaction_picture import reaction_picture
@@ -178,6 +182,13 @@ def _without_force(system: System) -> tuple[str, ...]:
     """The contacts that are open at the start, in words."""
     names = [name for name, mode in system.modes.items() if not mode.closed]
     return (f"open at the start, without a force: {', '.join(names)}",) if names else ()
+
+
+def _without_sliding(model: Model) -> tuple[str, ...]:
+    """The rough contacts that do not slide at the start, in words."""
+    names = resting_contacts(model)
+    here = f"do not slide at the start: {', '.join(names)}; the reactions are those there"
+    return (f"{here}; formulas of sliding: eomgen derive --method kinetostatic",) if names else ()
 
 
 def _function(name: str) -> str:

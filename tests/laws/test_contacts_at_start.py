@@ -13,6 +13,7 @@ from eomgen.codegen.rhs import RightHandSide
 from eomgen.mechanics.bodies.contact_modes import ContactMode
 from eomgen.model.contacts import contacts_of
 from eomgen.simulation.phase_models import PhaseModels
+from eomgen.verbs.reactions import reactions_document
 
 MODELS = Path(__file__).parents[2] / "models"
 BALL = """
@@ -133,3 +134,51 @@ def test_what_is_assumed_of_contacts_stands_with_small_motions_too():
     found, words = eomgen.linearize(eomgen.loads(text), about="equilibrium"), "floor assumed closed: h has no value"
     assert found.assumptions == (words,) and found.as_dict()["assumptions"] == [words]
     assert f"{words}." in found.render("text")
+
+
+ROUGH = """
+eomgen = 1
+space = "plane"
+[parameters]
+m = 3.0
+mu = 0.5
+g = 10
+P = PUSH
+v = SPEED
+[coordinates]
+s = { speed = "v" }
+[bodies.crate]
+shape = { kind = "particle", mass = "m" }
+joint = { kind = "placed", at = ["s", "z"] }
+[coordinates.z]
+start = 0
+[constraints.floor]
+kind = "support"
+point = "crate.center"
+normal = [0, 1]
+unilateral = true
+friction = "mu"
+[forces.weight]
+kind = "gravity"
+acceleration = [0, "-g"]
+[forces.push]
+kind = "force"
+point = "crate.center"
+force = ["P", "-P/10"]
+"""
+
+
+@pytest.mark.parametrize(
+    ("push", "speed", "friction"),
+    [(6.0, 0.0, -6.0), (-6.0, 0.0, 6.0), (40.0, 0.0, -17.0), (-40.0, 0.0, 13.0), (6.0, 0.1, -15.3), (6.0, -0.1, 15.3)],
+)
+def test_friction_of_what_does_not_slide_at_the_start_is_that_of_its_first_phase(push, speed, friction):
+    """F = -P while |P| <= mu N, N = m g + P/10; else mu N against the motion that begins; `solve` says the same."""
+    text = ROUGH.replace("PUSH", str(push)).replace("SPEED", str(speed))
+    model = eomgen.loads(text)
+    found, told = eomgen.reactions(model), " ".join(reactions_document(model, certify=False).notes)
+    asked = eomgen.solve(eomgen.loads(text + '[outputs]\nF = "reaction_t(floor)"'))["F"]
+    assert found["reaction_t(floor)"].value == pytest.approx(friction) == asked.value
+    assert found.certify().ok
+    words = "do not slide at the start: floor; the reactions are those there"
+    assert (words in told) == (speed == 0)

@@ -81,6 +81,20 @@ def contacts_at_start(model: Model) -> ContactsAtStart:
     return ContactsAtStart({**opened.modes, **pushing.modes}, (*opened.assumptions, *pushing.assumptions))
 
 
+def resting_contacts(model: Model) -> tuple[str, ...]:
+    """Contacts with dry friction that touch at the start and do not slide there, by name: friction has no sign yet.
+
+    Whether they stick or begin to slide the first phase of the motion decides. () where parameters have no value.
+    """
+    if not model.coordinates or not any(c.mu is not None for c in contacts_of(model)):
+        return ()
+    start = _StartNumbers(model)
+    try:
+        return () if start.missing else tuple(sorted(start.still(contacts_at_start(model).modes)))
+    except (DerivationError, ModelError, UsageError, NoValue):
+        return ()
+
+
 @dataclass(frozen=True)
 class _StartNumbers:
     """The start of a model in numbers, those that nobody gave drawn."""
@@ -147,7 +161,7 @@ class _StartNumbers:
 
     def _let_go(self, touching: Sequence[Contact], opened: ContactModes, drawn: Numbers) -> tuple[str, ...] | None:
         """The contacts that open by the forces; None where no configuration agrees with them."""
-        still = self._still(opened) if any(c.mu is not None for c in touching) else set()
+        still = self.still(opened) if any(c.mu is not None for c in touching) else set()
         for away in islice(product(*((False, True) for _ in touching)), MOST_TRIED):
             free = [c for c, opens in zip(touching, away, strict=True) if opens]
             held = [c for c in touching if c not in free]
@@ -189,7 +203,7 @@ class _StartNumbers:
 
     def _signs(self, contacts: Sequence[Contact], signs: Mapping[str, int], opened: ContactModes) -> dict[str, int]:
         """The sign of N of each contact, with the friction of given signs; what does not slide sticks."""
-        still = self._still(opened)
+        still = self.still(opened)
         modes = {c.name: ContactMode(sense=0) if c.name in still else ContactMode(push=signs[c.name]) for c in contacts}
         system = system_of(self.model, {**opened, **modes})
         equations = equations_of_motion(system)
@@ -203,7 +217,7 @@ class _StartNumbers:
         values = evaluate(tuple(normals.values()), state, fifty_digits())
         return {name: -1 if N < -CARRIED else 1 for name, N in zip(normals, values, strict=True)}
 
-    def _still(self, opened: ContactModes) -> set[str]:
+    def still(self, opened: ContactModes) -> set[str]:
         """The contacts with dry friction that do not slide at the start."""
         system = system_of(self.model, opened)
         state, rough = _state(system, self.drawn), {c.name for c in contacts_of(self.model) if c.mu is not None}
