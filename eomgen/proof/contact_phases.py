@@ -22,7 +22,7 @@ from eomgen.codegen.rhs import RightHandSide, compiled
 from eomgen.mechanics.bodies.armature import armatures, given_momenta
 from eomgen.mechanics.bodies.inertia import mass_properties
 from eomgen.mechanics.bodies.kinematics import velocity_of
-from eomgen.mechanics.constraints.closure import of_50_digits
+from eomgen.mechanics.constraints.closure import of_50_digits, on_unit_spheres
 from eomgen.mechanics.constraints.ties import Row, rows_of_tie
 from eomgen.mechanics.equations.system import System
 from eomgen.model.contacts import Contact
@@ -168,8 +168,10 @@ def _misplaced(phase: Phase, apart: System) -> str:
 
 
 def _state(system: System, values: Values, p: np.ndarray, t: float) -> State:
+    """A state of the run at 50 digits; quaternions of doubles miss norm 1 by 1e-16 and are put to it."""
     symbols = system.symbols
     known = {node: of_50_digits(values.get(node.name, 0.0)) for node in (*symbols.q, *symbols.u)}
+    known |= on_unit_spheres(system.scope.quaternions, known)
     given = zip(symbols.parameters.values(), p, strict=True)
     return {**known, symbols.t: of_50_digits(t)} | {node: of_50_digits(float(x)) for node, x in given}
 
