@@ -17,6 +17,7 @@ from eomgen.judge.reading import MULTIPLIER, HandEquation, Reading, side_value
 from eomgen.mechanics.equations.equations_of_motion import EquationsOfMotion
 from eomgen.mechanics.equations.pieces import Extent
 from eomgen.mechanics.equations.system import System, system_of
+from eomgen.mechanics.equations.work import per_speed
 from eomgen.mechanics.equilibria.search import Equilibrium, all_equilibria
 from eomgen.mechanics.first_integrals.integrals import where_momenta_hold
 from eomgen.mechanics.first_integrals.speeds import rates_and_extent
@@ -37,10 +38,11 @@ from eomgen.questions.in_phase import PhaseEquations
 from eomgen.questions.motion_from_start import MotionFromStart
 from eomgen.records import dataclass
 from eomgen.simulation.configuration import has_phases
-from eomgen.symbolic.expression.derivative import depends_on, derivative, substituted
+from eomgen.symbolic.expression.derivative import depends_on, derivative, gradient, substituted
 from eomgen.symbolic.expression.expressions import Call, Expression, Reference, parse
 from eomgen.symbolic.expression.functions import inner
 from eomgen.symbolic.expression.graph import Node, Scalar, is_zero
+from eomgen.symbolic.expression.habits import SLOPE
 from eomgen.symbolic.expression.node import ScalarRow
 from eomgen.symbolic.print.text import to_text
 
@@ -275,6 +277,8 @@ class Case:
         """A function of the outputs, or a multiplier by its name: lam(tie, 1)."""
         if call.name == MULTIPLIER and (multiplier := self._multiplier(call)) is not None:
             return multiplier
+        if call.name == SLOPE:
+            return self._slope(call)
         try:
             found = self.quantities.value(call)
         except (DerivationError, ModelError, KeyError, StopIteration, ValueError, IndexError, AssertionError) as error:
@@ -295,6 +299,19 @@ class Case:
         held = [p for p in self.system.symbols.unknowns.values() if depends_on(x, (p,))]
         known = {p: self.quantities.reactions.unknown(p.name) for p in held}
         return substituted((x,), known)[0] if held else x
+
+    def _slope(self, call: Call) -> Scalar:
+        """dT/du, or dT/dq as Lagrange's equations have it: N^T dT/dq."""
+        energy, by = call.args
+        assert isinstance(energy, Expression)
+        value, symbols = self.value(energy), self.system.symbols
+        names = [u.name for u in symbols.u]
+        if str(by) in names:
+            return derivative(value, symbols.u[names.index(str(by))])
+        if f"{by}'" not in names:
+            what = f"'{by}' is neither a coordinate that is free nor its rate"
+            raise ExpressionError(what, max(call.column, 0), length=len(str(call)))
+        return per_speed(self.system.motion, gradient(value, symbols.q))[names.index(f"{by}'")]
 
     def called_by(self, call: Call) -> Callable[[Case], Scalar]:
         """The same function of another case, as a function of its state over the symbols of this one."""
@@ -403,7 +420,7 @@ class Case:
         Raises:
             ExpressionError: one does.
         """
-        for call in (call for call in written.calls if call.name != MULTIPLIER):
+        for call in (call for call in written.calls if call.name not in (MULTIPLIER, SLOPE)):
             value = Expression(str(call), (("call", call),), (max(call.column, 0),))
             _asking(self.model, {"asked": Output(value=value)})
 

@@ -15,7 +15,7 @@ from eomgen.errors import ExpressionError
 from eomgen.judge.alphabet import Vocabulary, plain_forms, spelled_command
 from eomgen.records import dataclass
 from eomgen.symbolic.expression.functions import NAMES
-from eomgen.symbolic.expression.habits import RATES, called_rate, meant_name, spelled
+from eomgen.symbolic.expression.habits import RATES, SLOPE, called_rate, meant_name, spelled
 from eomgen.symbolic.expression.units import parse_unit
 
 RATE = "rate_of"  # d/dt of what stands in parentheses
@@ -43,7 +43,12 @@ _DIFFERENTIAL = re.compile(
     r"\s*(?:\\(?:mathrm|text|operatorname)\s*(?:\{\s*d\s*\}|d)|d)\s*(?:\^\s*\{?\s*(\d)\s*\}?)?\s*(.*)", re.S
 )
 _BY_TIME = re.compile(r"\s*(?:\\(?:mathrm|text)\s*(?:\{\s*d\s*\}|d)|d)\s*t\s*(?:\^\s*\{?\s*(\d)\s*\}?)?\s*")
-_PLAIN_RATE = re.compile(r"d\s*/\s*dt\s*(?=[(\[{])")
+_PLAIN_RATE = re.compile(r"d\s*/\s*dt\s*(?=[(\[{]|[d∂][TVL]\b)")
+_D = r"(?:d|∂|\\partial(?![A-Za-z])|\\(?:mathrm|text|operatorname)\s*(?:\{\s*d\s*\}|d))\s*"
+_OF_ENERGY = re.compile(_D + r"([TVL](?:\s*\(\s*[\w.]+\s*\))?)\s*")
+_PLAIN_SLOPE = re.compile(_OF_ENERGY.pattern + "/" + r"\s*(?=" + _D + ")")
+_BY = re.compile(_D)
+_A_SLOPE = re.compile(r"\s*\\[dtc]?frac\s*\{\s*" + _OF_ENERGY.pattern + r"\}")
 _E_TO_THE = re.compile(r"(?:e|\\(?:mathrm|text|operatorname)\s*\{\s*e\s*\})\s*\^")
 _TIME_BEHIND = re.compile(r"(?:\s|\\[,;:! ])*t(?![A-Za-z'])")
 _WHOLE = re.compile(r"\s*(?:\\(?:left|[bB]igg?l?)\s*)?[(\[{]|\s*\\left\s*\\lbrace")
@@ -141,9 +146,12 @@ class _Reader:
             self.command()
         elif found := _NUMBER.match(self.text, self.at):
             self.number(found.group())
-        elif (rate := _PLAIN_RATE.match(self.text, self.at)) and self.known.known("d") is None:
+        elif (rate := _PLAIN_RATE.match(self.text, self.at)) and "dt" not in self.known.names:
             self.at = rate.end()
             self.function(RATE, rate.start())
+        elif (c in "d∂") and (of := _PLAIN_SLOPE.match(self.text, self.at)) and self.is_slope(of):
+            self.at = of.end()
+            self.slope(of[1], of.start())
         elif _PIECE.match(c):
             self.word()
         elif c == "{":
@@ -238,6 +246,28 @@ class _Reader:
             raise self.strange("an empty pair of braces", at=start)
         return found
 
+    # -- derivatives of energies ---------------------------------------------------------------------
+
+    def is_slope(self, of: re.Match[str]) -> bool:
+        """Whether dT/dq is a derivative here: no name of the model begins with a d so."""
+        words = (_WORD.match(self.text, at) for at in (of.start(), of.end()))
+        return not any(word and word.group() in self.known.names for word in words)
+
+    def slope(self, energy: str, start: int) -> None:
+        """From the lower d on: \\partial\\dot\\theta, dp1'."""
+        by, before = _BY.match(self.text, self.at), len(self.out)
+        assert by is not None
+        self.at = by.end()
+        if self.text.startswith("\\", self.at):
+            self.name()
+        else:
+            self.word()
+        names = self.out[before:]
+        if len(names) != 1 or names[0].kind != "name":
+            raise self.strange("an energy is differentiated by one coordinate, or by its rate", at=by.end())
+        self.out[before:] = []
+        self.put(f"{SLOPE}({re.sub(chr(32), '', energy)}, {names[0].text})", "call", start)
+
     # -- commands ------------------------------------------------------------------------------------
 
     def command(self) -> None:
@@ -283,13 +313,19 @@ class _Reader:
             dots = int(by_time[1] or 1)
             if rate[2].strip():
                 self.out += _Reader(rate[2], self.known, self.offset + above_at, self.depth + 1).one_name(dots)
-            elif dots == 1 and _WHOLE.match(self.text, self.at):
+            elif dots == 1 and (_WHOLE.match(self.text, self.at) or _A_SLOPE.match(self.text, self.at)):
                 self.function(RATE, start)
             else:
                 self.skip_space()
                 rest = _Reader(self.text[self.at :], self.known, self.offset + self.at, self.depth + 1)
                 self.out += rest.one_name(dots, whole=False)
                 self.at += rest.at
+            return
+        of = _OF_ENERGY.fullmatch(above)
+        if of and not by_time and _BY.match(below):
+            lower = _Reader(below, self.known, self.offset + below_at, self.depth + 1)
+            lower.slope(of[1], 0)
+            self.out += lower.out
             return
         self.put("(", "open", start)
         for k, (text, at) in enumerate(((above, above_at), (below, below_at))):

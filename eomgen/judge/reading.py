@@ -26,6 +26,7 @@ from eomgen.records import dataclass
 from eomgen.symbolic.expression.expressions import Call, Expression, Reference, parse, parse_equation
 from eomgen.symbolic.expression.formula import Instruction
 from eomgen.symbolic.expression.graph import Scalar
+from eomgen.symbolic.expression.habits import SLOPE
 from eomgen.symbolic.print.symbols import Symbol
 
 LETTERS = {"T": "kinetic_energy", "V": "potential_energy", "Q": "generalized_force", "p": "momentum"}
@@ -188,7 +189,10 @@ class Reading:
         left = self._alone(left, right)
         used = {name: formula for name, formula in self.letters.items() if name in left.names | right.names}
         letters = {str(x.calls[0]): name for name, x in used.items() if len(x.code) == 1 and x.calls}
-        return HandEquation(given, self._meant(left), self._meant(right), letters)
+        left, right = self._meant(left), self._meant(right)
+        slopes = (call for side in (left, right) for call in calls_in(side) if call.name == SLOPE)
+        letters |= {str(call): f"d{call.args[0]}/d{call.args[1]}" for call in slopes}
+        return HandEquation(given, left, right, letters)
 
     def _alone(self, left: Expression, right: Expression) -> Expression:
         """A letter alone on the left that the model does not have.
@@ -258,6 +262,13 @@ class Reading:
     def _is_known(self, name: str) -> bool:
         return name.rstrip("'") in self.vocabulary.names
 
+    def _energy(self, argument: Reference | Expression) -> Expression:
+        """T, V, L or T(rod) of which a derivative is taken, under the text that the author has for it."""
+        written = _formula(argument) if isinstance(argument, Reference) else argument
+        T, V = (_called(LETTERS[letter]) for letter in ("T", "V"))
+        formula = {"T": T, "V": V, "L": T - V}.get(written.text) or self._meant(written)
+        return Expression(written.text, formula.code, formula.columns)
+
     def _meant(self, side: Expression) -> Expression:
         """A side with letters replaced by the functions that they stand for."""
         own = self.system.scope.names
@@ -268,12 +279,18 @@ class Reading:
             elif kind == "call" and what.name == RATE:
                 args = tuple(self._meant(x if isinstance(x, Expression) else parse(x.name)) for x in what.args)
                 code.append(("call", replace(what, args=args)))
+            elif kind == "call" and what.name == SLOPE:
+                code.append(("call", replace(what, args=(self._energy(what.args[0]), _formula(what.args[1])))))
             elif kind == "call" and what.name in LETTERS:
                 code.append(("call", replace(what, name=LETTERS[what.name])))
             else:
                 code.append((kind, what))
         columns = side.columns if len(code) == len(side.code) else (-1,) * len(code)
         return Expression(side.text, tuple(code), columns)
+
+
+def _formula(argument: Reference | Expression) -> Expression:
+    return argument if isinstance(argument, Expression) else parse(argument.name)
 
 
 def plain_name(symbol: Symbol) -> str:

@@ -134,7 +134,7 @@ class Verdict:
 
         def told(text: str) -> str:
             for function, letter in letters.items():
-                of = function.partition("(")[2].removesuffix(")")
+                of = "" if "/" in letter else function.partition("(")[2].removesuffix(")")
                 whole = letter if of in letter else f"{letter} ({of})"
                 text = text.replace(f" {function}", f" {whole}", 1).replace(function, letter)
             return text

@@ -36,6 +36,7 @@ from eomgen.proof.trials import Trials
 from eomgen.records import dataclass
 from eomgen.symbolic.expression.expressions import Call, Expression, parse
 from eomgen.symbolic.expression.graph import Node
+from eomgen.symbolic.expression.habits import SLOPE
 from eomgen.symbolic.expression.rational import Fraction
 from eomgen.symbolic.numeric.evaluation import NoValue, evaluate, fifty_digits
 from eomgen.symbolic.numeric.tolerances import CARRIED, COMPUTED, ITERATED, ZERO_AT_50
@@ -43,6 +44,7 @@ from eomgen.symbolic.numeric.tolerances import CARRIED, COMPUTED, ITERATED, ZERO
 NEAR, FAR = 5, 2  # states beside the start, and at random with other parameters
 STEPS, TIMES = 48, 4  # of a run; at how many of its instants the sides are compared
 LENGTHS = (0.4, 0.1, 0.02)  # s
+ASIDE = Fraction(1, 10**12)  # the step of a difference in 50 digits
 STILL = 1e-3  # of the size of a coordinate or speed: a motion that changes less tells nothing apart
 EPSILON = float(np.finfo(float).eps)
 SURE = 30  # times the bound of rounding, from which on two numbers differ
@@ -381,6 +383,9 @@ class Sides:
             label = str(call)
             node = next(x for x in self.state.equations.symbols.lam if x.name == label)
             return Rounded(float(self._values[node]), self.error * abs(float(self._values[node])))
+        if call.name == SLOPE:
+            value = self._slope(call)
+            return Rounded(value, COMPUTED * abs(value) + self.error * self._size(call))
         if call.name not in FUNCTIONS:
             raise NoValue(f"'{call.name}' is no function of the outputs")
         function = FUNCTIONS[call.name]
@@ -399,6 +404,27 @@ class Sides:
         if not math.isfinite(value):
             raise NoValue(f"{call} has no value there")
         return Rounded(value, COMPUTED * abs(value) + self.error * self._size(call))
+
+    def _slope(self, call: Call) -> float:
+        """Of an energy by a speed, or by a coordinate with all that this moves: by a central difference."""
+        system = self.state.equations.system
+        energy, by = call.args
+        along, arithmetic = dict[Node, Any](), fifty_digits()
+        assert isinstance(energy, Expression)
+        names = [u.name for u in system.symbols.u]
+        if str(by) in names:
+            along[system.symbols.u[names.index(str(by))]] = 1
+        else:
+            column = tuple(row[names.index(f"{by}'")] for row in system.scope.N)
+            along |= zip(system.symbols.q, evaluate(column, self._values, arithmetic), strict=True)
+        scalar, step = Quantities(system).of(energy), arithmetic.number(ASIDE)
+        above, below = (
+            evaluate(
+                (scalar,), {**self._values, **{x: self._values[x] + s * step * d for x, d in along.items()}}, arithmetic
+            )
+            for s in (1, -1)
+        )
+        return float((above[0] - below[0]) / (2 * step))
 
     def _size(self, call: Call) -> float:
         """What of a value rounding is measured by: the speeds of the state."""

@@ -17,6 +17,7 @@ RATES = {  # functions and ends of names that stand for dots: how many
     "dot": 1,
     "ddot": 2,
 }
+SLOPE = "slope_of"  # what dT/dq' is read as: slope_of(T, q'), of an energy by a coordinate or its rate
 _ENDS = (("_ddot", 2), ("_dotdot", 2), ("ddot", 2), ("_dot", 1), ("dot", 1), ("_dd", 2), ("_d", 1))
 _NUMBER = r"\d+(?:\.\d*)?(?:[eE][-+]?\d+)?|\.\d+"
 _COMMA = re.compile(r"(\d+)\s*,\s*(\d+)")
