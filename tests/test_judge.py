@@ -25,6 +25,7 @@ from eomgen.judge.handwriting import transcript
 from eomgen.judge.judge import Judge
 from eomgen.judge.products import Products
 from eomgen.judge.terms import powers_of
+from eomgen.proof.verdicts import verdicts_again
 from eomgen.symbolic.expression.graph import Graph
 from eomgen.symbolic.expression.rational import Fraction
 from eomgen.symbolic.print.text import to_text
@@ -815,3 +816,70 @@ forces.weight = { kind = "gravity", acceleration = [0, "-g"] }
     found = eomgen.verify(eomgen.loads(fall), right)
     assert found.verdict == "right" and "the values of the file" in found.up_to, found
     assert eomgen.verify(eomgen.loads(fall), wrong).verdict == "wrong"
+
+
+PUCK = """
+eomgen = 1
+name = "p"
+space = "plane"
+parameters = { m = 2, d = 1.0 }
+coordinates = { p1 = { start = 0.0, speed = 0.8 }, p3 = 0 }
+inputs = { F1 = "m*d" }
+bodies.puck.shape = { kind = "particle", mass = "m" }
+bodies.puck.joint = { kind = "planar", x = "p1", y = "p3", angle = 0 }
+forces.f = { kind = "force", point = "puck.center", force = ["F1", 0] }
+"""
+ON_A_SPRING = """
+eomgen = 1
+name = "a pendulum on a spring"
+space = "plane"
+parameters = { m = 2, g = 9.81, k = 40, r0 = 1 }
+coordinates = { r = 1, q = 0.3 }
+bodies.arm.joint = { kind = "revolute", angle = "q - pi/2" }
+bodies.bob.shape = { kind = "particle", mass = "m" }
+bodies.bob.joint = { kind = "prismatic", on = "arm", axis = [1, 0], displacement = "r" }
+forces.weight = { kind = "gravity", acceleration = [0, "-g"] }
+forces.spring = { kind = "spring", points = ["arm.origin", "bob.center"], stiffness = "k", length = "r0" }
+"""
+ON_A_ROAD = """
+eomgen = 1
+name = "a particle on a road"
+space = "plane"
+parameters = { m = 2, c = 0.3 }
+coordinates = { x = { start = 0.5, speed = 1 }, y = { dependent = true } }
+bodies.a.shape = { kind = "particle", mass = "m" }
+bodies.a.joint = { kind = "placed", at = ["x", "y"], angle = 0 }
+constraints.road = { kind = "equation", gap = "y - c*x^2" }
+"""
+
+
+@pytest.mark.parametrize(
+    ("model", "right", "wrong"),
+    [
+        (PUCK, "dT/dp1' = m*p1'", "dT/dp1' = d*p1'"),
+        (PUCK.replace(", d = 1.0", "").replace("m*d", "m"), "dT/dp1' = m*p1'", "dT/dp1' = m*p1"),
+        (PUCK, "d/dt(dT/dp1') = m*p1''", "d/dt(dT/dp1') = m*p3''"),
+        (PUCK, "dT(puck)/dp3 = 0", "dT(puck)/dp3 = m"),
+        (ON_A_SPRING, "dT/dq' = m*r^2*q'", "dT/dq' = m*r*q'"),
+        (ON_A_SPRING, "∂T/∂r = m*r*q'^2", "∂T/∂r = m*r^2*q'^2"),
+        (ON_A_SPRING, "d/dt dT/dq' = m*r*(r*q'' + 2*r'*q')", "d/dt dT/dq' = m*r*(r*q'' + r'*q')"),
+        (ON_A_SPRING, "dV/dr = k*(r - r0) - m*g*cos(q)", "dV/dr = k*(r - r0) + m*g*cos(q)"),
+        (
+            ON_A_SPRING,
+            r"\frac{d}{dt}\left(\frac{\partial L}{\partial\dot q}\right) - \frac{\partial L}{\partial q} = 0",
+            r"\frac{d}{dt}\frac{\partial L}{\partial \dot{q}} + \frac{\partial L}{\partial q} = 0",
+        ),
+        (ON_A_ROAD, "dT/dx' = m*x'", "dT/dx' = 2*m*x'"),
+        (ON_A_ROAD, "dT/dx' = m*(1 + 4*c^2*x^2)*x'", "dT/dx' = m*(1 + 2*c^2*x^2)*x'"),
+        (ON_A_ROAD, "dT/dy' = m*y'", "dT/dy' = m*x'"),
+        (ON_A_ROAD, "dT/dx = 4*m*c^2*x*x'^2", "dT/dx = 2*m*c^2*x*x'^2"),
+    ],
+)
+def test_derivatives_of_energies_are_no_products_of_letters(model, right, wrong):
+    """p = dT/dq', its rate, dT/dq, dV/dq by hand, of T = m (r'^2 + r^2 q'^2)/2 and others; as decided again."""
+    judge = Judge(Case(eomgen.loads(model)))
+    for equation, told in ((right, "right"), (wrong, "wrong")):
+        found = judge.verdict(equation)
+        assert found.verdict == told, found
+        (said,) = verdicts_again([judge.said(found)])
+        assert said.ok or (said.ok is None and judge.case.reading.read(equation).takes_rates), said

@@ -22,6 +22,7 @@ from eomgen.mechanics.equilibria.search import Equilibrium, all_equilibria
 from eomgen.mechanics.first_integrals.integrals import where_momenta_hold
 from eomgen.mechanics.first_integrals.speeds import rates_and_extent
 from eomgen.mechanics.first_integrals.speeds_from_momenta import relations_of
+from eomgen.mechanics.formulations.lagrange import free_rates
 from eomgen.mechanics.initial_state.exact_start import ExactStart
 from eomgen.mechanics.initial_state.numeric_value import known_parameters
 from eomgen.mechanics.instant.outputs import Quantities
@@ -301,17 +302,22 @@ class Case:
         return substituted((x,), known)[0] if held else x
 
     def _slope(self, call: Call) -> Scalar:
-        """dT/du, or dT/dq as Lagrange's equations have it: N^T dT/dq."""
-        energy, by = call.args
+        """dT/du, or dT/dq as Lagrange's equations have it: N^T dT/dq; of the free system by the speeds of this."""
+        energy, by, *free = call.args
+        system = self.system.free if free and self.system.free else self.system
         assert isinstance(energy, Expression)
-        value, symbols = self.value(energy), self.system.symbols
+        value, symbols = Quantities(system).of(energy), system.symbols
         names = [u.name for u in symbols.u]
-        if str(by) in names:
-            return derivative(value, symbols.u[names.index(str(by))])
-        if f"{by}'" not in names:
+        if str(by) not in names and f"{by}'" not in names:
             what = f"'{by}' is neither a coordinate that is free nor its rate"
             raise ExpressionError(what, max(call.column, 0), length=len(str(call)))
-        return per_speed(self.system.motion, gradient(value, symbols.q))[names.index(f"{by}'")]
+        if str(by) in names:
+            slope = derivative(value, symbols.u[names.index(str(by))])
+        else:
+            slope = per_speed(system.motion, gradient(value, symbols.q))[names.index(f"{by}'")]
+        if system is self.system:
+            return self.solved(slope)
+        return substituted((slope,), dict(zip(symbols.u, free_rates(self.system, system), strict=True)))[0]
 
     def called_by(self, call: Call) -> Callable[[Case], Scalar]:
         """The same function of another case, as a function of its state over the symbols of this one."""

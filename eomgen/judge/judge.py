@@ -28,7 +28,7 @@ from eomgen.judge.implied import (
 )
 from eomgen.judge.kinds import FUNCTION_KINDS, KINDS, kind_of_equation
 from eomgen.judge.mends import Mends
-from eomgen.judge.reading import HandEquation
+from eomgen.judge.reading import HandEquation, of_free_coordinates
 from eomgen.judge.renaming import OtherAxis, Renaming, renamings
 from eomgen.judge.rest import is_of_rest
 from eomgen.judge.right import (
@@ -60,6 +60,7 @@ from eomgen.records import dataclass
 from eomgen.simulation.configuration import paths_of
 from eomgen.symbolic.expression.derivative import depends_on, substituted
 from eomgen.symbolic.expression.graph import Node, Scalar, is_zero
+from eomgen.symbolic.expression.habits import SLOPE
 from eomgen.symbolic.numeric.work import doing
 
 
@@ -85,6 +86,7 @@ CONSTANT_LETTER = re.compile(r"(?:[CcEHhK]|const)_?[0-9]?")
 
 
 BEGUN = ("the first piece of the path", "contacts that slide as they do at the start")
+FREE = "energies over all coordinates, as if none followed from others"
 SAYS_NOTHING = ("what is equated", "the sign")  # of what equations are wrong that hold whatever the system does
 
 
@@ -106,10 +108,20 @@ class Judge:
             raise UsageError(f"there is no kind '{kind}' of equations", mend=f"one of {', '.join(KINDS)}")
         written = self.case.reading.read(equation)
         known = kind or kind_of_equation(written, self.case.model)
+        if self.case.system.free is None or not any(call.name == SLOPE for call in written.calls):
+            return self._of_reading(written, known, at)
+        free = of_free_coordinates(written)
+        with suppress(ExpressionError):  # it is differentiated by what follows from others
+            if found := self._of_reading(written, known, at):
+                return found
+        found = self._of_reading(free, known, at)
+        return replace(found, up_to=" and ".join(filter(None, (FREE, found.up_to)))) if found else found
+
+    def _of_reading(self, written: HandEquation, kind: str, at: Any) -> Verdict:
         try:
-            return self._judged(written, known, _instant(self.case, at)).in_letters(written.letters)
+            return self._judged(written, kind, _instant(self.case, at)).in_letters(written.letters)
         except (DerivationError, RunFailed, MissingValues) as error:
-            return Verdict(written.given, known, UNDECIDED, reason=error.what)
+            return Verdict(written.given, kind, UNDECIDED, reason=error.what)
 
     def said(self, verdict: Verdict) -> Judged | None:
         """A verdict as it is decided again by numbers; None of what is undecided, or wrong because it says nothing."""
@@ -121,6 +133,8 @@ class Judge:
         if equations is None:
             return None
         written = self.case.reading.read(verdict.given)
+        if equations.system.free is not None and (verdict.verdict == WRONG or FREE in verdict.up_to):
+            written = of_free_coordinates(written)
         names = [name for name in self.case.unknown_names(written) if name not in verdict.substitution]
         return Judged(
             verdict.given,

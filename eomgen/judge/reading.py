@@ -78,6 +78,26 @@ def calls_in(side: Expression) -> Iterator[Call]:
             yield from calls_in(argument) if isinstance(argument, Expression) else ()
 
 
+def of_free_coordinates(written: HandEquation) -> HandEquation:
+    """The same, energies differentiated as if no coordinate followed from others."""
+    letters = dict(written.letters)
+
+    def freed(side: Expression) -> Expression:
+        return replace(side, code=tuple((kind, called(x) if kind == "call" else x) for kind, x in side.code))
+
+    def called(call: Call) -> Call:
+        if call.name == RATE:
+            return replace(call, args=tuple(freed(x) if isinstance(x, Expression) else x for x in call.args))
+        if call.name != SLOPE:
+            return call
+        other = replace(call, args=(*call.args, Reference("free")))
+        letters[str(other)] = letters[str(call)]
+        return other
+
+    left, right = freed(written.left), freed(written.right)
+    return replace(written, left=left, right=right, letters=letters)
+
+
 def side_value(
     side: Expression, names: Mapping[str, Scalar], called: Callable[[Call], Scalar], rate: Callable[[Scalar], Scalar]
 ) -> Scalar:

@@ -24,6 +24,7 @@ from eomgen.codegen.rhs import compiled
 from eomgen.errors import ExpressionError
 from eomgen.mechanics.equations.articulated import with_accelerations
 from eomgen.mechanics.equations.equations_of_motion import EquationsOfMotion
+from eomgen.mechanics.formulations.lagrange import free_rates
 from eomgen.mechanics.initial_state.initial_state import start_state
 from eomgen.mechanics.instant.outputs import Quantities
 from eomgen.model.outputs import FUNCTIONS
@@ -31,6 +32,7 @@ from eomgen.model.outputs.base import BALANCE
 from eomgen.model.values import exact_parameters
 from eomgen.proof.at_a_state import NumericState, state_in_numbers
 from eomgen.proof.check import Check, Tally
+from eomgen.proof.in_numbers import STEP
 from eomgen.proof.second_definitions import NearbyStates
 from eomgen.proof.trials import Trials
 from eomgen.records import dataclass
@@ -44,7 +46,6 @@ from eomgen.symbolic.numeric.tolerances import CARRIED, COMPUTED, ITERATED, ZERO
 NEAR, FAR = 5, 2  # states beside the start, and at random with other parameters
 STEPS, TIMES = 48, 4  # of a run; at how many of its instants the sides are compared
 LENGTHS = (0.4, 0.1, 0.02)  # s
-ASIDE = Fraction(1, 10**12)  # the step of a difference in 50 digits
 STILL = 1e-3  # of the size of a coordinate or speed: a motion that changes less tells nothing apart
 EPSILON = float(np.finfo(float).eps)
 SURE = 30  # times the bound of rounding, from which on two numbers differ
@@ -384,8 +385,8 @@ class Sides:
             node = next(x for x in self.state.equations.symbols.lam if x.name == label)
             return Rounded(float(self._values[node]), self.error * abs(float(self._values[node])))
         if call.name == SLOPE:
-            value = self._slope(call)
-            return Rounded(value, COMPUTED * abs(value) + self.error * self._size(call))
+            slope = self._slope(call)
+            return Rounded(slope, COMPUTED * abs(slope) + self.error * self._size(call))
         if call.name not in FUNCTIONS:
             raise NoValue(f"'{call.name}' is no function of the outputs")
         function = FUNCTIONS[call.name]
@@ -407,24 +408,23 @@ class Sides:
 
     def _slope(self, call: Call) -> float:
         """Of an energy by a speed, or by a coordinate with all that this moves: by a central difference."""
-        system = self.state.equations.system
-        energy, by = call.args
+        own, values = self.state.equations.system, dict(self._values)
+        energy, by, *free = call.args
+        system = own.free if free and own.free else own
         along, arithmetic = dict[Node, Any](), fifty_digits()
         assert isinstance(energy, Expression)
+        if system is not own:
+            values |= zip(system.symbols.u, evaluate(free_rates(own, system), self._values, arithmetic), strict=True)
         names = [u.name for u in system.symbols.u]
         if str(by) in names:
             along[system.symbols.u[names.index(str(by))]] = 1
         else:
             column = tuple(row[names.index(f"{by}'")] for row in system.scope.N)
-            along |= zip(system.symbols.q, evaluate(column, self._values, arithmetic), strict=True)
-        scalar, step = Quantities(system).of(energy), arithmetic.number(ASIDE)
-        above, below = (
-            evaluate(
-                (scalar,), {**self._values, **{x: self._values[x] + s * step * d for x, d in along.items()}}, arithmetic
-            )
-            for s in (1, -1)
-        )
-        return float((above[0] - below[0]) / (2 * step))
+            along |= zip(system.symbols.q, evaluate(column, values, arithmetic), strict=True)
+        scalar = Quantities(system).of(energy)
+        aside = ({x: values[x] + s * STEP * d for x, d in along.items()} for s in (1, -1))
+        above, below = (evaluate((scalar,), {**values, **each}, arithmetic) for each in aside)
+        return float((above[0] - below[0]) / (2 * STEP))
 
     def _size(self, call: Call) -> float:
         """What of a value rounding is measured by: the speeds of the state."""
