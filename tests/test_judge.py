@@ -859,6 +859,8 @@ constraints.road = { kind = "equation", gap = "y - c*x^2" }
         (PUCK, "dT/dp1' = m*p1'", "dT/dp1' = d*p1'"),
         (PUCK.replace(", d = 1.0", "").replace("m*d", "m"), "dT/dp1' = m*p1'", "dT/dp1' = m*p1"),
         (PUCK, "d/dt(dT/dp1') = m*p1''", "d/dt(dT/dp1') = m*p3''"),
+        (PUCK, "dT/dt = F1*p1'", "dT/dt = 2*F1*p1'"),
+        (PUCK, r"\frac{dT}{dt} = F_1\dot p_1", r"\frac{dT}{dt} = F_1\dot p_3"),
         (PUCK, "dT(puck)/dp3 = 0", "dT(puck)/dp3 = m"),
         (ON_A_SPRING, "dT/dq' = m*r^2*q'", "dT/dq' = m*r*q'"),
         (ON_A_SPRING, "∂T/∂r = m*r*q'^2", "∂T/∂r = m*r^2*q'^2"),

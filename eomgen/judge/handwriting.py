@@ -254,7 +254,7 @@ class _Reader:
         return not any(word and word.group() in self.known.names for word in words)
 
     def slope(self, energy: str, start: int) -> None:
-        """From the lower d on: \\partial\\dot\\theta, dp1'."""
+        """From the lower d on: \\partial\\dot\\theta, dp1'; dt."""
         by, before = _BY.match(self.text, self.at), len(self.out)
         assert by is not None
         self.at = by.end()
@@ -266,7 +266,9 @@ class _Reader:
         if len(names) != 1 or names[0].kind != "name":
             raise self.strange("an energy is differentiated by one coordinate, or by its rate", at=by.end())
         self.out[before:] = []
-        self.put(f"{SLOPE}({re.sub(chr(32), '', energy)}, {names[0].text})", "call", start)
+        of, by_name = re.sub(r"\s", "", energy), names[0].text
+        whole = by_name == "t" and by.group().strip() != "∂"
+        self.put(f"{RATE}({of})" if whole else f"{SLOPE}({of}, {by_name})", "call", start)
 
     # -- commands ------------------------------------------------------------------------------------
 
@@ -309,6 +311,14 @@ class _Reader:
         above, above_at = self.group()
         below, below_at = self.group()
         rate, by_time = _DIFFERENTIAL.fullmatch(above), _BY_TIME.fullmatch(below)
+        of = _OF_ENERGY.fullmatch(above)
+        if of and _BY.match(below) and (not by_time or of[1][0] in self.known.functions):
+            lower = _Reader(below, self.known, self.offset + below_at, self.depth + 1)
+            lower.slope(of[1], 0)
+            if below[lower.at :].strip():
+                raise self.strange("more than one name stands below", at=below_at)
+            self.out += lower.out
+            return
         if rate and by_time and (rate[1] or "1") == (by_time[1] or "1"):
             dots = int(by_time[1] or 1)
             if rate[2].strip():
@@ -320,12 +330,6 @@ class _Reader:
                 rest = _Reader(self.text[self.at :], self.known, self.offset + self.at, self.depth + 1)
                 self.out += rest.one_name(dots, whole=False)
                 self.at += rest.at
-            return
-        of = _OF_ENERGY.fullmatch(above)
-        if of and not by_time and _BY.match(below):
-            lower = _Reader(below, self.known, self.offset + below_at, self.depth + 1)
-            lower.slope(of[1], 0)
-            self.out += lower.out
             return
         self.put("(", "open", start)
         for k, (text, at) in enumerate(((above, above_at), (below, below_at))):
