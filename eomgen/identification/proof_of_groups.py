@@ -31,7 +31,7 @@ from eomgen.symbolic.expression.expressions import parse
 from eomgen.symbolic.expression.node import ScalarRow
 from eomgen.symbolic.expression.rational import Fraction
 from eomgen.symbolic.numeric.evaluation import evaluate, fifty_digits
-from eomgen.symbolic.numeric.tolerances import COMPUTED, RANK
+from eomgen.symbolic.numeric.tolerances import COMPUTED, FOLLOWS_AT_50, RANK
 
 POOR = 1e6  # a condition beyond which its square is lost in doubles
 NEARLY = 1e-3  # share by which two ways of least squares may differ
@@ -79,7 +79,7 @@ def groups_checked(found: LinearForces) -> Iterator[Check]:
         tally.add(f"state {k + 1}", partial(_another_force, found, state, along, Random(SEED + k)))
     yield from tally.checks()
     yield attempted(
-        "no base parameter follows from the others", "50 digits, singular values", partial(_followers, found)
+        "no base parameter follows from the others", "50 digits, orthogonal columns", partial(_followers, found)
     )
     tally = Tally("formulas of base parameters, read back, give their numbers", "our grammar, 50 digits")
     for group in found.base.groups:
@@ -102,18 +102,41 @@ def _another_force(found: LinearForces, state: Any, along: np.ndarray, rng: Rand
 
 
 def _followers(found: LinearForces) -> str:
-    """How many columns of Y_base follow from the others at many states, each of size 1; ""."""
+    """How many columns of Y_base follow from the others at many states; "".
+
+    A part of one freedom gives one row a state, however many rows the others give: as long as columns follow, there
+    are to be as many states as rows.
+    """
     leads = [found.parameters.index(group.name) for group in found.base.groups]
     rows: list[np.ndarray] = []
-    for state, along in tied_states(found.system, Random(SEED + STATES)):
-        Y = columns_along(found.system, found.rows, range(len(found.parameters)), state, along)
-        rows += [np.array([float(row[k]) for k in leads]) for row in Y]
-        if len(rows) > ENOUGH * len(leads):
-            break
-    sizes = np.linalg.norm(rows, axis=0)
-    values = np.linalg.svd(np.array(rows) / np.where(sizes > 0, sizes, 1), compute_uv=False)
-    few = len(leads) - int(np.count_nonzero(values > RANK * values[0])) if len(values) else 0
+    due = enough = ENOUGH * len(leads)
+    few = len(leads)
+    for k, (state, along) in enumerate(islice(tied_states(found.system, Random(SEED + STATES)), enough + 1)):
+        rows += [*columns_along(found.system, found.rows, leads, state, along)]
+        if rows and (len(rows) > due or k == enough):
+            due = 2 * len(rows)
+            few = len(leads) - _rank(np.array(rows, dtype=object))
+            if not few:
+                break
     return f"{few} of {len(leads)} follow" if few and len(rows) >= len(leads) else ""
+
+
+def _rank(W: np.ndarray) -> int:
+    """The columns that do not follow from others: by doubles where these tell it, else made orthogonal in 50 digits."""
+    columns = [column / max(map(abs, column)) for column in W.T if any(column)]
+    values = np.linalg.svd(np.array(columns, dtype=float), compute_uv=False) if columns else np.zeros(0)
+    if len(columns) == W.shape[1] and all(values > RANK * values[0]):
+        return len(columns)
+    rank = 0
+    while columns:
+        squares = [column.dot(column) for column in columns]
+        longest = max(range(len(columns)), key=squares.__getitem__)
+        if squares[longest] <= FOLLOWS_AT_50**2:
+            break
+        rank += 1
+        along, square = columns.pop(longest), squares[longest]
+        columns = [column - column.dot(along) / square * along for column in columns]
+    return rank
 
 
 def _misread(found: LinearForces, group: Group) -> str:
