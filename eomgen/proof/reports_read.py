@@ -16,6 +16,7 @@ from html.parser import HTMLParser
 
 import numpy as np
 
+from eomgen.errors import visible
 from eomgen.proof.pages_read import (
     GREEK_LETTERS,
     PageBlock,
@@ -367,14 +368,27 @@ def _path(d: str) -> list[list[tuple[float, float]]]:
 # -- the formats ---------------------------------------------------------------------------------------------------
 
 
+_NUMBERED = re.compile(r"(?<!\\)(?:\\u[0-9a-f]{4})+")
+
+
+def _unhidden(text: str) -> str:
+    """The text with what files hold by its number only, as \\u001b, as it is."""
+
+    def letters(found: re.Match[str]) -> str:
+        raw = json.loads(f'"{found[0]}"')
+        return raw if visible(raw) == found[0] else found[0]
+
+    return _NUMBERED.sub(letters, text)
+
+
 def html_report(text: str) -> ReadReport:
     """A report as a page of HTML."""
-    return _HtmlReading(markup_of(text)).whole()
+    return _HtmlReading(markup_of(_unhidden(text))).whole()
 
 
 def latex_report(text: str) -> ReadReport:
     """A report as LaTeX: what stands under pictures and in its proof as words."""
-    lines = text.split("\n")
+    lines = _unhidden(text).split("\n")
     found = []
     for line in lines:
         if title := re.fullmatch(r"\{\\LARGE\\bfseries (.*)\\par\}\\medskip", line):
@@ -390,7 +404,7 @@ def latex_report(text: str) -> ReadReport:
 
 def markdown_report(text: str) -> ReadReport:
     """A report as Markdown; of a picture the words under it."""
-    bare = re.sub(r"^!\[.*\]\(<.*>\)\n\n", "", text, flags=re.MULTILINE)
+    bare = re.sub(r"^!\[.*\]\(<.*>\)\n\n", "", _unhidden(text), flags=re.MULTILINE)
     bare = re.sub(r"^\*([^*].*)\*$", r"\1", bare, flags=re.MULTILINE)  # a remark
     return ReadReport(tuple(markdown_page(bare)))
 

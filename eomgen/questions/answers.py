@@ -286,9 +286,17 @@ class _Solver:
         try:
             state = start_state(phase.system)
             numbers = {x: state[x.name] for x in (*symbols.q, *symbols.u)} | {symbols.t: 0.0}
-            found = phase.number(output.value, {**known_exactly(phase.system.scope), **numbers})
+            return self._defined(answer, output, phase, numbers)
         except (KeyError, MissingValues):
             return answer
+
+    def _defined(self, answer: Answer, output: Output, phase: PhaseEquations, numbers: Mapping[Node, float]) -> Answer:
+        """The answer with the value of what was asked itself, instead of its closed form, at the start.
+
+        Raises:
+            MissingValues: a parameter that it needs has no value.
+        """
+        found = phase.number(output.value, {**known_exactly(phase.system.scope), **numbers})
         value = found if output.unit is None else float(output.unit.from_si(found, math.pi))
         message = None if answer.value is None else answer.message
         return _valued(replace(answer, value=None, message=message), value, "at the start")
@@ -320,7 +328,9 @@ class _Solver:
         self._refuse_leaving(motion, held)
         (scalar,) = substituted((scalar,), rates)
         method = "energy theorem" if held.everywhere else f"energy theorem, while {held.text}"
-        return self._started(phase.simple(scalar), method, output)
+        answer = self._started(phase.simple(scalar), method, output)
+        singular = answer.value is None and answer.message == NO_VALUE.format("at the start")
+        return self._defined(answer, output, phase, motion.numbers) if singular and motion.numbers else answer
 
     @staticmethod
     def _refuse_leaving(motion: MotionFromStart, held: Extent) -> None:
