@@ -34,6 +34,8 @@ class Pin(Constraint):
 
     def findings(self, path: DocumentPath, catalog: Catalog) -> Iterator[Finding]:
         """Axes of a body that the hinge does not hold, or of no axis."""
+        if self.points is None or self.axes is None:  # what could not be read
+            return
         holds = [owner_of(point) for point in self.points]
         if self.axes in catalog.table("bodies") and self.axes not in holds:
             what = f"'{path[1]}' does not hold body '{self.axes}'"
