@@ -7,14 +7,15 @@ surface along both tangents.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Container, Iterable, Sequence
+from collections.abc import Callable, Container, Iterable, Mapping, Sequence
 
 from eomgen.mechanics.balance.balance import Balance
 from eomgen.mechanics.balance.components import Component
-from eomgen.mechanics.balance.unit_wrenches import Axes, Effect, efforts_of
-from eomgen.mechanics.bodies.kinematics import BodyLink
-from eomgen.mechanics.constraints.ties import holds_identically
+from eomgen.mechanics.balance.unit_wrenches import Axes, Effect, effects_of_load, efforts_of
+from eomgen.mechanics.bodies.kinematics import BodyLink, Motion
+from eomgen.mechanics.constraints.ties import Row, holds_identically
 from eomgen.model.constraints.members import ends_asked
+from eomgen.model.constraints.row import AXIS_NAMES
 from eomgen.records import dataclass
 from eomgen.symbolic.expression.derivative import depends_on, derivative
 from eomgen.symbolic.expression.expressions import Call, Expression, Reference
@@ -145,17 +146,43 @@ def _drives(balance: Balance, j: int, component: Component) -> dict[int, Scalar]
         return {j: 1}
     motion = balance.system.motion
     (q,) = (x for x in motion.scope.symbols.q if x.name == component.side)
-    gaps = {(row.tie, row.number): row.gap for row in balance.system.ties.rows if row.gap is not None}
+    rows = {(row.tie, row.number): row for row in balance.system.ties.rows if row.gap is not None}
     found: dict[int, Scalar] = {}
     for i, c in enumerate(balance.components):
         if c.kind == "drive" and c.side == q.name:
             found[i] = derivative(motion.link(c.owner).s[c.number - 1], q)
         elif c.kind == "joint" and _moves_seat(motion.link(c.owner), q):
-            found[i] = _work(balance, c, q)
-        elif c.kind == "tie" and depends_on(gap := gaps.get((c.owner, c.number), 0), (q,)):
-            left = _work(balance, c, q) - derivative(gap, q)
-            found |= {} if is_zero(left) or holds_identically(left) else {i: left}
+            found[i] = _work(motion, c.effects, q)
+        elif c.kind == "tie" and c.bilateral_friction is None and (c.owner, c.number) in rows:
+            found[i] = _left_out(balance, rows, rows[c.owner, c.number], q)
     return {i: k for i, k in found.items() if not is_zero(k)}
+
+
+def _left_out(balance: Balance, rows: Mapping[tuple[str, int], Row], row: Row, q: Node) -> Scalar:
+    """f . dp/dq - dphi/dq of a unit of a row's component: what acts on places that q moves and that no body carries.
+
+    A force along an axis of the ground has parts R^T e along those of the carrier, from which the gaps are seen.
+    """
+    if row.carrier is None or row.component not in AXIS_NAMES:
+        return _left_of_row(balance, row, q)
+    k, R = AXIS_NAMES.index(row.component), balance.system.motion.link(row.carrier).pose.R
+    beside = (
+        rows.get((row.tie, row.number - k + n)) for n in range(2 if balance.system.scope.model.space == "plane" else 3)
+    )
+    parts = ((R[k][n], _left_of_row(balance, each, q)) for n, each in enumerate(beside) if each is not None)
+    return sum((x * left for x, left in parts if not is_zero(left)), start=0)
+
+
+def _left_of_row(balance: Balance, row: Row, q: Node) -> Scalar:
+    """The same along the axes of the row's carrier, all seen from there."""
+    assert row.gap is not None, "rows of velocities alone have no places"
+    slope = derivative(row.gap, q)
+    motion = balance.system.motion
+    if is_zero(slope):
+        return 0
+    seen = motion if row.carrier is None else motion.seen_from(row.carrier)
+    left = _work(seen, [e for push in row.pushes for e in effects_of_load(Axes(seen), push)], q) - slope
+    return 0 if is_zero(left) or holds_identically(left) else left
 
 
 def _moves_seat(link: BodyLink, q: Node) -> bool:
@@ -164,12 +191,12 @@ def _moves_seat(link: BodyLink, q: Node) -> bool:
     return any(depends_on(x, (q,)) for x in seat)
 
 
-def _work(balance: Balance, component: Component, q: Node) -> Scalar:
-    """f . dp/dq + n . dtheta/dq: the work of a unit of a component on the bodies as q alone changes."""
-    axes = Axes(balance.system.motion)
+def _work(motion: Motion, effects: Iterable[Effect], q: Node) -> Scalar:
+    """f . dp/dq + n . dtheta/dq: the work of effects on the bodies as q alone changes."""
+    axes = Axes(motion)
     total: Scalar = 0
-    for effect in component.effects:
-        link = balance.system.motion.links[effect.link]
+    for effect in effects:
+        link = motion.links[effect.link]
         turn = _turn(link, q)
         if effect.place is not None:  # of the body, wherever q moves what acts there
             p = plus(vector_of(derivative(x, q) for x in link.pose.p), cross(turn, apply(link.pose.R, effect.place)))
