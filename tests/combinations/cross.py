@@ -103,8 +103,11 @@ def _run(found: Found, model: Any, product: Product, oracle: Oracle, s: State, s
     energy: list[tuple[float, float]] = []
     for i, t in enumerate(run.t):
         x = run.x[i]
-        here = oracle.of_speeds(float(t), x[:n], run.speeds, x[n:], loose=1e-5) if not oracle.modes else None
-        if here is None:
+        try:  # with what is closed at the start, which may determine dependent rates
+            here = oracle.of_speeds(float(t), x[:n], run.speeds, x[n:], loose=1e-5)
+        except NoAnswer:
+            if not oracle.modes:
+                raise
             here = oracle.of_all_rates(float(t), x[:n], run.speeds, x[n:])
         told = oracle.contacts(here) if oracle.modes else oracle.solve(here)
         want = expected(oracle, here, told) | kinematic(oracle, here, told)
