@@ -130,7 +130,7 @@ def _small(found: Found, model: Any, product: Product, oracle: Oracle, s: State,
         not oracle.stands()
         or oracle.modes
         or any(
-            "rate" in tie or (tie["kind"] in ("rolling", "skate", "motion") and not tie.get("slip"))
+            "rate" in tie or (tie["kind"] in ("rolling", "skate", "motion", "gear") and not tie.get("slip"))
             for tie in oracle.model.constraints.values()
         )
     ):
