@@ -19,11 +19,12 @@ from eomgen.proof.power import Energies, followed
 from eomgen.records import dataclass
 from eomgen.symbolic.expression.derivative import gradient
 from eomgen.symbolic.expression.graph import Scalar, is_zero
-from eomgen.symbolic.numeric.tolerances import LARGEST_SQUARED, SUMMED
+from eomgen.symbolic.numeric.tolerances import ITERATED, LARGEST_SQUARED, SUMMED
 
 PER_STEP = 10  # tolerances of the run that one step may cost
 SURE = 0.1  # of a limit: how unsure an integral may be to be judged by it
 VISITED = 5  # states of a phase at which the code is tried
+FAST = 0.01  # of the largest T so far: above it speeds put the energy on its level
 PLACES = 40  # steps that are taken again
 PARTS = (1, 2, 4)  # of a step, until its work is sure
 EXPLICIT = "the run's right-hand side, order 8"
@@ -81,12 +82,14 @@ class Promise:
         rtol, atol: tolerances of the run.
         steps: how many it took.
         projected: whether each of them ended on the ties: what opens does not add up.
+        levelled: whether each of them ended on the level of the energy of the start, where speeds say enough of it.
     """
 
     rtol: float
     atol: float
     steps: int
     projected: bool = False
+    levelled: bool = False
 
     def of_one_step(self, size: float) -> float:
         return PER_STEP * (self.rtol * size + self.atol)
@@ -110,7 +113,7 @@ def watched_checks(legs: Sequence[Leg], promise: Promise) -> tuple[Check, ...]:
     moving = _moving(legs)
     if not moving:
         return ()
-    found = (energy_kept(moving, promise), _ties(moving, promise), _norms(moving, promise))
+    found = (energy_kept(moving, promise), _level(moving, promise), _ties(moving, promise), _norms(moving, promise))
     return tuple(check for check in found if check is not None)
 
 
@@ -195,6 +198,22 @@ def energy_kept(legs: Sequence[Leg], promise: Promise) -> Check:
         return unchecked(name, f"the integral of the power is not sure: by {unsure:.1e} J, limit {limit:.1e} J", how)
     told = f"|E - E0 - W| <= {worst:.1e} J at t = {when:.6g} s, limit {limit:.1e} J, energy that moves {moving:.3g} J"
     return Check(name, "holds" if worst <= limit else "fails", how, told)
+
+
+def _level(legs: Sequence[Leg], promise: Promise) -> Check | None:
+    """|E - E(0)| <= rounding of E_max at every step that ends with a kinetic energy worth the name."""
+    if not promise.levelled:
+        return None
+    name, how = "speeds put the energy on the level of the start", "T and V at the steps"
+    worst, limit = 0.0, 0.0
+    for leg in legs:
+        T, V, H = leg.TVH
+        fast = T > FAST * np.maximum.accumulate(T)
+        limit = max(limit, ITERATED * float(np.max(T + np.abs(V - V[0]))))
+        worst = max(worst, float(np.max(np.abs(H - H[0])[fast], initial=0.0)))
+    if not np.isfinite(limit + worst):
+        return unchecked(name, "the energy has no value at some of the states", how)
+    return Check(name, "holds" if worst <= limit else "fails", how, f"|E - E0| <= {worst:.1e} J, limit {limit:.1e} J")
 
 
 def _work(leg: Leg, wanted: float) -> tuple[np.ndarray, float]:

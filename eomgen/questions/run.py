@@ -87,7 +87,8 @@ class RunProof:
         """(the legs of a run, what its tolerances promise)."""
         legs = [leg for phase in found.phases for leg in self._legs(phase, found)]
         projected = self.how.stabilization in ("projection", "energy") and self.how.every is None
-        return legs, motion.Promise(self.how.rtol, self.how.atol, found.steps, projected)
+        levelled = projected and self.how.stabilization == "energy"
+        return legs, motion.Promise(self.how.rtol, self.how.atol, found.steps, projected, levelled)
 
     def _contacts(self, found: Trajectory) -> Iterator[Check]:
         """What contacts do in the phases of a run, and between them."""
