@@ -99,9 +99,9 @@ def _kept(
     step, _, rank, _ = np.linalg.lstsq(A, -np.array(left), rcond=RANK)
     several = rank < np.count_nonzero(np.any(A, axis=0)) or not {*moved} <= {*silent}
     if several or np.max(abs(A @ step + left)) > CARRIED * max(1.0, np.max(np.abs(left))):
-        names = ", ".join(f"'{x.name}'" for x in silent) or "no coordinate"
+        names = ", ".join(f"'{x.name}'" for x in silent or moved)
         raise DerivationError(
-            f"the ties do not say how the start of {names} changes with {what}",
+            f"the ties do not say how the start changes with {what}{f': of {names}' if names else ''}",
             mend="declare what follows from the ties as dependent",
         )
     return seeds | {x: seeds[x] + Fraction(d) for x, d in zip(silent, step.tolist(), strict=True)}
