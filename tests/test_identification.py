@@ -422,7 +422,8 @@ def test_wrong_groups_and_wrong_regressors_are_contradicted(name: str) -> None:
 def test_a_fit_is_proven_too():
     """That no base parameter could take more of what is left; a coefficient that is off is seen."""
     found = eomgen.identify(eomgen.loads(TWO_LINKS), data_of(eomgen.loads(TWO_LINKS), 3, 200))
-    assert found.certify().ok and found.certify().checks[-2].name.startswith("the fit leaves nothing")
+    certificate = found.certify()
+    assert certificate.ok and any(check.name.startswith("the fit leaves nothing") for check in certificate.checks)
     rng = np.random.default_rng(2)
     W, beta = rng.normal(size=(50, 4)), np.array([1.0, -2.0, 3.0, 0.5])
     b = W @ beta + 0.1 * rng.normal(size=50)

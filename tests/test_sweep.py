@@ -5,6 +5,7 @@ from __future__ import annotations
 import csv
 import json
 import math
+import multiprocessing
 import os
 import re
 import signal
@@ -380,7 +381,8 @@ def test_any_executor_with_submit_gives_the_same_bits(spring):
 
     asked = {"over": {"k": "10:90:9"}, "ask": ["last(x)", "max(x)"], "time": 1}
     alone = eomgen.sweep(spring, **asked)
-    for make in (lambda: ThreadPoolExecutor(1), lambda: ProcessPoolExecutor(2)):
+    spawn = multiprocessing.get_context("spawn")  # as on every system but Linux
+    for make in (lambda: ThreadPoolExecutor(1), lambda: ProcessPoolExecutor(2, mp_context=spawn)):
         with make() as executor:
             found = eomgen.sweep(spring, executor=executor, **asked)
         assert list(found.ledger.rows()) == list(alone.ledger.rows())

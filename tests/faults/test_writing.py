@@ -197,7 +197,9 @@ def test_a_fault_at_any_write_of_any_verb_leaves_whole_files(verb, option, tmp_p
     data.write_text(MEASURED)
     model = tmp_path / "pendulum.toml"
     text = Path(PENDULUM).read_text().replace('"Simple pendulum"', json.dumps(STEERING))
-    pushed = '[forces.push]\nkind = "force"\npoint = "bob.center"\nforce = [2, 0]\n'  # parameters follow from known forces
+    pushed = (
+        '[forces.push]\nkind = "force"\npoint = "bob.center"\nforce = [2, 0]\n'  # parameters follow from known forces
+    )
     model.write_text(text + pushed * (verb == "identify"))
     given = dict.fromkeys(("model", "models", "where"), str(model)) | {"--time": "0.05"}
     given |= {"file": str(robot), "--data": str(data), "equations": "theta'' = -g/l*sin(theta)", "--target": "numpy"}
