@@ -77,7 +77,7 @@ def oracle_value(expression: Any, state: dict[str, float]) -> Any:
     """An expression of the oracle at a state, with 50 digits."""
     expression = sympy.sympify(expression)
     numbers = {symbol: sympy.Rational(state[symbol.name]) for symbol in expression.free_symbols}
-    return expression.subs(numbers).evalf(50)
+    return expression.xreplace(numbers).evalf(50)  # of symbols that sympy keeps and those that equal them
 
 
 def close(a: Any, b: Any, tolerance: float = 1e-30) -> bool:
