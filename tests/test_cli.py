@@ -617,7 +617,7 @@ def test_generated_c_compiles_as_it_is_and_passes_its_own_test(tmp_path):
         subprocess.run(["./t"], cwd=tmp_path, check=True)
 
 
-def test_the_languages_are_those_of_the_seam(tmp_path):
+def test_the_languages_are_those_of_the_seam_jax_too(tmp_path):
     """codegen --list names ALL; an unknown one is exit 2 and names them too; several write into DIR/NAME."""
     names = [target.name for target in ALL]
     assert [line.split()[0] for line in run("codegen", "--list").stdout.splitlines()] == names
