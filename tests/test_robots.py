@@ -4,8 +4,10 @@ from __future__ import annotations
 
 import importlib
 import json
+import os
 import re
 import sys
+import threading
 from typing import Any
 
 import numpy as np
@@ -21,6 +23,7 @@ from eomgen.proof.imported_sdf import sdf_otherwise
 from eomgen.proof.imported_urdf import imported_otherwise
 from eomgen.robots.importing import imported
 from eomgen.symbolic.numeric.evaluation import FLOAT, evaluate
+from eomgen.verbs import importing
 from tests.helpers.sdf_of_urdf import sdf_of_urdf
 from tests.helpers.tools import needs
 from tests.helpers.urdf_by_hand import ByHand, random_robot
@@ -628,7 +631,7 @@ def test_an_mjcf_robot_that_is_read_otherwise_is_contradicted(tmp_path):
 
     def wrong(old: str, new: str, left: tuple[str, ...] = ()) -> str:
         path.write_text(MJCF_ARM.replace(old, new))
-        return mjcf_otherwise(str(path), found.model, equations, left)
+        return mjcf_otherwise(str(path), b"", found.model, equations, left)
 
     assert wrong("", "") == ""
     for old, new, what in (
@@ -641,6 +644,52 @@ def test_an_mjcf_robot_that_is_read_otherwise_is_contradicted(tmp_path):
     ):
         assert what in wrong(old, new), old
     assert "there are none" in wrong("", "", ("motors by plugins",))
+
+
+@pytest.mark.slow
+@needs(".mujoco", what="mujoco")
+def test_what_an_mjcf_robot_leaves_out_is_there(tmp_path):
+    """Each kind of bound of a motor, and motors that are switched off: said, and exit 0."""
+    motors = '<actuator><motor name="w" joint="h" {}/></actuator>'
+    tendon = '<tendon><fixed name="t" {}><joint joint="h" coef="1"/></fixed></tendon>'
+    for of_joint, flags, more, what in (
+        ("", "", motors.format('ctrlrange="-1 1"'), "limits of motors"),
+        ("", "", motors.format('forcerange="-1 1"'), "limits of motors"),
+        ('actuatorfrcrange="-1 1"', "", motors.format(""), "limits of motors"),
+        ("", "", tendon.format('actuatorfrcrange="-1 1"') + motors.format(""), "limits of motors"),
+        ("", "", tendon.format('range="-1 1"') + motors.format(""), "limits of tendons"),
+        ("", '<option><flag actuation="disable"/></option>', motors.format(""), "motors that are switched off"),
+        ("", '<option actuatorgroupdisable="0"/>', motors.format('group="0"'), "motors that are switched off"),
+    ):
+        path = tmp_path / "left.xml"
+        path.write_text(
+            f'<mujoco>{flags}<worldbody><body><joint name="h" axis="0 1 0" {of_joint}/><geom size="0.1" pos="0.3 0 0"/>'
+            f"</body></worldbody>{more}</mujoco>"
+        )
+        result = CliRunner().invoke(main, ["import", str(path)])
+        assert result.exit_code == 0, result.output
+        assert what in {each.what for each in imported(path).left_out}
+
+
+@pytest.mark.slow
+@pytest.mark.skipif(not hasattr(os, "mkfifo"), reason="needs pipes of POSIX")
+@pytest.mark.parametrize("kind", ["urdf", "sdf", pytest.param("xml", marks=needs(".mujoco", what="mujoco"))])
+def test_a_robot_that_comes_through_a_pipe_is_read_once_and_looked_at_as_a_file_is(tmp_path, monkeypatch, kind):
+    """What the second reading reads is what was read."""
+    text = {"urdf": ARM, "sdf": SDF_ARM, "xml": MJCF_ARM}[kind]
+    pipe = tmp_path / f"robot.{kind}"
+    os.mkfifo(pipe)
+    looked: list[object] = []
+    for name in ("imported_otherwise", "sdf_otherwise", "mjcf_otherwise"):
+        real = getattr(importing, name)
+        monkeypatch.setattr(importing, name, lambda *given, real=real: (looked.append(given), real(*given))[1])
+    monkeypatch.setattr(importing, "OTHERWISE", {"robot": importing.imported_otherwise, "sdf": importing.sdf_otherwise})
+    writer = threading.Thread(target=pipe.write_text, args=(text,))
+    writer.start()
+    result = CliRunner().invoke(main, ["import", str(pipe)])
+    writer.join(5)
+    assert result.exit_code == 0 and looked, result.output
+    assert text.encode() in looked[0]
 
 
 MJCF_ARM = """<mujoco><worldbody><body name="a" pos="0 0 1">

@@ -9,6 +9,7 @@ from __future__ import annotations
 
 import importlib
 from collections.abc import Iterator, Sequence
+from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -24,6 +25,7 @@ from eomgen.symbolic.numeric.tolerances import CARRIED
 FREE, BALL = 0, 1  # the numbers of MuJoCo, of joints
 JOINT_WRAP, TENDON = 1, 3  # of what a tendon is of, and what a motor pulls
 OTHER_THINGS = "motors on other things than joints, tendons between two places, and sites"
+LIMITS = ("actuator_ctrl", "actuator_force", "actuator_act", "jnt_actfrc", "tendon_actfrc")
 PUSHED = 0.7  # of every input
 OF_TIES = (  # what is left out and pushes by constraints of MuJoCo alone: it is in none of the forces that are compared
     *("limits of joints", "limits of tendons", "limits of free and ball joints", "limits of motors", "frictionloss"),
@@ -34,16 +36,20 @@ OF_TIES = (  # what is left out and pushes by constraints of MuJoCo alone: it is
 IN_TIME = ("filters of motors", "delays of motors")  # what pushes nothing where inputs are and were 0
 
 
-def mjcf_otherwise(path: str, model: Model, equations: EquationsOfMotion | None, left_out: Sequence[str]) -> str:
+def mjcf_otherwise(
+    path: str, source: bytes, model: Model, equations: EquationsOfMotion | None, left_out: Sequence[str]
+) -> str:
     """Which body is not as MuJoCo has it; "" where all are that are called alike in both.
 
     Args:
+        source: the file as it was read, where `path` is a pipe.
         equations: of the model; None: no forces are compared.
         left_out: what of the file changes the motion and has no counterpart.
     """
     mujoco: Any = importlib.import_module("mujoco")
     try:
-        m = mujoco.MjModel.from_xml_path(path)
+        xml = mujoco.MjModel
+        m = xml.from_xml_path(path) if Path(path).is_file() else xml.from_xml_string(source.decode())
     except ValueError:  # files of pictures are missing
         return ""
     proof = _Compiled(mujoco, m, model)
@@ -91,18 +97,23 @@ class _Compiled:
             "motors by plugins": m.nplugin,
             "filters of motors": (m.actuator_dyntype != 0).any(),
             "fluid": m.opt.density or m.opt.viscosity,
-            "motors that are switched off": m.opt.disableactuator,
+            "motors that are switched off": m.opt.disableactuator or self._off("ACTUATION"),
             "tendons through places": (m.wrap_type != JOINT_WRAP).any(),
             OTHER_THINGS: not {*m.actuator_trntype} <= {0, 1, TENDON} or (m.wrap_type != JOINT_WRAP).any(),
-            "limits of motors": m.actuator_ctrllimited.any()
-            or m.actuator_forcelimited.any()
-            or m.jnt_actfrclimited.any(),
+            "limits of motors": any(limited.any() for limited in self._limits()),
             "limits of tendons": m.tendon_limited.any(),
             "limits of joints": m.jnt_limited.any(),
             "frictionloss": m.dof_frictionloss.any(),
             "pairs of geoms that touch": m.npair,
         }
         yield from (f"'{what}' are left out, and there are none" for what in left_out if not there.get(what, True))
+
+    def _off(self, flag: str) -> bool:
+        return bool(self.m.opt.disableflags & int(getattr(self.mujoco.mjtDisableBit, f"mjDSBL_{flag}")))
+
+    def _limits(self) -> Iterator[Any]:
+        """Which motors, joints and tendons have bounds of what motors do; older MuJoCos have not all of them."""
+        return (getattr(self.m, f"{each}limited") for each in LIMITS if hasattr(self.m, f"{each}limited"))
 
     def stands(self) -> Iterator[str]:
         """Every body in the ground."""
@@ -130,7 +141,8 @@ class _Compiled:
             return
         rates = {name: 0.2 + 0.13 * k for k, name in enumerate(self.speeds)}
         self.data.qvel[:] = list(rates.values())
-        self.m.actuator_ctrllimited[:] = self.m.actuator_forcelimited[:] = self.m.jnt_actfrclimited[:] = 0
+        for limited in self._limits():
+            limited[:] = 0
         self.data.ctrl[:] = push or 0.0
         self.mujoco.mj_forward(self.m, self.data)
         full = np.zeros((self.m.nv, self.m.nv))

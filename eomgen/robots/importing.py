@@ -31,11 +31,13 @@ class ImportedRobot:
         text: the model file.
         model: what it declares.
         left_out: what of the robot's file has no counterpart in it.
+        source: the robot's file as it was read: a pipe is read once.
     """
 
     text: str
     model: Model
     left_out: tuple[LeftOut, ...]
+    source: bytes
 
 
 def imported(path: str | Path, *, floating: bool = False, model: str | None = None) -> ImportedRobot:
@@ -56,7 +58,7 @@ def imported(path: str | Path, *, floating: bool = False, model: str | None = No
         found = _tables(path, data, floating, model)
     after = [f"left out: {each}" for each in found.left_out]
     text = toml_text(found.tables, [f"Imported from {path.name}."], after)
-    return ImportedRobot(text, loads(text, path.with_suffix(".toml").name, path.stem), found.left_out)
+    return ImportedRobot(text, loads(text, path.with_suffix(".toml").name, path.stem), found.left_out, data)
 
 
 def import_robot(path: str | Path, *, floating: bool = False, model: str | None = None) -> Model:
@@ -83,7 +85,7 @@ def _tables(path: Path, data: bytes, floating: bool, model: str | None) -> Impor
     if model is not None and root != "sdf":
         raise UsageError("only SDF files have several models to choose from", mend="leave --model out")
     if root == "mujoco":
-        return mjcf(path)
+        return mjcf(path, data)
     if root == "sdf":
         return sdf(data, str(path), model)
     if root == "mujocoinclude":

@@ -44,14 +44,14 @@ from eomgen.symbolic.numeric.tolerances import SLOPE_AT_REST
 TABLES = ("points", "coordinates", "speeds", "inputs", "bodies", "constraints", "forces")
 
 
-def mjcf(path: Path) -> Imported:
-    """The tables of a robot.
+def mjcf(path: Path, data: bytes) -> Imported:
+    """The tables of a robot; `data` is the text of the file, which may be a pipe.
 
     Raises:
         ToolMissing: MuJoCo is not installed.
         ModelError: MuJoCo cannot read it; it says why.
     """
-    return _tables(CompiledRobot(_switched(compiled(spec_of(path))), path.stem))
+    return _tables(CompiledRobot(_switched(compiled(spec_of(path, data))), path.stem))
 
 
 def _switched(m: Any) -> Any:

@@ -33,7 +33,7 @@ DEEPEST = 30  # files that include one another
 NOT_THERE = "Error opening file"  # so MuJoCo says it
 
 
-def spec_of(path: Path) -> Any:
+def spec_of(path: Path, data: bytes) -> Any:
     """A file as MuJoCo reads it; files of pictures need not be there, nor those of meshes that give no mass.
 
     Raises:
@@ -44,21 +44,21 @@ def spec_of(path: Path) -> Any:
         mujoco: Any = importlib.import_module("mujoco")
     except ImportError as error:
         raise ToolMissing("MJCF is read by MuJoCo, which is not installed", mend="pip install mujoco") from error
-    _refuse_endless(path, path, 1, 0)
+    _refuse_endless(path, data, path, 1, 0)
     try:
         try:
-            return _read(mujoco, path)
+            return _read(mujoco, path, data)
         except ValueError as error:
             if NOT_THERE not in str(error):
                 raise
-        return _read(mujoco, path, meshes=False)
+        return _read(mujoco, path, data, meshes=False)
     except (ValueError, RuntimeError) as error:
         why = " ".join(str(error).split())
         mend = "put the file there" if NOT_THERE in why else "mend the file"
         raise ModelError(f"MuJoCo cannot read it: {why}", str(path), mend) from error
 
 
-def _refuse_endless(path: Path, first: Path, times: int, depth: int) -> int:
+def _refuse_endless(path: Path, data: bytes, first: Path, times: int, depth: int) -> int:
     """How many elements replicas make of a file, and of those that it includes.
 
     Args:
@@ -67,10 +67,7 @@ def _refuse_endless(path: Path, first: Path, times: int, depth: int) -> int:
     Raises:
         ModelError: more than anything can be computed with; MuJoCo would ask for the memory, or work on it for hours.
     """
-    try:
-        text = read(path, LARGEST).decode("utf-8", "replace")
-    except OSError:
-        return 0  # MuJoCo says what is missing
+    text = data.decode("utf-8", "replace")
     text = COMMENT.sub(lambda found: "\n" * found[0].count("\n"), text)
     made, copies = 0, [times]
     for found in TAG.finditer(text):
@@ -84,7 +81,8 @@ def _refuse_endless(path: Path, first: Path, times: int, depth: int) -> int:
         if tag == "replicate" and not closed:
             copies.append(copies[-1] * _product(given.get("count", "1")))
         elif tag == "include" and depth < DEEPEST and "file" in given:
-            made += _refuse_endless(first.parent / given["file"], first, copies[-1], depth + 1)
+            part = first.parent / given["file"]
+            made += _refuse_endless(part, _included(part), first, copies[-1], depth + 1)
         made += copies[-1] if copies[-1] > 1 and tag != "replicate" else 0
         if made > MOST_MADE:
             what = f"replicas make more than {MOST_MADE} elements"
@@ -94,6 +92,14 @@ def _refuse_endless(path: Path, first: Path, times: int, depth: int) -> int:
             what = f"<{tag}> asks for more than {MOST_VALUES} values"
             raise ModelError(what, where, "make it smaller: no equation depends on it")
     return made
+
+
+def _included(path: Path) -> bytes:
+    """A part of a file; nothing where it is missing, which MuJoCo says."""
+    try:
+        return read(path, LARGEST)
+    except OSError:
+        return b""
 
 
 def _product(text: str) -> int:
@@ -109,9 +115,10 @@ def compiled(spec: Any) -> Any:
         return spec.compile()
 
 
-def _read(mujoco: Any, path: Path, *, meshes: bool = True) -> Any:
+def _read(mujoco: Any, path: Path, data: bytes, *, meshes: bool = True) -> Any:
     """Without textures; without `meshes` what has a mesh on a body whose mass is given, or that stands, is a ball."""
-    spec = mujoco.MjSpec.from_file(str(path))
+    pipe = not path.is_file()
+    spec = mujoco.MjSpec.from_string(data.decode()) if pipe else mujoco.MjSpec.from_file(str(path))
     spec.compiler.fusestatic = False
     for material in spec.materials:
         material.textures = ["" for _ in material.textures]

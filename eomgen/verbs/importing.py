@@ -14,7 +14,6 @@ from eomgen.proof.imported_mjcf import mjcf_otherwise
 from eomgen.proof.imported_sdf import sdf_otherwise
 from eomgen.proof.imported_urdf import imported_otherwise
 from eomgen.robots.importing import ImportedRobot, first_element, imported
-from eomgen.robots.sdf_models import LARGEST
 
 MOST_COMPARED = 20  # coordinates of a robot whose forces are derived to be compared
 OTHERWISE = {"robot": imported_otherwise, "sdf": sdf_otherwise}
@@ -63,11 +62,10 @@ def import_document(
 
 def _otherwise(file: str, robot: ImportedRobot) -> str:
     """What of a robot's file is otherwise in the model, by another reading of it; "" where nothing is."""
-    text = files.read(file, LARGEST)
-    root = first_element(text)
+    root = first_element(robot.source)
     if root == "mujoco":
         small = len(robot.model.coordinates) <= MOST_COMPARED
         equations = derive(robot.model).graph if small and robot.model.coordinates else None
         left = [each.what for each in robot.left_out if each.nearest is not None]
-        return mjcf_otherwise(file, robot.model, equations, left)
-    return OTHERWISE[root](text, robot.model) if root in OTHERWISE else ""
+        return mjcf_otherwise(file, robot.source, robot.model, equations, left)
+    return OTHERWISE[root](robot.source, robot.model) if root in OTHERWISE else ""
