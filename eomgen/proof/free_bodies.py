@@ -21,6 +21,7 @@ from typing import Any
 import numpy as np
 
 from eomgen.errors import DerivationError, MissingValues, ModelError
+from eomgen.mechanics.balance.friction import frictions
 from eomgen.mechanics.bodies.armature import armature_bias, armature_mass
 from eomgen.mechanics.bodies.inertia import mass_properties
 from eomgen.mechanics.bodies.kinematics import BodyLink
@@ -29,6 +30,7 @@ from eomgen.mechanics.constraints.closure import generic_state, rows_where_close
 from eomgen.mechanics.equations.system import System
 from eomgen.mechanics.equations.work import joint_forces, placeless_forces
 from eomgen.mechanics.formulations.lagrange import free_rates
+from eomgen.mechanics.reactions.drive import with_drive_let_go
 from eomgen.proof.in_numbers import STEP, InNumbers, Way, way_through
 from eomgen.records import dataclass
 from eomgen.symbolic.expression.derivative import gradient, pullback, symbols_of
@@ -120,6 +122,28 @@ def multipliers_demanded(system: System, state: State, friction: Sequence[Any] =
     single = [rank(np.delete(A, k, axis=1)) < rank(A) for k in range(len(closing))]
     values = zip(closing, columns * lam, single, strict=True)
     return {(row.tie, row.number): float(x) for row, x, has_one in values if has_one}
+
+
+def drive_demanded(system: System, coordinate: str, known: State) -> tuple[Any, Any]:
+    """(M a + c - Q - J^T lam of a driven coordinate that is freed, at the motion as given; the size of its terms).
+
+    Raises:
+        NoValue: a tie drives it; there is friction; ties follow from others only while it is driven.
+    """
+    if not system.scope.model.coordinates[coordinate].driven:
+        raise NoValue("a tie drives it")
+    if frictions(system):  # of what is driven alone too, where no equation of motion holds it
+        raise NoValue("there is friction")
+    free = with_drive_let_go(system, coordinate)
+    own = {**system.scope.names, **{lam.name: lam for lam in system.symbols.lam}}
+    symbols = free.symbols
+    moving = (*symbols.q, *symbols.u, *symbols.a, *symbols.lam, *symbols.inputs.values(), symbols.t)
+    nodes = (*symbols.parameters.values(), *moving)
+    if not {x.name for x in nodes} <= {*own}:
+        raise NoValue("ties that follow from others do not without the drive")
+    there = dict(zip(nodes, evaluate([own[x.name] for x in nodes], known, fifty_digits()), strict=True))
+    demand, k = demand_of(free, there), [u.name for u in symbols.u].index(f"{coordinate}'")
+    return demand.forces[k], demand.sizes[k]
 
 
 def moved_otherwise(

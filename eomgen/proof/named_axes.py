@@ -1,6 +1,7 @@
-"""Balance, state -> whether reactions that are named by x, y and z are those along the ground's axes, in numbers.
+"""Balance, state -> whether reactions are what their names say, in numbers.
 
     reaction_x|y|z(owner) = R f,   reaction_couple_x|y|z(owner) = R n,      R and the sums of f and n of one body
+    drive(q) = (M a + c - Q - J^T lam)_q,   by the free bodies, once q is let go
 
 Components take random values: a name is linear in them. R is that of the pose of the body at the state; what a
 component does to a body stands in the axes of its equations, which the balance of the whole in ground axes looks at.
@@ -14,13 +15,16 @@ from random import Random
 from typing import Any
 
 from eomgen.mechanics.balance.balance import Balance
+from eomgen.mechanics.balance.balance_solution import Indeterminate
 from eomgen.mechanics.balance.named_reactions import NamedReaction, named_reactions
 from eomgen.mechanics.balance.unit_wrenches import Effect, efforts_of
+from eomgen.mechanics.reactions.reactions import Reactions
+from eomgen.proof.free_bodies import drive_demanded
 from eomgen.proof.in_numbers import InNumbers
 from eomgen.records import dataclass
 from eomgen.symbolic.expression.node import State
-from eomgen.symbolic.numeric.evaluation import fifty_digits
-from eomgen.symbolic.numeric.tolerances import ZERO_AT_50
+from eomgen.symbolic.numeric.evaluation import NoValue, evaluate, fifty_digits
+from eomgen.symbolic.numeric.tolerances import COMPUTED, ZERO_AT_50
 
 ALONG = {f"reaction_{couple}{axis}": (couple, k) for couple in ("", "couple_") for k, axis in enumerate("xyz")}
 
@@ -40,6 +44,30 @@ def named_otherwise(balance: Balance, state: State) -> str:
             due = proof.due(named.owner, rest.removesuffix(")"), couple)
             if due is not None and abs(stated - due[k]) > ZERO_AT_50 * (1 + size + sum(map(abs, due))):
                 return f"{named.name} is not along the ground's {'xyz'[k]}"
+    return ""
+
+
+def driven_otherwise(reactions: Reactions, state: State) -> str:
+    """Which drive is not what the free bodies ask for along its coordinate once that is let go; "" where all are.
+
+    Raises:
+        NoValue: none has another way.
+    """
+    sides = {c.name: c.side for c in reactions.components if c.kind == "drive" and c.side}
+    drives = [named for named in named_reactions(reactions.balance) if named.name in sides]
+    why = None
+    for named in drives:
+        try:
+            due, size = drive_demanded(reactions.balance.system, sides[named.name], state)
+            value = reactions.combined(named.combination, named.name) + named.given
+        except (NoValue, Indeterminate) as no:
+            why, drives = no, [each for each in drives if each is not named]
+            continue
+        (stated,) = evaluate((value,), state, fifty_digits())
+        if abs(stated - due) > COMPUTED * (size + abs(stated)):
+            return f"{named.name} = {float(stated):.10g}, and the bodies ask for {float(due):.10g}"
+    if why is not None and not drives:
+        raise NoValue(str(why)) from why
     return ""
 
 

@@ -14,17 +14,15 @@ from functools import cached_property
 from typing import Any
 
 from eomgen.errors import DerivationError
-from eomgen.mechanics.balance.friction import frictions
 from eomgen.mechanics.bodies.inertia import armature_energy
 from eomgen.mechanics.bodies.loads import JointEffort, weights
 from eomgen.mechanics.instant.outputs import Quantities
-from eomgen.mechanics.reactions.drive import with_drive_let_go
 from eomgen.model.forces.load import GeneralizedForce, PointForce
 from eomgen.model.outputs import FUNCTIONS
 from eomgen.proof.at_a_state import NumericState
 from eomgen.proof.check import differing
 from eomgen.proof.elements import acting
-from eomgen.proof.free_bodies import demand_of, multipliers_demanded
+from eomgen.proof.free_bodies import drive_demanded, multipliers_demanded
 from eomgen.proof.in_numbers import SECOND_STEP, Pushes, Way, add_push, pushes_of, way_through
 from eomgen.records import dataclass
 from eomgen.symbolic.expression.derivative import symbols_of
@@ -184,20 +182,7 @@ class NearbyStates:
 
     def demanded(self, coordinate: str) -> Any:
         """M a + c - Q - J^T lam of the freed coordinate, by the free bodies, at the motion as it is given."""
-        equations = self.state.equations
-        system, digits = equations.system, fifty_digits()
-        if not system.scope.model.coordinates[coordinate].driven:
-            raise NoValue("a tie drives it")
-        if frictions(system):  # of what is driven alone too, where no equation of motion holds it
-            raise NoValue("there is friction")
-        free = with_drive_let_go(system, coordinate)
-        known = self.state.values | self.state.unknowns
-        own = {**system.scope.names, **{lam.name: lam for lam in system.symbols.lam}}
-        symbols = free.symbols
-        moving = (*symbols.q, *symbols.u, *symbols.a, *symbols.lam, *symbols.inputs.values(), symbols.t)
-        nodes = (*symbols.parameters.values(), *moving)
-        there = dict(zip(nodes, evaluate([own[x.name] for x in nodes], known, digits), strict=True))
-        return demand_of(free, there).forces[[u.name for u in symbols.u].index(f"{coordinate}'")]
+        return drive_demanded(self.state.equations.system, coordinate, self.state.values | self.state.unknowns)[0]
 
     def held(self, tie: str) -> Any:
         """lam of a tie of one row, by the balance of the free bodies on which all ties push."""

@@ -20,7 +20,7 @@ from eomgen.mechanics.equations.accelerations import exact_accelerations
 from eomgen.mechanics.equations.equations_of_motion import EquationsOfMotion
 from eomgen.mechanics.equations.system import System
 from eomgen.mechanics.reactions.equilibrium import imbalance
-from eomgen.mechanics.reactions.reactions import Reactions, reactions_of
+from eomgen.mechanics.reactions.reactions import reactions_of
 from eomgen.proof.check import Check, attempted, checked, unchecked
 from eomgen.proof.contact_geometry import apart, meetings_of
 from eomgen.proof.declared_work import acting_otherwise, working_otherwise
@@ -31,8 +31,8 @@ from eomgen.proof.friction_laws import other_friction, pushing_otherwise
 from eomgen.proof.in_numbers import FINER_STEP, STEP, way_through
 from eomgen.proof.joint_places import misplaced
 from eomgen.proof.kept_ties import open_at_start, pulled_at_start, rows_that_stay, springs_of_the_start
-from eomgen.proof.named_axes import named_otherwise
-from eomgen.proof.printed import Printed, ReadBack
+from eomgen.proof.named_axes import driven_otherwise, named_otherwise
+from eomgen.proof.printed import Printed, ReadBack, least_multipliers
 from eomgen.proof.states import States, TrialState, consistent_states, in_doubles, is_open, own_start, refuse_open
 from eomgen.proof.strands import strung_otherwise, threads_of
 from eomgen.records import dataclass
@@ -125,6 +125,10 @@ class Trials:
             a = exact_accelerations(self.equations, state)
             self._solved[id(state)] = state, state | dict(zip(self.equations.symbols.a, a, strict=True))
         return self._solved[id(state)][1]
+
+    def _pushed(self, state: State) -> State:
+        """A state of the motion with the multipliers that the equations of motion ask for."""
+        return state | least_multipliers(self.equations, state)
 
     def eliminated_rows(self) -> Check:
         """W^T xi + s_t = 0 and dphi/dt = 0 whatever the independent speeds: what dependent rates were solved from.
@@ -417,15 +421,18 @@ class Trials:
         if reactions.components:
             yield self._at_states("every body is in balance with its reactions", "floating point", check)
             if self.equations.system.scope.model.space == "space":
-                yield self._named(reactions)
+                name = "reactions that are named by x, y and z are those along the ground's axes"
+                yield self._somewhere(name, lambda state: named_otherwise(reactions.balance, state))
+            if any(c.kind == "drive" and c.side for c in reactions.components):
+                name = "what drives a motion is what the bodies ask for along it"
+                yield self._somewhere(name, lambda state: driven_otherwise(reactions, self._pushed(state)))
 
-    def _named(self, reactions: Reactions) -> Check:
-        """By x, y and z of the ground: one state tells, the names are the same at all."""
-        name = "reactions that are named by x, y and z are those along the ground's axes"
+    def _somewhere(self, name: str, wrong: Callable[[State], str]) -> Check:
+        """Of what names mean: one state along the motion tells, they mean the same at all."""
         for _, supply in self.states.supplies:
             for place in supply:
                 try:
-                    return checked(name, named_otherwise(reactions.balance, self._moving(place.state)), "50 digits")
+                    return checked(name, wrong(self._moving(place.state)), "50 digits")
                 except (NoValue, ZeroDivisionError):
                     continue
         return unchecked(name, NOWHERE, "50 digits")

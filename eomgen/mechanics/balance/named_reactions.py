@@ -13,9 +13,11 @@ from eomgen.mechanics.balance.balance import Balance
 from eomgen.mechanics.balance.components import Component
 from eomgen.mechanics.balance.unit_wrenches import Axes, Effect, effects_of_load, efforts_of
 from eomgen.mechanics.bodies.kinematics import BodyLink, Motion
+from eomgen.mechanics.bodies.loads import in_ground_axes
 from eomgen.mechanics.constraints.ties import Row, holds_identically
 from eomgen.model.constraints.members import ends_asked
 from eomgen.model.constraints.row import AXIS_NAMES
+from eomgen.model.forces.load import PointForce
 from eomgen.records import dataclass
 from eomgen.symbolic.expression.derivative import depends_on, derivative
 from eomgen.symbolic.expression.expressions import Call, Expression, Reference
@@ -37,7 +39,8 @@ class NamedReaction:
         owner: the tie, or the body whose joint it is.
         unit: FORCE or COUPLE.
         combination: {index of the component: factor}.
-        given: what drive, spring, damper and rotor of the joint do.
+        given: what drive, spring, damper and rotor of the joint do; of a drive, less what forces do on points that
+            it moves in their bodies.
     """
 
     name: str
@@ -83,7 +86,7 @@ def _of_owner(balance: Balance, owner: str) -> Iterable[NamedReaction]:
             yield NamedReaction(f"reaction_{share.label}({owner})", owner, FORCE, {j: share.factor})
     for j, c in mine:
         if c.kind == "drive" and j == min(drives := _drives(balance, j, c)):  # once, at the first of its joints
-            yield NamedReaction(c.name, owner, unit_of(c), drives)
+            yield NamedReaction(c.name, owner, unit_of(c), drives, _less_inside(balance, c))
 
 
 def _vector(
@@ -156,6 +159,22 @@ def _drives(balance: Balance, j: int, component: Component) -> dict[int, Scalar]
         elif c.kind == "tie" and c.bilateral_friction is None and (c.owner, c.number) in rows:
             found[i] = _left_out(balance, rows, rows[c.owner, c.number], q)
     return {i: k for i, k in found.items() if not is_zero(k)}
+
+
+def _less_inside(balance: Balance, component: Component) -> Scalar:
+    """-sum F . R dr/dq: what forces do on points r that a driven coordinate q moves in their bodies, q carries none."""
+    motion = balance.system.motion
+    scope = motion.scope
+    q = next((x for x in scope.symbols.q if x.name == component.side), None)
+    total: Scalar = 0
+    for push in (
+        load for force in balance.system.loads.applied for load in force.loads if isinstance(load, PointForce)
+    ):
+        body, r = push.place
+        if q is not None and body is not None and any(depends_on(x, (q,)) for x in r):
+            slide = apply(motion.link(body).pose.R, vector_of(derivative(x, q) for x in r))
+            total = total - dot(in_ground_axes(motion, push.force, push.axes), slide)
+    return total
 
 
 def _left_out(balance: Balance, rows: Mapping[tuple[str, int], Row], row: Row, q: Node) -> Scalar:
