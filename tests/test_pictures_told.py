@@ -5,10 +5,12 @@ from __future__ import annotations
 import json
 from dataclasses import replace
 from functools import cache
+from pathlib import Path
 from typing import Any
 
 import numpy as np
 import pytest
+from slow_run import usual
 
 import eomgen
 from eomgen.documents.motion_frames import Movie, movie_of
@@ -22,6 +24,7 @@ from eomgen.scene.told import picture_told
 from eomgen.simulation.result import Trajectory
 from eomgen.verbs.animate import movie_read_back
 
+MODELS = sorted((Path(__file__).parent.parent / "models").rglob("*.toml"))
 CART = """
 eomgen = 1
 name = "A rod on a cart"
@@ -130,14 +133,15 @@ def test_dimension_lines_are_as_long_as_what_stands_beside_them():
 
 
 @cache
-def page() -> tuple[PlayedRun, str]:
-    played = PlayedRun(run(), PlayerOptions({}, True))
+def page(model: str) -> tuple[PlayedRun, str]:
+    followed = run() if model == CART else eomgen.simulate(eomgen.loads(model), time=0.1, samples=2, target="numpy")
+    played = PlayedRun(followed, PlayerOptions({}, model == CART))
     return played, player_page_of(played)
 
 
-def wrong_page(change: Any) -> str:
+def wrong_page(change: Any, model: str = CART) -> str:
     """What is contradicted of a page that is told something else."""
-    played, text = page()
+    played, text = page(model)
     told = json.loads(json.dumps(player_told(text)))
     change(told)
     begin = text.index("{", text.index("begun(document.getElementById("))
@@ -179,3 +183,127 @@ CHANGES = {
 def test_what_a_page_is_told_is_the_run_and_the_model(change: str):
     """read(page) = (run, parameters, units, scene)"""
     assert bool(wrong_page(CHANGES[change])) == (change != "nothing")
+
+
+GYROSTAT = """
+eomgen = 1
+name = "A platform with a rotor, beside a stone that rolls"
+space = "space"
+
+[coordinates]
+gamma = { speed = 0.3 }
+alpha = 0
+beta = 0
+sigma = { speed = 60 }
+x = 1
+y = 0
+z = 0.2
+psi = { speed = -2 }
+theta = 0.1
+phi = 0
+
+[bodies.platform]
+mass = 300
+inertia = [120, 100, 60]
+joint = { kind = "spherical", orientation = "zxy", angles = ["gamma", "alpha", "beta"] }
+
+[bodies.rotor]
+mass = 0
+inertia = [0, 0, 2]
+measured = true
+joint = { kind = "revolute", on = "platform", axis = [0, 0, 1], angle = "sigma" }
+
+[bodies.stone]
+mass = 1
+center = [0, 0, -0.01]
+inertia = [0.02, 0.16, 0.17, -0.002, 0, 0]
+joint = { kind = "free", position = ["x", "y", "z"], orientation = "zxy", angles = ["psi", "theta", "phi"] }
+
+[constraints.table]
+kind = "rolling"
+body = "stone"
+ellipsoid = [2, 0.3, 0.2]
+plane = { at = [0, 0, 0], normal = [0, 0, 1] }
+"""
+
+
+def ellipsoid(told: Any, name: str) -> Any:
+    return next(mark for mark in told["scene"]["marks"] if mark["of"] == name and mark["kind"] == "ellipsoid")
+
+
+def without(told: Any, name: str) -> None:
+    told["scene"]["marks"] = [mark for mark in told["scene"]["marks"] if mark["of"] != name]
+
+
+UNLIKE = {
+    "nothing": ("", lambda told: None),
+    "no platform": ("'platform': is not drawn", lambda told: without(told, "platform")),
+    "no stone": ("'stone': is not drawn as it rolls", lambda told: without(told, "stone")),
+    "a larger platform": ("moments", lambda told: ellipsoid(told, "platform").update(size=[1.4, 1.7, 2.2])),
+    "a platform elsewhere": ("mass centre", lambda told: ellipsoid(told, "platform").update(at=[0, 0, 0.4])),
+    "another stone": (
+        "'stone': is not as large as it rolls",
+        lambda told: ellipsoid(told, "stone").update(size=[2, 0.2, 0.3]),
+    ),
+}
+
+
+@pytest.mark.parametrize("change", UNLIKE)
+def test_a_body_without_lengths_is_an_ellipsoid_of_its_moments_or_as_it_rolls(change: str):
+    """A = m (b^2 + c^2)/5 about its mass centre; |(r - c)/h| = 1"""
+    said, how = UNLIKE[change]
+    found = wrong_page(how, GYROSTAT)
+    assert said in found if said else not found
+
+
+DISC = """
+eomgen = 1
+name = "A disc that rolls, and a plate in the air"
+space = "plane"
+
+[coordinates]
+x = 0
+y = 0.2
+phi = { start = 0.3, speed = -1 }
+u = 1
+v = 1
+psi = 0
+
+[bodies.disc]
+mass = 1
+inertia = 0.02
+joint = { kind = "planar", x = "x", y = "y", angle = "phi" }
+
+[bodies.plate]
+mass = 1
+inertia = 0.02
+points = { A = [0.3, 0], B = [0, 0.3] }
+joint = { kind = "planar", x = "u", y = "v", angle = "psi" }
+
+[constraints.floor]
+kind = "rolling"
+body = "disc"
+radius = 0.2
+line = { at = [0, 0], normal = [0, 1] }
+"""
+
+
+@pytest.mark.parametrize("body", ["", "disc", "plate"])
+def test_what_moves_freely_in_the_plane_is_drawn(body: str):
+    """|r - c| = r of a disc; a plate between its points"""
+    found = wrong_page(lambda told: without(told, body), DISC)
+    assert f"'{body}': is not drawn" in found if body else not found
+
+
+@pytest.mark.slow
+@pytest.mark.filterwarnings("ignore:.*reactions|.*indeterminate:RuntimeWarning")
+@pytest.mark.parametrize("path", usual(MODELS, 30, 26), ids=lambda path: path.stem)
+def test_pictures_of_every_model_show_what_it_says(path: Path):
+    """The frames and the player of a fifth of a second; an unknown of a structure has no motion."""
+    if (model := eomgen.load(path)).unknowns:
+        pytest.skip("what is to be found is no number in a motion")
+    followed = eomgen.simulate(model, time=0.2, samples=5, target="numpy")
+    played = PlayedRun(followed, PlayerOptions())
+    shown = movie_of(followed, followed.t[[0, len(followed.t) // 2, -1]], forces=True)
+    checks = [*player_read_back(played, player_page_of(played)), *movie_read_back(followed, shown)]
+    assert not [f"{check.name}: {check.detail}" for check in checks if check.ok is False]

@@ -4,17 +4,23 @@ from __future__ import annotations
 
 from dataclasses import replace
 from functools import cache
+from pathlib import Path
 
 import pytest
+from slow_run import usual
 
 import eomgen
+from eomgen.documents.plots import KINDS, kinds_of_lines
 from eomgen.page.contents import Report
+from eomgen.page.curves import COLORS, number_axis
 from eomgen.page.formats import written_as
 from eomgen.page.read_back import report_read_back
 from eomgen.proof.reports_read import copies_undone, curves_of, markup_of, tex_of
+from eomgen.proof.typeset import tokens_of
 from eomgen.simulation.result import Trajectory
-from eomgen.verbs.report import Subject, report_of
+from eomgen.verbs.report import Subject, report, report_of
 
+MODELS = sorted((Path(__file__).parent.parent / "models").rglob("*.toml"))
 SWING = """
 eomgen = 1
 name = "A rod on a slider"
@@ -146,3 +152,55 @@ def test_mathml_is_read_as_it_is_set():
 def test_what_is_said_by_a_place_far_back_is_put_back():
     """2 new bytes, then 3 from 2 back: abab a, then the rest."""
     assert copies_undone(bytes([3, 2, 2, 3]) + b"abcd") == b"ababacd"
+
+
+STRANDS = [
+    [f"tension(rope, {k})" for k in range(1, 7)],
+    ["reaction_n(skate)", "reaction_t(skate)", "reaction_n(skate, 2)"],
+]
+
+
+@pytest.mark.parametrize("owned", [STRANDS, [[f"tension(string{k})"] for k in range(3 * COLORS)]])
+def test_no_two_lines_of_a_picture_look_alike(owned: list[list[str]]):
+    """(colour, kind) of strands of one rope, of a normal force at each end, of more strings than colours"""
+    looks = kinds_of_lines(owned, COLORS)
+    assert list(looks) == [name for names in owned for name in names]
+    assert len(set(looks.values())) == len(looks)
+    assert all(color in range(COLORS) and kind in KINDS for color, kind in looks.values())
+
+
+def test_an_owner_has_one_colour_and_a_component_one_kind_of_line():
+    """x -, y --, z : of each hinge in its colour"""
+    looks = kinds_of_lines([[f"reaction_{axis}({owner})" for axis in "xyz"] for owner in "AB"], COLORS)
+    assert [*looks.values()] == [(k, kind) for k in (0, 1) for kind in KINDS[:3]]
+
+
+def test_lines_that_look_alike_are_seen():
+    """A dash is lost."""
+    assert ' d1"' in page(".html")
+    assert any("look alike" in told for told in wrong(".html", page(".html").replace(' d1"', '"')))
+
+
+@pytest.mark.parametrize("ends", [(99980, 100060), (1e-9, 1.00001e-9), (-3e-7, 2e-7), (0, 1e9), (-1.00001e4, -1e4)])
+def test_numbers_at_an_axis_are_those_of_its_ticks(ends: tuple[float, float]):
+    """|read(text) - tick| < step/100, however small the step is beside the numbers"""
+    axis = number_axis(*ends)
+    assert len(axis.ticks) > 2
+    for tick in axis.ticks:
+        assert float(axis.text(tick).replace("\N{MINUS SIGN}", "-")) == pytest.approx(tick, abs=10**axis.power / 100)
+
+
+@pytest.mark.parametrize("pair", [("L_x", "L_{x}"), (r"x^2_\theta", r"x^{2}_{\theta}"), ("x_12", "x_{1}2")])
+def test_an_index_of_one_sign_needs_no_braces(pair: tuple[str, str]):
+    """L_x is L_{x}"""
+    assert tokens_of(pair[0]) == tokens_of(pair[1])
+    assert tokens_of(r"a\_b M_\mathrm{in}") == ("a", r"\_", "b", "M", "_", r"\mathrm", "{", "i", "n", "}")
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("path", usual(MODELS, len(MODELS), 4), ids=lambda path: path.stem)
+def test_the_report_of_every_model_says_what_was_found(path: Path, tmp_path: Path):
+    """Its certificate holds, the page read back among its checks."""
+    found = report(path, tmp_path / "report.html", time=1)
+    assert found.certificate is not None
+    assert found.certificate.ok is not False, str(found.certificate)

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from typing import Any
 
 import numpy as np
@@ -18,6 +18,7 @@ PLAIN = Unit("")
 MOST_IN_LEGEND = 12
 MOST_REACTIONS = 10  # lines in one panel
 UNITS_OF_REACTIONS = {"N": "N", "N*m": r"N$\,$m"}
+KINDS = ("-", "--", ":", "-.")  # of lines of one colour
 DASHES = {"x": "-", "y": "--", "z": ":", "n": "-", "t": "-.", "s": ":", "tension": "-", "couple": "--", "drive": ":"}
 
 
@@ -159,17 +160,16 @@ def _reactions(panel: Any, trajectory: Trajectory, names: list[str], unit: str) 
     for name in names:
         owners.setdefault(owner_of(name), []).append(name)
     shown = largest_reactions(trajectory, owners)
-    for color, owner in zip(colormaps["tab10"](np.arange(len(shown))), shown, strict=True):
-        for name in owners[owner]:
-            component = component_of(name)
-            panel.plot(
-                trajectory.t,
-                trajectory.reactions[name],
-                label=f"{owner}: {component}".replace("$", r"\$"),
-                color=color,
-                linewidth=1.4,
-                linestyle=DASHES.get(component.split(" ")[-1], "-"),
-            )
+    colors = colormaps["tab10"](np.arange(10))
+    for name, (color, kind) in kinds_of_lines([owners[owner] for owner in shown], len(colors)).items():
+        panel.plot(
+            trajectory.t,
+            trajectory.reactions[name],
+            label=f"{owner_of(name)}: {component_of(name)}".replace("$", r"\$"),
+            color=colors[color],
+            linewidth=1.4,
+            linestyle=kind,
+        )
     panel.set_ylabel(f"reactions [{UNITS_OF_REACTIONS.get(unit, unit)}]")
     panel.legend(loc="center left", bbox_to_anchor=(1.0, 0.5), fontsize=8)
     if len(shown) < len(owners):
@@ -186,6 +186,27 @@ def largest_reactions(trajectory: Trajectory, owners: Mapping[str, list[str]]) -
     lines = np.cumsum([len(owners[owner]) for owner in falling])
     kept = falling[: max(1, int(np.searchsorted(lines, MOST_REACTIONS, side="right")))]
     return [owner for owner in owners if owner in kept]
+
+
+def kinds_of_lines(owned: Sequence[Sequence[str]], colors: int) -> dict[str, tuple[int, str]]:
+    """{reaction: (number of its colour, kind of its line)}: a colour an owner, a kind a component, no two alike.
+
+    Where that look is taken, by the other string of one tie, say, it is the owner's next kind, then that of a colour
+    which nobody has.
+
+    Args:
+        owned: the reactions of each joint or tie.
+        colors: how many there are.
+    """
+    found: dict[str, tuple[int, str]] = {}
+    for k, names in enumerate(owned):
+        for name in names:
+            words = reversed(component_of(name).split(" "))
+            usual = next((DASHES[word] for word in words if word in DASHES), KINDS[0])
+            those = [k % colors, *range(len(owned), colors), *range(colors)]
+            looks = [(color, kind) for color in those for kind in (usual, *KINDS)]
+            found[name] = next((look for look in looks if look not in found.values()), looks[0])
+    return found
 
 
 def owner_of(name: str) -> str:

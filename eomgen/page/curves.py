@@ -14,8 +14,9 @@ import numpy as np
 from eomgen.documents.figures import Picture, mathtext
 from eomgen.documents.latex_names import Notation
 from eomgen.documents.plots import (
+    KINDS,
     by_unit,
-    component_of,
+    kinds_of_lines,
     largest_reactions,
     notation_of_run,
     owner_of,
@@ -35,18 +36,7 @@ LEFT, RIGHT, TOP, BOTTOM = 58.0, 8.0, 8.0, 28.0  # margins, in which the numbers
 TICKS = 5  # about so many numbers on an axis
 PLAIN = 4  # digits before or behind the point, beyond which a power of ten is written
 COLORS = 8
-DASHES = {
-    "x": "",
-    "y": " d1",
-    "z": " d2",
-    "n": "",
-    "t": " d3",
-    "s": " d2",
-    "tension": "",
-    "couple": " d1",
-    "drive": " d2",
-}
-LINES = {"d1": "--", "d2": ":", "d3": "-."}
+DASHED = dict(zip(KINDS, ("", " d1", " d2", " d3"), strict=True))  # classes of the kinds of lines
 
 
 @dataclass(frozen=True)
@@ -65,11 +55,13 @@ class Axis:
     power: int
 
     def text(self, value: float) -> str:
-        """A number as it is written: plainly where few digits do."""
-        if self.power < -PLAIN or max(map(abs, self.ticks)) >= 10**PLAIN:
+        """A number as it is written, as many digits as tell it from the next: plainly where few do."""
+        largest = max(map(abs, self.ticks))
+        if self.power < -PLAIN or largest >= 10**PLAIN:
             if not value:
                 return "0"
-            digits, _, power = f"{value:.2e}".partition("e")
+            count = max(2, math.floor(math.log10(largest)) - self.power)  # ticks beside one another are told apart
+            digits, _, power = f"{value:.{count}e}".partition("e")
             return f"{digits.rstrip('0').rstrip('.')}e{int(power)}".replace("-", "\N{MINUS SIGN}")
         return f"{value:.{max(0, -self.power)}f}".replace("-", "\N{MINUS SIGN}")
 
@@ -139,14 +131,10 @@ def _reactions(run: Trajectory, names: Sequence[str], unit: str, number: int) ->
     for name in names:
         owners.setdefault(owner_of(name), []).append(name)
     shown = largest_reactions(run, owners)
+    looks = kinds_of_lines([owners[owner] for owner in shown], COLORS)
     lines = [
-        Line(
-            run.reactions[name],
-            f"curve c{k % COLORS}{DASHES.get(component_of(name).split(' ')[-1], '')}",
-            (Code(name),),
-        )
-        for k, owner in enumerate(shown)
-        for name in owners[owner]
+        Line(run.reactions[name], f"curve c{color}{DASHED[kind]}", (Code(name),))
+        for name, (color, kind) in looks.items()
     ]
     few = f"; the largest, at {len(shown)} of {len(owners)} joints and ties" if len(shown) < len(owners) else ""
     return panel(run, lines, f"reactions{number}", f"Reactions [{unit.replace('*', '·')}] over time [s]{few}")
@@ -187,7 +175,7 @@ def _save(t: np.ndarray, lines: Sequence[Line], notation: Notation, path: Path) 
         panel = figure.subplots()
         for line in lines:
             words = line.style.split()
-            dash = next((LINES[word] for word in words if word in LINES), "-")
+            dash = next(kind for kind in reversed(KINDS) if DASHED[kind].strip() in (*words, ""))
             label = "".join(
                 f"${mathtext(p.name, notation)}$" if isinstance(p, Node) else getattr(p, "text", "") for p in line.name
             )

@@ -37,7 +37,7 @@ from eomgen.symbolic.numeric.tolerances import NINE_DIGITS
 
 CURVES = "curves and tables of the report, read back, are those of the run"
 BY_AXES = "by the numbers at their axes and the names of columns"
-COLOURS = 8  # of curves: with so many each has its own look
+LOOKS = 32  # of curves, eight colours and four kinds of lines: with so many each has its own
 SEEN = 1.5  # units of a picture: a curve may pass its points by that much, corners and rounding together
 _BRACKETS = str.maketrans("", "", "[],;")  # a matrix by rows or whole, cases apart
 _UNIT = re.compile(r" \[([^\]]*)\]")
@@ -137,7 +137,7 @@ def _of_run(report: Report, letters: SetLetters, read: ReadReport, run: Trajecto
     tally, legends = Tally(CURVES, BY_AXES), dict(read.legends)
     for caption, lines in read.legends:
         styles = [style for style, _ in lines]
-        alike = len(set(styles)) < len(styles) <= COLOURS
+        alike = len(set(styles)) < len(styles) <= LOOKS
         tally.add(f"legend of {caption[:30]}", partial(str, "curves that look alike" if alike else ""))
     for caption, curves in read.drawings:
         named = {style: _named(line, letters) for style, line in legends.get(caption, ())}

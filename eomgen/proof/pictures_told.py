@@ -1,7 +1,8 @@
 """What a picture shows at a state -> a check: bodies, springs and arrows are where and as long as the model says.
 
     R^T (r - p) of what is drawn of a body fills the box of its shape, by places inside it as its mass is summed up;
-    without a shape it joins the body's own places, and where others hang on it
+    without a shape it joins the body's own places, and where others hang on it, and is as round as it rolls;
+    what has no two places is an ellipsoid of its mass and moments, A = m (b^2 + c^2)/5, a dot or a symbol
     a spring goes from its one end to the other;   an arrow is k F, one k for all of one kind, and is at the place of F
 
 What is drawn is taken as it is: places on the ground, from the strokes of a picture, or the marks that a page is told.
@@ -11,14 +12,17 @@ from __future__ import annotations
 
 import itertools
 from collections.abc import Iterable, Iterator, Mapping, Sequence
+from dataclasses import field
 from functools import cached_property, partial
 from typing import Any
 
 import numpy as np
 
+from eomgen.mechanics.bodies.inertia import mass_properties
 from eomgen.mechanics.bodies.kinematics import BodyLink
 from eomgen.mechanics.bodies.system_scene import SystemScene
 from eomgen.model.composite import pose_of
+from eomgen.model.constraints.meeting import TouchingRound
 from eomgen.model.forces.element import PushAt
 from eomgen.model.shapes import Shape
 from eomgen.proof.at_a_state import NumericState
@@ -29,7 +33,7 @@ from eomgen.records import dataclass
 from eomgen.simulation.result import Trajectory
 from eomgen.symbolic.expression.graph import is_zero
 from eomgen.symbolic.numeric.evaluation import NoValue
-from eomgen.symbolic.numeric.tolerances import BETWEEN_PLACES, COMPUTED, DRAWN, SAME_ARROW
+from eomgen.symbolic.numeric.tolerances import BETWEEN_PLACES, COMPUTED, DRAWN, SAME_ARROW, STANDS_FOR_A_MASS
 
 NAME = "what is drawn is where the model says"
 HOW = "poses and places in 50 digits, shapes by places inside them"
@@ -68,6 +72,7 @@ class ToldPicture:
         otherwise: bodies that are shown by symbols, or whose lines have a thickness.
         symbols: (what it belongs to, its places) of what is drawn of one size in every picture.
         lengths, angles: (name, how large it is drawn) of dimension lines and arcs.
+        masses: of each body that an ellipsoid of inertia stands for its places, n x d.
     """
 
     bodies: Mapping[str, np.ndarray]
@@ -80,6 +85,7 @@ class ToldPicture:
     symbols: Sequence[tuple[str, np.ndarray]] = ()
     lengths: Sequence[tuple[str, float]] = ()
     angles: Sequence[tuple[str, float]] = ()
+    masses: Mapping[str, np.ndarray] = field(default_factory=dict)
 
 
 def pictures_told(told: Iterable[tuple[NumericState, ToldPicture]]) -> Iterator[Check]:
@@ -145,11 +151,8 @@ class _Shown(InNumbers):
 
     def wrong_body(self, name: str) -> str:
         link = self.motion.link(name)
-        pose = [float(x) for x in self.at((*(x for row in link.pose.R for x in row), *link.pose.p))]
-        R, p = np.reshape(pose[:9], (3, 3))[: self.d, : self.d], np.array(pose[9:])[: self.d]
-        drawn = self.picture.bodies.get(name, np.zeros((0, self.d)))
-        own = (drawn[np.isfinite(drawn).all(axis=1)] - p) @ R
-        seat = (self._ends_of(name)[0] - p) @ R  # from there it may have slid
+        own = self._own(link, self.picture.bodies.get(name))
+        seat = self._in_axes(link, self._ends_of(name)[0][None])[0]  # from there it may have slid
         part = self.system.scope.model.bodies[name]
         slides = any(all(map(is_zero, w)) for w, _ in link.S)
         shapes = [shape for shape in self._shapes(name) if not shape[0].is_point]
@@ -162,11 +165,31 @@ class _Shown(InNumbers):
             off = np.min(np.linalg.norm(own[:, None, :] - ends[None, :, :], axis=2), axis=1)
             own = own[off > self.near] if self.d == 3 and slides and np.any(off > self.near) else own
             return self._apart((own.min(axis=0), own.max(axis=0)), self._box(shapes))
-        if slides and link.parent < 0 and self.d == 2:
+        if self.d == 2 and slides and len(link.S) < 3 and link.parent < 0 and self._seats(link):
             return ""  # a block, or the wedge under what slides on it
+        mass = self._own(link, self.picture.masses.get(name))
+        if len(mass) and (wrong := self._wrong_mass(link, mass)):
+            return wrong
+        for what in self._rolled(name):
+            wrong, own = self._wrong_round(link, what, own)
+            if wrong:
+                return wrong
         if not len(own):
-            return "is not drawn" if part.points or self._hung(link) else ""
+            alone = self._rolled(name) or (len(mass) and not self._is_long(link))
+            return "" if alone else "is not drawn"
         return self._unknown_place(link, own, seat)
+
+    def _own(self, link: BodyLink, drawn: np.ndarray | None) -> np.ndarray:
+        """What is drawn of a body, in its axes, that is somewhere."""
+        places = np.zeros((0, self.d)) if drawn is None else drawn
+        return self._in_axes(link, places[np.isfinite(places).all(axis=1)])
+
+    def _in_axes(self, link: BodyLink, places: np.ndarray) -> np.ndarray:
+        """R^T (r - p)"""
+        pose = [float(x) for x in self.at((*(x for row in link.pose.R for x in row), *link.pose.p))]
+        R, p = np.reshape(pose[:9], (3, 3))[: self.d, : self.d], np.array(pose[9:])[: self.d]
+        found: np.ndarray = (places - p) @ R
+        return found
 
     def _shapes(self, name: str) -> list[tuple[Shape, np.ndarray, np.ndarray]]:
         """(shape, R, p) of a body or of its pieces that are no holes."""
@@ -200,24 +223,75 @@ class _Shown(InNumbers):
         sizes = [" x ".join(f"{x:.4g}" for x in high - low) for low, high in (found, right)]
         return "" if off <= near else f"fills {sizes[0]} m for {sizes[1]} m, or elsewhere"
 
+    def _declared(self, link: BodyLink) -> dict[str, np.ndarray]:
+        """Its points, and where others hang on it, in its axes: its lines leave out none."""
+        part, points = self.system.scope.model.bodies[link.name], self.motion.points[link.name]
+        found = {f"its point {name}": points[name] for name in part.points}
+        found |= {f"where '{x.name}' hangs on it": x.before.p for x in self._hung(link)}
+        return {what: self.placed(place) for what, place in found.items()}
+
+    def _seats(self, link: BodyLink) -> list[np.ndarray]:
+        return [self.placed(link.point)] if link.joint is not None and link.joint.carries_reaction else []
+
+    def _is_long(self, link: BodyLink) -> bool:
+        """Whether it has two places so far apart that a line between them is seen; its mass centre may be one."""
+        places = [*self._declared(link).values(), *self._seats(link)]
+        center = self.motion.points[link.name].get("center")
+        for more in ([], [] if center is None else [self.placed(center)]):
+            places += more
+            if len(places) > 1 and float(np.max(np.ptp(np.array(places), axis=0))) > self.near:
+                return True
+        return False
+
     def _unknown_place(self, link: BodyLink, own: np.ndarray, seat: np.ndarray) -> str:
-        """That a body's lines end where nothing of it is, or leave out a point of it.
+        """That a body's lines end where nothing of it is, or leave out a place of it.
 
         Args:
             seat: where its joint sits, in its axes.
         """
-        part, points = self.system.scope.model.bodies[link.name], self.motion.points[link.name]
-        declared = {f"its point {name}": points[name] for name in part.points}
-        declared |= {f"where '{x.name}' hangs on it": x.before.p for x in self._hung(link)}
-        seated = link.joint is not None and link.joint.carries_reaction
-        known = [*declared.values(), *points.values(), *([link.point] if seated else []), (0, 0, 0)]
-        places = np.array([*(self.placed(place) for place in known), seat])
+        declared = self._declared(link)
+        others = [self.placed(place) for place in (*self.motion.points[link.name].values(), (0, 0, 0))]
+        places = np.array([*declared.values(), *others, *self._seats(link), seat])
         off = np.min(np.linalg.norm(own[:, None, :] - places[None, :, :], axis=2), axis=1)
         if float(np.max(off)) > self.near:
             return "a line of it ends where none of its points is"
         low, high = own.min(axis=0) - self.near, own.max(axis=0) + self.near
-        outside = [k for k in range(len(declared)) if np.any(places[k] < low) or np.any(places[k] > high)]
-        return f"{list(declared)[outside[0]]} is left out" if outside else ""
+        outside = [what for what, place in declared.items() if np.any(place < low) or np.any(place > high)]
+        return f"{outside[0]} is left out" if outside else ""
+
+    def _rolled(self, name: str) -> list[TouchingRound]:
+        """As what a body without a shape rolls, where a tie says how large it is."""
+        meetings = [tie.meeting() for tie in self.system.scope.model.constraints.values()]
+        found = [each.what for each in meetings if each is not None and isinstance(each.what, TouchingRound)]
+        return [x for x in found if x.body == name and (x.radius is not None or x.semiaxes is not None)]
+
+    def _wrong_round(self, link: BodyLink, what: TouchingRound, own: np.ndarray) -> tuple[str, np.ndarray]:
+        """(that a body is not as round as it rolls, what else is drawn of it): |(r - c)/h| = 1 along each axis."""
+        if what.axis is not None:  # a wheel is drawn by symbols
+            return "its wheel is not drawn", own
+        semiaxes = what.semiaxes or (what.radius,) * 3
+        h = np.array([abs(self._number(x)) for x in semiaxes[: self.d]])
+        c = self.placed(self.motion.points[link.name][what.center or "origin"])
+        on = np.abs(np.linalg.norm((own - c) / h, axis=1) - 1) * np.min(h) <= self.near
+        rim = own[on]
+        if not len(rim):
+            return "is not drawn as it rolls", own
+        off = np.maximum(np.abs(rim.min(axis=0) - (c - h)), np.abs(rim.max(axis=0) - (c + h)))
+        return "is not as large as it rolls" if np.any(off > BETWEEN_PLACES * h + self.near) else "", own[~on]
+
+    def _wrong_mass(self, link: BodyLink, drawn: np.ndarray) -> str:
+        """That the ellipsoid for a body has another middle or other moments: A = m (b^2 + c^2)/5."""
+        mass = mass_properties(self.system.scope, link.name)
+        low, high = drawn.min(axis=0), drawn.max(axis=0)
+        size = float(np.max(high - low))
+        if float(np.max(np.abs((low + high) / 2 - self.placed(mass.com)))) > STANDS_FOR_A_MASS * size:
+            return "its ellipsoid is not about its mass centre"
+        m, moments = float(self.one(mass.m)), np.array([float(self.one(mass.I[k][k])) for k in range(3)])
+        squares = ((high - low) / 2) ** 2
+        found = m / 5 * (np.sum(squares) - squares)
+        beyond = max(0.0, *(2 * moments - np.sum(moments)))  # of moments that no body has the axis that is none is 0
+        off = float(np.max(np.abs(found - moments))) - beyond
+        return "its ellipsoid has other moments" if off > 2 * STANDS_FOR_A_MASS * float(np.max(moments)) else ""
 
     def _hung(self, link: BodyLink) -> list[BodyLink]:
         """The bodies that hang on a place of a body that does not move in it."""
@@ -374,6 +448,7 @@ class _Page:
     @property
     def picture(self) -> ToldPicture:
         bodies: dict[str, list[np.ndarray]] = {}
+        masses: dict[str, np.ndarray] = {}
         ends, arrows, left, joints = {}, [], set[str](), []
         for mark in self.told["marks"]:
             R, p = self.poses[mark["frame"]]
@@ -384,6 +459,8 @@ class _Page:
                     left.add(of)
                 else:
                     bodies.setdefault(of, []).append(own @ R.T + p)
+            elif role == "inertia" and (own := self._own(kind, mark)) is not None:
+                masses[of] = own @ R.T + p
             elif kind == "symbol" and role in ("support", "joint") and of in self._bodies:
                 joints.append((mark["symbol"], of, R @ self.spot(mark["at"]) + p))
             elif kind in ("spring", "damper"):
@@ -395,10 +472,11 @@ class _Page:
                 )
         points = {point["name"]: self.spot(point["at"]) for point in self.told["points"]}
         shown = {name: np.concatenate(clouds) for name, clouds in bodies.items() if name not in left}
-        cloud = np.concatenate([*(x for each in bodies.values() for x in each), *(x[None] for x in points.values())])
+        clouds = [*(x for each in bodies.values() for x in each), *masses.values(), *(x[None] for x in points.values())]
+        cloud = np.concatenate(clouds)
         finite = cloud[np.isfinite(cloud).all(axis=1)]
         size = float(np.max(np.ptp(finite, axis=0))) if len(finite) else 1.0
-        return ToldPicture(shown, ends, arrows, points, size or 1.0, frozenset(left), joints)
+        return ToldPicture(shown, ends, arrows, points, size or 1.0, frozenset(left), joints, masses=masses)
 
     @property
     def _bodies(self) -> set[str]:

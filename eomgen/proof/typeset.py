@@ -19,6 +19,7 @@ from eomgen.symbolic.numeric.evaluation import Arithmetic, NoValue
 Tokens = tuple[str, ...]
 Tree = tuple[Any, ...]  # (operation, *parts); ("number", c), ("symbol", name)
 _TOKEN = re.compile(r"\\(?:[a-zA-Z]+|.)|\d+(?:\.\d+)?|\S")
+_LONE = re.compile(r"(?<!\\)([_^])\s*([^\s{}\\]|\\[a-zA-Z]+(?![a-zA-Z]|\s*\{))")  # an index without braces is one sign
 _DOTS = {r"\dot": 1, r"\ddot": 2, r"\dddot": 3}
 _BLANKS = frozenset((r"\,", r"\ ", r"\quad"))
 _SIZES = frozenset((r"\left", r"\right", r"\bigl", r"\bigr", r"\big"))
@@ -35,8 +36,8 @@ _ENDS = frozenset(("+", "-", ")", "}", ",", "&", r"\\", r"\end", "<", r"\leq", "
 
 
 def tokens_of(tex: str) -> Tokens:
-    """The commands, numbers and letters of a formula."""
-    return tuple("|" if x == r"\vert" else x for x in _TOKEN.findall(tex))
+    """The commands, numbers and letters of a formula; an index in braces always, L_{x} for L_x."""
+    return tuple("|" if x == r"\vert" else x for x in _TOKEN.findall(_LONE.sub(r"\1{\2}", tex)))
 
 
 def between_equals(tokens: Tokens) -> list[Tokens]:

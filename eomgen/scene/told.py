@@ -36,7 +36,8 @@ def picture_told(drawing: Drawing, scene: Scene, frame: int) -> ToldPicture:
         if stroke.role in ("support", "joint") and stroke.path.size
     ]
     lengths, angles = _sizes(drawing, scene, frame) if drawing.sizes.dimensions else ([], [])
-    return ToldPicture(bodies, ends, arrows, {}, drawing.sizes.extent, otherwise, (), signs, lengths, angles)
+    masses = {s.of: s.path[frame].reshape(-1, d) for s in drawing.strokes if s.role == "inertia"}
+    return ToldPicture(bodies, ends, arrows, {}, drawing.sizes.extent, otherwise, (), signs, lengths, angles, masses)
 
 
 def _sizes(drawing: Drawing, scene: Scene, frame: int) -> tuple[list[tuple[str, float]], list[tuple[str, float]]]:
