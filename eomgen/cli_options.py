@@ -110,7 +110,7 @@ PAGE_TIME = click.option(
     "--time",
     type=time_typed,
     metavar="TIME",
-    help='How long: 5 is in s, or "500 ms".  [default: 10 s, less of what takes too many steps]',
+    help='How long: 5 is in s, or "500 ms".  [default: 10 s, less where it stops or takes too many steps]',
 )
 FOLLOW = click.option(
     "--follow",

@@ -226,7 +226,7 @@ def identify_command(**options: Any) -> int:
 @click.option(
     "-o", "--output", required=True, type=click.Path(dir_okay=False), help="Write .gif, .mp4, .html, or a strip .png."
 )
-@TIME
+@PAGE_TIME
 @with_values
 @click.option("--fps", type=float, default=25.0, show_default=True, help="Frames a second.")
 @click.option("--speed", type=float, default=1.0, show_default=True, help="Seconds of the motion in a second.")

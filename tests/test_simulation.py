@@ -24,6 +24,7 @@ from eomgen.simulation.integrate import METHODS, drift_of, integrate
 from eomgen.simulation.result import Trajectory
 from eomgen.simulation.slopes import slope_of
 from eomgen.symbolic.expression.units import parse_unit
+from eomgen.verbs.animate import Showing, animate_document
 
 pytestmark = pytest.mark.slow
 
@@ -203,6 +204,27 @@ def test_what_is_too_fast_to_be_looked_at_is_followed_for_a_shorter_time():
     assert run.ok and 1e-6 < run.t[-1] < 1 and run.t[-1] == float(f"{run.t[-1]:.0e}") and f"{run.t[-1]:g} s" in words
     asked, words = run_of_a_page(equations, 2e-6, 11)
     assert asked.t[-1] == 2e-6 and not words
+
+
+def test_pages_of_a_motion_that_cannot_go_on_show_it_so_far(tmp_path):
+    """x = 0.8 t and cos(alpha) = -x/0.5 end at t = 0.625 s; where a time is asked for the run has failed."""
+    text = """
+    eomgen = 1
+    space = "plane"
+    coordinates.x = { motion = "0.8*t" }
+    coordinates.alpha = { dependent = true, near = "pi/2" }
+    bodies.rod.shape = { kind = "rod", mass = 1, length = 0.5 }
+    bodies.rod.joint = { kind = "planar", x = "x", y = 0, angle = "alpha" }
+    constraints.wall = { kind = "support", point = "rod.end", normal = [1, 0], at = [0, 0] }
+    """
+    model = eomgen.loads(text)
+    equations = eomgen.derive(model)
+    run, words = run_of_a_page(equations, None, 11)
+    assert run.ok and run.t[-1] == 0.5 and "Followed for 0.5 s. Stopped at t = 0.625 s: 'wall'" in words
+    asked, words = run_of_a_page(equations, 1.0, 11)
+    assert asked.ended == "singular" and not asked.ok and not words
+    strip = animate_document(model, output=str(tmp_path / "x.png"), time=None, showing=Showing(frames=2))
+    assert not strip.failed and "Followed for 0.5 s" in str(strip.notes)
 
 
 def test_a_run_of_no_time_and_one_of_no_states_are_their_starts():

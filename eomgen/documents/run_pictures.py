@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 
 from eomgen.documents.figures import Picture, mathtext
-from eomgen.documents.plots import notation_of_run, outputs_over_time, over_time
+from eomgen.documents.plots import kinds_of_lines, notation_of_run, outputs_over_time, over_time
 from eomgen.errors import RunFailed, UsageError
 from eomgen.simulation.result import Trajectory
 from eomgen.symbolic.expression.units import Unit
@@ -85,8 +85,9 @@ def _resultants(run: Trajectory, title: str, units: Mapping[str, Unit]) -> Pictu
 
     def fill(figure: Any) -> None:
         panel = figure.subplots()
-        for owner, size in curves.items():
-            panel.plot(run.t, size, label=owner.replace("$", r"\$"), linewidth=1.4)
+        for owner, (color, kind) in kinds_of_lines([[owner] for owner in curves], 10).items():
+            look = {"color": f"C{color}", "linestyle": kind}
+            panel.plot(run.t, curves[owner], label=owner.replace("$", r"\$"), linewidth=1.4, **look)
         panel.set_xlabel("$t$ [s]")
         panel.set_ylabel("size of the force [N]")
         panel.set_ylim(bottom=0)

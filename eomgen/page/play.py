@@ -115,7 +115,7 @@ def play(
 
     Args:
         path: where the page is written; None: nowhere.
-        time: how long the motion is: 5 s or "500 ms"; None: 10 s, less of what takes too many steps.
+        time: how long the motion is: 5 s or "500 ms"; None: 10 s, less where it stops or takes too many steps.
         sliders: what can be moved, each "NAME" or "NAME=FROM:TO", numbers in SI or with a unit; () for everything.
         parameters, start: values that replace the model's, each as `model_at` takes it.
         trail: a point that leaves a trail from the start.

@@ -203,19 +203,31 @@ def run_of_a_page(equations: Equations, time: float | None, samples: int) -> tup
     """(the motion that a page shows, why it is shorter than others, "" where it is not).
 
     Args:
-        time: how long [s]; None: PAGE_TIME, or a round time that is over before so many steps are taken.
+        time: how long [s]; None: PAGE_TIME, or as `page_time` has it.
     Raises:
         KeyboardInterrupt: somebody stopped it: a page of a part of it is not what was asked for.
     """
     if time is not None:
         return _whole(run(equations, time=time, samples=samples)), ""
     found = _whole(run(equations, time=PAGE_TIME, samples=samples, how=Stepping(most_steps=PAGE_STEPS)))
-    if found.ended != "too many steps":
-        return found, ""
-    power = 10.0 ** math.floor(math.log10(found.phases[-1].end))
-    time = next(factor * power for factor in (5, 2, 1) if factor * power <= found.phases[-1].end)
-    words = f"Followed for {time:g} s: {PAGE_TIME:g} s would take more than {PAGE_STEPS} steps; --time says otherwise."
-    return _whole(run(equations, time=time, samples=samples)), words
+    time, words = page_time(found)
+    return (_whole(run(equations, time=time, samples=samples)), words) if words else (found, "")
+
+
+def page_time(found: Trajectory) -> tuple[float, str]:
+    """(how long a motion is shown where nobody said it [s], why that is shorter than PAGE_TIME, "" where it is not).
+
+    A round time that is over before so many steps are taken, or before the ties do not say how it goes on.
+    """
+    end = found.phases[-1].end if found.phases else 0.0
+    if found.ended not in ("too many steps", "singular") or not end > 0:
+        return PAGE_TIME, ""
+    power = 10.0 ** math.floor(math.log10(end))
+    time = next(factor * power for factor in (5, 2, 1) if factor * power <= end)
+    if found.ended == "singular":
+        return time, f"Followed for {time:g} s. {found.message}"
+    why = f"{PAGE_TIME:g} s would take more than {PAGE_STEPS} steps; --time says otherwise."
+    return time, f"Followed for {time:g} s: {why}"
 
 
 def _whole(found: Trajectory) -> Trajectory:

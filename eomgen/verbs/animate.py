@@ -24,6 +24,7 @@ from eomgen.documents.motion_frames import (
 from eomgen.documents.moving_picture import Progress, gif, mp4, on_stderr, strip
 from eomgen.documents.statements import prose
 from eomgen.documents.statics.work_steps import virtual_work_step
+from eomgen.equations import Equations
 from eomgen.errors import UsageError
 from eomgen.mechanics.equations.system import system_of
 from eomgen.mechanics.equilibria.static_equations import has_freedoms, with_drives_held
@@ -40,7 +41,7 @@ from eomgen.page.player_page import player_page_of
 from eomgen.page.player_read_back import player_read_back
 from eomgen.proof.check import Check
 from eomgen.proof.pictures_told import pictures_told, states_shown
-from eomgen.questions.run import PAGE_TIME
+from eomgen.questions.run import PAGE_TIME, page_time
 from eomgen.questions.run import run as simulated
 from eomgen.records import dataclass
 from eomgen.scene.told import picture_told
@@ -125,13 +126,18 @@ def animate_document(
     model: Model,
     *,
     output: str,
-    time: float,
+    time: float | None,
     showing: Showing,
     modes: int | None = None,
     virtual: str | None = None,
 ) -> Document:
-    """The picture is written; the document says what it holds."""
+    """The picture is written; the document says what it holds.
+
+    Args:
+        time: how long the motion is [s]; None: as `page_time` has it.
+    """
     run: Trajectory | None = None
+    shorter = ""
     if virtual is not None:
         if modes is not None:
             raise UsageError("--modes and --virtual are two pictures", mend="leave one of them out")
@@ -140,13 +146,12 @@ def animate_document(
         movies = _modes(model, modes, output, showing)
         summary = f"{len(movies)} mode{'s' * (len(movies) > 1)}"
     else:
-        if not time > 0:
+        if time is not None and not time > 0:
             raise UsageError(f"a motion of {time:g} s has nothing to show", mend="give a --time above 0")
         if _ending(output) == ".html" and len(showing.trail) > 1:
             raise UsageError("a page begins with one trail", mend="give one --trail; others are chosen in the page")
-        times = showing.times(time, output)
-        samples = FINE * max(len(times) - 1, 1) + 1
-        run = simulated(pipeline.derive(model), time=time, samples=samples, how=Stepping())
+        run, shorter = _followed(pipeline.derive(model), time, showing, output)
+        times = showing.times(float(run.t[-1]) if shorter else PAGE_TIME if time is None else time, output)
         movies, summary = [_shown(run, times, showing, _ending(output) == ".png")], run.summary()
     checks: Iterable[Check] = ()
     if _ending(output) == ".html" and run is not None:
@@ -158,8 +163,23 @@ def animate_document(
         write_movies(movies, output, showing, on_stderr)
         checks = () if run is None else movie_read_back(run, movies[0])
     told = _told(model, summary, movies, output, showing, run)
+    told = replace(told, notes=(*told.notes, *filter(None, (shorter,))))
     wrong = "; ".join(f"{check.name}: {check.detail}" for check in checks if check.ok is False)
     return replace(told, failed="; ".join(filter(None, (told.failed, wrong))))
+
+
+def _followed(equations: Equations, time: float | None, showing: Showing, output: str) -> tuple[Trajectory, str]:
+    """(the motion, with rows between its frames; why it is shorter than others)."""
+
+    def lasting(time: float) -> Trajectory:
+        samples = FINE * max(len(showing.times(time, output)) - 1, 1) + 1
+        return simulated(equations, time=time, samples=samples, how=Stepping())
+
+    if time is not None:
+        return lasting(time), ""
+    found = lasting(PAGE_TIME)
+    time, words = page_time(found)
+    return (lasting(time), words) if words else (found, "")
 
 
 def movie_read_back(run: Trajectory, movie: Movie) -> Iterator[Check]:

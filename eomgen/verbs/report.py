@@ -181,7 +181,7 @@ def report(
 
     Args:
         path: the file that is written; None: nothing is.
-        time: how long the motion is followed: 5 s or "500 ms"; None: 10 s, less of what takes too many steps.
+        time: how long the motion is followed: 5 s or "500 ms"; None: 10 s, less where it stops or takes too many steps.
         parameters, start: values that replace the model's, each as `model_at` takes it.
         with_, without: sections besides those that fit the model, or not among them: the keys of `SECTIONS`.
         certify: whether what stands in it is proven.
