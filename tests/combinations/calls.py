@@ -206,6 +206,7 @@ def judged(text: str, rng: Random, most: int = 2) -> Iterator[Outcome]:
             told = eomgen.derive(model).render("text")
     except (TooLong, eomgen.EomgenError):
         return  # told by `derive`
+    told = re.sub(r"(?<=\S)\n {8,}(?=[+*-] )", " ", told)  # what stands in several lines is one
     lines = [x.strip() for x in told.splitlines() if re.match(r"^ {4,}\S.* = ", x) and "..." not in x]
     lines = [x for x in lines if len(x) < 300 and not re.search(r"\[[^\]]*\]$", x)]
     for line in [lines[-1], *rng.sample(lines[:-1], min(most - 1, len(lines) - 1))] if lines else []:
