@@ -34,6 +34,9 @@ _SIGNS = {"\u2212": "-", "\u22c5": r"\cdot", "\u2061": "", "|": r"\rvert", "\u22
 _LETTERS = GREEK_LETTERS | {"\u03c6": r"\varphi", "\u03d5": r"\phi", "\u03b5": r"\varepsilon", "\u03f5": r"\epsilon"}
 _VOID = frozenset(("br", "img", "input", "link", "meta"))
 _FUNCTIONS = frozenset("sin cos tan sinh cosh tanh arcsin arccos arctan ln min max".split())
+_OPERATORS = frozenset(("sign", "atan2"))
+_BETWEEN = {"mtr": " & ", "mtable": r" \\ "}
+_TABLES = {"{": "cases", "(": "pmatrix"}
 _HEADINGS = frozenset(("h1", "h2", "h3"))
 _STEP = re.compile(r"[a-zA-Z]|-?(?:\d+\.?\d*|\.\d+)(?:e[-+]?\d+)?")
 _CAPTION = re.compile(r"\\begin\{center\}.*\\par\\small (.*)\\end\{center\}")
@@ -266,11 +269,17 @@ def _line(each: Markup) -> Iterator[PagePart]:
             yield from _line(x)
 
 
-def tex_of(math: Markup) -> str:
-    """MathML as the LaTeX that means it."""
-    parts = [tex_of(x) for x in math.elements]
+def tex_of(math: Markup, *, index: bool = False) -> str:
+    """MathML as the LaTeX that means it.
+
+    Args:
+        index: it is one: max is a word there and no function.
+    """
+    inner = list(math.elements)
+    below = math.tag in ("msub", "msubsup")
+    parts = [tex_of(x, index=index or (below and k == 1)) for k, x in enumerate(inner)]
     if math.tag in ("mi", "mn", "mo", "mtext"):
-        return _letter(math.tag, math.text)
+        return _letter(math.tag, math.text, index)
     if math.tag == "msub":
         return f"{parts[0]}_{{{parts[1]}}}"
     if math.tag == "msup":
@@ -282,18 +291,27 @@ def tex_of(math: Markup) -> str:
     if math.tag == "msqrt":
         return rf"\sqrt{{{' '.join(parts)}}}"
     if math.tag == "mover":
-        accent = next(x for k, x in enumerate(math.elements) if k == 1).text
+        accent = next(x for k, x in enumerate(inner) if k == 1).text
         return f"{_ACCENTS.get(accent, accent)}{{{parts[0]}}}"
+    if math.tag in _BETWEEN:
+        return _BETWEEN[math.tag].join(parts)
+    if math.tag == "mrow" and len(parts) > 2:
+        if inner[1].tag == "mtable" and parts[0] in _TABLES:
+            return rf"\begin{{{_TABLES[parts[0]]}}}{parts[1]}\end{{{_TABLES[parts[0]]}}}"
+        if parts[0] == parts[-1] == _SIGNS["|"]:
+            parts[0] = r"\lvert"
     return "" if math.tag == "mspace" else " ".join(parts)
 
 
-def _letter(tag: str, text: str) -> str:
+def _letter(tag: str, text: str, index: bool) -> str:
     if tag == "mtext":
         return rf"\text{{{text}}}"
+    if text in _FUNCTIONS and not index:
+        return rf"\{text} "
+    if text in _OPERATORS and not index:
+        return rf"\operatorname{{{text}}}"
     if tag == "mo":
         return _SIGNS.get(text, text)
-    if tag == "mi" and text in _FUNCTIONS:
-        return rf"\{text} "
     if tag == "mi" and len(text) > 1:
         return rf"\mathrm{{{text}}}"
     return f"{_LETTERS[text]} " if text in _LETTERS else text
