@@ -384,6 +384,14 @@ def test_a_notebook_was_run_with_the_values_of_the_report(tmp_path):
     assert "'parameters': {'l': '3'}" in "".join(code[0]["source"])
 
 
+@has("nbclient")
+def test_a_notebook_shows_no_picture_of_what_has_none(tmp_path):
+    """Places of rest in space are told without a picture, and every cell runs."""
+    path = tmp_path / "r.ipynb"
+    report(MODELS / "spherical_pendulum.toml", path, with_=["statics"], without=["motion", "derivation"])
+    assert "eomgen.statics(model)" in path.read_text() and ".picture" not in path.read_text()
+
+
 @pytest.mark.parametrize(
     ("package", "ending", "mend"),
     [

@@ -97,6 +97,31 @@ CHANGES = {
 }
 
 
+SIZED = """
+eomgen = 1
+name = "A size, and forces at rest"
+space = "plane"
+[coordinates]
+q = { start = 0.3, speed = -1 }
+[bodies.bob]
+shape = { kind = "rod", mass = 1, length = 2 }
+joint = { kind = "revolute", angle = "q" }
+[forces.weight]
+kind = "gravity"
+acceleration = [0, -9.81]
+"""
+
+
+@pytest.mark.parametrize("form", FORMS)
+def test_a_report_of_several_verbs_says_what_was_found(form: str):
+    """Q_q of the motion and Q_q at rest are one quantity; |q'| is read as it is set."""
+    found = Subject(eomgen.loads(SIZED), 0.5, False, "swing.toml", SIZED)
+    report = report_of(found, with_=["statics", "kinematics"], without=["motion", "downloads", "plots", "reactions"])
+    text = str(written_as(report, form, "r" + form)["r" + form])
+    checks = [*report_read_back(report, {"r" + form: text}, form, None)]
+    assert checks and not [x for x in checks if x.status == "fails"]
+
+
 @pytest.mark.parametrize("form", FORMS)
 @pytest.mark.parametrize("change", CHANGES)
 def test_a_change_of_a_report_is_seen(form: str, change: str):

@@ -121,6 +121,15 @@ def _wanted(document: Document, form: str) -> Iterator[Wanted]:
             yield from wanted_of(statement)
 
 
+def _by_names(part: object) -> object:
+    """A quantity with its symbols by their names: sections of a report are of several verbs, of a graph each."""
+    if isinstance(part, Node):
+        return part.name
+    if isinstance(part, (Name, Entry, Partial, Rate)):
+        return (type(part), *(_by_names(x) for x in vars(part).values()))
+    return part
+
+
 def wanted_of(statement: Statement) -> Iterator[Wanted]:
     if isinstance(statement, Prose):
         if any(not isinstance(piece, str) or piece.strip() for piece in statement.pieces):
@@ -400,7 +409,8 @@ class PageComparison:
             self._symbol(side.column.name, column, where)
         if isinstance(side, Name):
             self._name(side, tokens, where)
-        for key, value in ((("tex", tex), side), (("side", side), tex)):
+        quantity = _by_names(side)
+        for key, value in ((("tex", tex), quantity), (("side", quantity), tex)):
             if self.named.setdefault(key, value) != value:
                 raise Unlike(f"{where}: '{tex}' stands for {_said(side)} and for another quantity")
 

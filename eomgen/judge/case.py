@@ -14,6 +14,7 @@ from eomgen.judge.corruptions import Corruptions
 from eomgen.judge.decision import Follows, combination, is_zero_everywhere, linear_row, vanish_at
 from eomgen.judge.edits import Edits
 from eomgen.judge.reading import MULTIPLIER, HandEquation, Reading, side_value
+from eomgen.mechanics.bodies.system_scene import let_go
 from eomgen.mechanics.equations.equations_of_motion import EquationsOfMotion
 from eomgen.mechanics.equations.pieces import Extent
 from eomgen.mechanics.equations.system import System, system_of
@@ -108,11 +109,12 @@ class Case:
         coordinates = self.model.coordinates
         if not any(q.driven or q.dependent for q in coordinates.values()):
             return None
-        free = {
-            name: replace(q, motion=None, rate=None, acceleration=None, dependent=False)
-            for name, q in coordinates.items()
-        }
         with suppress(ModelError):
+            scope = self.system.scope
+            free = {
+                name: replace(let_go(scope, name) if q.driven else q, dependent=False)
+                for name, q in coordinates.items()
+            }
             return Case(replace(self.model, coordinates=Table(free), outputs=Table()), self.at_rest)
         return None
 

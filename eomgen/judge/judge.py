@@ -41,6 +41,7 @@ from eomgen.judge.right import (
     in_its_piece,
     on_one_side,
     says_nothing,
+    stays_constant,
     truth_of,
     values_told,
     while_,
@@ -309,9 +310,12 @@ class Judge:
         scalar = case.value(written.difference, free)
         if kind in ("law", "energy") and depends_on(scalar, tuple(free.values())):
             found = truth_of(case, scalar, kind)
-            if found.holds or found.why == CONSTANT:
-                up_to = found.up_to if found.holds else "a first integral of the motion"
-                return Verdict(written.given, kind, RIGHT, f"{up_to}, with {told} constant")
+            if found.holds:
+                up_to, mark, held = found.up_to.partition(", while ")
+                return Verdict(written.given, kind, RIGHT, f"{up_to}, with {told} constant{mark}{held}")
+            if held := stays_constant(case, scalar):
+                up_to = f"a first integral of the motion, with {told} constant{while_(held)}"
+                return Verdict(written.given, kind, RIGHT, up_to)
         if kind == "motion":
             (rest,) = substituted((scalar,), dict.fromkeys(free.values(), 0))
             if truth_of(case, rest, kind).holds:
@@ -333,7 +337,8 @@ class Judge:
         else:
             (start,) = substituted((scalar,), self.case.start)
             difference = excess(self.case, start)
-            text = f"it stays constant along the motion, but it is {difference} at the start, and not 0"
+            where = found.up_to or "along the motion"
+            text = f"it stays constant {where}, but it is {difference} at the start, and not 0"
             quantity = "the constant"
         kind_ = "sign" if found.why == SIGNLESS else "other"
         cause = Cause(kind_, text, quantity=quantity)

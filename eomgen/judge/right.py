@@ -11,7 +11,7 @@ from eomgen.judge.case import Case
 from eomgen.judge.decision import combination, is_zero_everywhere, linear_row, vanish_nearly
 from eomgen.judge.reading import HandEquation
 from eomgen.judge.terms import LONG
-from eomgen.mechanics.equations.pieces import EVERYWHERE, Extent
+from eomgen.mechanics.equations.pieces import EVERYWHERE, NOWHERE, Extent
 from eomgen.model.values import exact_parameters
 from eomgen.records import dataclass
 from eomgen.symbolic.exact.normal_form import legible
@@ -29,6 +29,7 @@ from eomgen.symbolic.print.text import readable_text
 SIDED = ("abs", "sqrt", "sign", "min", "max", "asin", "acos", "atan", "atan2")  # of one side of their domain alone
 MOST_SIZES = 2  # sizes |x| of which either sign is tried
 
+EVERY_PIECE = ("motion", "acceleration")  # kinds of equations that must hold in every piece
 IDENTITY, CONSTANT, SIGNLESS = "identity", "constant", "signless"
 
 
@@ -68,16 +69,16 @@ def truth_of(case: Case, scalar: Scalar, kind: str) -> Decided:
         return integral
     moving = (*case.system.symbols.u, *case.system.symbols.a)
     if depends_on(scalar, moving):
-        told = _by_integrals(case, scalar, {})
-        if told:
-            return Decided(True, told)
+        told, held = _by_integrals(case, scalar, {})
+        if held.everywhere or (held and kind not in EVERY_PIECE):
+            return Decided(True, f"{told} from the start{while_(held)}")
     return Decided(None if undecided else False)
 
 
-def _by_integrals(case: Case, scalar: Scalar, known: Mapping[Node, Scalar]) -> str:
-    """By which integrals from the start a scalar vanishes where nodes are replaced, in words; "": by none."""
+def _by_integrals(case: Case, scalar: Scalar, known: Mapping[Node, Scalar]) -> tuple[str, Extent]:
+    """(by which integrals from the start a scalar vanishes where nodes are replaced, in words, where it does)."""
     if depends_on(scalar, case.system.symbols.lam):
-        return ""
+        return "", NOWHERE
     for told in ("the momenta", "the energy theorem and the momenta"):
         by_integrals = case.by_momenta if told == "the momenta" else case.speeds
         if not by_integrals:
@@ -86,15 +87,15 @@ def _by_integrals(case: Case, scalar: Scalar, known: Mapping[Node, Scalar]) -> s
         started = substituted((case.phase.eliminated(scalar),), {**speeds, **known})
         if not case.starting.is_exact:
             if held.everywhere and vanish_nearly(case.system, started):
-                return f"{told} from the start"
+                return told, EVERYWHERE
             continue
         of_forces = depends_on(scalar, case.system.symbols.a)  # equations of motion hold in every piece
         found = combination(case.system, started, (), within=not of_forces)
         if found.holds:
-            return f"{told} from the start{while_(held)}"
-        if found.held:
-            return f"{told} from the start{while_(held & found.held)}"
-    return ""
+            return told, held
+        if found.held and (both := held & found.held):
+            return told, both
+    return "", NOWHERE
 
 
 def while_(held: Extent) -> str:
@@ -185,17 +186,10 @@ def _factor(case: Case, scalar: Scalar, row: int, closing: ScalarRow) -> str:
 
 def _integral(case: Case, scalar: Scalar) -> Decided | None:
     """Of what stays constant along the motion: whether it is right; None: it does not."""
+    held = stays_constant(case, scalar)
+    if not held:
+        return None
     symbols = case.system.symbols
-    if not depends_on(scalar, symbols.u) or is_zero_everywhere(case.system, *gradient(scalar, symbols.u)).holds:
-        return None
-    try:
-        (rate,) = case.system.scope.with_accelerations((scalar,))
-    except DerivationError:
-        return None
-    follows = case.follows(rate, within=True)
-    if not follows.holds and not follows.held:
-        return None
-    held = EVERYWHERE if follows.holds else follows.held
     constants = [x for x in (symbols.unknowns or {}).values() if depends_on(scalar, (x,))]
     if constants:
         return Decided(True, f"a first integral of the motion{while_(held)}")
@@ -204,7 +198,20 @@ def _integral(case: Case, scalar: Scalar) -> Decided | None:
         return Decided(None, "it stays constant along the motion, but where this starts is not known")
     if begins:
         return Decided(True, f"the first integral from the start{while_(held)}")
-    return Decided(False, why=CONSTANT) if held.everywhere else None
+    return Decided(False, while_(held).removeprefix(", "), CONSTANT)
+
+
+def stays_constant(case: Case, scalar: Scalar) -> Extent:
+    """Where a scalar with speeds in it is a first integral."""
+    speeds = case.system.symbols.u
+    if not depends_on(scalar, speeds) or is_zero_everywhere(case.system, *gradient(scalar, speeds)).holds:
+        return NOWHERE
+    try:
+        (rate,) = case.system.scope.with_accelerations((scalar,))
+    except DerivationError:
+        return NOWHERE
+    follows = case.follows(rate, within=True)
+    return EVERYWHERE if follows.holds else follows.held
 
 
 # -- what the file has beside its symbols --------------------------------------------------------------
@@ -213,9 +220,8 @@ def _integral(case: Case, scalar: Scalar) -> Decided | None:
 def with_values_of_file(case: Case, written: HandEquation, kind: str, scalar: Scalar) -> Decided | None:
     """Right where the numbers in it are values of the file: of parameters that it does not name."""
     missing = meant_by_numbers(case, written, (scalar, *case.rows))
-    if not missing or not _holds_with(case, kind, scalar, missing):
-        return None
-    return Decided(True, values_told(missing))
+    found = _holds_with(case, kind, scalar, missing) if missing else None
+    return None if found is None else Decided(True, f"{found.from_start}{values_told(missing)}{while_(found.held)}")
 
 
 def meant_by_numbers(case: Case, written: HandEquation, scalars: Sequence[Scalar]) -> dict[Node, Scalar]:
@@ -241,9 +247,12 @@ def with_definitions(case: Case, kind: str, scalar: Scalar) -> Decided | None:
     """Right where parameters are replaced by the formulas that the file gives for them."""
     known = case.definitions
     used = [x for x in known if depends_on_one((scalar, *case.rows), x)]
-    if not used or not _holds_with(case, kind, scalar, known):
+    found = _holds_with(case, kind, scalar, known) if used else None
+    if found is None:
         return None
-    return Decided(True, f"what the file says of {', '.join(x.name for x in used)}")
+    return Decided(
+        True, f"{found.from_start}what the file says of {', '.join(x.name for x in used)}{while_(found.held)}"
+    )
 
 
 def by_balance(case: Case, kind: str, scalar: Scalar) -> Decided | None:
@@ -263,25 +272,49 @@ def by_what_is_given(case: Case, written: HandEquation) -> Decided | None:
     return Decided(True, " and ".join([*tied, *given])) if tied or given else None
 
 
-def _holds_with(case: Case, kind: str, scalar: Scalar, known: Mapping[Node, Scalar]) -> bool:
-    """Whether it holds where nodes are replaced, in the equations of the case too."""
+@dataclass(frozen=True)
+class HoldsWith:
+    """That an equation holds with nodes replaced.
+
+    Args:
+        held: in which pieces.
+        from_start: "the motion from the start, with " where it does in that motion alone, else "".
+    """
+
+    held: Extent = EVERYWHERE
+    from_start: str = ""
+
+
+FROM_START = "the motion from the start, with "
+
+
+def _holds_with(case: Case, kind: str, scalar: Scalar, known: Mapping[Node, Scalar]) -> HoldsWith | None:
+    """How it holds with nodes replaced, in the equations of the case too; None: it does not.
+
+    Args:
+        kind: that of the equation, or "rate": of a scalar that stays constant, in whichever pieces it does.
+    """
     (plain, *rows) = substituted((scalar, *case.rows, *case.closing), known)
     if is_zero_everywhere(case.system, plain).holds:
-        return kind != "motion"
+        return None if kind in ("motion", "rate") else HoldsWith()
     n = len(case.rows)
     own, closing = ([linear_row(x, case.forced)[0] for x in some] for some in (rows[:n], rows[n:]))
     row, linear = linear_row(plain, case.forced)
-    if rows and linear and combination(case.system, row, own, closing).holds:
-        return True
-    if kind == "motion" and _by_integrals(case, scalar, known):
-        return True
+    if rows and linear:
+        found = combination(case.system, row, own, closing, within=kind == "rate")
+        if found.holds or found.held:
+            return HoldsWith(EVERYWHERE if found.holds else found.held)
+    held = _by_integrals(case, scalar, known)[1] if kind in ("motion", "rate") else NOWHERE
+    if held.everywhere or (held and kind not in EVERY_PIECE):
+        return HoldsWith(held, FROM_START)
     if kind not in ("law", "energy") or not case.start or not depends_on(scalar, case.system.symbols.u):
-        return False
+        return None
     try:
         (rate,) = case.system.scope.with_accelerations((plain,))
     except DerivationError:
-        return False
-    return bool(case.starts_at_zero(plain)) and _holds_with(case, "motion", rate, known)
+        return None
+    steady = _holds_with(case, "rate", rate, known) if case.starts_at_zero(plain) else None
+    return None if steady is None else HoldsWith(steady.held, FROM_START)
 
 
 def depends_on_one(scalars: Sequence[Scalar], x: Node) -> bool:
@@ -295,12 +328,13 @@ def on_one_side(case: Case, written: HandEquation, kind: str, scalar: Scalar) ->
         return None
     for signs in product(*(_signs(case, inside) for inside in sizes.values())):
         known = {x: sign * inside for (x, inside), sign in zip(sizes.items(), signs, strict=True)}
-        if _holds_with(case, kind, scalar, known):
+        if found := _holds_with(case, kind, scalar, known):
             told = [
                 f"{readable_text(inside)} {'>' if sign > 0 else '<'} 0"
                 for inside, sign in zip(sizes.values(), signs, strict=True)
             ]
-            return Decided(True, f"what holds where {' and '.join(told)}")
+            up_to = f"{found.from_start}what holds where {' and '.join(told)}"
+            return Decided(True, up_to if found.held.everywhere else f"{up_to} and {found.held.text}")
     return None
 
 

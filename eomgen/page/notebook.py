@@ -66,7 +66,8 @@ def _cells(report: Report) -> Iterator[tuple[bool, str]]:
     for section in report.printed:
         yield False, "\n\n".join(section_markdown(setter, section, report))
         if section.key in CALLS and not section.remark and (section.key != "certificate" or "derivation" in keys):
-            yield True, CALLS[section.key].format(time=report.time, values=", **values" if report.values else "")
+            call = CALLS[section.key] if section.drawings else CALLS[section.key].removesuffix(".picture")
+            yield True, call.format(time=report.time, values=", **values" if report.values else "")
 
 
 def _quoted(text: str) -> str:

@@ -189,7 +189,8 @@ class PhaseModels:
         if not configuration.open or self._straight:
             return _opened(model, configuration.modes)
         all_open = {**configuration.modes, **dict.fromkeys(self.ends, OPEN)}
-        return system_of(_opened(model, all_open).scope.model, configuration.modes)
+        released = _opened(model, all_open)
+        return system_of(released.scope.model, configuration.modes, begun_as=released)
 
     @cached_property
     def _straight(self) -> bool:
@@ -223,7 +224,7 @@ def _released(system: System, tie: str) -> System:
         DerivationError: coordinates that satisfy the tie by themselves cannot leave it.
     """
     model, modes = released(system, tie)
-    after = system_of(model, modes)
+    after = system_of(model, modes, begun_as=system)
     rows = [row for row in system.ties.rows if row.tie == tie]
     if all(row.status == "closing" for row in rows):
         return after

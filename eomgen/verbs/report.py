@@ -365,12 +365,12 @@ def _steps(key: str) -> Callable[[Subject], ReportSection]:
 
 
 def _pictures(subject: Subject, key: str) -> tuple[ReportFigure, ...]:
-    """The picture of a result of the plane; none of what has none."""
+    """The picture of a result of the plane; none of what has none, as where parameters have no values."""
     if key == "derivation" or subject.model.space == "space":
         return ()
     try:
         picture = subject.found[key].picture
-    except UsageError:
+    except (UsageError, RunFailed):
         return ()
     return (figure_of(replace(picture, title=""), key, CAPTIONS[key]),)
 

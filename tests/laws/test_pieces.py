@@ -266,6 +266,9 @@ def test_what_begins_later_has_no_law_of_motion_in_closed_form(tmp_path):
         ("y'' = -g", "wrong", "while y >= 0"),
         ("m*y'' = max(0, -k*y) - m*g", "right", ""),
         ("y'^2 = 2*g*(2 - y)", "wrong", ""),
+        ("1/2*m*y'^2 + m*g*y = C", "right", "while y >= 0"),
+        ("y'' = -9.81", "wrong", ""),
+        ("y'^2 = 2*9.81*(1 - y)", "right", "while y >= 0"),
     ],
 )
 def test_a_verdict_says_in_which_piece(written, verdict, up_to, tmp_path):

@@ -92,3 +92,49 @@ def test_what_is_zero_at_the_start_is_told_as_zero(gap):
     """k (l(q_0) - l_0) = 0, and no rounding of q_0, where the start has a closed form and where it has none."""
     text = TIED.replace("R\n", STARTS["dependent"] + "\n", 1).replace("GAP", GAPS[gap])
     assert eomgen.solve(eomgen.loads(text))["F"].value == 0
+
+
+DRIVEN = """
+eomgen = 1
+name = "What a driven block holds"
+space = "plane"
+[parameters]
+m = 2
+p = 0.3
+[coordinates]
+X = { DRIVE }
+x = 1
+y = 0.5
+[bodies.a]
+shape = { kind = "particle", mass = "m" }
+joint = { kind = "prismatic", axis = [1, 0], displacement = "X" }
+[bodies.b]
+shape = { kind = "particle", mass = "m" }
+joint = { kind = "planar", x = "x", y = "y", angle = "0" }
+[forces.weight]
+kind = "gravity"
+acceleration = [0, -9.81]
+[HOLDS]
+points = ["a.center", "b.center"]
+[outputs]
+D = "drive(X)"
+"""
+SPRING = 'forces.l]\nkind = "spring"\nstiffness = 100\nlength = "start"\n#'
+DRIVES = {
+    "a formula": 'motion = "p + 0.1*t^2"',
+    "a rate": 'rate = "0.2*t", start = "p"',
+    "samples": "motion = { samples = [[0, 0.3], [1, 0.4], [2, 0.7]] }",
+}
+
+
+@pytest.mark.parametrize("drive", DRIVES)
+@pytest.mark.parametrize("holds", ['constraints.l]\nkind = "link"\n#', SPRING], ids=["link", "spring"])
+def test_what_stands_as_at_the_start_does_so_for_a_drive(drive: str, holds: str):
+    """A link from (0.3, 0) to (1, 0.5): D + T e_x = m X'', T = -m (e_y g + e_x X''); a spring is slack: D = m X''."""
+    model = eomgen.loads(DRIVEN.replace("DRIVE", DRIVES[drive]).replace("HOLDS", holds))
+    a = eomgen.solve(model)["D"].value
+    assert a == pytest.approx(eomgen.reactions(model)["drive(X)"].value, abs=1e-9)
+    if drive != "samples":
+        ex, ey = np.array([0.7, 0.5]) / np.hypot(0.7, 0.5)
+        T = -2 * (ey * 9.81 + ex * 0.2) if "link" in holds else 0.0
+        assert a == pytest.approx(2 * 0.2 - T * ex, abs=1e-9)

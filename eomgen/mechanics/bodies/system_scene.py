@@ -11,18 +11,21 @@ from eomgen.mechanics.bodies.inertia import mass_properties
 from eomgen.mechanics.bodies.kinematics import GROUND, Motion, ground_place
 from eomgen.mechanics.bodies.scope import Scope, parameters_of_zero, primitive
 from eomgen.model.forces.load import BodyPoint
+from eomgen.model.part import altered
+from eomgen.model.parts import Coordinate
 from eomgen.model.quaternions import quaternions_of
 from eomgen.model.values import exact_parameters, no_orientation
 from eomgen.records import dataclass
 from eomgen.symbolic.exact.equality import equal_at_random_states
 from eomgen.symbolic.exact.normal_form import readable_all
 from eomgen.symbolic.expression.derivative import depends_on, gradient, substituted, symbols_of
-from eomgen.symbolic.expression.expressions import Call, Expression
+from eomgen.symbolic.expression.expressions import Call, Expression, as_expression
 from eomgen.symbolic.expression.functions import over, sqrt
 from eomgen.symbolic.expression.graph import Node, Scalar, is_zero
 from eomgen.symbolic.expression.spatial import Matrix, Vector
 from eomgen.symbolic.numeric.evaluation import FLOAT, evaluate
 from eomgen.symbolic.numeric.work import Work
+from eomgen.symbolic.print.text import to_text
 
 
 @dataclass(frozen=True)
@@ -217,6 +220,14 @@ def start_value(scope: Scope, q: Node) -> Scalar:
     if coordinate.motion is not None:
         return substituted((scope.value(coordinate.motion),), {scope.symbols.t: 0})[0]
     return scope.value(coordinate.near if coordinate.start is None else coordinate.start)
+
+
+def let_go(scope: Scope, name: str) -> Coordinate:
+    """A driven coordinate without what drives it: one like others, which starts where it is driven from."""
+    part = scope.model.coordinates[name]
+    (q,) = (x for x in scope.symbols.q if x.name == name)
+    start = part.start if part.motion is None else as_expression(to_text(start_value(scope, q)))
+    return altered(part, motion=None, rate=None, acceleration=None, start=start)
 
 
 def with_unit_quaternions(scope: Scope, start: dict[Node, Scalar]) -> dict[Node, Scalar]:

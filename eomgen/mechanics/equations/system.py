@@ -21,6 +21,7 @@ from eomgen.records import dataclass
 from eomgen.symbolic.expression.derivative import substituted
 from eomgen.symbolic.expression.graph import Node, Scalar
 from eomgen.symbolic.expression.symbols import Symbols
+from eomgen.symbolic.numeric.transplant import transplanted
 
 
 @dataclass(frozen=True)
@@ -76,26 +77,44 @@ class System:
         return replace(symbols, lam=lam)
 
 
-def system_of(model: Model, modes: ContactModes | None = None, *, with_laws: bool = False) -> System:
+def system_of(
+    model: Model, modes: ContactModes | None = None, *, with_laws: bool = False, begun_as: System | None = None
+) -> System:
     """Motion, loads and ties of a model, dependent coordinates eliminated.
 
     Args:
         modes: how contacts are that can end, slide or stick, by tie.
+        begun_as: the system of the same start whose model this one was, before something in it was let go: what stands
+            as it did at the start stands as it does there.
         with_laws: for print: long rates and accelerations of driven coordinates are names (`Scope.laws`).
     Raises:
         NotYet: a kind of joint, force or constraint that this version does not derive.
         DerivationError: what the model says cannot be derived.
     """
-    free = free_system_of(model, modes, with_laws=with_laws)
+    free = free_system_of(model, modes, with_laws=with_laws, begun_as=begun_as)
     return reduced_system(free) if dependent_coordinates(free.scope) or model.speeds else free
 
 
-def free_system_of(model: Model, modes: ContactModes | None = None, *, with_laws: bool = False) -> System:
+def free_system_of(
+    model: Model, modes: ContactModes | None = None, *, with_laws: bool = False, begun_as: System | None = None
+) -> System:
     """Motion, loads and ties of a model in which dependent coordinates are as free as others."""
     motion = motion_of(scope_of(model, with_laws=with_laws))
     ties = ties_of(motion, modes=modes)
-    begun = begun_places(ties) if any(force.of_the_start for force in model.forces.values()) else {}
+    begun: Mapping[Node, Scalar] = {}
+    if begun_as is not None:
+        begun = _carried_places(begun_as, motion.scope)
+    elif any(force.of_the_start for force in model.forces.values()):
+        begun = begun_places(ties)
     return System(motion, loads_of(motion, begun), ties, modes or {})
+
+
+def _carried_places(system: System, scope: Scope) -> dict[Node, Scalar]:
+    """Where coordinates of a system start that do not start where they are declared to, in another scope."""
+    places = system.loads.begun
+    values = transplanted(tuple(places.values()), scope.graph, scope.names)
+    own = {q.name: q for q in scope.symbols.q}
+    return {own[q.name]: x for q, x in zip(places, values, strict=True) if q.name in own}
 
 
 def reduced_system(free: System) -> System:

@@ -13,6 +13,7 @@ from collections.abc import Container
 
 from eomgen.errors import DerivationError, MissingValues
 from eomgen.mechanics.balance.friction import frictions
+from eomgen.mechanics.bodies.system_scene import let_go
 from eomgen.mechanics.constraints.freedom import redundant_rows
 from eomgen.mechanics.constraints.ties import Row, Ties, holds_identically
 from eomgen.mechanics.equations.equations_of_motion import EquationsOfMotion
@@ -52,10 +53,10 @@ def drive(system: System, coordinate: str) -> Scalar:
 
 
 def with_drive_let_go(system: System, coordinate: str) -> System:
-    """The same without what moves a driven coordinate: a coordinate like others."""
+    """The same without what moves a driven coordinate: one like others, which starts where it is driven from."""
     model = system.scope.model
-    freed = altered(model.coordinates[coordinate], motion=None, rate=None, acceleration=None)
-    return system_of(altered(model, coordinates=Table({**model.coordinates, coordinate: freed})), system.modes)
+    table = Table({**model.coordinates, coordinate: let_go(system.scope, coordinate)})
+    return system_of(altered(model, coordinates=table), system.modes, begun_as=system)
 
 
 def _friction(system: System, free: System, k: int) -> Scalar:
