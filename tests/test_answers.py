@@ -117,6 +117,65 @@ def test_a_body_that_is_placed_is_held_by_nothing_and_its_reactions_are_not_give
     assert found["a"].exact == "theta"
 
 
+CART = """
+eomgen = 1
+name = "cart"
+space = "plane"
+[parameters]
+g = 9.81
+[coordinates]
+x = {X}
+phi = 0.4
+[bodies.cart]
+mass = 3
+inertia = 1
+joint = {{ kind = "placed", at = ["x", 0], angle = 0 }}
+points = {{ A = [0.3, 0] }}
+[bodies.arm]
+mass = 2
+inertia = 0.1
+center = [0.4, 0]
+joint = {{ kind = "revolute", on = "cart.A", angle = "phi" }}
+[constraints.post]
+kind = "support"
+point = "cart.origin"
+normal = [0, 1]
+[forces.weight]
+kind = "gravity"
+acceleration = [0, "-g"]
+[outputs]
+a = {{ value = "reaction_y(arm)", at = "t = 0" }}
+"""
+
+
+def test_at_an_instant_too_nothing_follows_of_a_body_that_nothing_holds():
+    """The cart's free coordinate moves it, and nothing keeps it from turning: not 0 = R for the hinge on it."""
+    found = answers("", CART.format(X=0))
+    assert not found["a"].answered and "'cart' is kept from turning by nothing" in (found["a"].message or "")
+
+
+def test_what_is_placed_by_a_driven_coordinate_is_held_as_it_is_moved_where_nothing_else_holds_it():
+    """Of the cart that moves as given R_x = sum of m a_x; N is the post's alone, the couple holds the hinge's force."""
+    found = answers(
+        """b = { value = "reaction_y(arm)", at = "t = 0" }
+N = "reaction_n(post)"
+X = { value = "reaction_x(cart)", at = "t = 0" }
+M = "reaction_couple(cart)"
+D = { value = "drive(x)", at = "t = 0" }
+P = "reaction_y(cart)"
+""",
+        CART.format(X='{ motion = "0.2*t^2", unit = "m" }'),
+    )
+    I, r, m, g, a = 0.1 + 2 * 0.4**2, 0.4, 2.0, 9.81, 0.4
+    turn = (m * r * a * math.sin(0.4) - m * g * r * math.cos(0.4)) / I
+    hinge = m * g + m * r * turn * math.cos(0.4)
+    drive = 3 * a + m * a - m * r * turn * math.sin(0.4)
+    assert (found["a"].value, found["b"].value) == (pytest.approx(hinge), pytest.approx(hinge))
+    assert found["N"].value == pytest.approx(3 * g + hinge)
+    assert (found["X"].value, found["D"].value) == (pytest.approx(drive), pytest.approx(drive))
+    assert (found["M"].value, found["P"].value) == (pytest.approx(0.3 * hinge), 0)
+
+
 OSCILLATOR = """
 eomgen = 1
 name = "oscillator"

@@ -11,6 +11,7 @@ from eomgen.mechanics.balance.components import EACH_AXIS, Component
 from eomgen.mechanics.balance.friction import FrictionContact, friction_contacts
 from eomgen.mechanics.balance.named_reactions import NamedReaction, unit_of
 from eomgen.mechanics.constraints.ties import Row
+from eomgen.mechanics.constraints.ways_of_bodies import is_placed
 from eomgen.mechanics.reactions.reactions import Reactions
 from eomgen.model.constraints.members import trusses_of
 from eomgen.model.forces.load import PointForce
@@ -221,7 +222,7 @@ def said(balance: Balance, named: NamedReaction) -> str:
     kind, _, rest = named.name.removeprefix("reaction_").partition("(")
     axis = kind.removeprefix("couple_")
     of_one = [j for j, k in named.combination.items() if type(k) is int and k == 1]
-    if axis not in AXES and of_one:
+    if axis not in AXES and of_one and not balance.components[of_one[0]].is_wrench:
         return meaning(balance, balance.components[of_one[0]])
     place = rest.removesuffix(")")
     side = place.partition(".")[2]
@@ -230,6 +231,8 @@ def said(balance: Balance, named: NamedReaction) -> str:
     on = _on(balance, component)
     if kind in ("t", "s"):
         return _friction(balance, component, kind)
+    if kind == "couple":
+        return f"couple {on}, counter-clockwise"
     if kind.startswith("couple_"):
         return f"couple {on}, about {axis}"
     return f"force {on}, along {axis}"
@@ -247,7 +250,8 @@ def _on(balance: Balance, component: Component) -> str:
     first, *others = dict.fromkeys(effect.link for effect in component.effects)
     body, other = (links[first].name, links[others[0]].name if others else "the ground")
     if component.kind != "tie":
-        return f"on {body} in its joint, from {other}"
+        where = "place" if is_placed(links[first]) else "joint"
+        return f"on {body} in its {where}, from {other}"
     if component.side:
         return f"on {component.side} in the hinge {component.owner}, from the others"
     return f"on {body} at {component.owner}, from {other}"

@@ -214,12 +214,17 @@ class Drawing:
         }
         if how in laws:
             self.coordinates[name] = laws[how]
+        if how == "placed":
+            self.coordinates[name] = self.rng.choice([laws["by_formula"], laws["by_samples"]])
         if how == "by_samples" and self.rng.random() < 0.5:
             self.coordinates[name]["motion"]["ends"] = self.rng.choice(["natural", "rest"])
         if how == "by_tie":
             self.coordinate("b", kind, 0.0)
             self.constraints["drive"] = {"kind": "motion", "coordinate": "b", "value": f"{amplitude}*sin(w*t)"}
-        if sliding:
+        if how == "placed":
+            turning = {"angle": name} if self.plane else {"orientation": "xyz", "angles": [name, "A*sin(w*t)", 0.2]}
+            joint = self.joint("placed", at=self.v("B*sin(w*t)", "h", "h/2"), **turning)
+        elif sliding:
             joint = self.joint("prismatic", axis=self.v(3, 4, 0) if self.plane else [2, 1, 2], displacement=name)
         else:
             joint = self.joint("revolute", at=self.v("0.1", "h", "0"), angle=name, **self.axis())

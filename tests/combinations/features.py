@@ -26,7 +26,7 @@ FACTORS: dict[str, tuple[str, ...]] = {
     "space": ("plane", "space"),
     "base": (
         "ground", "turning", "sliding", "by_formula", "by_rate", "by_acceleration", "by_samples", "by_samples_rate",
-        "by_tie", "all_driven",
+        "by_tie", "placed", "all_driven",
     ),
     "loop": ("none", "four_bar", "slider_crank", "two_loops", "on_base"),
     "tie": (

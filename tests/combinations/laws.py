@@ -6,6 +6,7 @@ Imports nothing of eomgen.
 from __future__ import annotations
 
 import itertools
+import re
 from collections.abc import Callable
 from dataclasses import dataclass
 from typing import Any
@@ -923,12 +924,18 @@ def holding(o: Any, solved: Any) -> tuple[list[int], np.ndarray, np.ndarray]:
 
 
 def _carried_by_drives(solved: Any, name: str, o: Any) -> bool:
-    """Whether all that a joint moves with is driven: its drives then hold the body against what carries it."""
+    """Whether all that a joint moves with is driven: its drives then hold the body against what carries it.
+
+    What is placed, and moves with anything that is driven or with time, is held as it is placed: without work on what
+    is free.
+    """
     first = 6 * len(o.bodies)
     rows = [solved.J[i][first:] for i, row in enumerate(solved.rows) if row.owner == name]
     used = [q for k, q in enumerate(o.names) if any(abs(row[k]) > 1e-12 for row in rows)]
-    kind = solved.now.model.bodies[name]["joint"]["kind"]
-    return kind != "placed" and bool(used) and set(used) <= set(solved.now.model.driven)
+    joint = solved.now.model.bodies[name]["joint"]
+    if joint["kind"] == "placed":
+        return bool(set(used) & set(solved.now.model.driven)) or re.search(r"\bt\b", str(joint)) is not None
+    return bool(used) and set(used) <= set(solved.now.model.driven)
 
 
 def _parts(A: np.ndarray) -> list[tuple[np.ndarray, np.ndarray]]:

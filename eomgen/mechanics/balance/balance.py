@@ -14,6 +14,7 @@ from functools import cached_property
 
 from eomgen.errors import DerivationError
 from eomgen.mechanics.balance.components import Component, components_of
+from eomgen.mechanics.balance.placements import placements_of
 from eomgen.mechanics.balance.unit_wrenches import Axes, effects_of_load, joint_effects
 from eomgen.mechanics.bodies.inertia import kinetic_energy
 from eomgen.mechanics.bodies.kinematics import BodyLink
@@ -110,6 +111,7 @@ def _balance(system: System, sizes: Mapping[str, Scalar]) -> Balance:
     refuse_placeless(system)
     axes = Axes(system.motion)
     components = components_of(system, axes)
+    components += placements_of(system, axes, components)
     inertia, applied, on_bodies = _inertia(axes), _applied(system, axes), _coefficients(components)
     equations = []
     for i, link in enumerate(system.motion.links):

@@ -49,7 +49,7 @@ class Component:
     Args:
         owner: the tie, or the body whose joint it is.
         kind: "tie", "joint", or "drive": what moves a driven coordinate at a joint.
-        label: "x", "y", "z", "n", "t", "couple", "couple x", "tension", "drive", or "" for a row of no place.
+        label: "x", "y", "z", "n", "t", "couple", "couple x", "wrench 1", "tension", "drive"; "" of a row of no place.
         number: its row in the tie, or its place among the joint's components, from 1.
         effects: of a unit of it, on the child or the first-named body first.
         friction: along each direction in which its contact slides.
@@ -77,6 +77,11 @@ class Component:
     def frictional(self) -> bool:
         """Whether it is friction, or there is friction by it."""
         return bool(self.friction) or self.bilateral_friction is not None
+
+    @property
+    def is_wrench(self) -> bool:
+        """Whether it is a force and a couple together: one of a screw, or of what is placed."""
+        return self.label.startswith("wrench")
 
     @property
     def name(self) -> str:
@@ -165,7 +170,7 @@ def _basis(axes: Axes, link: BodyLink, system: System) -> list[tuple[str, Vector
     if axes.plane:
         forces = [f for f in forces if not _vanishes(f[:2])]
         found = [("couple", ZERO, c) for c in couples if not is_zero(c[2])]
-        return [*_forces(axes, link, forces, 2), *([] if _is_idle(axes, link, system) else found)]
+        return [*_forces(axes, link, forces, 2), *([] if is_idle(axes, link, system) else found)]
     mixed = [c for c in columns if not _vanishes(c[:3]) and not _vanishes(c[3:])]
     names = [f"couple {axis}" for axis in "xyz"] if len(couples) == 3 else _numbered("couple", len(couples))
     held = [(name, ZERO, c) for name, c in zip(names, EACH_AXIS if len(couples) == 3 else couples, strict=True)]
@@ -189,7 +194,7 @@ def _forces(axes: Axes, link: BodyLink, forces: list[Vector], most: int) -> list
     return [(label, f, ZERO) for label, f in _normals(axes, link, forces)]
 
 
-def _is_idle(axes: Axes, link: BodyLink, system: System) -> bool:
+def is_idle(axes: Axes, link: BodyLink, system: System) -> bool:
     """Whether nothing can turn the body against its joint: a particle with all that acts on it at its mass."""
     motion = axes.motion
     shape = motion.scope.model.bodies[link.name].shape

@@ -8,6 +8,7 @@ surface along both tangents.
 from __future__ import annotations
 
 from collections.abc import Callable, Container, Iterable, Mapping, Sequence
+from dataclasses import replace
 
 from eomgen.mechanics.balance.balance import Balance
 from eomgen.mechanics.balance.components import Component
@@ -15,6 +16,7 @@ from eomgen.mechanics.balance.unit_wrenches import Axes, Effect, effects_of_load
 from eomgen.mechanics.bodies.kinematics import BodyLink, Motion
 from eomgen.mechanics.bodies.loads import in_ground_axes
 from eomgen.mechanics.constraints.ties import Row, holds_identically
+from eomgen.mechanics.constraints.ways_of_bodies import is_placed
 from eomgen.model.constraints.members import ends_asked
 from eomgen.model.constraints.row import AXIS_NAMES
 from eomgen.model.forces.load import PointForce
@@ -73,13 +75,17 @@ def _of_owner(balance: Balance, owner: str) -> Iterable[NamedReaction]:
     mine = [(j, c) for j, c in enumerate(balance.components) if c.owner == owner]
     ties = [(j, c) for j, c in mine if c.kind != "drive"]
     plane = balance.system.scope.model.space == "plane"
-    apart = [(j, c) for j, c in ties if c.label in OWN or (plane and c.label not in ("x", "y", "wrench"))]
+    wrenches = any(c.is_wrench for _, c in ties)
+    apart = [(j, c) for j, c in ties if c.label in OWN or (plane and c.label not in ("x", "y") and not c.is_wrench)]
     if len(apart) < len(ties):
         along = (0, 1) if plane else (0, 1, 2)
         for side in dict.fromkeys(("", *(c.side for _, c in ties))):
             yield from _vector(balance, owner, side, "", FORCE, along)
         if not plane and any(_has_couple(c) for _, c in ties):
             yield from _vector(balance, owner, "", "couple_", COUPLE, along)
+        if plane and wrenches:
+            (about_z,) = _vector(balance, owner, "", "couple_", COUPLE, (2,))
+            yield replace(about_z, name=f"reaction_couple({owner})")
     for j, c in apart:
         yield NamedReaction(_name(balance, c), owner, unit_of(c), {j: 1})
         for share in c.friction:
@@ -143,6 +149,7 @@ def _drives(balance: Balance, j: int, component: Component) -> dict[int, Scalar]
     """What drives a coordinate q: the work of all reactions on the bodies as q alone changes, that of ties left out.
 
     sum over joints of D_k ds_k/dq, s_k the variable of the joint; of joints whose seat it moves what the seat takes;
+    of what is placed all that its place takes;
     of ties sum f . dp/dq - dphi/dq, what acts on places that it moves and that belong to no body.
     """
     if not component.side:
@@ -154,7 +161,7 @@ def _drives(balance: Balance, j: int, component: Component) -> dict[int, Scalar]
     for i, c in enumerate(balance.components):
         if c.kind == "drive" and c.side == q.name:
             found[i] = derivative(motion.link(c.owner).s[c.number - 1], q)
-        elif c.kind == "joint" and _moves_seat(motion.link(c.owner), q):
+        elif c.kind == "joint" and (is_placed(link := motion.link(c.owner)) or _moves_seat(link, q)):
             found[i] = _work(motion, c.effects, q)
         elif c.kind == "tie" and c.bilateral_friction is None and (c.owner, c.number) in rows:
             found[i] = _left_out(balance, rows, rows[c.owner, c.number], q)

@@ -344,13 +344,12 @@ def _found(system: System, at: Mapping[Node, Scalar], short: bool, work: int) ->
     balance = balance_of(system, sizes)
     if balance.unknowns:
         return _at_rest(balance, at, work)
-    if at and sizes:
-        return Reactions(balance, _with_sizes(system, at, sizes, work), at)
     if at:
-        return Reactions(balance, solution_of_balance(balance, at, work=work), at)
-    solution = solution_of_balance(balance, {}, sure=None if short else SURE)
-    refuse_unheld(balance, solution)
-    return Reactions(balance, solution, {})
+        solution = _with_sizes(system, at, sizes, work) if sizes else solution_of_balance(balance, at, work=work)
+    else:
+        solution = solution_of_balance(balance, {}, sure=None if short else SURE)
+    refuse_unheld(balance, solution, at)
+    return Reactions(balance, solution, at)
 
 
 def _with_sizes(system: System, at: Mapping[Node, Scalar], sizes: Mapping[str, Scalar], work: int) -> Solution:

@@ -6,7 +6,7 @@ virtual motion is resisted by nothing, and it is none of the coordinates'.
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from typing import Any
 
 import numpy as np
@@ -23,41 +23,55 @@ from eomgen.mechanics.structures.structure import structure_of
 from eomgen.model.driven import driven_coordinates
 from eomgen.model.trusses import called, declared_at
 from eomgen.symbolic.expression.derivative import depends_on
-from eomgen.symbolic.expression.graph import Scalar
+from eomgen.symbolic.expression.graph import Node, Scalar, is_zero
 from eomgen.symbolic.numeric.evaluation import evaluate, fifty_digits
 from eomgen.symbolic.numeric.tolerances import RANK_NEARBY
 from eomgen.symbolic.solve.linear import Solution
 
 
-def refuse_unheld(balance: Balance, solution: Solution) -> None:
+def refuse_unheld(balance: Balance, solution: Solution, at: Mapping[Node, Scalar]) -> None:
     """Refuse a motion of bodies that no reaction resists and no coordinate describes.
 
+    Args:
+        at: the configuration at which the solution was found, {} where it is a function of the coordinates.
     Raises:
         DerivationError: the body that moves most in it, and the direction.
     """
-    system = balance.system
-    motions = freedoms(system.ties)
-    if len(solution.left) <= motions or sum(not holds_identically(x) for x in solution.left) <= motions:
-        return
-    if not system.symbols.u:
-        return refuse_loose(structure_of(system))
+    system, left = balance.system, solution.left
+    if at:
+        if all(map(is_zero, left)) or not system.symbols.u:  # at rest what is left over is looked at elsewhere
+            return
+    else:
+        motions = freedoms(system.ties)
+        if len(left) <= motions or sum(not holds_identically(x) for x in left) <= motions:
+            return
+        if not system.symbols.u:
+            return refuse_loose(structure_of(system))
+    if refuse_unheld not in system.found:
+        system.found[refuse_unheld] = _unheld(balance)
+    if system.found[refuse_unheld] is not None:
+        raise system.found[refuse_unheld]
+
+
+def _unheld(balance: Balance) -> DerivationError | None:
+    """The body that moves most in what no reaction resists and no coordinate describes, and the direction."""
     free, allowed = _virtual_motions(balance)
     Q = np.linalg.qr(allowed)[0] if allowed.size else np.zeros((free.shape[0], 0))
     unheld = free - Q @ (Q.T @ free)
     worst = int(np.argmax(np.max(np.abs(unheld), axis=1)))
     if np.max(np.abs(unheld)) < RANK_NEARBY:
-        return
+        return None
     equation = balance.equations[worst]
     direction = DIRECTIONS[equation.direction]
     turning = direction.startswith("moment")
     what = "kept from turning by nothing" if turning else f"held by nothing along {direction}"
-    joined = _joined_by_a_coordinate(system)
+    joined = _joined_by_a_coordinate(balance.system)
     mend = (
         f"{joined}, and nothing named joins them: name the constraint that does"
         if joined
         else "what is placed carries no reaction: name the constraint that holds it, or hang it by joints"
     )
-    raise DerivationError(f"{called(equation.body)} is {what}", declared_at(equation.body), mend)
+    return DerivationError(f"{called(equation.body)} is {what}", declared_at(equation.body), mend)
 
 
 def _joined_by_a_coordinate(system: System) -> str:

@@ -133,11 +133,20 @@ def _reaction(catalog: Catalog, argument: Reference) -> tuple[str, str, int, int
     return _unknown(Reference(owner, argument.column), "tie or joint", [*ties, *jointed])
 
 
+def _moves_as_given(catalog: Catalog, body: str, joint: Any) -> bool:
+    """Whether time or a driven coordinate stands in where a body is placed: what moves it as given holds it too."""
+    clocks = {"t", *(name for name, part in catalog.table("coordinates").items() if part is not None and part.driven)}
+    clocks |= {tie.drives() for tie in catalog.table("constraints").values() if tie is not None}
+    seats = {("bodies", body, "joint"), ("points", joint.at, "at"), ("points", joint.at)}
+    mine = (expression for leaf, expression in catalog.expressions if {leaf.path[:2], leaf.path[:3]} & seats)
+    return any(name in clocks for expression in mine for name, _ in expression.occurrences)
+
+
 def _joint_reaction(catalog: Catalog, argument: Reference, body: str, side: str) -> tuple[str, str, int, int] | None:
     part = catalog.table("bodies")[body]
     if part is None or ("bodies", body, "joint") in catalog.broken:
         return None
-    if part.joint is None or not part.joint.carries_reaction:
+    if part.joint is None or not (part.joint.carries_reaction or _moves_as_given(catalog, body, part.joint)):
         held = "has no joint" if part.joint is None else "is placed, which is geometry"
         mend = "name the constraint that holds it"
         return f"body '{body}' {held}: it has no reaction of its own", mend, argument.column, len(body)
