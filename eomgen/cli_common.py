@@ -20,7 +20,7 @@ import click
 from eomgen import files
 from eomgen.cli_options import form_asked
 from eomgen.edge import INTERRUPTED, Placed, failure, guarded, problems_of, say
-from eomgen.errors import DerivationError, EomgenError, ModelError, RunFailed, UsageError
+from eomgen.errors import DerivationError, EomgenError, ModelError, OpenTies, RunFailed, UsageError
 from eomgen.records import dataclass
 from eomgen.symbolic.expression.habits import other_words
 from eomgen.symbolic.numeric.gc_pause import growing, seldom
@@ -288,7 +288,12 @@ def asked_document(
     from eomgen.verbs.assignments import typed
 
     valued, rest = typed(_followed(source.model, follow), options)
-    document = made(valued.model, **rest, **more)
+    try:
+        document = made(valued.model, **rest, **more)
+    except OpenTies as error:
+        from eomgen.verbs.outcome import named_open
+
+        raise named_open(valued.model, error) from error
     document = replace(document, taken=(*valued.taken, *document.taken))
     return source.warned(document, valued.model)
 
@@ -302,6 +307,7 @@ def write_result(
     def made(declared: Model, **asked: Any) -> Document:
         with growing():
             document = shown(found(declared, **asked), plot=plot, certify=certify)
-        return with_start_told(document, declared) if at_start else document
+        told = with_start_told(document, declared)
+        return told if at_start else replace(document, cautions=told.cautions)
 
     return write_asked(made, **options)

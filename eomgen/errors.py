@@ -129,6 +129,10 @@ class DerivationError(EomgenError):
     """The equations could not be derived, or a result could not be had from them."""
 
 
+class OpenTies(DerivationError):
+    """Constraints that no place near the start closes."""
+
+
 class NotYet(DerivationError):
     """A kind that the model file knows and this version cannot derive yet."""
 

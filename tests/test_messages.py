@@ -3,9 +3,11 @@
 from __future__ import annotations
 
 import pytest
+from click.testing import CliRunner
 from newcomer import CRANE
 
 import eomgen
+from eomgen.cli import main
 
 JOINT, ASKED, ANGLE = (
     'joint = { kind = "revolute", on = "trolley", angle = "phi - pi/2" }',
@@ -111,3 +113,37 @@ def test_a_strange_key_is_meant_by_the_only_one_that_is_missing():
     told = str(caught.value)
     assert "write 'points': it is needed here" in told and "has no 'points'" not in told
     assert "declare it in [points]: ground = [...]" in told and told.count("mend:") == 2
+
+
+TORN = """
+eomgen = 1
+name = "torn"
+space = "plane"
+[coordinates]
+phi = 0.4
+psi = { dependent = true, near = 1.2 }
+[bodies.one]
+shape = { kind = "rod", mass = 1, length = 0.4 }
+joint = { kind = "revolute", angle = "phi" }
+[bodies.two]
+shape = { kind = "rod", mass = 1, length = 0.4 }
+joint = { kind = "revolute", at = [5, 0], angle = "psi" }
+[constraints.bar]
+kind = "link"
+points = ["one.end", "two.end"]
+length = 1
+"""
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize(
+    ("words", "code"),
+    [(("derive", "--no-certify"), 0), (("statics",), 0), (("inertia",), 0), (("linearize",), 3), (("reactions",), 3)],
+)
+def test_every_verb_says_which_tie_cannot_close(tmp_path, words, code):
+    """One sentence, with its place: in verbs that need no start a warning, in others the refusal."""
+    path = tmp_path / "torn.toml"
+    path.write_text(TORN, encoding="utf-8")
+    found = CliRunner().invoke(main, [words[0], str(path), *words[1:]])
+    assert found.exit_code == code
+    assert f"{path}:14:14: 'bar' (row 1) does not close at the start: it is open by 3.78" in found.stderr

@@ -4,12 +4,14 @@ from __future__ import annotations
 
 from dataclasses import replace
 
+from eomgen import pipeline
 from eomgen.codegen.targets import ALL
 from eomgen.documents.document import Document, lines_document, plain_document
 from eomgen.documents.proven import proven
 from eomgen.documents.statements import Lines
 from eomgen.generated import Generated, generate
 from eomgen.model.parts import Model
+from eomgen.verbs.outcome import with_ties_closed
 
 
 def codegen_document(
@@ -57,7 +59,8 @@ def codegen_document(
     paths = [] if refused else [str(path) for path in found.write(directory)]
     lines = ("no files were written",) if refused else tuple(paths)
     document = plain_document(model, lambda: _payload(found, paths), Lines(lines))
-    return proven(replace(document, notes=tuple(found.notes)), certificate)
+    document = with_ties_closed(replace(document, notes=tuple(found.notes)), pipeline.derive(found.model).system)
+    return proven(document, certificate)
 
 
 def _payload(found: Generated, paths: list[str]) -> dict[str, object]:

@@ -9,9 +9,10 @@ from typing import TYPE_CHECKING
 from eomgen.documents.document import Document
 from eomgen.documents.proven import proven
 from eomgen.documents.result import Result
-from eomgen.errors import DerivationError, ModelError
-from eomgen.mechanics.equations.system import system_of
-from eomgen.mechanics.initial_state.initial_state import start_of_motion
+from eomgen.edge import problems_of
+from eomgen.errors import DerivationError, ModelError, OpenTies
+from eomgen.mechanics.equations.system import System, system_of
+from eomgen.mechanics.initial_state.initial_state import Start, start_of_motion
 from eomgen.mechanics.statics.contacts_at_start import contacts_at_start
 from eomgen.model.parts import Model
 
@@ -29,7 +30,8 @@ def shown(found: Result, *, plot: str | None = None, certify: bool = True) -> Do
 
 
 def with_start_told(document: Document, model: Model, run: Trajectory | None = None) -> Document:
-    """The document with a note of what was changed where its model could not start as it is written.
+    """The document with a note of what was changed where its model could not start as it is written; a warning where
+    nothing closes its ties.
 
     Args:
         run: the motion that it tells of: that nothing moves is a note too.
@@ -39,10 +41,43 @@ def with_start_told(document: Document, model: Model, run: Trajectory | None = N
     if not (model.coordinates and model.constraints):
         return document
     try:
-        words = start_of_motion(system_of(model, contacts_at_start(model).modes)).words
+        words = _begun(model).words
+    except OpenTies as error:
+        return with_open_ties(document, error)
     except (DerivationError, ModelError):  # told by the verb, where it needs a start
         return document
     return replace(document, notes=(*document.notes, f"The start was {words}.")) if words else document
+
+
+def with_ties_closed(document: Document, system: System) -> Document:
+    """The document of what needs no start; with a warning where nothing closes the ties near it."""
+    try:
+        start_of_motion(system)
+    except OpenTies as error:
+        return with_open_ties(document, error)
+    except (DerivationError, ModelError):  # told by the verbs that need a start
+        pass
+    return document
+
+
+def with_open_ties(document: Document, error: OpenTies) -> Document:
+    """The document with a warning that nothing closes the ties of its model near the start."""
+    return replace(document, cautions=(*document.cautions, *problems_of(error)))
+
+
+def named_open(model: Model, error: OpenTies) -> OpenTies:
+    """Which of its ties stays open at the start, and by how much, where all that is known is that one does."""
+    try:
+        _begun(model)
+    except OpenTies as exact:
+        return exact
+    except (DerivationError, ModelError):
+        pass
+    return error
+
+
+def _begun(model: Model) -> Start:
+    return start_of_motion(system_of(model, contacts_at_start(model).modes))
 
 
 def listed(names: Iterable[str]) -> str:

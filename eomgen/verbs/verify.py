@@ -22,6 +22,7 @@ from eomgen.model.replaced import with_values
 from eomgen.proof.check import Certificate
 from eomgen.proof.verdicts import verdicts_again
 from eomgen.records import dataclass
+from eomgen.verbs.outcome import with_ties_closed
 
 LARGEST = 1_000_000  # bytes of a file of answers
 
@@ -86,6 +87,8 @@ def verify_document(
     document = plain_document(
         model, lambda: {"name": model.name, "equations": entries}, Lines(tuple(lines)), answer_code=code
     )
+    if judge.case.equations is not None:
+        document = with_ties_closed(document, judge.case.equations.system)
     return proven(document, _certificate(judge, found if at is None else ()) if certify else None)
 
 

@@ -67,7 +67,7 @@ def _without_work(system: System, link: BodyLink) -> list[SparseRow]:
     if not any(depends_on(s, clocks) for s in link.s):
         return []
     free = [q for q in symbols.q if q.name not in driven]
-    left = [({k: 1}, [derivative(s, q) for q in free]) for k, s in enumerate(link.s)]
+    left: list[Sloped] = [({k: 1}, [derivative(s, q) for q in free]) for k, s in enumerate(link.s)]
     for j in range(len(free)):
         pivot = next((row for row in left if type(row[1][j]) is not Node and row[1][j] != 0), None)
         if pivot is not None:

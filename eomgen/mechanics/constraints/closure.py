@@ -13,7 +13,7 @@ from typing import Any
 
 import numpy as np
 
-from eomgen.errors import DerivationError, EomgenError, MissingValues
+from eomgen.errors import EomgenError, MissingValues, OpenTies
 from eomgen.mechanics.constraints.ties import Ties
 from eomgen.model.values import exact_parameters, first_guesses, start_values
 from eomgen.records import dataclass
@@ -132,7 +132,7 @@ def _open(ties: Ties, known: Mapping[str, Any]) -> EomgenError:
         return MissingValues(missing)
     names = ", ".join(dict.fromkeys(row.tie for row in ties.rows if not row.identical))
     what = f"the ties do not close near the start values: {names}"
-    return DerivationError(what, mend="`eomgen check` says whether they can")
+    return OpenTies(what, mend="`eomgen check` says whether they can")
 
 
 def rows_where_closed(ties: Ties, state: State) -> np.ndarray:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
 
-from eomgen.errors import DerivationError
+from eomgen.errors import DerivationError, OpenTies
 from eomgen.mechanics.constraints.assembly import open_by
 from eomgen.mechanics.constraints.closure import of_50_digits
 from eomgen.mechanics.constraints.elimination import dependent_coordinates
@@ -22,7 +22,7 @@ from eomgen.symbolic.numeric.evaluation import evaluate, fifty_digits
 
 
 def refuse_open_gaps(system: System, state: State) -> None:
-    """Raises DerivationError for the tie that is open by most."""
+    """Raises OpenTies for the tie that is open by most, DerivationError where its gap has no value."""
     q = system.symbols.q
     gaps = [(row, row.gap) for row in system.ties.rows if row.gap is not None and not row.identical]
     found = _worst(gaps, q, state)
@@ -37,7 +37,7 @@ def refuse_open_gaps(system: System, state: State) -> None:
         )
     size = _in_full(system, row, size, state)
     what = f"'{row.tie}' (row {row.number}) does not close at the start: it is open by {size:.3g}"
-    raise DerivationError(f"{what}{_nearest(system, state)}", f"constraints.{row.tie}", _mend(system, gap))
+    raise OpenTies(f"{what}{_nearest(system, state)}", f"constraints.{row.tie}", _mend(system, gap))
 
 
 def _lacking(gap: Scalar, state: State) -> str:
