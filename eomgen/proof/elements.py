@@ -162,7 +162,16 @@ class ActingElement(InNumbers):
         """Of the pull on the first end."""
         along = self.element.along
         v: Numbers = minus(self.ends[1], self.ends[0]) if along is None else self.vector(self.scene.vector(along))
+        if along is None and self._is_spring_without_length and not any(v):
+            return ZERO  # it pulls nothing, in no direction
         return direction_at(v)
+
+    @property
+    def _is_spring_without_length(self) -> bool:
+        """Whether k l is all that it pulls: that is smooth where its ends meet."""
+        element = self.element
+        springs = element.stiffness is not None and element.damping is None and element.pull is None
+        return springs and self._slack == 0
 
     @cached_property
     def measured(self) -> tuple[Any, Any]:
@@ -208,7 +217,9 @@ class ActingElement(InNumbers):
             return self.at((self.system.scope.value(slack),))[0]
         first, second = (self.scene.position(self.scene.place(p)) for p in self.element.points)
         apart = self.vector([self.scene.start(x) for x in minus(second, first)])
-        return dot(apart, direction_at(apart) if self.element.along is None else self.direction)
+        if self.element.along is not None:
+            return dot(apart, self.direction)
+        return dot(apart, direction_at(apart)) if any(apart) else 0
 
     # -- what acts -------------------------------------------------------------------------------------------
 

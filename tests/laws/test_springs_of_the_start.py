@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import math
+
 import numpy as np
 import pytest
 
@@ -138,3 +140,51 @@ def test_what_stands_as_at_the_start_does_so_for_a_drive(drive: str, holds: str)
         ex, ey = np.array([0.7, 0.5]) / np.hypot(0.7, 0.5)
         T = -2 * (ey * 9.81 + ex * 0.2) if "link" in holds else 0.0
         assert a == pytest.approx(2 * 0.2 - T * ex, abs=1e-9)
+
+
+MEETING = """
+eomgen = 1
+name = "ends that meet"
+space = "{space}"
+[parameters]
+k = 50
+[coordinates]
+x = {{ start = 0, speed = 1 }}
+y = 0
+[bodies.ball]
+shape = {{ kind = "particle", mass = 2 }}
+joint = {{ kind = "placed", at = {at} }}
+[points]
+O = {O}
+[forces.rubber]
+kind = "{kind}"
+points = ["O", "ball.center"]
+{law}
+[outputs]
+a = "x''"
+P = {{ value = "power(rubber)", at = "t = 0" }}
+"""
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("space", ["plane", "space"])
+@pytest.mark.parametrize("length", ["0", '"start"'])
+def test_a_spring_without_length_is_smooth_where_its_ends_meet(space, length):
+    """F = -k r, V = k r.r/2: x'' = 0 there, omega^2 = k/m, x = sin(omega t)/omega, and every proof has its numbers."""
+    two = space == "plane"
+    at, O = ('["x", "y"]', "[0, 0]") if two else ('["x", "y", 0]', "[0, 0, 0]")
+    law = f'stiffness = "k"\nlength = {length}'
+    model = eomgen.loads(MEETING.format(space=space, at=at, O=O, kind="spring", law=law))
+    answers, small = eomgen.solve(model), eomgen.linearize(model)
+    assert (answers["a"].value, answers["P"].value) == (0, 0)
+    assert sorted(abs(complex(*x)) for x in small.as_dict()["eigenvalues"]) == pytest.approx([5] * 4)
+    assert eomgen.simulate(model, time=1, samples=2)["x"][-1] == pytest.approx(math.sin(5) / 5, abs=1e-8)
+    for proof in (answers.certify(), small.certify()):
+        assert all(check.status == "holds" for check in proof.checks)
+
+
+def test_a_damper_whose_ends_meet_has_no_direction_and_is_named():
+    """c l' along 0/0"""
+    model = eomgen.loads(MEETING.format(space="plane", at='["x", "y"]', O="[0, 0]", kind="damper", law="damping = 3"))
+    with pytest.raises(eomgen.EomgenError, match="force 'rubber' is 0/0 at x = 0, y = 0"):
+        eomgen.linearize(model)

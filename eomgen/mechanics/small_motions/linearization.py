@@ -10,6 +10,7 @@ import numpy as np
 
 from eomgen.errors import DerivationError, EomgenError, MissingValues, NotYet
 from eomgen.mechanics.constraints.bifurcations import fork_at
+from eomgen.mechanics.equations.no_value import valueless
 from eomgen.mechanics.equations.system import System
 from eomgen.mechanics.equilibria.higher_derivatives import states_beside
 from eomgen.mechanics.equilibria.standing import standing_system
@@ -260,6 +261,10 @@ def _equations(first: FirstOrder, choice: Choice, reference: ReferenceMotion) ->
 def _without_value(reference: ReferenceMotion) -> DerivationError:
     solved, value = reference.system.declared, Numbers(reference.numbers).of
     lost = [str(each) for each in solved if abs(value([each.determinant])[0]) <= REGULAR]
+    part = None if lost else valueless(reference.system, {x: float(y) for x, y in reference.numbers.items()})
+    if part is not None:
+        mend = "let what acts be regular there, or start elsewhere"
+        return DerivationError(f"{part.what}, the place of reference", part.where, mend)
     what = lost[0] if lost else "the equations of motion, or their derivatives, have no value"
     mend = "describe the motion by coordinates, speeds and forces that are regular there"
     return DerivationError(f"{what} at the place of reference", "linearize", mend)

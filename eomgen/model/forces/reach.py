@@ -17,19 +17,27 @@ class Reach:
 
     Args:
         ends: the two points.
+        gap: from the first to the second, ground axes [m].
         length: their distance, or the component along a fixed direction [m].
         direction: unit vector from the first to the second, ground axes.
         rate: of the length [m/s].
     """
 
     ends: tuple[BodyPoint, BodyPoint]
+    gap: Vector
     length: AnyScalar
     direction: Vector
     rate: AnyScalar
 
     def pulled(self, tension: AnyScalar) -> tuple[Load, ...]:
         """Equal and opposite forces that draw the ends together [N]."""
-        pull = times(tension, self.direction)
+        return self._opposite(times(tension, self.direction))
+
+    def pulled_by_length(self, stiffness: AnyScalar) -> tuple[Load, ...]:
+        """The same for a tension k l, which has a value where the ends meet too: k times the gap."""
+        return self._opposite(times(stiffness, self.gap))
+
+    def _opposite(self, pull: Vector) -> tuple[Load, ...]:
         return (PointForce(self.ends[0], pull), PointForce(self.ends[1], times(-1, pull)))
 
 
@@ -51,4 +59,4 @@ def reach(scene: LoadContext, points: tuple[str, ...], along: tuple[Expression, 
         size = sqrt(dot(n, n))
         direction = vector_of(over(x, size) for x in n)
         length = dot(gap, direction)
-    return Reach(ends, length, direction, dot(rate, direction))
+    return Reach(ends, gap, length, direction, dot(rate, direction))

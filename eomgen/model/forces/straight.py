@@ -18,6 +18,10 @@ class Straight(Force):
         """The law, attraction positive [N]."""
         raise NotImplementedError
 
+    def by_length(self, scene: LoadContext, line: Reach) -> AnyScalar | None:
+        """k of a law k l along the line between the points, which has no direction where these meet; else None."""
+        return None
+
     def effort(self, scene: LoadContext) -> AnyScalar | None:
         """The pull [N]."""
         return self.law(scene, self.line(scene))
@@ -25,7 +29,8 @@ class Straight(Force):
     def loads(self, scene: LoadContext) -> tuple[Load, ...]:
         """The pull on the first point, its opposite on the second."""
         line = self.line(scene)
-        return line.pulled(self.law(scene, line))
+        k = self.by_length(scene, line)
+        return line.pulled(self.law(scene, line)) if k is None else line.pulled_by_length(k)
 
     def line(self, scene: LoadContext) -> Reach:
         """Between the points."""
