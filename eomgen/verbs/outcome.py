@@ -9,8 +9,7 @@ from typing import TYPE_CHECKING
 from eomgen.documents.document import Document
 from eomgen.documents.proven import proven
 from eomgen.documents.result import Result
-from eomgen.edge import problems_of
-from eomgen.errors import DerivationError, ModelError, OpenTies
+from eomgen.errors import DerivationError, ModelError, OpenTies, Problem
 from eomgen.mechanics.equations.system import System, system_of
 from eomgen.mechanics.initial_state.initial_state import Start, start_of_motion
 from eomgen.mechanics.statics.contacts_at_start import contacts_at_start
@@ -62,7 +61,7 @@ def with_ties_closed(document: Document, system: System) -> Document:
 
 def with_open_ties(document: Document, error: OpenTies) -> Document:
     """The document with a warning that nothing closes the ties of its model near the start."""
-    return replace(document, cautions=(*document.cautions, *problems_of(error)))
+    return replace(document, cautions=(*document.cautions, Problem(error.where, error.what, mend=error.mend)))
 
 
 def named_open(model: Model, error: OpenTies) -> OpenTies:

@@ -33,7 +33,7 @@ from eomgen.symbolic.numeric.dense import rank
 from eomgen.symbolic.numeric.evaluation import evaluate, fifty_digits, floats_of
 from eomgen.symbolic.numeric.tolerances import RANK_NEARBY
 
-Sloped = tuple[SparseRow, list[Scalar]]  # a way, and its slopes along the free coordinates
+WayWithSlopes = tuple[SparseRow, list[Scalar]]  # a way, and its slopes along the free coordinates
 
 
 def placements_of(system: System, axes: Axes, others: Sequence[Component]) -> tuple[Component, ...]:
@@ -67,7 +67,7 @@ def _without_work(system: System, link: BodyLink) -> list[SparseRow]:
     if not any(depends_on(s, clocks) for s in link.s):
         return []
     free = [q for q in symbols.q if q.name not in driven]
-    left: list[Sloped] = [({k: 1}, [derivative(s, q) for q in free]) for k, s in enumerate(link.s)]
+    left: list[WayWithSlopes] = [({k: 1}, [derivative(s, q) for q in free]) for k, s in enumerate(link.s)]
     for j in range(len(free)):
         pivot = next((row for row in left if type(row[1][j]) is not Node and row[1][j] != 0), None)
         if pivot is not None:
@@ -75,7 +75,7 @@ def _without_work(system: System, link: BodyLink) -> list[SparseRow]:
     return [way for way, slopes in left if all(is_zero(x) for x in slopes)]
 
 
-def _less(row: Sloped, factor: Scalar, other: Sloped) -> Sloped:
+def _less(row: WayWithSlopes, factor: Scalar, other: WayWithSlopes) -> WayWithSlopes:
     """A row less so many times the other."""
     if is_zero(factor):
         return row
