@@ -21,7 +21,7 @@ from eomgen.identification import fit
 from eomgen.identification.base_parameters import Group
 from eomgen.identification.consistent import numbers_of
 from eomgen.identification.fit import _begun_checked, noise_of
-from eomgen.identification.proof_of_groups import certify_regressor, fit_checked, spread_checked
+from eomgen.identification.proof_of_groups import certify_regressor, fit_checked, samples_checked, spread_checked
 from eomgen.identification.regressor import Regressor, regressor_of
 from eomgen.identification.tied_rows import sampled_rows
 from eomgen.model.replaced import with_values
@@ -429,6 +429,18 @@ def test_a_fit_is_proven_too():
     b = W @ beta + 0.1 * rng.normal(size=50)
     best = np.linalg.lstsq(W, b, rcond=None)[0]
     assert fit_checked(W, b, best).ok and not fit_checked(W, b, best * (1 + 1e-6)).ok
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("text", [TWO_LINKS, FOUR_BAR])
+def test_samples_are_stacked_with_the_forces_that_act_there(text):
+    """Z^T (M a - forcing) = W pi - b by the equations of motion; half of what is applied is contradicted."""
+    model = eomgen.loads(text)
+    found, data = regressor_of(eomgen.derive(model).graph.system), data_of(model, 1, 50)
+    stacked = fit.stacking_of(found)(data)
+    wrong = replace(stacked, b=stacked.b / 2)
+    told = [samples_checked(found, fit._samples(found, data, each)).ok for each in (stacked, wrong)]
+    assert told == [True, False]
 
 
 def test_deviations_condition_and_residual_are_proven_by_another_factorization():

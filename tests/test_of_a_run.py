@@ -16,6 +16,7 @@ import eomgen
 from eomgen.cli import main
 from eomgen.errors import UsageError
 from eomgen.model.table import Table
+from eomgen.questions.of_a_run import asked_of
 from eomgen.symbolic.numeric.chebyshev import ChebyshevPieces, resolved_curve
 
 pytestmark = pytest.mark.slow
@@ -214,3 +215,18 @@ def test_a_wrong_extreme_fails_the_proof(monkeypatch):
     assert [check.status for check in whole.checks()] == ["holds"]
     monkeypatch.setattr(ChebyshevPieces, "extreme", lambda self, sign: (0.9 * max(self.c[:, 0]), 0.0))
     assert [check.status for check in whole.checks()] == ["fails"]
+
+
+def test_what_is_told_of_a_run_is_held_against_its_samples(swing):
+    """Another value at an instant, none where it is met, one of a later event: each differs from the samples."""
+    found = swing.proof.whole
+    model = eomgen.loads(PENDULUM)
+    for text in ("q at t = 1", "q' at q = 0, event 2", "max(q')", "q + 1", "q at t = 20", "q' at q = 0, event 40"):
+        asked = asked_of(model, text)
+        assert found.answered_otherwise(asked, found.of(asked).value) == ""
+    at = asked_of(model, "q at t = 1")
+    assert "it is not 1.9" in found.answered_otherwise(at, 1.9)
+    assert "no value, and it is met near t = 1" in found.answered_otherwise(at, None)
+    assert "2" in found.answered_otherwise(asked_of(model, "q"), 2.1)
+    later = replace(found.of(asked_of(model, "q' at q = 0, event 3")))
+    assert found.answered_otherwise(asked_of(model, "q' at q = 0, event 2"), later.value)

@@ -26,7 +26,7 @@ from eomgen.codegen.program import program_of
 from eomgen.codegen.rhs import compiled, parameter_vector
 from eomgen.errors import UsageError
 from eomgen.identification.consistent import numbers_of, parameters_of
-from eomgen.identification.proof_of_groups import fit_checked, spread_checked
+from eomgen.identification.proof_of_groups import StackedSamples, fit_checked, samples_checked, spread_checked
 from eomgen.identification.regressor import Regressor, regressor_of
 from eomgen.mechanics.equations.work import generalized_forces
 from eomgen.model.reader import ModelOrPath, model_at
@@ -84,10 +84,11 @@ class Identified:
 
 @dataclass(frozen=True)
 class Stacked:
-    """W pi = b, of all samples one above the other."""
+    """W pi = b, of all samples one above the other; `sizes` says how many rows each has."""
 
     W: np.ndarray
     b: np.ndarray
+    sizes: tuple[int, ...]
 
 
 Stacking = Callable[[Data], Stacked]
@@ -148,8 +149,20 @@ def identify(model: ModelOrPath, data: Data) -> Identified:
             fit_checked(W, stacked.b, beta / lengths),
             spread_checked(W, stacked.b, deviations, condition, residual),
             _begun_checked(found),
+            samples_checked(found, _samples(found, data, stacked)),
         ),
     )
+
+
+def _samples(found: Regressor, data: Data, stacked: Stacked) -> StackedSamples:
+    """The samples as they were stacked, with what the model says."""
+    t, states, _ = _measured(found.system.symbols, data)
+    given = {name: np.asarray(data[name], dtype=float) for name in found.system.symbols.inputs if name in data}
+    ends = np.cumsum(stacked.sizes)[:-1]
+    rows = [*zip(np.split(stacked.W, ends), np.split(stacked.b, ends), strict=True)]
+    own = _own_values(found)
+    pi, p = np.array([own[name] for name in found.parameters]), parameter_vector(found.model)
+    return StackedSamples(t, states, given, rows, pi, p)
 
 
 def _splined(symbols: Symbols, data: Data) -> list[str]:
@@ -216,7 +229,8 @@ def stacking_of(found: Regressor) -> Stacking:
         pushed = values[:, size * width + size : size * width + 2 * size]
         ties = values[:, size * width + 2 * size :].reshape(len(values), -1, size)
         parts = [(_along(J_k, size), Y_k, p_k - k_k) for J_k, Y_k, p_k, k_k in zip(ties, Y, pushed, known, strict=True)]
-        return Stacked(np.vstack([Z @ Y_k for Z, Y_k, _ in parts]), np.concatenate([Z @ b for Z, _, b in parts]))
+        W, b = np.vstack([Z @ Y_k for Z, Y_k, _ in parts]), np.concatenate([Z @ b for Z, _, b in parts])
+        return Stacked(W, b, tuple(len(Z) for Z, _, _ in parts))
 
     return stacked
 

@@ -4,12 +4,13 @@ Y pi + y0 = M a + c - Q without inputs              exactly
 Y pi = Y_base K pi                                  of any pi, at states that keep the ties, along their motions
 factor as printed, read back = its number
 W^T (b - W beta) = 0                                of the samples: nothing of what is left is along a column
+Z^T (M a - forcing) = W pi - b                      of some samples, pi the model's, Z the motions that the ties allow
 """
 
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping, Sequence
 from functools import partial
 from itertools import islice
 from random import Random
@@ -25,16 +26,19 @@ from eomgen.mechanics.equations.equations_of_motion import EquationsOfMotion
 from eomgen.mechanics.equations.system import System
 from eomgen.mechanics.initial_state.values_at_rest import values_of_parameters
 from eomgen.proof.check import Certificate, Check, Tally, attempted, checked, first_wrong
+from eomgen.proof.emitted_code import PhaseMotion, TriedState
+from eomgen.records import dataclass
 from eomgen.symbolic.exact.equality import equal_at_random_states
 from eomgen.symbolic.expression.derivative import substituted
 from eomgen.symbolic.expression.expressions import parse
 from eomgen.symbolic.expression.node import ScalarRow
 from eomgen.symbolic.expression.rational import Fraction
 from eomgen.symbolic.numeric.evaluation import evaluate, fifty_digits
-from eomgen.symbolic.numeric.tolerances import COMPUTED, FOLLOWS_AT_50, RANK
+from eomgen.symbolic.numeric.tolerances import COMPUTED, FOLLOWS_AT_50, RANK, RANK_NEARBY
 
 POOR = 1e6  # a condition beyond which its square is lost in doubles
 NEARLY = 1e-3  # share by which two ways of least squares may differ
+STACKED = "samples give the forces of the model as its equations do"
 SEED, STATES = 11, 3  # others than those at which the groups were found
 ENOUGH = 2  # rows of a base parameter by which they are told apart
 
@@ -155,6 +159,47 @@ def fit_checked(W: np.ndarray, b: np.ndarray, beta: np.ndarray) -> Check:
     worst = float(np.max(np.abs(W.T @ left) / np.where(size > 0, size, 1), initial=0.0))
     wrong = "" if worst <= COMPUTED else f"what is left of the forces lies along a column by {worst:.1e}"
     return checked("the fit leaves nothing that a base parameter could take", wrong, "floating point, all samples")
+
+
+@dataclass(frozen=True)
+class StackedSamples:
+    """Samples as they were stacked.
+
+    Args:
+        t, states, inputs: of each q, u and a, and what the data give of inputs, a name each.
+        rows: of each W and b, along the motions that the ties allow there.
+        pi: the model's own parameters, p those of its symbols.
+    """
+
+    t: np.ndarray
+    states: np.ndarray
+    inputs: Mapping[str, np.ndarray]
+    rows: Sequence[tuple[np.ndarray, np.ndarray]]
+    pi: np.ndarray
+    p: Sequence[float]
+
+
+def samples_checked(found: LinearForces, samples: StackedSamples) -> Check:
+    """W pi - b of the first, middle and last sample, by the equations of motion with what is applied there."""
+    motion, tally = PhaseMotion(equations_of_motion(found.system)), Tally(STACKED, "equations of motion, 50 digits")
+    for k in dict.fromkeys((0, len(samples.t) // 2, len(samples.t) - 1)):
+        tally.add(f"sample {k + 1}", partial(_left_otherwise, motion, samples, k))
+    return next(tally.checks())
+
+
+def _left_otherwise(motion: PhaseMotion, samples: StackedSamples, k: int) -> str:
+    symbols = motion.equations.symbols
+    x, a = np.split(samples.states[k], [len(symbols.q) + len(symbols.u)])
+    given = {name: float(column[k]) for name, column in samples.inputs.items()}
+    here = motion.numbers(TriedState(float(samples.t[k]), x, samples.p, given))
+    left, terms = here.M @ a - here.forcing, np.abs(here.M) @ np.abs(a) + np.abs(here.forcing)
+    W, b = samples.rows[k]
+    due, size = W @ samples.pi - b, 1 + float(np.max(terms, initial=0.0))
+    if len(here.J):  # the length of what is left along the ties is that in any axes
+        along = left - here.J.T @ np.linalg.lstsq(here.J.T, left, rcond=RANK_NEARBY)[0]
+        due, left = np.array([np.linalg.norm(due)]), np.array([np.linalg.norm(along)])
+    worst = int(np.argmax(np.abs(due - left)))
+    return "" if abs(due[worst] - left[worst]) <= COMPUTED * size else f"{due[worst]:.9g} for {left[worst]:.9g}"
 
 
 def spread_checked(W: np.ndarray, b: np.ndarray, deviations: np.ndarray, condition: float, residual: float) -> Check:

@@ -23,7 +23,7 @@ from eomgen.model.parts import Model, Output
 from eomgen.model.replaced import Taken, equation_typed
 from eomgen.model.table import Table
 from eomgen.model.values import numeric_parameters
-from eomgen.proof.check import Check, Tally
+from eomgen.proof.check import Check, Tally, differing
 from eomgen.records import dataclass
 from eomgen.simulation.dense_motion import DenseMotion, dense_motion
 from eomgen.simulation.motion import Plan
@@ -32,7 +32,7 @@ from eomgen.simulation.phase_run import PhaseRun
 from eomgen.symbolic.expression.expressions import Call, Expression, parse
 from eomgen.symbolic.expression.typed import parse_typed_equation
 from eomgen.symbolic.numeric.chebyshev import ChebyshevPieces, resolved_curve
-from eomgen.symbolic.numeric.tolerances import CARRIED, COMPUTED, SAME_PERIOD, SOLVED
+from eomgen.symbolic.numeric.tolerances import CARRIED, COMPUTED, SAME_PERIOD, SAME_PLACE, SOLVED
 
 
 @dataclass(frozen=True)
@@ -104,6 +104,57 @@ class WholeRun:
                     tally.add(str(call), partial(self._against_samples, call))
         return tally.checks()
 
+    def answered_otherwise(self, output: Output, told: float | None) -> str:
+        """How what is told of an output differs from what the samples of the run alone say of it; "".
+
+        At its event both sides are equal among the samples, there are as many before it as changes of their sign or
+        more, and what is told is the value there; nothing is told where it is not met, or has no value.
+        """
+        if output.event == EVERY or output.from_ is not None or asks_of(output.value, SMALL_MOTIONS):
+            return ""
+        if not isinstance(output.at, WrittenEquation):
+            return self._by_samples(output, told) if output.at is None else ""
+        n, met = output.event or 1, self._met_by_samples(output.at)
+        if told is None:
+            if len(met) < n:
+                return ""
+            value = self._value_near(output.value, met[n - 1])
+            return f"no value, and it is met near t = {met[n - 1]:.6g} s" if math.isfinite(value) else ""
+        found = self.of(output)
+        if not found.t:
+            return f"{told:.10g} for no event"
+        before = sum(t < found.t[0] * (1 - SAME_PLACE) for t in met)
+        if before >= n:
+            return f"{told:.10g} at t = {found.t[0]:.6g} s, and it is met {before} times before"
+        return self._events_against_samples(output, told)
+
+    def _by_samples(self, output: Output, told: float | None) -> str:
+        """Of the whole run each function; of a formula its value at the start."""
+        if asks_of(output.value, OF_A_RUN):
+            calls = [call for call in output.value.calls if call.name in _FUNCTIONS]
+            wrong = (self._against_samples(call) for call in calls)
+            return next(filter(None, wrong), "")
+        start = float(self._sampled(output.value)[0][1][0])
+        if told is None:
+            return f"no value for {start:.10g}" if math.isfinite(start) else ""
+        return differing(told, start, CARRIED)
+
+    def _met_by_samples(self, condition: WrittenEquation) -> list[float]:
+        """Instants between samples at which the sides change their order."""
+        curves = self._sampled(condition.left - condition.right)
+        sure = CARRIED * max(float(np.max(np.abs(y), initial=0.0)) for _, y in curves)
+        found: list[float] = []
+        for t, y in curves:
+            known = np.flatnonzero(np.abs(y) > sure)
+            turns = np.flatnonzero(y[known[:-1]] * y[known[1:]] < 0)
+            found += [float(t[known[k]] + t[known[k + 1]]) / 2 for k in turns]
+        return found
+
+    def _value_near(self, formula: Expression, when: float) -> float:
+        """The formula at the sample that is nearest to an instant."""
+        t, y = (np.concatenate(each) for each in zip(*self._sampled(formula), strict=True))
+        return float(y[np.argmin(np.abs(t - when))])
+
     def _against_samples(self, call: Call) -> str:
         """No sample is beyond an extreme, and the motion is there at its instant; means are near the trapezium rule's.
 
@@ -152,14 +203,14 @@ class WholeRun:
         low, high = ((x - y) / told for x, y in ((last, after), (end, first)))
         return "" if low - 1 < len(steps) < high + 2 else f"{told:.10g} for {len(steps)} passages of the samples"
 
-    def _events_against_samples(self, output: Output) -> str:
-        """At the instants of its events both sides are equal among the samples, and the value is theirs."""
+    def _events_against_samples(self, output: Output, told: float | None = None) -> str:
+        """At its events both sides are equal among the samples, and the value, or what is told, is theirs."""
         assert isinstance(output.at, WrittenEquation)
         found = self.of(output)
         sides = self._sampled(output.at.left - output.at.right)
         curves = self._sampled(output.value)
         largest = [max(float(np.max(np.abs(y))) for _, y in each) for each in (sides, curves)]
-        values = found.value if isinstance(found.value, tuple) else (found.value,)
+        values = found.value if isinstance(found.value, tuple) else (found.value if told is None else told,)
         for value, t in zip(values, found.t, strict=False):
             wrong = _not_at(sides, t, 0.0, largest[0])
             if value is not None and not wrong:

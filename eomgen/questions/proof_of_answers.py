@@ -92,9 +92,9 @@ class _Proof:
 
     @cached_property
     def equations(self) -> tuple[Check, ...]:
-        """Of the first phase; where nothing moves of what the file gives."""
+        """Of the first phase, motions that are given whole among them; of what stands still of what the file gives."""
         phase = self.solver.motions[False].phase
-        if phase.system.symbols.u and self.asked:
+        if phase.system.symbols.q and self.asked:
             with suppress(ModelError, DerivationError):  # what moves no mass, or forces that are sought: at rest alone
                 return certify(phase.equations).checks
         return tuple(other_data(phase.system.motion))

@@ -17,6 +17,7 @@ from eomgen.mechanics.balance.friction import with_friction
 from eomgen.mechanics.equations.stabilization import stabilized
 from eomgen.mechanics.formulations import recursive
 from eomgen.model.fields import WrittenEquation
+from eomgen.model.parts import Output
 from eomgen.proof import motion
 from eomgen.proof.check import Certificate, Check, unchecked
 from eomgen.proof.contact_phases import bodies_stand_as_told, changes_follow_impulses, contacts_do_as_told
@@ -35,6 +36,7 @@ from eomgen.simulation.phase_run import PhaseRun, condition_of
 from eomgen.simulation.result import Phase, Trajectory
 from eomgen.symbolic.expression.expressions import Expression
 from eomgen.symbolic.expression.typed import Typed
+from eomgen.symbolic.numeric.evaluation import NoValue
 from eomgen.symbolic.numeric.tolerances import COMPUTED
 from eomgen.symbolic.numeric.work import PatienceEnded, doing, keep_what_there_is
 
@@ -107,6 +109,17 @@ class RunProof:
         pulled = self.how.stabilization == "baumgarte"
         rhs, inner = phased.functions.rhs, phased.functions.inner(x)
         yield motion.Leg(phased.equations, phased.p, rhs, t, inner, found.carried, pulled, phased.known)
+
+
+def answered_otherwise(found: Trajectory, output: Output, told: float | None) -> str:
+    """How what is told of an output of a run differs from its samples, as of `WholeRun`; "".
+
+    Raises:
+        NoValue: the run is of no model.
+    """
+    if not isinstance(found.proof, RunProof) or found.proof.whole is None:
+        raise NoValue("nobody knows the states of the run")
+    return found.proof.whole.answered_otherwise(output, told)
 
 
 def _until(phase: Phase, t: np.ndarray) -> Phase:

@@ -10,7 +10,8 @@ import math
 import re
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import field, replace
-from functools import cached_property
+from functools import cached_property, partial
+from itertools import takewhile
 from typing import Any
 
 import numpy as np
@@ -36,23 +37,23 @@ from eomgen.model.reader import ModelOrPath, model_at
 from eomgen.model.replaced import Values
 from eomgen.model.table import Table
 from eomgen.model.values import numeric_parameters
-from eomgen.proof.check import Certificate, Check, checked
+from eomgen.proof.check import Certificate, Check, Tally, checked, differing
 from eomgen.questions.in_phase import PhaseEquations, phase_equations_of
 from eomgen.questions.of_a_run import asked_of
 from eomgen.records import dataclass
 from eomgen.sensitivities.along_a_run import ChangingRun, changing_run
 from eomgen.sensitivities.at_a_state import ChangingState
-from eomgen.sensitivities.differences import checks_of
+from eomgen.sensitivities.differences import Derivatives, checks_of
 from eomgen.simulation.integrate import instants_of
 from eomgen.symbolic.exact.book_form import book_form
 from eomgen.symbolic.exact.normal_form import legible
 from eomgen.symbolic.expression.derivative import jacobian, substituted, tangent
-from eomgen.symbolic.expression.expressions import Call, Expression, single_call
+from eomgen.symbolic.expression.expressions import Call, Expression, parse, single_call
 from eomgen.symbolic.expression.graph import Node, Scalar
 from eomgen.symbolic.expression.rational import Fraction
 from eomgen.symbolic.expression.typed import Typed, seconds
 from eomgen.symbolic.expression.units import Unit, parse_unit
-from eomgen.symbolic.numeric.evaluation import evaluate, fifty_digits, floats_of
+from eomgen.symbolic.numeric.evaluation import NoValue, evaluate, fifty_digits, floats_of
 from eomgen.symbolic.numeric.tolerances import COMPUTED, RANK_NEARBY
 from eomgen.symbolic.numeric.work import Work, doing
 from eomgen.symbolic.print.text import LONGEST_RESULT, readable_text, text_size
@@ -76,6 +77,8 @@ class Sensitivity(Result):
         slopes: by (formula, name) its derivative: exact where it has a closed form; the value in the formula's unit
             over the name's.
         run: the same along a motion; None where none was asked.
+        in_si: the derivatives in SI.
+        wanted: what was asked, in words: "rhs" is several formulas.
     """
 
     model: Model
@@ -85,6 +88,7 @@ class Sensitivity(Result):
     slopes: Mapping[tuple[str, str], Quantity]
     run: ChangingRun | None = None
     in_si: Mapping[tuple[str, str], float] = field(default_factory=dict, repr=False)
+    wanted: tuple[str, ...] = ()
 
     def __repr__(self) -> str:
         return f"<sensitivities of {self.model.name!r}: {len(self.of)} by {', '.join(self.to)}>"
@@ -129,9 +133,9 @@ class Sensitivity(Result):
         return pandas.DataFrame(self.matrix, index=list(self.of), columns=list(self.to))
 
     def certify(self) -> Certificate:
-        """Each derivative against central differences of the whole computation, made anew at other values.
+        """Each derivative, and what it is of, against central differences of the whole computation, made anew.
 
-        And as it is told, in its unit, against its number in SI.
+        And as it is told: in its unit and as a text against its number in SI, of the formulas that were asked.
         """
         off = (
             f"{named(*pair)} is {found.value * parse_unit(found.unit or '1').size:.9g} in SI for {self.in_si[pair]:.9g}"
@@ -139,7 +143,47 @@ class Sensitivity(Result):
             if found.value is not None and pair in self.in_si and not self._as_told(pair, found)
         )
         told = [checked("derivatives as they are told are those in SI", next(off, ""), "floating point")]
-        return checks_of(self.model, self.in_si, self.run) + told
+        told.append(checked("derivatives are of what was asked", self._of_others(), "names that the file declares"))
+        texts = Tally("closed forms of derivatives, read back, give the numbers", "our grammar, floating point")
+        for pair, slope in self.slopes.items():
+            if slope.exact is not None and pair in self.in_si:
+                texts.add(named(*pair), partial(self._misread, slope.exact, self.in_si[pair]))
+        values = {of: x.value * parse_unit(x.unit or "1").size for of, x in self.values.items() if x.value is not None}
+        return checks_of(self.model, Derivatives(values, self.in_si, self.run)) + [*told, *texts.checks()]
+
+    def _misread(self, text: str, due: float) -> str:
+        """The text at the parameters, and where the motion starts."""
+        formula, known = parse(text), {**numeric_parameters(self.model), "pi": math.pi, "t": 0.0}
+        if formula.names - known.keys():
+            known |= start_state(_Asking(self.model).phase.system)
+        if missing := formula.names - known.keys():
+            raise NoValue(f"no value of {', '.join(sorted(missing))}")
+        return differing(float(formula.evaluate(known)), due)
+
+    def _of_others(self) -> str:
+        """Which formulas are not of what was asked; "" where all are."""
+        left = self.of
+        for text in self.wanted:
+            due = self._meant(text, left)
+            if left[: len(due)] != due:
+                return f"{', '.join(left)} for {text}"
+            left = left[len(due) :]
+        return f"{', '.join(left)} beside {', '.join(self.wanted)}" if left and self.wanted else ""
+
+    def _meant(self, text: str, left: tuple[str, ...]) -> tuple[str, ...]:
+        """The formulas for which a text stands, by names of the file; how many speeds and frequencies `left` tells."""
+        parts = self.model.coordinates
+        if text in self.model.outputs or text not in (RHS, STATE, FREQUENCIES, REST):
+            return (text,)
+        if text == REST:
+            return tuple(f"{q} at {AtRest.text}" for q, part in parts.items() if not part.driven)
+        if text == FREQUENCIES:
+            return tuple(f"frequency({k})" for k, _ in enumerate(takewhile(lambda x: "frequency(" in x, left), start=1))
+        dot = "'" if text == RHS else ""
+        speeds = dict.fromkeys(f"{name}{dot}" for name in (*self.model.speeds, *(f"{q}'" for q in parts)))
+        free = [f"{q}'{dot}" for q, part in parts.items() if not (part.driven or part.dependent or self.model.speeds)]
+        told = tuple(takewhile(speeds.__contains__, left[len(parts) :]))
+        return (*(f"{q}{dot}" for q in parts), *(told if set(free) <= set(told) else free))
 
     def _as_told(self, pair: tuple[str, str], found: Quantity) -> bool:
         due = self.in_si[pair]
@@ -213,8 +257,10 @@ def sensitivity(
     wanted = (of,) if isinstance(of, str) else tuple(of)
     asking.refuse_unknown(names)
     if time is not None:
-        return asking.along(wanted or (STATE,), names, seconds(time), samples)
-    return asking.now(tuple(asking.formulas(wanted or tuple(model.outputs) or (RHS,))), names)
+        wanted = wanted or (STATE,)
+        return replace(asking.along(wanted, names, seconds(time), samples), wanted=wanted)
+    wanted = wanted or tuple(model.outputs) or (RHS,)
+    return replace(asking.now(tuple(asking.formulas(wanted)), names), wanted=wanted)
 
 
 def _alone(model: Model, of: str, to: str, time: float) -> Sensitivity:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
 from dataclasses import replace
+from functools import partial
 from pathlib import Path
 from typing import Any
 
@@ -15,14 +16,15 @@ from eomgen.model.parts import Model
 from eomgen.model.ranges import range_of
 from eomgen.model.table import Table
 from eomgen.pipeline import simulate
-from eomgen.proof.check import Certificate, Check
+from eomgen.proof.check import Certificate, Check, Tally
 from eomgen.proof.drawn_values import drawn_otherwise, told_of_all
 from eomgen.questions.answers import solve
 from eomgen.questions.of_a_run import asked_of, asked_typed
+from eomgen.questions.run import answered_otherwise
 from eomgen.records import dataclass
 from eomgen.sensitivities.sensitivity import checks_of_slope
 from eomgen.sweeps.design import spread_of
-from eomgen.sweeps.kernel import SweepKernel
+from eomgen.sweeps.kernel import FAILED, WITHOUT_MOTION, SweepKernel
 from eomgen.sweeps.plan import Stepped
 from eomgen.sweeps.sweep import CRITICAL, LEDGER, PARQUET, PLAN, TABLE, Sweep, planned, sweep_at, swept
 from eomgen.verbs.assignments import assignments, typed
@@ -186,7 +188,23 @@ def _proof(found: Sweep) -> Certificate | None:
     again = Check(
         "a run made again has the same bits", "holds" if same else "fails", f"run {first[0]}, by the same kernel"
     )
-    return Certificate((*certificate.checks, *slopes, again, *_rows_proven(found)))
+    return Certificate((*certificate.checks, *slopes, again, *_answers_proven(found, kernel), *_rows_proven(found)))
+
+
+def _answers_proven(found: Sweep, kernel: SweepKernel) -> Iterator[Check]:
+    """What the table tells of the first and of the last run of a motion, against the samples of these, run anew."""
+    plan, rows = found.plan, list(found.ledger.rows())
+    moved = [row for row in rows if row[2] not in (WITHOUT_MOTION, FAILED)]
+    tally = Tally("what is asked of a run is answered as its samples say", "first and last run, made anew")
+    for row in {row[0]: row for row in (*moved[:1], *moved[-1:])}.values():
+        told = dict(zip(plan.asked, row[4 + len(plan.runs.names) :], strict=True))
+        set_, how = dict(zip(plan.runs.names, row[4:], strict=False)), plan.how
+        model = replace(kernel.valued(set_), outputs=Table({}))
+        run = simulate(model, time=how.time, rtol=how.rtol, atol=how.atol, method=how.method)
+        for text in (text for text in plan.asked if text not in plan.slopes and run.ok):
+            output = asked_of(plan.model, text)
+            tally.add(f"{text} of run {row[0]}", partial(answered_otherwise, run, output, told[text]))
+    yield from tally.checks()
 
 
 def _rows_proven(found: Sweep) -> Iterator[Check]:
