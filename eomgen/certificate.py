@@ -57,6 +57,7 @@ def certify(
     if has_friction(equations.system):
         checks += [trials.friction(), *trials.pushes()]
     checks += [
+        *trials.begun_contacts(),
         *trials.tensors(),
         *trials.contacts(),
         *trials.threads(),

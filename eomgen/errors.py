@@ -141,6 +141,10 @@ class RunFailed(EomgenError):
     """A simulation or an emitted program failed."""
 
 
+class TextRefused(RunFailed):
+    """A compiler refuses a text that we wrote, and takes another: the text is wrong."""
+
+
 class WriteFailed(EomgenError):
     """A result could not be written: a disk that is full, a stream that is closed, a folder of somebody else."""
 

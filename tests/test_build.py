@@ -15,7 +15,7 @@ from eomgen.codegen import build, rhs
 from eomgen.codegen.program import program_of, right_hand_side
 from eomgen.codegen.rhs import compiled
 from eomgen.codegen.targets.c import c_text
-from eomgen.errors import RunFailed, ToolMissing
+from eomgen.errors import RunFailed, TextRefused, ToolMissing
 from eomgen.symbolic.expression.functions import cos, sin, sqrt
 from eomgen.symbolic.expression.graph import Graph
 from eomgen.symbolic.expression.symbols import Symbols
@@ -201,3 +201,15 @@ def test_the_environment_chooses_the_compiler(tmp_path, monkeypatch, own_cache):
 def test_the_environment_says_how_far_is_optimized(given, expected, monkeypatch):
     monkeypatch.setenv("CC", given)
     assert tuple(x for x in build.C.flags_of("", False) if x.startswith("-O")) == expected
+
+
+@pytest.mark.slow
+@needs_cc
+def test_a_text_that_a_working_compiler_refuses_is_wrong(own_cache, monkeypatch):
+    """A place in the text is named, and nothing is taken: TextRefused; of a compiler that takes nothing it is not."""
+    with pytest.raises(TextRefused, match=r"program\.c:1:"):
+        build.library("int eomgen_rhs(void) { return nothing; }")
+    monkeypatch.setenv("CC", "false")
+    with pytest.raises(RunFailed) as failed:
+        build.library("int eomgen_rhs(void) { return nothing; }")
+    assert not isinstance(failed.value, TextRefused)

@@ -7,6 +7,7 @@ import importlib.util
 import math
 import os
 import platform
+import re
 import shlex
 import shutil
 import signal
@@ -21,7 +22,7 @@ from pathlib import Path
 from typing import Any
 
 from eomgen import kept
-from eomgen.errors import RunFailed, ToolMissing
+from eomgen.errors import RunFailed, TextRefused, ToolMissing
 from eomgen.files import beside
 from eomgen.records import dataclass
 from eomgen.symbolic.numeric.work import time_left
@@ -36,6 +37,7 @@ ENDED = "ZX"  # states of processes that only wait to be asked how they ended
 TURN = 0.05  # seconds of work that are something
 _GIVEN_UP: dict[str, str] = {}  # what took a compiler too long in this process, and why: nobody waits for it twice
 MOST_SAID = 2000  # characters of a compiler
+IN_THE_TEXT = re.compile(r"program\.\w+:\d+:\d+")  # a place that a compiler names in the text which it was given
 
 
 @dataclass(frozen=True)
@@ -51,6 +53,7 @@ class Compiler:
         flags: always; last: after the file.
         once, usual, long: of a text that is called a few times only, so that it is made soonest; of others; of long.
         patience: seconds of work that it may take; how long a loaded machine needs for them nobody counts.
+        trial: a text of nothing, which it takes where it works at all.
         mend: where it comes from.
     """
 
@@ -66,6 +69,7 @@ class Compiler:
     usual: tuple[str, ...] = ("-O2",)
     long: tuple[str, ...] = ("-O1",)
     patience: float = PATIENCE
+    trial: str = "#include <math.h>\nint eomgen_trial;\n"
 
     def command(self) -> list[str]:
         """The command line, the environment's choice first.
@@ -144,7 +148,7 @@ def library(text: str, *, quickly: bool = False, by: Compiler = C) -> ctypes.CDL
         quickly: it is called a few times only.
     Raises:
         ToolMissing: there is no compiler, or none that starts.
-        RunFailed: the compiler refuses the text, does not come back, or makes what is no library.
+        RunFailed: the compiler does not come back, or makes what is no library; TextRefused: it refuses the text.
     """
     path = _kept(text, by, quickly)
     with suppress(OSError):  # another machine's: made anew below
@@ -206,13 +210,20 @@ def _compile(text: str, command: list[str], folder: Path, name: str, by: Compile
                 _GIVEN_UP[name] = f"the {by.language} compiler {late}"
                 raise RunFailed(_GIVEN_UP[name], command[0]) from None
             if code != 0 or not made.is_file():
-                raise RunFailed(
-                    f"the {by.language} compiler failed: {said or f'it ended with {code}, and made nothing'}",
-                    command[0],
-                )
+                told = f"the {by.language} compiler failed: {said or f'it ended with {code}, and made nothing'}"
+                refused = IN_THE_TEXT.search(said) and text != by.trial and _works(by)
+                raise (TextRefused if refused else RunFailed)(told, command[0])
             return kept.put_whole(made, folder, name)
     except OSError as error:
         raise ToolMissing(f"nothing can be compiled: {error}", command[0]) from None
+
+
+def _works(by: Compiler) -> bool:
+    """Whether it makes something of a text of nothing."""
+    try:
+        return bool(_kept(by.trial, by, quickly=True))
+    except (RunFailed, ToolMissing):
+        return False
 
 
 def _ran(command: list[str], by: Compiler, place: Path) -> tuple[int, str]:

@@ -162,7 +162,7 @@ def _samples(found: Regressor, data: Data, stacked: Stacked) -> StackedSamples:
     rows = [*zip(np.split(stacked.W, ends), np.split(stacked.b, ends), strict=True)]
     own = _own_values(found)
     pi, p = np.array([own[name] for name in found.parameters]), parameter_vector(found.model)
-    return StackedSamples(t, states, given, rows, pi, p)
+    return StackedSamples(t, states, given, rows, pi, p.tolist())
 
 
 def _splined(symbols: Symbols, data: Data) -> list[str]:

@@ -40,8 +40,9 @@ from eomgen.symbolic.expression.expressions import Call, Expression, parse
 from eomgen.symbolic.expression.graph import Node, Scalar
 from eomgen.symbolic.expression.node import State
 from eomgen.symbolic.expression.rational import Fraction
+from eomgen.symbolic.expression.traversal import order
 from eomgen.symbolic.numeric.evaluation import NoValue, evaluate, fifty_digits
-from eomgen.symbolic.numeric.tolerances import COMPUTED, RANK_NEARBY, ROUNDING, SAME_PLACE
+from eomgen.symbolic.numeric.tolerances import BESIDE_A_PLACE, COMPUTED, RANK_NEARBY, ROUNDING, SAME_PLACE
 
 MOST = 3  # states at which all formulas are compared
 AWAY = 10  # times what nearby states make of it, by which a number may be off
@@ -183,6 +184,20 @@ class NumericState:
     @cached_property
     def _rhs(self) -> RightHandSide:
         return compiled(right_hand_side(with_accelerations(self.equations)), "numpy")
+
+    @cached_property
+    def jumps(self) -> bool:
+        """Whether what is applied jumps with the sign of a rate: other values on either side, however near."""
+        symbols, digits = self.equations.symbols, fifty_digits()
+        signs = (x for x in order(self.equations.forcing) if x.op == "sign")
+        if not any(depends_on(x.args[0], symbols.u) for x in signs):
+            return False
+        apart = []
+        for away in (COMPUTED, COMPUTED * BESIDE_A_PLACE):
+            sides = ({**self.values, **{u: self.values[u] + sign * away for u in symbols.u}} for sign in (1, -1))
+            first, last = (evaluate(self.equations.forcing, side, digits) for side in sides)
+            apart.append([abs(x - y) for x, y in zip(first, last, strict=True)])
+        return any(near > COMPUTED and 2 * near > far for far, near in zip(*apart, strict=True))
 
     def beside(self) -> tuple[NumericState, NumericState]:
         """Two states so near that doubles of several steps might mistake them for it."""

@@ -57,6 +57,8 @@ def reaction_numbers(start: NumericState, texts: Mapping[str, str], values: Mapp
     def compared(name: str) -> str:
         scalar = read_back(start.equations.system, texts[name]) if name in texts else solved[name]
         found, right = values[name], start.number(scalar)
+        if start.jumps and (found or right):
+            return "a force jumps there, and it has no one value"
         if abs(found - right) <= COMPUTED * (1 + size):
             return ""
         return off_by(found, right, [beside.number(scalar) for beside in start.beside()])

@@ -27,7 +27,7 @@ from eomgen.proof.declared_work import acting_otherwise, working_otherwise
 from eomgen.proof.elements import elements_of, undeclared
 from eomgen.proof.energies import other_energies
 from eomgen.proof.free_bodies import Demand, demand_of, moved_otherwise
-from eomgen.proof.friction_laws import other_friction, pushing_otherwise
+from eomgen.proof.friction_laws import leaving_at_start, other_friction, pushing_otherwise
 from eomgen.proof.in_numbers import FINER_STEP, STEP, way_through
 from eomgen.proof.joint_places import misplaced
 from eomgen.proof.kept_ties import open_at_start, pulled_at_start, rows_that_stay, springs_of_the_start
@@ -313,6 +313,12 @@ class Trials:
                 lambda: pushing_otherwise(self.equations, start, self._moving),
             )
             yield from (found,) if found.status == "fails" else ()
+
+    def begun_contacts(self) -> Iterable[Check]:
+        """A contradiction where a contact is closed that opens as the motion starts; else nothing."""
+        name = "contacts that are closed stay so where the motion starts"
+        found = attempted(name, "speeds of the start, 50 digits", lambda: leaving_at_start(self.equations))
+        yield from (found,) if found.status == "fails" else ()
 
     def _holds(self, law: tuple[Scalar, ...], state: State) -> bool:
         """F = factor sqrt(N_1^2 + N_2^2) with the accelerations of the equations of motion."""

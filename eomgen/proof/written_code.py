@@ -11,7 +11,7 @@ import numpy as np
 from eomgen.codegen.program import Program
 from eomgen.codegen.rhs import target_named
 from eomgen.codegen.targets.base import RHS, FileContent, Role, TestVector
-from eomgen.errors import RunFailed, ToolMissing
+from eomgen.errors import RunFailed, TextRefused, ToolMissing
 from eomgen.mechanics.bodies.armature import joint_row
 from eomgen.mechanics.equations.accelerations import accelerations_at
 from eomgen.mechanics.equations.system import System
@@ -102,6 +102,8 @@ class Judged:
         name = f"{written.name} gives the symbols' numbers"
         try:
             code = written.code()
+        except TextRefused as error:
+            return checked(name, error.what, "run")
         except (ToolMissing, RunFailed) as error:
             return unchecked(name, error.what, "run")
         if code is None:

@@ -114,7 +114,7 @@ class WholeRun:
             return ""
         if not isinstance(output.at, WrittenEquation):
             return self._by_samples(output, told) if output.at is None else ""
-        n, met = output.event or 1, self._met_by_samples(output.at)
+        n, met = int(output.event or 1), self._met_by_samples(output.at)
         if told is None:
             if len(met) < n:
                 return ""

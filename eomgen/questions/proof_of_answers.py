@@ -10,6 +10,7 @@ import math
 from collections.abc import Iterator, Mapping
 from contextlib import suppress
 from functools import cached_property, partial
+from random import Random
 from typing import Any, Protocol
 
 import numpy as np
@@ -22,10 +23,11 @@ from eomgen.documents.quantity import Quantity
 from eomgen.errors import DerivationError, ModelError, RunFailed
 from eomgen.mechanics.initial_state.numeric_value import known_exactly
 from eomgen.mechanics.instant.outputs import asks_of
-from eomgen.model.fields import AtRest
+from eomgen.model.fields import AtRest, WrittenEquation
 from eomgen.model.outputs import FUNCTIONS
 from eomgen.model.outputs.base import SMALL_MOTIONS
 from eomgen.model.parts import Model, Output
+from eomgen.model.values import exact_parameters
 from eomgen.proof.at_a_state import NumericState, moving_states, off_by, place_of, read_back
 from eomgen.proof.check import Certificate, Check, Tally, differing
 from eomgen.proof.emitted_code import PhaseMotion, TriedState
@@ -42,9 +44,10 @@ from eomgen.simulation.result import Trajectory
 from eomgen.symbolic.expression.derivative import depends_on, symbols_of
 from eomgen.symbolic.expression.graph import Node, Scalar
 from eomgen.symbolic.expression.node import holds_op
+from eomgen.symbolic.expression.rational import Fraction
 from eomgen.symbolic.numeric.evaluation import NoValue
 from eomgen.symbolic.numeric.pieces import PIECEWISE
-from eomgen.symbolic.numeric.sure_numbers import number_of
+from eomgen.symbolic.numeric.sure_numbers import number_of, numbers_of
 from eomgen.symbolic.numeric.tolerances import CARRIED, COMPUTED, RUNS_AGREE, SAME_PLACE
 
 WAY = 1.0  # s, of the motion along which functions of the configuration are tried
@@ -52,6 +55,7 @@ ROWS = 21  # of it
 LONG_WAY = 10.0  # s, of a motion through pieces of min, max, abs, sign, cases and samples
 TRIED = 8  # rows of it that are looked at, about, and
 LAST = 3  # before it turns
+ASIDE = 1e-3  # of a parameter, beside whose own value a closed form is tried
 
 
 class Solver(Protocol):
@@ -199,11 +203,17 @@ class _Proof:
             raise DerivationError("it has no number")
         state = self._state_of(output)
         right = in_unit(state.worth(output.value), output)
+        if self._asks_forces(output) and state.jumps:
+            return "a force jumps there, and it has no one value"
         if not differing(found.value, right) or abs(found.value - right) <= in_unit(
             state.rounding(output.value), output
         ):
             return ""
         return off_by(found.value, right, [in_unit(near.worth(output.value), output) for near in state.beside()])
+
+    def _asks_forces(self, output: Output) -> bool:
+        """Whether an output holds accelerations or reactions."""
+        return self.solver.motions[False].phase.needs_equations(output.value)
 
     def _state_of(self, output: Output) -> NumericState:
         """The state at which an output is asked.
@@ -292,6 +302,8 @@ class _Proof:
             raise RunFailed("the instant is not known in numbers")
         if t == 0:
             return ""
+        if wrong := _by_coincidence(moment, output.at):
+            return wrong
         run = run_from_start(motion, t)
         symbols = motion.phase.system.symbols
         there = np.array([moment.numbers[node] for node in (*symbols.q, *symbols.u)])
@@ -321,11 +333,8 @@ class _Proof:
         moment = self.solver.at_rest
         if not moment.numbers:
             raise RunFailed("the place is not known in numbers")
-        phase = moment.phase
-        state = self._state(phase, moment.numbers)
-        numbers = PhaseMotion(phase.equations).numbers(TriedState(0.0, state.x, state.p))
-        left, where = numbers.left(np.zeros(len(state.x)))
-        return f"{where} is left with {left:.1e} of its terms" if left > COMPUTED else ""
+        state = self._state(moment.phase, moment.numbers)
+        return _left_at_rest(state) or _by_coincidence(moment, None)
 
     # -- on the way --------------------------------------------------------------------------------
 
@@ -365,6 +374,49 @@ class _Proof:
             if wrong:
                 return f"{wrong} at t = {t:.6g} s"
         return ""
+
+
+def _left_at_rest(state: NumericState) -> str:
+    """What does not balance where nothing moves."""
+    numbers = PhaseMotion(state.equations).numbers(TriedState(0.0, state.x, state.p))
+    left, where = numbers.left(np.zeros(len(state.x)))
+    return f"{where} is left with {left:.1e} of its terms" if left > COMPUTED else ""
+
+
+def _by_coincidence(moment: StateAtInstant, condition: WrittenEquation | AtRest | None) -> str:
+    """What does not hold of a state in closed form beside the parameters' own values; "" where it holds there too.
+
+    Ties stay closed, what is at rest stays in balance, and the condition of an instant is met.
+
+    Args:
+        condition: by which the instant is asked; None: all rest.
+    """
+    system = moment.phase.system
+    symbols, model, rng = system.symbols, system.scope.model, Random(4)
+    nodes = (*symbols.q, *symbols.u)
+    if not symbols.parameters or any(node not in moment.exact for node in nodes):
+        return ""
+    own = {name: float(x) for name, x in exact_parameters(model).items()}
+    free = [name for name in own if model.parameters[name].value.literal is not None]
+    known = exact_parameters(model, {name: own[name] * (1 + rng.uniform(0.2, 1) * ASIDE) for name in free})
+    if len(known) < len(symbols.parameters):
+        return ""
+    p = {symbols.parameters[name]: Fraction(float(x)) for name, x in known.items()}
+    t = moment.exact.get(symbols.t, 0)
+    numbers = dict(zip((symbols.t, *nodes), numbers_of((t, *(moment.exact[node] for node in nodes)), p), strict=True))
+    if any(math.isnan(x) for x in numbers.values()):
+        return ""  # beside the parameters' own values it has none
+    state = NumericState(moment.phase.equations, p, numbers)
+    gaps = [row.gap for row in system.ties.rows if row.gap is not None and not row.identical]
+    if any(abs(state.number(gap)) > COMPUTED * (1 + max(map(abs, numbers.values()))) for gap in gaps):
+        return "its closed form is one by coincidence: beside these parameters the ties are open"
+    if condition is None:
+        left = _left_at_rest(state)
+        return f"its closed form is one by coincidence: beside these parameters {left}" if left else ""
+    assert not isinstance(condition, AtRest)
+    left, right = (state.number(moment.phase.of_state(x)) for x in (condition.left, condition.right))
+    wrong = differing(left, right)
+    return f"its closed form is one by coincidence: beside these parameters {wrong}" if wrong else ""
 
 
 def _start(motion: MotionFromStart) -> dict[Node, float]:

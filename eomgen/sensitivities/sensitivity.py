@@ -149,7 +149,8 @@ class Sensitivity(Result):
             if slope.exact is not None and pair in self.in_si:
                 texts.add(named(*pair), partial(self._misread, slope.exact, self.in_si[pair]))
         values = {of: x.value * parse_unit(x.unit or "1").size for of, x in self.values.items() if x.value is not None}
-        return checks_of(self.model, Derivatives(values, self.in_si, self.run)) + [*told, *texts.checks()]
+        slopes = checks_of(self.model, Derivatives(values, self.in_si, self.run))
+        return Certificate((*slopes.checks, *told, *texts.checks()))
 
     def _misread(self, text: str, due: float) -> str:
         """The text at the parameters, and where the motion starts."""

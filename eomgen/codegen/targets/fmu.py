@@ -286,6 +286,7 @@ def run(texts: Mapping[str, FileContent], program: Program, stem: str, role: Rol
     archive = zipfile.ZipFile(io.BytesIO(content))
     path = f"binaries/{platform_name()}/{stem}{SUFFIX}"
     if path not in archive.namelist():
+        library(archive.read("sources/all.c").decode(), by=BUILT)  # why there is none
         raise ToolMissing("the FMU has sources alone", mend=COMPILER.mend)
     folder = tempfile.TemporaryDirectory(prefix="eomgen-")
     model = ctypes.CDLL(archive.extract(path, folder.name))

@@ -109,6 +109,7 @@ COMPILER = Compiler(
     ("gfortran", "flang", "ifx"),
     ("-std=f2008", "-shared", "-fPIC"),
     "install gfortran, or set FC",
+    trial="subroutine eomgen_trial\nend subroutine\n",
 )
 
 _MODULE = """\

@@ -69,6 +69,7 @@ COMPILER = Compiler(
     ("--edition=2021", "--crate-type=cdylib", "--cap-lints=warn"),
     "install Rust (rustup.rs), or set RUSTC",
     last=(),
+    trial="// nothing\n",
     once=("-Copt-level=0",),
     usual=("-Copt-level=3",),
     long=("-Copt-level=1",),
