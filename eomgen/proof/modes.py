@@ -26,6 +26,7 @@ SAMPLES = (
     -0.4 + 2.3j,
 )  # s, of the geometric mean of all eigenvalues, at which functions of it are compared
 FLOATS = "floating point"
+ASIDE = 0.1  # of a displacement along what drifts
 DRAWS = 24  # of other parameters, at which conditions of stability are compared with roots
 STEPS, MET = 20, 0.1  # looks on a way between parameters; a part of both ends that is near 0
 SURELY = 1e-3  # of the largest root, by which another one surely grows or fades
@@ -199,6 +200,8 @@ class _Proof:
             return "" if self._has_chains else "said to grow like t, and the eigenvalue 0 has all its modes"
         if said in ("stable", "asymptotically stable") and self._has_chains:
             return f"said to be {said}, and a motion grows like t"
+        if said == "stable to first order" and self._drifts_away:
+            return f"said to be {said}, and a motion grows like t into others"
         return f"said to be {said}, and one of them grows" if said != "undecided" and self.growth > SAME_PLACE else ""
 
     @property
@@ -207,6 +210,25 @@ class _Proof:
         zeros = sum(x == 0 for x in self.modes.spectrum.eigenvalues)
         sizes = np.linalg.svd(self.A, compute_uv=False)
         return zeros > 0 and int(np.sum(sizes <= COMPUTED * sizes.max(initial=0))) < zeros
+
+    @property
+    def _drifts_away(self) -> bool:
+        """Whether what grows like t comes to where the equations are others; of ties that close nothing is said."""
+        small = self.modes.small
+        system, e, numbers = small.first.system, small.first.equations, small.reference.numbers
+        if system.ties.closing or system.elimination is not None or not self._has_chains:
+            return False
+        sizes, columns = np.linalg.svd(self.A @ self.A)[1:]
+        slow = columns[sizes <= COMPUTED * sizes.max(initial=0)]
+        drifts = (self.A @ slow.T).T
+        drift = max(drifts, key=lambda x: float(np.linalg.norm(x)))[: len(small.numbers.coordinates)]
+        if not np.linalg.norm(drift) > SAME_PLACE * self.rate:
+            return False
+        drift = drift / abs(drift).max()
+        there = {q: numbers[q] + ASIDE * float(x) for q, x in zip(small.numbers.coordinates, drift, strict=True)}
+        entries = (*(x for row in e.M for x in row), *e.forcing)
+        here, moved = (evaluate(entries, {**numbers, **more}, fifty_digits()) for more in ({}, there))
+        return any(abs(x - y) > COMPUTED * (1 + abs(x)) for x, y in zip(here, moved, strict=True))
 
     def conditions(self) -> Check:
         """All are positive where nothing grows, and one is not where something does."""

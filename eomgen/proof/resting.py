@@ -186,8 +186,24 @@ class _Proof:
             columns.append((late - early) / (2 * STEP))
         return np.array(columns, dtype=object).reshape(len(columns), -1).T.astype(float)
 
+    def wrong_rates(self) -> str:
+        """Which coordinate moves, or which tie of velocities runs on, with all speeds 0."""
+        system = self.first.system
+        rows = [row for row in system.ties.closing if row.gap is None]
+        names = (*(f"{q.name}'" for q in system.symbols.q), *(f"'{row.tie}'" for row in rows))
+        rates = evaluate((*system.scope.rates, *(row.velocity for row in rows)), self.numbers, fifty_digits())
+        size = 1 + max((abs(self.numbers[q]) for q in system.symbols.q), default=0)
+        moving = (
+            f"{name} is {float(x):.3g} at rest"
+            for name, x in zip(names, rates, strict=True)
+            if abs(x) > COMPUTED * size
+        )
+        return next(moving, "")
+
     def wrong(self) -> str:
         """Against what a displacement of one unit, or of the size of the coordinates, accelerates, the ties let go."""
+        if moving := self.wrong_rates():
+            return moving
         rng, numbers = Random(5), self.numbers
         aside = {q: rng.choice((-1, 1)) * STEP * max(1, abs(numbers[q])) for q in self.first.system.symbols.q}
         late, early = (

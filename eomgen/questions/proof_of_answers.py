@@ -397,7 +397,8 @@ def _by_coincidence(moment: StateAtInstant, condition: WrittenEquation | AtRest 
     if not symbols.parameters or any(node not in moment.exact for node in nodes):
         return ""
     own = {name: float(x) for name, x in exact_parameters(model).items()}
-    free = [name for name in own if model.parameters[name].value.literal is not None]
+    parts = {name: model.parameters[name] for name in own}
+    free = [name for name, part in parts.items() if part.value is not None and part.value.literal is not None]
     known = exact_parameters(model, {name: own[name] * (1 + rng.uniform(0.2, 1) * ASIDE) for name in free})
     if len(known) < len(symbols.parameters):
         return ""
@@ -414,8 +415,8 @@ def _by_coincidence(moment: StateAtInstant, condition: WrittenEquation | AtRest 
         left = _left_at_rest(state)
         return f"its closed form is one by coincidence: beside these parameters {left}" if left else ""
     assert not isinstance(condition, AtRest)
-    left, right = (state.number(moment.phase.of_state(x)) for x in (condition.left, condition.right))
-    wrong = differing(left, right)
+    sides = [state.number(moment.phase.of_state(x)) for x in (condition.left, condition.right)]
+    wrong = differing(*sides)
     return f"its closed form is one by coincidence: beside these parameters {wrong}" if wrong else ""
 
 

@@ -10,8 +10,11 @@ import pytest
 
 import eomgen
 from eomgen.codegen.rhs import RightHandSide
+from eomgen.mechanics.balance.friction import equations_of_motion
 from eomgen.mechanics.bodies.contact_modes import ContactMode
+from eomgen.mechanics.equations.system import system_of
 from eomgen.model.contacts import contacts_of
+from eomgen.proof.friction_laws import leaving_at_start
 from eomgen.simulation.phase_models import PhaseModels
 from eomgen.verbs.reactions import reactions_document
 
@@ -182,3 +185,11 @@ def test_friction_of_what_does_not_slide_at_the_start_is_that_of_its_first_phase
     assert found.certify().ok
     words = "do not slide at the start: floor; the reactions are those there"
     assert (words in told) == (speed == 0)
+
+
+def test_a_contact_that_is_taken_as_closed_and_opens_with_the_speeds_is_contradicted():
+    """Thrown up from the floor, y' = 1.2: closed at the start is wrong; let go from rest it is right."""
+    thrown = BALL.replace("HEIGHT", "0").replace('{ start = "START" }', "{ start = 0, speed = 1.2 }")
+    resting = BALL.replace("HEIGHT", "0").replace('"START"', "0")
+    told = [leaving_at_start(equations_of_motion(system_of(eomgen.loads(text)))) for text in (thrown, resting)]
+    assert told == ["'floor' is closed, and opens with 1.2 m/s where the motion starts", ""]

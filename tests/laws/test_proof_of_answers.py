@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 from dataclasses import replace
+from fractions import Fraction
 from pathlib import Path
 
 import pytest
@@ -14,6 +15,7 @@ import eomgen
 from eomgen.cli import main
 from eomgen.questions import answers
 from eomgen.questions.at_instant import StateAtInstant
+from eomgen.questions.proof_of_answers import _by_coincidence
 
 pytestmark = pytest.mark.slow
 
@@ -191,3 +193,31 @@ def test_what_is_of_no_state_of_a_motion_is_proven_too(model, kind):
     if kind == "instant":
         found[name] = replace(found[name], value=number, exact=f"2*({text})")
         assert APART[kind] in failing(found)
+
+
+HANGING = """
+eomgen = 1
+space = "plane"
+parameters = { m = 2, k = 50, g = 10 }
+coordinates = { x = 0.1 }
+points = { O = [0, 0] }
+bodies.block.shape = { kind = "particle", mass = "m" }
+bodies.block.joint = { kind = "prismatic", axis = [0, -1], displacement = "x" }
+forces.weight = { kind = "gravity", acceleration = [0, "-g"] }
+forces.spring = { kind = "spring", points = ["O", "block.center"], stiffness = "k", length = 0 }
+outputs = { low = { value = "x", at = "equilibrium" }, fast = { value = "x'", at = "x = 0.2" } }
+"""
+
+
+def test_a_closed_form_holds_beside_the_parameters_too():
+    """x = m g/k = 2/5 at rest: the number 2/5 in its place balances at these parameters alone."""
+    found = solved(HANGING)
+    moment = found._solver.at_rest
+    (x,) = moment.phase.system.symbols.q
+    wrong = replace(moment, exact={**moment.exact, x: Fraction(2, 5)})
+    assert found["low"].exact == "m*g/k" and failing(found) == {}
+    assert _by_coincidence(moment, None) == "" and "by coincidence" in _by_coincidence(wrong, None)
+    there = found._solver.motions[False].until(at := found._solver.model.outputs["fast"].at)
+    if all(node in there.exact for node in (x, *moment.phase.system.symbols.u)):
+        assert _by_coincidence(there, at) == ""
+        assert "by coincidence" in _by_coincidence(replace(there, exact={**there.exact, x: Fraction(1, 4)}), at)
