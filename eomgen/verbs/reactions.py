@@ -218,7 +218,7 @@ def _at_start(equations: Equations) -> tuple[dict[str, float], str | None]:
         p = parameter_vector(equations.model)
         system = equations.graph.system
         start = zip((*system.symbols.q, *system.symbols.u), map(float, equations.start()), strict=True)
-        refuse_jump(system, {x: Fraction(value) for x, value in start})
+        refuse_jump(system, {x: Fraction(value) for x, value in start} | {system.symbols.t: Fraction(0)})
         columns = ReactionColumns(equations.reactions, equations.rhs("numpy"))
         values = columns.along(np.zeros(1), equations.start()[None, :], p)[0]
     except (MissingValues, DerivationError, ModelError) as error:

@@ -52,3 +52,14 @@ def test_a_number_where_a_force_jumps_is_contradicted(monkeypatch):
     at_rest, moving = (eomgen.reactions(hinge(speed)) for speed in (0, 0.5))
     assert at_rest["reaction_x(arm)"].value is not None
     assert at_rest.certify().ok is False and moving.certify().ok
+
+
+@pytest.mark.parametrize("law", ["sign(q' - w)", "sign(q' + w - u)"])
+def test_what_slides_is_told_with_the_values_of_parameters_and_inputs(law):
+    """q' = w = u = 0: a belt that stands still"""
+    belt = HINGE.replace("Tc = 1", "Tc = 1, w = 0").replace(
+        "bodies.arm.shape", 'inputs = { u = "w*cos(t)" }\nbodies.arm.shape'
+    )
+    belt = belt if "u" in law else belt.replace('inputs = { u = "w*cos(t)" }\n', "")
+    found = eomgen.solve(eomgen.loads(belt.replace("SPEED", "0").replace("LAW", law)))
+    assert found["qdd"].value is None and "tanh(w/eps)" in found["qdd"].message

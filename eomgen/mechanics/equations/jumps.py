@@ -11,8 +11,10 @@ from typing import Any
 from eomgen.errors import DerivationError
 from eomgen.mechanics.equations.system import System
 from eomgen.mechanics.equations.work import generalized_forces
+from eomgen.model.values import exact_parameters
 from eomgen.symbolic.expression.derivative import depends_on, substituted
 from eomgen.symbolic.expression.graph import Node, Scalar, is_zero
+from eomgen.symbolic.expression.rational import Fraction
 from eomgen.symbolic.expression.traversal import order
 from eomgen.symbolic.print.text import to_text
 from eomgen.symbolic.solve.solving import vanishes
@@ -34,10 +36,14 @@ def refuse_jump(system: System, state: Mapping[Node, Any]) -> None:
     """Refuse a state at which a force jumps with the sign of a rate.
 
     Raises:
-        DerivationError: the rate is 0 there.
+        DerivationError: the rate is 0 there, with the values that parameters and inputs have.
     """
-    for x in signs_of_rates(system):
-        (there,) = substituted((x,), state)
+    signs = signs_of_rates(system)
+    known = exact_parameters(system.scope.model) if signs else {}
+    inputs = {node: system.inputs[name] for name, node in system.symbols.inputs.items()}
+    values = {system.symbols.parameters[name]: Fraction(x) for name, x in known.items()}
+    for x in signs:
+        (there,) = substituted(substituted(substituted((x,), inputs), state), values)
         if is_zero(there) or vanishes(there):
             what = f"a force jumps with the sign of {to_text(x)}, which is 0 there: dry friction may hold it or not"
             raise DerivationError(what, mend=SMOOTH)

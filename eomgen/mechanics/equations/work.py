@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
+
 from eomgen.mechanics.bodies.inertia import spin_of
 from eomgen.mechanics.bodies.kinematics import Motion, slide_of
 from eomgen.mechanics.bodies.loads import Applied, JointEffort, Loads, in_body_axes, in_ground_axes, weights
@@ -24,6 +26,13 @@ def powered_forces(loads: Loads) -> ScalarRow:
     rows = [force_row(loads, force) for force in loads.applied if force.potential is None]
     rows += [drive_row(motion, effort) for effort in loads.efforts]
     return summed(rows, len(motion.scope.symbols.u))
+
+
+def acting(loads: Loads, holds: Callable[[ScalarRow], bool]) -> str:
+    """What acts with generalized forces of which something holds, by its name: "the force 'd' and the joint of 'x'"."""
+    found = [f"the force '{force.name}'" for force in loads.applied if holds(force_row(loads, force))]
+    found += [f"the joint of '{effort.body}'" for effort in loads.efforts if holds(effort_row(loads.motion, effort))]
+    return " and ".join(dict.fromkeys(found))
 
 
 def summed(rows: list[ScalarRow], size: int) -> ScalarRow:

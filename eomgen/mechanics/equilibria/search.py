@@ -121,6 +121,10 @@ class Equilibria:
         return self.found[0]
 
 
+NO_PLACE = "no place was found at which all forces balance"
+MOST_NAMED = 4  # coordinates
+
+
 def nowhere(complete: bool, ties: Ties) -> DerivationError:
     """That there is no place of rest, that none was found, or that ties do not close anywhere near."""
     try:
@@ -129,7 +133,12 @@ def nowhere(complete: bool, ties: Ties) -> DerivationError:
         return error
     except MissingValues:  # whether they close cannot be told without values
         pass
-    return DerivationError("no place was found at which all forces balance" + (": there is none" if complete else ""))
+    free = [q.name for q in ties.motion.scope.symbols.q if not ties.motion.scope.model.coordinates[q.name].driven]
+    what = f"no place was found at which all forces balance along '{free[0]}'" if len(free) == 1 else NO_PLACE
+    what += ": there is none" if complete else f" (of {', '.join(map(repr, free[:MOST_NAMED]))})" if free[1:] else ""
+    return DerivationError(
+        what, mend="hold by a spring or a tie what nothing balances, or say by `near` where it rests"
+    )
 
 
 def all_equilibria(system: System, guess: Mapping[str, float] | None = None) -> Equilibria:

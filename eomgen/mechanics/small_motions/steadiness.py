@@ -11,6 +11,7 @@ import numpy as np
 
 from eomgen.errors import DerivationError
 from eomgen.mechanics.constraints.elimination import refuse_undetermined
+from eomgen.mechanics.equations.work import acting
 from eomgen.mechanics.small_motions.field import NumberField, Numbers
 from eomgen.mechanics.small_motions.first_order import Choice, FirstOrder
 from eomgen.mechanics.small_motions.forms import carrying, floats, seen_beside_own
@@ -65,8 +66,9 @@ def refuse_corners(
     for _ in range(SIDES):
         aside = {x: fifty_digits().number(1) * SQUARED_SINE * rng.uniform(-1, 1) for x in (*symbols.q, *symbols.u)}
         if changes(aside) or changes({x: -d for x, d in aside.items()}):
+            named = acting(first.system.loads, lambda row: any(node.op in CORNERS for node in order(row)))
             raise DerivationError(
-                "the forces have a corner or a jump at the place of reference",
+                f"{named or 'the forces'}: a corner or a jump at the place of reference",
                 "linearize",
                 "take a place beside it, or forces that are smooth there",
             )
@@ -94,8 +96,11 @@ def steady_coordinates(
     t = first.system.symbols.t
     culprit = next((x for x in shifts[0] if changes({x: shifts[0][x]})), t)
     if culprit is t:
+        named = acting(first.system.loads, lambda row: depends_on_any(row, (t,)))
+        driven = [f"'{name}'" for name, part in coordinates.items() if part.driven]
+        by = " and ".join((*driven, *([named] if named else ())))
         raise DerivationError(
-            "coefficients of the small motions change with time: there are no modes",
+            f"coefficients of the small motions change with time{f', by {by}' if by else ''}: there are no modes",
             "linearize",
             "let nothing but inputs depend on t",
         )
