@@ -194,6 +194,16 @@ def test_a_model_that_cannot_move_is_told(tmp_path):
         assert ("no problems found" in result.stdout) is not told
 
 
+def test_a_body_that_nothing_hangs_is_told(tmp_path):
+    """Beside a pendulum a rod without a joint stands in the ground: it is named; a massless frame is meant so."""
+    model = tmp_path / "unhung.toml"
+    rod = 'shape = { kind = "rod", mass = MASS, length = 1 }'
+    for more, told in ((rod.replace("MASS", "1"), True), (rod.replace("MASS", "0"), False), ("points = {}", False)):
+        model.write_text(PENDULUM + f"\n[bodies.rest]\n{more}\n")
+        result = CliRunner().invoke(main, ["check", str(model)])
+        assert ("body 'rest' has no joint, and stands still" in result.stderr) is told, result.output
+
+
 IN_DEGREES = PENDULUM.replace("phi = 0.3", 'phi = { start = 30, unit = "deg" }').replace(
     "[bodies.bob]",
     """
@@ -213,6 +223,8 @@ def test_a_plain_number_of_an_instant_is_in_the_unit_declared(recwarn):
     assert not [w for w in recwarn if "plain numbers are in SI" in str(w.message)]
     eomgen.derive(model, start={"phi": 45})
     assert [w for w in recwarn if "phi = 45 is 45 rad" in str(w.message)]
+    eomgen.derive(model, start={"phi": "60"})
+    assert [w for w in recwarn if "phi = 60 is 60 rad" in str(w.message)]
     recwarn.clear()
     for start in (0.4, "45 deg", (45, "deg")):
         eomgen.derive(model, start={"phi": start})

@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 import warnings
 from collections.abc import Iterable, Mapping
+from contextlib import suppress
 from dataclasses import replace
 from typing import Any
 
@@ -132,9 +133,12 @@ def with_values(
 def _warn_of_turns(name: str, typed: Typed, found: Settled) -> None:
     """A plain number in Python is in SI; of an angle that the file has in degrees more than a turn is hardly meant."""
     angle = found.unit is not None and found.unit.si == "rad" and found.unit.text != "rad"
-    if angle and isinstance(typed, (int, float)) and abs(typed) > 2 * math.pi:
+    number = math.nan
+    with suppress(ValueError):
+        number = float(typed) if isinstance(typed, (int, float, str)) else math.nan
+    if angle and abs(number) > 2 * math.pi:
         unit = found.unit.text if found.unit is not None else ""
-        told = f"{name} = {typed:g} is {typed:g} rad: plain numbers are in SI; '{typed:g} {unit}' has its unit"
+        told = f"{name} = {number:g} is {number:g} rad: plain numbers are in SI; '{number:g} {unit}' has its unit"
         warnings.warn(told, RuntimeWarning, stacklevel=5)
 
 

@@ -21,6 +21,7 @@ from eomgen.mechanics.instant.velocity_analysis import mobility_of
 from eomgen.mechanics.statics.contacts_at_start import contacts_at_start
 from eomgen.mechanics.statics.rest_contacts import modes_at_rest
 from eomgen.mechanics.structures.structure import Structure, structure_of
+from eomgen.model.arithmetic import value_of
 from eomgen.model.catalog import Catalog
 from eomgen.model.parts import Model
 from eomgen.model.table import Table
@@ -111,6 +112,7 @@ def checked_model(model: Model) -> Checked:
             *_open(model, start),
             *(_idle(model, modes) if model.coordinates else ()),
             *_locked(model, freedom),
+            *_unhung(model),
             *_stiff(model, modes, freedom),
             *_misplaced(model),
         ),
@@ -132,6 +134,15 @@ def _locked(model: Model, freedom: Freedom) -> tuple[Problem, ...]:
         return ()
     what = f"nothing can move: the ties leave '{free[0]}' no freedom"
     return (Problem(f"coordinates.{free[0]}", what, mend="look for a hinge that is missing, or a tie too many"),)
+
+
+def _unhung(model: Model) -> Iterator[Problem]:
+    """Bodies with mass that no joint hangs in a model that moves: they stand still, whatever else does."""
+    for name, body in model.bodies.items() if model.coordinates else ():
+        mass = body.mass if body.shape is None else body.shape.mass
+        if body.joint is None and mass is not None and value_of(mass, exact_parameters(model)) != 0:
+            what = f"body '{name}' has no joint, and stands still in the ground's frame"
+            yield Problem(f"bodies.{name}", what, mend="hang it by a joint; what is to stand still needs no mass")
 
 
 def _stiff(model: Model, modes: ContactModes, freedom: Freedom) -> Iterator[Problem]:
