@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 from matplotlib.figure import Figure
@@ -61,3 +63,56 @@ def test_an_influence_line_is_drawn_over_the_way_of_the_load():
     assert points[points[:, 1].argmax()] == pytest.approx([6, 1.5])
     assert np.interp(4, points[1:-1, 0], points[1:-1, 1]) == pytest.approx(1)
     assert written(panel) == {"1.5"}
+
+
+@pytest.fixture(scope="module")
+def drawn(tmp_path_factory):
+    """(statics with an influence line, its panels as they were saved)"""
+    found = eomgen.statics(eomgen.loads(BEAM), influence="bending_moment(beam, 2)")
+    return found, found.picture.saved(tmp_path_factory.mktemp("drawn") / "beam.svg")
+
+
+def states(drawn, changed=lambda panel: panel):
+    found, panels = drawn
+    return {check.status for check in found.drawn_checks([changed(panel) for panel in panels])}
+
+
+def test_diagrams_that_are_read_again_are_the_forces_from_the_other_end(drawn):
+    """N = R . t, V = -R . n, M = T at every place of the curves; unit loads along the influence line"""
+    assert states(drawn) == {"holds"}
+
+
+@pytest.mark.parametrize("of", ["M of beam", "V of beam", "bending_moment(beam, 2)"])
+def test_a_diagram_that_shows_another_thing_is_seen(drawn, of):
+    """A curve that is turned over, or elsewhere, or in another unit; a number that is another, or missing"""
+
+    def with_curves(panel, of_places):
+        return replace(panel, curves=tuple(replace(c, places=of_places(c.places)) for c in panel.curves))
+
+    def only(change):
+        return lambda panel: change(panel) if panel.y.startswith(of) else panel
+
+    for change in (
+        lambda panel: with_curves(panel, lambda xy: xy * [1, -1]),
+        lambda panel: with_curves(panel, lambda xy: xy * [0.9, 1]),
+        lambda panel: replace(panel, is_turned=not panel.is_turned),
+        lambda panel: replace(panel, names=panel.names[1:]),
+        lambda panel: replace(panel, names=tuple((f"{text}1", place) for text, place in panel.names)),
+        lambda panel: replace(panel, y=panel.y.replace("[N", "[kN")) if "[" in panel.y else replace(panel, hidden=True),
+    ):
+        assert states(drawn, only(change)) == {"fails"}
+
+
+def test_a_way_from_truss_to_truss_names_both_nodes():
+    """The line of reactions over two trusses that stand on one another is what unit loads give"""
+    nodes = "nodes = { n1 = [0, 0], n2 = [2, 0], n3 = [1, 1] }"
+    truss = f'{nodes}\nmembers = ["n1-n2", "n2-n3", "n1-n3"]\n'
+    held = "".join(
+        f'{t}1 = {{ kind = "pin", points = ["{t}.n1"] }}\n'
+        f'{t}2 = {{ kind = "support", point = "{t}.n2", normal = [0, 1] }}\n'
+        for t in "TU"
+    )
+    text = f'eomgen = 1\nname = "two"\nspace = "plane"\n[trusses.T]\n{truss}[trusses.U]\n{truss}[constraints]\n{held}'
+    found = eomgen.statics(eomgen.loads(text), influence="reaction_n(T2)")
+    assert found.certify().ok
+    assert "T.n1-U.n1" in [span.name for span in found.influence.spans]

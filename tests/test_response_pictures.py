@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -18,6 +19,22 @@ from eomgen.verbs.reaction_picture import turn_of
 pytestmark = pytest.mark.slow
 
 MODELS = Path(__file__).parent.parent / "models"
+TWO_MASSES = """
+eomgen = 1
+name = "two masses"
+space = "plane"
+parameters = { k = { value = 20, unit = "kN/m" }, c = 300 }
+coordinates = { x = {}, y = {} }
+inputs = { F = { value = 0, unit = "N" } }
+[bodies.first]
+shape = { kind = "particle", mass = 40 }
+joint = { kind = "prismatic", axis = [1, 0], displacement = "x", stiffness = "k", damping = "c" }
+[bodies.second]
+shape = { kind = "particle", mass = 15 }
+joint = { kind = "prismatic", on = "first", axis = [1, 0], displacement = "y", stiffness = "2*k" }
+[forces]
+push = { kind = "force", point = "second.origin", force = ["F", 0] }
+"""
 
 
 def test_curves_that_are_one_take_turns():
@@ -36,6 +53,41 @@ def test_roots_on_the_imaginary_axis_are_drawn_on_it():
     eomgen.linearize(model).locus("k1=1:200:9").fill(figure)
     left, right = figure.axes[0].get_xlim()
     assert right - left > 1
+
+
+@pytest.mark.parametrize("view", ["bode", "locus", "modes"])
+def test_small_motions_that_are_drawn_otherwise_are_seen(tmp_path, view):
+    """(s 1 - F, -E; K, s M + C)(q, u) = (0, B w) at what is drawn; det = 0 at roots of the values at the colours"""
+    found = eomgen.linearize(eomgen.loads(TWO_MASSES))
+    found = replace(found, drawn=view, over=range_of(found.model, "k=20:30:3") if view == "locus" else None)
+    panels = found.picture.saved(tmp_path / "a.svg")
+
+    def states(changed):
+        return {check.status for check in found.drawn_checks(changed)}
+
+    assert states(panels) == {"holds"}
+    for change in {
+        "bode": (
+            lambda p: [p[0], replace(p[1], curves=[replace(c, places=c.places * [1, -1]) for c in p[1].curves])],
+            lambda p: [replace(p[0], curves=[replace(c, label=p[0].curves[0].label) for c in p[0].curves]), p[1]],
+            lambda p: [replace(p[0], scales=("log", "linear")), p[1]],
+        ),
+        "locus": (
+            lambda p: [replace(p[0], points=[replace(x, values=x.values * 1.1) for x in p[0].points])],
+            lambda p: [replace(p[0], points=[replace(x, label="$k$ [N/m]") for x in p[0].points])],
+            lambda p: [replace(p[0], points=[replace(x, places=x.places + 0.01) for x in p[0].points])],
+        ),
+        "modes": (lambda p: p[::-1], lambda p: p[1:], lambda p: [replace(x, title=f"{x.title}1") for x in p]),
+    }[view]:
+        assert states(change(panels)) == {"fails"}
+
+
+def test_values_at_the_colours_are_in_their_unit(tmp_path):
+    """alpha = 0.3 rad is 17.19 under [deg], from Python as from the command line"""
+    found = eomgen.linearize(MODELS / "rolling_cone.toml")
+    drawn = replace(found, drawn="locus", over=range_of(found.model, "alpha=0.3:0.4:2", declared=False))
+    (panel,) = drawn.picture.saved(tmp_path / "a.svg")
+    assert sorted({*panel.points[0].values}) == pytest.approx(np.degrees([0.3, 0.4]))
 
 
 def test_reactions_are_drawn_over_one_turn_of_the_drive(tmp_path):

@@ -269,3 +269,27 @@ def test_a_kind_of_motion_is_that_of_the_spin_and_the_velocities(said: str, monk
     checks = eomgen.kinematics(eomgen.loads(GEARS)).certify().checks
     name = "kinds of motion are those of the spins and velocities"
     assert [check.status for check in checks if check.name == name] == ["fails" if said else "holds"]
+
+
+def told_works(change=lambda told: told) -> str:
+    """What is wrong with the virtual works of the beam, each changed."""
+    from eomgen.proof.structure import state_of
+    from eomgen.proof.works_told import works_told
+
+    beam = eomgen.statics(eomgen.loads(BEAM))
+    found = works_told(beam.found, state_of(beam.found), map(change, beam._told_works()))
+    return "; ".join(c.detail for c in found if c.status == "fails")
+
+
+def test_virtual_works_that_are_told_are_those_of_the_mechanism():
+    """Only R works along all ties; the loads work what their fields declare; along R + works = 0, R by the balance"""
+    assert not told_works()
+    assert "along" in told_works(lambda x: replace(x, along=f"-({x.along})"))
+    assert "along" in told_works(lambda x: replace(x, blocks=[replace(b, spin=f"-({b.spin})") for b in x.blocks]))
+    assert "works" in told_works(lambda x: replace(x, works=[(name, f"2*({w})") for name, w in x.works]))
+    assert "works" in told_works(lambda x: replace(x, printed=x.printed[1:]))
+    assert "value" in told_works(lambda x: replace(x, last=-x.last))
+    assert "equation" in told_works(lambda x: replace(x, left=x.left + 1))
+    assert "block 1" in told_works(lambda x: replace(x, rows=[replace(r, spin=-r.spin) for r in x.rows]))
+    moved = told_works(lambda x: replace(x, places=[replace(p, shift=[2 * s for s in p.shift]) for p in x.places]))
+    assert "shift" in moved

@@ -11,6 +11,7 @@ from typing import Any
 from eomgen import files
 from eomgen.documents.latex_names import Notation
 from eomgen.errors import UsageError, visible
+from eomgen.proof.drawn_panels import DrawnPanel, panels_of
 from eomgen.records import dataclass
 from eomgen.symbolic.numeric.tolerances import SMALLEST_PLAIN
 
@@ -52,14 +53,25 @@ class Picture:
             UsageError: another ending.
             WriteFailed: the file cannot be written; what was there before is then still there.
         """
+        self.saved(path)
+
+    def saved(self, path: str | Path) -> tuple[DrawnPanel, ...]:
+        """`save`, and what the panels of the figure in the file show."""
         path = Path(path)
         if path.suffix.lower() not in FORMATS:
             raise UsageError(f"no picture can be written as '{path.name}'", mend=f"endings are {', '.join(FORMATS)}")
         form = path.suffix.lower()
         undated = {".svg": {"Date": None}, ".pdf": {"CreationDate": None}}.get(form, {})
         page = io.BytesIO()
-        self._drawn(lambda figure: figure.savefig(page, format=form[1:], dpi=150, metadata=undated))
+        panels: list[DrawnPanel] = []
+
+        def keep(figure: Any) -> None:
+            figure.savefig(page, format=form[1:], dpi=150, metadata=undated)
+            panels.extend(panels_of(figure))
+
+        self._drawn(keep)
         files.write(path, page.getvalue())
+        return tuple(panels)
 
     def _drawn(self, keep: Callable[[Any], object]) -> None:
         """Draw it, and keep it while the style of its numbers and letters holds."""

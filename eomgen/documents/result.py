@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import replace
 from pathlib import Path
 from typing import Any
@@ -10,7 +10,8 @@ from typing import Any
 from eomgen.documents import json_form, rendered
 from eomgen.documents.document import Document
 from eomgen.documents.figures import Picture
-from eomgen.proof.check import Certificate
+from eomgen.proof.check import Certificate, Check
+from eomgen.proof.drawn_panels import DrawnPanel
 
 
 class Result:
@@ -34,6 +35,10 @@ class Result:
     def certify(self) -> Certificate:
         """The proof of it, made when it is asked for."""
         raise NotImplementedError
+
+    def drawn_checks(self, panels: Sequence[DrawnPanel]) -> Iterable[Check]:
+        """The proof of its picture, by what its panels show."""
+        return ()
 
     def entries(self) -> Mapping[str, Any]:
         """What machines get, with quantities as leaves."""

@@ -31,7 +31,7 @@ class Range:
 
     Args:
         values: in SI.
-        unit: in which they were given, "" for SI; `size` of it in SI.
+        unit: that the file declares, "" for SI; `size` of it in SI.
         taken: what was made of the text.
     """
 
@@ -151,9 +151,8 @@ def range_of(model: Model, text: str, *, starts: bool = False, declared: bool = 
         values = _values(rest, logarithmic, text, typed.number)
     except ExpressionError as error:
         raise UsageError(f"'{text}' is no range: {error.what}", mend=error.mend or LIKE) from error
-    return Range(
-        name, tuple(values), "" if typed.unit is None else typed.unit.text, typed.size, _taken(typed, rest, logarithmic)
-    )
+    unit, size = ("", 1.0) if typed.unit is None else (typed.unit.text, typed.unit.size)
+    return Range(name, tuple(values), unit, size, _taken(typed, rest, logarithmic))
 
 
 def _taken(typed: TypedNumbers, rest: str, logarithmic: bool) -> Taken:

@@ -66,6 +66,15 @@ def acting_otherwise(system: System, state: State) -> str:
     return ""
 
 
+def declared_pushes(system: System, state: State, force: str) -> Pushes:
+    """Of each body (moment about the ground's origin, force) of one force as its fields declare it.
+
+    Raises:
+        NoValue: it has none at the state.
+    """
+    return _Declared(system, state).pushes(system.scope.model.forces[force].acts)
+
+
 def working_otherwise(equations: EquationsOfMotion, state: State) -> str:
     """That Q does another work along a random direction than what is declared; "".
 

@@ -4,13 +4,15 @@
     dM/dx = V,   dV/dx = q . n,   dN/dx = -q . t
     G rho = -e                            reactions to a unit load at a place of an influence line, by balance
 
+Diagrams are read from their picture: every place of a curve, and every number beside one, in the unit at its axis.
+
 Reactions are found in two ways before they come here, by virtual work and by the balance of the bodies.
 """
 
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
-from functools import cached_property
+from functools import cached_property, partial
 from itertools import combinations, pairwise
 from random import Random
 from typing import Any
@@ -29,8 +31,9 @@ from eomgen.mechanics.statics.two_ways import StaticReactions, StaticSum
 from eomgen.mechanics.structures.blocks import RigidBlock, blocks_of, members_of
 from eomgen.mechanics.structures.velocity_plan import VelocityPlan
 from eomgen.proof.at_a_state import balanced_least
-from eomgen.proof.check import Check, attempted, checked, first_wrong
+from eomgen.proof.check import Check, Tally, attempted, checked, first_wrong
 from eomgen.proof.declared_work import acting_otherwise
+from eomgen.proof.drawn_panels import DrawnCurve, DrawnPanel, said_of
 from eomgen.proof.named_axes import named_otherwise
 from eomgen.records import dataclass
 from eomgen.symbolic.expression.derivative import symbols_of
@@ -38,12 +41,16 @@ from eomgen.symbolic.expression.expressions import single_call
 from eomgen.symbolic.expression.graph import Node, Scalar
 from eomgen.symbolic.expression.spatial import ZERO, Vector
 from eomgen.symbolic.numeric.evaluation import FLOAT, evaluate, fifty_digits
-from eomgen.symbolic.numeric.tolerances import COMPUTED, RANK
+from eomgen.symbolic.numeric.tolerances import CARRIED, COMPUTED, FOUR_DIGITS, RANK, SAME_PLACE
 
 IN_NUMBERS = "floating point"
 MOST_PLANS = 4  # released structures whose blocks are looked at, evenly spread
 PARTS = tuple((2 * k + 1) / 16 for k in range(8))  # of a piece, at which the sign of V is looked at
 QUARTERS = (0.25, 0.75)  # of a straight piece, at which straight lines are compared
+DRAWN = "N, V, M and influence lines are drawn as they are"
+HOW_DRAWN = "curves and numbers of the picture, from the other end and by unit loads"
+LETTERS = dict(zip("NVM", KINDS, strict=True))
+PREFIXES = {"": 1.0, "m": 1e-3, "k": 1e3, "M": 1e6, "G": 1e9}  # of N and N m
 
 
 def structure_checks(
@@ -79,6 +86,34 @@ def structure_checks(
     if influence is not None:
         wrong = proof.wrong_influence(influence)
         yield checked("the influence line is what unit loads give at places of it", wrong, IN_NUMBERS)
+
+
+def diagrams_drawn(
+    found: StaticReactions,
+    sections: Mapping[str, SectionForces],
+    influence: InfluenceLine | None,
+    panels: Sequence[DrawnPanel],
+) -> Iterator[Check]:
+    """Every panel that says that it shows N, V or M of a body, or the influence line."""
+    proof, tally = _Proof(found), Tally(DRAWN, HOW_DRAWN)
+    drawn = set[str]()
+    for panel in panels:
+        what, unit = said_of(panel.y)
+        letter, _, body = what.partition(" of ")
+        if letter in LETTERS and body in sections:
+            drawn.add(body)
+            tally.add(what, partial(_Diagram(proof, sections[body], letter, panel, unit).wrong))
+        elif influence is not None and panel.y == influence.name:
+            drawn.add(influence.name)
+            tally.add(what, partial(proof.wrong_line, influence, panel))
+    if influence is not None and drawn:
+        tally.add(influence.name, lambda: "" if influence.name in drawn else "it is not drawn")
+    yield from tally.checks()
+
+
+def state_of(found: StaticReactions) -> dict[Node, Any]:
+    """Every symbol with 50 digits; parameters without a value are something, unknown loads what they come to."""
+    return _Proof(found).state
 
 
 def _left_out(found: StaticReactions) -> Iterator[Check]:
@@ -287,7 +322,7 @@ class _Proof:
             yield from ((part, span.name) for part in QUARTERS)
             return
         first, _, last = span.name.rpartition("-")
-        yield from ((0.0, first), (1.0, f"{first.partition('.')[0]}.{last}"))
+        yield from ((0.0, first), (1.0, last if "." in last else f"{first.partition('.')[0]}.{last}"))
 
     def _by_load(self, line: InfluenceLine, body: str, place: np.ndarray) -> float:
         """The force under the unit load at a place of a body, by the balance of all bodies."""
@@ -300,6 +335,25 @@ class _Proof:
         if line.cut is None:
             return self._named(line.name, x)
         return self._in_section(line, x, (body, place, load))
+
+    def wrong_line(self, line: InfluenceLine, panel: DrawnPanel) -> str:
+        """The curve of each span, over x or over the way that the load has gone."""
+        if len(panel.curves) != len(line.spans) or panel.is_turned or panel.hidden:
+            return "other spans are drawn, or hidden"
+        way, over_x = 0.0, panel.x.startswith("x ")
+        for curve, span in zip(panel.curves, line.spans, strict=True):
+            a, b = (self.numbers(place) for place in (span.start, span.end))
+            length = float(np.linalg.norm(b - a))
+            due = (a[0], b[0]) if over_x else (way, way + length)
+            way += length
+            x, y = curve.places[1:-1].T
+            if _far((x[0], x[-1]), due, way) or np.any(curve.places[[0, -1], 1]):
+                return f"{span.name} is drawn from {x[0]:.6g} to {x[-1]:.6g}, not from {due[0]:.6g} to {due[1]:.6g}"
+            for part, body in self._stops(span):
+                value, found = self._by_load(line, body, a + part * (b - a)), y[0] + part * (y[-1] - y[0])
+                if abs(value - found) > CARRIED * (1 + abs(value)):
+                    return f"in {span.name}: {found:.6g} for {value:.6g}"
+        return _misnamed(panel)
 
     @cached_property
     def _centers(self) -> list[np.ndarray]:
@@ -365,6 +419,89 @@ class _Proof:
 
     def _on(self, body: str, place: Vector) -> np.ndarray:
         return self.numbers(self.found.system.motion.position((body, place)))
+
+
+# -- as they are drawn ---------------------------------------------------------------------------------------------
+
+
+@dataclass(frozen=True)
+class _Diagram:
+    """N, V or M of one body as it is drawn.
+
+    Args:
+        letter: which of them; unit: in which.
+    """
+
+    proof: _Proof
+    forces: SectionForces
+    letter: str
+    panel: DrawnPanel
+    unit: str
+
+    def wrong(self) -> str:
+        panel, pieces = self.panel, self.forces.pieces
+        if panel.hidden or panel.is_turned != (self.letter == "M"):
+            return "it is not drawn on the side of the stretched fibre" if self.letter == "M" else "it is turned"
+        if len(panel.curves) != len(pieces):
+            return f"{len(panel.curves)} pieces are drawn of {len(pieces)}"
+        for curve, piece in zip(panel.curves, pieces, strict=True):
+            if wrong := self._wrong_curve(curve, piece):
+                return wrong
+        if self.letter == "M":
+            for a, b in self.proof._turns(self.forces):
+                if not any(a < place[0] < b for _, place in panel.names):
+                    return f"no number stands at the extreme between x = {a:.6g} and {b:.6g}"
+        return _misnamed(panel)
+
+    def _wrong_curve(self, curve: DrawnCurve, piece: SectionPiece) -> str:
+        start, end = self.proof.one(piece.start), self.proof.one(piece.end)
+        x, y = curve.places[1:-1].T
+        if _far((x[0], x[-1]), (start, end), end) or np.any(np.diff(x) < 0) or np.any(curve.places[[0, -1], 1]):
+            return f"drawn from {x[0]:.6g} to {x[-1]:.6g}, not from {start:.6g} to {end:.6g}"
+        for at, value in zip(x, y * PREFIXES[self.unit.partition("N")[0]], strict=True):
+            inside = min(max(at, start + COMPUTED * (end - start)), end - COMPUTED * (end - start))
+            right, size = self._from_behind(piece, inside)
+            if abs(value - right) > CARRIED * (size + 1):
+                return f"at x = {at:.6g} {value:.6g} for {right:.6g}"
+        return ""
+
+    def _from_behind(self, piece: SectionPiece, x: float) -> tuple[float, float]:
+        """(what it is, what is large for it)."""
+        leg, proof = piece.leg, self.proof
+        t, n = proof.numbers(leg.along), proof.numbers(leg.left)
+        R, T, size, moment = proof.along(self.forces).behind(x, proof.numbers(leg.start) + (x - proof.one(leg.x)) * t)
+        return {"N": (float(R @ t), size), "V": (float(-R @ n), size), "M": (T, moment)}[self.letter]
+
+
+def _far(found: tuple[float, float], due: tuple[float, float], size: float) -> bool:
+    return bool(np.any(np.abs(np.subtract(found, due)) > SAME_PLACE * (1 + abs(size))))
+
+
+def _misnamed(panel: DrawnPanel) -> str:
+    """A number beside a place that is on no curve, or another one than this; a corner without its number."""
+    corners = np.concatenate([curve.places[[1, -2]] for curve in panel.curves])
+    size = np.abs(np.concatenate([curve.places for curve in panel.curves])).max(axis=0)
+    for text, place in panel.names:
+        if abs(float(text) - place[1]) > FOUR_DIGITS * abs(place[1]):
+            return f"{text} stands at {place[1]:.6g}"
+        if not any(_is_on(curve.places[1:-1], place, size) for curve in panel.curves):
+            return f"{text} stands beside the curve"
+    for corner in corners:
+        near = any(np.all(np.abs(place - corner) <= SAME_PLACE * size) for _, place in panel.names)
+        if abs(corner[1]) > COMPUTED * size[1] and not near:
+            return f"no number stands at the corner ({corner[0]:.6g}, {corner[1]:.6g})"
+    return ""
+
+
+def _is_on(places: np.ndarray, place: np.ndarray, size: np.ndarray) -> bool:
+    """Whether a place is on a curve; between two places of it as nearly as it is bent there."""
+    x, y = places.T
+    if not x[0] - SAME_PLACE * size[0] <= place[0] <= x[-1] + SAME_PLACE * size[0]:
+        return False
+    if x[-1] - x[0] <= SAME_PLACE * size[0]:  # a jump
+        return bool(y.min() - SAME_PLACE * size[1] <= place[1] <= y.max() + SAME_PLACE * size[1])
+    bent = float(np.abs(np.diff(y, 2)).max(initial=0.0)) if len(y) > 2 else 0.0
+    return bool(abs(np.interp(place[0], x, y) - place[1]) <= bent + SAME_PLACE * size[1])
 
 
 def _wrench(force: np.ndarray, arm: np.ndarray) -> np.ndarray:

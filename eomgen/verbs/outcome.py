@@ -21,9 +21,9 @@ if TYPE_CHECKING:
 
 def shown(found: Result, *, plot: str | None = None, certify: bool = True) -> Document:
     """What is found, proven where that is asked for, its picture in a file where one is."""
-    if plot is not None:
-        found.plot(plot)
-    document = proven(found.document, found.certify() if certify else None)
+    panels = () if plot is None else found.picture.saved(plot)
+    certificate = found.certify() + found.drawn_checks(panels) if certify else None
+    document = proven(found.document, certificate)
     over = getattr(found, "over", None)  # the range of a picture
     return document if over is None else replace(document, taken=(*document.taken, over.taken))
 

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
 from dataclasses import replace
 from functools import cached_property
 from typing import Any
@@ -11,7 +11,8 @@ import numpy as np
 
 from eomgen.certificate import certify
 from eomgen.documents.document import Document, document_of
-from eomgen.documents.figures import Picture
+from eomgen.documents.figures import Picture, mathtext
+from eomgen.documents.latex_names import notation_of
 from eomgen.documents.linearize.printed_modes import printed_modes
 from eomgen.documents.linearize.state_space import LETTERS, StateSpace, state_space_of
 from eomgen.documents.linearize.steps import linearization_steps
@@ -37,10 +38,11 @@ from eomgen.model.ranges import Range, range_of
 from eomgen.model.reader import ModelOrPath, model_at
 from eomgen.model.replaced import Values
 from eomgen.model.values import exact_parameters
-from eomgen.proof.check import Certificate
+from eomgen.proof.check import Certificate, Check
+from eomgen.proof.drawn_panels import DrawnPanel
 from eomgen.proof.linear_entries import linear_entries
 from eomgen.proof.small_motions import small_motion_checks
-from eomgen.proof.small_motions_told import small_motions_told
+from eomgen.proof.small_motions_told import modes_drawn, responses_drawn, roots_drawn, small_motions_told
 from eomgen.records import dataclass
 from eomgen.symbolic.expression.expressions import Call, Expression
 from eomgen.symbolic.expression.graph import Scalar
@@ -185,6 +187,19 @@ class Linearization(Result):
         told = linear_entries(entries, self.A, self.B) if self.valued else ()
         printed = small_motions_told(entries, printed_modes(self.derivation), values)
         return certify(first.equations) + small_motion_checks(self.modes) + told + printed
+
+    def drawn_checks(self, panels: Sequence[DrawnPanel]) -> Iterable[Check]:
+        """Bode's diagrams and roots over a parameter, by M, C, K and B as machines get them; the modes by these."""
+        notation = notation_of(self.model)
+        if panels and self.over is not None:
+            yield roots_drawn(
+                self.entries(), panels, {x: mathtext(x, notation) for x in self.model.parameters}, self.model
+            )
+        elif panels and self.drawn == "bode":
+            names = (*self.coordinates, *self.inputs)
+            yield responses_drawn(self.entries(), panels, {x: mathtext(x, notation) for x in names})
+        elif panels:
+            yield modes_drawn(self.entries(), panels)
 
     # -- as outputs ask ------------------------------------------------------------------------------------
 

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterable, Iterator, Sequence
 from functools import cached_property
 from typing import TYPE_CHECKING, Any
 
@@ -20,6 +20,7 @@ from eomgen.documents.statics.section_steps import (
     told_sections,
 )
 from eomgen.documents.statics.steps import contacts_step, statics_derivation, sum_name
+from eomgen.documents.statics.work_steps import told_work
 from eomgen.errors import UsageError
 from eomgen.mechanics.equations.system import System, system_of
 from eomgen.mechanics.equilibria.static_equations import has_freedoms, with_drives_held
@@ -35,15 +36,19 @@ from eomgen.model.parts import Model
 from eomgen.model.reader import ModelOrPath, model_at
 from eomgen.model.replaced import Values
 from eomgen.model.values import exact_parameters
-from eomgen.proof.check import Certificate
+from eomgen.proof.check import Certificate, Check
+from eomgen.proof.drawn_panels import DrawnPanel
 from eomgen.proof.parameters import other_data
 from eomgen.proof.sections_told import sections_told
-from eomgen.proof.structure import structure_checks
+from eomgen.proof.structure import diagrams_drawn, state_of, structure_checks
+from eomgen.proof.works_told import ToldWork, works_told
 from eomgen.records import dataclass
 from eomgen.symbolic.expression.graph import Scalar
 from eomgen.symbolic.numeric.tolerances import COMPUTED
 from eomgen.symbolic.numeric.work import doing
 from eomgen.symbolic.print.text import to_text
+
+MOST_TOLD = 8  # reactions whose virtual work is read again
 
 if TYPE_CHECKING:
     from eomgen.documents.statics.equilibrium_result import Resting
@@ -129,7 +134,21 @@ class Statics(Result):
         checks = structure_checks(self.found, self.sections.found, self.influence)
         told = told_sections(self.sections, self.derivation.steps, section_payload(self.sections))
         sections = sections_told(self.sections.found, told, exact_parameters(self.model))
-        return Certificate((*checks, *other_data(self.found.system.motion), *sections))
+        works = works_told(self.found, state_of(self.found), self._told_works())
+        return Certificate((*checks, *other_data(self.found.system.motion), *sections, *works))
+
+    def _told_works(self) -> Iterator[ToldWork]:
+        """Of some reactions in the plane, evenly spread."""
+        by_key = {step.key: step for step in self.derivation.steps}
+        worked = [(r.name, r.work) for r in self.found.reactions if r.work is not None]
+        for name, work in worked[:: 1 + len(worked) // MOST_TOLD] if self.model.space == "plane" else ():
+            told = told_work(name, by_key[f"work {name}"], _work(work))
+            if told is not None:
+                yield told
+
+    def drawn_checks(self, panels: Sequence[DrawnPanel]) -> Iterable[Check]:
+        """N, V, M and the influence line as they are drawn, from the other end and by unit loads."""
+        return diagrams_drawn(self.found, self.sections.found, self.influence, panels) if panels else ()
 
     @cached_property
     def derivation(self) -> Document:

@@ -3,9 +3,11 @@
 from __future__ import annotations
 
 from collections import Counter
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
+from typing import Any
 
 from eomgen.documents.statements import Cell, Formula, Grid, Piece, Prose, Statement, Step, narrow_grid, prose
+from eomgen.documents.text import cell_text
 from eomgen.mechanics.bodies.inertia import mass_properties
 from eomgen.mechanics.statics.two_ways import StaticReaction
 from eomgen.mechanics.statics.virtual_work import Acting, WorkEquation, WorkTerm
@@ -13,6 +15,7 @@ from eomgen.mechanics.structures.blocks import RigidBlock, blocks_of, members_of
 from eomgen.mechanics.structures.velocity_plan import VelocityPlan
 from eomgen.model.forces.load import BodyPoint, Couple, PointForce, SpreadLoad
 from eomgen.model.trusses import is_node
+from eomgen.proof.works_told import ToldBlock, ToldMotion, ToldWork
 from eomgen.symbolic.expression.graph import Node, Scalar, is_zero
 from eomgen.symbolic.expression.rational import Fraction
 from eomgen.symbolic.expression.spatial import Vector, plus, times, vector_of
@@ -68,6 +71,43 @@ def _released(plan: VelocityPlan, blocks: Sequence[RigidBlock], symbol: Node, de
 def _listed(names: Sequence[str]) -> str:
     shown = ", ".join(names[:LISTED])
     return shown + (f" and {len(names) - LISTED} more" if len(names) > LISTED else "")
+
+
+# -- as it is told -----------------------------------------------------------------------------------
+
+
+def told_work(name: str, step: Step, machines: Mapping[str, Any]) -> ToldWork | None:
+    """How a reaction in the plane is found, as it is printed and as machines get it; None where nothing moves."""
+    grids = {cell_text(s.head[0]): [_by_head(s, row) for row in s.rows] for s in step.statements if isinstance(s, Grid)}
+    formulas = [s for s in step.statements if isinstance(s, Formula)]
+    if "block" not in grids:
+        return None
+    blocks = [ToldBlock(tuple(x["parts"]), x["rotation"][2], x["shift_at_origin"]) for x in machines["mechanism"]]
+    loads = grids.get("load", [])
+    left, last = formulas[0].sides[0], formulas[1].sides[1]
+    return ToldWork(
+        name,
+        blocks,
+        machines["along"],
+        [(term["load"], term["work"]) for term in machines["terms"]],
+        machines["value"],
+        [_told_motion(row) for row in grids["block"]],
+        [_told_motion(row) for row in loads if any(f"shift {k}" in row for k in "xy")],
+        [(row["load"], row["work"]) for row in loads if not isinstance(row["work"], str)],
+        left,  # type: ignore[arg-type]
+        last,  # type: ignore[arg-type]
+    )
+
+
+def _by_head(grid: Grid, row: Sequence[Cell]) -> dict[str, Any]:
+    return dict(zip(map(cell_text, grid.head), row, strict=True))
+
+
+def _told_motion(row: Mapping[str, Any]) -> ToldMotion:
+    """Columns in which nothing stands are left out, and a centre at infinity is a word."""
+    spin, *shift = (0 if isinstance(x := row.get(k, ""), str) else x for k in ("rotation", "shift x", "shift y"))
+    x = row.get("centre x", "")
+    return ToldMotion(None if isinstance(x, str) else (x, row["centre y"]), spin, shift, row.get("at", ""))
 
 
 # -- the mechanism -----------------------------------------------------------------------------------

@@ -40,7 +40,7 @@ class InfluenceSpan:
     """A straight part of the way of the load, on which the influence line is straight.
 
     Args:
-        name: of the body, or of the two nodes.
+        name: of the body, or of the two nodes: "T.n1-n2"; "T.n5-U.n1" of two trusses.
         start, end: ground axes [m].
         at_start, at_end: of the influence line.
     """
@@ -186,7 +186,8 @@ class _Travelling:
 
     def _over_nodes(self, nodes: Sequence[str]) -> Iterable[InfluenceSpan]:
         for a, b in pairwise(nodes):
-            yield self._span(f"{a}-{b.partition('.')[2]}", (a, ZERO), (b, ZERO))
+            truss, _, node = b.partition(".")
+            yield self._span(f"{a}-{node if a.startswith(f'{truss}.') else b}", (a, ZERO), (b, ZERO))
 
     def _over_bodies(self, bodies: Sequence[str], *, skip: bool = False) -> Iterable[InfluenceSpan]:
         for body in bodies:

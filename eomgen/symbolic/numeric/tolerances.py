@@ -12,6 +12,7 @@ SOLVED = 1e-12  # the solution of linear equations, or a place found by Newton's
 ITERATED = 1e-10  # an eigenvalue problem, differences of near numbers, an extremum
 NINE_DIGITS = 1e-8  # a number that is printed to nine digits, of itself
 SEVEN_DIGITS = 1e-6  # the same to seven digits
+FOUR_DIGITS = 6e-4  # the same to four digits
 COMPUTED = 1e-9  # several solutions one after another: forces from accelerations from coordinates
 CARRIED = 1e-8  # what a run in time carried along, or what was searched twice
 BEST = 1e-15  # [of the unknown] asked of a search that shall go as far as doubles do
