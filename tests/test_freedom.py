@@ -10,7 +10,7 @@ import pytest
 import eomgen
 from eomgen.documents import rendered
 from eomgen.mechanics.constraints.freedom import freedom_of
-from eomgen.proof.freedoms import counted_otherwise
+from eomgen.proof.freedoms import counted_otherwise, lines_otherwise, standing_otherwise
 from eomgen.verbs.check import check_document
 from eomgen.verbs.checked import checked_model
 
@@ -189,6 +189,46 @@ def test_a_count_that_is_another_one_is_contradicted_by_the_rank_of_differences(
         replace(found, by_formula=7),
     )
     assert all(counted_otherwise(model, {}, each) for each in wrong)
+
+
+def test_a_count_that_is_printed_or_told_otherwise_is_seen():
+    """Lines and entries of `check` say the degrees of freedom, the rows and their ties that were found"""
+    found = checked_model(eomgen.loads(HEAD + FOUR_BAR + HINGE + MIDDLE + coordinates(q1=1.0, q2=0.1, q3=1.0, q4=1.0)))
+    document = check_document(found.model)
+    lines, told = document.steps[0].statements[0].lines, document.entries()
+    assert told["ok"] and lines_otherwise(lines, told, found.freedom) == ""
+    redundant = next(line for line in lines if line.startswith("redundant"))
+    others = (
+        [line.replace(": ", ": 7") if line.startswith("degrees") else line for line in lines],
+        [line for line in lines if line != redundant],
+        [line.replace("row 1", "row 9").replace("row 2", "row 9") for line in lines],
+        [line.replace("ties that close: ", "ties that close: and ") for line in lines],
+    )
+    assert all(lines_otherwise([*each], told, found.freedom) for each in others)
+    for name in ("degrees_of_freedom", "by_formula", "redundant", "closing"):
+        assert lines_otherwise(lines, told | {name: None}, found.freedom), name
+
+
+def test_what_the_rank_contradicts_is_not_ok_for_machines(monkeypatch):
+    """`check --json`: ok is false, and the problem stands there, where the count is not that of the differences"""
+    from eomgen.verbs import check
+
+    monkeypatch.setattr(check, "counted_otherwise", lambda *_: "another count")
+    told = check_document(eomgen.load(Path(__file__).parent.parent / "models" / "four_bar.toml")).entries()
+    assert told["ok"] is False and [each["what"] for each in told["problems"]] == ["another count"]
+
+
+def test_how_a_structure_stands_is_the_rank_of_its_reactions_in_doubles():
+    """mobility = columns - rank, indeterminacy = reactions - rank"""
+    from types import SimpleNamespace
+
+    beam = f"{HEAD}[bodies.b]\npoints = {{ A = [0, 0], B = [2, 0] }}\n[constraints]\n"
+    pins = "".join(f'{x} = {{ kind = "pin", points = ["b.{x}"] }}\n' for x in "AB")
+    structure = checked_model(eomgen.loads(beam + pins)).structure
+    assert structure is not None and structure.indeterminacy == 1 and standing_otherwise(structure) == ""
+    names = ("system", "at", "unknowns", "pushes", "columns", "mobility", "rank")
+    other = SimpleNamespace(**{name: getattr(structure, name) for name in names}, indeterminacy=0)
+    assert standing_otherwise(other)
 
 
 HINGED = """

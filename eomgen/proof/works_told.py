@@ -178,7 +178,7 @@ class _Works:
         """R by the balance of the bodies in numbers."""
         given = 0 if reaction.named is None else reaction.named.given
         (own,) = evaluate((given,), self.whole, fifty_digits())
-        return sum(k * self._least[j] for j, k in self.factors(reaction).items()) + float(own)
+        return float(sum(k * self._least[j] for j, k in self.factors(reaction).items())) + float(own)
 
     @cached_property
     def centers(self) -> dict[str, np.ndarray]:
@@ -195,8 +195,8 @@ class _Works:
         if "." not in words:
             return None
         scene = SystemScene(self.found.system.motion)
-        body, r = scene.place(words)
-        return None if body is None else (body, self.vector(scene.position((body, r))))
+        place = scene.place(words)
+        return None if place[0] is None else (place[0], self.vector(scene.position(place)))
 
 
 @dataclass(frozen=True)

@@ -7,13 +7,14 @@ from typing import Any
 
 from eomgen.documents.document import Document, plain_document
 from eomgen.documents.statements import Lines
+from eomgen.errors import Problem
 from eomgen.mechanics.constraints.freedom import Freedom
 from eomgen.mechanics.formulations.massless_nodes import told_of_nodes, with_nodes_balanced
 from eomgen.mechanics.structures.structure import Structure
 from eomgen.model.dimensions import inferred_units
 from eomgen.model.parts import Model, Truss
 from eomgen.model.warnings import warnings_of
-from eomgen.proof.freedoms import counted_otherwise
+from eomgen.proof.freedoms import counted_otherwise, lines_otherwise, standing_otherwise
 from eomgen.symbolic.print.text import to_text
 from eomgen.verbs.checked import Checked, LoopStart, checked_model
 from eomgen.verbs.freedom_lines import branch_lines, freedom_lines
@@ -25,13 +26,15 @@ def check_document(model: Model) -> Document:
     model = with_nodes_balanced(model)
     found = checked_model(model)
     lines = [*_declared_lines(found), *freedom_lines(model, found.freedom), *_start_lines(found), *_rest_lines(found)]
-    wrong = counted_otherwise(model, found.modes, found.freedom)
-    document = plain_document(model, lambda: _entries(found), Lines(tuple(lines)), failed=wrong)
+    told = {**_declared(found), **_counted(found), **_started(found.start)}
+    wrong = (
+        counted_otherwise(model, found.modes, found.freedom)
+        or ("" if found.structure is None else standing_otherwise(found.structure))
+        or lines_otherwise(lines, told, found.freedom)
+    )
+    entries = {"ok": not wrong, **told, "problems": [Problem("", wrong).as_dict()] if wrong else []}
+    document = plain_document(model, lambda: entries, Lines(tuple(lines)), failed=wrong)
     return replace(document, cautions=found.cautions)
-
-
-def _entries(found: Checked) -> dict[str, Any]:
-    return {"ok": True, **_declared(found), **_counted(found), **_started(found.start), "problems": []}
 
 
 def _declared_lines(found: Checked) -> list[str]:
