@@ -131,7 +131,7 @@ class _Works:
         values = (("machines", told.value), ("people", told.last))
         if off := next((who for who, x in values if abs(self.worth(x) - R) > CARRIED * (1 + abs(R))), ""):
             return f"another value is told to {off} than {R:.10g}"
-        here, beside = (self.worth(told.left, R + step) for step in (0, 1))
+        here, beside = (self.worth(told.left, R + step, told.name) for step in (0, 1))
         if abs(here) > CARRIED * (1 + size) or abs(abs(beside - here) - abs(along)) > CARRIED * (1 + abs(along)):
             return "the equation that is printed is another one"
         return field.wrong_rows()
@@ -140,13 +140,14 @@ class _Works:
     def numbers(self) -> dict[Node, float]:
         return {node: float(x) for node, x in self.state.items()}
 
-    def worth(self, told: Told, R: float = 0.0) -> float:
-        """In numbers, delta = 1; of the equation with R."""
+    def worth(self, told: Told, R: float = 0.0, asked: str = "") -> float:
+        """In numbers, delta = 1; of the equation with R, which an unknown load has under its own name."""
         if isinstance(told, str):
             return self._of_text(told)
         if not isinstance(told, Node):
             return float(told)
         known = {x: self.numbers.get(x, 1.0 if x.name.startswith("\u03b4") else R) for x in symbols_of((told,))}
+        known |= {x: R for x in known if x.name == asked}
         return float(evaluate((told,), known, FLOAT)[0])
 
     def _of_text(self, text: str) -> float:
