@@ -311,8 +311,8 @@ class Judge:
         if kind in ("law", "energy") and depends_on(scalar, tuple(free.values())):
             found = truth_of(case, scalar, kind)
             if found.holds:
-                up_to, mark, held = found.up_to.partition(", while ")
-                return Verdict(written.given, kind, RIGHT, f"{up_to}, with {told} constant{mark}{held}")
+                up_to, mark, piece = found.up_to.partition(", while ")
+                return Verdict(written.given, kind, RIGHT, f"{up_to}, with {told} constant{mark}{piece}")
             if held := stays_constant(case, scalar):
                 up_to = f"a first integral of the motion, with {told} constant{while_(held)}"
                 return Verdict(written.given, kind, RIGHT, up_to)
