@@ -19,8 +19,10 @@ from eomgen.documents.plots import over_time
 from eomgen.errors import UsageError, WriteFailed
 from eomgen.mechanics.equations.stabilization import stabilized
 from eomgen.mechanics.formulations import recursive
-from eomgen.questions.run import run_of_a_page
+from eomgen.questions.run import page_time, run_of_a_page
+from eomgen.questions.run import run as run_equations
 from eomgen.simulation.integrate import METHODS, drift_of, integrate
+from eomgen.simulation.integrator import Stepping
 from eomgen.simulation.result import Trajectory
 from eomgen.simulation.slopes import slope_of
 from eomgen.symbolic.expression.units import parse_unit
@@ -225,6 +227,24 @@ def test_pages_of_a_motion_that_cannot_go_on_show_it_so_far(tmp_path):
     assert asked.ended == "singular" and not asked.ok and not words
     strip = animate_document(model, output=str(tmp_path / "x.png"), time=None, showing=Showing(frames=2))
     assert not strip.failed and "Followed for 0.5 s" in str(strip.notes)
+
+
+def test_pages_of_contacts_that_change_without_end_show_a_part():
+    """m y'' = F cos(w t) - m g + N, N >= 0: it leaves the floor in each turn."""
+    text = """
+    eomgen = 1
+    space = "plane"
+    coordinates.y = 0
+    bodies.b.shape = { kind = "particle", mass = 1 }
+    bodies.b.joint = { kind = "prismatic", axis = [0, 1], displacement = "y" }
+    constraints.T = { kind = "support", point = "b.origin", normal = [0, 1], unilateral = true }
+    forces.w = { kind = "gravity", acceleration = [0, -9.81] }
+    forces.F = { kind = "force", point = "b.origin", force = [0, "-30*cos(20*t)"] }
+    """
+    found = run_equations(eomgen.derive(eomgen.loads(text)), time=5, samples=11, how=Stepping(most_phases=3))
+    assert found.ended == "contact" and "after 3 phases the contacts 'T' still change" in found.message
+    time, words = page_time(found)
+    assert time == float(f"{time:.0e}") < found.t[-1] and words == f"Followed for {time:g} s. {found.message}"
 
 
 def test_a_run_of_no_time_and_one_of_no_states_are_their_starts():

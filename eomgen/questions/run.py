@@ -210,6 +210,7 @@ def run(
 
 PAGE_TIME = 10.0  # s
 PAGE_STEPS = 100_000  # a run of more is too fast to be looked at as a whole
+PAGE_PHASES = 500  # of contacts, the same
 
 
 def run_of_a_page(equations: Equations, time: float | None, samples: int) -> tuple[Trajectory, str]:
@@ -222,22 +223,27 @@ def run_of_a_page(equations: Equations, time: float | None, samples: int) -> tup
     """
     if time is not None:
         return _whole(run(equations, time=time, samples=samples)), ""
-    found = _whole(run(equations, time=PAGE_TIME, samples=samples, how=Stepping(most_steps=PAGE_STEPS)))
+    found = _whole(run(equations, time=PAGE_TIME, samples=samples, how=page_stepping()))
     time, words = page_time(found)
     return (_whole(run(equations, time=time, samples=samples)), words) if words else (found, "")
+
+
+def page_stepping() -> Stepping:
+    """How a motion is followed for which nobody gave a time."""
+    return Stepping(most_steps=PAGE_STEPS, most_phases=PAGE_PHASES)
 
 
 def page_time(found: Trajectory) -> tuple[float, str]:
     """(how long a motion is shown where nobody said it [s], why that is shorter than PAGE_TIME, "" where it is not).
 
-    A round time that is over before so many steps are taken, or before the ties do not say how it goes on.
+    A round time that is over before so many steps are taken, or before ties or contacts do not say how it goes on.
     """
     end = found.phases[-1].end if found.phases else 0.0
-    if found.ended not in ("too many steps", "singular") or not end > 0:
+    if found.ended not in ("too many steps", "singular", "contact") or not end > 0:
         return PAGE_TIME, ""
     power = 10.0 ** math.floor(math.log10(end))
     time = next(factor * power for factor in (5, 2, 1) if factor * power <= end)
-    if found.ended == "singular":
+    if found.ended != "too many steps":
         return time, f"Followed for {time:g} s. {found.message}"
     why = f"{PAGE_TIME:g} s would take more than {PAGE_STEPS} steps; --time says otherwise."
     return time, f"Followed for {time:g} s: {why}"

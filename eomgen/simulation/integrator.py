@@ -94,6 +94,7 @@ class Stepping:
             the equations have them, else as "auto".
         rtol, atol: tolerances of one step.
         most_steps: after so many it gives up.
+        most_phases: after so many changes of contacts it gives up; None: where the end is out of reach.
         stabilization: what keeps the ties closed, one of STABILIZATIONS: "projection" puts states back onto them,
             "energy" also onto the energy that they began with,
             "baumgarte" lets the equations pull towards them, "none" leaves them alone.
@@ -112,6 +113,7 @@ class Stepping:
     rates: tuple[float, float] = RATES
     breakpoints: tuple[float, ...] = ()
     keeps: bool = False
+    most_phases: int | None = None
 
     def of_one_step(self) -> Stepping:
         """The tolerances of a whole run cut down to one step's: errors of many steps add up."""

@@ -62,6 +62,8 @@ def passed(models: PhaseModels, here: PhaseStart, plan: Plan) -> Iterator[PhaseR
     while True:
         phase = models.of(here.configuration)
         failure = here.failure or _hasty(phase, hasty)
+        if not failure and count == plan.how.most_phases:
+            failure = f"after {count} phases the contacts {_contacts(phase)} still change"
         if not failure and count and count % LOOK_PHASES == 0:
             failure, looked = _endless(phase, count, (looked, here.t, plan.end)), here.t
         if failure:

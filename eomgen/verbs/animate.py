@@ -41,7 +41,7 @@ from eomgen.page.player_page import player_page_of
 from eomgen.page.player_read_back import player_read_back
 from eomgen.proof.check import Check
 from eomgen.proof.pictures_told import pictures_told, states_shown
-from eomgen.questions.run import PAGE_TIME, page_time
+from eomgen.questions.run import PAGE_TIME, page_stepping, page_time
 from eomgen.questions.run import run as simulated
 from eomgen.records import dataclass
 from eomgen.scene.told import picture_told
@@ -171,15 +171,15 @@ def animate_document(
 def _followed(equations: Equations, time: float | None, showing: Showing, output: str) -> tuple[Trajectory, str]:
     """(the motion, with rows between its frames; why it is shorter than others)."""
 
-    def lasting(time: float) -> Trajectory:
+    def lasting(time: float, how: Stepping) -> Trajectory:
         samples = FINE * max(len(showing.times(time, output)) - 1, 1) + 1
-        return simulated(equations, time=time, samples=samples, how=Stepping())
+        return simulated(equations, time=time, samples=samples, how=how)
 
     if time is not None:
-        return lasting(time), ""
-    found = lasting(PAGE_TIME)
+        return lasting(time, Stepping()), ""
+    found = lasting(PAGE_TIME, page_stepping())
     time, words = page_time(found)
-    return (lasting(time), words) if words else (found, "")
+    return (lasting(time, Stepping()), words) if words else (found, "")
 
 
 def movie_read_back(run: Trajectory, movie: Movie) -> Iterator[Check]:
