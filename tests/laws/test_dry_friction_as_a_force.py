@@ -63,3 +63,9 @@ def test_what_slides_is_told_with_the_values_of_parameters_and_inputs(law):
     belt = belt if "u" in law else belt.replace('inputs = { u = "w*cos(t)" }\n', "")
     found = eomgen.solve(eomgen.loads(belt.replace("SPEED", "0").replace("LAW", law)))
     assert found["qdd"].value is None and "tanh(w/eps)" in found["qdd"].message
+
+
+def test_rest_with_a_force_that_divides_by_a_speed_names_it():
+    """q'/|q'| has no value at q' = 0"""
+    with pytest.raises(eomgen.DerivationError, match="the joint of 'arm' has no value where nothing moves"):
+        eomgen.statics(hinge(0, "q'/abs(q')"))

@@ -21,7 +21,7 @@ from eomgen.errors import DerivationError
 from eomgen.mechanics.bodies.system_scene import start_values
 from eomgen.mechanics.constraints.freedom import freedoms
 from eomgen.mechanics.equations.system import System, system_of
-from eomgen.mechanics.equations.work import generalized_forces, powered_forces
+from eomgen.mechanics.equations.work import acting, generalized_forces, powered_forces
 from eomgen.model.contacts import rough_contacts
 from eomgen.model.part import altered
 from eomgen.model.quaternions import quaternions_of
@@ -205,7 +205,7 @@ def static_equations(system: System) -> StaticEquations:
     rows = [readable_all(substituted(row, given), Work.FORMULA) for row in free.ties.J]
     forces = generalized_forces(free.loads)
     _refuse_signs_of_rates(forces, free)
-    Q = substituted(forces, given)
+    Q = _at_rest(forces, given, free)
     unbalanced = substituted(powered_forces(free.loads), given)
     phi = _relations(system, given, q)
     sigma = _left_at_rest(free, given, q)
@@ -313,6 +313,28 @@ def _refuse_dry_friction(system: System) -> None:
         raise DerivationError(
             what, rough[0].declared_at, "leave the friction out, or ask at an instant which force it takes"
         )
+
+
+def _at_rest(forces: ScalarRow, given: State, free: System) -> ScalarRow:
+    """Forces with all speeds 0.
+
+    Raises:
+        DerivationError: one divides by a speed: it is named.
+    """
+    try:
+        return substituted(forces, given)
+    except DerivationError as error:
+
+        def has_none(row: ScalarRow) -> bool:
+            try:
+                substituted(row, given)
+            except DerivationError:
+                return True
+            return False
+
+        what = f"{acting(free.loads, has_none) or 'a force'} has no value where nothing moves: {error.what}"
+        mend = "write it so that it has one at rest: w/sqrt(w^2 + eps^2) in place of w/abs(w)"
+        raise DerivationError(what, mend=mend) from error
 
 
 def _refuse_signs_of_rates(Q: ScalarRow, free: System) -> None:
