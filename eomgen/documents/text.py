@@ -226,10 +226,15 @@ def broken(text: str, indent: str, width: int) -> list[str]:
 
 def _break(text: str, start: int, end: int) -> int | None:
     """Where to break: the last sign of the least depth before `end`, not too near the start; else the next one."""
-    signs = list(_signs(text, start))
-    within = [sign for sign in signs if sign[1] <= end]
+    within: list[tuple[int, int]] = []
+    for sign in _signs(text, start):
+        if sign[1] > end:
+            if not within:
+                return sign[1]
+            break
+        within.append(sign)
     if not within:
-        return signs[0][1] if signs else None
+        return None
     far = [sign for sign in within if sign[1] > start + (end - start) // 3]
     return min(far or within, key=lambda sign: (sign[0], -sign[1]))[1]
 

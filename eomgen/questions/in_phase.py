@@ -204,8 +204,9 @@ class PhaseEquations:
         Args:
             readable: whether it is to be read; a number is found sooner from what is not.
         """
+        kept = self._kept(state)
         state = self.complete(state, formula, readable=readable)
-        quantities = Quantities(self.system, state)
+        quantities = kept.setdefault((Quantities, readable, len(state)), Quantities(self.system, state))
         scalar = quantities.of(formula)
         (scalar,) = substituted((scalar,), state)
         (scalar,) = substituted((self._known(scalar, quantities),), state)
@@ -219,14 +220,30 @@ class PhaseEquations:
 
     def complete(self, state: Mapping[Node, Any], formula: Expression | None = None, *, readable: bool = True) -> State:
         """The state with accelerations, multipliers and inputs, as far as they are needed and determined."""
-        inputs = {node: self.system.inputs[name] for name, node in self.system.symbols.inputs.items()}
+        given, inputs = state, {node: self.system.inputs[name] for name, node in self.system.symbols.inputs.items()}
         state = {**state, **dict(zip(inputs, substituted(tuple(inputs.values()), state), strict=True))}
         if in_loads(self.model):
             return {**state, **still(self.system)}
         if formula is not None and not self.needs_equations(formula):
             return state
-        refuse_jump(self.system, state)
-        return {**state, **self._unknowns_at(state, readable)}
+        kept = self._kept(given)
+        if readable not in kept:
+            refuse_jump(self.system, state)
+            kept[readable] = self._unknowns_at(state, readable)
+        return {**state, **kept[readable]}
+
+    def _kept(self, state: Mapping[Node, Any]) -> dict[Any, Any]:
+        """What is found at a state that is given, for several formulas there: that of one state alone is kept."""
+        key = tuple(state.items())
+        if self._at_one_state.get("state") != key:
+            self._at_one_state.clear()
+            self._at_one_state["state"] = key
+        return self._at_one_state
+
+    @cached_property
+    def _at_one_state(self) -> dict[Any, Any]:
+        """What was found at the state asked last."""
+        return {}
 
     def method_for(self, formula: Expression) -> str:
         """What eliminates reactions and accelerations from the formula, or what it asks; "" for positions and rates."""
