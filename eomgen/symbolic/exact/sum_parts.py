@@ -5,7 +5,7 @@ part = c * product of base^exponent,   base: an atom of an expansion, or the sin
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable
+from collections.abc import Callable
 
 from eomgen.symbolic.exact.terms import AngleSum, common_number
 from eomgen.symbolic.expression.exact_numbers import tidy
@@ -66,9 +66,13 @@ def without_common(parts: SumParts) -> tuple[Number, Powers, SumParts]:
     if decimal_of(number) is not None and any(abs(Fraction(c)) != number for c, _ in parts):
         number = 1  # of 0.00018125 and 0.000161 nobody takes out 2.5e-7
     number = -number if is_negative(parts) else number
-    bases: Iterable[Base] = dict.fromkeys(base for _, powers in parts for base, _ in powers)
-    exponents = [dict(powers) for _, powers in parts]
-    lowest = {base: min(each.get(base, 0) for each in exponents) for base in bases}
+    lowest: dict[Base, int] = {}
+    terms: dict[Base, int] = {}  # that hold the base
+    for _, powers in parts:
+        for base, e in powers:
+            lowest[base] = min(lowest.get(base, e), e)
+            terms[base] = terms.get(base, 0) + 1
+    lowest = {base: e if terms[base] == len(parts) else min(e, 0) for base, e in lowest.items()}
     # the root of a number has no inverse that is one
     common = tuple((base, e) for base, e in lowest.items() if e and not (isinstance(base, int) and base < 0))
     inverted = tuple((base, -e) for base, e in common)
