@@ -31,6 +31,7 @@ from eomgen.page.columns import packed_columns
 from eomgen.page.contents import SECTIONS
 from eomgen.page.formats import written_as
 from eomgen.page.html import html_page
+from eomgen.page.notebook import CALLS
 from eomgen.page.paper import typst_text
 from eomgen.page.typst_math import UnknownCommand, typst_math
 from eomgen.proof.check import Certificate, Check
@@ -369,6 +370,17 @@ def test_latex_brings_its_pictures_and_compiles(pendulum, tmp_path):
 def test_markdown_names_its_pictures(pendulum):
     found = written_as(pendulum, ".md", "r.md")
     assert set(re.findall(r"\]\(<(r-[\w-]+\.svg)>\)", str(found["r.md"]))) == found.keys() - {"r.md"} != set()
+
+
+@pytest.mark.parametrize("key", CALLS)
+def test_the_call_of_each_section_of_a_notebook_gives_it(key: str):
+    """What stands in its cell runs, with values or without."""
+    about = {"statics": "cantilever", "kinematics": "seeds/ch11_p2", "inertia": "seeds/ch13_b4"}
+    known = {"eomgen": eomgen, "model": eomgen.load(MODELS / f"{about.get(key, 'simple_pendulum')}.toml")}
+    for call in (*([CALLS["derivation"]] if key == "certificate" else []), CALLS[key]):
+        *before, last = call.format(time=0.1, values="").split("\n")
+        exec("\n".join(before), known)
+        assert eval(last, known) is not None
 
 
 @has("nbclient")

@@ -15,7 +15,7 @@ CALLS = {
     "derivation": "equations = eomgen.derive(model{values})\nequations",
     "statics": "eomgen.statics(model{values}).picture",
     "kinematics": "eomgen.kinematics(model{values}).picture",
-    "inertia": "eomgen.inertia(model{values}).exact",
+    "inertia": "eomgen.inertia(model{values})",
     "outputs": "answers = eomgen.solve(model{values})\nanswers",
     "linearize": "small = eomgen.linearize(model{values})\nsmall.picture",
     "plots": "run = eomgen.simulate(model, time={time!r}{values})\nrun",
