@@ -17,7 +17,7 @@ from eomgen.documents.motion_frames import Movie, movie_of
 from eomgen.documents.rest_picture import drawing_at_rest
 from eomgen.page.player_data import PlayedRun, PlayerOptions
 from eomgen.page.player_page import player_page_of
-from eomgen.page.player_read_back import player_read_back, player_told
+from eomgen.page.player_read_back import _named_otherwise, player_read_back, player_told
 from eomgen.proof.pictures_told import pictures_told, states_shown
 from eomgen.scene.making import scene_of
 from eomgen.scene.told import picture_told
@@ -307,3 +307,14 @@ def test_pictures_of_every_model_show_what_it_says(path: Path):
     shown = movie_of(followed, followed.t[[0, len(followed.t) // 2, -1]], forces=True)
     checks = [*player_read_back(played, player_page_of(played)), *movie_read_back(followed, shown)]
     assert not [f"{check.name}: {check.detail}" for check in checks if check.ok is False]
+
+
+@pytest.mark.slow
+def test_numbers_of_a_page_bear_their_names():
+    """The state, the rates, reactions and T + V of a page's program are the run's; two names exchanged are not."""
+    found = eomgen.play(MODELS[0].parent / "simple_pendulum.toml", time=0.3).played
+    columns = dict(found.live.columns)
+    one, other = "theta", "theta'"
+    assert _named_otherwise(found, columns) == ""
+    assert one in _named_otherwise(found, {**columns, one: columns[other], other: columns[one]})
+    assert "no number" in _named_otherwise(found, {**columns, one: ("frame", 10_000)})

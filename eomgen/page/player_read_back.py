@@ -11,6 +11,7 @@ from typing import Any
 
 import numpy as np
 
+from eomgen.codegen.rhs import compiled
 from eomgen.page.player_data import PlayedRun
 from eomgen.proof.at_a_state import NumericState
 from eomgen.proof.check import Check, Tally, differing
@@ -51,6 +52,31 @@ def player_read_back(played: PlayedRun, page: str) -> Iterator[Check]:
         )
 
 
+def _named_otherwise(played: PlayedRun, columns: Mapping[str, Any]) -> str:
+    """Which number of the motion is another than the run's of that name, in its middle; "".
+
+    Args:
+        columns: ("x", place) in the state, ("frame", place) in what the page's program of the frame gives.
+    """
+    run, live = played.run, played.live
+    if live is None or not len(run.t) or played.phase.system.inputs:
+        raise NoValue("it does not move by itself")
+    k, names = len(run.t) // 2, (*live.phase.coordinates, *live.phase.speeds)
+    own = {name: run.x[:, j] for j, name in enumerate((*run.coordinates, *run.speeds))} | dict(run.reactions)
+    x = [float(own[name][k]) for name in names]
+    frame = compiled(live.programs["frame"], "numpy")(float(run.t[k]), x, played.phase.p, ())
+    numbers = {"x": x, "frame": frame}
+    if beyond := [name for name, (where, place) in columns.items() if place >= len(numbers[where])]:
+        return f"there is no number of {beyond[0]}"
+    found = {name: float(numbers[where][place]) for name, (where, place) in columns.items()}
+    pairs = [(name, found[name], float(column[k])) for name, column in own.items() if name in found]
+    if run.energy is not None:
+        pairs.append(("T + V", found["T"] + found["V"], float(run.energy[k])))
+    size = 1 + max((abs(right) for _, _, right in pairs if np.isfinite(right)), default=0.0)
+    wrong = (f"{name} is {x:.9g} for {y:.9g}" for name, x, y in pairs if abs(x - y) > SEVEN_DIGITS * size)
+    return next(wrong, "")
+
+
 def _slots(played: PlayedRun, state: NumericState) -> list[float]:
     """The numbers of a frame."""
     try:
@@ -68,6 +94,8 @@ def _compared(played: PlayedRun, told: Mapping[str, Any]) -> Iterator[tuple[str,
     yield "names", lambda: "" if list(told["names"]) == names else ", ".join(told["names"])
     yield "instants", partial(_other_column, told["run"]["t"], [run.t])
     yield "states", partial(_other_column, told["run"]["x"], list(_states(played).T))
+    if told.get("live") and {*played.phase.coordinates, *played.phase.speeds} <= {*names}:
+        yield "numbers by their names", partial(_named_otherwise, played, told["live"]["columns"])
     model, p = played.model, dict(zip(played.phase.declared.symbols.parameters, played.phase.p, strict=True))
     for each in told["parameters"]:
         yield f"parameter {each['name']}", partial(_other_value, each, p.get(each["name"]))
