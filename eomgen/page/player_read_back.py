@@ -5,7 +5,7 @@ from __future__ import annotations
 import json
 import re
 from base64 import b64decode
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator, Mapping, Sequence
 from functools import partial
 from typing import Any
 
@@ -65,7 +65,7 @@ def _named_otherwise(played: PlayedRun, columns: Mapping[str, Any]) -> str:
     own = {name: run.x[:, j] for j, name in enumerate((*run.coordinates, *run.speeds))} | dict(run.reactions)
     x = [float(own[name][k]) for name in names]
     frame = compiled(live.programs["frame"], "numpy")(float(run.t[k]), x, played.phase.p, ())
-    numbers = {"x": x, "frame": frame}
+    numbers: dict[str, Sequence[float]] = {"x": x, "frame": frame.tolist()}
     if beyond := [name for name, (where, place) in columns.items() if place >= len(numbers[where])]:
         return f"there is no number of {beyond[0]}"
     found = {name: float(numbers[where][place]) for name, (where, place) in columns.items()}
