@@ -23,6 +23,7 @@ from eomgen.scene.making import scene_of
 from eomgen.scene.told import picture_told
 from eomgen.simulation.result import Trajectory
 from eomgen.verbs.animate import movie_read_back
+from tests.test_shapes import EXAMPLES as SHAPES
 
 MODELS = sorted((Path(__file__).parent.parent / "models").rglob("*.toml"))
 CART = """
@@ -310,6 +311,22 @@ def test_pictures_of_every_model_show_what_it_says(path: Path):
 
 
 @pytest.mark.slow
+def test_every_shape_is_drawn_where_it_is_and_as_large():
+    """The box of what is drawn of a body is the box of its places; every kind stands in a row, on a slide."""
+    bodies = []
+    for k, (kind, fields) in enumerate(sorted(SHAPES.items())):
+        written = ", ".join(f"{key} = {json.dumps(x)}" for key, x in fields.items())
+        bodies.append(f"""
+            [bodies.{kind}]
+            shape = {{ kind = "{kind}", {written} }}
+            joint = {{ kind = "prismatic", at = [{6 * k}, 0, 0], axis = [0, 0, 1], displacement = "x" }}""")
+    text = "eomgen = 1\nspace = 'space'\ncoordinates = { x = 0.2 }\n" + "".join(bodies)
+    trajectory = eomgen.simulate(eomgen.loads(text), time=0.1, samples=2, target="numpy")
+    shown = movie_of(trajectory, trajectory.t[:1])
+    found = list(movie_read_back(trajectory, shown))
+    assert found and not [check.detail for check in found if check.ok is False]
+
+
 def test_numbers_of_a_page_bear_their_names():
     """The state, the rates, reactions and T + V of a page's program are the run's; two names exchanged are not."""
     found = eomgen.play(MODELS[0].parent / "simple_pendulum.toml", time=0.3).played

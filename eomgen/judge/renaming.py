@@ -4,7 +4,9 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import replace
-from itertools import islice, permutations, product
+from functools import cache
+from heapq import heappop, heappush
+from itertools import islice, product
 
 from eomgen.judge.case import Case
 from eomgen.judge.comparison import excess
@@ -42,16 +44,20 @@ class Renaming:
 
 
 def renamings(case: Case, written: HandEquation, unknown: Sequence[str]) -> Iterator[Renaming]:
-    """Ways to read the unknown names, the nearest first."""
+    """Ways to read the unknown names, the nearest first, at most MOST."""
+    return islice(_renamings(case, written, unknown), MOST)
+
+
+def _renamings(case: Case, written: HandEquation, unknown: Sequence[str]) -> Iterator[Renaming]:
     coordinates = [name for name in case.model.coordinates if name not in written.names]
     parameters = [name for name in (*case.model.parameters, *case.model.inputs) if name not in written.names]
     moving = [name for name in unknown if {f"{name}'", f"{name}''"} & written.names]
     still = [name for name in unknown if name not in moving]
+    turns = cache(lambda of: list(_turns(case, of)) if of in case.model.coordinates else [(1, 0)])
     for places in _choices(moving, coordinates):
         for constants in _choices(still, [*parameters, *(q for q in coordinates if q not in places)]):
             named = dict(zip((*moving, *still), (*places, *constants), strict=True))
-            shifts = [list(_turns(case, of)) if of in case.model.coordinates else [(1, 0)] for of in named.values()]
-            for chosen in islice(product(*shifts), MOST):
+            for chosen in product(*map(turns, named.values())):
                 near = all(name in moving or _distance(name, of) < 1 for name, of in named.items())
                 ways = {name: (of, *how) for (name, of), how in zip(named.items(), chosen, strict=True)}
                 guessed = any(of in case.model.coordinates and name not in moving for name, of in named.items())
@@ -102,15 +108,28 @@ class OtherAxis:
 
 
 def _choices(names: Sequence[str], among: Sequence[str]) -> Iterator[tuple[str, ...]]:
-    """Which of the names each stands for; those that are spelt alike first."""
-    if len(names) > len(among):
-        return
-    alike = [sorted(among, key=lambda other, name=name: _distance(name, other)) for name in names]  # type: ignore[misc]
-    if len(names) <= 1:
-        yield from ((x,) for x in (alike[0] if names else ())) if names else iter([()])
-        return
-    seen = sorted(permutations(among, len(names)), key=lambda chosen: sum(map(_distance, names, chosen)))
-    yield from islice(seen, MOST)
+    """Which of the names each stands for; those that are spelt alike first, at most MOST."""
+    if len(names) <= len(among):
+        yield from islice((tuple(among[k] for k in chosen) for chosen in _nearest_first(names, among)), MOST)
+
+
+def _nearest_first(names: Sequence[str], among: Sequence[str]) -> Iterator[tuple[int, ...]]:
+    """Numbers of different ones of `among`, one for each name, by the sum of their distances, then by themselves.
+
+    Best first: what is open holds beginnings, each by the least that its end can come to.
+    """
+    distances = [[_distance(name, other) for other in among] for name in names]
+    least = [sum(map(min, distances[k:])) for k in range(len(names) + 1)]
+    opened: list[tuple[float, tuple[int, ...]]] = [(least[0], ())]
+    while opened:
+        bound, chosen = heappop(opened)
+        k = len(chosen)
+        if k == len(names):
+            yield chosen
+            continue
+        for i, distance in enumerate(distances[k]):
+            if i not in chosen:
+                heappush(opened, (bound - least[k] + distance + least[k + 1], (*chosen, i)))
 
 
 def _distance(a: str, b: str) -> float:

@@ -161,10 +161,12 @@ class _Shown(InNumbers):
                 return ""
             if not len(own):
                 return "is not drawn"
-            ends = np.array([seat, self.placed(link.point)])
-            off = np.min(np.linalg.norm(own[:, None, :] - ends[None, :, :], axis=2), axis=1)
-            own = own[off > self.near] if self.d == 3 and slides and np.any(off > self.near) else own
-            return self._apart((own.min(axis=0), own.max(axis=0)), self._box(shapes))
+            right = self._box(shapes)
+            wrong = self._apart((own.min(axis=0), own.max(axis=0)), right)
+            if wrong and self.d == 3 and slides:  # the way from the seat is drawn with it
+                reach = np.array([seat, self.placed(link.point), *right])
+                return self._apart((own.min(axis=0), own.max(axis=0)), (reach.min(axis=0), reach.max(axis=0))) and wrong
+            return wrong
         if self.d == 2 and slides and len(link.S) < 3 and link.parent < 0 and self._seats(link):
             return ""  # a block, or the wedge under what slides on it
         mass = self._own(link, self.picture.masses.get(name))
@@ -208,7 +210,9 @@ class _Shown(InNumbers):
         """The corners of the box around places inside shapes."""
         clouds = []
         for shape, R, p in shapes:
-            at = [shape.filled(self._number, s) for s in itertools.product(GRID.tolist(), repeat=shape.dimension)]
+            cells, grid = shape.cells(self._number), itertools.product(GRID.tolist(), repeat=shape.dimension)
+            parts = [s for s in grid if len(cells) == 1 or s[0] == 1]  # of a fan of several its outer side
+            at = [cell(s) for cell in cells for s in parts]
             clouds.append(np.array(at, dtype=float) @ R.T + p)
         cloud = np.concatenate(clouds)[:, : self.d]
         return cloud.min(axis=0), cloud.max(axis=0)
