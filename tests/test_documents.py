@@ -73,3 +73,16 @@ def test_the_answers_of_python_are_drawn_as_those_of_the_verb():
     ]
     assert str(found).startswith("kinetic_energy  = ") and r"\dot{\theta}^{2}" in found.latex()
     assert found.as_dict()["outputs"]["Q_theta"]["exact"] == found["Q_theta"].exact == "6*M*R*g*sin(theta)"
+
+
+def test_an_equation_of_numbers_alone_is_printed():
+    """A couple on what has no inertia: 0 = 2, which no acceleration can mend."""
+    text = """
+    eomgen = 1
+    space = "plane"
+    coordinates = { x = 0, y = 0, f = 0.3 }
+    bodies.tool.shape = { kind = "particle", mass = 2 }
+    bodies.tool.joint = { kind = "free", x = "x", y = "y", angle = "f" }
+    forces.turn = { kind = "couple", body = "tool", couple = 2 }
+    """
+    assert "    0 = 2\n" in eomgen.derive(eomgen.loads(text)).render("text")

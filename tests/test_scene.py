@@ -380,6 +380,21 @@ def drawn_at_start(name: str) -> tuple[Scene, SceneNumbers]:
     return scene, SceneNumbers(scene, frame_at(scene, drawn_start(scene.system))[None, :])
 
 
+def test_what_is_fixed_on_a_block_leaves_it_a_block():
+    """Only what slides makes a wedge: a box that stands on a block has no line along which it goes."""
+    text = """
+    eomgen = 1
+    space = "plane"
+    coordinates = { x = 0.2 }
+    bodies.block = { mass = 2, joint = { kind = "prismatic", axis = [1, 0], displacement = "x" } }
+    [bodies.box]
+    mass = 1
+    inertia = 1
+    joint = { kind = "fixed", on = "block", at = [0, 1] }
+    """
+    assert not [mark for mark in eomgen.scene_of(eomgen.loads(text)).marks_of_kind("polygon") if mark.of == "wedge"]
+
+
 def test_what_slides_down_a_block_makes_it_a_wedge():
     """The toe where the face meets the ground, the seat on the face, the back upright; no guide across the picture."""
     scene, numbers = drawn_at_start("block_on_wedge")

@@ -146,9 +146,9 @@ class Reader:
 
         A number is divided by only where it is small; nothing is where the equation gets longer by it.
         """
-        if holds_roots(left, right) or (is_zero(left) and is_zero(right)):
+        graph = next((x.graph for x in (left, right) if type(x) is Node), None)
+        if graph is None or holds_roots(left, right):  # numbers alone: of what moves no mass
             return left, right, 1
-        graph = next(x.graph for x in (left, right) if type(x) is Node)
         number, product = common_factor((left, right), Work.ENTRY, tuple(self.roots))
         product = product * common_sums(left, right)
         small = max(number.numerator, number.denominator) <= LARGEST_DIVISOR

@@ -59,7 +59,7 @@ def wedge_of(system: System, link: BodyLink) -> PolygonForm | None:
     base = next(v for w, v in link.S if all(map(is_zero, w)))
     up: Vector = (-base[1], base[0], 0)
     for other in motion.links:
-        if other.parent != motion.index[link.name] or other.joint is None or not other.joint.straight:
+        if other.parent != motion.index[link.name] or other.joint is None or not other.joint.straight or not other.S:
             continue
         seat, along = other.before.p, apply(other.before.R, apply(other.relative.R, other.S[0][1]))
         height, fall = dot(up, minus(seat, own)), dot(up, along)

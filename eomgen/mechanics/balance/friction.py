@@ -28,6 +28,7 @@ from eomgen.mechanics.constraints.ties import holds_identically
 from eomgen.mechanics.equations.equations_of_motion import EquationsOfMotion
 from eomgen.mechanics.equations.explicit_accelerations import bordered_rows, regular_rows
 from eomgen.mechanics.equations.system import System
+from eomgen.mechanics.equations.wellposed import refuse_massless
 from eomgen.mechanics.formulations import recursive
 from eomgen.records import dataclass
 from eomgen.symbolic.expression.derivative import gradient, substituted
@@ -230,6 +231,7 @@ class _WithFriction:
 
         Raises:
             DerivationError: the normal reaction of a contact is indeterminate.
+            ModelError: a free coordinate moves no mass.
         """
         rows, right = bordered_rows(self.equations, self._kept)
         n, first = len(self.equations.M), len(right)
@@ -246,7 +248,11 @@ class _WithFriction:
             known, value = self._linear(contact.component, first) if multiplier is None else same
             rows.append(known | {first + k: 1 + known.get(first + k, 0)})
             right.append(value)
-        return tuple(_solved(self.equations.system, rows, right))
+        try:
+            return tuple(_solved(self.equations.system, rows, right))
+        except DerivationError:
+            refuse_massless(self.equations)
+            raise
 
     def _by_balance(self, j: int) -> Scalar:
         """Component j, linear in the accelerations."""

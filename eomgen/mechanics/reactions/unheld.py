@@ -23,7 +23,7 @@ from eomgen.mechanics.structures.structure import structure_of
 from eomgen.model.driven import driven_coordinates
 from eomgen.model.trusses import called, declared_at
 from eomgen.symbolic.expression.derivative import depends_on
-from eomgen.symbolic.expression.graph import Node, Scalar, is_zero
+from eomgen.symbolic.expression.graph import Node, Scalar
 from eomgen.symbolic.numeric.evaluation import evaluate, fifty_digits
 from eomgen.symbolic.numeric.tolerances import RANK_NEARBY
 from eomgen.symbolic.solve.linear import Solution
@@ -39,7 +39,7 @@ def refuse_unheld(balance: Balance, solution: Solution, at: Mapping[Node, Scalar
     """
     system, left = balance.system, solution.left
     if at:
-        if all(map(is_zero, left)) or not system.symbols.u:  # at rest what is left over is looked at elsewhere
+        if not system.symbols.u or all(map(holds_identically, left)):  # of rest what is left is looked at elsewhere
             return
     else:
         motions = freedoms(system.ties)
