@@ -161,6 +161,11 @@ class Case:
             return None
 
     @cached_property
+    def dimensions(self) -> Mapping[str, str]:
+        """Of what the model declares, as far as they follow from it."""
+        return {name: str(each) for name, each in inferred(Catalog(self.model, ())).found.items()}
+
+    @cached_property
     def _equilibria(self) -> tuple[Equilibrium, ...]:
         try:
             return all_equilibria(self.system).found

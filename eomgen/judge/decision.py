@@ -383,7 +383,8 @@ def states_of(
     rng, symbols, arithmetic = Random(seed), system.symbols, fifty_digits()
     own = {symbols.parameters[name]: float(x) for name, x in exact_parameters(system.scope.model).items()}
     known = _start(system, own)
-    others = [x for x in symbols_of(flat) if x not in known]
+    others = tuple(x for x in symbols_of(flat) if x not in known)
+    gaps, timed = _gaps(system, flat), symbols.t in symbols_of(flat)
     for attempt in range(TRIES):
         spread = 0.1 if on_ties and attempt < TRIES // 2 else 0.6
         state: dict[Node, Any] = {}
@@ -407,10 +408,12 @@ def states_of(
             length = arithmetic.functions["sqrt"](sum(exact[e] ** 2 for e in four))
             exact |= {e: exact[e] / length for e in four}
         if on_ties:
-            held = _tied(system, exact, _gaps(system, flat))
-            if held is None:
+            key = (states_of, seed, attempt, timed, others)  # all that the state depends on
+            if key not in system.found:
+                system.found[key] = _tied(system, exact, gaps)
+            if system.found[key] is None:
                 continue
-            exact = held
+            exact = system.found[key]
         yield exact
 
 

@@ -15,8 +15,6 @@ from eomgen.judge.diagnosis import PLAINEST, Explanation, Share
 from eomgen.judge.reading import HandEquation
 from eomgen.judge.right import truth_of
 from eomgen.judge.substitutions import ANGLES
-from eomgen.model.catalog import Catalog
-from eomgen.model.dimensions import inferred
 from eomgen.records import dataclass
 from eomgen.symbolic.expression.functions import over
 from eomgen.symbolic.expression.graph import Node, Scalar, is_zero
@@ -98,7 +96,7 @@ class OtherAxis:
     def _renamings(self) -> Iterator[Renaming]:
         case, names = self.case, self.written.names
         used = [q for q in case.model.coordinates if {q, f"{q}'", f"{q}''"} & names]
-        angles = [q for q in used if _dimension(case, q) in ANGLES]
+        angles = [q for q in used if case.dimensions.get(q, "") in ANGLES]
         quarter = over(case.system.scope.graph.pi, 2)
         for shift in (quarter, -quarter):
             if len(angles) > 1:
@@ -146,7 +144,7 @@ def _turns(case: Case, name: str) -> Iterator[tuple[int, Scalar]]:
     pi = case.system.scope.graph.pi
     quarter = over(pi, 2)
     yield 1, 0
-    if _dimension(case, name) in ANGLES:
+    if case.dimensions.get(name, "") in ANGLES:
         for sign in (1, -1):
             for shift in (0, quarter, -quarter, pi):
                 if (sign, shift) != (1, 0):
@@ -159,13 +157,9 @@ def _turns(case: Case, name: str) -> Iterator[tuple[int, Scalar]]:
             yield 1, -rest
             yield -1, rest
     for parameter, node in case.system.symbols.parameters.items():
-        if _dimension(case, parameter) == _dimension(case, name):
+        if case.dimensions.get(parameter, "") == case.dimensions.get(name, ""):
             for sign in (1, -1):
                 yield from ((sign, node), (sign, -node))
-
-
-def _dimension(case: Case, name: str) -> str:
-    return str(inferred(Catalog(case.model, ())).found.get(name, ""))
 
 
 def _renaming(case: Case, named: Mapping[str, tuple[str, int, Scalar]]) -> Renaming:
