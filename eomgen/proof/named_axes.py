@@ -16,6 +16,7 @@ from typing import Any
 
 from eomgen.mechanics.balance.balance import Balance
 from eomgen.mechanics.balance.balance_solution import Indeterminate
+from eomgen.mechanics.balance.friction import frictions
 from eomgen.mechanics.balance.named_reactions import NamedReaction, named_reactions
 from eomgen.mechanics.balance.unit_wrenches import Effect, efforts_of
 from eomgen.mechanics.reactions.reactions import Reactions
@@ -47,27 +48,34 @@ def named_otherwise(balance: Balance, state: State) -> str:
     return ""
 
 
+def drives_beside(reactions: Reactions) -> dict[str, str]:
+    """{name of a drive: the coordinate} of those that have another way: driven by the model, and no friction beside."""
+    system = reactions.balance.system
+    if frictions(system):
+        return {}
+    driven = system.scope.model.coordinates
+    return {c.name: c.side for c in reactions.components if c.kind == "drive" and c.side and driven[c.side].driven}
+
+
 def driven_otherwise(reactions: Reactions, state: State) -> str:
     """Which drive is not what the free bodies ask for along its coordinate once that is let go; "" where all are.
 
     Raises:
-        NoValue: none has another way.
+        NoValue: none is determinate with another way.
     """
-    sides = {c.name: c.side for c in reactions.components if c.kind == "drive" and c.side}
-    drives = [named for named in named_reactions(reactions.balance) if named.name in sides]
-    why = None
-    for named in drives:
+    sides, found = drives_beside(reactions), 0
+    for named in (named for named in named_reactions(reactions.balance) if named.name in sides):
         try:
             due, size = drive_demanded(reactions.balance.system, sides[named.name], state)
             value = reactions.combined(named.combination, named.name) + named.given
-        except (NoValue, Indeterminate) as no:
-            why, drives = no, [each for each in drives if each is not named]
+        except (NoValue, Indeterminate):
             continue
         (stated,) = evaluate((value,), state, fifty_digits())
         if abs(stated - due) > COMPUTED * (size + abs(stated)):
             return f"{named.name} = {float(stated):.10g}, and the bodies ask for {float(due):.10g}"
-    if why is not None and not drives:
-        raise NoValue(str(why)) from why
+        found += 1
+    if not found:
+        raise NoValue("no drive is determinate, or ties follow from others only while it drives")
     return ""
 
 

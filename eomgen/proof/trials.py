@@ -31,7 +31,7 @@ from eomgen.proof.friction_laws import leaving_at_start, other_friction, pushing
 from eomgen.proof.in_numbers import FINER_STEP, STEP, way_through
 from eomgen.proof.joint_places import misplaced
 from eomgen.proof.kept_ties import open_at_start, pulled_at_start, rows_that_stay, springs_of_the_start
-from eomgen.proof.named_axes import driven_otherwise, named_otherwise
+from eomgen.proof.named_axes import driven_otherwise, drives_beside, named_otherwise
 from eomgen.proof.printed import Printed, ReadBack, least_multipliers
 from eomgen.proof.states import States, TrialState, consistent_states, in_doubles, is_open, own_start, refuse_open
 from eomgen.proof.strands import strung_otherwise, threads_of
@@ -429,7 +429,7 @@ class Trials:
             if self.equations.system.scope.model.space == "space":
                 name = "reactions that are named by x, y and z are those along the ground's axes"
                 yield self._somewhere(name, lambda state: named_otherwise(reactions.balance, state))
-            if any(c.kind == "drive" and c.side for c in reactions.components):
+            if drives_beside(reactions):
                 name = "what drives a motion is what the bodies ask for along it"
                 yield self._somewhere(name, lambda state: driven_otherwise(reactions, self._pushed(state)))
 
