@@ -190,3 +190,9 @@ def test_what_is_too_long_to_be_printed_has_its_value_however_it_is_written():
         assert all(abs(a - b) < MET_AT_50 * abs(a) for a, b in zip(*values, strict=True))
         assert sum(map(text_size, one)) < sum(map(text_size, other))
     assert rendered(replace(shortest, modes=came).document, "text") == rendered(shortest.document, "text")
+
+
+def test_small_turns_of_a_quaternion_are_proven_as_far_as_they_can_be():
+    """A free top about a steady spin: what grows like t is looked at along coordinates, and small turns are none."""
+    top = eomgen.load(MODELS / "seeds" / "s1_symmetric_top.toml")
+    assert eomgen.linearize(top, about="start").certify().ok

@@ -126,7 +126,11 @@ def regressor(model: ModelOrPath) -> Regressor:
 def regressor_of(system: System) -> Regressor:
     """The same of a system."""
     if not system.symbols.u:
-        raise DerivationError("nothing moves: no force tells a mass", mend="give a joint a coordinate that is free")
+        raise DerivationError(
+            "nothing moves: no force tells a mass",
+            "coordinates",
+            "give a joint a coordinate that is free, neither driven nor dependent",
+        )
     if has_friction(system):
         name = frictions(system)[0][0]
         raise DerivationError(

@@ -213,10 +213,11 @@ class _Proof:
 
     @property
     def _drifts_away(self) -> bool:
-        """Whether what grows like t comes to where the equations are others; of ties that close nothing is said."""
+        """Whether what grows like t comes to where the equations are others; of ties and small turns none is said."""
         small = self.modes.small
         system, e, numbers = small.first.system, small.first.equations, small.reference.numbers
-        if system.ties.closing or system.elimination is not None or not self._has_chains:
+        tied = system.ties.closing or system.elimination is not None
+        if tied or not {*small.numbers.coordinates} <= numbers.keys() or not self._has_chains:
             return False
         sizes, columns = np.linalg.svd(self.A @ self.A)[1:]
         slow = columns[sizes <= COMPUTED * sizes.max(initial=0)]
