@@ -6,7 +6,7 @@ from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import field
 from typing import Any
 
-from eomgen.errors import DerivationError, ModelError
+from eomgen.errors import DerivationError, ExpressionError, ModelError
 from eomgen.mechanics.bodies.inertia import mass_properties
 from eomgen.mechanics.bodies.kinematics import GROUND, Motion, ground_place
 from eomgen.mechanics.bodies.scope import Scope, parameters_of_zero, primitive
@@ -22,6 +22,7 @@ from eomgen.symbolic.expression.derivative import depends_on, gradient, substitu
 from eomgen.symbolic.expression.expressions import Call, Expression, as_expression
 from eomgen.symbolic.expression.functions import over, sqrt
 from eomgen.symbolic.expression.graph import Node, Scalar, is_zero
+from eomgen.symbolic.expression.rational import Fraction
 from eomgen.symbolic.expression.spatial import Matrix, Vector
 from eomgen.symbolic.numeric.evaluation import FLOAT, evaluate
 from eomgen.symbolic.numeric.work import Work
@@ -226,8 +227,18 @@ def let_go(scope: Scope, name: str) -> Coordinate:
     """A driven coordinate without what drives it: one like others, which starts where it is driven from."""
     part = scope.model.coordinates[name]
     (q,) = (x for x in scope.symbols.q if x.name == name)
-    start = part.start if part.motion is None else as_expression(to_text(start_value(scope, q)))
+    start = part.start if part.motion is None else _written(scope, start_value(scope, q))
     return altered(part, motion=None, rate=None, acceleration=None, start=start)
+
+
+def _written(scope: Scope, scalar: Scalar) -> Expression:
+    """A scalar of the parameters as a formula; as a number where it is one of samples, which have no formula."""
+    try:
+        return as_expression(to_text(scalar))
+    except ExpressionError:
+        known = exact_parameters(scope.model)
+        values = {node: float(known[name]) for name, node in scope.symbols.parameters.items() if name in known}
+        return as_expression(Fraction(evaluate((scalar,), values, FLOAT)[0]))
 
 
 def with_unit_quaternions(scope: Scope, start: dict[Node, Scalar]) -> dict[Node, Scalar]:
