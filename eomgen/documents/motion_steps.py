@@ -75,7 +75,7 @@ def velocities_step(system: System, reader: Reader, energies: tuple[BodyEnergy, 
             formulas.append((Name("speed", of, power=2), dot(energy.velocity, energy.velocity)))
         formulas += spins(system, energy.body, energy.spin)
     words = "The derivatives of the positions, and the angular velocities"
-    words += ":" if len(axes(system)) == 2 else " in the axes of the bodies:"
+    words += ":" if len(axes(system)) == 2 else " about the axes 1, 2, 3 of the bodies:"
     return Step("velocities", "Velocities", (prose(words), *page(reader, formulas)))
 
 
@@ -104,12 +104,15 @@ def is_still(velocity: Vector) -> bool:
 
 
 def spins(system: System, body: str, spin: Vector) -> list[Pair]:
-    """The angular velocity of a body: one number in the plane, its components in body axes in space."""
+    """The angular velocity of a body: one number in the plane; in space its components about the axes of the body.
+
+    They are numbered: omega_x of a body is, wherever it is asked for, the component along the ground's axis.
+    """
     if len(axes(system)) == 2:
         return [] if is_zero(spin[2]) else [(Name("omega", body), spin[2])]
     if is_still(spin):
         return []
-    return [(Name(f"omega_{axis}", body), x) for axis, x in zip(AXES, spin, strict=True)]
+    return [(Name(f"omega_{axis}", body), x) for axis, x in enumerate(spin, start=1)]
 
 
 def constraints_step(system: System, reader: Reader) -> tuple[Step, ...]:

@@ -33,7 +33,7 @@ from eomgen.symbolic.numeric.dense import of_one_length
 from eomgen.symbolic.numeric.evaluation import NoValue, evaluate, fifty_digits
 from eomgen.symbolic.numeric.tolerances import COMPUTED
 
-SPINS = ("omega_x", "omega_y", "omega_z")
+SPINS = ("omega_1", "omega_2", "omega_3")  # about the axes of the body
 LAST = fifty_digits().number(1) / 10**44  # of the numbers of a state: their last digits
 SHOWN = 60  # characters of one that cannot be read
 
