@@ -94,10 +94,14 @@ def _pushed(place: Equilibrium) -> str:
     stays = [q for q in symbols.q if q not in statics.q and (q in place.exact or q in place.numbers)]
     known |= _places(place, (*statics.unknowns, *stays), known)
     most = max(_usual(statics, known), default=0)
-    for u, x in zip(symbols.u, demand_of(free, with_inputs(free, known)).forces, strict=True):
-        if abs(x) > COMPUTED * most + ZERO_AT_50:
-            return f"{float(x):.3g} is left along {u.name}"
-    return ""
+    left = dict(zip((u.name for u in symbols.u), demand_of(free, with_inputs(free, known)).forces, strict=True))
+    for four in free.scope.quaternions:  # along itself a quaternion cannot change: what is left there pushes nothing
+        rates = {f"{e.name}'": known[e] for e in four}
+        if rates.keys() <= left.keys():
+            radial = sum(left[rate] * e for rate, e in rates.items())
+            left |= {rate: left[rate] - radial * e for rate, e in rates.items()}
+    wrong = ((name, x) for name, x in left.items() if abs(x) > COMPUTED * most + ZERO_AT_50)
+    return next((f"{float(x):.3g} is left along {name}" for name, x in wrong), "")
 
 
 def _places(place: Equilibrium, wanted: Sequence[Node], known: Mapping[Node, Any]) -> dict[Node, Any]:

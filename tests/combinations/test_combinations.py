@@ -273,12 +273,19 @@ def is_not_answered(text: str, words: str) -> None:
     assert any(words in str(answer) for answer in eomgen.solve(eomgen.loads(text)).values())
 
 
+def rests(text: str, _: str) -> None:
+    found = eomgen.statics(eomgen.loads(text))
+    assert found.places
+    assert found.certify().ok
+
+
 EXPECTED: dict[str, Callable[[str, str], None]] = {
     "refused": is_refused,
     "answers": answers_are,
     "oracle": is_as_the_oracle_says,
     "derives": derives,
     "unanswered": is_not_answered,
+    "rests": rests,
 }
 
 
