@@ -327,6 +327,7 @@ def test_every_shape_is_drawn_where_it_is_and_as_large():
     assert found and not [check.detail for check in found if check.ok is False]
 
 
+@pytest.mark.slow
 def test_numbers_of_a_page_bear_their_names():
     """The state, the rates, reactions and T + V of a page's program are the run's; two names exchanged are not."""
     found = eomgen.play(MODELS[0].parent / "simple_pendulum.toml", time=0.3).played
