@@ -118,12 +118,13 @@ class WholeRun:
         if told is None:
             if len(met) < n:
                 return ""
-            value = self._value_near(output.value, met[n - 1])
-            return f"no value, and it is met near t = {met[n - 1]:.6g} s" if math.isfinite(value) else ""
+            when = sum(met[n - 1]) / 2
+            value = self._value_near(output.value, when)
+            return f"no value, and it is met near t = {when:.6g} s" if math.isfinite(value) else ""
         found = self.of(output)
         if not found.t:
             return f"{told:.10g} for no event"
-        before = sum(t < found.t[0] * (1 - SAME_PLACE) for t in met)
+        before = sum(end < found.t[0] * (1 - SAME_PLACE) for _, end in met)
         if before >= n:
             return f"{told:.10g} at t = {found.t[0]:.6g} s, and it is met {before} times before"
         return self._events_against_samples(output, told)
@@ -139,15 +140,15 @@ class WholeRun:
             return f"no value for {start:.10g}" if math.isfinite(start) else ""
         return differing(told, start, CARRIED)
 
-    def _met_by_samples(self, condition: WrittenEquation) -> list[float]:
-        """Instants between samples at which the sides change their order."""
+    def _met_by_samples(self, condition: WrittenEquation) -> list[tuple[float, float]]:
+        """The instants of the samples before and behind each change of the order of the sides."""
         curves = self._sampled(condition.left - condition.right)
         sure = CARRIED * max(float(np.max(np.abs(y), initial=0.0)) for _, y in curves)
-        found: list[float] = []
+        found: list[tuple[float, float]] = []
         for t, y in curves:
             known = np.flatnonzero(np.abs(y) > sure)
             turns = np.flatnonzero(y[known[:-1]] * y[known[1:]] < 0)
-            found += [float(t[known[k]] + t[known[k + 1]]) / 2 for k in turns]
+            found += [(float(t[known[k]]), float(t[known[k + 1]])) for k in turns]
         return found
 
     def _value_near(self, formula: Expression, when: float) -> float:
