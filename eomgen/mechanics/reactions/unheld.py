@@ -47,17 +47,24 @@ def refuse_unheld(balance: Balance, solution: Solution, at: Mapping[Node, Scalar
             return
         if not system.symbols.u:
             return refuse_loose(structure_of(system))
-    if refuse_unheld not in system.found:
-        system.found[refuse_unheld] = _unheld(balance)
-    if system.found[refuse_unheld] is not None:
-        raise system.found[refuse_unheld]
+    key = (refuse_unheld, bool(at))
+    if key not in system.found:
+        system.found[key] = _unheld(balance, touched=bool(at))
+    if system.found[key] is not None:
+        raise system.found[key]
 
 
-def _unheld(balance: Balance) -> DerivationError | None:
-    """The body that moves most in what no reaction resists and no coordinate describes, and the direction."""
+def _unheld(balance: Balance, *, touched: bool) -> DerivationError | None:
+    """The body that moves most in what no reaction resists and no coordinate describes, and the direction.
+
+    Args:
+        touched: only of directions along which some reaction acts: no number follows from the others.
+    """
     free, allowed = _virtual_motions(balance)
     Q = np.linalg.qr(allowed)[0] if allowed.size else np.zeros((free.shape[0], 0))
     unheld = free - Q @ (Q.T @ free)
+    if touched:
+        unheld[[not e.coefficients for e in balance.equations]] = 0
     worst = int(np.argmax(np.max(np.abs(unheld), axis=1)))
     if np.max(np.abs(unheld)) < RANK_NEARBY:
         return None
