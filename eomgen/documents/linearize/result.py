@@ -42,7 +42,8 @@ from eomgen.proof.check import Certificate, Check
 from eomgen.proof.drawn_panels import DrawnPanel
 from eomgen.proof.linear_entries import linear_entries
 from eomgen.proof.small_motions import small_motion_checks
-from eomgen.proof.small_motions_told import modes_drawn, responses_drawn, roots_drawn, small_motions_told
+from eomgen.proof.small_motions_drawn import modes_drawn, responses_drawn, roots_drawn
+from eomgen.proof.small_motions_told import small_motions_told
 from eomgen.records import dataclass
 from eomgen.symbolic.expression.expressions import Call, Expression
 from eomgen.symbolic.expression.graph import Scalar
