@@ -52,6 +52,19 @@ def test_a_small_coefficient_is_none_the_less_one():
     assert sparse_solution(rows, Pivots(rank=rank, sure=1, factors=[r])).constants[0] == 0
 
 
+def test_what_vanishes_where_ties_hold_and_not_beside_stays_and_is_no_pivot():
+    """x + s y = b1, c x + y = b2, s = 0 on the ties: (1 - c s) y = b2 - c b1 off them too; zeros throughout go."""
+    g = Graph()
+    s, c, b = g.symbol("s"), g.symbol("c"), [g.symbol("b1"), g.symbol("b2")]
+    state = {s: fifty_digits().number(0), c: fifty_digits().number(2)}
+    nothing = sin(c) * sin(c) + cos(c) * cos(c) - 1
+    lines = [{0: 1, 1: s}, {0: c, 1: 1, 2: nothing}, {1: nothing, 2: s + 1}]
+    rows = LinearSystem(lines, [*b, 3], 3, lambda x: evaluate(x, state, fifty_digits()))
+    found = sparse_solution(rows, Pivots(vanishes=lambda x: equal_at_random_states([(x, 0)]).equal)).constants
+    assert equal_at_random_states([(found[1] * (1 - c * s), b[1] - c * b[0]), (found[0], b[0] - s * found[1])]).equal
+    assert found[2] == 3 / (s + 1)
+
+
 @pytest.mark.parametrize("sure", [None, 1])
 def test_what_is_indeterminate_stays_so(sure):
     """One row for two unknowns: the second is free, the first follows from it; a third is determined all the same."""

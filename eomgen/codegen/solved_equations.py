@@ -11,6 +11,7 @@ from contextlib import suppress
 from eomgen.codegen.factorization import factor_solution
 from eomgen.errors import DerivationError
 from eomgen.mechanics.balance.balance_solution import values_at_a_state
+from eomgen.mechanics.constraints.ties import holds_identically
 from eomgen.mechanics.equations.equations_of_motion import EquationsOfMotion
 from eomgen.mechanics.equations.explicit_accelerations import by_determinants, regular_rows
 from eomgen.mechanics.reactions.accelerations_at_start import FEW, by_independent
@@ -18,7 +19,7 @@ from eomgen.symbolic.expression.functions import inner
 from eomgen.symbolic.expression.graph import Node, Scalar, is_zero
 from eomgen.symbolic.expression.node import ScalarRow
 from eomgen.symbolic.solve import cramer
-from eomgen.symbolic.solve.linear_systems import LinearSystem, general_solution
+from eomgen.symbolic.solve.linear_systems import LinearSystem, Pivots, general_solution
 
 
 def accelerations_and_multipliers(equations: EquationsOfMotion) -> dict[Node, Scalar]:
@@ -82,6 +83,7 @@ def _multipliers(equations: EquationsOfMotion, a: Mapping[Node, Scalar]) -> dict
     rows = [{k: equations.J[m][i] for k, m in enumerate(kept)} for i in range(n)]
     right = [inner(equations.M[i], list(a.values())) - equations.forcing[i] for i in range(n)]
     entries = [x for row in rows for x in row.values()]
-    solution = general_solution(LinearSystem(rows, right, len(kept), values_at_a_state(system, entries)))
+    linear = LinearSystem(rows, right, len(kept), values_at_a_state(system, entries))
+    solution = general_solution(linear, Pivots(vanishes=holds_identically))
     found = {system.symbols.lam[m]: solution.constants[k] for k, m in enumerate(kept)}
     return {x: found.get(x, 0) for x in system.symbols.lam}

@@ -90,7 +90,9 @@ class Moving:
             if len(names) > 1 and names[1] != "ground":
                 R = ty.matmul(ty.transpose(self.frame(names[1])[1]), R)
             if function == "angle":
-                return ty.atan2(ty.component(R, 1, 0), ty.component(R, 0, 0))
+                of_axes = ty.atan2(ty.component(R, 1, 0), ty.component(R, 0, 0))
+                counted = self.counted(names[0]) - sum((self.counted(x) for x in names[1:]), start=0.0)
+                return of_axes + 2 * np.pi * round((counted - float(of_axes.value)) / (2 * np.pi))
             w = ty.vee(ty.matmul(R.rate(), ty.transpose(R)))
             if function == "epsilon":
                 return ty.component(w.rate(), 2)
@@ -106,6 +108,17 @@ class Moving:
         for _ in range(("", "v", "a").index(kind)):
             p = p.rate()
         return ty.component(p, axis)
+
+    def counted(self, body: str | None) -> float:
+        """The angle of a body in the plane with whole turns: the sum of those that joints declare, to the ground."""
+        total = 0.0
+        while body in self.model.bodies:
+            joint = self.model.bodies[body].get("joint", {})
+            turned = joint.get("turned", [])
+            for one in [*(turned if isinstance(turned, list) else [turned]), joint]:
+                total += float(jet(self.value(one.get("angle", 0))).value)
+            body = self.model.parent(self.model.bodies[body])
+        return total
 
     def value(self, declared: Any) -> Any:
         """A field: a number, a text, or {value, unit}."""

@@ -273,6 +273,10 @@ def is_not_answered(text: str, words: str) -> None:
     assert any(words in str(answer) for answer in eomgen.solve(eomgen.loads(text)).values())
 
 
+def is_right_as_code(text: str, target: str) -> None:
+    assert eomgen.generate(eomgen.loads(text), (target,)).certify().ok
+
+
 def rests(text: str, _: str) -> None:
     found = eomgen.statics(eomgen.loads(text))
     assert found.places
@@ -286,6 +290,7 @@ EXPECTED: dict[str, Callable[[str, str], None]] = {
     "derives": derives,
     "unanswered": is_not_answered,
     "rests": rests,
+    "code": is_right_as_code,
 }
 
 

@@ -100,6 +100,8 @@ class Pivots:
             which the equations are not singular.
         steady: whether an atom of such symbols vanishes nowhere; rows are divided by no other.
         regular: what waits is solved by normal equations, however many unknowns hang together and depend on others.
+        vanishes: whether an entry whose shadow is zero is left out. One that is zero on the ties alone stays where the
+            equations are asked off them too; it is no pivot, and its unknown has to be determined.
     """
 
     rank: Callable[[Scalar], int] = _number_first
@@ -110,6 +112,7 @@ class Pivots:
     factors: Collection[Node] = ()
     steady: Callable[[Node], bool] = lambda _: True
     regular: bool = False
+    vanishes: Callable[[Scalar], bool] = lambda _: True
 
 
 def sparse_solution(system: LinearSystem, pivots: Pivots) -> Solution:
@@ -133,7 +136,7 @@ def sparse_solution(system: LinearSystem, pivots: Pivots) -> Solution:
             lines,
             order,
             lambda line, j, x: (divides(line, j, x), j in late),
-            pivots.tolerance,
+            pivots,
             worst=(sure, True),
         )
     waits = bool(late) or (sure is not None and any(line.entries for line in lines))
@@ -142,7 +145,7 @@ def sparse_solution(system: LinearSystem, pivots: Pivots) -> Solution:
     if pivots.regular:
         _squares(lines, order, late, system.values, pivots.tolerance)
     done = len(order)
-    _eliminate(lines, order, lambda line, j, x: ((j in late) + (not tested(line, j)), rank(x)), pivots.tolerance)
+    _eliminate(lines, order, lambda line, j, x: ((j in late) + (not tested(line, j)), rank(x)), pivots)
     free = tuple(j for j in range(system.unknowns) if j not in {pivot for pivot, _ in order})
     constants, shares = _substituted(order, free, pivots.tolerance)
     worst = None if waits else max((rank(line.entries[j]) for j, line in order), default=0)
@@ -159,10 +162,11 @@ def _lines(system: LinearSystem, pivots: Pivots) -> list[_Line]:
         shadow = {j: next(shadows) for j in row}
         largest = max((abs(x) for x in shadow.values()), default=0)
         least = max(tolerance * largest, floor)
-        sure = {j: x for j, x in row.items() if abs(shadow[j]) > least or _is_small(x, system.values, pivots)}
-        kept = {j: x for j, x in sure.items() if not is_zero(x)}
+        sure = {j for j, x in row.items() if abs(shadow[j]) > least or _is_small(x, system.values, pivots)}
+        kept = {j: x for j, x in row.items() if not is_zero(x) and (j in sure or not pivots.vanishes(x))}
+        shadow = {j: shadow[j] if j in sure else 0 for j in kept}
         own = {j: x for j, x in {**kept, **test}.items() if not is_zero(x)}
-        lines.append(_Line(kept, {j: shadow[j] for j in kept}, b, own))
+        lines.append(_Line(kept, shadow, b, own))
     return lines
 
 
@@ -184,7 +188,7 @@ def _eliminate(
     lines: list[_Line],
     order: list[tuple[int, _Line]],
     rank: Callable[[_Line, int, Scalar], tuple[int, int]],
-    tolerance: float,
+    pivots: Pivots,
     worst: tuple[int, int] | None = None,
 ) -> None:
     """Move lines, each with the unknown that it is solved for, into `order`, as long as there are pivots."""
@@ -201,7 +205,7 @@ def _eliminate(
         for other in lines if many[j] else ():
             if j in other.entries:
                 many.subtract(list(other.entries))
-                _subtract(other, line, j, tolerance)
+                _subtract(other, line, j, pivots)
                 many.update(list(other.entries))
 
 
@@ -212,6 +216,8 @@ def _pivot(
     best, found = None, None
     for k, line in enumerate(lines):
         for j, entry in line.entries.items():
+            if line.shadow[j] == 0:
+                continue
             this = (*rank(line, j, entry), (len(line.entries) - 1) * (many[j] - 1))
             if best is None or this < best:
                 best, found = this, (k, j)
@@ -360,7 +366,7 @@ def _rest(line: _Line, known: Mapping[int, Scalar]) -> Scalar:
     return line.right - _sum(x * known[j] for j, x in line.entries.items() if j in known)
 
 
-def _subtract(other: _Line, line: _Line, j: int, tolerance: float) -> None:
+def _subtract(other: _Line, line: _Line, j: int, pivots: Pivots) -> None:
     """other - factor * line, so that unknown j leaves it."""
     factor = _quotient(other.entries.pop(j), line.entries[j])
     shadow = other.shadow.pop(j) / line.shadow[j]
@@ -369,11 +375,11 @@ def _subtract(other: _Line, line: _Line, j: int, tolerance: float) -> None:
     for k, entry in line.entries.items():
         if k == j:
             continue
-        before = abs(other.shadow.get(k, 0))
-        value = other.shadow.get(k, 0) - shadow * line.shadow[k]
-        if abs(value) > tolerance * max(before, abs(shadow * line.shadow[k])):
-            other.entries[k] = other.entries.get(k, 0) - factor * entry
-            other.shadow[k] = value
+        x = other.entries.get(k, 0) - factor * entry
+        before, taken = other.shadow.get(k, 0), shadow * line.shadow[k]
+        stands = abs(before - taken) > pivots.tolerance * max(abs(before), abs(taken))
+        if stands or not pivots.vanishes(x):
+            other.entries[k], other.shadow[k] = x, before - taken if stands else 0
         else:
             other.entries.pop(k, None)
             other.shadow.pop(k, None)

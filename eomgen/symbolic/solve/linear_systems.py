@@ -28,18 +28,18 @@ def general_solution(system: LinearSystem, pivots: Pivots | None = None) -> Solu
     return scaled_solution(system, pivots) if pivots.factors else sparse_solution(system, pivots)
 
 
-def unique_solution(system: LinearSystem, *, vanishes: Callable[[Scalar], bool] = is_zero) -> tuple[Scalar, ...]:
+def unique_solution(system: LinearSystem, *, vanishes: Callable[[Scalar], bool] | None = None) -> tuple[Scalar, ...]:
     """x of as many rows as unknowns: by minors where the unknowns are few, else by elimination.
 
     Args:
-        vanishes: whether an entry that came up on the way is zero at all states.
+        vanishes: whether an entry is zero at all states, not only where the values are (None: told by these).
     Raises:
         DerivationError: there is no single solution.
     """
     if system.unknowns <= cramer.LARGEST_BLOCK and len(system.rows) == system.unknowns:
-        found, _ = cramer.solution_by_minors(system.rows, [(x,) for x in system.right], vanishes=vanishes)
+        found, _ = cramer.solution_by_minors(system.rows, [(x,) for x in system.right], vanishes=vanishes or is_zero)
         return tuple(x for (x,) in found)
-    solution = general_solution(system)
+    solution = general_solution(system, Pivots(vanishes=vanishes) if vanishes else None)
     if solution.free:
         raise DerivationError("the equations have no single solution")
     return tuple(solution.constants[j] for j in range(system.unknowns))
