@@ -54,7 +54,11 @@ def write(path: str | Path, content: Content) -> None:
         target = Path(os.path.realpath(path))
         _write_all(target.parent, {target.name: content})
     except OSError as error:
-        raise WriteFailed(f"the file cannot be written: {error.strerror or error}", str(path)) from None
+        raise WriteFailed(
+            f"the file cannot be written: {error.strerror or error}",
+            str(path),
+            mend="name a place that can be written to",
+        ) from None
 
 
 def write_all(directory: str | Path, contents: Mapping[str, Content]) -> list[Path]:
@@ -71,7 +75,9 @@ def write_all(directory: str | Path, contents: Mapping[str, Content]) -> list[Pa
         what, where = "the files cannot be written", str(directory)
         if len(contents) == 1:
             what, where = "the file cannot be written", str(Path(directory, *contents))
-        raise WriteFailed(f"{what}: {error.strerror or error}", where) from None
+        raise WriteFailed(
+            f"{what}: {error.strerror or error}", where, mend="write into another file or folder"
+        ) from None
 
 
 def read(path: str | Path, most: int) -> bytes:

@@ -2,6 +2,9 @@
 
 from __future__ import annotations
 
+import ast
+from pathlib import Path
+
 import pytest
 from click.testing import CliRunner
 from newcomer import CRANE
@@ -147,3 +150,25 @@ def test_every_verb_says_which_tie_cannot_close(tmp_path, words, code):
     found = CliRunner().invoke(main, [words[0], str(path), *words[1:]])
     assert found.exit_code == code
     assert f"{path}:14:14: 'bar' (row 1) does not close at the start: it is open by 3.78" in found.stderr
+
+
+REFUSALS = {"DerivationError", "UsageError", "ModelError", "RunFailed", "NotYet", "ToolMissing", "WriteFailed"}
+INSIDE = ("symbolic", "proof", "judge")  # what is refused there comes out of something that names the model
+
+
+def test_every_refusal_that_is_written_says_what_to_do():
+    """Third argument or `mend=`; an error made of problems carries theirs."""
+    silent = []
+    for path in sorted(Path(eomgen.__file__).parent.rglob("*.py")):
+        if path.relative_to(Path(eomgen.__file__).parent).parts[0] in INSIDE:
+            continue
+        for node in ast.walk(ast.parse(path.read_text(encoding="utf-8"))):
+            if not (isinstance(node, ast.Raise) and isinstance(call := node.exc, ast.Call)):
+                continue
+            if not (isinstance(call.func, ast.Name) and call.func.id in REFUSALS):
+                continue
+            says = len(call.args) > 2 or any(word.arg == "mend" for word in call.keywords)
+            text = isinstance(call.args[0], (ast.Constant, ast.JoinedStr, ast.Name)) if call.args else True
+            if text and not says and not (isinstance(call.args[0], ast.Name) and call.args[0].id == "problems"):
+                silent.append(f"{path.name}:{node.lineno}")
+    assert not silent

@@ -159,7 +159,11 @@ def library(text: str, *, quickly: bool = False, by: Compiler = C) -> ctypes.CDL
         return ctypes.CDLL(str(path))
     except OSError as error:
         path.unlink(missing_ok=True)
-        raise RunFailed(f"the {by.language} compiler makes no library: {error}", shlex.join(by.command())) from None
+        raise RunFailed(
+            f"the {by.language} compiler makes no library: {error}",
+            shlex.join(by.command()),
+            mend="take --target numpy, or another compiler: CC",
+        ) from None
 
 
 def binary(text: str, by: Compiler) -> bytes:
@@ -180,7 +184,7 @@ def _kept(text: str, by: Compiler, quickly: bool) -> Path:
         kept.used(path)
         return path
     if name in _GIVEN_UP:
-        raise RunFailed(_GIVEN_UP[name], command[0])
+        raise RunFailed(_GIVEN_UP[name], command[0], mend="take --target numpy, or another compiler: CC")
     return _compile(text, [*command, *flags], folder, name, by)
 
 
@@ -194,7 +198,9 @@ def function_of(made: ctypes.CDLL, name: str, by: Compiler = C) -> Any:
         return getattr(made, name)
     except AttributeError:
         raise RunFailed(
-            f"the {by.language} compiler makes a library without the function '{name}'", by.command()[0]
+            f"the {by.language} compiler makes a library without the function '{name}'",
+            by.command()[0],
+            mend="take --target numpy, or another compiler: CC",
         ) from None
 
 
@@ -208,14 +214,18 @@ def _compile(text: str, command: list[str], folder: Path, name: str, by: Compile
                 code, said = _ran([*command, "-o", str(made), str(source), *by.last], by, place)
             except TimeoutError as late:
                 _GIVEN_UP[name] = f"the {by.language} compiler {late}"
-                raise RunFailed(_GIVEN_UP[name], command[0]) from None
+                raise RunFailed(
+                    _GIVEN_UP[name], command[0], mend="take --target numpy, or another compiler: CC"
+                ) from None
             if code != 0 or not made.is_file():
                 told = f"the {by.language} compiler failed: {said or f'it ended with {code}, and made nothing'}"
                 refused = IN_THE_TEXT.search(said) and text != by.trial and _works(by)
                 raise (TextRefused if refused else RunFailed)(told, command[0])
             return kept.put_whole(made, folder, name)
     except OSError as error:
-        raise ToolMissing(f"nothing can be compiled: {error}", command[0]) from None
+        raise ToolMissing(
+            f"nothing can be compiled: {error}", command[0], mend="take --target numpy, or another compiler: CC"
+        ) from None
 
 
 def _works(by: Compiler) -> bool:

@@ -123,7 +123,10 @@ def ranked_number(a: Number) -> RankedText:
     try:
         value = float(a)
     except OverflowError:
-        raise DerivationError(f"the number {str(a)[:20]}... is too large for a double") from None
+        raise DerivationError(
+            f"the number {str(a)[:20]}... is too large for a double",
+            mend="scale the parameters: other units, or numbers nearer to 1",
+        ) from None
     if Fraction(value) == a or a.denominator > 10_000 or a.numerator > LARGEST_WHOLE:
         return repr(value), ATOM
     return f"{float(a.numerator)!r}/{float(a.denominator)!r}", PRODUCT

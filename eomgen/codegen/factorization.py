@@ -31,7 +31,10 @@ def factor_solution(M: Sequence[MatrixRow], F: MatrixRow) -> tuple[Scalar, ...]:
     pivots = elimination_order(M)
     for k in pivots:
         if is_zero(rows[k][k]):
-            raise DerivationError(f"the mass matrix is singular: row {k + 1} has no inertia left")
+            raise DerivationError(
+                f"the mass matrix is singular: row {k + 1} has no inertia left",
+                mend="give every body that moves a mass, and every one that turns a moment of inertia",
+            )
         _eliminate(rows, z, k, _partners(rows, k, pivots))
     a: list[Any] = [0] * len(z)
     for k in reversed(pivots):

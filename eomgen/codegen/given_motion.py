@@ -71,7 +71,10 @@ class GivenMotion:
         from scipy.interpolate import CubicSpline
 
         if values.shape != self.t.shape or len(values) < 2:
-            raise UsageError(f"'{name}' has {values.size} values at {len(self.t)} instants")
+            raise UsageError(
+                f"'{name}' has {values.size} values at {len(self.t)} instants",
+                mend="give one value for each instant of t",
+            )
         spline = CubicSpline(self.t, values)
         return spline(self.t), spline(self.t, 1), spline(self.t, 2)
 

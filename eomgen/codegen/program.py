@@ -299,7 +299,7 @@ def _defaults(needed: Sequence[Node], symbols: Symbols, inputs: Mapping[str, Sca
     used = {x.name for x in needed if x.op == "symbol"}
     silent = [name for name in symbols.inputs if name in used and name not in inputs]
     if silent:
-        raise DerivationError(f"no expression for input {', '.join(map(repr, silent))}")
+        raise DerivationError(f"no expression for input {', '.join(map(repr, silent))}", mend="give it one in [inputs]")
     return tuple(inputs.get(name, 0) for name in symbols.inputs)
 
 
@@ -340,4 +340,7 @@ def _refuse_strangers(needed: Sequence[Node], symbols: Symbols, others: Sequence
     arguments = {symbols.t, *symbols.q, *symbols.u, *symbols.parameters.values(), *symbols.inputs.values(), *others}
     strangers = [x.name for x in needed if x.op == "symbol" and x not in arguments]
     if strangers:
-        raise DerivationError(f"not an argument of the program: {', '.join(map(repr, strangers))}")
+        raise DerivationError(
+            f"not an argument of the program: {', '.join(map(repr, strangers))}",
+            mend="name a coordinate, speed, parameter or input",
+        )

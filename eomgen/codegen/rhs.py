@@ -81,7 +81,7 @@ class RightHandSide:
         """dx at n states: t n or one number, x n x states, p of all or n x parameters, inputs () or n x inputs."""
         x = np.ascontiguousarray(x, dtype=float)
         if x.ndim != 2 or x.shape[1] != self._states:
-            raise UsageError(f"x is {' x '.join(map(str, x.shape))}, not n x {self._states}")
+            raise UsageError(f"x is {' x '.join(map(str, x.shape))}, not n x {self._states}", mend="one state a row")
         t = np.ascontiguousarray(np.broadcast_to(np.asarray(t, dtype=float), len(x)))
         given = None
         if np.size(inputs):
@@ -90,7 +90,10 @@ class RightHandSide:
             return self._functions.many(t, x, self._checked(p), given)
         p = np.ascontiguousarray(p, dtype=float)
         if p.shape != (len(x), len(self.parameters)):
-            raise UsageError(f"p is {' x '.join(map(str, p.shape))}, not {len(x)} x {len(self.parameters)}")
+            raise UsageError(
+                f"p is {' x '.join(map(str, p.shape))}, not {len(x)} x {len(self.parameters)}",
+                mend="one row of parameters for each state",
+            )
         if self.target == "c" and self._in_lanes is not None:
             return self._in_lanes(t, x, p, given)
         if self.target == "numpy":

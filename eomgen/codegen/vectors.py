@@ -51,7 +51,10 @@ def vectors(
         if vector is not None:
             (found if all(value == value for value in vector.result) else partial).append(vector)
     if not found:
-        raise DerivationError("the equations have no value at any of the states tried for test vectors")
+        raise DerivationError(
+            "the equations have no value at any of the states tried for test vectors",
+            mend="give a start, and parameters, at which the equations have values",
+        )
     where_held = [replace(found[0], t=t, x=tuple(x), p=tuple(p), inputs=None, result=()) for t, x, p in held]
     states = (*where_held, *_special(program, found[0], x0))
     special = (_vector(program, floats, state) for state in states)

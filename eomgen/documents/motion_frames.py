@@ -151,7 +151,7 @@ def mode_movies(modes: Modes, count: int, frames: int) -> list[Movie]:
         raise UsageError("modes are shown with values of all parameters", mend="give them values in [parameters]")
     shown = [mode for mode in modes.spectrum.modes if mode.frequency][:count]
     if not shown:
-        raise UsageError("the model has no mode that swings")
+        raise UsageError("the model has no mode that swings", mend="show a run: leave the mode out")
     return [_mode_movie(modes, mode, k, frames) for k, mode in enumerate(shown, start=1)]
 
 

@@ -183,7 +183,10 @@ def mp4(movies: Sequence[Movie], fps: float, progress: Progress | None = None) -
             _, said = running.communicate(b"".join([first.tobytes(), *(image.tobytes() for image in frames)]))
         if running.returncode:
             lines = said.decode(errors="replace").strip().splitlines()
-            raise RunFailed(f"ffmpeg failed: {lines[-1] if lines else f'exit code {running.returncode}'}")
+            raise RunFailed(
+                f"ffmpeg failed: {lines[-1] if lines else f'exit code {running.returncode}'}",
+                mend="write a .gif or an .html",
+            )
         return (place / "movie.mp4").read_bytes()
 
 

@@ -55,7 +55,10 @@ def outputs_over_time(trajectory: Trajectory, title: str, units: Mapping[str, Un
         RunFailed: the run has none.
     """
     if not trajectory.outputs:
-        raise RunFailed("the run has no outputs: the model asks none that is a function of the state")
+        raise RunFailed(
+            "the run has no outputs: the model asks none that is a function of the state",
+            mend="ask for one in [outputs], or draw coordinates",
+        )
     columns = trajectory.columns()
     named = {
         name: name if name in columns and columns[name] is y else f"{name}{OUTPUT}"

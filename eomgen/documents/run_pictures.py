@@ -45,7 +45,9 @@ def _phase(run: Trajectory, title: str, units: Mapping[str, Unit]) -> Picture:
     """q' over q, a panel for each coordinate whose rate is a speed."""
     names = [q for q in run.coordinates if f"{q}'" in run.speeds][:MOST]
     if not names:
-        raise RunFailed("no coordinate has its rate among the speeds: there is no phase portrait")
+        raise RunFailed(
+            "no coordinate has its rate among the speeds: there is no phase portrait", mend="draw over the time"
+        )
 
     notation = notation_of_run(run)
 
@@ -81,7 +83,7 @@ def _resultants(run: Trajectory, title: str, units: Mapping[str, Unit]) -> Pictu
     """The size of each force over time."""
     curves = {owner: size for owner, size in resultants(run).items() if not np.isnan(size).all()}
     if not curves:
-        raise RunFailed("no joint and no tie of the run carries a force of several components")
+        raise RunFailed("no joint and no tie of the run carries a force of several components", mend="draw the outputs")
 
     def fill(figure: Any) -> None:
         panel = figure.subplots()
@@ -103,7 +105,7 @@ def _polar(run: Trajectory, title: str, units: Mapping[str, Unit]) -> Picture:
     hinges = [owner for owner in hinges if f"reaction_z({owner})" not in run.reactions]
     hinges = [owner for owner in hinges if not np.isnan(run[f"reaction_x({owner})"]).all()][:MOST]
     if not hinges:
-        raise RunFailed("no hinge of the run carries a force in the plane")
+        raise RunFailed("no hinge of the run carries a force in the plane", mend="draw the outputs")
 
     def draw(panel: Any, owner: str) -> None:
         x, y = run[f"reaction_x({owner})"], run[f"reaction_y({owner})"]

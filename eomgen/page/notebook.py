@@ -34,7 +34,9 @@ def notebook_text(report: Report) -> str:
         RunFailed: a cell fails.
     """
     if not report.source:
-        raise UsageError("a notebook holds the text of its model, and this one was made in Python", "write an .html")
+        raise UsageError(
+            "a notebook holds the text of its model, and this one was made in Python", mend="write an .html"
+        )
     try:
         import nbformat
         from nbclient import NotebookClient
@@ -53,7 +55,9 @@ def notebook_text(report: Report) -> str:
     try:
         NotebookClient(notebook, timeout=WAIT, kernel_name="python3", record_timing=False).execute()
     except CellExecutionError as error:
-        raise RunFailed(f"a cell of the notebook fails: {error.ename}: {error.evalue}") from error
+        raise RunFailed(
+            f"a cell of the notebook fails: {error.ename}: {error.evalue}", mend="write an .html or .md"
+        ) from error
     return json.dumps(notebook, indent=1, sort_keys=True, ensure_ascii=False) + "\n"
 
 

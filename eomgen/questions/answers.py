@@ -254,7 +254,10 @@ class _Solver:
         scalar = phase.of_state(output.value)
         method = phase.method_for(output.value) or ("kinematics" if symbols_of((scalar,)) else "arithmetic")
         if self._not_at_rest:
-            raise DerivationError(f"the bodies are not at rest: {self._not_at_rest}")
+            raise DerivationError(
+                f"the bodies are not at rest: {self._not_at_rest}",
+                mend="let the constraints hold them, or ask at an instant",
+            )
         answer = self._started(phase.simple(scalar), method, output)
         if jump := _jump(phase, output, self.motions[False].numbers):
             return replace(answer, value=None, message=jump)
@@ -473,7 +476,10 @@ class _Solver:
             RunFailed: a parameter is missing, and nothing is known of the instant.
         """
         if not moment.numbers:
-            raise RunFailed("the instant has no closed form, and without values of all parameters no number")
+            raise RunFailed(
+                "the instant has no closed form, and without values of all parameters no number",
+                mend="give every parameter a value in [parameters]",
+            )
         phase = moment.phase
         value = phase.number(output.value, {**known_exactly(phase.system.scope), **moment.numbers})
         return value if output.unit is None else float(output.unit.from_si(value, math.pi))

@@ -66,7 +66,7 @@ class Controller:
         found = law.evaluate({**state, "t": t, "pi": math.pi}) if isinstance(law, Expression) else law(t, x)
         value = float(np.asarray(found, dtype=float).reshape(()))
         if not math.isfinite(value):
-            raise RunFailed(f"a controller gives {value} at t = {t:.6g} s")
+            raise RunFailed(f"a controller gives {value} at t = {t:.6g} s", mend="return a finite number")
         return value
 
 

@@ -147,7 +147,7 @@ def _array(model: Model, name: str, value: Any) -> np.ndarray:
         what, mend = (error.what, error.mend) if isinstance(error, ExpressionError) else ("they are no numbers", "")
         raise UsageError(f"the values of '{name}': {what}", mend=mend) from error
     if not len(found) or not np.all(np.isfinite(found)):
-        raise UsageError(f"the values of '{name}' must be finite numbers, one a run")
+        raise UsageError(f"the values of '{name}' must be finite numbers, one a run", mend="leave out what is not")
     return found
 
 

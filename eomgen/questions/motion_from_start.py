@@ -216,7 +216,10 @@ class MotionFromStart:
             there = evaluate((scalar,), values, FLOAT)[0]
             size = abs(evaluate((scalar,), {**values, **self.numbers}, FLOAT)[0])
             if math.isfinite(there) and there < -CARRIED * max(1.0, size):
-                raise RunFailed(f"'{bound.owner}' ends before the instant, on the way from an unstable rest")
+                raise RunFailed(
+                    f"'{bound.owner}' ends before the instant, on the way from an unstable rest",
+                    mend="start from a place of rest that is stable, or ask earlier",
+                )
 
     # -- through several phases -------------------------------------------------------------------
 
@@ -247,8 +250,13 @@ class MotionFromStart:
             if runs[-1].is_met:
                 return runs
             if runs[-1].run.status != "finished":
-                raise RunFailed(f"'{condition.text}' is not met before the run ended: {runs[-1].run.message}")
-        raise RunFailed(f"'{condition.text}' is not met within {HORIZONS[-1]:g} s")
+                raise RunFailed(
+                    f"'{condition.text}' is not met before the run ended: {runs[-1].run.message}",
+                    mend="ask for what the motion reaches",
+                )
+        raise RunFailed(
+            f"'{condition.text}' is not met within {HORIZONS[-1]:g} s", mend="ask for what the motion reaches"
+        )
 
     def _through(self, runs: Sequence[PhaseRun], condition: WrittenEquation, side: str | None) -> StateAtInstant:
         """The end of the last phase, every end before it sought in closed form."""

@@ -248,7 +248,9 @@ class WholeRun:
             raise DerivationError(f"'{call}' is of a state, and stands beside what is of a run", mend=f"last({call})")
         formula = formula_at(call, 0)
         if asks_of(formula, OF_A_RUN):
-            raise DerivationError(f"'{call}': what is of a run has no value along it")
+            raise DerivationError(
+                f"'{call}': what is of a run has no value along it", mend="ask for one after the other"
+            )
         return _FUNCTIONS[call.name](self, formula)
 
     def last(self, formula: Expression) -> tuple[float, tuple[float, ...]]:
@@ -293,7 +295,7 @@ class WholeRun:
         if np.max(apart) - np.min(apart) > SAME_PERIOD * np.mean(apart):
             low, high = np.min(apart), np.max(apart)
             what = f"'{formula.text}' has no period: from {low:.6g} to {high:.6g} s between upward passages of its mean"
-            raise DerivationError(what)
+            raise DerivationError(what, mend="ask for what repeats, or a run after it has settled")
         return float(np.mean(apart)), ()
 
     # -- at events -----------------------------------------------------------------------------------
@@ -355,9 +357,12 @@ class WholeRun:
         """
         found = [(k, resolved_curve(self._function(formula, k), dense.edges)) for k, dense in self._dense.items()]
         if not found:
-            raise DerivationError("the run is one instant")
+            raise DerivationError("the run is one instant", mend="a longer run")
         if not all(np.isfinite(pieces.c).all() for _, pieces in found):
-            raise DerivationError(f"'{formula.text}' has no value at some instants of the run")
+            raise DerivationError(
+                f"'{formula.text}' has no value at some instants of the run",
+                mend="ask for what has a value all along it",
+            )
         return found
 
     def _function(self, formula: Expression, k: int) -> Callable[[np.ndarray], np.ndarray]:
@@ -383,7 +388,7 @@ class WholeRun:
         if key not in self._made:
             columns = OutputColumns(run.phase, {"asked": formula})
             if columns.refused:
-                raise DerivationError(columns.refused["asked"])
+                raise DerivationError(columns.refused["asked"], mend="ask for what has a value all along the run")
             self._made[key] = columns
         return self._made[key]
 

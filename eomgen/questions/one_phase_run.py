@@ -49,7 +49,7 @@ def run_from_start(motion: MotionFromStart, time: float, samples: int | None = N
         most_steps=steps,
     )
     if not run.ok:
-        raise RunFailed(f"the run does not get there: {run.message}")
+        raise RunFailed(f"the run does not get there: {run.message}", mend="ask for an earlier instant")
     return run
 
 

@@ -200,7 +200,7 @@ class _Proof:
 
     def _against_state(self, output: Output, found: Quantity) -> str:
         if found.value is None:
-            raise DerivationError("it has no number")
+            raise DerivationError("it has no number", mend="give every parameter a value in [parameters]")
         state = self._state_of(output)
         right = in_unit(state.worth(output.value), output)
         if self._asks_forces(output) and state.jumps:
@@ -230,7 +230,7 @@ class _Proof:
         if math.isnan(numbers.get(t, 0.0)) and not phase.moves_by_time:
             numbers[t] = 0.0
         if any(math.isnan(x) for x in numbers.values()) or (phase.system.symbols.u and not numbers):
-            raise RunFailed("the state is not known in numbers")
+            raise RunFailed("the state is not known in numbers", mend="give every parameter a value in [parameters]")
         return self._state(phase, numbers)
 
     def _moment(self, output: Output) -> StateAtInstant | None:
@@ -299,7 +299,7 @@ class _Proof:
             return wrong_way(motion, output, moment)
         t = moment.numbers.get(moment.phase.system.symbols.t, math.nan)
         if not (math.isfinite(t) and motion.numbers):
-            raise RunFailed("the instant is not known in numbers")
+            raise RunFailed("the instant is not known in numbers", mend="give every parameter a value in [parameters]")
         if t == 0:
             return ""
         if wrong := _by_coincidence(moment, output.at):
@@ -332,7 +332,7 @@ class _Proof:
     def _balanced(self) -> str:
         moment = self.solver.at_rest
         if not moment.numbers:
-            raise RunFailed("the place is not known in numbers")
+            raise RunFailed("the place is not known in numbers", mend="give every parameter a value in [parameters]")
         state = self._state(moment.phase, moment.numbers)
         return _left_at_rest(state) or _by_coincidence(moment, None)
 

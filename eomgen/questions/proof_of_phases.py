@@ -37,7 +37,10 @@ def wrong_way(motion: MotionFromStart, output: Output, moment: StateAtInstant) -
     runs = motion.runs_to(output.at)
     found = RunProof(None, motion.models.p, fine_stepping(), motion.models)(joined(motion.models, runs))
     if found.ok is None:
-        raise DerivationError("the motion has phases of which nothing could be checked")
+        raise DerivationError(
+            "the motion has phases of which nothing could be checked",
+            mend="give every parameter a value in [parameters]",
+        )
     failing = [f"{check.name}: {check.detail}" for check in found.checks if check.ok is False]
     return next(iter(failing), "") or _elsewhere(runs, output, moment) or _met_before(runs, output)
 

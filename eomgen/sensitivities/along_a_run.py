@@ -104,7 +104,10 @@ def _refuse_jumps(system: System, rates: Sequence[Scalar]) -> None:
         raise NotYet(what, mend="differences of two runs, or a stretch of one phase as a model of its own")
     moving = (*system.symbols.q, *system.symbols.u, *system.symbols.parameters.values())
     if any(node.op in JUMPS and depends_on(node, moving) for node in order(rates)):
-        raise NotYet("a force jumps along the way: the variational equations do not hold across it")
+        raise NotYet(
+            "a force jumps along the way: the variational equations do not hold across it",
+            mend="take differences of two runs: a sweep over the parameter",
+        )
 
 
 def _integrated(f, x0: np.ndarray, instants: np.ndarray, breakpoints: Sequence[float]) -> np.ndarray:  # type: ignore[no-untyped-def]
@@ -120,7 +123,7 @@ def _integrated(f, x0: np.ndarray, instants: np.ndarray, breakpoints: Sequence[f
         check_patience()
         step(solver, breakpoints, end)
         if solver.status == "failed":
-            raise RunFailed(f"the motion cannot be followed beyond t = {solver.t:.6g} s")
+            raise RunFailed(f"the motion cannot be followed beyond t = {solver.t:.6g} s", mend="a shorter run")
         dense = solver.dense_output()
         while len(found) < len(instants) and instants[len(found)] <= solver.t:
             found.append(dense(instants[len(found)]))

@@ -116,4 +116,4 @@ def _refuse_corners(scalars: Sequence[Scalar], numbers: Mapping[Node, Any], seed
         beside = evaluate(scalars, {**numbers, **{x: numbers[x] + step * rate for x, rate in rates.items()}}, digits)
         for here, there, slope in zip(found, beside, found[len(scalars) :], strict=False):
             if abs((there - here) / step - slope) > CARRIED * (1 + abs(slope)):
-                raise DerivationError("it, or a force, has a corner or a jump there")
+                raise DerivationError("it, or a force, has a corner or a jump there", mend="ask beside it")

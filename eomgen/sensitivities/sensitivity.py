@@ -96,7 +96,7 @@ class Sensitivity(Result):
     def __getitem__(self, pair: tuple[str, str]) -> Quantity:
         """The derivative of a formula by a name."""
         if pair not in self.slopes:
-            raise UsageError(f"no derivative of '{pair[0]}' by '{pair[1]}' was asked")
+            raise UsageError(f"no derivative of '{pair[0]}' by '{pair[1]}' was asked", mend="ask for it in the call")
         return self.slopes[pair]
 
     @property
@@ -365,7 +365,10 @@ class _Asking:
             DerivationError: it is of a whole run, or of an instant.
         """
         if asks_of(output.value, OF_A_RUN) or output.from_ is not None or output.event is not None:
-            raise DerivationError("it is of a whole run, or of one instant of it: no derivative is sought of that")
+            raise DerivationError(
+                "it is of a whole run, or of one instant of it: no derivative is sought of that",
+                mend="ask for last(...), or sweep over the parameter",
+            )
         rest = isinstance(output.at, AtRest)
         if output.at is not None and not rest:
             raise DerivationError("it is asked at an instant", mend="give `time`: derivatives along the run")
@@ -417,7 +420,10 @@ class _Asking:
         phase = PhaseEquations(reference.system)
         changed = self._changed(name, phase)
         if not changed and not self._rests_alone:
-            raise DerivationError("it may rest in many places beside one another, of which the start tells one")
+            raise DerivationError(
+                "it may rest in many places beside one another, of which the start tells one",
+                mend="hold it by a spring or a constraint",
+            )
         seeds = ParameterSlopes(self.small.small, changed).seeds if changed else {}
         value, slope = ChangingState(phase, reference.numbers, seeds).formula(formula)
         known = {x: y for x, y in reference.exact.items() if type(y) is not float}
@@ -466,7 +472,9 @@ class _Asking:
             frequency = self.small.modes.frequency(int(call.args[0].literal or 0))  # type: ignore[union-attr]
             value = frequency.mode.frequency or 0.0
             if value == 0:
-                raise DerivationError("a motion that does not swing has no frequency that would change")
+                raise DerivationError(
+                    "a motion that does not swing has no frequency that would change", mend="ask for an eigenvalue"
+                )
             slope = changing.eigenvalue(frequency.mode.eigenvalue).imag if changing.parameters else 0.0
             return value, slope, frequency.exact
         modes, names = self.small.modes, names_of(call)
@@ -506,7 +514,7 @@ class _Asking:
 
 
 def _refused(call: Call) -> Scalar:
-    raise DerivationError(f"'{call}' has no closed form")
+    raise DerivationError(f"'{call}' has no closed form", mend="give every parameter a value in [parameters]")
 
 
 def _own_inputs(phase: PhaseEquations) -> dict[Node, Scalar]:

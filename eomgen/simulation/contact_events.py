@@ -211,7 +211,9 @@ class ContactEvents:
         for j, c in enumerate(self.reactions.components):
             if (c.owner, c.kind, c.label) == (owner, kind, label) and (kind == "joint" or c.number == number):
                 return self.reactions.value(j), c.name
-        raise DerivationError(f"'{owner}' has no reaction '{label}'")
+        raise DerivationError(
+            f"'{owner}' has no reaction '{label}'", mend="name a contact, a joint or a constraint of the model"
+        )
 
     @cached_property
     def _redundant(self) -> bool:

@@ -33,7 +33,7 @@ class DenseMotion:
     def at(self, t: np.ndarray) -> np.ndarray:
         """n x states, by the barycentric formula sum w_k x_k/(s - s_k) / sum w_k/(s - s_k)."""
         if len(self.states) == 0:
-            raise RunFailed("the phase is one instant")
+            raise RunFailed("the phase is one instant", mend="a longer run")
         k = np.clip(np.searchsorted(self.edges, t, side="right") - 1, 0, len(self.states) - 1)
         a, b = self.edges[k], self.edges[k + 1]
         nodes = -np.cos(np.pi * np.arange(DEGREE + 1) / DEGREE)
@@ -60,7 +60,7 @@ def dense_motion(phase_run: PhaseRun, plan: Plan) -> DenseMotion:
     """
     run, here = phase_run.run, phase_run.here
     if run.status in CUT:
-        raise RunFailed(f"the run was cut: {run.message}")
+        raise RunFailed(f"the run was cut: {run.message}", mend="a longer --patience, or a shorter run")
     kept = np.concatenate([part for track in run.tracks for part in track.t])
     edges = np.unique(np.clip(np.concatenate([[here.t, run.end], kept, *run.carried]), here.t, run.end))
     edges = edges[np.append(True, np.diff(edges) > ROUNDING * max(1.0, run.end - here.t))]
@@ -82,6 +82,9 @@ def _through(phase_run: PhaseRun, plan: Plan, edges: np.ndarray) -> DenseMotion:
     times = np.unique(nodes)
     again = advance(phase_run.phase, here, replace(plan, instants=times[times < run.end]))
     if again.end != run.end:
-        raise RunFailed(f"followed once more the phase ends at t = {again.end:.12g} s, not at {run.end:.12g} s")
+        raise RunFailed(
+            f"followed once more the phase ends at t = {again.end:.12g} s, not at {run.end:.12g} s",
+            mend="smaller tolerances: rtol, atol",
+        )
     t, x = np.append(again.t[again.t < run.end], run.end), np.vstack([again.x[again.t < run.end], run.last])
     return DenseMotion(edges, x[np.searchsorted(t, nodes)])

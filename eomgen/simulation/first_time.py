@@ -107,7 +107,10 @@ class FirstTime:
             return {**self.start, self.equations.symbols.t: end}
         run = advance(self._phase, self._here, Plan(end, FINE))
         if run.status != "finished" or not np.all(np.isfinite(run.last)):
-            raise RunFailed(f"the motion ends before the instant: {run.message[0].lower()}{run.message[1:]}")
+            raise RunFailed(
+                f"the motion ends before the instant: {run.message[0].lower()}{run.message[1:]}",
+                mend="ask for an earlier one",
+            )
         return self._state(run)
 
     def _met(self) -> Run:
@@ -121,7 +124,10 @@ class FirstTime:
             if run.status != "singular":
                 break
         if run.crossing is None:
-            raise RunFailed(f"the condition is not met as far as the motion was followed: {run.message}")
+            raise RunFailed(
+                f"the condition is not met as far as the motion was followed: {run.message}",
+                mend="ask for what the motion reaches",
+            )
         return run
 
     def _refuse_undetermined(self, run: Run) -> None:
@@ -147,7 +153,7 @@ class FirstTime:
         if later:
             return min(later)
         if values:
-            raise DerivationError(f"the instant t = {max(values):g} s is before the start")
+            raise DerivationError(f"the instant t = {max(values):g} s is before the start", mend="ask for a later one")
         function = compiled(program_of((self.condition,), self.equations.symbols), "numpy")
         x = np.array([self.start[node] for node in (*self.equations.symbols.q, *self.equations.symbols.u)])
         events = Events(
@@ -155,7 +161,7 @@ class FirstTime:
         )
         run = march(lambda t, _: np.ones(1), (self.t0, LONGEST), np.zeros(1), how=SEARCH, events=events)
         if run.crossing is None:
-            raise RunFailed("the condition on the time is never met")
+            raise RunFailed("the condition on the time is never met", mend="ask for an instant after the start")
         return run.end
 
 

@@ -141,7 +141,10 @@ def _plastic(M: np.ndarray, held: np.ndarray, contacts: Sequence[np.ndarray], u:
             opening = [row[:-1] @ after + row[-1] for row in apart]
             if np.all(impulses[starts] >= -size * np.max(np.abs(M))) and all(v >= -size for v in opening):
                 return after
-    raise DerivationError("no impulses of the contacts satisfy the law of impact")
+    raise DerivationError(
+        "no impulses of the contacts satisfy the law of impact",
+        mend="other restitutions, or let the contacts close one after the other",
+    )
 
 
 def _bordered(M: np.ndarray, J: np.ndarray, u: np.ndarray) -> tuple[np.ndarray, np.ndarray]:

@@ -144,7 +144,9 @@ def instants_of(samples: int | Sequence[Typed], start: float, end: float) -> np.
     """
     if isinstance(samples, (int, np.integer)):
         if samples < 2:
-            raise UsageError(f"{samples} samples: at least the start and the end are needed")
+            raise UsageError(
+                f"{samples} samples: at least the start and the end are needed", mend="samples = 2 or more"
+            )
         if samples > MOST_SAMPLES:
             raise UsageError(f"{samples} samples: at most {MOST_SAMPLES} are given", mend="ask for fewer")
         return _evenly(start, end, int(samples))
@@ -153,7 +155,10 @@ def instants_of(samples: int | Sequence[Typed], start: float, end: float) -> np.
     plain = isinstance(samples, np.ndarray) and samples.dtype.kind in "fiu"
     times = np.asarray(samples, dtype=float) if plain else np.array([*map(seconds, typed_values(samples))])
     if len(times) == 0 or np.any(np.diff(times) <= 0) or not (times[0] >= start and times[-1] <= end):
-        raise UsageError(f"samples must be instants between {start:g} s and {end:g} s, in order")
+        raise UsageError(
+            f"samples must be instants between {start:g} s and {end:g} s, in order",
+            mend="sort them, and leave out what is outside",
+        )
     return times
 
 
@@ -166,10 +171,12 @@ def _evenly(start: float, end: float, count: int) -> np.ndarray:
 
 def _vector(what: str, values: Any) -> np.ndarray:
     if values is None:
-        raise UsageError(f"no {what}: some of its values are missing")
+        raise UsageError(f"no {what}: some of its values are missing", mend="give all of them")
     vector = np.array(values, dtype=float)
     if vector.ndim != 1 or not np.all(np.isfinite(vector)):
-        raise UsageError(f"{what} must be finite numbers, not {values!r}")
+        raise UsageError(
+            f"{what} must be finite numbers, not {values!r}", mend="leave out what is infinite or no number"
+        )
     return vector
 
 
@@ -182,7 +189,10 @@ def refuse_bad_run(start: float, end: float, how: Stepping) -> None:
     if not (math.isfinite(start) and math.isfinite(end) and end >= start):
         raise UsageError(f"the time from {start:g} s to {end:g} s makes no sense", mend="give an end after the start")
     if not all(isinstance(x, Real) and 0 < x < math.inf for x in (how.rtol, how.atol)):
-        raise UsageError(f"tolerances must be positive numbers, not rtol = {how.rtol}, atol = {how.atol}")
+        raise UsageError(
+            f"tolerances must be positive numbers, not rtol = {how.rtol}, atol = {how.atol}",
+            mend="rtol = 1e-8, atol = 1e-10",
+        )
     if how.method not in (*METHODS, HEYOKA):
         raise UsageError(f"unknown method '{how.method}'", mend=f"methods are {', '.join((*METHODS, HEYOKA))}")
     if how.stabilization not in STABILIZATIONS:

@@ -93,7 +93,7 @@ def bisected(
     def value(x: float) -> float:
         found = values_at[x] if x in values_at else value_of_run(payload, {**staying, name: x}, text)
         if found is None:
-            raise RunFailed(f"no value at {name} = {x:.12g}")
+            raise RunFailed(f"no value at {name} = {x:.12g}", mend="narrow the range to where it has values")
         values_at[x] = found
         return found
 

@@ -249,4 +249,4 @@ def refuse_bad_design(kind: Any, runs: Any, seed: Any) -> None:
     if not isinstance(runs, int) or isinstance(runs, bool) or runs < 1:
         raise UsageError(f"{runs} runs make no sense", mend="give 1 or more")
     if not isinstance(seed, int) or isinstance(seed, bool) or seed < 0:
-        raise UsageError(f"the seed {seed} is no whole number from 0 on")
+        raise UsageError(f"the seed {seed} is no whole number from 0 on", mend="--seed 1")

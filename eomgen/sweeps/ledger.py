@@ -149,7 +149,9 @@ def ledger_at(path: Path | None, plan: SweepPlan) -> SweepLedger:
             )
         (found,) = connection.execute("SELECT hash FROM plan").fetchone()
     except sqlite3.OperationalError as error:
-        raise WriteFailed(f"the ledger '{path}' cannot be written: {error}") from error
+        raise WriteFailed(
+            f"the ledger '{path}' cannot be written: {error}", mend="name a folder that can be written to"
+        ) from error
     except sqlite3.DatabaseError as error:
         raise UsageError(f"'{path}' is no ledger of a sweep: {error}", mend="begin in another folder") from error
     if found != plan.hash:

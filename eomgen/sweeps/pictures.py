@@ -59,7 +59,7 @@ _Columns = Mapping[str, np.ndarray]
 def _lines(sweep: Drawable, table: _Columns, heads: Mapping[str, str]) -> Picture:
     """What is asked over the first range; a line for each choice of the rest, draws as their mean and spread."""
     if not sweep.plan.over:
-        raise RunFailed("no range is swept over: there is nothing to draw lines over")
+        raise RunFailed("no range is swept over: there is nothing to draw lines over", mend='--over "NAME=1:2:20"')
     names, asked, draws = list(sweep.plan.over), _asked(sweep), sweep.plan.draws
     x, *others = names
 
@@ -107,7 +107,7 @@ def _heat(sweep: Drawable, table: _Columns, heads: Mapping[str, str]) -> Picture
     """Each of what is asked over the first two ranges; the mean over everything else."""
     names = [name for name, values in sweep.plan.over.items() if len(values) > 1]
     if len(names) < 2:
-        raise RunFailed("a heat map needs two ranges: --over twice")
+        raise RunFailed("a heat map needs two ranges: --over twice", mend='--over "A=1:2:20" --over "B=1:2:20"')
     x, y = names[:2]
 
     def draw(panel: Any, name: str) -> None:

@@ -285,7 +285,7 @@ def planned(model: Model, *, runs: int | None, **fields: Any) -> SweepPlan:
         of, to = plan.slopes.get(text, (text, ""))
         output = asked_of(model, of)
         if to and to.removesuffix("'") not in (*model.parameters, *model.coordinates, *model.speeds):
-            raise UsageError(f"'{text}': no parameter, coordinate or speed '{to}'")
+            raise UsageError(f"'{text}': no parameter, coordinate or speed '{to}'", mend="name one of the model")
         if output.event is not None and not isinstance(output.event, int):
             raise UsageError(f"'{text}' is of several instants", mend="ask for one of them: event 1")
     return plan
@@ -374,11 +374,13 @@ def _plan_told(folder: Path) -> dict[str, Any]:
     try:
         told = json.loads((folder / PLAN).read_text(encoding="utf-8"))
     except OSError as error:
-        raise UsageError(f"'{folder}' holds no {PLAN}: no sweep was begun there") from error
+        raise UsageError(
+            f"'{folder}' holds no {PLAN}: no sweep was begun there", mend="begin it: eomgen sweep MODEL -o DIR"
+        ) from error
     except ValueError as error:
-        raise UsageError(f"'{folder / PLAN}' is no plan of a sweep: {error}") from error
+        raise UsageError(f"'{folder / PLAN}' is no plan of a sweep: {error}", mend="take another folder") from error
     if not isinstance(told, dict):
-        raise UsageError(f"'{folder / PLAN}' is no plan of a sweep")
+        raise UsageError(f"'{folder / PLAN}' is no plan of a sweep", mend="take another folder")
     return told
 
 
@@ -396,10 +398,13 @@ def sweep_at(folder: str | Path) -> Sweep:
     folder = Path(folder)
     plan = plan_of(_plan_told(folder))
     if not (folder / LEDGER).exists():
-        raise UsageError(f"'{folder}' holds no {LEDGER}: no run was begun")
+        raise UsageError(f"'{folder}' holds no {LEDGER}: no run was begun", mend="begin it: eomgen sweep MODEL -o DIR")
     told = _plan_told(folder)["hash"]
     if plan.hash != told and plan.text:
-        raise UsageError(f"'{folder / PLAN}' was changed by hand: its hash is not that of what it says")
+        raise UsageError(
+            f"'{folder / PLAN}' was changed by hand: its hash is not that of what it says",
+            mend="begin the sweep again in another folder",
+        )
     object.__setattr__(plan, "hash", told) if not plan.text else None
     return Sweep(plan, ledger_at(folder / LEDGER, plan), folder)
 

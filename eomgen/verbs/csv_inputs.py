@@ -75,7 +75,11 @@ def _read(path: str, name: str) -> Expression:
         what = f"--follow: not UTF-8: byte 0x{error.object[error.start]:02x}"
         raise UsageError(what, path, "write plain text: a time and a value a row") from error
     except (OSError, csv.Error) as error:
-        raise UsageError(f"--follow: cannot be read: {getattr(error, 'strerror', None) or error}", path) from error
+        raise UsageError(
+            f"--follow: cannot be read: {getattr(error, 'strerror', None) or error}",
+            path,
+            "name a file that can be read",
+        ) from error
     if any(mark in row[0] for row in rows for mark in ";\t"):
         raise UsageError("--follow: columns stand between commas", path, "write 0.5,1.25: decimals have points")
     heads = [word.strip() for word in rows.pop(0)] if rows and not _is_number(rows[0][0]) else []

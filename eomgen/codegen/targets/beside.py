@@ -53,7 +53,10 @@ class _Process:
     def _failed(self) -> None:
         assert self._process.stderr is not None
         lines = self._process.stderr.read().decode(errors="replace").strip().splitlines()
-        raise RunFailed(f"{self._language} could not run the emitted code: " + (lines[-1] if lines else "it ended"))
+        raise RunFailed(
+            f"{self._language} could not run the emitted code: " + (lines[-1] if lines else "it ended"),
+            mend="take --target numpy, or see what is installed: eomgen doctor",
+        )
 
 
 def _ended(process: subprocess.Popen[bytes]) -> None:

@@ -306,7 +306,7 @@ def run(texts: Mapping[str, FileContent], program: Program, stem: str, role: Rol
         references, held = (ctypes.c_uint32 * count)(*range(at, at + count)), (ctypes.c_double * count)(*numbers)
         many = ctypes.c_size_t(count)
         if count and getattr(model, function)(made, references, many, held, many):
-            raise RunFailed(f"{function} of the FMU refuses")
+            raise RunFailed(f"{function} of the FMU refuses", mend="make it again by eomgen codegen --target fmu")
         return held
 
     def called(t: float, x: Any, a: Any, p: Any, inputs: Any) -> Sequence[float]:

@@ -278,7 +278,10 @@ class _Report:
         point, other = self._place(first), self._place(second)
         along = minus(other, point)
         if all(is_zero(x) for x in along):
-            raise UsageError(f"'{first}' and '{second}' are in one place, so they are on no single axis")
+            raise UsageError(
+                f"'{first}' and '{second}' are in one place, so they are on no single axis",
+                mend="name two points that are apart",
+            )
         if self.about is not None and self.about != first:
             return self._place(self.about), self.about, (point, along)
         return point, first, (point, along)

@@ -179,7 +179,11 @@ class Linearization(Result):
             DerivationError: parameters have none.
         """
         if not self.valued:
-            raise DerivationError("numbers of small motions need values of all parameters", "parameters")
+            raise DerivationError(
+                "numbers of small motions need values of all parameters",
+                "parameters",
+                mend="give every parameter a value in [parameters]",
+            )
 
     def certify(self) -> Certificate:
         """Check the equations of motion, and the small motions against differences of these."""
@@ -232,7 +236,7 @@ class Linearization(Result):
         (number,) = call.args
         k = number.literal if isinstance(number, Expression) else None
         if k is None or k != int(k):
-            raise DerivationError(f"'{call}': frequencies are numbered 1, 2, ...")
+            raise DerivationError(f"'{call}': frequencies are numbered 1, 2, ...", mend="frequency(1) is the lowest")
         return int(k)
 
     def _frequency(self, call: Call) -> tuple[Scalar, bool]:

@@ -88,7 +88,11 @@ class StateSpace:
             DerivationError: parameters have no values.
         """
         if self.numbers is None:
-            raise DerivationError("numbers of small motions need values of all parameters", "parameters")
+            raise DerivationError(
+                "numbers of small motions need values of all parameters",
+                "parameters",
+                mend="give every parameter a value in [parameters]",
+            )
         rows = getattr(self.numbers, letter)
         return np.array(rows, dtype=float).reshape(len(rows), columns)
 

@@ -177,10 +177,10 @@ def resting_picture(places: Sequence[Equilibrium]) -> Picture:
     """
     places = places[:MOST]
     if not places:
-        raise RunFailed("there is no place of rest to be drawn")
+        raise RunFailed("there is no place of rest to be drawn", mend="give a start near one")
     model = places[0].statics.system.scope.model
     if model.space != "plane":
-        raise RunFailed("pictures of places of rest are drawn of plane systems")
+        raise RunFailed("pictures of places of rest are drawn of plane systems", mend="take them by value: .places")
     if not all(place.numbers for place in places):
         raise RunFailed("a picture needs values of all parameters", mend="give them values in [parameters]")
     columns = math.ceil(math.sqrt(len(places)))

@@ -197,7 +197,10 @@ def values_at_a_state(system: System, entries: Sequence[Scalar]) -> Any:
         except NoValue:
             continue
         return lambda scalars, state=state: evaluate(scalars, state, fifty_digits())
-    raise DerivationError(f"no state with values for the reactions was found in {TRIES} tries")
+    raise DerivationError(
+        f"no state with values for the reactions was found in {TRIES} tries",
+        mend="give a start, and parameters, at which they have values",
+    )
 
 
 def _generic_state(system: System, seed: int) -> dict[Node, Any]:

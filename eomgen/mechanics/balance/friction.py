@@ -279,7 +279,10 @@ def _multiplier(system: System, component: Component, name: str, kept: Sequence[
     if not rows:
         return None
     if rows[0] not in kept:
-        raise DerivationError(f"the normal reaction of '{name}', which has friction, is indeterminate")
+        raise DerivationError(
+            f"the normal reaction of '{name}', which has friction, is indeterminate",
+            mend="take a redundant constraint away, or its friction",
+        )
     return kept.index(rows[0])
 
 

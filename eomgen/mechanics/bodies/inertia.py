@@ -44,7 +44,11 @@ def _inertia(scope: Scope, body: str, inertia: tuple[Expression, ...] | None) ->
     if len(values) == 1:
         return (ZERO, ZERO, (0, 0, values[0]))
     if len(values) not in (3, 6):
-        raise ModelError(f"the inertia of body '{body}' has {len(values)} values", f"bodies.{body}.inertia")
+        raise ModelError(
+            f"the inertia of body '{body}' has {len(values)} values",
+            f"bodies.{body}.inertia",
+            mend="give 1, 3 or 6 of them",
+        )
     xx, yy, zz, xy, yz, xz = (*values, 0, 0, 0)[:6] if len(values) == 3 else values
     return ((xx, xy, xz), (xy, yy, yz), (xz, yz, zz))
 

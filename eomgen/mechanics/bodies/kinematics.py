@@ -185,7 +185,10 @@ def parents_first(model: Any) -> list[str]:
     while waiting:
         ready = [name for name in waiting if parent_of(model, name) in (None, *done)]
         if not ready:
-            raise DerivationError(f"bodies hang on one another in a ring: {', '.join(waiting)}")
+            raise DerivationError(
+                f"bodies hang on one another in a ring: {', '.join(waiting)}",
+                mend="hang one of them on the ground, and close the loop by a constraint",
+            )
         for name in ready:
             done[name] = None
         waiting = [name for name in waiting if name not in done]
@@ -215,7 +218,11 @@ def body_points(scope: Scope, body: str) -> dict[str, Vector]:
 def _link(scope: Scope, name: str, links: list[BodyLink], index: dict[str, int]) -> BodyLink:
     joint = scope.model.bodies[name].joint
     if joint is not None and not joint.works_in(scope.model.space):
-        raise NotYet(f"the joint '{joint.kind}' is not derived yet", f"bodies.{name}.joint")
+        raise NotYet(
+            f"the joint '{joint.kind}' is not derived yet",
+            f"bodies.{name}.joint",
+            mend="declare it by joints that are: see eomgen schema",
+        )
     plane = scope.model.space == "plane"
     if joint is None:
         return BodyLink(name, GROUND, None, Pose(), ZERO, (), (), Pose(), (), Pose(), 0 if plane else None, Twist())

@@ -114,7 +114,11 @@ def loads_of(motion: Motion, begun: Mapping[Node, Scalar] | None = None) -> Load
     for name, force in motion.scope.model.forces.items():
         scene = SystemScene(motion, f"forces.{name}", begun)
         if not force.works:
-            raise NotYet(f"forces of kind '{force.kind}' are not derived yet", f"forces.{name}")
+            raise NotYet(
+                f"forces of kind '{force.kind}' are not derived yet",
+                f"forces.{name}",
+                mend="declare it by forces that are: see eomgen schema",
+            )
         loads, spread = tuple(force.loads(scene)), tuple(force.spread(scene))
         applied.append(Applied(name, loads, force.potential(scene), force.placeless, spread))
     efforts = [effort for link in motion.links for effort in _joint_efforts(motion, link)]
@@ -127,10 +131,18 @@ def _refuse_accelerations(motion: Motion, applied: list[Applied], efforts: list[
     for force in applied:
         parts = [x for load in force.loads for x in _scalars(load)]
         if accelerations and any(depends_on(x, accelerations) for x in parts):
-            raise DerivationError("a force cannot depend on accelerations", f"forces.{force.name}")
+            raise DerivationError(
+                "a force cannot depend on accelerations",
+                f"forces.{force.name}",
+                mend="write the inertia as a body's mass, or by a coordinate of its own",
+            )
     for effort in efforts:
         if accelerations and depends_on(effort.effort, accelerations):
-            raise DerivationError("a joint's drive cannot depend on accelerations", f"bodies.{effort.body}.joint")
+            raise DerivationError(
+                "a joint's drive cannot depend on accelerations",
+                f"bodies.{effort.body}.joint",
+                mend="write the inertia as a rotor of the joint",
+            )
 
 
 def _scalars(load: Load) -> tuple[Scalar, ...]:

@@ -141,7 +141,11 @@ def ties_of(
         NotYet: a kind whose rows this version does not build.
     """
     for where, what in unbuilt_ties(motion.scope.model):
-        raise NotYet(f"the rows of '{what}' are not built yet", where)
+        raise NotYet(
+            f"the rows of '{what}' are not built yet",
+            where,
+            mend="declare it by constraints that are: see eomgen schema",
+        )
     rows = []
     for name, constraint in motion.scope.model.constraints.items():
         scene = SystemScene(motion, f"{constraint.table}.{name}")

@@ -134,11 +134,11 @@ def nowhere(complete: bool, ties: Ties) -> DerivationError:
     except MissingValues:  # whether they close cannot be told without values
         pass
     free = [q.name for q in ties.motion.scope.symbols.q if not ties.motion.scope.model.coordinates[q.name].driven]
-    what = f"no place was found at which all forces balance along '{free[0]}'" if len(free) == 1 else NO_PLACE
-    what += ": there is none" if complete else f" (of {', '.join(map(repr, free[:MOST_NAMED]))})" if free[1:] else ""
-    return DerivationError(
-        what, mend="hold by a spring or a tie what nothing balances, or say by `near` where it rests"
-    )
+    along = "".join(f" along '{name}'" for name in free) if len(free) == 1 else ""
+    along = f" (of {', '.join(map(repr, free[:MOST_NAMED]))})" if free[1:] else along
+    what = f"{NO_PLACE}{along}{': there is none' if complete else ''}"
+    mend = "hold by a spring or a tie what nothing balances, or say by `near` where it rests"
+    return DerivationError(what, "coordinates", mend)
 
 
 def all_equilibria(system: System, guess: Mapping[str, float] | None = None) -> Equilibria:

@@ -37,8 +37,12 @@ def finite_center(field: VelocityField, whose: str) -> Vector:
     if not vanishes(field.w[2]):
         return rotation_center(field)
     if all(vanishes(x) for x in field.v):
-        raise DerivationError(f"{whose} is at rest: every point is a centre of rotation")
-    raise DerivationError(f"{whose} translates{_along(field.v)}: its centre of rotation is at infinity")
+        raise DerivationError(
+            f"{whose} is at rest: every point is a centre of rotation", mend="ask while the body turns"
+        )
+    raise DerivationError(
+        f"{whose} translates{_along(field.v)}: its centre of rotation is at infinity", mend="ask while the body turns"
+    )
 
 
 def _along(v: Vector) -> str:

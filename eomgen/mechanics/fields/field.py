@@ -89,7 +89,9 @@ def rotation_center(field: VelocityField) -> Vector:
     """
     if vanishes(field.w[2]):
         state = "rests" if all(vanishes(x) for x in field.v) else "translates"
-        raise DerivationError(f"the body {state}: it has no centre of rotation at a finite place")
+        raise DerivationError(
+            f"the body {state}: it has no centre of rotation at a finite place", mend="ask while the body turns"
+        )
     return plus(field.p, times(over(1, field.w[2]), cross(UP, field.v)))
 
 
@@ -101,7 +103,10 @@ def acceleration_pole(field: VelocityField) -> Vector:
     """
     w, e = field.w[2], field.e[2]
     if vanishes(w) and vanishes(e):
-        raise DerivationError("omega = epsilon = 0: all points of the body have the same acceleration, it has no pole")
+        raise DerivationError(
+            "omega = epsilon = 0: all points of the body have the same acceleration, it has no pole",
+            mend="ask while the body turns",
+        )
     arm = plus(times(w * w, field.a), cross(field.e, field.a))
     return plus(field.p, times(over(1, w * w * w * w + e * e), arm))
 
@@ -127,7 +132,9 @@ def least_speed(field: VelocityField, start: Vector, end: Vector, short: Callabl
     """
     along = minus(end, start)
     if all(vanishes(x) for x in along):
-        raise DerivationError("the two points are the same: they have no segment between them")
+        raise DerivationError(
+            "the two points are the same: they have no segment between them", mend="name two points that are apart"
+        )
     v_start, v_end = field.velocity(start), field.velocity(end)
     planar = vanishes(field.w[0]) and vanishes(field.w[1]) and vanishes(along[2]) and vanishes(field.v[2])
     h = cross(UP, along) if planar else cross(field.w, along)

@@ -73,7 +73,9 @@ class Possible:
         try:
             values = evaluate(scalars, state, fifty_digits())
         except (NoValue, ZeroDivisionError):
-            raise DerivationError("the motion is singular near the start") from None
+            raise DerivationError(
+                "the motion is singular near the start", "coordinates", mend="start apart from the dead centre"
+            ) from None
         return bool(max(map(abs, values)) < ZERO_AT_50)
 
     @cached_property
@@ -100,7 +102,9 @@ def _closed(J: Sequence[Scalar], rows: Sequence[Scalar], unknowns: Sequence[Node
     slopes = np.array([float(x) for x in evaluate(J, state, fifty_digits())]).reshape(len(rows), len(unknowns))
     found = CORRECTED.root(_LinearRows(tuple(rows), slopes, tuple(unknowns)), state)
     if math.isnan(found.left):
-        raise DerivationError("the motion is singular near the start")
+        raise DerivationError(
+            "the motion is singular near the start", "coordinates", mend="start apart from the dead centre"
+        )
     return found.x
 
 

@@ -35,7 +35,7 @@ def energy_of_force(system: System, name: str | None = None) -> Scalar:
     if name in system.scope.model.forces:
         (force,) = (f for f in loads.applied if f.name == name)
         if force.potential is None:
-            raise DerivationError(f"force '{name}' has no potential energy")
+            raise DerivationError(f"force '{name}' has no potential energy", mend="ask for its power or its work")
         return force.potential
     total: Scalar = sum((_share(system, force, name) for force in loads.applied), start=0)
     return sum((_effort_share(system, effort, name) for effort in loads.efforts), start=total)
@@ -67,7 +67,10 @@ def _effort_share(system: System, effort: JointEffort, body: str) -> Scalar:
     if body not in sharing or type(effort.potential) is int:
         return 0
     if sharing != [body]:
-        raise DerivationError(f"the spring in the joint of body '{effort.body}' belongs to more than body '{body}'")
+        raise DerivationError(
+            f"the spring in the joint of body '{effort.body}' belongs to more than body '{body}'",
+            mend="ask for the potential energy of the whole: potential",
+        )
     return effort.potential
 
 

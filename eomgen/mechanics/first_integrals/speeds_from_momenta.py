@@ -108,5 +108,7 @@ def value_at_start(integral: Scalar, start: Mapping[Node, Scalar], symbols: Symb
     (value,) = substituted((integral,), start)
     left = [x.name for x in (*symbols.q, *symbols.u) if depends_on(value, (x,))]
     if left:
-        raise DerivationError(f"the start has no closed form: {', '.join(left)}")
+        raise DerivationError(
+            f"the start has no closed form: {', '.join(left)}", mend="give them as numbers in [coordinates]"
+        )
     return value

@@ -299,7 +299,9 @@ def _normed(system: System, values: Mapping[str, float]) -> dict[str, float]:
     for four in system.scope.quaternions:
         norm = math.hypot(*(values[e.name] for e in four))
         if norm == 0:
-            raise UsageError(f"the quaternion {', '.join(e.name for e in four)} cannot start at 0")
+            raise UsageError(
+                f"the quaternion {', '.join(e.name for e in four)} cannot start at 0", mend="1, 0, 0, 0 is not turned"
+            )
         found |= {e.name: values[e.name] / norm for e in four}
     return found
 

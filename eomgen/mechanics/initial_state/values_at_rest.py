@@ -127,4 +127,6 @@ def values_for(
         except (NoValue, ZeroDivisionError):
             continue
         return values
-    raise DerivationError("the configuration has no value at these parameters")
+    raise DerivationError(
+        "the configuration has no value at these parameters", mend="give parameters at which lengths and roots are real"
+    )

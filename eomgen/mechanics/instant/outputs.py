@@ -72,7 +72,10 @@ class Quantities:
             DerivationError: it has no meaning here.
         """
         if call.name not in FUNCTIONS:
-            raise DerivationError(f"'{call}': there is no function '{call.name}'")
+            raise DerivationError(
+                f"'{call}': there is no function '{call.name}'",
+                mend='see "Outputs" in models/README.md',
+            )
         return FUNCTIONS[call.name].value(self, call)
 
     def of(self, formula: Expression, value: Callable[[Call], Scalar] | None = None) -> Scalar:
@@ -258,7 +261,10 @@ class Quantities:
             SystemScene(self.system.motion, f"forces.{force}", self.system.loads.begun)
         )
         if effort is None:
-            raise DerivationError(f"force '{force}' acts neither between two points nor between two bodies")
+            raise DerivationError(
+                f"force '{force}' acts neither between two points nor between two bodies",
+                mend="ask of a spring or a damper",
+            )
         return effort
 
     def generalized_force(self, coordinate: str) -> Scalar:
@@ -306,7 +312,9 @@ class Quantities:
     def section(self, body: str) -> SectionForces:
         """The section forces along a body."""
         if body not in self.system.motion.index:
-            raise DerivationError(f"'{body}' is no body with section forces")
+            raise DerivationError(
+                f"'{body}' is no body with section forces", mend="declare it as a rail or a beam: an axis and its ends"
+            )
         if body not in self._sections:
             self._sections[body] = section_forces(self.reactions, body)
         return self._sections[body]
@@ -337,7 +345,10 @@ class Quantities:
                 f"{function}({coordinate}): '{coordinate}' is part of a quaternion, it is no freedom",
                 mend="ask it of the speeds that the joint's `omega` names",
             )
-        raise DerivationError(f"{function}({coordinate}): '{coordinate}' moves as given, it is no freedom")
+        raise DerivationError(
+            f"{function}({coordinate}): '{coordinate}' moves as given, it is no freedom",
+            mend="ask for drive(...) of it",
+        )
 
     def _carried(self, system: System, scalar: Scalar) -> Scalar:
         """A scalar of the system over the rates in the speeds of this one."""

@@ -94,10 +94,15 @@ def multiplier(system: System, tie: str) -> Scalar:
     """
     rows = [row for row in system.ties.rows if row.tie == tie]
     if len(rows) != 1:
-        raise DerivationError(f"multiplier({tie}): the tie has {len(rows)} rows")
+        raise DerivationError(
+            f"multiplier({tie}): the tie has {len(rows)} rows", mend="ask for reaction(...) of one component"
+        )
     (row,) = rows
     if row.status == "identical":
-        raise DerivationError(f"multiplier({tie}): the coordinates satisfy it by themselves, and it acts on no body")
+        raise DerivationError(
+            f"multiplier({tie}): the coordinates satisfy it by themselves, and it acts on no body",
+            mend="take it away, or other coordinates",
+        )
     _refuse_shared((system.free or system).ties, tie)
     if row.status == "closing":
         return next(lam for lam in system.symbols.lam if lam.name == row.label)
@@ -114,7 +119,10 @@ def _refuse_shared(ties: Ties, tie: str) -> None:
         sharing = tuple(dict.fromkeys((row.tie, *row.others)))
         if tie in sharing:
             with_whom = " and ".join(f"'{name}'" for name in sharing if name != tie)
-            raise DerivationError(f"statically indeterminate: multiplier({tie}) shares its force with {with_whom}")
+            raise DerivationError(
+                f"statically indeterminate: multiplier({tie}) shares its force with {with_whom}",
+                mend="take one of them away",
+            )
 
 
 def _eliminated(system: System, own: Row) -> Scalar:

@@ -205,7 +205,10 @@ class Reactions:
         tie = self.balance.system.scope.model.constraints.get(owner)
         numbers = () if tie is None else tie.strand_rows()
         if numbers and not 1 <= strand <= len(numbers):
-            raise DerivationError(f"tension({owner}, {strand}): the string has {len(numbers)} strands")
+            raise DerivationError(
+                f"tension({owner}, {strand}): the string has {len(numbers)} strands",
+                mend="strands are numbered from 1 along the points",
+            )
         number = numbers[strand - 1] if numbers else strand
         found = [
             j
@@ -213,7 +216,10 @@ class Reactions:
             if c.owner == owner and c.kind == "tie" and c.label == "tension" and c.number == number
         ]
         if not found:
-            raise DerivationError(f"tension({owner}): '{owner}' has no tension there, it pulls on no body")
+            raise DerivationError(
+                f"tension({owner}): '{owner}' has no tension there, it pulls on no body",
+                mend="name a string or a link that holds a body",
+            )
         return self.value(found[0])
 
     def multiplier(self, owner: str) -> Scalar:
@@ -222,7 +228,10 @@ class Reactions:
             return 0
         found = [j for j, c in enumerate(self.components) if c.owner == owner and c.kind == "tie"]
         if len(found) != 1:
-            raise DerivationError(f"multiplier({owner}): '{owner}' has {len(found)} components; ask for one of them")
+            raise DerivationError(
+                f"multiplier({owner}): '{owner}' has {len(found)} components; ask for one of them",
+                mend=f"reaction({owner}, LABEL)",
+            )
         return self.value(found[0])
 
     def labels(self, owner: str) -> list[str]:
@@ -280,7 +289,7 @@ class Reactions:
             return -1
         index = motion.index[side]
         if all(effect.link != index for effect in effects):
-            raise DerivationError(f"'{owner}' does not act on body '{side}'")
+            raise DerivationError(f"'{owner}' does not act on body '{side}'", mend="name a body that it touches")
         return index
 
     def _replaced(self, vector: Vector) -> Vector:

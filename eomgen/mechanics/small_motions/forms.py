@@ -166,7 +166,9 @@ def restricted(
     if not is_second_order(equations) or set(wanted) - set(names):
         strange = [name for name in wanted if name not in names]
         what = f"'{strange[0]}' is not free to move by itself" if strange else "coordinates without a speed are left"
-        raise DerivationError(f"{what}: the free ones are {', '.join(names)}", "linearize.coordinates")
+        raise DerivationError(
+            f"{what}: the free ones are {', '.join(names)}", "linearize.coordinates", mend="take those"
+        )
     c = [names.index(name) for name in wanted]
     o = [j for j in range(len(names)) if j not in c]
     if not o:

@@ -141,7 +141,11 @@ def small_motions_of(
     """
     refuse_motion(system.scope.model)
     if not system.symbols.u:
-        raise DerivationError("nothing is free to move: there are no small motions")
+        raise DerivationError(
+            "nothing is free to move: there are no small motions",
+            "coordinates",
+            mend="leave a coordinate free: neither `driven` nor 0 by a constraint",
+        )
     reference, first = _balanced(system, about, guess, wanted)
     return _about(first, reference, wanted)
 
@@ -167,7 +171,9 @@ def _about(first: FirstOrder, reference: ReferenceMotion, wanted: Sequence[str])
     first = first.looked_at(at_rest=reference.at_rest)
     choice = choice_of(first, reference, wanted)
     if not choice.u:
-        raise DerivationError("the ties leave no freedom: there are no small motions")
+        raise DerivationError(
+            "the ties leave no freedom: there are no small motions", "coordinates", mend="take a constraint away"
+        )
     choice, raw, kept = _steady_equations(first, choice, reference, wanted)
     refuse_corners(first.looked_at(at_rest=False), choice, reference, raw, kept)
     _refuse_fork(reference)
@@ -243,7 +249,7 @@ def _refuse_unvalued(reference: ReferenceMotion) -> None:
     missing = [f"'{name}'" for name in reference.system.symbols.parameters if name not in exact_parameters(model)]
     if missing:
         what = f"the reference, or the equations about it, have no closed form: {', '.join(missing)} need values"
-        raise DerivationError(what, "parameters")
+        raise DerivationError(what, "parameters", mend="give them values in [parameters]")
 
 
 def _equations(first: FirstOrder, choice: Choice, reference: ReferenceMotion) -> LinearEquations:
@@ -325,7 +331,7 @@ def _near(
         )
         first = first_order_of(found.system)
         if _accelerated(first, found):
-            raise DerivationError(what)
+            raise DerivationError(what, mend="start from a place of rest, or a steady motion")
     except (DerivationError, NotYet, NoValue, ZeroDivisionError) as error:
         mend = f'start from a {kind}, or let it be sought: about = "{EQUILIBRIUM if at_rest else STEADY}"'
         raise DerivationError(f"{what}, and no {kind} was found near it", "linearize.about", mend) from error

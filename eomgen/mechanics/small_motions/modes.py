@@ -203,7 +203,7 @@ class Modes:
         if not 1 <= k <= len(found):
             n = len(found)
             have = "one small motion oscillates" if n == 1 else f"{n or 'no'} small motions oscillate"
-            raise DerivationError(f"frequency({k}): {have}")
+            raise DerivationError(f"frequency({k}): {have}", mend="ask for one of those")
         return found[k - 1]
 
     @property

@@ -148,7 +148,10 @@ class ParameterSlopes:
             found = dict(zip(symbols.q, self._rest().tolist(), strict=True))
             return found | dict.fromkeys(symbols.u, 0.0)
         if not reference.is_exact:
-            raise DerivationError("a steady motion without a closed form has no exact slope by a parameter")
+            raise DerivationError(
+                "a steady motion without a closed form has no exact slope by a parameter",
+                mend="take a sweep over the parameter",
+            )
         nodes = (*symbols.q, *symbols.u)
         rates = tangent(tuple(reference.exact[x] for x in nodes), self.parameters)
         return dict(zip(nodes, floats_of(evaluate(rates, reference.numbers, fifty_digits())), strict=True))
@@ -178,7 +181,10 @@ class ParameterSlopes:
         K = floats(e.K)
         step = -np.linalg.lstsq(K, left, rcond=RANK)[0]
         if np.max(abs(K @ step + left), initial=0.0) > CARRIED * np.max(abs(left), initial=0.0):
-            raise DerivationError("the place of rest ends, or forks, at these values: it has no slope")
+            raise DerivationError(
+                "the place of rest ends, or forks, at these values: it has no slope",
+                mend="take other values of the parameters",
+            )
         found = aside + floats(reducing.P) @ step
         return np.where(abs(found) < COORDINATE_AT_50, 0.0, found)
 
@@ -213,7 +219,10 @@ class ParameterSlopes:
         k = int(np.argmin(abs(values - near)))
         l, r = left[:, k].conj(), right[:, k]
         if abs(l @ r) < NEARLY_SINGULAR or np.sum(abs(values - values[k]) <= NEARLY_SINGULAR * abs(values[k])) > 1:
-            raise DerivationError("several motions have this frequency: each changes in its own way")
+            raise DerivationError(
+                "several motions have this frequency: each changes in its own way",
+                mend="take values at which they differ",
+            )
         return complex(l @ change @ r / (l @ r))
 
 

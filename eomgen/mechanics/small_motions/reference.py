@@ -115,7 +115,11 @@ def relative_rest(equations: EquationsOfMotion, guess: Mapping[str, float] | Non
     forcing = substituted(equations.forcing, given)
     own = {q: k for k, u in enumerate(symbols.u) for q in symbols.q if u.name == f"{q.name}'"}
     if len(own) != len(symbols.u) or len(own) + len(driven) != len(symbols.q):
-        raise DerivationError("rest beside drives is sought of coordinates that are all free or driven")
+        raise DerivationError(
+            "rest beside drives is sought of coordinates that are all free or driven",
+            "coordinates",
+            mend='ask about = "start"',
+        )
     statics = StaticEquations(
         system,
         (),

@@ -122,9 +122,15 @@ class SectionForces:
         }
         if not found:
             ends = " to ".join(to_text(x) for x in self.axis.ends)
-            raise DerivationError(f"{kind}({self.axis.body}, {to_text(x)}): the body goes from x = {ends}")
+            raise DerivationError(
+                f"{kind}({self.axis.body}, {to_text(x)}): the body goes from x = {ends}",
+                mend="ask at a place of the body",
+            )
         if side and side not in found:
-            raise DerivationError(f"{kind}({self.axis.body}, {to_text(x)}, {side}): there is nothing {side} its end")
+            raise DerivationError(
+                f"{kind}({self.axis.body}, {to_text(x)}, {side}): there is nothing {side} its end",
+                mend="ask at a place of the body",
+            )
         values = [found[side]] if side else list(found.values())
         if len(values) == 2 and not vanishes(values[0] - values[1]):
             asked, jump = f"{kind}({self.axis.body}, {to_text(x)}", " to ".join(map(to_text, values))
@@ -156,7 +162,9 @@ def section_forces(reactions: Reactions, body: str) -> SectionForces:
     system = reactions.balance.system
     motion = system.motion
     if motion.scope.model.space != "plane":
-        raise DerivationError("section forces are found in the plane", f"bodies.{body}")
+        raise DerivationError(
+            "section forces are found in the plane", f"bodies.{body}", mend="fix the beam in a model of the plane"
+        )
     sizes = sizes_of(motion, {**reactions.at, **reactions.unknowns})
     loads = MemberLoads(reactions, body, sizes)
     actions, spreads = loads.actions, loads.spreads

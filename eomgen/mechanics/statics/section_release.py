@@ -68,7 +68,9 @@ def cut_of(structure: Structure, call: Call, sizes: Sizes) -> Cut:
     x = sizes.simple((parse(where.name) if isinstance(where, Reference) else where).evaluate(names))
     leg = next((leg for leg in reversed(axis.legs) if sizes.sign(x - leg.x) >= 0), axis.legs[0])
     if sizes.sign(x - axis.ends[0]) < 0 or sizes.sign(axis.ends[1] - x) < 0:
-        raise UsageError(f"influence line: {call}: the section is beyond the ends of the body")
+        raise UsageError(
+            f"influence line: {call}: the section is beyond the ends of the body", mend="ask at a place of the body"
+        )
     R = motion.link(name).pose.R
     t, n = (vector_of(substituted(apply(R, v), structure.at)) for v in (leg.along, leg.left))
     place = vector_of(substituted(motion.position((name, leg.place(x))), structure.at))
@@ -106,7 +108,9 @@ def _power(structure: Structure, cut: Cut, effect: Effect, owner: str) -> Scalar
     s = None if place is None else cut.axis.distance(place)
     if place is None or s is None:
         raise DerivationError(
-            f"'{owner}' acts on '{cut.axis.body}' off its axis: it has no section forces", f"bodies.{cut.axis.body}"
+            f"'{owner}' acts on '{cut.axis.body}' off its axis: it has no section forces",
+            f"bodies.{cut.axis.body}",
+            mend="let it act at a point of the axis",
         )
     if not cut.before(s):
         return 0

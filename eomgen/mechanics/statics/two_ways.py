@@ -198,7 +198,7 @@ def released_in(structure: Structure, name: str) -> StaticReaction:
         what = f"{one} is statically indeterminate: released, the other reactions hold the bodies without it"
         raise DerivationError(what, mend="take a redundant tie away")
     if not work.plan.moving:
-        raise DerivationError(f"{one} holds nothing: its tie leaves this motion free")
+        raise DerivationError(f"{one} holds nothing: its tie leaves this motion free", mend="take the constraint away")
     return StaticReaction(one, unit, named, None, structure.system.scope.positive, work)
 
 

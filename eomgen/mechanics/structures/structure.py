@@ -173,7 +173,10 @@ class Structure:
         combination = {row: 1} if isinstance(row, int) else dict(row)
         if not self.determines(combination):
             names = ", ".join(self.names[j] for j in combination)
-            raise DerivationError(f"{names} released, nothing can move: the other reactions hold the bodies without it")
+            raise DerivationError(
+                f"{names} released, nothing can move: the other reactions hold the bodies without it",
+                mend="take a redundant constraint away",
+            )
         if [*combination.values()] == [1]:
             return self._plan(self._columns[next(iter(combination))])
         deltas = self._solved.deltas

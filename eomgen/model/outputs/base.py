@@ -124,7 +124,7 @@ def name_at(call: Call, k: int) -> str:
     """
     argument = call.args[k]
     if not isinstance(argument, Reference):
-        raise DerivationError(f"'{call}': names are needed as arguments")
+        raise DerivationError(f"'{call}': names are needed as arguments", mend="give names of the model, not formulas")
     return argument.name
 
 
@@ -143,5 +143,7 @@ def number_at(call: Call, k: int, most: int) -> int:
     argument = call.args[k]
     number = argument.literal if isinstance(argument, Expression) else None
     if not isinstance(number, int) or not 1 <= number <= most:
-        raise DerivationError(f"'{call}': a number from 1 to {most} is needed, not '{argument}'")
+        raise DerivationError(
+            f"'{call}': a number from 1 to {most} is needed, not '{argument}'", mend="give a whole number"
+        )
     return number

@@ -14,9 +14,9 @@ def bodies_from(scene: OutputContext, call: Call, first: int) -> tuple[str, ...]
     """The bodies from the argument `first` on; without any, all of them."""
     named = tuple(name_at(call, k) for k in range(first, len(call.args)))
     if len(set(named)) < len(named):
-        raise DerivationError(f"'{call}' names a body twice")
+        raise DerivationError(f"'{call}' names a body twice", mend="name each once")
     if "ground" in named:
-        raise DerivationError(f"'{call}': the ground has no mass")
+        raise DerivationError(f"'{call}': the ground has no mass", mend="name bodies")
     return named or scene.bodies
 
 

@@ -19,7 +19,9 @@ CORNERS: tuple[Vector, ...] = (ZERO, (1, 0, 0), (0, 1, 0))  # of a triangle in t
 
 def _in_plane(scene: OutputContext, what: str, body: str) -> None:
     if not scene.is_plane:
-        raise DerivationError(f"{what}({body}): it is asked of plane motion")
+        raise DerivationError(
+            f"{what}({body}): it is asked of plane motion", mend="ask for omega and v of a point in space"
+        )
 
 
 def _center(scene: OutputContext, body: str, other: str = GROUND) -> Vector:

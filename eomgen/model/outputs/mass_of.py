@@ -12,7 +12,7 @@ from eomgen.symbolic.expression.spatial import AnyScalar
 def _mass(scene: OutputContext, call: Call) -> AnyScalar:
     body = name_at(call, 0)
     if body == "ground":
-        raise DerivationError(f"'{call}': the ground has no mass")
+        raise DerivationError(f"'{call}': the ground has no mass", mend="name a body")
     if len(call.args) == 1:
         whole: AnyScalar = scene.mass(body).m
         return whole

@@ -72,7 +72,10 @@ def _direction(scene: OutputContext, call: Call) -> Vector:
         return IDENTITY[AXES[name]]
     ((x, y, z),) = scene.placed(minus(scene.position(name), scene.position(name_at(call, 0))))
     if all(is_zero(c) for c in (x, y, z)):
-        raise DerivationError(f"'{call}': both points are in one place, so they are on no single axis")
+        raise DerivationError(
+            f"'{call}': both points are in one place, so they are on no single axis",
+            mend="name two points that are apart",
+        )
     return (x, y, z)
 
 

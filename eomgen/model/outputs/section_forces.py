@@ -19,7 +19,7 @@ def _section(scene: OutputContext, call: Call) -> AnyScalar:
     """bending_moment(beam, a), shear_force(beam, a, before)."""
     sides = [name_at(call, k) for k in range(2, len(call.args))]
     if any(name not in SIDES for name in sides):
-        raise DerivationError(f"'{call}': the third argument is before or after")
+        raise DerivationError(f"'{call}': the third argument is before or after", mend="N(body, x, before)")
     x = distance_of(call).evaluate(scene.names)
     return scene.section(name_at(call, 0)).value(call.name, x, *sides)
 

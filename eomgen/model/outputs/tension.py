@@ -22,7 +22,9 @@ def _tension(scene: OutputContext, call: Call) -> AnyScalar:
         return scene.reactions.member(name, *_ends(call))
     number = strand[0].literal if strand and isinstance(strand[0], Expression) else 1
     if not isinstance(number, int) or len(strand) > 1:
-        raise DerivationError(f"'{call}': the second argument is the number of the strand, from 1")
+        raise DerivationError(
+            f"'{call}': the second argument is the number of the strand, from 1", mend="tension(string, 1)"
+        )
     return scene.reactions.tension(name, number)
 
 

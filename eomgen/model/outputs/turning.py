@@ -36,7 +36,9 @@ def _angle(scene: OutputContext, body: str, frame: str = GROUND) -> AnyScalar:
     """phi_body - phi_frame, in the plane [rad]."""
     for name in (body, frame):
         if not scene.is_plane:
-            raise DerivationError(f"body '{name}' has no single angle in space")
+            raise DerivationError(
+                f"body '{name}' has no single angle in space", mend="ask for omega_x, omega_y, omega_z of it"
+            )
     return scene.angle(body) - scene.angle(frame)
 
 

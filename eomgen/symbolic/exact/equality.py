@@ -333,7 +333,10 @@ def real_values(flat: Sequence[Scalar], rng: Random, arithmetic: Arithmetic) -> 
             return evaluate(flat, values, arithmetic)
         except NoValue:
             continue
-    raise DerivationError("no real state was found at which the expressions to be compared have values")
+    raise DerivationError(
+        "no real state was found at which the expressions to be compared have values",
+        mend="give a start, and parameters, at which they have values",
+    )
 
 
 def _real(symbol: Node, rng: Random, attempt: int) -> Fraction:

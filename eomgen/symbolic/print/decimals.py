@@ -24,7 +24,10 @@ def number_text(c: Number) -> str:
         DerivationError: it has more digits than can be printed.
     """
     if _is_long(c):
-        raise DerivationError(f"a number of {number_length(c)} digits came up, which is too long to print")
+        raise DerivationError(
+            f"a number of {number_length(c)} digits came up, which is too long to print",
+            mend="scale the parameters: other units, or numbers nearer to 1",
+        )
     decimal = decimal_of(c)
     if decimal is None:
         return str(c)

@@ -214,13 +214,18 @@ def _read(e: Any, args: list[Any], graph: Owner, symbols: Mapping[str, Node]) ->
         return reduce(lambda a, b: graph.call(name.lower(), a, b), args)
     if name in _FROM_SYMPY:
         return _FROM_SYMPY[name](graph, *args)
-    raise DerivationError(f"sympy's function '{name}' has no counterpart here: {e}")
+    raise DerivationError(
+        f"sympy's function '{name}' has no counterpart here: {e}", mend="write it by functions of the grammar"
+    )
 
 
 def _read_leaf(e: Any, graph: Owner, symbols: Mapping[str, Node]) -> Scalar:
     if isinstance(e, sympy.Symbol):
         if e.name not in symbols:
-            raise DerivationError(f"unknown symbol '{e.name}' in a sympy expression")
+            raise DerivationError(
+                f"unknown symbol '{e.name}' in a sympy expression",
+                mend="name a coordinate, a parameter or an input of the model",
+            )
         return symbols[e.name]
     if isinstance(e, sympy.Rational):
         return int(e) if e.q == 1 else Fraction(int(e.p), int(e.q))
@@ -232,7 +237,7 @@ def _read_leaf(e: Any, graph: Owner, symbols: Mapping[str, Node]) -> Scalar:
         return int(bool(e))
     if isinstance(e, sympy.Float):
         raise DerivationError(f"the decimal number {e} in a sympy expression", mend="write it as a Rational")
-    raise DerivationError(f"sympy's '{e}' has no counterpart here")
+    raise DerivationError(f"sympy's '{e}' has no counterpart here", mend="write it by functions of the grammar")
 
 
 def _read_product(e: Any, args: list[Scalar], graph: Owner) -> Scalar:
@@ -250,7 +255,9 @@ def _read_product(e: Any, args: list[Scalar], graph: Owner) -> Scalar:
 def _read_pieces(e: Any, args: list[tuple[Scalar, Scalar]], graph: Owner) -> Scalar:
     value, condition = args[-1]
     if type(condition) is Node or not condition:
-        raise DerivationError(f"a Piecewise without a value for every case: {e}")
+        raise DerivationError(
+            f"a Piecewise without a value for every case: {e}", mend="add a last case with the condition True"
+        )
     for piece, condition in reversed(args[:-1]):
         value = graph.select(condition, piece, value)
     return value

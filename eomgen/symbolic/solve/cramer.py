@@ -137,7 +137,10 @@ def _by_determinants(block: Block, right: Sequence[Sequence[Scalar]]) -> dict[in
     """x_j = sum over i of cofactor_ij right_i / det."""
     A, n = block.matrix, len(block.matrix)
     if n > LARGEST_BLOCK:
-        raise DerivationError(f"{n} unknowns hang together: they are not written out one by one")
+        raise DerivationError(
+            f"{n} unknowns hang together: they are not written out one by one",
+            mend="ask for numbers: give every parameter a value",
+        )
     minors: Minors = {}
     everything = tuple(range(n))
     whole = _minor(A, everything, everything, minors)
