@@ -19,6 +19,7 @@ from eomgen.page.read_back import report_read_back
 from eomgen.proof.reports_read import copies_undone, curves_of, markup_of, tex_of
 from eomgen.proof.typeset import tokens_of
 from eomgen.simulation.result import Trajectory
+from eomgen.symbolic.print.declared_symbol import ACCENTS, STYLES
 from eomgen.verbs.report import Subject, report, report_of
 
 MODELS = sorted((Path(__file__).parent.parent / "models").rglob("*.toml"))
@@ -182,6 +183,8 @@ SET = (
     r"\max(x, a_{\mathrm{max}}, F_{\mathrm{sin},1}^{2})",
     r"\frac{1}{2} \begin{cases} x & x < y \\ y^{2} & y \leq a_{\mathrm{min}} \\ 3 & \text{otherwise} \end{cases}",
     r"\begin{pmatrix} x & 0 \\ \ln x & \sqrt{y} \end{pmatrix}",
+    *(rf"{accent}{{g}}_{{1}}" for accent in sorted(ACCENTS)),
+    *(rf"{style}{{{letter}}}" for style in sorted(STYLES) for letter in ("ab", "hb", "GH")),
 )
 
 

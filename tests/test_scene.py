@@ -297,6 +297,12 @@ def test_of_a_long_chain_no_lengths_are_written():
         assert {mark.form.kind for mark in marks if mark.role == "dimension"} == kinds
 
 
+def test_a_way_along_a_curve_has_no_dimension_line():
+    """A straight line from the beginning of a path to the bead is shorter than the way that its name says."""
+    marks = eomgen.load(MODELS / "loop_the_loop.toml").scene().marks
+    assert "s" not in {mark.of for mark in marks if mark.role == "dimension"}
+
+
 def test_a_long_name_stays_in_its_picture():
     """The title of a narrow picture goes on in a second line."""
     found: list[bool] = []

@@ -13,6 +13,7 @@ from eomgen.page.markup import Html, element
 
 ROWS = 'style="text-align: right;justify-items: end;padding-right: 0;"', 'class="r"'
 _WORDS = re.compile(r"\\text\{((?:[^{}$]*\$(?:[^${}]|\{[^{}]*\})*\$)+[^{}$]*)\}")
+OVERLINE = ">\u0332</mo></mover>", ">\xaf</mo></mover>"  # math-core takes the line that lies low
 LEFT = 'style="text-align: left;justify-items: start;padding-left: 0;"', 'class="l"'
 
 
@@ -47,7 +48,7 @@ def mathml(tex: str, *, display: bool = False) -> Html:
         found = converter.convert_with_local_state(_words_apart(tex), displaystyle=display)
     except LatexError:
         return element("code", tex, class_="unset")
-    for long, short in (ROWS, LEFT):
+    for long, short in (ROWS, LEFT, OVERLINE):
         found = found.replace(long, short)
     return Html(found)
 

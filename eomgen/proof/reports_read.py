@@ -9,6 +9,7 @@ from __future__ import annotations
 import gzip
 import json
 import re
+import unicodedata
 from base64 import b64decode
 from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import field
@@ -30,6 +31,9 @@ from eomgen.proof.pages_read import (
 from eomgen.records import dataclass
 
 _ACCENTS = {"\u02d9": r"\dot", "\u00a8": r"\ddot", "\u20db": r"\dddot", "~": r"\widetilde"}
+_ACCENTS |= {"\u02c6": r"\hat", "\xaf": r"\bar", "\u02dc": r"\tilde", "\u20d7": r"\vec", "\u0302": r"\widehat"}
+_STYLES = {"BOLD": r"\mathbf", "SANS-SERIF": r"\mathsf", "ITALIC": r"\mathit", "SCRIPT": r"\mathcal"}
+_STYLED = re.compile(f"(?:MATHEMATICAL )?({'|'.join(_STYLES)}) (SMALL|CAPITAL|DIGIT) ([A-Z]+)$")
 _SIGNS = {"\u2212": "-", "\u22c5": r"\cdot", "\u2061": "", "|": r"\rvert", "\u2264": r"\leq", "\u2202": r"\partial"}
 _LETTERS = GREEK_LETTERS | {"\u03c6": r"\varphi", "\u03d5": r"\phi", "\u03b5": r"\varepsilon", "\u03f5": r"\epsilon"}
 _VOID = frozenset(("br", "img", "input", "link", "meta"))
@@ -291,8 +295,10 @@ def tex_of(math: Markup, *, index: bool = False) -> str:
     if math.tag == "msqrt":
         return rf"\sqrt{{{' '.join(parts)}}}"
     if math.tag == "mover":
-        accent = next(x for k, x in enumerate(inner) if k == 1).text
-        return f"{_ACCENTS.get(accent, accent)}{{{parts[0]}}}"
+        accent = inner[1].text
+        wide = accent == "\xaf" and inner[1].given.get("stretchy") == "true"
+        over = r"\overline" if wide else _ACCENTS.get(accent, accent)
+        return f"{over}{{{parts[0]}}}"
     if math.tag in _BETWEEN:
         return _BETWEEN[math.tag].join(parts)
     if math.tag == "mrow" and len(parts) > 2:
@@ -306,6 +312,11 @@ def tex_of(math: Markup, *, index: bool = False) -> str:
 def _letter(tag: str, text: str, index: bool) -> str:
     if tag == "mtext":
         return rf"\text{{{text}}}"
+    text = text.replace("\ufe00", "")  # of two shapes of a script letter the first
+    styles = [found[1] for c in text if (found := _STYLED.match(_name(c)))]
+    if tag == "mi" and text and len(styles) == len(text):
+        plain = "".join(unicodedata.normalize("NFKC", c) for c in text)
+        return f"{_STYLES[styles[0]]}{{{''.join(_LETTERS.get(c, c) for c in plain)}}}"
     if text in _FUNCTIONS and not index:
         return rf"\{text} "
     if text in _OPERATORS and not index:
@@ -315,6 +326,11 @@ def _letter(tag: str, text: str, index: bool) -> str:
     if tag == "mi" and len(text) > 1:
         return rf"\mathrm{{{text}}}"
     return f"{_LETTERS[text]} " if text in _LETTERS else text
+
+
+def _name(c: str) -> str:
+    """As Unicode calls a letter of a style; the italic h has another name there."""
+    return "ITALIC SMALL H" if c == "\u210e" else unicodedata.name(c, "")
 
 
 # -- curves --------------------------------------------------------------------------------------------------------

@@ -112,7 +112,13 @@ def _turn(system: System, link: BodyLink, q: Node, tiers: dict[Vector, int]) -> 
 
 def _slide(system: System, link: BodyLink, q: Node) -> Mark | None:
     """place = seat + q n: the way from the seat."""
-    if link.joint is None or link.s != (q,) or len(link.S) != 1 or any(not is_zero(w) for w in link.S[0][0]):
+    if (
+        link.joint is None
+        or not link.joint.straight
+        or link.s != (q,)
+        or len(link.S) != 1
+        or any(not is_zero(w) for w in link.S[0][0])
+    ):
         return None
     above = link.parent + 1 if link.parent != GROUND else 0
     return Mark(DimensionForm(link.before.p, link.local.p, q.name), above, "dimension", q.name)
