@@ -6,9 +6,9 @@ from fractions import Fraction
 
 import pytest
 
-from eomgen.symbolic.exact.equality import equal_at_random_states
+from eomgen.symbolic.exact.equality import equal_at_random_states, equal_at_real_states
 from eomgen.symbolic.expression.derivative import symbols_of
-from eomgen.symbolic.expression.functions import cos, sin
+from eomgen.symbolic.expression.functions import cos, function, sin, sqrt
 from eomgen.symbolic.expression.graph import Graph, Node
 from eomgen.symbolic.numeric.evaluation import evaluate, fifty_digits
 from eomgen.symbolic.solve.linear import LinearSystem, Pivots, sparse_solution
@@ -63,6 +63,17 @@ def test_what_vanishes_where_ties_hold_and_not_beside_stays_and_is_no_pivot():
     found = sparse_solution(rows, Pivots(vanishes=lambda x: equal_at_random_states([(x, 0)]).equal)).constants
     assert equal_at_random_states([(found[1] * (1 - c * s), b[1] - c * b[0]), (found[0], b[0] - s * found[1])]).equal
     assert found[2] == 3 / (s + 1)
+
+
+@pytest.mark.parametrize("size", [lambda s: sqrt(s * s), lambda s: function("abs", s)])
+def test_what_vanishes_in_the_piece_of_one_state_is_not_zero_in_the_others(size):
+    """x + (s + |s|) y = b, y = c: x = b - (s + |s|) c, though the shadow is taken where s < 0."""
+    g = Graph()
+    s, b, c = g.symbol("s"), g.symbol("b"), g.symbol("c")
+    state = {s: fifty_digits().number(-2)}
+    rows = LinearSystem([{0: 1, 1: s + size(s)}, {1: 1}], [b, c], 2, lambda x: evaluate(x, state, fifty_digits()))
+    found = sparse_solution(rows, Pivots()).constants
+    assert equal_at_real_states([(found[0], b - (s + size(s)) * c)], states=8).equal
 
 
 @pytest.mark.parametrize("sure", [None, 1])

@@ -13,20 +13,25 @@ from __future__ import annotations
 
 from collections import Counter
 from collections.abc import Callable, Collection, Iterable, Mapping, Sequence
+from contextlib import suppress
 from operator import add
 from typing import Any
 
 import numpy as np
 
+from eomgen.errors import DerivationError
 from eomgen.records import dataclass
+from eomgen.symbolic.exact.equality import equal_at_real_states
 from eomgen.symbolic.expression.functions import inner, over
 from eomgen.symbolic.expression.graph import Node, Scalar, is_zero
-from eomgen.symbolic.expression.node import SparseRow
+from eomgen.symbolic.expression.node import SparseRow, holds_op
+from eomgen.symbolic.numeric.pieces import PIECEWISE
 from eomgen.symbolic.numeric.tolerances import ELIMINATED_AT_50, RANK
 from eomgen.symbolic.numeric.work import check_patience
 from eomgen.symbolic.solve import cramer
 
 TOGETHER = 4  # unknowns of one set of normal equations
+PIECES_TRIED = 8  # states at which something vanishes in every piece: it may stand in any of them
 
 ValuesAt = Callable[[Sequence[Scalar]], list[Any]]
 
@@ -85,6 +90,13 @@ def _number_first(a: Scalar) -> int:
     return 1 if type(a) is Node else 0
 
 
+def in_every_piece(a: Scalar) -> bool:
+    """Whether what vanishes at a state of one piece is zero, in all pieces: s + |s| is not, nor s + sqrt(s^2)."""
+    with suppress(DerivationError):  # without values at real states
+        return not holds_op(a, *PIECEWISE, "sqrt") or equal_at_real_states([(a, 0)], states=PIECES_TRIED).equal
+    return True
+
+
 @dataclass(frozen=True)
 class Pivots:
     """What may be divided by, and in which order.
@@ -100,8 +112,8 @@ class Pivots:
             which the equations are not singular.
         steady: whether an atom of such symbols vanishes nowhere; rows are divided by no other.
         regular: what waits is solved by normal equations, however many unknowns hang together and depend on others.
-        vanishes: whether an entry whose shadow is zero is left out. One that is zero on the ties alone stays where the
-            equations are asked off them too; it is no pivot, and its unknown has to be determined.
+        vanishes: whether an entry whose shadow is zero is left out. What stays is no pivot: what is zero in one piece
+            only, and where the equations are asked off the ties too what is zero on these only.
     """
 
     rank: Callable[[Scalar], int] = _number_first
@@ -112,7 +124,7 @@ class Pivots:
     factors: Collection[Node] = ()
     steady: Callable[[Node], bool] = lambda _: True
     regular: bool = False
-    vanishes: Callable[[Scalar], bool] = lambda _: True
+    vanishes: Callable[[Scalar], bool] = in_every_piece
 
 
 def sparse_solution(system: LinearSystem, pivots: Pivots) -> Solution:
@@ -147,7 +159,7 @@ def sparse_solution(system: LinearSystem, pivots: Pivots) -> Solution:
     done = len(order)
     _eliminate(lines, order, lambda line, j, x: ((j in late) + (not tested(line, j)), rank(x)), pivots)
     free = tuple(j for j in range(system.unknowns) if j not in {pivot for pivot, _ in order})
-    constants, shares = _substituted(order, free, pivots.tolerance)
+    constants, shares = _substituted(order, free, pivots)
     worst = None if waits else max((rank(line.entries[j]) for j, line in order), default=0)
     unsure = any(divides(line, j, line.entries[j]) > (sure or 0) for j, line in order[done:])
     return Solution(constants, shares, free, tuple(line.right for line in lines), worst, unsure)
@@ -386,7 +398,7 @@ def _subtract(other: _Line, line: _Line, j: int, pivots: Pivots) -> None:
 
 
 def _substituted(
-    order: list[tuple[int, _Line]], free: tuple[int, ...], tolerance: float
+    order: list[tuple[int, _Line]], free: tuple[int, ...], pivots: Pivots
 ) -> tuple[dict[int, Scalar], dict[int, dict[int, Scalar]]]:
     """Back substitution: every pivot by the free unknowns alone."""
     constants: dict[int, Scalar] = {}
@@ -408,7 +420,7 @@ def _substituted(
                 _add(share, shadow, sizes, k, entry, line.shadow[k])
         pivot = line.entries[j]
         constants[j] = _quotient(right, pivot)
-        kept = [f for f in share if abs(shadow[f]) > tolerance * sizes[f]]
+        kept = [f for f in share if abs(shadow[f]) > pivots.tolerance * sizes[f] or not pivots.vanishes(share[f])]
         shares[j] = {f: _quotient(share[f], pivot) for f in kept}
         shadows[j] = {f: shadow[f] / line.shadow[j] for f in kept}
     return constants, shares
