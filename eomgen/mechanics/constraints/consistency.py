@@ -60,7 +60,8 @@ def nearest_speeds(ties: Ties, state: State, tiers: Tiers, M: np.ndarray | None)
     Of each tier no more is changed than what those before it cannot close.
 
     Args:
-        M: the mass matrix at the state, where it is known.
+        tiers: as in `nearest_places`; the last two are of values that somebody gave.
+        M: the mass matrix at the state, where it is known: it measures changes of these.
     """
     u = ties.motion.scope.symbols.u
     if not ties.closing or not u:
@@ -73,7 +74,7 @@ def nearest_speeds(ties: Ties, state: State, tiers: Tiers, M: np.ndarray | None)
     columns = [[u.index(x) for x in tier] for tier in tiers]
     for k in reversed(range(len(columns))):
         earlier = [i for tier in columns[:k] for i in tier]
-        block = None if M is None or k == 0 else M[np.ix_(columns[k], columns[k])]
+        block = None if M is None or k < len(columns) - 2 else M[np.ix_(columns[k], columns[k])]
         step[columns[k]] = _least(J[:, columns[k]], found, J[:, earlier], block)
         found = found + J[:, columns[k]] @ step[columns[k]]
     size = np.max(abs(J) @ abs(step) + abs(open_rate))

@@ -24,15 +24,22 @@ from eomgen.mechanics.bodies.tree import branches_of
 from eomgen.mechanics.constraints.assembly import SEEDS, fixed_by_position
 from eomgen.mechanics.constraints.closure import of_50_digits
 from eomgen.mechanics.constraints.consistency import is_guess
+from eomgen.mechanics.constraints.ties import hold_identically
 from eomgen.mechanics.equations.system import System
 from eomgen.mechanics.formulations import recursive
-from eomgen.mechanics.initial_state.initial_state import Start, start_of_motion, start_speeds
+from eomgen.mechanics.initial_state.initial_state import (
+    Start,
+    following_rates,
+    start_of_motion,
+    start_speeds,
+)
 from eomgen.mechanics.initial_state.values_at_rest import speeds_near
 from eomgen.model.values import exact_parameters
 from eomgen.records import dataclass
 from eomgen.symbolic.exact.normal_form import simplest
 from eomgen.symbolic.expression.derivative import depends_on, jacobian, substituted, symbols_of
 from eomgen.symbolic.expression.graph import Node, Scalar, is_zero
+from eomgen.symbolic.expression.node import ScalarRow
 from eomgen.symbolic.expression.rational import Fraction
 from eomgen.symbolic.numeric.evaluation import FLOAT, NoValue, evaluate, fifty_digits
 from eomgen.symbolic.numeric.tolerances import COMPUTED, RANK
@@ -143,6 +150,11 @@ def declared_start(system: System, *, at_rest: bool = False) -> dict[Node, Scala
     return start | dict(zip(scope.symbols.u, substituted(tuple(speeds.values()), start), strict=True))
 
 
+def _without_zeros(row: ScalarRow) -> ScalarRow:
+    """The row, 0 for what is so in another form: a column of these alone changes nothing."""
+    return tuple(0 if zero else x for x, zero in zip(row, hold_identically(row), strict=True))
+
+
 def _drawn(system: System, seed: int) -> dict[str, float]:
     """Values of the parameters that have none."""
     rng, known = Random(seed), exact_parameters(system.scope.model)
@@ -181,7 +193,8 @@ class _Sought:
     @cached_property
     def exact(self) -> dict[Node, Scalar]:
         """What has a closed form."""
-        moved, symbols = {change.name for change in self.begun.changes}, self.system.symbols
+        symbols, moved = self.system.symbols, {change.name for change in self.begun.changes}
+        moved |= {u.name for u in following_rates(self.system)}
         known = {x: value for x, value in self.declared.items() if x.name not in moved}
         places = [q for q in symbols.q if q not in known]
         known |= self._places(known, places) if places else {}
@@ -207,7 +220,7 @@ class _Sought:
         closing = self.system.ties.closing
         left = substituted(substituted(tuple(row.velocity for row in closing), {**known, **written}), place)
         rows = jacobian(tuple(row.velocity for row in closing), u)
-        J = [substituted(row, place) for row in rows]
+        J = [_without_zeros(substituted(row, place)) for row in rows]
         for along, W in self._ways(J, place, moved):
             found = self._least([[row[u.index(x)] for x in along] for row in J], left, W)
             values = {x: written.get(x, known.get(x, 0)) + d for x, d in zip(along, found, strict=False)}

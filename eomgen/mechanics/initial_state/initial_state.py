@@ -161,8 +161,19 @@ def _with_rates_closed(
     if not opened:
         return state, ()
     M = _inertia(system, state, parameters)
-    tiers = tiers_of(system.scope.model, system.symbols.u, called)
-    return nearest_speeds(ties, state, tiers, M) or state, opened
+    return nearest_speeds(ties, state, _tiers(system, called), M) or state, opened
+
+
+def _tiers(system: System, called: frozenset[str]) -> tuple[list[Node], ...]:
+    """Speeds in the order in which they are changed: those that follow from the others first."""
+    follow = following_rates(system)
+    return follow, *tiers_of(system.scope.model, [u for u in system.symbols.u if u not in follow], called)
+
+
+def following_rates(system: System) -> list[Node]:
+    """The speeds of a system over all rates that are those of dependent coordinates."""
+    names = {f"{q}'" for q in dependent_coordinates(system.scope)}
+    return [u for u in system.symbols.u if u.name in names]
 
 
 def _after_impact(system: System, state: State, parameters: Mapping[str, Any] | None) -> tuple[State, tuple[str, ...]]:
@@ -212,7 +223,7 @@ def _along_a_branch(system: System, state: State, called: frozenset[str]) -> tup
         return state, None, ()
     if fork is None or is_at_rest(system.ties, state) or leads_on(system.ties, fork, state):
         return state, fork, ()
-    found = speeds_along(system.ties, fork, state, tiers_of(system.scope.model, system.symbols.u, called))
+    found = speeds_along(system.ties, fork, state, _tiers(system, called))
     if found is None:
         what = f"the start lies in {fork.words}, and no motion goes on with its speeds"
         raise DerivationError(what, f"constraints.{fork.ties[0]}", "give other speeds, or start beside that position")
@@ -229,7 +240,8 @@ def _changes(
     system: System, before: Mapping[str, float], after: Mapping[str, float], called: frozenset[str]
 ) -> tuple[Change, ...]:
     """What differs, dependent coordinates left out."""
-    own = [x for x in (*system.symbols.q, *system.symbols.u) if x.name not in dependent_coordinates(system.scope)]
+    follow = {*dependent_coordinates(system.scope), *(u.name for u in following_rates(system))}
+    own = [x for x in (*system.symbols.q, *system.symbols.u) if x.name not in follow]
     return tuple(
         _change(system.scope.model, x.name, (before[x.name], after[x.name]), x.name in called)
         for x in own
