@@ -12,6 +12,7 @@ from eomgen.equations import Equations
 from eomgen.errors import UsageError
 from eomgen.mechanics.balance.friction import equations_of_motion
 from eomgen.mechanics.bodies.contact_modes import ContactModes
+from eomgen.mechanics.constraints.edges import limits_passed
 from eomgen.mechanics.equations.system import system_of
 from eomgen.mechanics.formulations import METHODS
 from eomgen.mechanics.formulations.massless_nodes import told_of_nodes, with_nodes_balanced
@@ -204,7 +205,8 @@ def _warned(model: Model, found: Trajectory) -> Trajectory:
     """The run; what is missing of it is a warning of whoever asked for it."""
     from eomgen.simulation.result import OnDemand
 
-    for problem in left_tables(model, float(found.t[-1]) if len(found.t) else 0.0):
+    passed = limits_passed(model, found.t, found.x[:, : len(found.coordinates)])
+    for problem in (*left_tables(model, float(found.t[-1]) if len(found.t) else 0.0), *passed):
         warnings.warn(f"{model.name}: {problem.where}: {problem.what}", RuntimeWarning, stacklevel=3)
     missing = found.told if isinstance(found.reactions, OnDemand) else found.remark  # which waits as they do
     if missing and (found.reactions or found.outputs):

@@ -21,6 +21,7 @@ from eomgen.documents.text import cell_text
 from eomgen.equations import Equations
 from eomgen.errors import UsageError
 from eomgen.files import is_stream
+from eomgen.mechanics.constraints.edges import limits_passed
 from eomgen.model.fields import WrittenEquation
 from eomgen.model.own_units import units_of
 from eomgen.model.parts import Model
@@ -84,7 +85,8 @@ def simulate_document(
         notes=notes,
     )
     left = left_tables(model, float(run.t[-1]) if len(run.t) else 0.0)
-    document = replace(document, cautions=(*document.cautions, *left))
+    passed = limits_passed(model, run.t, run.x[:, : len(run.coordinates)])
+    document = replace(document, cautions=(*document.cautions, *left, *passed))
     if cut:
         return replace(proven(document, None), interrupted=run.status == "interrupted")
     return proven(

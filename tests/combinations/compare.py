@@ -110,7 +110,7 @@ def against(product: Product, seed: int, count: int = 2) -> Found:
         oracle.modes = laws.modes_at_start(oracle, x0, e)
         for name, s in states(oracle, e, x0, seed, count):
             _at(found, name, s, oracle, e, product.functions)
-    except (NoAnswer, NotCovered, laws.NoSliding) as no:
+    except (NoAnswer, NotCovered, laws.NoSliding, laws.NoStrand) as no:
         found.skipped.append(f"oracle: {type(no).__name__} {no}")
     return found
 

@@ -21,7 +21,7 @@ from oracle import NoAnswer, Oracle, Solved, State
 
 import eomgen
 
-NO = (NoAnswer, NotCovered, laws.NoSliding)
+NO = (NoAnswer, NotCovered, laws.NoSliding, laws.NoStrand)
 
 
 def across(product: Product, *, languages: tuple[str, ...] = (), parts: tuple[str, ...] = ()) -> Found:

@@ -372,6 +372,22 @@ def _touch(now: Any, item: Any) -> tuple[Jet, str | None, float]:
 DIRECTIONS = {"up": [0, 1, 0], "down": [0, -1, 0], "left": [-1, 0, 0], "right": [1, 0, 0]}
 
 
+class NoStrand(Exception):
+    """What a string is said to do beyond its end."""
+
+
+def _tangent(now: Any, one: Any, two: Any) -> Jet:
+    """The direction of the strand that touches both."""
+    (A, _, s_a), (B, _, s_b) = _touch(now, one), _touch(now, two)
+    D, left = B - A, _beside(now, [one, two])
+    length = ty.norm(D)
+    d = _times(D, 1.0 / length)
+    if not (s_a or s_b):
+        return d
+    sine = (s_a - s_b) / length
+    return _times(d, ty.sqrt(1.0 - sine * sine)) - _times(left(d), sine)
+
+
 def _string(name: str, tie: dict, now: Any, o: Any) -> Rows:
     items, tensions, keeping = tie["path"], [], []
     for k, (one, two) in enumerate(itertools.pairwise(items)):
@@ -382,13 +398,10 @@ def _string(name: str, tie: dict, now: Any, o: Any) -> Rows:
             way = np.array(DIRECTIONS[given]) if isinstance(given, str) else _unit(now, given)
             d = vector(way)
         else:
-            D = B - A
-            length = ty.norm(D)
-            d = _times(D, 1.0 / length)
-            if s_a or s_b:
-                sine = (s_a - s_b) / length
-                cosine = ty.sqrt(1.0 - sine * sine)
-                d = _times(d, cosine) - _times(left(d), sine)
+            d = _tangent(now, one, two)
+            begun = None if o.start is None else _tangent(o.start, one, two).c[0][:, 0]
+            if begun is not None and max(abs(begun)) > 1 - 1e-12 and begun @ (B - A).c[0][:, 0] < 0:
+                raise NoStrand(f"a strand of '{name}' that lay along an axis has run out: the product leads it on")
         a, b = A + _times(left(d), s_a), B + _times(left(d), s_b)
         v = now.velocity_at(body_b, b) if not isinstance(two, str) else now.point(two).rate()
         w = now.velocity_at(body_a, a) if not isinstance(one, str) else now.point(one).rate()

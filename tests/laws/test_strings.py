@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import warnings
 from itertools import pairwise
 from math import cos, sin
 
@@ -266,3 +267,43 @@ def test_a_strand_that_cannot_be_is_refused_by_name(text, message):
     with pytest.raises(eomgen.ModelError, match=message) as caught:
         system_with(BESIDE + tie("string", text), y=-1)
     assert caught.value.problems[0].where == "constraints.tie" and caught.value.problems[0].mend
+
+
+@pytest.mark.parametrize(("time", "passes"), [(0.5, False), (1.2, True)])
+def test_a_run_in_which_a_load_passes_its_pulley_is_warned_of(time, passes):
+    """a = g/3 up from 1 m below the axle: nothing is left of the strand at t = sqrt(6 m / g) = 0.782 s."""
+    model = eomgen.loads(ATWOOD)
+    with warnings.catch_warnings(record=True) as told:
+        warnings.simplefilter("always")
+        eomgen.simulate(model, time=time, samples=400, target="numpy")
+    said = [str(x.message) for x in told if "nothing is left of strand 2 of 'rope'" in str(x.message)]
+    assert len(said) == passes
+    assert all("at t = 0.78" in x for x in said)
+
+
+ATWOOD = """
+eomgen = 1
+name = "Atwood"
+space = "plane"
+parameters = { m = 1, R = 0.2 }
+
+[coordinates]
+p = -3
+q = -1
+
+[bodies.P]
+shape = { kind = "particle", mass = "2*m" }
+joint = { kind = "prismatic", at = ["-R", 0], axis = [0, 1], displacement = "p" }
+
+[bodies.Q]
+shape = { kind = "particle", mass = "m" }
+joint = { kind = "prismatic", at = ["R", 0], axis = [0, 1], displacement = "q" }
+
+[constraints.rope]
+kind = "string"
+path = ["P.origin", { at = [0, 0], radius = "R", turn = "cw", slip = true }, "Q.origin"]
+
+[forces.weight]
+kind = "gravity"
+acceleration = [0, -9.81]
+"""

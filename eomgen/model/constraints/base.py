@@ -71,6 +71,10 @@ class Constraint(Part, ABC):
         """What must not vanish, else nobody can say where the tie holds its bodies; () where there is no such thing."""
         return ()
 
+    def limits(self, scene: LoadContext) -> tuple[Edge, ...]:
+        """What is positive at the start, and has to be for its rows to be what it says; () where they always are."""
+        return ()
+
     def meeting(self) -> Meeting | None:
         """What touches what, as it is declared; None where nothing does, or where it is not told."""
         return None

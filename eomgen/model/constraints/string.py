@@ -7,7 +7,7 @@ from typing import Annotated, ClassVar
 from eomgen.model.catalog import Catalog, findings_of_one, is_round, owner_of
 from eomgen.model.constraints.base import Constraint
 from eomgen.model.constraints.meeting import Thread
-from eomgen.model.constraints.row import TieRow, direction_of
+from eomgen.model.constraints.row import Edge, TieRow, direction_of
 from eomgen.model.constraints.strand import Stop, Strand, common_tangent, rope_row, side_rows, strand_along
 from eomgen.model.containers import EitherRule, ListRule
 from eomgen.model.fields import NameRule, TextRule, VectorRule
@@ -20,6 +20,7 @@ from eomgen.model.positions import DocumentPath
 from eomgen.records import dataclass
 from eomgen.symbolic.expression.expressions import Expression
 from eomgen.symbolic.expression.spatial import Vector, apply
+from eomgen.symbolic.numeric.tolerances import COMPUTED
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -86,6 +87,15 @@ class String(Constraint):
             return tuple(common_tangent(scene, *pair) for pair in pairs)
         ways = [_direction(scene, way) for way in self.strands]
         return tuple(strand_along(scene, *pair, d) for pair, d in zip(pairs, ways, strict=True))
+
+    def limits(self, scene: LoadContext) -> tuple[Edge, ...]:
+        """A strand that stays along a line is a string as long as something is left of it."""
+        name, found = scene.where.rpartition(".")[2], []
+        for k, strand in enumerate(self.strands_at(scene), 1):
+            begun = None if strand.length is None else scene.worth(strand.length)
+            if strand.length is not None and begun is not None and begun > COMPUTED and scene.moves((strand.length,)):
+                found.append(Edge(f"nothing is left of strand {k} of '{name}'", strand.length))
+        return tuple(found)
 
     def findings(self, path: DocumentPath, catalog: Catalog) -> Iterator[Finding]:
         """Wraps that lack a size or a sense; something that moves must hang on it; a direction for each strand."""
