@@ -81,6 +81,32 @@ def test_what_cannot_be_read_is_told_with_its_place(written, what, column):
     assert what in error.value.what and error.value.column == column
 
 
+OSCILLATOR = """
+eomgen = 1
+name = "A damped mass"
+space = "plane"
+parameters = { m = 2, c = 3, k = 5 }
+coordinates = { x = { start = 1 } }
+
+[bodies.mass]
+shape = { kind = "particle", mass = "m" }
+joint = { kind = "prismatic", axis = [1, 0], displacement = "x" }
+
+[forces.hold]
+kind = "force"
+point = "mass.origin"
+force = ["-k*x - c*x'", 0]
+"""
+
+
+def test_the_terms_of_inertia_are_no_product_of_a_parameter_c():
+    """derive prints c(x') = 0; beside a damping c that is no 0 = c*x'."""
+    model = eomgen.loads(OSCILLATOR)
+    with pytest.raises(eomgen.EomgenError, match="terms of inertia"):
+        eomgen.verify(model, "c(x') = 0")
+    assert eomgen.verify(model, "m*x'' + c(x') + k*x = 0").verdict == "right"
+
+
 @pytest.mark.slow
 @pytest.mark.parametrize("name", SAMPLE)
 def test_what_is_right_in_a_disguise_is_right(name):

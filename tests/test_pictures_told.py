@@ -35,6 +35,7 @@ space = "plane"
 l = { value = 0.8, unit = "m" }
 k = { value = 50, unit = "N/m" }
 F = { value = 3, unit = "N" }
+n = { value = 1, unit = "1" }
 
 [coordinates]
 x = { start = 0.2, unit = "m" }
@@ -60,7 +61,7 @@ length = 1
 [forces.push]
 kind = "force"
 point = "rod.end"
-force = ["F", "2*F"]
+force = ["n*F", "2*F"]
 
 [forces.weight]
 kind = "gravity"

@@ -248,6 +248,9 @@ class Reading:
                 return found
         except ExpressionError as error:
             plain, found = error, None
+        if found is not None and self._may_be_inertia_terms(found[0]):
+            what = f"'{found[0].text}' stands for terms of inertia in a derivation, or is a product here"
+            raise ExpressionError(what, 0, f"write {found[0].text.replace('(', '*').rstrip(')')} for the product")
         try:
             written = transcript(given, self.vocabulary)
             return self._parsed(written)
@@ -274,6 +277,11 @@ class Reading:
         at = places[1] if len(parts) > 2 else places[0]
         what = "two equality signs" if len(parts) > 2 else "a side is missing beside '='"
         raise ExpressionError(what, written.column(at), "write one equation, left = right")
+
+    def _may_be_inertia_terms(self, left: Expression) -> bool:
+        """Whether a side is c(q'), as `derive` names them, where c is a parameter too."""
+        calls = left.calls if len(left.code) == 1 else ()
+        return any(x.name == "c" and all(self._is_known(str(a)) for a in x.args) for x in calls) and self._is_known("c")
 
     def _is_of_time(self, call: Call) -> bool:
         """x(t): a coordinate, and no function of a point."""

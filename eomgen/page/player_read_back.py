@@ -140,7 +140,7 @@ def _other_slider(each: Mapping[str, Any], known: Mapping[str, float]) -> str:
 
 
 def _other_unit(each: Mapping[str, Any], declared: str) -> str:
-    if declared and each["unit"] != declared:
+    if each["unit"] != ("" if declared == "1" else declared) and declared:
         return f"[{each['unit']}] for [{declared}]"
     size = parse_unit(each["unit"]).size if each["unit"] else 1.0
     return differing(float(each["size"]), float(size))
