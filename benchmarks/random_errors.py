@@ -7,7 +7,7 @@ function, shorter ones first in the lot, are made again:
 
     product     the verb says so: exit code other than 0
     tests       by --tests: one of README's quick tests that call the function fails (`error_tests.py`)
-    harmless    every number and formula that is printed is right all the same
+    harmless    every number, formula and word that is printed or written is right all the same (`error_outputs.py`)
     no effect   what is printed, and what is written into files, is the same
     open        exit code 0, and something that is printed or written differs: read it, by -v or --log
 
@@ -32,9 +32,9 @@ from collections import Counter, defaultdict
 from collections.abc import Iterator
 from dataclasses import dataclass, field
 from pathlib import Path
-from typing import Any
 
 import planted_errors as planted
+from error_outputs import difference, files_apart
 from error_runs import Function, Kept, Run, Server, kept_in, runs
 from error_tests import first_failing
 
@@ -146,30 +146,6 @@ def _functions(node: ast.AST, above: str) -> Iterator[tuple[str, ast.FunctionDef
             yield f"{above}{child.name}", child
         else:
             yield from _functions(child, f"{above}{child.name}." if isinstance(child, ast.ClassDef) else above)
-
-
-def difference(found: str, right: str) -> str:
-    """The first answer that is not right; "" where all are."""
-    if not right.lstrip().startswith(("{", "[")):
-        return "" if found == right else _first_line(found, right)
-    a, b = (planted._leaves(json.loads(text)) for text in (found, right))
-    for key in b:
-        if key.startswith((".schema", ".steps")) or ".message" in key or ".method" in key:
-            continue
-        if key not in a:
-            if key.startswith(".symbols"):  # a formula in another form has other letters
-                continue
-            return f"{key}: missing"
-        if not planted._right(a[key], b[key], True) and not _same_text(a[key], b[key]):
-            return f"{key}: {str(a[key])[:150]} for {str(b[key])[:150]}"
-    return ""
-
-
-def _same_text(one: Any, other: Any) -> bool:
-    if not (isinstance(one, str) and isinstance(other, str) and "=" in one and "=" in other):
-        return False
-    sides = [x.split("=") for x in (one, other)]
-    return all(len(x) == 2 for x in sides) and planted._equal_formulas(*("(" + ")-(".join(x) + ")" for x in sides))
 
 
 def main() -> int:
@@ -336,23 +312,8 @@ def judged(wrong: planted.Outcome, right: planted.Outcome, before: str) -> tuple
         return "product", wrong.why
     if wrong.out == right.out and wrong.files == right.files:
         return before, ""
-    said = difference(wrong.out, right.out) or _files_apart(dict(wrong.files), dict(right.files))
+    said = difference(wrong.out, right.out) or files_apart(dict(wrong.files), dict(right.files))
     return ("open", said) if said else ("harmless", "")
-
-
-def _files_apart(found: dict[str, bytes], right: dict[str, bytes]) -> str:
-    """The first file that is another one, and where."""
-    for name, text in right.items():
-        if found.get(name) != text:
-            return f"{name}: {_first_line(found.get(name, b'').decode('latin-1'), text.decode('latin-1'))}"
-    return ""
-
-
-def _first_line(found: str, right: str) -> str:
-    pairs = zip(found.splitlines(), right.splitlines(), strict=False)
-    one, other = next(((a, b) for a, b in pairs if a != b), (f"{len(found)} characters", str(len(right))))
-    at = next((k for k, (a, b) in enumerate(zip(one, other, strict=False)) if a != b), 0)
-    return f"{one[max(at - 40, 0) : at + 80]} for {other[max(at - 40, 0) : at + 80]}"
 
 
 def table(rows: Counter[tuple[str, str]]) -> str:

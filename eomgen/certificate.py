@@ -72,3 +72,11 @@ def certify(
     if rhs is not None:
         checks.append(trials.code(rhs))
     return Certificate((*checks, *other_data(equations.system.motion)))
+
+
+@doing("the proof of what stands")
+def certify_standing(equations: EquationsOfMotion) -> Certificate:
+    """Check what no coordinate moves: where it stands, what is applied to it, the balance of every body."""
+    trials = Trials(equations)
+    checks = (trials.places(), *trials.kept_ties(), *trials.elements(), *trials.declared(), *trials.balance())
+    return Certificate((*checks, *other_data(equations.system.motion)))

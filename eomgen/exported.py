@@ -17,6 +17,7 @@ from eomgen.errors import DerivationError, visible
 from eomgen.mechanics.bodies.inertia import mass_properties
 from eomgen.mechanics.bodies.kinematics import GROUND, BodyLink
 from eomgen.mechanics.equations.system import System
+from eomgen.model.forces.load import UniformField
 from eomgen.model.reader import ModelOrPath
 from eomgen.pipeline import derive
 from eomgen.records import dataclass
@@ -255,7 +256,8 @@ class _Writing:
         said = set(self.left.pop("", []))
         ties = [name for name in self.system.scope.model.constraints if name not in said]
         fields = self.numbers(self.system.loads.fields, "forces")
-        weight = [force.name for force in self.system.loads.applied if force.loads]
+        applied = self.system.loads.applied
+        weight = [x.name for x in applied if all(isinstance(load, UniformField) for load in x.loads or (None,))]
         usual = fields[:2] == [0.0, 0.0] and abs(fields[2] + G) < ROUNDING
         forces = [name for name in self.system.scope.model.forces if name not in weight or not usual]
         for what, names in (("forces", forces), ("constraints", ties)):

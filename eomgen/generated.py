@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import replace
 from functools import cached_property, partial
+from itertools import chain
 from pathlib import Path
 
 import numpy as np
@@ -48,7 +49,7 @@ from eomgen.proof.check import Certificate, Check, checked, unchecked
 from eomgen.proof.emitted_code import PhaseMotion, TriedState
 from eomgen.proof.shipped_fmu import fmu_told
 from eomgen.proof.states import consistent_states
-from eomgen.proof.written_code import Judged, Written, start_state_tried
+from eomgen.proof.written_code import Judged, Written, start_state_tried, unwritten
 from eomgen.questions.run import pulling
 from eomgen.records import dataclass
 from eomgen.simulation.configuration import paths_of
@@ -283,6 +284,9 @@ class Generated:
         for emitted in self.emitted:
             found = judged[emitted[1].role].shipped(self._written(self.targets[0], emitted))
             yield from () if found is None else (found,)
+        for target in self.targets:
+            own = [told.vectors for _, told in self.emitted if target_named(target).writes(told.role)]
+            yield from unwritten(_inside(self.texts, self._folder(target)), chain.from_iterable(own))
         yield from self._packed()
         for target in self.targets if self.float32 else ():
             for emitted in self.emitted:

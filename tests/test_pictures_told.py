@@ -178,6 +178,7 @@ CHANGES = {
     "the symbol of a joint": lambda told: joint(told).update(symbol="pin"),
     "where a joint is": lambda told: joint(told).update(at=[0.1, 0]),
     "where a point is": lambda told: told["scene"]["points"][0].update(at=[1, 0]),
+    "contacts that there are not": lambda told: told.update(rests="The contacts of this model change."),
 }
 
 

@@ -18,9 +18,9 @@ import eomgen
 from eomgen.cli import main
 from eomgen.errors import DerivationError, ModelError, ToolMissing
 from eomgen.exported import urdf_of
-from eomgen.proof.imported_mjcf import mjcf_otherwise
+from eomgen.proof.imported_mjcf import OTHER_THINGS, mjcf_otherwise
 from eomgen.proof.imported_sdf import sdf_otherwise
-from eomgen.proof.imported_urdf import imported_otherwise
+from eomgen.proof.imported_urdf import imported_otherwise, unsaid_otherwise
 from eomgen.robots.importing import imported
 from eomgen.symbolic.numeric.evaluation import FLOAT, evaluate
 from eomgen.verbs import importing
@@ -629,7 +629,7 @@ def test_an_mjcf_robot_that_is_read_otherwise_is_contradicted(tmp_path):
     found = robot(tmp_path, MJCF_ARM, "xml")
     equations, path = eomgen.derive(found.model).graph, tmp_path / "other.xml"
 
-    def wrong(old: str, new: str, left: tuple[str, ...] = ()) -> str:
+    def wrong(old: str, new: str, left: tuple[tuple[str, tuple[str, ...]], ...] = ()) -> str:
         path.write_text(MJCF_ARM.replace(old, new))
         return mjcf_otherwise(str(path), b"", found.model, equations, left)
 
@@ -643,7 +643,13 @@ def test_an_mjcf_robot_that_is_read_otherwise_is_contradicted(tmp_path):
         ('stiffness="5"', 'stiffness="6"', "pushed"),
     ):
         assert what in wrong(old, new), old
-    assert "there are none" in wrong("", "", ("motors by plugins",))
+    assert "there are none" in wrong("", "", (("motors by plugins", ("w",)),))
+    for what in (OTHER_THINGS, "motors that are no linear laws", "motors on the ground"):
+        assert "is left out, and is none" in wrong("", "", ((what, ("w",)),)), what
+    motor, muscle = '<motor name="w" joint="p" gear="3"/>', '<muscle name="v" joint="h" lengthrange="-1 1"/>'
+    laws = (("motors that are no linear laws", ("v",)),)
+    assert wrong(motor, motor + muscle, laws) == ""  # what cannot be said pushes nothing, and all others do
+    assert "pushed" in wrong(motor, motor.replace("3", "4") + muscle, laws)
 
 
 @pytest.mark.slow
@@ -698,6 +704,36 @@ MJCF_ARM = """<mujoco><worldbody><body name="a" pos="0 0 1">
   <geom type="box" size=".1 .2 .3"/></body></body>
   <body name="c" pos="1 0 2"><freejoint name="fly"/><geom type="ellipsoid" size="0.1 0.2 0.3"/></body></worldbody>
   <actuator><motor name="w" joint="p" gear="3"/></actuator></mujoco>"""
+
+
+def test_every_push_that_urdf_cannot_say_is_told(tmp_path):
+    """Beside the usual weight: springs, forces, loads of a coordinate, energies; and of what is told nothing lacks."""
+    first = robot(tmp_path, ARM).text
+    joined = "\n".join(
+        [
+            first,
+            "[forces.pull]",
+            'kind = "spring"',
+            'points = ["fore.origin", "upper_arm.center"]',
+            "stiffness = 3",
+            "length = 0",
+            "[forces.push]",
+            'kind = "force"',
+            'point = "fore.origin"',
+            "force = [1, 0, 0]",
+            "[forces.load]",
+            'kind = "generalized"',
+            'coordinate = "elbow"',
+            "value = 2",
+        ]
+    )
+    (tmp_path / "first.toml").write_text(joined)
+    model = eomgen.load(tmp_path / "first.toml")
+    found = urdf_of(model)
+    left = {each.what: each.where for each in found.left_out}
+    assert left["forces"] == ("pull", "push", "load") and unsaid_otherwise(found.text, model, left) == ""
+    for what, names in left.items():
+        assert what in unsaid_otherwise(found.text, model, left | {what: names[1:]}), what
 
 
 def test_what_is_exported_is_read_again(tmp_path):

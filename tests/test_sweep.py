@@ -16,6 +16,7 @@ import time
 from concurrent.futures import Future, ProcessPoolExecutor, ThreadPoolExecutor
 from dataclasses import replace
 from pathlib import Path
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
@@ -33,6 +34,7 @@ from eomgen.sweeps.kernel import SweepKernel
 from eomgen.sweeps.sweep import sweep_at
 from eomgen.symbolic.numeric import work
 from eomgen.symbolic.numeric.work import check_patience
+from eomgen.verbs.sweep import _answers_proven
 
 ROOT = Path(__file__).parents[1]
 MODELS = ROOT / "models"
@@ -522,6 +524,19 @@ def test_pictures_and_proof(spring, tmp_path):
         found.plot(tmp_path / "h.png", "heat")
     with pytest.raises(UsageError, match="no view"):
         found.plot(tmp_path / "h.png", "pie")
+
+
+@pytest.mark.slow
+def test_runs_between_the_first_and_the_last_are_proven_too(spring):
+    """max(x') and the frequency of three runs: what is told otherwise of the middle one is contradicted."""
+    found = eomgen.sweep(spring, over={"k": "10:30:3"}, ask=["max(x')", "frequency(1)"], time=1)
+    runs = SweepKernel(found.plan)
+    assert all(check.ok for check in _answers_proven(found, runs))
+    for k, name in enumerate(("max(x')", "frequency(1)"), start=5):
+        rows = [(*row[:k], row[k] + 0.5, *row[k + 1 :]) if row[0] == 1 else row for row in found.ledger.rows()]
+        other = SimpleNamespace(plan=found.plan, ledger=SimpleNamespace(rows=lambda rows=rows: rows))
+        (check,) = _answers_proven(other, runs)
+        assert check.ok is False and f"{name} of run 1" in check.detail
 
 
 def test_a_million_runs_are_planned_by_their_numbers():

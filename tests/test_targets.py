@@ -29,6 +29,7 @@ from eomgen.codegen.targets import ALL, wasm
 from eomgen.codegen.targets.base import REACTIONS, Description
 from eomgen.codegen.vectors import outputs_at, vectors
 from eomgen.errors import DerivationError, UsageError
+from eomgen.proof.written_code import unwritten
 from eomgen.symbolic.expression.graph import Graph, Node
 from eomgen.symbolic.numeric.evaluation import FLOAT, evaluate
 
@@ -208,9 +209,11 @@ def test_vectors_hold_states_without_a_value(target, tmp_path):
     assert 1 <= len(partial) < len(found) and all(v.result[1] == pytest.approx(v.x[0] + v.x[1]) for v in partial)
     for v in found:
         assert compiled(program, target)(v.t, v.x, v.p) == pytest.approx(v.result, rel=1e-12, nan_ok=True)
-    paths = files.write_all(
-        tmp_path, texts_of("roots", [(program, Description("Roots", "", {}, found))], targets=[target])
-    )
+    texts = texts_of("roots", [(program, Description("Roots", "", {}, found))], targets=[target])
+    assert not [*unwritten(texts, found)]
+    others = [replace(v, result=tuple(2 * x for x in v.result)) for v in found]
+    assert [*unwritten(texts, others)] or target == "fmu", "what is not written in a self-test is contradicted"
+    paths = files.write_all(tmp_path, texts)
     assert sum(row["dx"][0] is None for row in json.loads(paths[-1].read_text())["vectors"]) == len(partial)
     if target == "c":
         assert self_test(paths[0]).returncode == 0

@@ -12,6 +12,7 @@ from typing import Any
 import numpy as np
 
 from eomgen.codegen.rhs import compiled
+from eomgen.model.contacts import contacts_of, pieces_of
 from eomgen.page.player_data import PlayedRun
 from eomgen.proof.at_a_state import NumericState
 from eomgen.proof.check import Check, Tally, differing
@@ -91,6 +92,7 @@ def _compared(played: PlayedRun, told: Mapping[str, Any]) -> Iterator[tuple[str,
     run = played.run
     yield "time", partial(differing, told["time"], run.phases[-1].end)
     names = [*run.coordinates, *run.speeds]
+    yield "what moves it", partial(_otherwise_moved, played, told)
     yield "names", lambda: "" if list(told["names"]) == names else ", ".join(told["names"])
     yield "instants", partial(_other_column, told["run"]["t"], [run.t])
     yield "states", partial(_other_column, told["run"]["x"], list(_states(played).T))
@@ -108,6 +110,16 @@ def _compared(played: PlayedRun, told: Mapping[str, Any]) -> Iterator[tuple[str,
         unit = getattr(parts.get(each["name"]), "unit", None)
         declared = "" if unit is None else unit.text
         yield f"unit of {each['name']}", partial(_other_unit, each, declared)
+
+
+def _otherwise_moved(played: PlayedRun, told: Mapping[str, Any]) -> str:
+    """Whether a page says that contacts change where none is declared, or moves by itself where they do."""
+    model, asked = played.model, played.options.moves
+    could = bool(contacts_of(model)) or any(len(pieces_of(body)) > 1 for body in model.bodies.values())
+    if asked and "contacts" in told["rests"] and not could:
+        return "it says that contacts change, and none is declared"
+    alone = len(played.run.phases) == 1
+    return "" if alone or not told["moves"] else "it moves by itself, and the run has several phases"
 
 
 def _states(played: PlayedRun) -> np.ndarray:

@@ -40,6 +40,7 @@ BY_AXES = "by the numbers at their axes and the names of columns"
 LOOKS = 32  # of curves, eight colours and four kinds of lines: with so many each has its own
 SEEN = 1.5  # units of a picture: a curve may pass its points by that much, corners and rounding together
 _BRACKETS = str.maketrans("", "", "[],;")  # a matrix by rows or whole, cases apart
+_FEW = re.compile(r"the largest, at (\d+) of (\d+)")
 _UNIT = re.compile(r" \[([^\]]*)\]")
 READERS: Mapping[str, Callable[[str], ReadReport]] = {
     ".html": html_report,
@@ -142,6 +143,8 @@ def _of_run(report: Report, letters: SetLetters, read: ReadReport, run: Trajecto
     for caption, curves in read.drawings:
         named = {style: _named(line, letters) for style, line in legends.get(caption, ())}
         tally.add(caption.partition(" over")[0], partial(_unlike_curves, run, caption, curves, named))
+        if (few := _FEW.search(caption)) is not None and int(few[1]) >= int(few[2]):
+            tally.add(few[0], partial(str, "that is all of them"))
     if read.drawings and not any("not drawn" in words or "the largest" in words for words in legends):
         tally.add("drawings", partial(_left_out, run, legends, letters))
     for name, content, columns in read.files:

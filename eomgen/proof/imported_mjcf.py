@@ -8,7 +8,7 @@ at positions and speeds that are nothing special, every input 0.7: MuJoCo comput
 from __future__ import annotations
 
 import importlib
-from collections.abc import Iterator, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from pathlib import Path
 from typing import Any
 
@@ -23,8 +23,11 @@ from eomgen.symbolic.numeric.evaluation import FLOAT, evaluate
 from eomgen.symbolic.numeric.tolerances import CARRIED
 
 FREE, BALL = 0, 1  # the numbers of MuJoCo, of joints
-JOINT_WRAP, TENDON = 1, 3  # of what a tendon is of, and what a motor pulls
+JOINT_WRAP, SITE_WRAP = 1, 3  # of what a tendon is of,
+JOINT, IN_PARENT, TENDON, SITE = 0, 1, 3, 4  # of what a motor pulls,
+FIXED, AFFINE = 0, 1  # and how
 OTHER_THINGS = "motors on other things than joints, tendons between two places, and sites"
+NO_LAWS, OFF, STANDING = "motors that are no linear laws", "motors that are switched off", "motors on the ground"
 LIMITS = ("actuator_ctrl", "actuator_force", "actuator_act", "jnt_actfrc", "tendon_actfrc")
 PUSHED = 0.7  # of every input
 OF_TIES = (  # what is left out and pushes by constraints of MuJoCo alone: it is in none of the forces that are compared
@@ -33,11 +36,13 @@ OF_TIES = (  # what is left out and pushes by constraints of MuJoCo alone: it is
     *("softness of equalities", "equalities that are switched off", "motion of a mocap body"),
 )
 
-IN_TIME = ("filters of motors", "delays of motors")  # what pushes nothing where inputs are and were 0
+DELAYS = "delays of motors"  # what pushes nothing where inputs are and were 0
+NAMED = (OTHER_THINGS, NO_LAWS, OFF, STANDING)  # of motors each by its name: they are silenced, and the others compared
+Left = tuple[str, tuple[str, ...]]  # what of a file has no counterpart, and each of it
 
 
 def mjcf_otherwise(
-    path: str, source: bytes, model: Model, equations: EquationsOfMotion | None, left_out: Sequence[str]
+    path: str, source: bytes, model: Model, equations: EquationsOfMotion | None, left_out: Sequence[Left]
 ) -> str:
     """Which body is not as MuJoCo has it; "" where all are that are called alike in both.
 
@@ -53,10 +58,11 @@ def mjcf_otherwise(
     except ValueError:  # files of pictures are missing
         return ""
     proof = _Compiled(mujoco, m, model)
-    more = set(left_out) - {*OF_TIES}
-    push = PUSHED if not more else 0.0 if more <= {*IN_TIME} else None
+    more = {what for what, _ in left_out} - {*OF_TIES, *NAMED, "filters of motors"}
+    push = PUSHED if not more else 0.0 if more == {DELAYS} else None
+    left = proof.lacks(left_out)  # they are silenced before forces are compared
     forces = () if equations is None else proof.accelerates(equations, push)
-    return first_wrong((*proof.has(left_out), *proof.stands(), *proof.weighs(), *forces))
+    return first_wrong((*left, *proof.has([what for what, _ in left_out]), *proof.stands(), *proof.weighs(), *forces))
 
 
 class _Compiled:
@@ -90,6 +96,52 @@ class _Compiled:
         own = None if body is None else self.model.bodies[body].joint
         return own if own is not None and quaternion_names(own) else None
 
+    def lacks(self, left_out: Sequence[Left]) -> list[str]:
+        """Of motors that are left out by name, which could be in the model; they push nothing from now on."""
+        m, found = self.m, []
+        number = {m.actuator(k).name or f"motor{k}": k for k in range(m.nu)}
+        could: dict[str, Callable[[int], bool]] = {
+            OTHER_THINGS: self._is_reached,
+            NO_LAWS: self._is_linear,
+            OFF: self._is_on,
+            STANDING: self._is_carried,
+        }
+        for what, names in left_out:
+            for name in names if what in could else ():
+                k = number.get(name)
+                if k is None or could[what](k):
+                    found.append(f"'{name}' is left out, and is none of '{what}'")
+                else:
+                    m.actuator_gaintype[k] = m.actuator_biastype[k] = FIXED
+                    m.actuator_gainprm[k] = m.actuator_biasprm[k] = 0
+        return found
+
+    def _is_on(self, k: int) -> bool:
+        """Whether neither a flag nor its group switches a motor off."""
+        return not (self._off("ACTUATION") or int(self.m.opt.disableactuator) & 1 << int(self.m.actuator_group[k]) % 31)
+
+    def _is_carried(self, k: int) -> bool:
+        """Whether what a motor acts on is of a body that moves, or none of its places is known."""
+        return bool(self.m.actuator_trntype[k] != SITE or self.m.site_bodyid[self.m.actuator_trnid[k][0]] != 0)
+
+    def _is_reached(self, k: int) -> bool:
+        """Whether a motor acts on a joint, on a tendon that is a sum of joints or straight, or at a site."""
+        m, way, target = self.m, self.m.actuator_trntype[k], int(self.m.actuator_trnid[k][0])
+        if way == TENDON:
+            wraps = m.wrap_type[m.tendon_adr[target] :][: m.tendon_num[target]]
+            return bool((wraps == JOINT_WRAP).all() or [*wraps] == [SITE_WRAP] * 2)
+        if way == IN_PARENT:  # the axes of a parent are a body's, where no other joint stands between
+            return bool(m.jnt_type[target] not in (FREE, BALL) or m.body_jntadr[m.jnt_bodyid[target]] == target)
+        return bool(way == JOINT or (way == SITE and m.actuator_trnid[k][1] < 0))
+
+    def _is_linear(self, k: int) -> bool:
+        """Whether the force of a motor along a single length is linear in it, its rate and the input."""
+        m, way, target = self.m, self.m.actuator_trntype[k], int(self.m.actuator_trnid[k][0])
+        along = way == TENDON or (way in (JOINT, IN_PARENT) and m.jnt_type[target] not in (FREE, BALL))
+        linear = m.actuator_gaintype[k] in (FIXED, AFFINE) and m.actuator_biastype[k] in (FIXED, AFFINE)
+        constants = (*m.actuator_gainprm[k][:3], *m.actuator_biasprm[k][:3])
+        return bool(along and linear and np.isfinite(constants).all())
+
     def has(self, left_out: Sequence[str]) -> Iterator[str]:
         """What is said to be left out."""
         m = self.m
@@ -97,9 +149,7 @@ class _Compiled:
             "motors by plugins": m.nplugin,
             "filters of motors": (m.actuator_dyntype != 0).any(),
             "fluid": m.opt.density or m.opt.viscosity,
-            "motors that are switched off": m.opt.disableactuator or self._off("ACTUATION"),
             "tendons through places": (m.wrap_type != JOINT_WRAP).any(),
-            OTHER_THINGS: not {*m.actuator_trntype} <= {0, 1, TENDON} or (m.wrap_type != JOINT_WRAP).any(),
             "limits of motors": any(limited.any() for limited in self._limits()),
             "limits of tendons": m.tendon_limited.any(),
             "limits of joints": m.jnt_limited.any(),
@@ -144,6 +194,9 @@ class _Compiled:
         for limited in self._limits():
             limited[:] = 0
         self.data.ctrl[:] = push or 0.0
+        if hasattr(self.m, "actuator_actearly"):
+            self.m.actuator_actearly[:] = 0
+        self.data.act[:] = push or 0.0  # behind a filter the input is the activation
         self.mujoco.mj_forward(self.m, self.data)
         full = np.zeros((self.m.nv, self.m.nv))
         for column, one in zip(full, np.eye(self.m.nv), strict=True):

@@ -8,11 +8,12 @@ The file is read once more, by another program, and each joint is taken by itsel
 from __future__ import annotations
 
 import re
-from collections.abc import Iterator
-from typing import TYPE_CHECKING
+from collections.abc import Collection, Iterator, Mapping
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from eomgen.model.forces.element import PushOfMass
 from eomgen.model.parts import Model
 from eomgen.proof.check import first_wrong
 from eomgen.proof.posed_model import FloatPose, PosedModel, figures_in, poses_differ, turn_about, turn_by_three
@@ -28,6 +29,7 @@ LIMITS = {  # as the remark of a coordinate tells them
     "effort": re.compile(r"at most (\S+) N(?:\*m)?(?=,|$)"),
     "velocity": re.compile(r"at most (\S+) (?:rad|m)/s"),
 }
+G = (0.0, 0.0, -9.81)  # of what reads URDF [m/s^2]
 TURNING, SLIDING = ("revolute", "continuous"), ("prismatic",)
 
 
@@ -44,6 +46,49 @@ def imported_otherwise(text: str | bytes, model: Model) -> str:
     moving = (y for joint in joints for y in (proof.stands(joint), proof.yields(joint), proof.bounded(joint)))
     weights = (proof.weighs(link) for link in root.iter("link"))
     return first_wrong((*moving, *weights, *proof.posed.follows()))
+
+
+def unsaid_otherwise(text: str, model: Model, left_out: Mapping[str, Collection[str]]) -> str:
+    """What of a model its URDF neither says nor is told to leave out, by what is declared; "" where all is told.
+
+    Args:
+        left_out: {what URDF cannot say: where it is}.
+    """
+    from xml.etree import ElementTree
+
+    root, posed = ElementTree.fromstring(text), PosedModel(model)
+    acts = {name: force.acts for name, force in model.forces.items()}
+    uniform = {name: [y for y in x if isinstance(y, PushOfMass) and not y.bodies] for name, x in acts.items()}
+    fields = [name for name, x in acts.items() if x and len(uniform[name]) == len(x)]
+    g = [[posed.number(c) for c in (*y.acceleration, None)[:3]] for name in fields for y in uniform[name]]
+    usual = np.allclose(np.sum(g, axis=0) if g else np.zeros(3), G, 0, COMPUTED)
+    pushes = {name: part.joint.pushes() for name, part in model.bodies.items() if part.joint is not None}
+    q = model.coordinates
+    due: dict[str, list[str]] = {
+        "forces": [name for name in acts if name not in fields or not usual],
+        "stiffness": [name for name, each in pushes.items() if any(x.stiffness is not None for x in each)],
+        "armature": [name for name, each in pushes.items() if any(x.armature is not None for x in each)],
+        "values of inputs": [name for name, part in model.inputs.items() if _given(posed, part.value)],
+        "start values": [x for x, part in q.items() if _given(posed, part.start) or _given(posed, part.speed)],
+        "given motions": [x for x, part in q.items() if part.driven],
+    }
+    drives = [name for name, each in pushes.items() if any(x.push is not None for x in each)]
+    said = {
+        "constraints": ([*model.constraints], sum(1 for _ in root.iter("mimic"))),
+        "drives that are no input alone": (drives, sum(1 for _ in root.iter("transmission"))),
+    }
+    for what, names in due.items():
+        if missing := [name for name in names if name not in left_out.get(what, ())]:
+            return f"{what} of '{missing[0]}' are not said, and not told to be left out"
+    for what, (names, there) in said.items():
+        if len(names) - there != len({*left_out.get(what, ())} & {*names}):
+            return f"{what}: {len(names)}, of which {there} are said and {len(left_out.get(what, ()))} are left out"
+    return ""
+
+
+def _given(posed: PosedModel, value: Any) -> bool:
+    """Whether a value is told, and is another than 0."""
+    return value is not None and (bool(value.names) or posed.number(value) != 0)
 
 
 class _Imported:

@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Mapping, Sequence
+import re
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from dataclasses import replace
 from typing import Any
 
@@ -23,8 +24,9 @@ from eomgen.symbolic.expression.graph import Node, Scalar
 from eomgen.symbolic.expression.node import ScalarRow
 from eomgen.symbolic.expression.traversal import order
 from eomgen.symbolic.numeric.evaluation import evaluate, fifty_digits
-from eomgen.symbolic.numeric.tolerances import CARRIED, COMPUTED
+from eomgen.symbolic.numeric.tolerances import CARRIED, COMPUTED, SEVEN_DIGITS
 
+LITERAL = re.compile(r"(?<![\w.])(?:\d+\.?\d*|\.\d+)(?:[eEdD][-+]?\d+)?")  # a number of any language, without its sign
 MOST_TOLERANCE = 10 * COMPUTED  # that a test vector may allow
 
 
@@ -77,6 +79,34 @@ class Written:
             return np.array(called(instant.t, instant.x.tolist(), instant.a.tolist(), list(instant.p), given))
 
         return at
+
+
+def unwritten(texts: Mapping[str, FileContent], vectors: Iterable[TestVector]) -> Iterator[Check]:
+    """A contradiction where a number of test vectors stands in no self-test of a language; else nothing.
+
+    A number is found wherever one like it to the digits of floats stands, in any language's form.
+    """
+    tests = [text for name, text in texts.items() if isinstance(text, str) and _is_test(name, text)]
+    tests += [
+        x for name, x in texts.items() if isinstance(x, str) and any(name in text for text in tests)
+    ]  # read there
+    told = np.array(sorted({0.0, *(float(x.lower().replace("d", "e")) for x in LITERAL.findall("\n".join(tests)))}))
+    for v in vectors if tests else ():
+        numbers = np.array([v.t, *v.x, *v.a, *v.p, *(v.inputs or ()), *v.result])
+        numbers = np.abs(numbers[np.isfinite(numbers)])
+        k = np.clip(np.searchsorted(told, numbers), 1, max(len(told) - 1, 1))
+        apart = np.min(np.abs(np.take(told, [k, k - 1], mode="clip") - numbers), axis=0)
+        missing = numbers[(apart > SEVEN_DIGITS * numbers) & (numbers > np.finfo(np.float32).tiny)]
+        if len(missing):
+            what = f"{missing[0]:.9g} at t = {v.t:.6g} s is not written"
+            yield checked("test vectors stand in the self-tests of the code", what, "numbers of their texts")
+            return
+
+
+def _is_test(name: str, text: str) -> bool:
+    """Whether a file is a self-test, or has one at its end, as those of C."""
+    last = name.rpartition("/")[2]
+    return not last.endswith((".json", ".md")) and ("test" in name or (last.endswith(".c") and "vectors[] = {" in text))
 
 
 @dataclass(frozen=True)

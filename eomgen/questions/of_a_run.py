@@ -134,11 +134,20 @@ class WholeRun:
         if asks_of(output.value, OF_A_RUN):
             calls = [call for call in output.value.calls if call.name in _FUNCTIONS]
             wrong = (self._against_samples(call) for call in calls)
-            return next(filter(None, wrong), "")
+            return next(filter(None, wrong), "") or self._otherwise_told(output, calls, told)
         start = float(self._sampled(output.value)[0][1][0])
         if told is None:
             return f"no value for {start:.10g}" if math.isfinite(start) else ""
         return differing(told, start, CARRIED)
+
+    def _otherwise_told(self, output: Output, calls: Sequence[Call], told: float | None) -> str:
+        """How what is told differs from what the functions of the run, which its samples bear out, come to; ""."""
+        found = self.of(output).value
+        if not isinstance(found, float) or told is None:
+            return "" if found is told or isinstance(found, tuple) else f"{told} for {found}"
+        values = (y for call in calls for _, y in self._sampled(formula_at(call, 0)))
+        size = max(abs(found), self._duration, *(float(np.max(np.abs(y), initial=0.0)) for y in values))
+        return "" if abs(told - found) <= CARRIED * size else f"{told:.10g} for {found:.10g}"
 
     def _met_by_samples(self, condition: WrittenEquation) -> list[tuple[float, float]]:
         """The instants of the samples before and behind each change of the order of the sides."""

@@ -15,7 +15,7 @@ from typing import Any, Protocol
 
 import numpy as np
 
-from eomgen.certificate import certify
+from eomgen.certificate import certify, certify_standing
 from eomgen.codegen.program import program_of
 from eomgen.codegen.rhs import compiled
 from eomgen.documents.linearize.result import Linearization
@@ -96,11 +96,12 @@ class _Proof:
 
     @cached_property
     def equations(self) -> tuple[Check, ...]:
-        """Of the first phase, motions that are given whole among them; of what stands still of what the file gives."""
+        """Of the first phase, motions that are given whole among them; of what stands still of what acts on it."""
         phase = self.solver.motions[False].phase
-        if phase.system.symbols.q and self.asked:
+        if self.asked:
+            proven = certify if phase.system.symbols.q else certify_standing
             with suppress(ModelError, DerivationError):  # what moves no mass, or forces that are sought: at rest alone
-                return certify(phase.equations).checks
+                return proven(phase.equations).checks
         return tuple(other_data(phase.system.motion))
 
     # -- what is printed ---------------------------------------------------------------------------

@@ -129,15 +129,15 @@ class SweepKernel:
 
     @cached_property
     def _in_motion(self) -> dict[str, Output]:
-        return {text: output for text, output in self._outputs.items() if not _is_without_motion(output)}
+        return {text: output for text, output in self._outputs.items() if not is_without_motion(output)}
 
     @cached_property
     def _solved(self) -> dict[str, Output]:
-        return {text: output for text, output in self._outputs.items() if _is_without_motion(output)}
+        return {text: output for text, output in self._outputs.items() if is_without_motion(output)}
 
 
-def _is_without_motion(output: Output) -> bool:
-    """Whether `solve` answers it: at rest, from another start, of the linearized system."""
+def is_without_motion(output: Output) -> bool:
+    """True if `solve` answers it: at rest, from another start, of the linearized system."""
     return isinstance(output.at, AtRest) or output.from_ is not None or asks_of(output.value, SMALL_MOTIONS)
 
 

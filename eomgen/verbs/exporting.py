@@ -11,7 +11,7 @@ from eomgen.documents.statements import Lines
 from eomgen.errors import UsageError
 from eomgen.exported import urdf_of
 from eomgen.model.parts import Model
-from eomgen.proof.imported_urdf import imported_otherwise
+from eomgen.proof.imported_urdf import imported_otherwise, unsaid_otherwise
 
 
 def refuse_strange_endings(output: str) -> None:
@@ -35,5 +35,6 @@ def export_document(model: Model, *, output: str) -> Document:
     files.write(output, found.text)
     left_out = [each.as_dict() for each in found.left_out]
     document = plain_document(model, lambda: {"file": output, "left_out": left_out}, Lines((output,)))
-    wrong = imported_otherwise(found.text, model)
+    left = {each.what: each.where for each in found.left_out}
+    wrong = imported_otherwise(found.text, model) or unsaid_otherwise(found.text, model, left)
     return replace(document, failed=wrong, notes=tuple(f"left out: {each}" for each in found.left_out))

@@ -66,6 +66,6 @@ def _otherwise(file: str, robot: ImportedRobot) -> str:
     if root == "mujoco":
         small = len(robot.model.coordinates) <= MOST_COMPARED
         equations = derive(robot.model).graph if small and robot.model.coordinates else None
-        left = [each.what for each in robot.left_out if each.nearest is not None]
+        left = [(each.what, each.where) for each in robot.left_out if each.nearest is not None]
         return mjcf_otherwise(file, robot.source, robot.model, equations, left)
     return OTHERWISE[root](robot.source, robot.model) if root in OTHERWISE else ""

@@ -2,35 +2,39 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Callable, Iterator, Mapping
 from dataclasses import replace
 from functools import partial
 from pathlib import Path
+from random import Random
 from typing import Any
 
 from eomgen.documents.document import Document, plain_document
 from eomgen.documents.proven import proven
 from eomgen.documents.statements import Grid, prose
 from eomgen.errors import EomgenError, RunFailed, UsageError
-from eomgen.model.parts import Model
+from eomgen.model.parts import Model, Output
 from eomgen.model.ranges import range_of
 from eomgen.model.table import Table
 from eomgen.pipeline import simulate
-from eomgen.proof.check import Certificate, Check, Tally
+from eomgen.proof.check import Certificate, Check, Tally, differing
 from eomgen.proof.drawn_values import drawn_otherwise, told_of_all
 from eomgen.questions.answers import solve
 from eomgen.questions.of_a_run import asked_of, asked_typed
 from eomgen.questions.run import answered_otherwise
 from eomgen.records import dataclass
-from eomgen.sensitivities.sensitivity import checks_of_slope
+from eomgen.sensitivities.sensitivity import checks_of_slope, slope_in_si
+from eomgen.simulation.result import Trajectory
 from eomgen.sweeps.design import spread_of
-from eomgen.sweeps.kernel import FAILED, WITHOUT_MOTION, SweepKernel
-from eomgen.sweeps.plan import Stepped
+from eomgen.sweeps.kernel import FAILED, WITHOUT_MOTION, SweepKernel, is_without_motion
+from eomgen.sweeps.plan import Stepped, SweepPlan
 from eomgen.sweeps.sweep import CRITICAL, LEDGER, PARQUET, PLAN, TABLE, Sweep, planned, sweep_at, swept
+from eomgen.symbolic.numeric.evaluation import NoValue
 from eomgen.verbs.assignments import assignments, typed
 
 FEW = 5  # failed runs that are named
 MOST_IN_JSON = 10_000  # runs whose rows stand in it
+COARSER = 10.0  # steps of a run, to see whether what it says depends on them
 MOST_PROVEN = 10_000  # runs whose rows are looked at one by one
 
 
@@ -192,19 +196,65 @@ def _proof(found: Sweep) -> Certificate | None:
 
 
 def _answers_proven(found: Sweep, kernel: SweepKernel) -> Iterator[Check]:
-    """What the table tells of the first and of the last run of a motion, against the samples of these, run anew."""
-    plan, rows = found.plan, list(found.ledger.rows())
-    moved = [row for row in rows if row[2] not in (WITHOUT_MOTION, FAILED)]
-    tally = Tally("what is asked of a run is answered as its samples say", "first and last run, made anew")
-    for row in {row[0]: row for row in (*moved[:1], *moved[-1:])}.values():
+    """What the table tells of the first run, of the last, and of one between, drawn by the plan: each made anew."""
+    plan = found.plan
+    done = [row for row in found.ledger.rows() if row[2] != FAILED]
+    between = [Random(plan.hash).choice(done[1:-1])] if len(done) > 2 else []
+    tally = Tally("what is asked of a run is answered as its samples and equations say", "first, last, one between")
+    for row in {row[0]: row for row in (*done[:1], *between, *done[-1:])}.values():
         told = dict(zip(plan.asked, row[4 + len(plan.runs.names) :], strict=True))
-        set_, how = dict(zip(plan.runs.names, row[4:], strict=False)), plan.how
-        model = replace(kernel.valued(set_), outputs=Table({}))
-        run = simulate(model, time=how.time, rtol=how.rtol, atol=how.atol, method=how.method)
-        for text in (text for text in plan.asked if text not in plan.slopes and run.ok):
-            output = asked_of(plan.model, text)
-            tally.add(f"{text} of run {row[0]}", partial(answered_otherwise, run, output, told[text]))
+        model = replace(kernel.valued(dict(zip(plan.runs.names, row[4:], strict=False))), outputs=Table({}))
+        for text, wrong in _answered_otherwise(plan, model, told, moved=row[2] != WITHOUT_MOTION):
+            tally.add(f"{text} of run {row[0]}", wrong)
     yield from tally.checks()
+
+
+def _answered_otherwise(
+    plan: SweepPlan, model: Model, told: Mapping[str, float | None], *, moved: bool
+) -> Iterator[tuple[str, Callable[[], str]]]:
+    """(what is asked of a run, how what is told of it differs): by its samples, by `solve`, by derivatives alone."""
+    how = plan.how
+    outputs = {text: asked_of(plan.model, text) for text in plan.asked if text not in plan.slopes}
+    run = _run_anew(model, how) if moved else None
+    for text, output in outputs.items():
+        if is_without_motion(output):
+            yield text, partial(_solved_otherwise, model, replace(output, unit=None), told[text])
+        elif run is not None and run.ok:
+            yield text, partial(_sampled_otherwise, model, how, run, output, told[text])
+    for text, pair in plan.slopes.items():
+        yield text, partial(_slope_otherwise, model, pair, how.time, told[text])
+
+
+def _run_anew(model: Model, how: Stepped, coarser: float = 1.0) -> Trajectory:
+    return simulate(model, time=how.time, rtol=coarser * how.rtol, atol=coarser * how.atol, method=how.method)
+
+
+def _sampled_otherwise(model: Model, how: Stepped, run: Trajectory, output: Output, told: float | None) -> str:
+    """How what is told differs from the samples of the run.
+
+    Raises:
+        NoValue: so does what the run itself says from another one by coarser steps: motions part.
+    """
+    wrong = answered_otherwise(run, output, told)
+    own = run.ask(output).value if wrong else None
+    if isinstance(own, float) and answered_otherwise(_run_anew(model, how, COARSER), output, own):
+        raise NoValue("motions from one start part by their steps")
+    return wrong
+
+
+def _solved_otherwise(model: Model, output: Output, told: float | None) -> str:
+    (answer,) = solve(replace(model, outputs=Table({"asked": output}))).values()
+    return _other_number(told, answer.value)
+
+
+def _slope_otherwise(model: Model, pair: tuple[str, str], time: float, told: float | None) -> str:
+    return _other_number(told, slope_in_si(model, *pair, time)[0])
+
+
+def _other_number(told: float | None, due: float | None) -> str:
+    if told is None or due is None:
+        return "" if told is due else f"{told} for {due}"
+    return differing(told, due)
 
 
 def _rows_proven(found: Sweep) -> Iterator[Check]:

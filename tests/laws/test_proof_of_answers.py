@@ -13,6 +13,7 @@ from slider_crank import SLIDER_CRANK
 
 import eomgen
 from eomgen.cli import main
+from eomgen.model.forces import distributed
 from eomgen.questions import answers
 from eomgen.questions.at_instant import StateAtInstant
 from eomgen.questions.proof_of_answers import _by_coincidence
@@ -221,3 +222,23 @@ def test_a_closed_form_holds_beside_the_parameters_too():
     if all(node in there.exact for node in (x, *moment.phase.system.symbols.u)):
         assert _by_coincidence(there, at) == ""
         assert "by coincidence" in _by_coincidence(replace(there, exact={**there.exact, x: Fraction(1, 4)}), at)
+
+
+def test_a_load_on_what_stands_is_the_one_that_is_declared(monkeypatch):
+    """A = q L/2 of a beam, by the fields of its load: what pushes otherwise is seen where no coordinate moves."""
+    text = """
+eomgen = 1
+space = "plane"
+bodies.beam = { points = { A = [0, 0], B = [4, 0] } }
+[constraints]
+A = { kind = "pin", points = ["beam.A"] }
+B = { kind = "support", point = "beam.B", normal = [0, 1] }
+[forces]
+load = { kind = "distributed", body = "beam", between = ["A", "B"], intensity = [0, -3] }
+[outputs]
+A = "reaction_y(A)"
+"""
+    assert solved(text)["A"].exact == "6" and not failing(solved(text))
+    resultant = distributed._resultant
+    monkeypatch.setattr(distributed, "_resultant", lambda length, near, far: resultant(2 * length, near, far))
+    assert any("applied" in name for name in failing(solved(text)))
