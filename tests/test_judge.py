@@ -357,6 +357,12 @@ def test_a_value_of_one_hides_no_missing_factor():
     assert verdict("simple_pendulum", "T = 0.5*theta'^2").verdict == "wrong"
 
 
+def test_inertia_terms_as_they_are_printed_are_no_product():
+    """c(theta') = 0 of a pendulum is right and not asked by itself: no verdict, where c * theta' = 0 would be wrong."""
+    with pytest.raises(ExpressionError, match="not judged by itself"):
+        verdict("simple_pendulum", "c(theta') = 0")
+
+
 @pytest.mark.slow
 def test_sympy_equations_are_read():
     """d2/dt2 theta(t) is theta''."""

@@ -33,6 +33,7 @@ LETTERS = {"T": "kinetic_energy", "V": "potential_energy", "Q": "generalized_for
 """letter -> the function that it stands for"""
 FREQUENCY = re.compile("omega(?:_?([0-9n]))?")
 """the letter of a frequency of small motions"""
+INERTIA_TERMS = re.compile(r"(?<![\w'])c\(([^\W\d]\w*'?)\)")
 MULTIPLIER = "lam"  # of a closing row: lam(tie, 1)
 
 
@@ -205,6 +206,7 @@ class Reading:
         """
         if not isinstance(given, str):
             given = text_of_sympy(given)
+        self._refuse_inertia_terms(given)
         left, right = self._sides(given)
         left = self._alone(left, right)
         used = {name: formula for name, formula in self.letters.items() if name in left.names | right.names}
@@ -213,6 +215,19 @@ class Reading:
         slopes = (call for side in (left, right) for call in calls_in(side) if call.name == SLOPE)
         letters |= {str(call): f"d{call.args[0]}/d{call.args[1]}" for call in slopes}
         return HandEquation(given, left, right, letters)
+
+    def _refuse_inertia_terms(self, given: str) -> None:
+        """c(u) as `derive` prints it, where the model has no c: no product, and nothing that can be asked.
+
+        Raises:
+            ExpressionError: it stands there.
+        """
+        speeds = {u.name for u in self.system.symbols.u} - {"c"}
+        for found in INERTIA_TERMS.finditer(given):
+            if "c" not in self.system.scope.names and found[1] in speeds:
+                what = f"'{found[0]}', the inertia terms without accelerations, is not judged by itself"
+                mend = "judge the equation of motion, or T"
+                raise ExpressionError(what, found.start(), mend, len(found[0]))
 
     def _alone(self, left: Expression, right: Expression) -> Expression:
         """A letter alone on the left that the model does not have.

@@ -166,8 +166,7 @@ def moved_otherwise(
     free = system.free or system
     if friction and free is not system:
         raise NoValue("there is friction")
-    known = state if free is system else _with_free_motion(system, free, state)
-    known = known | dict.fromkeys(free.symbols.lam, fifty_digits().number(0))
+    known = _of_all_rates(system, free, state)
     needed, J = _demand(free, known), rows_where_closed(free.ties, known)
     held = np.vstack([J, *_unit_lengths(free, known)])
     turning = (float(known[x]) ** 2 for x in free.scope.symbols.u)  # what the rate of J brings is of the size J u^2
@@ -182,10 +181,24 @@ def moved_otherwise(
     if free is not system and allowed.shape[1] > _motions_elsewhere(free, known, regular):
         raise NoValue("in a singular position, where more may move than elsewhere")
     for z in allowed.T:
-        if abs(z @ forces) > abs(z) @ (COMPUTED * sizes + ZERO_AT_50):
+        if abs(z @ forces) > abs(z) @ (COMPUTED * sizes + ZERO_AT_50) + abs(z @ _rounded(system, free, state, needed)):
             most = free.scope.symbols.u[int(np.argmax(abs(z) * sizes))]
             return f"the bodies are not in balance along {most.name}"
     return ""
+
+
+def _of_all_rates(system: System, free: System, state: State) -> State:
+    """The state of the free system, where nothing pushes along its rows."""
+    known = state if free is system else _with_free_motion(system, free, state)
+    return known | dict.fromkeys(free.symbols.lam, fifty_digits().number(0))
+
+
+def _rounded(system: System, free: System, state: State, needed: Demand) -> np.ndarray:
+    """What the forces change by where accelerations do by COMPUTED of each: s2'' = u1' - u2' may be rounding alone."""
+    rng, a = Random(1), system.symbols.a
+    shaken = {x: state[x] * (1 + COMPUTED * rng.choice((-1, 1)) * rng.uniform(0.5, 1)) for x in a}
+    there = _demand(free, _of_all_rates(system, free, state | shaken))
+    return np.array([float(x - y) for x, y in zip(there.forces, needed.forces, strict=True)])
 
 
 def _motions_elsewhere(free: System, state: State, regular: float) -> float:

@@ -8,6 +8,7 @@ The places come from the equations of statics, Q + J^T lam = 0, phi = 0; the equ
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Mapping, Sequence
+from contextlib import suppress
 from functools import cached_property
 from random import Random
 from typing import Any
@@ -30,6 +31,7 @@ from eomgen.symbolic.numeric.evaluation import NoValue, evaluate, fifty_digits
 from eomgen.symbolic.numeric.tolerances import COMPUTED, DIFFERENCE_STEP, SAME_PLACE, SHARE, ZERO_AT_50
 
 MOST = 12  # places that are looked at
+ASIDE = fifty_digits().number(1) / 100  # of a coordinate or 1: beside a place where nothing pushes back at first
 BY_MOTION = "50 digits"
 NOTHING_ACCELERATED = "nothing is accelerated at the places of rest"
 
@@ -210,17 +212,28 @@ class _Proof:
             return moving
         rng, numbers = Random(5), self.numbers
         aside = {q: rng.choice((-1, 1)) * STEP * max(1, abs(numbers[q])) for q in self.first.system.symbols.q}
-        late, early = (
-            self.nearby.going({**numbers, **{q: numbers[q] + sign * d for q, d in aside.items()}}).a for sign in (1, -1)
-        )
-        usual = max((abs(late[u] - early[u]) / (2 * STEP) for u in late), default=0)
+        usual = self._moved(aside, 1)
         for u, x in self.nearby.going(numbers).a.items():
             if abs(x) > COMPUTED * usual + ZERO_AT_50:
+                with suppress(NoValue, ZeroDivisionError):
+                    if abs(x) <= COMPUTED * self._moved(aside, ASIDE / STEP):
+                        continue
                 beside = self.nearby.going({**numbers, **{q: numbers[q] + STEP * d for q, d in aside.items()}}).a[u]
                 if abs(beside - x) > SHARE * abs(x):
                     raise NoValue(f"{u.name} is 0/0 there")
                 return f"{u.name} changes by {float(x):.3g}"
         return ""
+
+    def _moved(self, aside: Mapping[Node, Any], farther: Any) -> Any:
+        """The largest acceleration of a displacement so much farther, for each unit of it.
+
+        Where the slopes of all forces vanish, as of k (x - sin x) at 0, those far from there tell what is usual.
+        """
+        late, early = (
+            self.nearby.going({**self.numbers, **{q: self.numbers[q] + s * farther * d for q, d in aside.items()}}).a
+            for s in (1, -1)
+        )
+        return max((abs(late[u] - early[u]) / (2 * STEP * farther) for u in late), default=0)
 
     def wrong_stability(self) -> str:
         """One freedom that is pushed aside: what it does. Of several the eigenvalues of the slopes of the free
@@ -253,9 +266,11 @@ class _Proof:
     def _pulls(self, q: Node, row: int) -> list[Any]:
         """The accelerations from both sides, of the least push at which they are more than is left at the place."""
         place, left = self.numbers[q], abs(self._accelerations({})[row])
-        push, most = STEP, DIFFERENCE_STEP * max(1, abs(place))
-        while True:
+        size = max(1, abs(place))
+        for push in (STEP, STEP / SHARE, DIFFERENCE_STEP * size, ASIDE * size):
             pulls = [self._accelerations({q: place + sign * push})[row] for sign in (1, -1)]
-            if push >= most or min(map(abs, pulls)) > left / COMPUTED:
+            if min(map(abs, pulls)) > left / COMPUTED:
                 return pulls
-            push = min(push / SHARE, most)
+        if left:
+            raise NoValue("what is left at the place hides what pushes back")
+        return pulls
