@@ -21,6 +21,9 @@ from eomgen.codegen.rhs import compiled
 from eomgen.documents.linearize.result import Linearization
 from eomgen.documents.quantity import Quantity
 from eomgen.errors import DerivationError, ModelError, RunFailed
+from eomgen.mechanics.constraints.elimination import dependent_coordinates
+from eomgen.mechanics.equations.system import system_of
+from eomgen.mechanics.initial_state.initial_state import start_state
 from eomgen.mechanics.initial_state.numeric_value import known_exactly
 from eomgen.mechanics.instant.outputs import asks_of
 from eomgen.model.fields import AtRest, WrittenEquation
@@ -79,7 +82,7 @@ class Solver(Protocol):
 def certificate_of(solver: Solver, answers: Mapping[str, Quantity]) -> Certificate:
     """The proof of the equations where a motion is asked, then of every answer."""
     proof = _Proof(solver, answers)
-    of_a_motion = (*proof.numbers(), *proof.formulas(), *proof.instants(), *proof.ways())
+    of_a_motion = (*proof.begins(), *proof.numbers(), *proof.formulas(), *proof.instants(), *proof.ways())
     return Certificate((*proof.equations, *proof.texts(), *of_a_motion, *proof.apart()))
 
 
@@ -103,6 +106,17 @@ class _Proof:
             with suppress(ModelError, DerivationError):  # what moves no mass, or forces that are sought: at rest alone
                 return proven(phase.equations).checks
         return tuple(other_data(phase.system.motion))
+
+    def begins(self) -> Iterator[Check]:
+        """Where the motion is over all rates, it begins where the model does over those that are its own."""
+        own = self.solver.motions[False].phase.system
+        if not self.asked or own.free is not None or not dependent_coordinates(own.scope):
+            return
+        tally = Tally("answers begin where the motion of the model does", "the start over its own speeds")
+        here = start_state(own)
+        for name, x in start_state(system_of(self.solver.model, own.modes)).items():
+            tally.add(name, partial(differing, here[name], x))
+        yield from tally.checks()
 
     # -- what is printed ---------------------------------------------------------------------------
 
