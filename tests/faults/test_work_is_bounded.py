@@ -15,7 +15,10 @@ from click.testing import CliRunner
 import eomgen
 from eomgen.cli import main
 from eomgen.errors import EomgenError
+from eomgen.mechanics.bodies import places
 from eomgen.mechanics.constraints import closure
+from eomgen.mechanics.equations.system import system_of
+from eomgen.mechanics.initial_state.exact_start import ExactStart
 from eomgen.questions import answers
 from eomgen.questions.run import run
 from eomgen.simulation import motion as simulation_motion
@@ -34,6 +37,7 @@ from eomgen.symbolic.numeric.work import (
     keep_what_there_is,
     patience,
 )
+from eomgen.symbolic.print.text import text_size
 from eomgen.symbolic.solve.linear_systems import LinearSystem, general_solution
 
 MODELS = Path(__file__).parents[2] / "models"
@@ -421,3 +425,17 @@ def test_ties_that_close_nowhere_near_the_start_are_not_looked_for_by_every_ques
     monkeypatch.setattr(closure, "closed", lambda *given: sought.append(1) or own(*given))
     assert eomgen.derive(eomgen.loads(OUT_OF_REACH)).render("text")
     assert 0 < len(sought) < 60
+
+
+def test_no_equation_of_a_loop_is_longer_than_a_page(monkeypatch):
+    """Joined again and again, equations of loops in space grow to ten pages, of which no root is taken."""
+    own, sizes = places._waves, list[int]()
+
+    def waves(equation, q):
+        sizes.append(text_size(equation))
+        return own(equation, q)
+
+    monkeypatch.setattr(places, "_waves", waves)
+    model = eomgen.load(Path(__file__).parents[1] / "laws" / "machines" / "double_cardan.toml")
+    assert ExactStart(system_of(model)).exact
+    assert max(sizes) <= places.PAGE

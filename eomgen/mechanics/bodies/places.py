@@ -197,8 +197,13 @@ def _without_angle(first: WaveSum, second: WaveSum, located: Located) -> Scalar:
 
 
 def _loops(left: Sequence[Scalar], unknowns: Collection[Node]) -> Iterator[tuple[int, int, Node, WaveSum, WaveSum]]:
-    """Two equations a cos q + b sin q + r = 0 of one unknown q that fix both waves, with other unknowns in them."""
-    for i, j in combinations(range(len(left)), 2):
+    """Two equations a cos q + b sin q + r = 0 of one unknown q that fix both waves, with other unknowns in them.
+
+    Both of less than a page: what is longer has grown by joining others, as around a loop in space, and no root of it
+    is one that is taken.
+    """
+    short = [i for i, x in enumerate(left) if text_size(x) <= PAGE]
+    for i, j in combinations(short, 2):
         for q in _held(left[i], unknowns):
             if len(_held(left[i], unknowns)) < 2 or q not in _held(left[j], unknowns):
                 continue
