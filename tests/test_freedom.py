@@ -191,6 +191,26 @@ def test_a_count_that_is_another_one_is_contradicted_by_the_rank_of_differences(
     assert all(counted_otherwise(model, {}, each) for each in wrong)
 
 
+def test_components_that_are_held_twice_are_named():
+    """f by rank - f by components = rows that hold what others do: a door on two hinges has 1 + 4 = 5."""
+    door = eomgen.loads("""
+eomgen = 1
+space = "space"
+coordinates = { psi = 0.3 }
+[bodies.door]
+shape = { kind = "box", mass = 20, size = [0.8, 0.04, 2] }
+points = { low = [-0.4, 0, -0.5], high = [-0.4, 0, 0.5] }
+joint = { kind = "placed", at = ["0.4*cos(psi)", "0.4*sin(psi)", 1], angle = "psi" }
+[constraints]
+low = { kind = "pin", points = ["door.low"], axis = [0, 0, 1] }
+high = { kind = "pin", points = ["door.high"], axis = [0, 0, 1] }
+""")
+    found = eomgen.freedom_of(door)
+    assert len(found.redundant) == 5 and counted_otherwise(door, {}, found) == ""
+    fewer = replace(found, redundant=found.redundant[1:])
+    assert "5 components are held twice, and 4 named" in counted_otherwise(door, {}, fewer)
+
+
 def test_a_count_that_is_printed_or_told_otherwise_is_seen():
     """Lines and entries of `check` say the degrees of freedom, the rows and their ties that were found"""
     found = checked_model(eomgen.loads(HEAD + FOUR_BAR + HINGE + MIDDLE + coordinates(q1=1.0, q2=0.1, q3=1.0, q4=1.0)))

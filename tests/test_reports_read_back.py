@@ -5,17 +5,18 @@ from __future__ import annotations
 from dataclasses import replace
 from functools import cache
 from pathlib import Path
+from types import SimpleNamespace
 
 import pytest
 from slow_run import usual
 
 import eomgen
 from eomgen.documents.plots import KINDS, kinds_of_lines
-from eomgen.page.contents import Report
+from eomgen.page.contents import Attachment, Report, ReportSection
 from eomgen.page.curves import COLORS, number_axis
 from eomgen.page.formats import written_as
 from eomgen.page.mathml import mathml
-from eomgen.page.read_back import report_read_back
+from eomgen.page.read_back import _carried, report_read_back
 from eomgen.proof.reports_read import copies_undone, curves_of, markup_of, tex_of
 from eomgen.proof.typeset import tokens_of
 from eomgen.simulation.result import Trajectory
@@ -199,6 +200,13 @@ def test_what_is_set_for_a_page_is_read_as_it_was_written(tex: str):
 def test_what_is_said_by_a_place_far_back_is_put_back():
     """2 new bytes, then 3 from 2 back: abab a, then the rest."""
     assert copies_undone(bytes([3, 2, 2, 3]) + b"abcd") == b"ababacd"
+
+
+def test_a_file_that_a_page_carries_is_the_one_that_was_made():
+    """unpack(pack(content)) = content: a byte more is seen, and a file that is not there."""
+    report = replace(made(), sections=(ReportSection("downloads", attachments=(Attachment("a.c", "", b"x", ""),)),))
+    for files, seen in (((("a.c", b"x", ()),), False), ((("a.c", b"y", ()),), True), ((), True)):
+        assert bool([*_carried(report, SimpleNamespace(files=files))]) == seen
 
 
 STRANDS = [

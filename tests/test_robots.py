@@ -734,6 +734,7 @@ def test_every_push_that_urdf_cannot_say_is_told(tmp_path):
     assert left["forces"] == ("pull", "push", "load") and unsaid_otherwise(found.text, model, left) == ""
     for what, names in left.items():
         assert what in unsaid_otherwise(found.text, model, left | {what: names[1:]}), what
+    assert "weight" in unsaid_otherwise(found.text, model, left | {"forces": ("weight", *left["forces"])})
 
 
 def test_what_is_exported_is_read_again(tmp_path):

@@ -207,6 +207,7 @@ def printed_formulas(document: Document) -> Printed:
     """The formulas that hold at any state, and what is said to stay constant, as they are printed."""
     formulas: list[tuple[str, ...]] = []
     constants: list[tuple[str, str]] = []
+    laws = [x for step in document.steps if step.key == "laws" for x in step.statements if isinstance(x, Formula)]
     for step in (step for step in document.steps if step.key not in FROM_THE_START):
         while_ = ""
         for statement in step.statements:
@@ -219,4 +220,5 @@ def printed_formulas(document: Document) -> Printed:
                 constants.append((sides[-1], while_))
             else:
                 formulas.append(sides)
-    return Printed(tuple(formulas), tuple(constants))
+    told = tuple((side_text(x.sides[0]), side_text(x.sides[-1])) for x in laws)
+    return Printed(tuple(formulas), tuple(constants), laws=told)

@@ -70,6 +70,7 @@ def report_read_back(report: Report, files: FilesByName, form: str, run: Traject
     yield from comparison.checks(list(_wanted(report, form)), read.blocks)
     if form == ".html":
         yield from _copied(report, read)
+        yield from _carried(report, read)
     if run is not None and len(run.t):
         yield from _of_run(report, comparison.letters, read, run)
 
@@ -129,6 +130,15 @@ def _copied(report: Report, read: ReadReport) -> Iterator[Check]:
     found = "".join(flat(text) for text, _ in read.copied).translate(_BRACKETS)
     wrong = "" if said == found else "another formula is copied"
     yield checked("formulas, copied as text, are those of the page", wrong, "texts of the grammar")
+
+
+def _carried(report: Report, read: ReadReport) -> Iterator[Check]:
+    """A contradiction where a file that the page carries packed is, unpacked, another one; else nothing."""
+    found = {name: content for name, content, _ in read.files}
+    files = (file for section in report.sections for file in section.attachments)
+    other = [file.name for file in files if isinstance(file.content, bytes) and found.get(file.name) != file.content]
+    if other:
+        yield checked("files that the page carries are those that were made", ", ".join(other), "unpacked, every byte")
 
 
 # -- curves and tables ---------------------------------------------------------------------------------------------

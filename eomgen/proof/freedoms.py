@@ -48,11 +48,24 @@ def counted_otherwise(model: Model, modes: ContactModes, found: Freedom) -> str:
         return ""
     try:
         ties = ties_of(motion_of(scope_of(model)), modes=modes)
+        if wrong := _unnamed(ties, found):
+            return wrong
         if not ties.closing or len(ties.motion.scope.symbols.u) > MOST:
             return ""
         return _by_differences(ties, generic_state(ties, Random(29)), found)
     except (DerivationError, MissingValues, ModelError, NoValue, ZeroDivisionError):  # the count has said so
         return ""
+
+
+def _unnamed(ties: Ties, found: Freedom) -> str:
+    """That fewer rows are named as redundant than the count by components lacks; "" where ties act on no body.
+
+    The count takes off every component that is held: what it lacks of the freedoms by rank is held twice.
+    """
+    if found.by_rank is None or found.by_formula is None or not all(row.wrenches for row in ties.rows):
+        return ""
+    lacking = found.by_rank - found.by_formula
+    return f"{lacking} components are held twice, and {len(found.redundant)} named" * (lacking > len(found.redundant))
 
 
 def standing_otherwise(structure: Structure) -> str:

@@ -30,6 +30,7 @@ LIMITS = {  # as the remark of a coordinate tells them
     "velocity": re.compile(r"at most (\S+) (?:rad|m)/s"),
 }
 G = (0.0, 0.0, -9.81)  # of what reads URDF [m/s^2]
+EXACT = ("forces", "stiffness", "armature", "given motions")  # of which nothing else is told to be left out
 TURNING, SLIDING = ("revolute", "continuous"), ("prismatic",)
 
 
@@ -80,6 +81,8 @@ def unsaid_otherwise(text: str, model: Model, left_out: Mapping[str, Collection[
     for what, names in due.items():
         if missing := [name for name in names if name not in left_out.get(what, ())]:
             return f"{what} of '{missing[0]}' are not said, and not told to be left out"
+        if what in EXACT and (more := [name for name in left_out.get(what, ()) if name not in names]):
+            return f"{what} of '{more[0]}' are told to be left out, and are said, or are not there"
     for what, (names, there) in said.items():
         if len(names) - there != len({*left_out.get(what, ())} & {*names}):
             return f"{what}: {len(names)}, of which {there} are said and {len(left_out.get(what, ()))} are left out"

@@ -17,23 +17,29 @@ import numpy as np
 from eomgen.errors import DerivationError, ExpressionError, UsageError
 from eomgen.mechanics.bodies.inertia import spin_of
 from eomgen.mechanics.constraints.closure import of_50_digits as precise
+from eomgen.mechanics.equations.accelerations import exact_accelerations
 from eomgen.mechanics.equations.equations_of_motion import EquationsOfMotion
 from eomgen.mechanics.instant.outputs import Quantities
 from eomgen.model.outputs import FUNCTIONS
 from eomgen.model.outputs.base import BALANCE
+from eomgen.model.values import exact_parameters
 from eomgen.proof.in_numbers import way_through
 from eomgen.proof.states import refuse_open
 from eomgen.records import dataclass
 from eomgen.symbolic.expression.derivative import gradient
 from eomgen.symbolic.expression.expressions import LONGEST, Call, parse
+from eomgen.symbolic.expression.functions import inner
 from eomgen.symbolic.expression.graph import Node, Scalar
 from eomgen.symbolic.expression.node import State
+from eomgen.symbolic.expression.rational import Fraction
 from eomgen.symbolic.expression.spatial import Vector
 from eomgen.symbolic.numeric.dense import of_one_length
 from eomgen.symbolic.numeric.evaluation import NoValue, evaluate, fifty_digits
 from eomgen.symbolic.numeric.tolerances import COMPUTED
 
 SPINS = ("omega_1", "omega_2", "omega_3")  # about the axes of the body
+SOON = (precise(1) / 1000, precise(1) / 70)  # s after the start, in whose piece a law holds
+SHORT = precise(1) / 10**12  # s, of differences
 LAST = fifty_digits().number(1) / 10**44  # of the numbers of a state: their last digits
 SHOWN = 60  # characters of one that cannot be read
 
@@ -48,6 +54,7 @@ class Printed:
         letters: what a letter that only formulas define is worth by another way.
         texts: (where, text, the scalar that it stands for).
         definitions: (name, text) of parts that have a name in these texts, each before its use.
+        laws: (coordinate, text) of motions from the start as functions of the time.
     """
 
     formulas: tuple[tuple[str, ...], ...] = ()
@@ -55,6 +62,7 @@ class Printed:
     letters: Mapping[str, Scalar] = field(default_factory=dict)
     texts: tuple[tuple[str, str, Scalar], ...] = ()
     definitions: tuple[tuple[str, str], ...] = ()
+    laws: tuple[tuple[str, str], ...] = ()
 
 
 @dataclass(frozen=True)
@@ -219,9 +227,77 @@ class ReadBack:
                 return f"{text} changes by {float(rate):.3g} in a second"
         return ""
 
+    def wrong_law(self) -> str:
+        """Which law of motion does not begin at the start, breaks a tie or is accelerated otherwise; "" where none is.
+
+        Raises:
+            NoValue: no law is read, or something has no value soon after the start.
+        """
+        e, names = self.equations, {x.name: x for x in self.equations.symbols.q}
+        read = {names[q]: self._read(text, self._formulas[1]) for q, text in self.printed.laws if q in names}
+        laws = {q: x for q, x in read.items() if x is not None}
+        speeds = {u.name: u for u in e.symbols.u}
+        if not laws or e.friction or any(f"{q.name}'" not in speeds for q in e.symbols.q):
+            raise NoValue("no law is read")
+        start = self._declared_start()
+        closed = not e.J or not _broken(e, start)
+        for instant in (precise(0),) if closed else ():
+            for q, (worth, rate, _) in _along(laws, start, instant).items():
+                for what, found, due in (("is", worth, start[q]), ("moves by", rate, start[speeds[f"{q.name}'"]])):
+                    if abs(found - due) > COMPUTED * (1 + abs(due)):
+                        return f"{q.name} {what} {float(found):.9g} at the start, not {float(due):.9g}"
+        for instant in SOON:
+            moved = _along(laws, start, instant)
+            state = {**start, e.symbols.t: instant, **{q: worth for q, (worth, _, _) in moved.items()}}
+            state |= {speeds[f"{q.name}'"]: rate for q, (_, rate, _) in moved.items()}
+            if len(laws) == len(names) and (tie := _broken(e, state)):
+                return f"'{tie}' does not hold at t = {float(instant):.3g} s"
+            a = dict(zip(speeds, exact_accelerations(e, state), strict=True))
+            for q, (_, _, found) in moved.items():
+                due = a[f"{q.name}'"]
+                if abs(found - due) > COMPUTED * (1 + abs(found)):
+                    return f"{q.name} is accelerated by {float(found):.9g}, not {float(due):.9g}"
+        return ""
+
+    def _declared_start(self) -> dict[Node, Any]:
+        """t, parameters, coordinates and speeds at the start as they are declared; parameters without a value some."""
+        scope, symbols = self.equations.system.scope, self.equations.symbols
+        known, parts = exact_parameters(scope.model), scope.model.coordinates
+        values: dict[Node, Any] = {symbols.t: precise(0), **dict.fromkeys(symbols.inputs.values(), precise(0))}
+        for k, (name, node) in enumerate(symbols.parameters.items()):
+            values[node] = precise(float(known.get(name, 1 + Fraction(1, k + 2))))
+        for suffix, nodes in (("", symbols.q), ("'", symbols.u)):
+            for x in nodes:
+                part = parts.get(x.name.removesuffix("'"))
+                given = None if part is None else part.speed if suffix else part.start or part.near
+                values[x] = precise(0) if given is None else evaluate((scope.value(given),), values, fifty_digits())[0]
+        return values
+
     @staticmethod
     def _is_met(limits: Sequence[Scalar], state: State) -> bool:
         return all(x < 0 for x in evaluate(limits, state, fifty_digits()))
+
+
+def _along(laws: Mapping[Node, Scalar], values: State, instant: Any) -> dict[Node, tuple[Any, Any, Any]]:
+    """(value, rate, acceleration) of each law at an instant, by differences."""
+    (t,) = (x for x in values if x.name == "t")
+    early, here, late = (
+        evaluate(tuple(laws.values()), {**values, t: instant + h}, fifty_digits()) for h in (-SHORT, 0 * SHORT, SHORT)
+    )
+    return {
+        q: (b, (c - a) / (2 * SHORT), (c - 2 * b + a) / SHORT**2)
+        for q, a, b, c in zip(laws, early, here, late, strict=True)
+    }
+
+
+def _broken(equations: EquationsOfMotion, state: State) -> str:
+    """The first tie that is open at a state, or opens; ""."""
+    rows = equations.system.ties.closing
+    rates = (inner(line, equations.symbols.u) + rest for line, rest in zip(equations.J, equations.sigma, strict=True))
+    gaps = (0 if row.gap is None else row.gap for row in rows)
+    found = evaluate((*gaps, *rates), state, fifty_digits())
+    names = [row.tie for row in rows] * 2
+    return next((tie for tie, x in zip(names, found, strict=False) if abs(x) > COMPUTED), "")
 
 
 def _unequal(pairs: Sequence[tuple[str, Scalar, Scalar]], state: State) -> str:

@@ -7,6 +7,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Iterable, Sequence
+from contextlib import suppress
 from functools import cached_property
 from random import Random
 from typing import TYPE_CHECKING, Any
@@ -409,6 +410,11 @@ class Trials:
             yield self._at_states(
                 name, "differences at 50 digits", lambda state: text.drifting(self._moving(state)), moving=True
             )
+
+        if printed.laws:
+            name = "laws of motion, read back, are the motion from the start"
+            with suppress(NoValue, ZeroDivisionError, DerivationError):
+                yield checked(name, text.wrong_law(), "differences at 50 digits, soon after the start")
 
     def balance(self) -> Iterable[Check]:
         """D'Alembert's principle for every body, every pair and the whole; none where reactions do not follow."""

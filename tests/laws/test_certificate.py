@@ -27,6 +27,7 @@ from eomgen.mechanics.reactions import reactions
 from eomgen.mechanics.reactions.equilibrium import imbalance
 from eomgen.model.forces.gravity import Gravity
 from eomgen.model.forces.reach import Reach
+from eomgen.proof.printed import Printed
 from eomgen.proof.states import closed_state
 from eomgen.symbolic.expression.graph import Scalar, linear_terms
 from eomgen.symbolic.expression.spatial import times
@@ -348,3 +349,35 @@ joint = {{ kind = "revolute", angle = "a" }}
 shape = {{ kind = "rod", mass = "m", length = "l" }}
 joint = {{ kind = "revolute", on = "crank.end", angle = "b" }}
 """
+
+
+ROPE = """
+eomgen = 1
+space = "plane"
+parameters = { m1 = 3, m2 = 1, g = 9.81 }
+coordinates = { y1 = { start = 0, speed = 1 }, y2 = 0 }
+points = { A = [-1, 5], B = [1, 5] }
+bodies.L.shape = { kind = "particle", mass = "m1" }
+bodies.L.joint = { kind = "prismatic", axis = [0, -1], at = [-1, 0], displacement = "y1" }
+bodies.R.shape = { kind = "particle", mass = "m2" }
+bodies.R.joint = { kind = "prismatic", axis = [0, -1], at = [1, 0], displacement = "y2" }
+constraints.rope = { kind = "string", path = ["L.center", "A", "B", "R.center"] }
+forces.g = { kind = "gravity", acceleration = [0, "-g"] }
+"""
+FALLS = "(m1 - m2)*g/(2*(m1 + m2))*t^2"
+
+
+@pytest.mark.parametrize(
+    ("laws", "wrong"),
+    [
+        ((f"t + {FALLS}", f"-t - {FALLS}"), ""),
+        ((f"t + {FALLS}", f"-{FALLS}"), "'rope' does not hold"),
+        ((f"t + 2*{FALLS}", f"-t - 2*{FALLS}"), "y1 is accelerated by 9.81, not 4.905"),
+    ],
+)
+def test_laws_of_motion_as_they_are_printed_are_the_motion_from_the_start(laws, wrong):
+    """y1 = t + (m1 - m2) g t^2/2 (m1 + m2), y1 + y2 = const"""
+    graph = eomgen.derive(eomgen.loads(ROPE)).graph
+    checks = certify(graph, printed=Printed(laws=tuple(zip(("y1", "y2"), laws, strict=True)))).checks
+    (found,) = [check for check in checks if "laws of motion" in check.name]
+    assert bool(found.ok) == (not wrong) and wrong in found.detail
