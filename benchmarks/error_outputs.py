@@ -84,7 +84,7 @@ def _files_apart(ending: str, found: bytes, right: bytes) -> str:
 
 
 def _tables_apart(found: str, right: str) -> str:
-    """Where two model files differ, entry by entry, remarks left out."""
+    """Where two model files differ, entry by entry."""
     try:
         return difference(*(json.dumps(tomllib.loads(text), default=str) for text in (found, right)))
     except tomllib.TOMLDecodeError:

@@ -34,6 +34,7 @@ LIST = Path(__file__).with_name("random_errors.toml")
 SHORT = 5.0  # s of CPU that a run may take while it is traced
 LONGEST, SLOWER = 12.0, 6  # s of CPU that a run with an error may take, and so many times what it takes without
 MEMORY = 8 * 2**30  # bytes of address space
+READ_AS_CODE = "codegen/kernels.py"  # whose functions are read, not called
 Function = tuple[str, str]  # a file below eomgen/, and the qualified name of a function in it
 
 
@@ -84,7 +85,8 @@ class Server:
             if isinstance(x, FunctionType) and x.__code__.co_filename.startswith(PACKAGE):
                 self.functions[x.__code__.co_filename].append(x)
         every = (x for mine in self.functions.values() for x in mine)
-        self.codes = [(x, x.__code__) for x in every if not x.__code__.co_freevars]
+        codes = ((x, x.__code__) for x in every if not x.__code__.co_freevars)
+        self.codes = [(x, code) for x, code in codes if not code.co_filename.endswith(READ_AS_CODE)]
         gc.freeze()
 
     def plant(self, file: str, text: str) -> None:

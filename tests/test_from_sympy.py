@@ -9,6 +9,7 @@ from typing import Any
 import numpy as np
 import pytest
 import sympy as sm
+from hand_made import symbols
 from sympy.physics.mechanics import (
     KanesMethod,
     LagrangesMethod,
@@ -24,6 +25,8 @@ from sympy.physics.mechanics import (
 
 import eomgen
 from eomgen.errors import DerivationError, UsageError
+from eomgen.robots import sympy_words
+from eomgen.robots.sympy_words import file_texts
 from tests.helpers.sympy_systems import SYSTEMS, accelerations_by_kane, accelerations_by_sympy, bicycle
 
 pytestmark = pytest.mark.slow
@@ -156,6 +159,18 @@ def test_what_is_too_long_for_a_model_file_is_said_to_be(monkeypatch):
     monkeypatch.setattr("eomgen.robots.sympy_words.LONGEST_WITH_PARTS", 10_000)
     with pytest.raises(DerivationError, match=r"characters to write, of which a model file may have 10000"):
         eomgen.from_sympy(LagrangesMethod(q.diff() ** 2 / 2 - long, [q]))
+
+
+def test_a_formula_that_is_written_as_another_one_is_refused(monkeypatch):
+    """read(write(f)) = f at a random state: a text of 2 f, or of f with another sign, never becomes a model."""
+    s = symbols("x y")
+    x, y = s.q
+    scalar = x * x + 3 * y
+    assert file_texts([scalar]) == ["x^2 + 3*y"]
+    for text in ("2*x^2 + 6*y", "x^2 - 3*y"):
+        monkeypatch.setattr(sympy_words, "to_text", lambda _, text=text: text)
+        with pytest.raises(DerivationError, match="written as another one"):
+            file_texts([scalar])
 
 
 def test_a_parameter_that_is_called_like_a_coordinate_or_an_input_is_another_thing():

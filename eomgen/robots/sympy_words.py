@@ -2,23 +2,29 @@
 
 from __future__ import annotations
 
+import math
 import re
 from collections.abc import Container, Mapping, Sequence
+from contextlib import suppress
 from dataclasses import field
 from decimal import Decimal
 from functools import cached_property
+from random import Random
 from typing import Any
 
 import sympy
 from sympy.physics.vector import dynamicsymbols
 
-from eomgen.errors import DerivationError
+from eomgen.errors import DerivationError, ExpressionError
 from eomgen.records import dataclass
 from eomgen.robots.drawn_up import LegalNames
 from eomgen.symbolic.exact.normal_form import simplest
-from eomgen.symbolic.expression.expressions import LONGEST, LONGEST_WITH_PARTS
+from eomgen.symbolic.expression.derivative import symbols_of
+from eomgen.symbolic.expression.expressions import LONGEST, LONGEST_WITH_PARTS, parse
 from eomgen.symbolic.expression.graph import Graph, Node, Scalar
 from eomgen.symbolic.expression.rational import Fraction, fraction_of
+from eomgen.symbolic.numeric.evaluation import FLOAT, NoValue, evaluate
+from eomgen.symbolic.numeric.tolerances import COMPUTED
 from eomgen.symbolic.numeric.work import Work
 from eomgen.symbolic.print.sympy_form import scalar_from_sympy
 from eomgen.symbolic.print.text import text_size, to_text, with_definitions
@@ -125,7 +131,29 @@ def file_texts(scalars: Sequence[Scalar], taken: Container[str] = ()) -> list[An
         DerivationError: one is longer than a model file may have it even so.
     """
     shortest = [min((simplest(x, Work.FORMULA), x), key=text_size) for x in scalars]
-    return [_written(x, taken) if (value := _decimal(x)) is None else value for x in shortest]
+    found = [_written(x, taken) if (value := _decimal(x)) is None else value for x in shortest]
+    _refuse_misread(scalars, found)
+    return found
+
+
+def _refuse_misread(scalars: Sequence[Scalar], found: Sequence[Any]) -> None:
+    """Refuses texts that, read back by the grammar, are worth another number than what they stand for.
+
+    Raises:
+        DerivationError: one is.
+    """
+    rng, symbols = Random(41), symbols_of(scalars)
+    state = {x: rng.uniform(0.5, 1.0) for x in sorted(symbols, key=lambda x: x.name)}
+    names = {x.name: value for x, value in state.items()} | {"pi": math.pi}
+    for x, text in zip(scalars, found, strict=True):
+        if not isinstance(text, str):
+            continue
+        with suppress(NoValue, ExpressionError, ArithmeticError, ValueError):  # a root of what is negative there
+            (due,) = evaluate((x,), state, FLOAT)
+            read = float(parse(text, longest=LONGEST_WITH_PARTS).evaluate(names))
+            if abs(read - due) > COMPUTED * (1 + abs(due)):
+                what = f"a formula of sympy is written as another one, {read:.9g} for {due:.9g}: {text[:60]}"
+                raise DerivationError(what, mend="this is a mistake of eomgen: please report it")
 
 
 def _written(x: Scalar, taken: Container[str]) -> str:
