@@ -277,6 +277,12 @@ def is_right_as_code(text: str, target: str) -> None:
     assert eomgen.generate(eomgen.loads(text), (target,)).certify().ok
 
 
+def is_solved(text: str, _: str) -> None:
+    answers = eomgen.solve(eomgen.loads(text))
+    assert all(answer.answered for answer in answers.values())
+    assert answers.certify().ok
+
+
 def rests(text: str, _: str) -> None:
     found = eomgen.statics(eomgen.loads(text))
     assert found.places
@@ -291,6 +297,7 @@ EXPECTED: dict[str, Callable[[str, str], None]] = {
     "unanswered": is_not_answered,
     "rests": rests,
     "code": is_right_as_code,
+    "solved": is_solved,
 }
 
 

@@ -14,10 +14,11 @@ from collections.abc import Container
 from eomgen.errors import DerivationError, MissingValues
 from eomgen.mechanics.balance.friction import frictions
 from eomgen.mechanics.bodies.system_scene import let_go
+from eomgen.mechanics.constraints.elimination import dependent_coordinates
 from eomgen.mechanics.constraints.freedom import redundant_rows
 from eomgen.mechanics.constraints.ties import Row, Ties, holds_identically
 from eomgen.mechanics.equations.equations_of_motion import EquationsOfMotion
-from eomgen.mechanics.equations.system import System, system_of
+from eomgen.mechanics.equations.system import System, free_system_of, system_of
 from eomgen.mechanics.formulations import recursive
 from eomgen.mechanics.reactions.reactions import reactions_of
 from eomgen.model.driven import driving_ties
@@ -53,10 +54,14 @@ def drive(system: System, coordinate: str) -> Scalar:
 
 
 def with_drive_let_go(system: System, coordinate: str) -> System:
-    """The same without what moves a driven coordinate: one like others, which starts where it is driven from."""
+    """The same without what moves a driven coordinate: one like others, which starts where it is driven from.
+
+    A system over all rates stays one: rates that its ties would give need not be those of a state.
+    """
     model = system.scope.model
     table = Table({**model.coordinates, coordinate: let_go(system.scope, coordinate)})
-    return system_of(altered(model, coordinates=table), system.modes, begun_as=system)
+    over_all = system.free is None and dependent_coordinates(system.scope)
+    return (free_system_of if over_all else system_of)(altered(model, coordinates=table), system.modes, begun_as=system)
 
 
 def _friction(system: System, free: System, k: int) -> Scalar:
