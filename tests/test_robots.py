@@ -20,7 +20,7 @@ from eomgen.errors import DerivationError, ModelError, ToolMissing
 from eomgen.exported import urdf_of
 from eomgen.proof.imported_mjcf import OTHER_THINGS, mjcf_otherwise
 from eomgen.proof.imported_sdf import sdf_otherwise
-from eomgen.proof.imported_urdf import imported_otherwise, unsaid_otherwise
+from eomgen.proof.imported_urdf import imported_otherwise, unsaid_otherwise, without_units
 from eomgen.robots.importing import imported
 from eomgen.symbolic.numeric.evaluation import FLOAT, evaluate
 from eomgen.verbs import importing
@@ -704,6 +704,17 @@ MJCF_ARM = """<mujoco><worldbody><body name="a" pos="0 0 1">
   <geom type="box" size=".1 .2 .3"/></body></body>
   <body name="c" pos="1 0 2"><freejoint name="fly"/><geom type="ellipsoid" size="0.1 0.2 0.3"/></body></worldbody>
   <actuator><motor name="w" joint="p" gear="3"/></actuator></mujoco>"""
+
+
+def test_what_an_import_writes_has_units(tmp_path):
+    """[g] = m/s^2, hinges in rad, slides in m: one that is left out is told by its name."""
+    text = robot(tmp_path, FOLLOWING).text
+    assert without_units(eomgen.loads(text)) == ""
+    for old, new, name in (
+        ('{ value = 9.81, unit = "m/s^2" }', "9.81", "g"),
+        ('unit = "rad", about = "joint s.0', 'about = "joint s.0', "s_0"),
+    ):
+        assert old in text and without_units(eomgen.loads(text.replace(old, new))) == f"'{name}' has no unit"
 
 
 def test_every_push_that_urdf_cannot_say_is_told(tmp_path):

@@ -89,6 +89,18 @@ def unsaid_otherwise(text: str, model: Model, left_out: Mapping[str, Collection[
     return ""
 
 
+def without_units(model: Model) -> str:
+    """Which parameter of the weight, or coordinate along which a joint pushes, an import left without a unit; ""."""
+    acts = (act for force in model.forces.values() for act in force.acts)
+    weights = (x for act in acts if isinstance(act, PushOfMass) for x in act.acceleration)
+    joints = (part.joint for part in model.bodies.values() if part.joint is not None)
+    ways = (each.way for joint in joints for each in joint.pushes() if each.way is not None)
+    used = {name for x in (*weights, *ways) for name in x.names}
+    parts: dict[str, Any] = {**model.parameters, **model.coordinates}
+    bare = [name for name in parts if name in used and (parts[name] is None or parts[name].unit is None)]
+    return f"'{bare[0]}' has no unit" if bare else ""
+
+
 def _given(posed: PosedModel, value: Any) -> bool:
     """Whether a value is told, and is another than 0."""
     return value is not None and (bool(value.names) or posed.number(value) != 0)

@@ -12,7 +12,7 @@ from eomgen.errors import UsageError
 from eomgen.pipeline import derive
 from eomgen.proof.imported_mjcf import mjcf_otherwise
 from eomgen.proof.imported_sdf import sdf_otherwise
-from eomgen.proof.imported_urdf import imported_otherwise
+from eomgen.proof.imported_urdf import imported_otherwise, without_units
 from eomgen.robots.importing import ImportedRobot, first_element, imported
 
 MOST_COMPARED = 20  # coordinates of a robot whose forces are derived to be compared
@@ -63,6 +63,8 @@ def import_document(
 def _otherwise(file: str, robot: ImportedRobot) -> str:
     """What of a robot's file is otherwise in the model, by another reading of it; "" where nothing is."""
     root = first_element(robot.source)
+    if bare := without_units(robot.model):
+        return bare
     if root == "mujoco":
         small = len(robot.model.coordinates) <= MOST_COMPARED
         equations = derive(robot.model).graph if small and robot.model.coordinates else None
