@@ -2,13 +2,16 @@
 
 from __future__ import annotations
 
+import math
 from fractions import Fraction
 
 import pytest
 from hypothesis import given, settings
+from hypothesis import strategies as st
 from random_expressions import on_graph, polynomials, smooth, trigonometric
 
 from eomgen.errors import DerivationError
+from eomgen.symbolic.exact import normal_form as normal_form_module
 from eomgen.symbolic.exact.equality import equal_at_random_states
 from eomgen.symbolic.exact.normal_form import (
     TooLarge,
@@ -21,6 +24,8 @@ from eomgen.symbolic.exact.normal_form import (
     readable_all,
     simplest,
 )
+from eomgen.symbolic.exact.powers import power_form
+from eomgen.symbolic.exact.terms import wave
 from eomgen.symbolic.expression.derivative import gradient, tangent
 from eomgen.symbolic.expression.graph import Graph, Node
 from eomgen.symbolic.print.text import to_text
@@ -125,6 +130,42 @@ def test_work_is_bounded(the):
     assert readable(total, limit=100) is total
     assert equal(total, (d + c + b + a) ** 8, limit=100)
     assert not equal(total, (d + c + b - a) ** 8, limit=100)
+
+
+@settings(max_examples=30)
+@given(
+    st.dictionaries(
+        st.tuples(st.sampled_from(("cos", "sin")), st.integers(-3, 3), st.integers(-3, 3)), st.integers(-5, 5)
+    )
+)
+def test_waves_in_powers_hold_no_square_of_a_sine_and_are_the_same_function(chosen):
+    """cos(2 a + b) = (2 C^2 - 1) c - 2 S C s: of each axis C^n or S C^n."""
+    a, b = 0.7, -1.9
+    waves: dict = {}
+    for (kind, m, n), c in chosen.items():
+        w, sign = wave(kind, tuple((k, x) for k, x in ((1, m), (2, n)) if x))
+        waves[w] = waves.get(w, 0) + sign * c
+    axes = (((1, 1),), ((2, 1),))
+    found = power_form(waves, axes)
+    C, S, c, s = math.cos(a), math.sin(a), math.cos(b), math.sin(b)
+    written = sum(x * C**i * S**j * c**k * s**l for (i, j, k, l), x in found.items())
+    angles = {1: a, 2: b}
+    value = sum(
+        x * (getattr(math, w[0])(sum(k * angles[angle] for angle, k in w[1])) if w else 1) for w, x in waves.items()
+    )
+    assert all(found.values()) and all(j < 2 and l < 2 for _, j, _, l in found)
+    assert written == pytest.approx(value, abs=1e-9)
+
+
+def test_where_the_work_is_not_enough_nothing_is_written(the, monkeypatch):
+    """Three divisors are brought to one before anything is written: that ends here."""
+    a, b, x, y = the("a b x y")
+    f = a / (2 + cos(x)) + b / (3 + sin(y)) + a * b / (5 + cos(x + y))
+    assert len(normal_form(f, limit=50).terms) == 3
+    monkeypatch.setattr(normal_form_module, "Writer", None)
+    assert simplest(f, limit=50) is f
+    with pytest.raises(TypeError):
+        simplest(f, limit=5000)
 
 
 # -- reading --------------------------------------------------------------------------------------

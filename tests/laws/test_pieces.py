@@ -250,6 +250,19 @@ def test_a_momentum_stays_while_nothing_pushes_along_it(tmp_path):
     assert found["y"].everywhere and found["x"].text == "x <= d" and found["z"].text == "z >= 0"
 
 
+def test_what_fails_where_the_motion_starts_is_asked_in_no_other_piece(tmp_path):
+    """Whatever holds somewhere holds at the start; the pieces of F are those of 2 F + 1, looked for once."""
+    equations = eomgen.derive(at(BALL + FLOOR, tmp_path)).graph
+    (F,) = equations.forcing
+    division = pieces.division_of(equations, (F,))
+    assert division is pieces.division_of(equations, (2 * F + 1,))
+    asked = []
+    assert division.where(lambda piece: asked.append(piece) is not None) == pieces.NOWHERE
+    assert asked == [division.start]
+    assert division.where(lambda piece: asked.append(piece) is None) == pieces.EVERYWHERE
+    assert set(asked) == set(division.found) and len(division.found) == 2
+
+
 def test_what_begins_later_has_no_law_of_motion_in_closed_form(tmp_path):
     """x'' = -w^2 x + f max(0, t - t0): after t0 a vibration is added that no particular solution by pieces has."""
     spring = 'joint = { kind = "prismatic", axis = [0, 1], displacement = "y", stiffness = "k" }'

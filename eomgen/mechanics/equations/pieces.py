@@ -106,28 +106,38 @@ EVERYWHERE, NOWHERE = Extent(True), Extent(False)
 
 @dataclass(frozen=True)
 class Division:
-    """The pieces of some scalars.
+    """The pieces of some scalars, looked for when they are first asked.
 
     Args:
         system: whose they are.
         nodes: what has pieces.
-        found: every piece that a state was found in, with that state; {} where they are too many.
-        start: that in which the motion starts; None where it is not known.
+        search: what finds them.
     """
 
     system: System
     nodes: tuple[Node, ...]
-    found: Mapping[Choices, State]
-    start: Choices | None
+    search: _Search
+
+    @property
+    def found(self) -> Mapping[Choices, State]:
+        """Every piece that a state was found in, with that state; {} where they are too many."""
+        return self.search.found
+
+    @property
+    def start(self) -> Choices | None:
+        """The piece in which the motion starts; None where it is not known."""
+        return self.search.start
 
     def where(self, decide: Callable[[Choices], bool]) -> Extent:
-        """Where a property holds that is decided piece by piece."""
+        """Where a property holds that is decided piece by piece: what fails where the motion starts holds nowhere."""
+        if self.start is not None and not self._decided(decide, self.start):
+            return NOWHERE
         if not self.found:
             return NOWHERE
-        good = {piece: self._decided(decide, piece) for piece in self.found}
+        good = {piece: piece == self.start or self._decided(decide, piece) for piece in self.found}
         if all(good.values()):
             return EVERYWHERE
-        if self.start is None or not good.get(self.start):
+        if self.start is None:
             return NOWHERE
         literals = self._literals([piece for piece, yes in good.items() if not yes])
         within = dict.fromkeys(c for node, choice in literals for c in self.conditions(node, choice))
@@ -187,10 +197,14 @@ def division_of(equations: EquationsOfMotion, scalars: Sequence[Scalar]) -> Divi
     """The pieces of the scalars; None where they have none."""
     if not any(holds_op(x, *PIECEWISE) for x in scalars):
         return None
-    known, key = equations.symbols.graph.found(division_of), (equations.system.scope.model, tuple(scalars))
-    if key not in known:
-        known[key] = _divided(equations, tuple(scalars))
-    found: Division | None = known[key]
+    moving = moving_symbols(equations.system)
+    nodes = piecewise_nodes(scalars, moving)
+    if not nodes:
+        return None
+    known, key = equations.symbols.graph.found(division_of), (equations.system.scope.model, moving, nodes)
+    if key not in known:  # whatever they stand in, the same choices have the same pieces
+        known[key] = Division(equations.system, nodes, _Search(equations, tuple(scalars), nodes))
+    found: Division = known[key]
     return found
 
 
@@ -224,11 +238,6 @@ def where_continuous(equations: EquationsOfMotion, x: Scalar) -> Extent:
     return EVERYWHERE
 
 
-def _divided(equations: EquationsOfMotion, scalars: tuple[Scalar, ...]) -> Division | None:
-    nodes = piecewise_nodes(scalars, moving_symbols(equations.system))
-    return _Search(equations, scalars, nodes).division if nodes else None
-
-
 @dataclass(frozen=True)
 class _Search:
     """The search for pieces."""
@@ -238,20 +247,25 @@ class _Search:
     nodes: tuple[Node, ...]
 
     @cached_property
-    def division(self) -> Division:
+    def start(self) -> Choices | None:
+        """The piece of the model's start, or of what comes soon after where that lies between two."""
+        begun = self._begun
+        if begun is None:
+            return None
+        return self._choices(begun) or next(
+            (c for state in self._soon(begun) if (c := self._choices(state)) is not None), None
+        )
+
+    @cached_property
+    def found(self) -> Mapping[Choices, State]:
+        """Every piece, with a state in it; {} where they are too many."""
         found: dict[Choices, State] = {}
-        start: Choices | None = None
         for state in self._seeds():
             choices = self._choices(state)
             if choices is not None:
                 found.setdefault(choices, state)
-        begun = self._begun
-        if begun is not None:
-            start = self._choices(begun) or next(
-                (c for state in self._soon(begun) if (c := self._choices(state)) is not None), None
-            )
-            if start is not None:
-                found.setdefault(start, begun)
+        if self._begun is not None and self.start is not None:
+            found.setdefault(self.start, self._begun)
         rng, entered = Random(9), set[Choices]()
         for _ in range(ROUNDS):
             for choices, state in list(found.items()):
@@ -262,7 +276,7 @@ class _Search:
                     check_patience()
                     if (there := self._choices(beside)) is not None:
                         found.setdefault(there, beside)
-        return Division(self.equations.system, self.nodes, found if len(found) <= MOST else {}, start)
+        return found if len(found) <= MOST else {}
 
     def _choices(self, state: State) -> Choices | None:
         try:

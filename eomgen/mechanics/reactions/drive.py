@@ -38,6 +38,13 @@ def drive(system: System, coordinate: str) -> Scalar:
     Raises:
         DerivationError: the coordinate is not driven.
     """
+    if (drive, coordinate) not in system.found:
+        system.found[drive, coordinate] = _drive(system, coordinate)
+    found: Scalar = system.found[drive, coordinate]
+    return found
+
+
+def _drive(system: System, coordinate: str) -> Scalar:
     model = system.scope.model
     part, ties = model.coordinates[coordinate], driving_ties(model).get(coordinate, ())
     if not part.driven and ties:
@@ -58,10 +65,16 @@ def with_drive_let_go(system: System, coordinate: str) -> System:
 
     A system over all rates stays one: rates that its ties would give need not be those of a state.
     """
-    model = system.scope.model
-    table = Table({**model.coordinates, coordinate: let_go(system.scope, coordinate)})
-    over_all = system.free is None and dependent_coordinates(system.scope)
-    return (free_system_of if over_all else system_of)(altered(model, coordinates=table), system.modes, begun_as=system)
+    key = (with_drive_let_go, coordinate)
+    if key not in system.found:
+        model = altered(
+            system.scope.model,
+            coordinates=Table({**system.scope.model.coordinates, coordinate: let_go(system.scope, coordinate)}),
+        )
+        over_all = system.free is None and dependent_coordinates(system.scope)
+        system.found[key] = (free_system_of if over_all else system_of)(model, system.modes, begun_as=system)
+    free: System = system.found[key]
+    return free
 
 
 def _friction(system: System, free: System, k: int) -> Scalar:

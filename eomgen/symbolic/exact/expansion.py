@@ -260,11 +260,13 @@ class Expansion:
     def _without_squared_roots(self, a: Terms) -> Terms:
         """The sum with sqrt(f)^2 = f and |f|^2 = f^2."""
         square = {atom: 1 if x.op == "sqrt" else 2 for atom, x in self.atoms.opaque.items() if x.op in ("sqrt", "abs")}
-        if not square:
+        powers = {item for monomial, _ in a for item in monomial} if square else ()
+        high = {(atom, e) for atom, e in powers if atom in square and e // 2 and e != -1}
+        if not high:
             return a
         result: Terms = {}
         for (monomial, w), c in a.items():
-            squared = [(atom, e) for atom, e in monomial if atom in square and e // 2 and e != -1]
+            squared = [item for item in monomial if item in high]
             if not squared:
                 accumulate(result, (monomial, w), c)
                 continue

@@ -280,9 +280,10 @@ def written_shortest(expansion: Expansion, terms: Terms) -> Scalar:
     Raises:
         TooLarge: it takes more work than the expansion has left.
     """
+    quotient = reduced(expansion, terms)  # first: where the work is not enough, nothing is written
     writer = Writer(expansion)
     plain = writer.sum(terms)
-    forms = list(dict.fromkeys((plain, *quotients(expansion, writer, terms, plain))))
+    forms = list(dict.fromkeys((plain, *_forms_of(expansion, writer, quotient, (terms, plain)))))
     return rebuilt_as_written(forms[0] if len(forms) == 1 else min(forms, key=_length))
 
 
@@ -334,13 +335,20 @@ class Legibly:
         return vector_of(map(self, v))
 
 
-def quotients(expansion: Expansion, writer: Writer, terms: Terms, plain: Scalar | None = None) -> list[Scalar]:
-    """The sum as quotients without common factors: with its factors outside, with one root, and over a lone term.
+def quotients(expansion: Expansion, writer: Writer, terms: Terms) -> list[Scalar]:
+    """The sum as quotients without common factors: with its factors outside, with one root, and over a lone term."""
+    return _forms_of(expansion, writer, reduced(expansion, terms))
+
+
+def _forms_of(
+    expansion: Expansion, writer: Writer, quotient: tuple[Terms, Terms], whole: tuple[Terms, Scalar] | None = None
+) -> list[Scalar]:
+    """The same of a quotient.
 
     Args:
-        plain: the sum as it is written, where that was done.
+        whole: the sum that it is, and how that is written, where that was done.
     """
-    above, below = in_whole_numbers(writer, *reduced(expansion, terms))
+    above, below = in_whole_numbers(writer, *quotient)
     forms = [expansion.graph.div(writer.in_factors(above), writer.in_powers(below))]
     common = common_monomial(above)
     roots = tuple((atom, e) for atom, e in common if expansion.atoms.is_a(atom, "sqrt"))
@@ -351,7 +359,7 @@ def quotients(expansion: Expansion, writer: Writer, terms: Terms, plain: Scalar 
         forms += [] if radical is None else [writer.radical(radical)]
     if len(below) == 1:
         lone = expansion.product(above, expansion.reciprocal(below))
-        forms.append(writer.sum(lone) if plain is None or lone != terms else plain)
+        forms.append(writer.sum(lone) if whole is None or lone != whole[0] else whole[1])
     return forms
 
 

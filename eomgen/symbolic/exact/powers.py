@@ -18,18 +18,19 @@ KEPT = 20_000  # waves and sets of angles of which the form is remembered
 
 
 def power_form(waves: Mapping[Wave, Number], axes: tuple[AngleSum, ...]) -> PowerSum | None:
-    """The waves as a polynomial in cosine and sine of each axis, s^2 eliminated; None where that is too large."""
+    """The waves as a polynomial in cosine and sine of each axis, s^2 eliminated; None where that is too large.
+
+    It is the sum of the forms that the waves have by themselves, in which no s^2 is left.
+    """
     found: dict[Exponents, Number] = {}
     for w, c in waves.items():
         multiples = _multiples(w[1], axes) if w else (0,) * len(axes)
-        if multiples is None or sum(abs(m) for m in multiples) > LARGEST_DEGREE:
+        if multiples is None or sum(map(abs, multiples)) > LARGEST_DEGREE:
             return None
-        for powers, share in _wave_in_powers(w[0] if w else "cos", multiples).items():
-            found[powers] = tidy(found.get(powers, 0) + c * share)
-    polynomial: PowerSum = {powers: c for powers, c in found.items() if c}
-    for axis in range(len(axes)):
-        polynomial = eliminated(polynomial, axis, "cos")
-    return polynomial
+        cosine, sine = _circle(multiples)
+        for powers, share in (sine if w and w[0] == "sin" else cosine).items():
+            found[powers] = found.get(powers, 0) + c * share
+    return {powers: tidy(c) for powers, c in found.items() if c}
 
 
 def in_powers(terms: Terms, axes: tuple[AngleSum, ...]) -> Iterator[tuple[Monomial, Exponents, Number]]:
@@ -90,25 +91,21 @@ def _multiples(k: AngleSum, axes: tuple[AngleSum, ...]) -> tuple[int, ...] | Non
 
 
 @lru_cache(maxsize=KEPT)
-def _wave_in_powers(kind: str, multiples: tuple[int, ...]) -> PowerSum:
-    """cos or sin of a whole combination of the axes, from the product of (c + i s)^m."""
-    real: PowerSum = {(): 1}
-    imaginary: PowerSum = {}
-    for m in multiples:
-        c_part, s_part = _one_axis(m)
-        real, imaginary = (
-            _joined((real, c_part, 1), (imaginary, s_part, -1)),
-            _joined((real, s_part, 1), (imaginary, c_part, 1)),
-        )
-    return real if kind == "cos" else imaginary
+def _circle(multiples: tuple[int, ...]) -> tuple[PowerSum, PowerSum]:
+    """(cos, sin) of a whole combination of the axes, s^2 eliminated, from the product of (c + i s)^m over the axes."""
+    if not multiples:
+        return {(): 1}, {}
+    (real, imaginary), (c, s) = _circle(multiples[:-1]), _one_axis(multiples[-1])
+    return _joined((real, c, 1), (imaginary, s, -1)), _joined((real, s, 1), (imaginary, c, 1))
 
 
+@lru_cache(maxsize=2 * LARGEST_DEGREE + 1)
 def _one_axis(m: int) -> tuple[PowerSum, PowerSum]:
-    """(cos(m a), sin(m a)) in powers of cos a and sin a, by de Moivre."""
+    """(cos(m a), sin(m a)) in powers of cos a and sin a, by de Moivre, s^2 eliminated."""
     n, sense = abs(m), 1 if m >= 0 else -1
     cosine: PowerSum = {(n - j, j): (-1) ** (j // 2) * comb(n, j) for j in range(0, n + 1, 2)}
     sine: PowerSum = {(n - j, j): sense * (-1) ** (j // 2) * comb(n, j) for j in range(1, n + 1, 2)}
-    return cosine, sine
+    return eliminated(cosine, 0, "cos"), eliminated(sine, 0, "cos")
 
 
 def _joined(*products: tuple[PowerSum, PowerSum, int]) -> PowerSum:

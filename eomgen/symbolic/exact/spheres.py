@@ -31,6 +31,9 @@ def with_square_replaced(polynomial: PowerSum, k: int, sphere: Sequence[int]) ->
     found: dict[Exponents, Number] = {}
     for exponents, c in polynomial.items():
         n = exponents[k] // 2
+        if not n:
+            _add(found, exponents, c)
+            continue
         rest = (*exponents[:k], exponents[k] % 2, *exponents[k + 1 :])
         for (_, *powers), share in _multinomials(len(sphere), n):
             _add(found, _raised(rest, others, powers), share * c if sum(powers) % 2 == 0 else -share * c)

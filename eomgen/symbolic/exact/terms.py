@@ -52,10 +52,11 @@ def accumulate(total: Terms, key: Key, c: Number) -> None:
     was = total.get(key)
     if was is not None:
         c = was + c
-    if c == 0:
-        total.pop(key, None)
-    else:
-        total[key] = tidy(c)
+        if not c:
+            del total[key]
+            return
+    if c:
+        total[key] = c if type(c) is int else tidy(c)
 
 
 def terms_scaled(a: Terms, c: Number) -> Terms:
@@ -71,7 +72,7 @@ def terms_times(a: Terms, b: Terms) -> Terms:
     total: Terms = {}
     for (m, w), c in a.items():
         for (n, v), d in b.items():
-            monomial, factor = monomial_product(m, n)
+            monomial, factor = monomial_product(m, n) if m and n else (m or n, 1)
             product = c * d if factor == 1 else factor * c * d
             if not w or not v:
                 accumulate(total, (monomial, w or v), product)

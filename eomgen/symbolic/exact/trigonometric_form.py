@@ -53,16 +53,19 @@ def _shortest(items: tuple[tuple[Wave, Number], ...]) -> Sum:
     pairs, rest = _paired(waves)
     if not pairs:
         return _without_pairs(waves)
-    return min(_without_pairs(waves), _merged([*pairs, *_without_pairs(rest)]), key=_length)
+    return _best(_without_pairs(waves), _merged([*pairs, *_without_pairs(rest)]))
 
 
 def _without_pairs(waves: Waves) -> Sum:
-    candidates = [_as_waves(waves), _by_directions(waves)]
-    whole = _in_powers(waves)
-    if whole is not None:
-        candidates.append(whole)
-    candidates.append(_by_support(waves))
-    return min(candidates, key=_length)
+    plain = _as_waves(waves)
+    return _best(plain, _by_directions(waves), _in_powers(waves) or plain, _by_support(waves))
+
+
+def _best(*candidates: Sum) -> Sum:
+    """The shortest, the first of those that are equally short."""
+    fewest = min(map(len, candidates))
+    left = [candidate for candidate in candidates if len(candidate) == fewest]
+    return left[0] if len(left) == 1 else min(left, key=_length)
 
 
 def _length(terms: Sum) -> tuple[int, int, int, int]:
@@ -71,6 +74,7 @@ def _length(terms: Sum) -> tuple[int, int, int, int]:
     return len(terms), multiple, negative, sum(e for _, factors in terms for _, _, e in factors)
 
 
+@lru_cache(maxsize=KEPT)
 def _is_multiple(k: AngleSum) -> bool:
     return k[0][0] >= 0 and gcd(*(c.numerator for _, c in k)) > 1
 
@@ -197,9 +201,9 @@ def _by_support(waves: Waves) -> Sum:
         return _as_waves(waves)  # in one part it is what the other candidates are
     terms: list[tuple[Number, Factors]] = []
     for part in parts.values():
-        candidates: list[Sum] = [_as_waves(part), _by_directions(part), _in_powers(part) or _as_waves(part)]
-        best: Sum = min(candidates, key=_length)
-        terms += best
+        plain = _as_waves(part)
+        alone = len(part) == 1 and not _has_multiple(part)
+        terms += plain if alone else _best(plain, _by_directions(part), _in_powers(part) or plain)
     return _merged(terms)
 
 
@@ -219,10 +223,21 @@ def _in_powers(waves: Waves) -> Sum | None:
     if found is None:
         return None
     polynomial, axes = found
-    for axis in range(len(axes)):
-        options = [eliminated(polynomial, axis, keep) for keep in ("cos", "sin")]
-        polynomial = min(options, key=lambda option: _length(_as_sum(option, axes)))
+    for axis in range(len(axes)):  # it comes with the sines' squares eliminated
+        other = eliminated(polynomial, axis, "sin")
+        if len(other) < len(polynomial) or (
+            len(other) == len(polynomial) and _size_of_powers(other, axes) < _size_of_powers(polynomial, axes)
+        ):
+            polynomial = other
     return _as_sum(polynomial, axes)
+
+
+def _size_of_powers(polynomial: PowerSum, axes: tuple[AngleSum, ...]) -> tuple[int, int, int, int]:
+    """`_length` of what will be written of it."""
+    doubled = [2 * k + i for k, axis in enumerate(axes) if _is_multiple(axis) for i in (0, 1)]
+    multiple = sum(any(powers[i] for i in doubled) for powers in polynomial) if doubled else 0
+    negative = sum(c < 0 for c in polynomial.values())
+    return len(polynomial), multiple, negative, sum(map(sum, polynomial))
 
 
 def _polynomial(waves: Waves) -> tuple[PowerSum, tuple[AngleSum, ...]] | None:
