@@ -359,7 +359,7 @@ def test_a_value_of_one_hides_no_missing_factor():
 
 def test_inertia_terms_as_they_are_printed_are_no_product():
     """c(theta') = 0 of a pendulum is right and not asked by itself: no verdict, where c * theta' = 0 would be wrong."""
-    with pytest.raises(ExpressionError, match="not judged by itself"):
+    with pytest.raises(ExpressionError, match="not judged by themselves"):
         verdict("simple_pendulum", "c(theta') = 0")
 
 

@@ -33,7 +33,6 @@ LETTERS = {"T": "kinetic_energy", "V": "potential_energy", "Q": "generalized_for
 """letter -> the function that it stands for"""
 FREQUENCY = re.compile("omega(?:_?([0-9n]))?")
 """the letter of a frequency of small motions"""
-INERTIA_TERMS = re.compile(r"(?<![\w'])c\(([^\W\d]\w*'?)\)")
 MULTIPLIER = "lam"  # of a closing row: lam(tie, 1)
 
 
@@ -206,7 +205,6 @@ class Reading:
         """
         if not isinstance(given, str):
             given = text_of_sympy(given)
-        self._refuse_inertia_terms(given)
         left, right = self._sides(given)
         left = self._alone(left, right)
         used = {name: formula for name, formula in self.letters.items() if name in left.names | right.names}
@@ -215,19 +213,6 @@ class Reading:
         slopes = (call for side in (left, right) for call in calls_in(side) if call.name == SLOPE)
         letters |= {str(call): f"d{call.args[0]}/d{call.args[1]}" for call in slopes}
         return HandEquation(given, left, right, letters)
-
-    def _refuse_inertia_terms(self, given: str) -> None:
-        """c(u) as `derive` prints it, where the model has no c: no product, and nothing that can be asked.
-
-        Raises:
-            ExpressionError: it stands there.
-        """
-        speeds = {u.name for u in self.system.symbols.u} - {"c"}
-        for found in INERTIA_TERMS.finditer(given):
-            if "c" not in self.system.scope.names and found[1] in speeds:
-                what = f"'{found[0]}', the inertia terms without accelerations, is not judged by itself"
-                mend = "judge the equation of motion, or T"
-                raise ExpressionError(what, found.start(), mend, len(found[0]))
 
     def _alone(self, left: Expression, right: Expression) -> Expression:
         """A letter alone on the left that the model does not have.
@@ -264,8 +249,10 @@ class Reading:
         except ExpressionError as error:
             plain, found = error, None
         if found is not None and self._may_be_inertia_terms(found[0]):
-            what = f"'{found[0].text}' stands for terms of inertia in a derivation, or is a product here"
-            raise ExpressionError(what, 0, f"write {found[0].text.replace('(', '*').rstrip(')')} for the product")
+            what, product = f"'{found[0].text}' stands for terms of inertia in a derivation", self._is_known("c")
+            what += ", or is a product here" if product else ", which are not judged by themselves"
+            written = found[0].text.replace("(", "*").rstrip(")")
+            raise ExpressionError(what, 0, f"write {written} for the product" if product else "judge T, or the motion")
         try:
             written = transcript(given, self.vocabulary)
             return self._parsed(written)
@@ -294,9 +281,9 @@ class Reading:
         raise ExpressionError(what, written.column(at), "write one equation, left = right")
 
     def _may_be_inertia_terms(self, left: Expression) -> bool:
-        """Whether a side is c(q'), as `derive` names them, where c is a parameter too."""
+        """Whether a side is c(q'), as `derive` names them."""
         calls = left.calls if len(left.code) == 1 else ()
-        return any(x.name == "c" and all(self._is_known(str(a)) for a in x.args) for x in calls) and self._is_known("c")
+        return any(x.name == "c" and all(self._is_known(str(a)) for a in x.args) for x in calls)
 
     def _is_of_time(self, call: Call) -> bool:
         """x(t): a coordinate, and no function of a point."""

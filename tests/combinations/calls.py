@@ -11,7 +11,6 @@ import json
 import re
 import signal
 import time
-import tomllib
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from dataclasses import dataclass
@@ -209,8 +208,6 @@ def judged(text: str, rng: Random, most: int = 2) -> Iterator[Outcome]:
         return  # told by `derive`
     told = re.sub(r"(?<=\S)\n {8,}(?=[+*-] )", " ", told)  # what stands in several lines is one
     lines = [x.strip() for x in told.splitlines() if re.match(r"^ {4,}\S.* = ", x) and "..." not in x]
-    own = tomllib.loads(text).get("parameters", {}).keys() & {"c", "Q", "T", "V"}  # c(u) is a product then
-    lines = [x for x in lines if x.partition("(")[0] not in own]
     lines = [x for x in lines if len(x) < 300 and not re.search(r"\[[^\]]*\]$", x)]
     for line in [lines[-1], *rng.sample(lines[:-1], min(most - 1, len(lines) - 1))] if lines else []:
         begin = time.process_time()
