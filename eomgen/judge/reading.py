@@ -251,8 +251,8 @@ class Reading:
         if found is not None and self._may_be_inertia_terms(found[0]):
             what, product = f"'{found[0].text}' stands for terms of inertia in a derivation", self._is_known("c")
             what += ", or is a product here" if product else ", which are not judged by themselves"
-            written = found[0].text.replace("(", "*").rstrip(")")
-            raise ExpressionError(what, 0, f"write {written} for the product" if product else "judge T, or the motion")
+            factors = found[0].text.replace("(", "*").rstrip(")")
+            raise ExpressionError(what, 0, f"write {factors} for the product" if product else "judge T, or the motion")
         try:
             written = transcript(given, self.vocabulary)
             return self._parsed(written)
