@@ -23,7 +23,7 @@ from eomgen.mechanics.bodies.composition import made_of
 from eomgen.mechanics.bodies.inertia import mass_properties
 from eomgen.mechanics.bodies.kinematics import Motion
 from eomgen.mechanics.bodies.scope import Scope
-from eomgen.mechanics.constraints.closure import of_50_digits
+from eomgen.mechanics.constraints.closure import of_50_digits, on_unit_spheres
 from eomgen.mechanics.initial_state.values_at_rest import values_of_parameters
 from eomgen.model.composite import PlacedPiece, pose_of
 from eomgen.model.shapes import MassProperties, Shape
@@ -106,10 +106,11 @@ def other_masses(motion: Motion) -> Iterator[Check]:
 
 
 def tried(scope: Scope) -> dict[Node, float]:
-    """Values of parameters without one, and somewhere for what moves: what is stated holds anywhere."""
+    """Values of parameters without one, and somewhere for what moves: what is stated holds at any orientation."""
     rng, symbols = Random(3), scope.symbols
     known = {x: float(v) for x, v in values_of_parameters(scope, rng).items()}
-    return known | {x: rng.uniform(0.2, 1) for x in (symbols.t, *symbols.q, *symbols.inputs.values())}
+    known |= {x: rng.uniform(0.2, 1) for x in (symbols.t, *symbols.q, *symbols.inputs.values())}
+    return known | {e: float(v) for e, v in on_unit_spheres(scope.quaternions, known).items()}
 
 
 # -- quadrature ----------------------------------------------------------------------------------------------------

@@ -191,7 +191,7 @@ def refuse_bad_run(start: float, end: float, how: Stepping) -> None:
     if not all(isinstance(x, Real) and 0 < x < math.inf for x in (how.rtol, how.atol)):
         raise UsageError(
             f"tolerances must be positive numbers, not rtol = {how.rtol}, atol = {how.atol}",
-            mend="rtol = 1e-8, atol = 1e-10",
+            mend="take rtol and atol above 0",
         )
     if how.method not in (*METHODS, HEYOKA):
         raise UsageError(f"unknown method '{how.method}'", mend=f"methods are {', '.join((*METHODS, HEYOKA))}")

@@ -566,6 +566,50 @@ def test_moving_bodies_together_have_their_numbers_at_the_start():
     assert "Numbers at the start: q1 = 0.3, q2 = 1.1." in str(found)
 
 
+ABOVE = """
+eomgen = 1
+name = "A body turned by a quaternion beside a particle above the floor"
+space = "space"
+parameters = { m = 2, M = 3 }
+coordinates = { e0 = 0.9, e1 = 0.3, e2 = -0.2, e3 = 0.25, x = { start = 0.4 }, z = { start = 0.06 } }
+speeds = { w1 = {}, w2 = {}, w3 = {} }
+
+[bodies.top]
+shape = { kind = "tetrahedron", mass = "M", vertices = [[0, 0, 0], [1, 0, 0], [0, 1, 0], [0, 0, 0.5]] }
+
+[bodies.top.joint]
+kind = "spherical"
+orientation = "quaternion"
+quaternion = ["e0", "e1", "e2", "e3"]
+omega = ["w1", "w2", "w3"]
+
+[bodies.puck]
+shape = { kind = "particle", mass = "m" }
+joint = { kind = "placed", at = ["x", 0, "z"] }
+
+[constraints.floor]
+kind = "support"
+point = "puck.center"
+at = [0, 0, 0]
+normal = [0, 0, 1]
+unilateral = true
+"""
+
+
+def test_the_start_of_an_open_contact_is_where_moments_are_taken():
+    """z = 0.06 at the start, whatever is declared to be a floor."""
+    found = eomgen.inertia(eomgen.loads(ABOVE))
+    assert found.start and found.certify().ok
+    assert "z = 0.06" in str(found)
+
+
+def test_moments_are_proven_where_no_start_is_known():
+    """At some orientation: a quaternion of norm 1, as the printed formulas have it."""
+    unknown = ABOVE.replace("m = 2", 'm = 2, a = { unit = "m" }').replace('"z"]', '"z - a"]')
+    found = eomgen.inertia(eomgen.loads(unknown))
+    assert not found.start and found.certify().ok
+
+
 def test_a_mass_without_inertia_leaves_the_other_bodies_their_moments():
     """A cart that only slides needs no inertia: m and the mass centre are known, of both too; a moment of it is not."""
     model = eomgen.Model(

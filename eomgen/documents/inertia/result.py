@@ -35,6 +35,7 @@ from eomgen.errors import DerivationError, MissingValues, ModelError, UsageError
 from eomgen.mechanics.equations.system import System, system_of
 from eomgen.mechanics.masses.inertia_about import flat_bodies, shapeless
 from eomgen.mechanics.masses.principal import numbers_in
+from eomgen.mechanics.statics.contacts_at_start import contacts_at_start
 from eomgen.model.findings import nearest
 from eomgen.model.reader import ModelOrPath, model_at
 from eomgen.model.replaced import Values
@@ -139,7 +140,7 @@ def inertia(
         DerivationError: a model without bodies.
     """
     model = model_at(model, parameters, start)
-    return _Report(system_of(model), tuple(bodies), about, axis).made()
+    return _Report(system_of(model, contacts_at_start(model).modes), tuple(bodies), about, axis).made()
 
 
 @dataclass(frozen=True)
