@@ -68,7 +68,8 @@ class WithoutContacts:
             of_contact[name], first = rows[first : first + len(own)], first + len(own)
         u = _plastic(M, rows[:k], [of_contact[name] for name in touching], x[len(x) - nu :])
         rates = self._rates.many(t, np.concatenate([x[: len(x) - nu], u])[None, :], self.p)[0]
-        return {**values, **{f"{q.name}'": float(v) for q, v in zip(self.system.symbols.q, rates, strict=True)}}
+        changed = {f"{q.name}'": float(v) for q, v in zip(self.system.symbols.q, rates, strict=True)}
+        return {**values, **changed, **{node.name: float(v) for node, v in zip(self.system.symbols.u, u, strict=True)}}
 
     def _x(self, values: Values) -> np.ndarray:
         symbols = self.system.symbols

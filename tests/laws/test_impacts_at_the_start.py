@@ -1,4 +1,4 @@
-"""Speeds at the start that lead into a floor or against a taut rope: one impact without rebound, in every verb."""
+"""Speeds that lead into a floor or against a taut rope: one impact without rebound, in every verb, in any speeds."""
 
 from __future__ import annotations
 
@@ -71,3 +71,16 @@ def test_speeds_that_lead_away_make_no_impact():
     """Thrown up the floor lets it go: y' = v stays, N = 0."""
     answers = eomgen.solve(eomgen.loads(ROD.replace('"-v"', '"v"')))
     assert answers["N"].value == 0 and answers["omega"].value == 0
+
+
+def test_an_impact_is_the_same_in_declared_speeds():
+    """A ball flies until its rope is taut: by its rates or by z' and two combinations of the others."""
+    flying = ROPE.replace('start = "-L", speed = -4 }', 'start = "-L/2" }, z = { start = 0.1, speed = 2 }')
+    flying = flying.replace("L = 2", "L = 1.2").replace('"plane"', '"space"').replace("O = [0, 0]", "O = [0, 0, 0]")
+    flying = flying.replace('at = ["x", "y"]', 'at = ["x", "y", "z"]').replace('[0, "-g"]', '[0, "-g", 0]')
+    speeds = """speeds = { u = { rate = "2*x' + y'", start = "2*w" }, v = { rate = "y' - x'/2", start = "-w/2" } }\n"""
+    named = flying.replace(', speed = "w"', "").replace("coordinates =", f"{speeds}coordinates =")
+    runs = [eomgen.simulate(eomgen.loads(x), time=1, samples=5, target="numpy") for x in (flying, named)]
+    assert [len(run.phases) for run in runs] == [2, 2]
+    assert runs[1].x[:, :3] == pytest.approx(runs[0].x[:, :3], abs=1e-7)
+    assert all(run.certify().ok for run in runs)
