@@ -182,9 +182,7 @@ class _Shown:
                 raise ReaderGone from None
             if text and self._needed:
                 why = getattr(error, "strerror", None) or error
-                raise WriteFailed(
-                    f"{self._name} cannot be written: {why}", mend="write into another file or folder"
-                ) from None
+                raise WriteFailed(f"{self._name} cannot be written: {why}") from None
         return len(text)
 
     def flush(self) -> None:

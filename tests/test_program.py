@@ -12,7 +12,6 @@ from hand_made import cart_pole, pendulum, spring_row, symbols, tied_pendulum
 
 import eomgen
 from eomgen.codegen import layout
-from eomgen.codegen.factorization import factor_solution, operation_count
 from eomgen.codegen.kernel_reader import solve_bordered
 from eomgen.codegen.layout import stripped
 from eomgen.codegen.names import RESERVED, identifier, identifiers
@@ -28,6 +27,7 @@ from eomgen.symbolic.expression.functions import cos, sin
 from eomgen.symbolic.expression.graph import Graph, is_zero
 from eomgen.symbolic.expression.traversal import operations, order
 from eomgen.symbolic.numeric.evaluation import FLOAT, evaluate, fifty_digits
+from eomgen.symbolic.solve.factorization import factor_solution, operation_count
 
 MODELS = Path(__file__).parent.parent / "models"
 

@@ -5,13 +5,13 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from dataclasses import replace
 
-from eomgen.codegen.factorization import factor_solution
 from eomgen.codegen.program import Program, Solve, bordered, is_short, kinematic_rates, program_of
 from eomgen.mechanics.equations.equations_of_motion import EquationsOfMotion
 from eomgen.records import dataclass
 from eomgen.symbolic.expression.derivative import jacobian, substituted
 from eomgen.symbolic.expression.graph import Node, Scalar, is_zero
 from eomgen.symbolic.expression.node import ScalarRow, ScalarRows
+from eomgen.symbolic.solve.factorization import factor_solution
 
 Blocks = Mapping[str, ScalarRows]
 """Matrices by name, one after the other, each row after row."""

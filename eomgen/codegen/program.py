@@ -9,9 +9,7 @@ from collections.abc import Iterable, Mapping, Sequence
 from functools import cached_property
 from typing import Literal
 
-from eomgen.codegen import factorization
 from eomgen.codegen.lowered import INT, Table
-from eomgen.codegen.sparsity import PlaceLists, Zeros, zeros_of, zeros_with_ties
 from eomgen.errors import DerivationError
 from eomgen.mechanics.equations.equations_of_motion import EquationsOfMotion
 from eomgen.records import dataclass
@@ -20,6 +18,8 @@ from eomgen.symbolic.expression.graph import Node, Scalar, is_zero
 from eomgen.symbolic.expression.node import ScalarRow
 from eomgen.symbolic.expression.symbols import Symbols
 from eomgen.symbolic.expression.traversal import FREE, Count, order
+from eomgen.symbolic.solve import factorization
+from eomgen.symbolic.solve.sparsity import PlaceLists, Zeros, zeros_of, zeros_with_ties
 
 UNROLLED_AT_MOST = 1000  # operations of a factorization written out; a dense one of n = 12 takes 914
 

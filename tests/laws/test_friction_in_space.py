@@ -3,12 +3,18 @@
 from __future__ import annotations
 
 import math
+from random import Random
 
 import numpy as np
 import pytest
 from scipy.optimize import fsolve
 
 import eomgen
+from eomgen.mechanics.balance.friction import equations_of_motion
+from eomgen.mechanics.equations.system import free_system_of
+from eomgen.mechanics.initial_state.values_at_rest import values_of_parameters
+from eomgen.symbolic.numeric.evaluation import FLOAT, evaluate
+from eomgen.symbolic.solve.cramer import LARGEST_BLOCK
 
 pytestmark = pytest.mark.slow
 
@@ -281,3 +287,63 @@ def test_a_block_rests_as_long_as_the_resultants_allow(kind):
     )
     assert rests.value == pytest.approx(N, rel=1e-12)
     assert slides.value is None and "would need more friction" in slides.message
+
+
+WELDED = """
+eomgen = 1
+space = "space"
+parameters = { m = 0.6, I = 0.5, l = 0.6, h = 0.2, mu = 0.3 }
+[coordinates]
+b = {}
+s = {}
+x = {}
+y = {}
+z = {}
+f = {}
+g = {}
+e = {}
+p1 = { speed = 1 }
+p2 = {}
+p3 = {}
+[bodies.base]
+mass = "m"
+inertia = ["I", "I", "2*I"]
+joint = { kind = "prismatic", axis = [2, 1, 2], displacement = "b" }
+[bodies.leg]
+mass = "m"
+inertia = ["I", "I", "I"]
+points = { end = ["l", 0, 0] }
+joint = { kind = "revolute", on = "base", at = [-0.5, 0, 0], angle = "s" }
+[bodies.block]
+mass = "m"
+inertia = ["I", "I", "2*I"]
+points = { P = ["h", 0, 0] }
+joint = { kind = "free", on = "base", position = ["x", "y", "z"], orientation = "xyz", angles = ["g", "e", "f"] }
+[bodies.puck]
+shape = { kind = "particle", mass = "m" }
+joint = { kind = "placed", at = ["p1", "p3", "p2"], angle = 0 }
+[constraints.weld]
+kind = "clamp"
+points = ["leg.end", "block.P"]
+[constraints.floor]
+kind = "support"
+point = "puck.center"
+normal = [0, 0, 1]
+friction = "mu"
+"""
+
+
+def test_accelerations_of_many_unknowns_have_values_wherever_the_constraints_are_regular():
+    """J a + gamma = 0 where one angle after the other is 0: nothing is divided by an entry that vanishes there."""
+    system = free_system_of(eomgen.loads(WELDED))
+    equations, rng = equations_of_motion(system), Random(1)
+    symbols = system.symbols
+    assert len(symbols.u) + len(equations.J) > LARGEST_BLOCK
+    usual = values_of_parameters(system.scope, rng) | {x: rng.uniform(0.2, 1) for x in (*symbols.q, *symbols.u)}
+    for zero in (None, *symbols.q):
+        state = {**usual, symbols.t: 0.0} | ({} if zero is None else {zero: 0.0})
+        a = evaluate(equations.accelerations, state, FLOAT)
+        for row, bias in zip(equations.J, equations.gamma, strict=True):
+            entries = evaluate((*row, bias), state, FLOAT)
+            left = sum(x * y for x, y in zip(entries, (*a, 1.0), strict=True))
+            assert abs(left) < 1e-9, zero

@@ -404,7 +404,7 @@ outputs = { a = "multiplier(a)", b = "multiplier(b)", c = "multiplier(c)" }
 """
     answers = eomgen.solve(eomgen.loads(text))
     assert [answers[name].value for name in "abc"] == [None, None, -3]
-    assert answers["a"].message == "statically indeterminate: multiplier(a) shares its force with 'b'"
+    assert answers["a"].message.startswith("statically indeterminate: multiplier(a) shares its force with 'b'")
 
 
 @pytest.mark.parametrize(

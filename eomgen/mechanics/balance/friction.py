@@ -26,15 +26,16 @@ from eomgen.mechanics.balance.components import Component, joint_friction, norma
 from eomgen.mechanics.bodies.round_contacts import LEAST, sizes
 from eomgen.mechanics.constraints.ties import holds_identically
 from eomgen.mechanics.equations.equations_of_motion import EquationsOfMotion
-from eomgen.mechanics.equations.explicit_accelerations import bordered_rows, regular_rows
+from eomgen.mechanics.equations.explicit_accelerations import bordered_rows, by_factors, regular_rows
 from eomgen.mechanics.equations.system import System
 from eomgen.mechanics.equations.wellposed import refuse_massless
 from eomgen.mechanics.formulations import recursive
 from eomgen.records import dataclass
 from eomgen.symbolic.expression.derivative import gradient, substituted
 from eomgen.symbolic.expression.functions import function
-from eomgen.symbolic.expression.graph import Node, Scalar
+from eomgen.symbolic.expression.graph import Node, Scalar, is_zero
 from eomgen.symbolic.expression.node import ScalarRow
+from eomgen.symbolic.solve import cramer
 from eomgen.symbolic.solve.linear import Solution
 from eomgen.symbolic.solve.linear_systems import LinearSystem, unique_solution
 
@@ -233,6 +234,8 @@ class _WithFriction:
             DerivationError: the normal reaction of a contact is indeterminate.
             ModelError: a free coordinate moves no mass.
         """
+        if len(self.equations.M) + len(self._kept) + len(self._single) > cramer.LARGEST_BLOCK:
+            return self._by_factors()
         rows, right = bordered_rows(self.equations, self._kept)
         n, first = len(self.equations.M), len(right)
         for contact in self.found:
@@ -253,6 +256,37 @@ class _WithFriction:
         except DerivationError:
             refuse_massless(self.equations)
             raise
+
+    def _by_factors(self) -> ScalarRow:
+        """The same of many unknowns: a and lam for each N by the factors of M and J M^-1 J^T, then N alone."""
+        equations, n = self.equations, len(self.equations.M)
+        forcing = list(equations.forcing)
+        for contact in self.found:
+            if contact.normals:
+                size = self._symbols[contact.name]
+                forcing = [b + force * size for b, force in zip(forcing, contact.force, strict=True)]
+        try:
+            parts = by_factors(
+                replace(equations, forcing=tuple(forcing)), self._kept, [contact.force for contact in self._single]
+            )
+        except DerivationError:
+            refuse_massless(equations)
+            raise
+        columns = [[*a, *lam] for a, lam in parts]
+        first, rows, right = len(columns[0]), [], []
+        for k, contact in enumerate(self._single):
+            multiplier = self._multiplier(contact.component, contact.name)
+            if multiplier is None:
+                known, value = self._linear(contact.component, first)
+            else:
+                known, value = {n + multiplier: -1}, 0
+            share = [sum((x * column[j] for j, x in known.items() if j < first), start=0) for column in columns]
+            row = {i: share[1 + i] + known.get(first + i, 0) + int(i == k) for i in range(len(self._single))}
+            rows.append({i: x for i, x in row.items() if not is_zero(x)})
+            right.append(value - share[0])
+        N = _solved(equations.system, rows, right) if rows else []
+        moved = [sum((column[j] * f for column, f in zip(columns[1:], N, strict=True)), start=0) for j in range(first)]
+        return (*(x + d for x, d in zip(columns[0], moved, strict=True)), *N)
 
     def _by_balance(self, j: int) -> Scalar:
         """Component j, linear in the accelerations."""

@@ -1,4 +1,5 @@
-"""Equations of motion -> accelerations and multipliers by determinants: the shortest formulas of small systems.
+"""Equations of motion -> accelerations and multipliers: by determinants, the shortest formulas of small systems, or by
+factors, whose pivots vanish at no state.
 
 M a - J^T lam = forcing,   J a = -gamma
 """
@@ -14,11 +15,12 @@ from eomgen.mechanics.equations.equations_of_motion import EquationsOfMotion
 from eomgen.mechanics.equations.system import System
 from eomgen.mechanics.equations.wellposed import massless_motions
 from eomgen.symbolic.expression.derivative import depends_on
-from eomgen.symbolic.expression.functions import over
+from eomgen.symbolic.expression.functions import inner, over
 from eomgen.symbolic.expression.graph import Node, Scalar, is_zero
 from eomgen.symbolic.expression.node import ScalarRow
 from eomgen.symbolic.print.text import text_size
 from eomgen.symbolic.solve import cramer
+from eomgen.symbolic.solve.factorization import factor_solution
 
 MOST = 6  # unknowns that are written out for a reader
 
@@ -36,6 +38,34 @@ def by_determinants(equations: EquationsOfMotion, kept: Sequence[int]) -> dict[N
     values = [x for (x,) in cramer.solution_by_minors(rows, [(x,) for x in right])[0]]
     multipliers = {symbols.lam[m]: values[n + k] for k, m in enumerate(kept)}
     return dict(zip(symbols.a, values[:n], strict=True)) | {x: multipliers.get(x, 0) for x in symbols.lam}
+
+
+def by_factors(
+    equations: EquationsOfMotion, kept: Sequence[int], pushes: Sequence[ScalarRow] = ()
+) -> list[tuple[list[Scalar], list[Scalar]]]:
+    """(a, lam of the kept rows) of the equations, and then what each push, a force along the speeds, adds to them.
+
+    a = X F + X J^T lam,  (J X J^T) lam = -(gamma + J X F),  X = M^-1, never formed: M is solved for each column.
+
+    Raises:
+        DerivationError: the mass matrix is singular whatever the state.
+    """
+    M, J, n = equations.M, [equations.J[m] for m in kept], range(len(equations.M))
+    gamma = [equations.gamma[m] for m in kept]
+    loads: list[tuple[ScalarRow, list[Scalar]]] = [(equations.forcing, gamma)]
+    loads += [(push, [0] * len(kept)) for push in pushes]
+    if any(is_zero(row[k]) for k, row in enumerate(M)):  # the ties alone say what some acceleration is
+        across = [[row[k] for row in J] for k in n]
+        M = tuple(tuple(M[i][j] + inner(across[i], across[j]) for j in n) for i in n)
+        loads = [(tuple(F[k] - inner(across[k], bias) for k in n), bias) for F, bias in loads]
+    columns = [factor_solution(M, row) for row in J]
+    S = [[inner(row, column) for column in columns] for row in J]
+    found = []
+    for F, bias in loads:
+        free = factor_solution(M, F)
+        lam = factor_solution(S, [-(b + inner(row, free)) for row, b in zip(J, bias, strict=True)])
+        found.append(([x + inner(lam, [column[k] for column in columns]) for k, x in enumerate(free)], list(lam)))
+    return found
 
 
 def bordered_rows(equations: EquationsOfMotion, kept: Sequence[int]) -> tuple[list[dict[int, Scalar]], list[Scalar]]:

@@ -9,10 +9,10 @@ from __future__ import annotations
 from collections.abc import Sequence
 from typing import Any
 
-from eomgen.codegen.sparsity import MatrixRow, mask_of, members
 from eomgen.errors import DerivationError
 from eomgen.symbolic.expression.functions import over
 from eomgen.symbolic.expression.graph import Scalar, is_zero
+from eomgen.symbolic.solve.sparsity import MatrixRow, mask_of, members
 
 
 def factor_solution(M: Sequence[MatrixRow], F: MatrixRow) -> tuple[Scalar, ...]:
