@@ -529,7 +529,7 @@ def test_solve_gives_every_output_in_the_fixed_shape():
     assert outputs["Q_theta"]["exact"] == "6*M*R*g*sin(theta)"
     assert others["K12"]["exact"] == "12*a^2*k"
     assert (others["omega3"]["exact"], others["omega3"]["value"]) == (None, None)
-    assert others["omega3"]["message"] == "frequency(3): 2 small motions oscillate"
+    assert others["omega3"]["message"].startswith("frequency(3): 2 small motions oscillate")
 
 
 def test_reactions_at_an_instant_are_exact_and_numbers():
