@@ -778,7 +778,7 @@ def test_thirty_freedoms_are_explained_by_the_row_concerned():
         on, way = (f'on = "b{i - 1}", ', f"x{i} - x{i - 1}") if i > 1 else ("", "x1")
         joint = f'kind = "prismatic", {on}axis = [1, 0], displacement = "{way}", stiffness = "k"'
         text += [f"[bodies.b{i}]", 'mass = "m"', f"joint = {{ {joint} }}"]
-    with cpu_limit(5):
+    with cpu_limit(8):
         found = eomgen.verify(eomgen.loads("\n".join(text)), "m*x5'' + k*(x5 - x4) - k*(x5 - x6) = 0")
     assert kinds(found) == ["sign"] and found.causes[0].body == "b6"
 
