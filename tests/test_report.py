@@ -25,6 +25,7 @@ from derivations import (
     residuals,
     symbols_named,
 )
+from slow_run import usual
 
 from eomgen.documents import ALL, rendered
 from eomgen.documents.derivation import derivation_of
@@ -153,7 +154,7 @@ def by_energies(name: str) -> bool:
     return not model_called(name).speeds
 
 
-@pytest.mark.parametrize("name", [name for name in SMALL if name != "chain5" and by_energies(name)])
+@pytest.mark.parametrize("name", usual([name for name in SMALL if name != "chain5" and by_energies(name)], 2, 1))
 def test_printed_derivatives_are_derivatives_of_the_printed_kinetic_energy(name):
     """dT/du, d/dt dT/du and dT/dq of T = sum of the bodies' T, all as printed"""
     derived = equations(name)
@@ -257,7 +258,7 @@ def test_kinetic_energies_come_out_as_a_textbook_prints_them(name):
     assert printed[1] == derived.entries()["kinetic_energy"] == KINETIC_ENERGIES[name]
 
 
-@pytest.mark.parametrize("name", derivable())
+@pytest.mark.parametrize("name", usual([*derivable()], 2))
 def test_the_payload_reads_back_as_the_equations(name):
     """N, nu, M, forcing, J, sigma, gamma, phi, T, V, Q and each `lhs = rhs`, through text and back"""
     derived, data = equations(name), entries(name)

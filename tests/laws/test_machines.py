@@ -11,6 +11,7 @@ import sys
 from pathlib import Path
 
 import pytest
+from slow_run import ALL, usual
 
 sys.path.insert(0, str(Path(__file__).parents[1] / "combinations"))
 
@@ -25,7 +26,8 @@ QUICK = (  # of every kind of feature one
     "geneva_drive", "governor_on_turntable", "quarter_car", "road_train", "screw_press", "stewart_on_ship",
     "washing_machine",
 )  # fmt: skip
-EACH = [pytest.param(name, marks=() if name in QUICK else pytest.mark.slow) for name in MACHINES]
+ASKED = [*MACHINES] if ALL else sorted({*QUICK, *[*MACHINES][1::2]})
+EACH = [pytest.param(name, marks=() if name in QUICK else pytest.mark.slow) for name in ASKED]
 
 
 def test_there_are_thirty_machines_and_each_says_what_it_is():
@@ -44,7 +46,7 @@ def test_a_machine_moves_as_free_bodies_do(name):
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("name", MACHINES)
+@pytest.mark.parametrize("name", usual([*MACHINES], 2))
 def test_what_is_said_of_a_machine_is_one_number_and_proven(name):
     """`solve`, `reactions`, a run's columns, eigenvalues, inverse dynamics against the oracle; a green certificate."""
     product = compare.product_of(MACHINES[name].read_text(encoding="utf-8"))
