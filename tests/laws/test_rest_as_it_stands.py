@@ -117,3 +117,48 @@ def test_a_start_with_all_the_digits_of_a_double_stands_in_no_formula(b, exact):
     found = eomgen.linearize(eomgen.loads(BARS), start={"b": b})
     assert ("cos(" in str(found)) == exact and "5976963162970029" not in str(found)
     assert float(found.modes.small.numbers.M[0][0]) == pytest.approx(5 / 3 + math.cos(b))
+
+
+SHAKEN = """
+eomgen = 1
+space = "plane"
+parameters = { m = 2, k = 50, c = 3, B = 0.1, w = 4, l0 = 0.5 }
+coordinates = { x = { start = 0.4 }, y = { start = 0.3 } }
+
+[bodies.mass]
+shape = { kind = "particle", mass = "m" }
+joint = { kind = "prismatic", axis = [1, 0], displacement = "x" }
+
+[bodies.wagon]
+shape = { kind = "particle", mass = "m" }
+joint = { kind = "prismatic", at = ["B*sin(w*t)", 1], axis = [1, 0], displacement = "y" }
+
+[points]
+O = [0, 0]
+P = [0, 1]
+
+[forces.spring]
+kind = "spring"
+points = ["O", "mass.origin"]
+stiffness = "k"
+length = "l0"
+
+[forces.second]
+kind = "spring"
+points = ["P", "wagon.origin"]
+stiffness = "k"
+length = "l0"
+
+[forces.damper]
+kind = "damper"
+points = ["mass.origin", "wagon.origin"]
+damping = "c"
+"""
+
+
+def test_a_damper_at_a_seat_that_moves_by_an_explicit_time_does_not_pull_at_rest():
+    """The seat stands where it is at t = 0: both springs have their own length, however fast it is moved there."""
+    found = eomgen.statics(eomgen.loads(SHAKEN))
+    places = [{q.name: x for q, x in place.numbers.items()} for place in found.places]
+    assert any(place["x"] == pytest.approx(0.5) and place["y"] == pytest.approx(0.5) for place in places)
+    assert found.certify().ok

@@ -22,6 +22,7 @@ from eomgen.mechanics.bodies.system_scene import start_values
 from eomgen.mechanics.constraints.freedom import freedoms
 from eomgen.mechanics.equations.system import System, system_of
 from eomgen.mechanics.equations.work import acting, generalized_forces, powered_forces
+from eomgen.mechanics.equilibria.standing import standing_system
 from eomgen.model.contacts import rough_contacts
 from eomgen.model.part import altered
 from eomgen.model.quaternions import quaternions_of
@@ -203,10 +204,11 @@ def static_equations(system: System) -> StaticEquations:
     q = tuple(x for x in scope.symbols.q if x not in driven)
     given = _given(free, driven)
     rows = [readable_all(substituted(row, given), Work.FORMULA) for row in free.ties.J]
-    forces = generalized_forces(free.loads)
+    loads = standing_system(free).loads  # a damper at a seat that moves by an explicit time does not pull at rest
+    forces = generalized_forces(loads)
     _refuse_signs_of_rates(forces, free)
     Q = _at_rest(forces, given, free)
-    unbalanced = substituted(powered_forces(free.loads), given)
+    unbalanced = substituted(powered_forces(loads), given)
     phi = _relations(system, given, q)
     sigma = _left_at_rest(free, given, q)
     Q, unbalanced, phi, sigma = (
