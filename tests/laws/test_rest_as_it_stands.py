@@ -156,9 +156,23 @@ damping = "c"
 """
 
 
-def test_a_damper_at_a_seat_that_moves_by_an_explicit_time_does_not_pull_at_rest():
-    """The seat stands where it is at t = 0: both springs have their own length, however fast it is moved there."""
-    found = eomgen.statics(eomgen.loads(SHAKEN))
+BESIDE = """
+[bodies.slave]
+shape = { kind = "particle", mass = "m" }
+joint = { kind = "prismatic", at = [0, 2], axis = [1, 0], displacement = "z" }
+
+[constraints.gear]
+kind = "equation"
+gap = "z - 2*x"
+"""
+
+
+@pytest.mark.parametrize("beside", ["", BESIDE])
+def test_a_damper_at_a_seat_that_moves_by_an_explicit_time_does_not_pull_at_rest(beside):
+    """The seat stands where it is at t = 0: both springs have their own length, beside a dependent coordinate too."""
+    more = ", z = { dependent = true, start = 0.8 } }" if beside else " }"
+    text = SHAKEN.replace("y = { start = 0.3 } }", f"y = {{ start = 0.3 }}{more}") + beside
+    found = eomgen.statics(eomgen.loads(text))
     places = [{q.name: x for q, x in place.numbers.items()} for place in found.places]
     assert any(place["x"] == pytest.approx(0.5) and place["y"] == pytest.approx(0.5) for place in places)
     assert found.certify().ok

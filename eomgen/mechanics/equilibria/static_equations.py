@@ -204,7 +204,8 @@ def static_equations(system: System) -> StaticEquations:
     q = tuple(x for x in scope.symbols.q if x not in driven)
     given = _given(free, driven)
     rows = [readable_all(substituted(row, given), Work.FORMULA) for row in free.ties.J]
-    loads = standing_system(free).loads  # a damper at a seat that moves by an explicit time does not pull at rest
+    standing = standing_system(free)  # a damper at a seat that moves by an explicit time does not pull at rest
+    loads = (standing.free or standing).loads
     forces = generalized_forces(loads)
     _refuse_signs_of_rates(forces, free)
     Q = _at_rest(forces, given, free)
