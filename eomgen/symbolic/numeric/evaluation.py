@@ -72,7 +72,7 @@ def evaluate(outputs: Sequence[Scalar], values: Mapping[Node, Any], arithmetic: 
         way = _way(outputs, frozenset(x for x in values if x.op != "symbol"))
     missing = [x.name for x in way.symbols if x not in values]
     if missing:
-        raise DerivationError(f"no value for {', '.join(repr(name) for name in missing)}")
+        raise DerivationError(f"no value for {', '.join(repr(name) for name in missing)}", mend="give it a value")
     number, functions = arithmetic.number, arithmetic.functions
     known = [number(x) for x in way.constants]
     known += [values[x] for x in way.symbols]
