@@ -236,57 +236,61 @@ class _WithFriction:
         """
         if len(self.equations.M) + len(self._kept) + len(self._single) > cramer.LARGEST_BLOCK:
             return self._by_factors()
-        rows, right = bordered_rows(self.equations, self._kept)
+        try:
+            return tuple(_solved(self.equations.system, *self._bordered()))
+        except DerivationError:
+            refuse_massless(self.equations)
+            raise
+
+    def _bordered(self) -> tuple[list[dict[int, Scalar]], list[Scalar]]:
+        """(rows, right side) for a, lam and N at once."""
+        rows, right = bordered_rows(self._loaded, self._kept)
         n, first = len(self.equations.M), len(right)
-        for contact in self.found:
-            if contact.normals:
-                size = self._symbols[contact.name]
-                right[:n] = [b + force * size for b, force in zip(right[:n], contact.force, strict=True)]
         for k, contact in enumerate(self._single):
             multiplier = self._multiplier(contact.component, contact.name)
             normal = first + k if multiplier is None else n + multiplier
             for row, force in zip(rows[:n], contact.force, strict=True):
                 row[normal] = row.get(normal, 0) - force
-            same: tuple[dict[int, Scalar], Scalar] = ({normal: -1}, 0)
-            known, value = self._linear(contact.component, first) if multiplier is None else same
+            known, value = self._normal(contact, first)
             rows.append(known | {first + k: 1 + known.get(first + k, 0)})
             right.append(value)
-        try:
-            return tuple(_solved(self.equations.system, rows, right))
-        except DerivationError:
-            refuse_massless(self.equations)
-            raise
+        return rows, right
 
     def _by_factors(self) -> ScalarRow:
         """The same of many unknowns: a and lam for each N by the factors of M and J M^-1 J^T, then N alone."""
-        equations, n = self.equations, len(self.equations.M)
-        forcing = list(equations.forcing)
-        for contact in self.found:
-            if contact.normals:
-                size = self._symbols[contact.name]
-                forcing = [b + force * size for b, force in zip(forcing, contact.force, strict=True)]
         try:
-            parts = by_factors(
-                replace(equations, forcing=tuple(forcing)), self._kept, [contact.force for contact in self._single]
-            )
+            parts = by_factors(self._loaded, self._kept, [contact.force for contact in self._single])
         except DerivationError:
-            refuse_massless(equations)
+            refuse_massless(self.equations)
             raise
         columns = [[*a, *lam] for a, lam in parts]
         first, rows, right = len(columns[0]), [], []
         for k, contact in enumerate(self._single):
-            multiplier = self._multiplier(contact.component, contact.name)
-            if multiplier is None:
-                known, value = self._linear(contact.component, first)
-            else:
-                known, value = {n + multiplier: -1}, 0
+            known, value = self._normal(contact, first)
             share = [sum((x * column[j] for j, x in known.items() if j < first), start=0) for column in columns]
             row = {i: share[1 + i] + known.get(first + i, 0) + int(i == k) for i in range(len(self._single))}
             rows.append({i: x for i, x in row.items() if not is_zero(x)})
             right.append(value - share[0])
-        N = _solved(equations.system, rows, right) if rows else []
+        N = _solved(self.equations.system, rows, right) if rows else []
         moved = [sum((column[j] * f for column, f in zip(columns[1:], N, strict=True)), start=0) for j in range(first)]
         return (*(x + d for x, d in zip(columns[0], moved, strict=True)), *N)
+
+    @property
+    def _loaded(self) -> EquationsOfMotion:
+        """The equations with the friction of bilateral contacts, |N| left open, in the forcing."""
+        forcing = self.equations.forcing
+        for contact in self.found:
+            if contact.normals:
+                size = self._symbols[contact.name]
+                forcing = tuple(b + force * size for b, force in zip(forcing, contact.force, strict=True))
+        return replace(self.equations, forcing=forcing)
+
+    def _normal(self, contact: FrictionContact, first: int) -> tuple[dict[int, Scalar], Scalar]:
+        """What N is besides itself, a row over a, lam and N: its multiplier, or by the balance."""
+        multiplier = self._multiplier(contact.component, contact.name)
+        if multiplier is None:
+            return self._linear(contact.component, first)
+        return {len(self.equations.M) + multiplier: -1}, 0
 
     def _by_balance(self, j: int) -> Scalar:
         """Component j, linear in the accelerations."""
