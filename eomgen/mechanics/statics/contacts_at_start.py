@@ -25,6 +25,7 @@ from eomgen.mechanics.bodies.contact_modes import ContactMode, ContactModes
 from eomgen.mechanics.constraints.closure import of_50_digits
 from eomgen.mechanics.constraints.ties import rows_of_tie
 from eomgen.mechanics.equations.accelerations import exact_accelerations
+from eomgen.mechanics.equations.equations_of_motion import EquationsOfMotion
 from eomgen.mechanics.equations.system import System, system_of
 from eomgen.mechanics.initial_state.initial_state import start_state
 from eomgen.mechanics.reactions.reactions import Reactions, reactions_of
@@ -32,7 +33,7 @@ from eomgen.mechanics.statics.rest_contacts import modes_at_rest
 from eomgen.model.contacts import Contact, contacts_of
 from eomgen.model.parts import Model
 from eomgen.model.values import exact_parameters
-from eomgen.records import dataclass
+from eomgen.records import dataclass, recalled
 from eomgen.symbolic.expression.derivative import symbols_of
 from eomgen.symbolic.expression.graph import Scalar
 from eomgen.symbolic.expression.node import State
@@ -62,11 +63,15 @@ class ContactsAtStart:
 def contacts_at_start(model: Model) -> ContactsAtStart:
     """The contacts that the start values leave open, and those that push against their normals there.
 
-    Without coordinates what is rough sticks.
+    Without coordinates what is rough sticks. Of one model they are found once.
     """
-    contacts = contacts_of(model)
-    if not contacts:
+    if not contacts_of(model):
         return ContactsAtStart()
+    return recalled(model, contacts_at_start, lambda: _at_start(model))
+
+
+def _at_start(model: Model) -> ContactsAtStart:
+    contacts = contacts_of(model)
     if not model.coordinates:
         return ContactsAtStart(dict(modes_at_rest(model)))
     start = _StartNumbers(model)
@@ -100,6 +105,17 @@ class _StartNumbers:
     """The start of a model in numbers, those that nobody gave drawn."""
 
     model: Model
+
+    @cached_property
+    def _known(self) -> dict[frozenset[tuple[str, ContactMode]], EquationsOfMotion]:
+        return {}
+
+    def _equations(self, modes: ContactModes) -> EquationsOfMotion:
+        """The equations of motion under these modes, derived once: the values of parameters alone differ."""
+        key = frozenset(modes.items())
+        if key not in self._known:
+            self._known[key] = equations_of_motion(system_of(self.model, modes))
+        return self._known[key]
 
     @cached_property
     def missing(self) -> tuple[str, ...]:
@@ -172,8 +188,9 @@ class _StartNumbers:
 
     def _agrees(self, modes: ContactModes, held: Sequence[Contact], free: Sequence[Contact], drawn: Numbers) -> bool:
         """Whether what is held pushes, and what is free opens, with the accelerations at the start."""
-        system = system_of(self.model, modes)
-        equations, reactions, scope = equations_of_motion(system), reactions_of(system), system.scope
+        equations = self._equations(modes)
+        system = equations.system
+        reactions, scope = reactions_of(system), system.scope
         forces = [x for contact in held for x in _forces(reactions, contact)]
         state = _state(system, drawn)
         state |= dict(zip(system.symbols.a, exact_accelerations(equations, state), strict=True))
@@ -205,8 +222,8 @@ class _StartNumbers:
         """The sign of N of each contact, with the friction of given signs; what does not slide sticks."""
         still = self.still(opened)
         modes = {c.name: ContactMode(sense=0) if c.name in still else ContactMode(push=signs[c.name]) for c in contacts}
-        system = system_of(self.model, {**opened, **modes})
-        equations = equations_of_motion(system)
+        equations = self._equations({**opened, **modes})
+        system = equations.system
         reactions = reactions_of(system)
         normals = {c.name: reactions.normal(c.name) for c in contacts}
         entries = (*normals.values(), *equations.forcing, *(x for row in equations.M for x in row))
