@@ -8,9 +8,11 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from each import each
 from maximal import free_body_accelerations
 from moving import at, equal, state_of, written
 from random_systems import random_model
+from slow_run import usual_models
 
 import eomgen
 from eomgen.mechanics.bodies.inertia import armature_energy
@@ -30,8 +32,8 @@ pytestmark = [pytest.mark.slow, pytest.mark.by_model]
 MODELS = {path.stem: path for path in sorted((Path(__file__).parents[2] / "models").rglob("*.toml"))}
 RANDOM = [(space, seed) for space in ("plane", "space") for seed in range(100, 110)]
 
-formulations = pytest.mark.parametrize("formulation", ALL, ids=lambda formulation: formulation.name)
-others = pytest.mark.parametrize("formulation", ALL[1:], ids=lambda formulation: formulation.name)
+formulations = each("formulation", ALL)
+others = each("formulation", ALL[1:])
 
 
 @cache
@@ -47,7 +49,7 @@ def assembled(formulation: Formulation, name: str) -> EquationsOfMotion:
     return formulation.assemble(system_named(name))
 
 
-@pytest.fixture(params=sorted(MODELS))
+@pytest.fixture(params=[path.stem for path in usual_models(MODELS.values())])
 def name(request) -> str:
     if system_named(request.param) is None:
         pytest.skip("a part of the model is not built in this version")
@@ -87,8 +89,8 @@ def test_every_formulation_gives_the_same_accelerations(formulation, name):
     assert close(accelerations(assembled(formulation, name), system), reference)
 
 
-@others
 @pytest.mark.parametrize(("space", "seed"), RANDOM)
+@others
 def test_every_formulation_gives_the_same_accelerations_of_random_trees(formulation, space, seed):
     """As above, for systems that nobody has thought of."""
     system = system_of(eomgen.loads(random_model(space, seed)))

@@ -10,7 +10,7 @@ from functools import cache
 from pathlib import Path
 from typing import Any
 
-from slow_run import usual
+from slow_run import usual, usual_models
 
 from eomgen import solve
 from eomgen.documents.derivation import derivation_of
@@ -177,8 +177,11 @@ def loaded(path: Path) -> Model:
 
 @cache
 def moving() -> tuple[Path, ...]:
-    """The models that have equations of motion; where a force is asked for there is rest, and no motion."""
-    return tuple(path for path in PATHS if not in_loads(loaded(path)) and not unbuilt(loaded(path)))
+    """Models that have equations of motion, so many that they hold each feature twice; in the slow run all of them.
+
+    Where a force is asked for there is rest, and no motion.
+    """
+    return usual_models(path for path in PATHS if not in_loads(loaded(path)) and not unbuilt(loaded(path)))
 
 
 def model_called(name: str) -> Model:
@@ -191,7 +194,7 @@ def model_called(name: str) -> Model:
 
 
 def derivable() -> tuple[str, ...]:
-    """The stems of the models that have equations of motion, and those written here."""
+    """The stems of the models of `moving`, and those written here."""
     return ("loop", "springs", "chain5", *(path.stem for path in moving()))
 
 

@@ -6,8 +6,11 @@ EOMGEN_ALL_MODELS=1 python -m pytest -q -n 2        # all items of all sweeps: b
 from __future__ import annotations
 
 import os
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
+from pathlib import Path
 from typing import TypeVar
+
+from covering_models import covering
 
 Item = TypeVar("Item")
 ALL = bool(os.environ.get("EOMGEN_ALL_MODELS"))
@@ -16,3 +19,8 @@ ALL = bool(os.environ.get("EOMGEN_ALL_MODELS"))
 def usual(items: Sequence[Item], every: int, first: int = 0) -> Sequence[Item]:
     """Each `every`-th item from the `first` on; in the slow run all of them."""
     return items if ALL else items[first::every]
+
+
+def usual_models(models: Iterable[Path], times: int = 2) -> tuple[Path, ...]:
+    """Of these models those that hold each of their features `times` times; in the slow run all of them."""
+    return tuple(models) if ALL else covering(tuple(models), times)
