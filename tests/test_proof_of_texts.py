@@ -161,3 +161,22 @@ def test_numbers_of_other_parameters_are_a_contradiction(verb: str, name: str, m
     monkeypatch.setenv("EOMGEN_FRESH", "1")
     found = CliRunner().invoke(main, [verb, str(MODELS / f"{name}.toml")])
     assert found.exit_code == 3 and "FAIL parameters are worth what the file says" in found.stdout
+
+
+FAR = """
+eomgen = 1
+space = "plane"
+parameters = { v = 2, w = 1.04719755, k = "pi/3" }
+coordinates = { x = { start = 0, speed = "v" }, phi = { start = 0, speed = "w - k" } }
+bodies.a.shape = { kind = "disc", mass = 1, radius = 0.2 }
+bodies.a.joint = { kind = "planar", x = "x", y = 0, angle = "phi" }
+"""
+
+
+def test_texts_are_read_back_with_parameters_as_exact_as_their_numbers(tmp_path: Path):
+    """v/(w - pi/3) is 1.7e9 m: with pi/3 as a double it has 7 digits, and a true text would be contradicted."""
+    path = tmp_path / "far.toml"
+    path.write_text(FAR)
+    told = CliRunner().invoke(main, ["kinematics", str(path), "--format", "json"])
+    assert told.exit_code == 0
+    assert '"exact": "v/(w - k)"' in told.stdout

@@ -12,10 +12,10 @@ from eomgen.documents.statements import Equation, Lines, Meaning, Statement, Ste
 from eomgen.errors import Problem
 from eomgen.model.parts import Model
 from eomgen.model.replaced import Taken
-from eomgen.model.values import exact_parameters
+from eomgen.model.values import constant_parameters
 from eomgen.proof.check import Certificate
 from eomgen.records import Pickled, dataclass
-from eomgen.symbolic.expression.graph import Node, Scalar
+from eomgen.symbolic.expression.graph import Graph, Node, Scalar
 from eomgen.symbolic.print.symbols import Symbol
 
 DISTRUST = "the certificate FAILS: do not trust this result"
@@ -47,7 +47,7 @@ class Document:
         cautions: what is allowed in the model and hardly meant.
         taken: what was made of values that a person typed.
         notation: how its symbols are set in LaTeX.
-        parameters: the values of those that have one.
+        parameters: the values of those that have one, exact constants.
         answer_code: the exit code that is an answer: 5 where that is no.
     """
 
@@ -119,7 +119,7 @@ def quantities_of(entries: Mapping[str, Any]) -> dict[str, Quantity]:
 def document_of(model: Model, method: str, steps: tuple[Step, ...]) -> Document:
     """The document of a model, under its name, its remark and its source."""
     about, source = model.about or "", model.source or ""
-    notation, values = notation_of(model), exact_parameters(model)
+    notation, values = notation_of(model), constant_parameters(model, Graph())
     return Document(model.name, about, source, model.space, method, steps, notation=notation, parameters=values)
 
 
@@ -139,7 +139,7 @@ def plain_document(
     """A document of one section without a head: what is no derivation."""
     steps = (Step("", "", statements),)
     document = Document(model.name, steps=steps, entries=entries, notation=notation_of(model))
-    values = exact_parameters(model)
+    values = constant_parameters(model, Graph())
     return replace(document, failed=failed, notes=notes, parameters=values, answer_code=answer_code)
 
 

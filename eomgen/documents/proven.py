@@ -179,9 +179,9 @@ def _compared(
 
 def _off(expression: Expression, unit: str, right: float, values: Mapping[str, Any]) -> str:
     """What the text is worth, where that is not the number; ""."""
-    graph, number = Graph(), fifty_digits().number
-    symbols = {name: graph.symbol(name) for name in expression.names - {"pi"}}
+    graph, digits = Graph(), fifty_digits()
+    symbols = {name: graph.symbol(name) for name in sorted(expression.names - {"pi"})}
     scalar = expression.evaluate({**symbols, "pi": graph.pi})
-    state = {x: number(1) * values[name] for name, x in symbols.items()}
-    found = float(evaluate((scalar,), state, fifty_digits())[0])
+    state = dict(zip(symbols.values(), evaluate([values[name] for name in symbols], {}, digits), strict=True))
+    found = float(evaluate((scalar,), state, digits)[0])
     return differing(found / parse_unit(unit).size, right)

@@ -10,6 +10,7 @@ from eomgen.model.findings import nearest
 from eomgen.model.parts import Model
 from eomgen.model.quaternions import quaternions_of
 from eomgen.symbolic.expression.expressions import Expression, as_expression
+from eomgen.symbolic.expression.graph import Graph
 
 
 def exact_parameters(model: Model, overrides: Mapping[str, Any] | None = None) -> dict[str, AnyNumber]:
@@ -28,6 +29,21 @@ def exact_parameters(model: Model, overrides: Mapping[str, Any] | None = None) -
             values[name] = _value(others[name], values, f"parameters.{name}")
     del values["pi"]
     return values
+
+
+def constant_parameters(model: Model, graph: Graph) -> dict[str, Any]:
+    """The parameters that have values, each as an exact constant: 1/3, pi/6, sqrt(2); nothing is rounded.
+
+    Raises:
+        ModelError: as of `exact_parameters`.
+    """
+    values = exact_parameters(model)
+    found: dict[str, Any] = {}
+    for name, value in values.items():  # those that another needs come before it
+        part = model.parameters[name]
+        formula = None if part is None or not isinstance(value, float) else part.value
+        found[name] = value if formula is None else formula.evaluate({**found, "pi": graph.pi})
+    return found
 
 
 def numeric_parameters(
@@ -145,7 +161,6 @@ def _float(expression: Expression | None, values: Mapping[str, Any], where: str)
 def _slope(motion: Expression, values: Mapping[str, Any], where: str) -> float:
     """f'(0) of a given motion, by the exact derivative."""
     from eomgen.symbolic.expression.derivative import derivative
-    from eomgen.symbolic.expression.graph import Graph
     from eomgen.symbolic.numeric.evaluation import FLOAT, evaluate
 
     _float(motion, values, where)

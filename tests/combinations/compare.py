@@ -120,6 +120,11 @@ def _at(found: Found, name: str, s: State, oracle: Oracle, e: Any, functions: di
     if solved.sticks:
         found.skipped.append("a contact sticks: code has friction by the law of sliding, runs and `solve` stick")
         return
+    if any(
+        oracle.modes[tie] and not laws.agrees(tie, oracle, s, solved) for tie in solved.pressed if tie in oracle.modes
+    ):
+        found.skipped.append("a contact that rubs and can end would have to pull: it is not closed there")
+        return
     u, du = oracle.speeds_of(s, e.speeds, solved.a)
     x = np.concatenate([s.q, u])
     now = oracle.maximal(s)

@@ -23,7 +23,7 @@ def one_model() -> Iterator[None]:
     """Within it a text is read once and equations are proven once."""
     read, prove, trials_of = eomgen.model.reader._loads, eomgen.certificate.certify, eomgen.certificate.Trials
     models: dict[bytes, Any] = {}
-    proofs: dict[int, tuple[Any, Certificate]] = {}
+    proofs: dict[bool, dict[int, tuple[Any, Certificate]]] = {False: {}, True: {}}
     trials: dict[int, tuple[Any, Any]] = {}
 
     def loads(data: bytes, *more: Any) -> Any:
@@ -34,8 +34,10 @@ def one_model() -> Iterator[None]:
     def shared_trials(equations: Any) -> Any:
         return _once(trials, equations, trials_of)
 
-    def certify(equations: Any, rhs: Any = None, derived: Any = None, *, printed: Any = None) -> Certificate:
-        checks = _once(proofs, equations, prove).checks
+    def certify(
+        equations: Any, rhs: Any = None, derived: Any = None, *, printed: Any = None, begins: bool = True
+    ) -> Certificate:
+        checks = _once(proofs[begins], equations, lambda e: prove(e, begins=begins)).checks
         known = shared_trials(equations)
         if derived is not None:
             checks += tuple(identities.compared([identities.derivation(equations, derived)], known.states))

@@ -193,3 +193,11 @@ def test_a_contact_that_is_taken_as_closed_and_opens_with_the_speeds_is_contradi
     resting = BALL.replace("HEIGHT", "0").replace('"START"', "0")
     told = [leaving_at_start(equations_of_motion(system_of(eomgen.loads(text)))) for text in (thrown, resting)]
     assert told == ["'floor' is closed, and opens with 1.2 m/s where the motion starts", ""]
+
+
+def test_places_of_rest_have_no_speeds_of_the_start():
+    """Thrown up, the ball's contact is open as the motion begins; where it rests it is closed: both are proven."""
+    thrown = eomgen.loads(BALL.replace("HEIGHT", "0").replace('{ start = "START" }', "{ start = 0, speed = 1.2 }"))
+    found = eomgen.statics(thrown)
+    assert found.places and found.certify().ok
+    assert eomgen.derive(thrown).certify().ok

@@ -65,7 +65,7 @@ class Resting(Result):
         balanced = (balance_check(self.places), pushes_check(self.places))
         first = first_order_of(standing_system(self.places[0].statics.system))
         try:
-            base = certify(first.equations)
+            base = certify(first.equations, begins=False)
         except (ModelError, DerivationError) as error:  # a massless coordinate, say: there is rest, and no motion
             return Certificate((*balanced, unchecked(NOTHING_ACCELERATED, error.what, BY_MOTION)))
         return Certificate((*base.checks, *balanced, *resting_checks(first, self.places)))

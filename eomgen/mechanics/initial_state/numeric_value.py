@@ -13,9 +13,9 @@ from typing import Any
 
 from eomgen.mechanics.bodies.scope import Scope
 from eomgen.mechanics.initial_state.values_at_rest import values_of_parameters
-from eomgen.model.values import exact_parameters
+from eomgen.model.values import constant_parameters, exact_parameters
 from eomgen.records import dataclass
-from eomgen.symbolic.expression.derivative import substituted, symbols_of
+from eomgen.symbolic.expression.derivative import symbols_of
 from eomgen.symbolic.expression.graph import Node, Scalar
 from eomgen.symbolic.expression.rational import Fraction
 from eomgen.symbolic.numeric.evaluation import evaluate, fifty_digits
@@ -30,14 +30,7 @@ def known_parameters(scope: Scope) -> dict[Node, float]:
 
 def known_exactly(scope: Scope) -> dict[Node, Scalar]:
     """The parameters that have values, as exact constants: 1/3, sqrt(2), pi/6."""
-    parameters, values = scope.symbols.parameters, dict[Node, Any]()
-    for name, value in exact_parameters(scope.model).items():  # those that another needs come before it
-        part = scope.model.parameters[name]
-        if isinstance(value, float) and part is not None and part.value is not None:
-            (values[parameters[name]],) = substituted((scope.value(part.value),), values)
-        else:
-            values[parameters[name]] = value
-    return values
+    return {scope.symbols.parameters[name]: x for name, x in constant_parameters(scope.model, scope.graph).items()}
 
 
 def shown_numbers(scalars: Sequence[Scalar | None], values: Mapping[Node, Scalar | float]) -> list[float | None]:
