@@ -8,6 +8,7 @@ from pathlib import Path
 
 import pytest
 from browser import visited
+from slow_run import beside
 from tools import REQUIRED, needs
 
 import eomgen
@@ -43,8 +44,8 @@ def player(name: str) -> str:
     ("made", "name"),
     [
         (report, "double_pendulum"),  # a motion
-        (report, "a_frame"),  # a structure, its released motions
-        (player, "four_bar"),  # sliders
+        *beside((report, "a_frame")),  # a structure, its released motions
+        *beside((player, "four_bar")),  # sliders
         (player, "sliding_ladder"),  # sliders that rest
         (player, "heavy_top"),  # space
     ],

@@ -5,6 +5,8 @@ from __future__ import annotations
 from random import Random
 
 import pytest
+from each import each
+from slow_run import usual
 
 from eomgen.documents.latex_math import Setter
 from eomgen.documents.latex_names import Notation
@@ -113,7 +115,7 @@ def random_formula(seed: int) -> str:
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("seed", range(125))
+@each("seed", usual(range(125), 2))
 def test_a_formula_keeps_its_value_and_is_found_again(seed: int):
     """book_form(x) = x as a function; made again, and anywhere else, it is the same text."""
     given = random_formula(seed)
@@ -126,7 +128,7 @@ def test_a_formula_keeps_its_value_and_is_found_again(seed: int):
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("seed", range(15))
+@each("seed", range(15))
 def test_a_formula_is_about_as_short_as_multiplied_out_or_shorter(seed: int):
     """A pair of parentheses costs a mark more than it saves at most: (M + m)*g."""
     x = read(random_formula(seed))
@@ -135,7 +137,7 @@ def test_a_formula_is_about_as_short_as_multiplied_out_or_shorter(seed: int):
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("seed", range(15))
+@each("seed", range(15))
 def test_the_length_of_a_scalar_is_that_of_its_latex(seed: int):
     """length_of(x) = length_of_latex(LaTeX of x): one rule, without typesetting."""
     x = read(random_formula(seed))
@@ -143,7 +145,7 @@ def test_the_length_of_a_scalar_is_that_of_its_latex(seed: int):
         assert length_of(y) == length_of_latex(Setter().set(y).tex), to_text(y)
 
 
-@pytest.mark.parametrize("name", ["theta", "theta1''", "m_cart", "x_1_2", "Ixx1", "lam(bar, 1)", "psi'", "R_stick_x"])
+@each("name", ["theta", "theta1''", "m_cart", "x_1_2", "Ixx1", "lam(bar, 1)", "psi'", "R_stick_x"])
 def test_the_length_of_a_name_is_that_of_its_latex(name: str):
     assert length_of_name(name) == length_of_latex(Notation().latex(name))
 

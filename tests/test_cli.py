@@ -13,6 +13,7 @@ from pathlib import Path
 import click
 import pytest
 from click.testing import CliRunner
+from each import each
 
 import eomgen
 from eomgen import equations, pipeline
@@ -147,7 +148,7 @@ def test_the_version_is_told_once_and_everywhere_the_same():
 # -- conventions -----------------------------------------------------------------------------------
 
 
-@pytest.mark.parametrize(
+@each(
     "words",
     [
         ("check", PENDULUM),
@@ -164,7 +165,6 @@ def test_the_version_is_told_once_and_everywhere_the_same():
         ("simulate", PENDULUM, "--set", "q=1"),
         ("derive", TRUSS),
     ],
-    ids=lambda words: " ".join(Path(word).stem for word in words),
 )
 def test_with_json_stdout_is_one_json_object_with_its_schema_version(words):
     """`--json` on every verb, errors too."""
@@ -194,8 +194,8 @@ def test_only_the_result_is_on_stdout():
     assert whole.stdout.startswith("kinetic_energy  = ") and part.stdout.startswith("Q_theta ")
 
 
-@pytest.mark.parametrize(
-    ("words", "code", "word"),
+@each(
+    "words, code, word",
     [
         (("check", PENDULUM), 0, ""),
         (("check", "no/such/model.toml"), 2, "does not exist"),
@@ -512,7 +512,7 @@ def test_what_could_not_be_checked_is_a_warning_and_no_failure(monkeypatch):
     assert "warning: nothing of this result could be checked" in result.stderr
 
 
-@pytest.mark.parametrize("words", [("--json",), ("--format", "json"), ("--format=json",)])
+@each("words", [("--json",), ("--format", "json"), ("--format=json",)])
 def test_errors_are_json_where_json_is_asked_in_any_way(words):
     """derive --format json of a file that is no model: one JSON object, as with --json."""
     result = run("derive", "-", *words, text="nonsense = 1\n")
@@ -664,8 +664,8 @@ def test_a_run_says_once_where_a_reaction_has_no_value(tmp_path):
     assert path.read_text().splitlines()[1].split(",")[4] == "nan"
 
 
-@pytest.mark.parametrize(
-    ("model", "more", "line"),
+@each(
+    "model, more, line",
     [
         ("gerber_beam", "", "stable, statically determinate"),
         (

@@ -5,6 +5,7 @@ from __future__ import annotations
 from dataclasses import replace
 
 import pytest
+from each import each
 
 import eomgen
 from eomgen.documents import coefficient_names, rendered
@@ -62,15 +63,15 @@ def test_an_inertia_reduced_to_the_shaft_has_a_name() -> None:
     assert name.name == "I_1" and side_text(value) == "J1 + J2*r1^2/r2^2 + J3*r1^2*r3^2/(r2^2*r4^2)"
 
 
-@pytest.mark.parametrize("taken", ["I_1", "I1"])
+@each("taken", ["I_1", "I1"])
 def test_a_name_is_none_of_the_model_nor_set_like_one(taken: str) -> None:
     """I1 is set as I_1"""
     ((name, _),) = train(taken).derivation.definitions
     assert name.name == "I_2"
 
 
-@pytest.mark.parametrize(
-    ("form", "definition"),
+@each(
+    "form, definition",
     [("text", "    I_1 = J1"), ("latex", "I_{1} &= J_{1}"), ("markdown", "I_{1} &= J_{1}"), ("json", '"I_1"')],
 )
 def test_the_name_is_defined_in_every_form(form: str, definition: str) -> None:

@@ -6,6 +6,7 @@ from fractions import Fraction
 from random import Random
 
 import pytest
+from each import each
 
 from eomgen.errors import DerivationError
 from eomgen.symbolic.expression.derivative import symbols_of
@@ -29,7 +30,7 @@ def random_system(seed: int, n: int, density: float):
     return rows, right
 
 
-@pytest.mark.parametrize("seed", range(20))
+@each("seed", range(20))
 @pytest.mark.parametrize(("n", "density"), [(1, 1), (2, 1), (4, 0.3), (5, 1), (8, 0.15)])
 def test_the_solution_solves(seed, n, density):
     """A X = right, exactly."""

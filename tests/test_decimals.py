@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from fractions import Fraction
 
-import pytest
+from each import each
 from hypothesis import given
 from hypothesis import strategies as st
 
@@ -12,8 +12,8 @@ from eomgen.symbolic.expression.expressions import parse
 from eomgen.symbolic.print.decimals import decimal_of, number_text
 
 
-@pytest.mark.parametrize(
-    ("number", "text"),
+@each(
+    "number, text",
     [
         (4, "4"),
         (Fraction(27, 2), "27/2"),

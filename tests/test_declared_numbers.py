@@ -5,8 +5,8 @@ from __future__ import annotations
 import json
 from pathlib import Path
 
-import pytest
 from click.testing import CliRunner
+from each import each
 
 import eomgen
 from eomgen.cli import main
@@ -62,7 +62,7 @@ def test_a_unit_that_is_lost_ends_a_verb(monkeypatch, tmp_path):
     assert done.exit_code == 3 and "the file's number of 'm' is 0.25 in SI, and 250 was read" in told
 
 
-@pytest.mark.parametrize("path", sorted((Path(__file__).parents[1] / "models").rglob("*.toml")), ids=lambda x: x.stem)
+@each("path", sorted((Path(__file__).parents[1] / "models").rglob("*.toml")))
 def test_no_model_that_ships_is_contradicted(path):
     """The same numbers in every file."""
     assert numbers_otherwise(path.read_bytes(), eomgen.load(path)) == ""

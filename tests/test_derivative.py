@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 
 import pytest
+from each import each
 from hypothesis import given
 from random_expressions import POINT, on_graph, smooth, trigonometric, values_at, with_floats
 
@@ -52,10 +53,8 @@ def test_forward_and_reverse_agree(tree):
     assert backward == pytest.approx(forward, rel=1e-9, abs=1e-9)
 
 
-@pytest.mark.parametrize(
-    "name", ["sin", "cos", "tan", "asin", "acos", "atan", "sinh", "cosh", "tanh", "exp", "log", "sqrt", "abs"]
-)
-@pytest.mark.parametrize("point", [0.3, 0.8])
+@each("name", ["sin", "cos", "tan", "asin", "acos", "atan", "sinh", "cosh", "tanh", "exp", "log", "sqrt", "abs"])
+@each("point", [0.3, 0.8])
 def test_every_function_has_its_rule(name, point):
     """f'(x) against a difference, at two points."""
     graph = Graph()
@@ -65,9 +64,9 @@ def test_every_function_has_its_rule(name, point):
     assert slope == pytest.approx((f(point + STEP) - f(point - STEP)) / (2 * STEP), rel=1e-7)
 
 
-@pytest.mark.parametrize("name", ["atan2", "pow", "min", "max"])
-@pytest.mark.parametrize("argument", [0, 1])
-@pytest.mark.parametrize("point", [(0.3, 0.8), (1.7, 0.6)])
+@each("name", ["atan2", "pow", "min", "max"])
+@each("argument", [0, 1])
+@each("point", [(0.3, 0.8), (1.7, 0.6)])
 def test_every_function_of_two_has_its_rules(name, argument, point):
     """df/da and df/db against differences, on both sides of a = b."""
     graph = Graph()
@@ -102,7 +101,7 @@ def test_the_total_derivative_in_time_is_a_tangent():
     assert equal_at_random_states([(total, by_hand)]).equal
 
 
-@pytest.mark.parametrize("rows", [2, 3, 5])
+@each("rows", [2, 3, 5])
 def test_the_jacobian_is_the_same_by_rows_and_by_columns(rows):
     """J_ij = df_i/dx_j, 3 symbols."""
     graph = Graph()

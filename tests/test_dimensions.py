@@ -8,6 +8,7 @@ from fractions import Fraction
 from itertools import product
 
 import pytest
+from each import each
 
 import eomgen
 from eomgen.errors import ModelError
@@ -51,8 +52,8 @@ def declared(force: str) -> eomgen.Model:
     return eomgen.loads(MODEL.format(force))
 
 
-@pytest.mark.parametrize(
-    ("force", "told", "mend"),
+@each(
+    "force, told, mend",
     [
         ("-k*x^2", "'-k*x^2' is in N*m, but the force of force 'f' is in N", "write -k*x"),
         ("-k*x + m", "a force and a mass have no sum: '-k*x' is in N, 'm' in kg", ""),
@@ -90,7 +91,7 @@ def test_carets_stand_under_both_terms():
     assert [source[k] for k, mark in enumerate(marks) if mark == "^"] == [*"-k*x", "m"]
 
 
-@pytest.mark.parametrize(
+@each(
     "force",
     [
         "-50*x",
@@ -112,8 +113,8 @@ def test_plain_numbers_and_names_without_a_unit_fit_anything(force):
     assert (found.errors, found.warnings) == ((), ())
 
 
-@pytest.mark.parametrize(
-    ("force", "told"),
+@each(
+    "force, told",
     [
         (PULL.format("z*x + z*x'"), "'z*x' is in m*[z], 'z*x'' in m*[z]/s"),
         (PULL.format("k*psi"), "'k*psi' is in N/m"),
@@ -128,8 +129,8 @@ def test_what_only_inference_knows_is_a_warning(force, told):
     assert told in warning.what
 
 
-@pytest.mark.parametrize(
-    ("force", "name", "unit"),
+@each(
+    "force, name, unit",
     [(PULL.format("-z*x"), "z", "N/m"), (PULL.format("m*w*x'"), "w", "1/s"), (PULL.format("k*x"), "psi", "1")],
 )
 def test_what_stands_beside_a_name_says_its_dimension(force, name, unit):
@@ -162,7 +163,7 @@ def test_equations_reactions_and_outputs_have_their_unit():
     assert held["reactions"]["reaction_n(slider)"] == "N"
 
 
-@pytest.mark.parametrize("powers", list(product((-2, -1, 0, 1, 2), (-2, -1, 0, 1, 2, 3), (-3, -2, -1, 0, 1, 2))))
+@each("powers", list(product((-2, -1, 0, 1, 2), (-2, -1, 0, 1, 2, 3), (-3, -2, -1, 0, 1, 2))))
 def test_a_dimension_reads_back_as_the_unit_that_it_is_told_as(powers):
     """dimension(unit(str(d))) = d: kg*m/s is told as itself, not as N*s/m, which is kg/s."""
     dimension = Dimension({base: Fraction(n) for base, n in zip(BASE, powers, strict=True) if n})
@@ -189,8 +190,8 @@ def test_a_name_among_thousands_is_looked_up_as_fast_as_among_few():
     assert seconds(3000) < 8 * seconds(3)
 
 
-@pytest.mark.parametrize(
-    ("text", "told"),
+@each(
+    "text, told",
     [
         ('o = { value = "x", unit = "mm", at = "phi = l" }', "is in m, but the left side is in radians"),
         ('o = "max(x, k)"', "a length and N/m do not fit together in max: 'x' is in m, 'k' in N/m"),

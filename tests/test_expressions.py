@@ -7,6 +7,7 @@ from fractions import Fraction
 
 import pytest
 from cpu_limit import cpu_limit
+from each import each
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
@@ -30,8 +31,8 @@ def value(text: str):
     return parse(text).evaluate(VALUES)
 
 
-@pytest.mark.parametrize(
-    ("text", "meaning"),
+@each(
+    "text, meaning",
     [
         ("-x^2", -9),
         ("(-x)^2", 9),
@@ -59,8 +60,8 @@ def test_signs_bind_as_in_a_textbook(text, meaning):
     assert not isinstance(value(text), float)
 
 
-@pytest.mark.parametrize(
-    ("text", "exact"),
+@each(
+    "text, exact",
     [
         ("0.0825", Fraction(33, 400)),
         ("1e-3", Fraction(1, 1000)),
@@ -118,8 +119,8 @@ def test_plain_numbers_stay_exact_on_the_graph():
     assert parse("(1/2)^(1/2)").evaluate({"pi": graph.pi}) is parse("1/sqrt(2)").evaluate({"pi": graph.pi})
 
 
-@pytest.mark.parametrize(
-    ("text", "what", "column", "mend"),
+@each(
+    "text, what, column, mend",
     [
         ("2x", "no sign between '2' and 'x'", 1, "write 2*x"),
         ("a + 2 (x)", "no sign between '2' and '('", 6, "write 2*(...)"),
@@ -156,7 +157,7 @@ def test_an_error_says_what_where_and_how_to_mend_it(text, what, column, mend):
     assert mend in caught.value.mend and bool(mend) == bool(caught.value.mend)
 
 
-@pytest.mark.parametrize(
+@each(
     "text",
     [
         "9^9^9",
@@ -319,8 +320,8 @@ def test_an_arm_of_250_expressions_is_read_in_a_moment():
             parse(text)
 
 
-@pytest.mark.parametrize(
-    ("text", "value"),
+@each(
+    "text, value",
     [
         ("a = x + 1; a^2", 9),
         ("a = x; b = a*a; c = b - a; c*b/a", 4),
@@ -340,8 +341,8 @@ def test_parts_with_names_stand_for_what_they_are(text, value):
     assert parse((expression.scaled(Fraction(1, 2))).text).evaluate({"x": 2, "pi": 3}) == Fraction(value, 2)
 
 
-@pytest.mark.parametrize(
-    ("text", "what"),
+@each(
+    "text, what",
     [
         ("a = 1; a = 2; a", "'a' cannot be the name of a part"),
         ("sin = 1; sin", "'sin' cannot be the name of a part"),

@@ -9,6 +9,7 @@ from typing import Any
 import numpy as np
 import pytest
 import sympy as sm
+from each import each
 from hand_made import symbols
 from sympy.physics.mechanics import (
     KanesMethod,
@@ -195,7 +196,7 @@ def test_a_particle_hangs_on_a_joint_as_sympy_s_tutorial_has_it():
     assert [x.text for x in model.bodies["C"].inertia] == ["0", "0", "0"] and eomgen.derive(model).certify().ok
 
 
-@pytest.mark.parametrize("by", ["speeds that are rates", "speeds of their own", "no joints"])
+@each("by", ["speeds that are rates", "speeds of their own", "no joints"])
 def test_a_system_that_is_formed_by_lagrange_has_the_potential_energies_of_its_bodies(by):
     """(A_zz + m l^2) q'' = m g l sin q, V = m g l cos q of the body: a System with eom_method=LagrangesMethod."""
     q, (m, l, g, J) = dynamicsymbols("q"), sm.symbols("m l g J")
@@ -240,7 +241,7 @@ def test_auxiliary_speeds_are_zero_and_what_they_alone_measure_is_gone():
     assert rhs(0.0, [0.3, 1.2], p, [])[1] == pytest.approx(-9.81 / 0.5 * np.sin(0.3), rel=1e-14)
 
 
-@pytest.mark.parametrize("explicit", [True, False])
+@each("explicit", [True, False])
 def test_kinematic_equations_are_solved_for_the_speeds_where_sympy_has_none(explicit):
     """omega of a body by three turns as speeds, explicit or not: u = Y q'; Euler's equations without torques."""
     q, u = dynamicsymbols("q1:4"), dynamicsymbols("u1:4")

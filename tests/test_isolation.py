@@ -6,6 +6,7 @@ import math
 
 import numpy as np
 import pytest
+from each import each
 
 from eomgen.symbolic.expression.functions import NAMES
 from eomgen.symbolic.expression.graph import Graph
@@ -19,8 +20,8 @@ x, y = graph.symbol("x"), graph.symbol("y")
 ONE = [name for name, n in NAMES.items() if n == 1]
 
 
-@pytest.mark.parametrize("name", ONE)
-@pytest.mark.parametrize("seed", range(3))
+@each("name", ONE)
+@each("seed", range(3))
 def test_a_function_stays_in_its_interval(name, seed):
     """f([a, b]) holds f at every point of [a, b] at which it has a value."""
     rng = np.random.default_rng(seed)
@@ -34,7 +35,7 @@ def test_a_function_stays_in_its_interval(name, seed):
             assert math.isnan(value) or found[0][k] <= value <= found[1][k]
 
 
-@pytest.mark.parametrize(
+@each(
     "make",
     [
         lambda: x + y,

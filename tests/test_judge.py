@@ -11,8 +11,10 @@ import pytest
 import sympy
 from click.testing import CliRunner
 from cpu_limit import cpu_limit
+from each import each
 from hand_equations import MODELS, ByHand, named, right_of, wrong_of
 from human_errors import nearly_right_answers, right_answers, wrong_answers
+from slow_run import beside, usual
 
 import eomgen
 from eomgen.cli import main
@@ -42,8 +44,8 @@ def kinds(found: eomgen.Verdict) -> list[str]:
     return [cause.kind for cause in found.causes]
 
 
-@pytest.mark.parametrize(
-    ("written", "text"),
+@each(
+    "written, text",
     [
         (r"m l^2 \ddot\theta + m g l \sin\theta = 0", "m*l^(2)*theta'' + m*g*l*sin(theta) = 0"),
         (r"\frac{m g l \sin{\left(\theta \right)}}{2} = 1", "((m*g*l*sin(theta))/(2)) = 1"),
@@ -61,8 +63,8 @@ def test_an_equation_is_read_as_people_write_it(written, text):
     assert transcript(written, vocabulary(NAMES, ["T"], {})).text == text
 
 
-@pytest.mark.parametrize(
-    ("written", "what", "column"),
+@each(
+    "written, what, column",
     [
         (r"x = \foo", r"unknown command '\foo'", 4),
         (r"\frac{x}{2 = 1", "'{' is never closed", 8),
@@ -108,7 +110,7 @@ def test_the_terms_of_inertia_are_no_product_of_a_parameter_c():
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("name", SAMPLE)
+@each("name", usual(SAMPLE, 2, 1))
 def test_what_is_right_in_a_disguise_is_right(name):
     """Multiplied, divided, moved, renamed, turned, in LaTeX, combined, solved: all accepted."""
     hand = ByHand(MODELS / f"{name}.toml")
@@ -119,7 +121,7 @@ def test_what_is_right_in_a_disguise_is_right(name):
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("name", SAMPLE)
+@pytest.mark.parametrize("name", usual(SAMPLE, 2, 1))
 def test_what_is_wrong_is_wrong_and_mostly_named(name):
     """Never accepted; at least 90 % of the mistakes named, those of kinds that were held out among them."""
     hand = ByHand(MODELS / f"{name}.toml")
@@ -151,7 +153,7 @@ def test_what_is_wrong_is_wrong_and_mostly_named(name):
         ("simple_pendulum", "frequency(1) = sqrt(g/l)/(2*pi)", "unit", "factor 1/(2*pi)"),
         ("simple_pendulum", "theta = cos(sqrt(g/l)*t)", "approximation", "small angle"),
         ("double_pendulum", "Q(theta1) = -(m1 + m2)*g*l1*sin(theta1)", "wrong_point", "arm1.end"),
-        ("double_pendulum", "R_arm1_y = (m1 + m2)*g", "missing_term", "in motion alone"),
+        *beside(("double_pendulum", "R_arm1_y = (m1 + m2)*g", "missing_term", "in motion alone")),
         ("double_pendulum", "omega(arm1) = theta1' + theta2'", "extra_term", "theta2'"),
     ],
 )
@@ -160,8 +162,8 @@ def test_a_mistake_has_its_name(model, equation, cause, word):
     assert (found.verdict, kinds(found)) == ("wrong", [cause]) and word in found.causes[0].text
 
 
-@pytest.mark.parametrize(
-    ("model", "equation", "cause", "words"),
+@each(
+    "model, equation, cause, words",
     [
         (
             "cart_pole",
@@ -264,8 +266,8 @@ def test_independent_mistakes_are_found_together():
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize(
-    ("model", "equation", "up_to"),
+@each(
+    "model, equation, up_to",
     [
         ("simple_pendulum", "theta'^2 = 2*g/l*(cos(theta) - cos(1))", "the first integral from the start"),
         ("simple_pendulum", "theta'^2/2 - g/l*cos(theta) = C", "C constant"),
@@ -288,18 +290,16 @@ def test_a_right_equation_says_up_to_what(model, equation, up_to):
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize(
-    "name", ["cart_pole", "half_car", "chaplygin_sleigh", "seeds/ch22_p1", "four_cranks", "atwood"]
-)
+@each("name", ["cart_pole", "half_car", "chaplygin_sleigh", "seeds/ch22_p1", "four_cranks", "atwood"])
 def test_what_derive_prints_is_right(name):
     """Its equations of motion, as text and in LaTeX, judged as those of anybody."""
     equations = eomgen.derive(MODELS / f"{name}.toml")
     document = equations.document
     judge, setter = Judge(Case(equations.model)), setter_of(document)
     assert document.equations and not document.definitions
-    for each in document.equations:
+    for one in document.equations:
         for written in (to_text, lambda x: setter.set(x).tex):
-            text = f"{written(each.left)} = {written(each.right)}"
+            text = f"{written(one.left)} = {written(one.right)}"
             assert judge.verdict(text).verdict == "right", text
 
 
@@ -327,7 +327,7 @@ def test_redundant_ties_make_nothing_right():
     assert kinds(verdict("four_cranks", right.replace(" + g", " + N + g"))) == ["constraint_force"]
 
 
-@pytest.mark.parametrize("mass", ["1e-8", "1e-30", "1e-293", "1e200"])
+@each("mass", ["1e-8", "1e-30", "1e-293", "1e200"])
 def test_the_size_of_a_unit_makes_nothing_right(mass):
     """T = m l^2 theta'^2/2 is not 0, however light the bob; its equation, which is not linear in m, stays right."""
     text = (MODELS / "simple_pendulum.toml").read_text().replace("m = { value = 1.0", f"m = {{ value = {mass}")
@@ -389,8 +389,8 @@ PENDULUM = str(MODELS / "simple_pendulum.toml")
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize(
-    ("words", "code"),
+@each(
+    "words, code",
     [
         (("l*theta'' = -g*sin(theta)",), 0),
         (("l*theta'' = g*sin(theta)",), 5),
@@ -440,8 +440,8 @@ def test_another_kind_is_refused():
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize(
-    ("written", "text"),
+@each(
+    "written, text",
     [
         ("theta_ddot = -g/l sinθ", "theta'' =  - g/l*sin(theta)"),
         ("diff(theta, t, 2) = l*Derivative(theta(t), (t, 2))", "theta'' = l*theta''"),
@@ -462,8 +462,8 @@ def test_papers_and_programs_are_read(written, text):
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize(
-    ("model", "equation", "more", "word"),
+@each(
+    "model, equation, more, word",
     [
         ("simple_pendulum", "0 = 0", {}, "says nothing"),
         ("simple_pendulum", "theta' = theta'", {}, "says nothing"),
@@ -486,8 +486,8 @@ def test_what_holds_only_here_and_there_is_wrong(model, equation, more, word):
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize(
-    ("model", "equation", "up_to"),
+@each(
+    "model, equation, up_to",
     [
         ("simple_pendulum", "speed(bob.center) = l*theta'", "where l*theta' > 0"),
         ("simple_pendulum", "theta' = -sqrt(2*g/l*(cos(theta) - cos(1)))", "from the start"),
@@ -508,7 +508,7 @@ def test_what_holds_in_its_own_domain_is_right(model, equation, up_to):
 @pytest.mark.slow
 def test_mistakes_from_the_literature_are_wrong_and_mostly_named():
     """In equations of motion and in answers: wrong; 4 in 5 named."""
-    some = random.Random(2).sample(wrong_answers(), 40)
+    some = usual(random.Random(2).sample(wrong_answers(), 40), 3)
     found = [(x, x.verdict()) for x in some]
     assert [x.text for x, each in found if each.verdict != "wrong"] == []
     assert sum(x.is_named(each) for x, each in found) >= 0.8 * len(some)
@@ -517,7 +517,7 @@ def test_mistakes_from_the_literature_are_wrong_and_mostly_named():
 @pytest.mark.slow
 def test_what_is_wrong_by_little_is_wrong():
     """By a thousandth, in motion alone, with other values than those of the file: no tolerance hides it."""
-    some = random.Random(4).sample(nearly_right_answers(), 20)
+    some = usual(random.Random(4).sample(nearly_right_answers(), 20), 3)
     assert [x.text for x in some if x.verdict().verdict != "wrong"] == []
 
 
@@ -595,8 +595,8 @@ def test_the_thought_behind_a_mistake_is_told(model, equation, words):
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize(
-    ("model", "equation", "words"),
+@each(
+    "model, equation, words",
     [
         ("02_pulley_spring", "x = m*g/k*(1 - cos(k/(m + M/2)*t))", "the root is missing"),
         ("19_drag", "x = m*v0/c*(1 - exp(-c*t))", "a division by m is missing"),
@@ -714,10 +714,7 @@ def test_a_mistake_is_told_by_the_names_of_its_author(equation, words):
     assert found.verdict == "wrong" and all(word in found.hint() for word in words), found.hint()
 
 
-@pytest.mark.parametrize(
-    "equation",
-    ["s' = 2*e^(-2/3*W*t)", r"l\ddot\varphi = (g + \ddot y)\sin\varphi", "s' = 2 - 2/3*W*s"],
-)
+@each("equation", ["s' = 2*e^(-2/3*W*t)", r"l\ddot\varphi = (g + \ddot y)\sin\varphi", "s' = 2 - 2/3*W*s"])
 def test_rates_in_time_and_driven_places_are_judged(equation):
     """A rate by its integral in time; renamed beside a driven coordinate, where places of rest are of another graph."""
     assert eomgen.verify(eomgen.loads(SHAKEN), equation)
@@ -755,8 +752,8 @@ def test_rates_that_ties_allow_are_explained_by_their_terms(equation, words):
     assert found.verdict == "wrong" and all(word in found.hint() for word in words), found.hint()
 
 
-@pytest.mark.parametrize(
-    ("equation", "words"),
+@each(
+    "equation, words",
     [
         ("inertia_point(O) = m*l^2/3 + 2/5*M*R^2", ["Steiner", "ball", "missing"]),
         ("inertia_point(O) = m*l^2/3 + 2/5*M*R^2 + M*l^2", ["Steiner", "R is left out"]),
@@ -830,9 +827,7 @@ def test_what_follows_from_the_file_is_right(equation, up_to):
     assert eomgen.verify(model, f"{left} = {right} + {left}/100").verdict == "wrong"
 
 
-@pytest.mark.parametrize(
-    "wrong, right", [("y = R - 9.81*t^2", "y = R - 9.81/2*t^2"), ("y = 3 - g/2*t^2", "y = 2 - g/2*t^2")]
-)
+@each("wrong, right", [("y = R - 9.81*t^2", "y = R - 9.81/2*t^2"), ("y = 3 - g/2*t^2", "y = 2 - g/2*t^2")])
 def test_a_course_may_hold_values_of_the_file(wrong, right):
     """R - 9.81/2 t^2 is R - g/2 t^2, and y(0) = 2 is y(0) = R, with the values of the file; others are wrong."""
     fall = """
@@ -885,8 +880,8 @@ constraints.road = { kind = "equation", gap = "y - c*x^2" }
 """
 
 
-@pytest.mark.parametrize(
-    ("model", "right", "wrong"),
+@each(
+    "model, right, wrong",
     [
         (PUCK, "dT/dp1' = m*p1'", "dT/dp1' = d*p1'"),
         (PUCK.replace(", d = 1.0", "").replace("m*d", "m"), "dT/dp1' = m*p1'", "dT/dp1' = m*p1"),

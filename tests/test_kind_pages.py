@@ -7,6 +7,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from each import each
 
 import eomgen
 from eomgen.model.part import slots_of
@@ -36,7 +37,7 @@ def shown_by(model: eomgen.Model, kind: str) -> list[str]:
     return [name for name, part in parts.items() if part.kind == kind]
 
 
-@pytest.mark.parametrize("kind", EVERY)
+@each("kind", EVERY)
 def test_every_kind_has_an_example_that_is_proven(kind):
     """docs/examples/KIND.toml has it, and what is derived of it holds by its certificate."""
     path = kinds.EXAMPLES / f"{kind}.toml"
@@ -72,7 +73,7 @@ def test_no_example_is_left_over():
     assert {path.stem for path in kinds.EXAMPLES.iterdir()} == set(EVERY)
 
 
-@pytest.mark.parametrize("kind", EVERY)
+@each("kind", EVERY)
 def test_every_field_is_explained(kind):
     """By the docstrings of the class and its bases, and by its rule; the reference has a line on the kind."""
     cls = kinds.class_of(kind)
@@ -82,8 +83,8 @@ def test_every_field_is_explained(kind):
     assert kinds.sayings(kind, kinds.kinds()[kind])[0] and kinds.prose(cls)
 
 
-@pytest.mark.parametrize(
-    ("kind", "free", "held"),
+@each(
+    "kind, free, held",
     [
         ("revolute", 1, 2),
         ("prismatic", 1, 2),

@@ -5,6 +5,7 @@ from __future__ import annotations
 from itertools import permutations
 
 import pytest
+from each import each
 from moving import at, equal, rate, state_of, written
 
 import eomgen
@@ -42,8 +43,8 @@ def value(system: System, text: str):
     return parse(text).evaluate(system.scope.names)
 
 
-@pytest.mark.parametrize(
-    ("law", "speed", "acceleration"),
+@each(
+    "law, speed, acceleration",
     [
         ('motion = "A*sin(w*t)"', "A*w*cos(w*t)", "-A*w^2*sin(w*t)"),
         ('motion = "A*t^3 - v0*t"', "3*A*t^2 - v0", "6*A*t"),
@@ -99,8 +100,8 @@ value = "tau"
 """
 
 
-@pytest.mark.parametrize(
-    ("kind", "fields"),
+@each(
+    "kind, fields",
     [
         ("placed", 'at = ["q", "tau"]'),
         ("placed", 'at = ["q", 0], angle = "2*tau"'),
@@ -115,7 +116,7 @@ def test_an_input_in_the_geometry_is_refused(kind, fields):
         written(GEOMETRY.format(kind=kind, fields=fields, point="0", coordinate=""))
 
 
-@pytest.mark.parametrize(("law", "name"), [("tau", "an input"), ("2*q", "a coordinate")])
+@each("law, name", [("tau", "an input"), ("2*q", "a coordinate")])
 def test_a_driving_law_holds_time_and_parameters_only(law, name):
     """q = f(t): with inputs or coordinates in f its rate would not be known."""
     with pytest.raises(ModelError, match=f"\\({name}\\) cannot stand in the motion"):
@@ -195,7 +196,7 @@ acceleration = [0, -9.81]
 """
 
 
-@pytest.mark.parametrize("order", list(permutations(BODIES)), ids="-".join)
+@each("order", list(permutations(BODIES)))
 def test_the_order_in_which_bodies_are_declared_changes_nothing(order):
     """M and Q - c are the same functions of q, u and the parameters."""
     results = []

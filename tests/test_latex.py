@@ -10,6 +10,7 @@ from pathlib import Path
 
 import pytest
 from derivations import by_methods, derivable, equations
+from each import each
 from typesetting import lost_in_mathml, lost_in_typst
 
 from eomgen.documents import rendered
@@ -123,8 +124,8 @@ def test_a_kinetic_energy_is_set_as_in_a_textbook():
     assert tex(T) == r"\frac{27}{2} M R^{2} \dot{\theta}^{2} \cos^{2}\theta"
 
 
-@pytest.mark.parametrize(
-    ("make", "expected"),
+@each(
+    "make, expected",
     [
         (lambda a, b: a - 2 * b, "a - 2 b"),
         (lambda a, b: -(a + b) * a, r"- a (a + b)"),
@@ -151,8 +152,8 @@ def test_each_operation_is_set_by_its_own_rule(make, expected):
     assert tex(make(*names("a b"))) == expected
 
 
-@pytest.mark.parametrize(
-    ("name", "expected"),
+@each(
+    "name, expected",
     [
         ("theta", r"\theta"),
         ("theta'", r"\dot{\theta}"),

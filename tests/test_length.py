@@ -7,14 +7,15 @@ import sys
 from pathlib import Path
 
 import pytest
+from each import each
 
 from eomgen.symbolic.print.length import length_of_latex
 
 SCRIPT = Path(__file__).resolve().parent.parent / "benchmarks" / "formula_length.py"
 
 
-@pytest.mark.parametrize(
-    ("tex", "marks"),
+@each(
+    "tex, marks",
     [
         (r"(M + m)\ddot{X} + m\ddot{s}\cos\alpha = 0", 13),
         (r"\frac{27}{2} M R^{2} \dot{\theta}^{2} \cos^{2}\theta", 12),

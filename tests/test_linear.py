@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from fractions import Fraction
 
-import pytest
+from each import each
 
 from eomgen.symbolic.exact.equality import equal_at_random_states, equal_at_real_states
 from eomgen.symbolic.expression.derivative import symbols_of
@@ -65,7 +65,7 @@ def test_what_vanishes_where_ties_hold_and_not_beside_stays_and_is_no_pivot():
     assert found[2] == 3 / (s + 1)
 
 
-@pytest.mark.parametrize("size", [lambda s: sqrt(s * s), lambda s: function("abs", s)])
+@each("size", [lambda s: sqrt(s * s), lambda s: function("abs", s)])
 def test_what_vanishes_in_the_piece_of_one_state_is_not_zero_in_the_others(size):
     """x + (s + |s|) y = b, y = c: x = b - (s + |s|) c, though the shadow is taken where s < 0."""
     g = Graph()
@@ -76,7 +76,7 @@ def test_what_vanishes_in_the_piece_of_one_state_is_not_zero_in_the_others(size)
     assert equal_at_real_states([(found[0], b - (s + size(s)) * c)], states=8).equal
 
 
-@pytest.mark.parametrize("sure", [None, 1])
+@each("sure", [None, 1])
 def test_what_is_indeterminate_stays_so(sure):
     """One row for two unknowns: the second is free, the first follows from it; a third is determined all the same."""
     g = Graph()
@@ -87,7 +87,7 @@ def test_what_is_indeterminate_stays_so(sure):
     assert equal_at_random_states([(solution.constants[2], c / sin(theta))]).equal
 
 
-@pytest.mark.parametrize(("pivot", "worst"), [(1, 0), ("theta", None)])
+@each("pivot, worst", [(1, 0), ("theta", None)])
 def test_where_all_pivots_are_sure_nothing_waits_for_normal_equations(pivot, worst):
     """Pivots of rank <= sure, one after the other: the solution is that without such a bound, and says so."""
     g = Graph()

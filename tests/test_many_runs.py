@@ -7,6 +7,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from slow_run import beside
 
 import eomgen
 from eomgen.codegen.build import compiler
@@ -35,10 +36,12 @@ def alone(name: str, i: int, time: float, given: dict, samples: int) -> eomgen.T
         ),
         ("cart_pole", {"inputs": {"F": np.linspace(-1, 1, 5)}, "start": {"theta'": np.linspace(-1, 1, 5)}}),
         ("tumbling_body", {"start": {"w1": np.linspace(0, 1, 3)}}),
-        ("chain20", {"start": {"q1": np.linspace(0, 1, 3)}}),
-        ("four_bar", {"parameters": {"g": np.array([1.0, 9.81])}}),
+        *beside(
+            ("chain20", {"start": {"q1": np.linspace(0, 1, 3)}}),
+            ("four_bar", {"parameters": {"g": np.array([1.0, 9.81])}}),
+        ),
         ("four_bar", {"parameters": {"b": np.linspace(0.9, 1.1, 9)}, "start": {"alpha": np.linspace(0.8, 1.2, 9)}}),
-        ("spatial_slider_crank", {"parameters": {"g": np.linspace(1, 9.81, 3)}}),
+        *beside(("spatial_slider_crank", {"parameters": {"g": np.linspace(1, 9.81, 3)}})),
         ("balancing_robot", {"parameters": {"g": np.linspace(9, 10, 5)}}),
         ("cardan_shaft", {"parameters": {"J": np.linspace(0.02, 0.03, 3)}}),
         ("sliding_ladder", {"start": {"theta": np.array([0.5, 0.6])}}),

@@ -7,6 +7,7 @@ from pathlib import Path
 
 import pytest
 from click.testing import CliRunner
+from each import each
 from newcomer import CRANE
 
 import eomgen
@@ -56,7 +57,7 @@ def problems(text: str) -> tuple[eomgen.Problem, ...]:
     return caught.value.problems
 
 
-@pytest.mark.parametrize(("old", "new", "mend"), HABITS, ids=[new[:30].replace("\n", " ") for _, new, _ in HABITS])
+@each("old, new, mend", HABITS)
 def test_a_habit_of_another_notation_is_answered_with_ours(old, new, mend):
     """One mistake, and all that is said leads to its mend."""
     assert CRANE.count(old) >= 1
@@ -77,7 +78,7 @@ def test_a_mistyped_heading_hides_no_error_below_it():
     assert "paramters" in found[0].what and "'q'" in found[1].what
 
 
-@pytest.mark.parametrize(("key", "right"), [("jiont", "joint"), ("shap", "shape")])
+@each("key, right", [("jiont", "joint"), ("shap", "shape")])
 def test_a_mistyped_key_of_a_body_hides_no_error_in_it(key, right):
     """The key and the unknown name below it: two errors, both at their places, none that follows from them."""
     text = CRANE.replace(f'{right} = {{ kind = "r', f'{key} = {{ kind = "r', 1)

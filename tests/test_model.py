@@ -6,6 +6,7 @@ from fractions import Fraction
 from pathlib import Path
 
 import pytest
+from each import each
 
 import eomgen
 from eomgen.errors import MissingValues, ModelError
@@ -160,8 +161,8 @@ def test_starts_are_expressions_of_parameters():
     assert start_values(pendulum(), {"l": 3})[1] == {"theta'": 6.0}
 
 
-@pytest.mark.parametrize(
-    ("law", "start"),
+@each(
+    "law, start",
     [
         ({"motion": "3*sin(2*t) + 1"}, (1.0, 6.0)),
         ({"rate": "5 + t", "start": 2}, (2.0, 5.0)),
@@ -203,7 +204,7 @@ def test_no_kind_waits_for_a_later_version():
     assert unbuilt(waiting) == unbuilt_ties(waiting) == ()
 
 
-@pytest.mark.parametrize("name", ["simple_pendulum", "stewart_platform", "gerber_beam"])
+@each("name", ["simple_pendulum", "stewart_platform", "gerber_beam"])
 def test_a_model_and_its_equations_show_themselves_in_one_line(name):
     """In a session: what it is and how large, not all of it."""
     model = eomgen.load(Path(__file__).parent.parent / "models" / f"{name}.toml")

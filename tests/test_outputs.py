@@ -6,6 +6,7 @@ import math
 from random import Random
 
 import pytest
+from each import each
 
 import eomgen
 from eomgen.codegen.solved_equations import accelerations_and_multipliers
@@ -134,7 +135,7 @@ class Motion:
 POINTS = [("arm.end",), ("arm.end", "table"), ("arm.center", "slide"), ("O", "arm"), ("slide.center", "ground")]
 
 
-@pytest.mark.parametrize("point", POINTS, ids=", ".join)
+@each("point", POINTS)
 def test_velocity_and_acceleration_are_the_rates_of_the_position_in_the_plane(point):
     """v = dr/dt, a = dv/dt, each in the axes of the body from which they are seen."""
     motion, arguments = Motion(PLANE), ", ".join(point)
@@ -143,7 +144,7 @@ def test_velocity_and_acceleration_are_the_rates_of_the_position_in_the_plane(po
         assert motion.slope(f"v{axis}({arguments})") == pytest.approx(motion.value(f"a{axis}({arguments})"), abs=1e-6)
 
 
-@pytest.mark.parametrize("point", [("arm.tip",), ("arm.tip", "tray"), ("base.origin", "arm")], ids=", ".join)
+@each("point", [("arm.tip",), ("arm.tip", "tray"), ("base.origin", "arm")])
 def test_velocity_and_acceleration_are_the_rates_of_the_position_in_space(point):
     """v = dr/dt, a = dv/dt"""
     motion, arguments = Motion(SPACE), ", ".join(point)
@@ -152,7 +153,7 @@ def test_velocity_and_acceleration_are_the_rates_of_the_position_in_space(point)
         assert motion.slope(f"v{axis}({arguments})") == pytest.approx(motion.value(f"a{axis}({arguments})"), abs=1e-6)
 
 
-@pytest.mark.parametrize("text", [PLANE, SPACE], ids=["plane", "space"])
+@each("text", [PLANE, SPACE])
 def test_the_field_of_a_rigid_body_is_that_of_omega_and_epsilon(text):
     """v_P - v_O = w x r,  a_P - a_O = e x r + w x (w x r)"""
     motion, point = Motion(text), "arm.end" if text is PLANE else "arm.tip"
@@ -164,7 +165,7 @@ def test_the_field_of_a_rigid_body_is_that_of_omega_and_epsilon(text):
     assert a == pytest.approx(plus(cross(e, r), cross(w, cross(w, r))), abs=1e-12)
 
 
-@pytest.mark.parametrize("text", [PLANE, SPACE], ids=["plane", "space"])
+@each("text", [PLANE, SPACE])
 def test_angular_velocities_add(text):
     """w(arm) = w(base) + R w(arm, base), and the relative one is that of the joints between: seen from the parent."""
     motion, base = Motion(text), "table" if text is PLANE else "tray"
@@ -295,8 +296,8 @@ def test_what_acts_between_two_things_can_be_asked():
     assert found.certify().ok
 
 
-@pytest.mark.parametrize(
-    ("call", "message"),
+@each(
+    "call, message",
     [
         ("pull(weight)", "unknown force between points 'weight'"),
         ("couple(free)", "unknown force between bodies 'free'"),

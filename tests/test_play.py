@@ -11,6 +11,7 @@ import numpy as np
 import pytest
 from browser import visited
 from click.testing import CliRunner
+from each import each
 from tools import needs
 
 import eomgen
@@ -259,7 +260,7 @@ def test_play_writes_its_page_and_proves_its_programs(tmp_path):
         assert wrong.exit_code == 2 and words_ in wrong.stderr
 
 
-@pytest.mark.parametrize("name", ["loop_the_loop", "sliding_ladder"])
+@each("name", ["loop_the_loop", "sliding_ladder"])
 def test_each_phase_is_drawn_by_its_own_coordinates(name):
     """A body's place goes on from phase to phase: between neighbouring pictures it makes no leap."""
     run = eomgen.simulate(MODELS / f"{name}.toml", time=3 if name == "loop_the_loop" else 2, samples=801)

@@ -8,6 +8,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from each import each
 from hand_made import cart_pole, pendulum, spring_row, symbols, tied_pendulum
 
 import eomgen
@@ -54,7 +55,7 @@ TREES = {
 }
 
 
-@pytest.mark.parametrize("parents", TREES.values(), ids=TREES.keys())
+@each("parents", TREES.values())
 def test_the_written_out_factorization_solves_the_system(parents):
     """M a = F at random positive definite M with the zeros of a tree, against numpy."""
     rng = np.random.default_rng(3)
@@ -108,7 +109,7 @@ def solved_by_rows(M, J, f, g):
     return np.array(found[:n]), np.array(found[n:])
 
 
-@pytest.mark.parametrize("k", [0, 1, 3])
+@each("k", [0, 1, 3])
 def test_the_bordered_solve_satisfies_both_its_rows(k):
     """M a - J^T lam = f and J a = g."""
     rng = np.random.default_rng(k)
@@ -165,7 +166,7 @@ def long_program(seed: int):
     return {x: stripped(x.args) if x.op != "symbol" else set() for x in order(last)}, last
 
 
-@pytest.mark.parametrize("seed", range(8))
+@each("seed", range(8))
 def test_a_schedule_has_every_statement_after_what_it_needs_and_moves_less(seed):
     """Each once; fewer loads and stores than in the order of making."""
     made, last = long_program(seed)
@@ -304,7 +305,7 @@ def test_a_loop_of_grams_and_tonnes_keeps_its_digits():
     assert solve_bordered(M, J, f, g, tables) == pytest.approx([float(x) for x in long], rel=1e-13)
 
 
-@pytest.mark.parametrize("made", [pendulum, lambda: spring_row(20), tied_pendulum], ids=["written out", "solve", "tie"])
+@each("made", [pendulum, lambda: spring_row(20), tied_pendulum])
 def test_what_holds_accelerations_takes_those_of_the_right_hand_side(made):
     """f(q, u, a) along the motion = f with the a that the right-hand side returns, by the same kind of solution."""
     equations = made()

@@ -6,6 +6,7 @@ from collections import defaultdict
 from random import Random
 
 import pytest
+from each import each
 
 from eomgen.symbolic.exact.normal_form import simplest
 from eomgen.symbolic.expression.expressions import parse
@@ -70,13 +71,13 @@ SHORT = {
 }
 
 
-@pytest.mark.parametrize(("text", "short"), SHORT.items())
+@each("text, short", SHORT.items())
 def test_roots_and_quotients_are_written_as_a_person_would(text, short):
     names = Names()
     assert to_text(simplest(parse(text).evaluate(names), positive=[names[name] for name in POSITIVE])) == short
 
 
-@pytest.mark.parametrize("text", SHORT)
+@each("text", SHORT)
 def test_what_is_written_shortly_has_the_same_value(text):
     """at random states, wherever the given form has a value, and read back too"""
     names = Names()
@@ -95,7 +96,7 @@ def test_what_is_written_shortly_has_the_same_value(text):
     assert compared >= 5
 
 
-@pytest.mark.parametrize("text", ["sqrt(x^2)/x", "sqrt((x - y)^2*g)/(x - y)", "x*sqrt(1/x^2)", "sqrt(x*y^2)*y"])
+@each("text", ["sqrt(x^2)/x", "sqrt((x - y)^2*g)/(x - y)", "x*sqrt(1/x^2)", "sqrt(x*y^2)*y"])
 def test_a_sign_that_is_not_known_is_not_lost(text):
     """sqrt(x^2)/x is no 1: -1 at x = -2"""
     names = Names()

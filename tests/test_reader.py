@@ -7,6 +7,7 @@ from pathlib import Path
 
 import pytest
 from cpu_limit import cpu_limit
+from each import each
 
 import eomgen
 from eomgen.errors import ModelError
@@ -37,7 +38,7 @@ def only_problem(text: str, space: str = "plane") -> str:
     return one
 
 
-@pytest.mark.parametrize("path", MODELS, ids=lambda path: path.stem)
+@each("path", MODELS)
 def test_every_model_of_the_gallery_loads(path):
     """models/**/*.toml -> Model, with the names of the tables in the order of the text."""
     model = load(path)
@@ -236,7 +237,7 @@ WRONG = {
 }
 
 
-@pytest.mark.parametrize(("text", "told"), WRONG.values(), ids=WRONG.keys())
+@each("text, told", WRONG.values())
 def test_each_mistake_has_its_place_its_words_and_its_mend(text, told):
     """One mistake, one problem: "line:column: what / mend"."""
     assert only_problem(text) == told
@@ -248,8 +249,8 @@ def test_a_ring_of_bodies_is_told_once():
     assert "bodies hang on one another in a ring: a -> b -> a" in only_problem(text)
 
 
-@pytest.mark.parametrize(
-    ("inertia", "possible"),
+@each(
+    "inertia, possible",
     [
         ("[1, 2, 3]", True),
         ("[1, 2, 3.001]", False),
@@ -266,8 +267,8 @@ def test_the_triangle_inequality_holds_for_principal_moments(inertia, possible):
     assert not any("triangle" in x.what for x in warnings_of(measured))
 
 
-@pytest.mark.parametrize(
-    ("joint", "needed"),
+@each(
+    "joint, needed",
     [
         ('{ kind = "revolute", angle = "q" }', True),
         ('{ kind = "prismatic", axis = [1, 0], displacement = "q" }', False),
@@ -322,8 +323,8 @@ def test_a_byte_order_mark_and_windows_line_ends_do_no_harm():
     assert loads(b"\xef\xbb\xbf" + text.replace("\n", "\r\n").encode()) == loads(text)
 
 
-@pytest.mark.parametrize(
-    ("first", "told"),
+@each(
+    "first, told",
     [
         ("", "the file does not say that it is a model"),
         ("eomgen = 2\n", "version 2 of the model file is not known here"),
@@ -362,7 +363,7 @@ HOSTILE = {
 }
 
 
-@pytest.mark.parametrize("text", HOSTILE.values(), ids=HOSTILE.keys())
+@each("text", HOSTILE.values())
 def test_a_hostile_text_costs_little_and_ends_in_an_error(text):
     """A clear error, never a traceback, in about a second."""
     with cpu_limit(20), pytest.raises(ModelError):  # about 1 by itself

@@ -11,6 +11,7 @@ from typing import Any
 
 import pytest
 from click.testing import CliRunner
+from each import each
 
 import eomgen
 from eomgen.cli import main
@@ -67,7 +68,7 @@ def row_of(kind: str, after: str) -> list[str]:
     return [cell.strip() for cell in rows[0]]
 
 
-@pytest.mark.parametrize("text", WHOLE, ids=lambda text: re.search('name = "(.*?)"', text)[1])
+@each("text", WHOLE)
 def test_a_whole_model_of_the_pages_derives_and_is_certified(text):
     """Every ```toml block that begins with `eomgen = 1`."""
     assert eomgen.derive(eomgen.loads(text)).certify().ok
@@ -86,7 +87,7 @@ def test_a_piece_of_the_reference_derives_and_its_outputs_are_answered(piece):
         assert found.keys() == of_runs and {name: a.message for name, a in found.items() if a.message} == {}
 
 
-@pytest.mark.parametrize("room", ROOMS)
+@each("room", ROOMS)
 def test_the_reference_names_every_kind_with_exactly_its_fields(room):
     """| `kind` | its fields | ...: a kind or a field that is new, or gone, must be written down."""
     for member in ROOMS[room]:
@@ -94,7 +95,7 @@ def test_the_reference_names_every_kind_with_exactly_its_fields(room):
         assert fields == {slot.key for slot in slots_of(member)} - COMMON.get(room, set()), member.kind
 
 
-@pytest.mark.parametrize("room", ["joint", "constraint", "force"])
+@each("room", ["joint", "constraint", "force"])
 def test_the_reference_says_which_kinds_are_derived(room):
     """The column "derived" is `later` for the kinds that do not work, and only for them; `in the plane`, only there."""
     for member in ROOMS[room]:
@@ -106,7 +107,7 @@ def test_the_reference_says_which_kinds_are_derived(room):
             assert (derived != "later") == (room == "joint" or member.works), member.kind
 
 
-@pytest.mark.parametrize("part", [Parameter, Coordinate, Body, Output, Model], ids=lambda part: part.__name__)
+@each("part", [Parameter, Coordinate, Body, Output, Model])
 def test_the_reference_names_every_field_of_the_tables(part):
     """Each key of the part stands in the reference as `key` or `[key]`."""
     missing = [s.key for s in slots_of(part) if f"`{s.key}`" not in REFERENCE and f"[{s.key}" not in REFERENCE]
@@ -163,7 +164,7 @@ def test_what_the_pages_show_of_a_command_is_what_it_prints(block, tmp_path, mon
     assert [line for line in shown if line != "..." and line not in printed] == []
 
 
-@pytest.mark.parametrize("page", [README, REFERENCE], ids=["README.md", "models/README.md"])
+@each("page", [README, REFERENCE])
 def test_links_inside_the_repository_lead_somewhere(page):
     """[text](path) is a file, [text](#heading) a heading of the page."""
     folder = ROOT if page is README else ROOT / "models"

@@ -11,6 +11,7 @@ from random import Random
 import numpy as np
 import pytest
 from click.testing import CliRunner
+from each import each
 from scipy.interpolate import CubicSpline, PchipInterpolator
 
 import eomgen
@@ -60,8 +61,8 @@ def random_samples(n: int, seed: int = 1) -> tuple[list[Fraction], list[Fraction
 # -- between the samples --------------------------------------------------------------------------
 
 
-@pytest.mark.parametrize(("ends", "theirs"), [("not-a-knot",) * 2, ("natural",) * 2, ("rest", "clamped")])
-@pytest.mark.parametrize("n", [2, 3, 4, 5, 30])
+@each("ends, theirs", [("not-a-knot",) * 2, ("natural",) * 2, ("rest", "clamped")])
+@each("n", [2, 3, 4, 5, 30])
 def test_a_cubic_through_samples_is_that_of_scipy(ends, theirs, n):
     """f, f', f'' and the integral of scipy.interpolate.CubicSpline."""
     times, values = random_samples(n)
@@ -116,7 +117,7 @@ def test_many_samples_stay_short_and_right():
     )
 
 
-@pytest.mark.parametrize("pi_power", [0, 1, -1])
+@each("pi_power", [0, 1, -1])
 def test_every_scalar_gives_the_same_value(pi_power):
     """Graph in floats and 50 digits, sympy, and the derivative of the graph; printed by its name."""
     sampled = Sampled("f", spline_of(*random_samples(7)), pi_power)
@@ -157,7 +158,7 @@ LAWS = {
 }
 
 
-@pytest.mark.parametrize("law", LAWS)
+@each("law", LAWS)
 def test_motions_rates_and_accelerations_by_samples_are_certified(law):
     equations = eomgen.derive(arm(LAWS[law]))
     assert equations.certify().ok
@@ -217,7 +218,7 @@ joint = { kind = "prismatic", axis = [1, 0], displacement = "x" }
 """
 
 
-@pytest.mark.parametrize("method", METHODS)
+@each("method", METHODS)
 def test_a_short_pulse_after_a_long_rest_is_not_stepped_over(method):
     """Momentum is the impulse: m v = 50 N * 0.02 s / 2."""
     run = eomgen.simulate(eomgen.loads(f'eomgen = 1\nspace = "plane"\n[forces]{PULSE}'), time=10, method=method)
@@ -267,8 +268,8 @@ def test_a_file_without_samples_is_refused(tmp_path, text, what):
         following(arm("0.3"), [f"theta={path}"])
 
 
-@pytest.mark.parametrize(
-    ("law", "what"),
+@each(
+    "law, what",
     [
         ("{ motion = { samples = [[0, 1]] } }", "a list of 2 to 10000 samples is needed here, not 1"),
         ("{ motion = { samples = [[0, 1], [0, 2]] } }", "the times of samples ascend, but 0 comes after 0"),
@@ -303,9 +304,7 @@ def test_the_schema_knows_samples():
 DWELLS = "[[0, 0], [1, 1.9], [3, 1.9], [4, 0.4], [4.5, 0.5]]"
 
 
-@pytest.mark.parametrize(
-    "rows", [DWELLS, "[[0, 1], [2, 5]]", "[[0, 0], [1, 3], [1.5, 2.9], [4, 2.9]]", "[[-1, 2], [0, 1], [7, 9]]"]
-)
+@each("rows", [DWELLS, "[[0, 1], [2, 5]]", "[[0, 0], [1, 3], [1.5, 2.9], [4, 2.9]]", "[[-1, 2], [0, 1], [7, 9]]"])
 def test_monotone_cubics_are_those_of_another_program(rows):
     """Fritsch and Butland's slopes: scipy's PchipInterpolator, f, f' and f'' between all samples"""
     pairs = np.array(json.loads(rows), dtype=float)

@@ -4,6 +4,7 @@ import tomllib
 from pathlib import Path
 
 import pytest
+from each import each
 
 from eomgen.model.schema import json_schema
 
@@ -19,13 +20,13 @@ def test_the_schema_is_one():
     jsonschema.Draft202012Validator.check_schema(json_schema())
 
 
-@pytest.mark.parametrize("path", MODELS, ids=lambda path: path.stem)
+@each("path", MODELS)
 def test_every_model_of_the_gallery_obeys_the_schema(path):
     errors = list(VALIDATOR.iter_errors(tomllib.loads(path.read_text())))
     assert errors == []
 
 
-@pytest.mark.parametrize(
+@each(
     "change",
     [
         {"eomgen": 2},
@@ -45,7 +46,7 @@ def test_a_mistake_of_form_is_refused(change):
     assert not VALIDATOR.is_valid(BODY | change)
 
 
-@pytest.mark.parametrize(
+@each(
     "change",
     [
         {"parameters": {"m": 1.5, "k": {}, "l": {"value": 40, "unit": "cm", "about": "of the rod", "positive": True}}},

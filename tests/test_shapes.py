@@ -2,6 +2,7 @@
 
 import numpy as np
 import pytest
+from each import each
 from scipy.integrate import dblquad, tplquad
 
 from eomgen.model import shapes
@@ -84,7 +85,7 @@ SECOND = (
 )
 
 
-@pytest.mark.parametrize("cls", ALL, ids=lambda cls: cls.kind)
+@each("cls", ALL)
 def test_a_shape_is_exact_and_has_the_points_of_its_names(cls):
     """No float comes in; `points` gives what `point_names` promises; `center` is the mass centre."""
     shape = cls(**EXAMPLES[cls.kind])
@@ -95,7 +96,7 @@ def test_a_shape_is_exact_and_has_the_points_of_its_names(cls):
     assert all(isinstance(x, int | Fraction | Node) for x in entries)
 
 
-@pytest.mark.parametrize("cls", ALL, ids=lambda cls: cls.kind)
+@each("cls", ALL)
 def test_an_inertia_is_symmetric_and_obeys_the_triangle_inequality(cls):
     """I = I^T and I_xx <= I_yy + I_zz, and so on round."""
     tensor = properties(cls(**EXAMPLES[cls.kind])).I
@@ -104,8 +105,8 @@ def test_an_inertia_is_symmetric_and_obeys_the_triangle_inequality(cls):
     assert xx <= yy + zz and yy <= zz + xx and zz <= xx + yy
 
 
-@pytest.mark.parametrize(
-    ("shape", "radius_at"),
+@each(
+    "shape, radius_at",
     [
         (Cone(**EXAMPLES["cone"]), lambda z: 0.5 * (1.5 - z) / 2),  # base at -h/4, apex at 3h/4
         (Sphere(**EXAMPLES["sphere"]), lambda z: max(0.0, 0.25 - z * z) ** 0.5),
@@ -143,7 +144,7 @@ def test_a_triangle_agrees_with_the_integral_over_its_area():
     assert all(float(found.I[i][j]) == pytest.approx(expected[i][j]) for i in range(3) for j in range(3))
 
 
-@pytest.mark.parametrize("turn", [1, -1])
+@each("turn", [1, -1])
 def test_a_polygon_is_a_triangle_or_a_rectangle_where_it_looks_like_one(turn):
     """Green's sums give the plates' own formulas, whichever way round the vertices are given."""
     triangle = [[0, 0], [2, 0], [0, "3/2"]][::turn]
@@ -266,7 +267,7 @@ INTEGRALS = {
 }
 
 
-@pytest.mark.parametrize("kind", INTEGRALS)
+@each("kind", INTEGRALS)
 def test_a_shape_agrees_with_the_integral_over_what_it_is_made_of(kind):
     """Measure, mass centre and I = (m / measure) (tr P 1 - P) about it, from sums over small pieces of its own."""
     cls = next(cls for cls in ALL if cls.kind == kind)
@@ -292,7 +293,7 @@ def test_what_no_integral_stands_for_follows_from_another_shape():
     assert whole.mass_properties(exactly) == ring
 
 
-@pytest.mark.parametrize("cls", ALL, ids=lambda cls: cls.kind)
+@each("cls", ALL)
 def test_a_shape_has_the_mass_centre_and_inertia_of_what_it_fills(cls):
     """S = sum w [r; 1] [r; 1]^T over the nodes of a quadrature of the shape's own map of [0, 1]^d."""
     shape = cls(**EXAMPLES[cls.kind])

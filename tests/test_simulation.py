@@ -9,6 +9,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from each import each
 from hand_made import cart_pole, pendulum, symbols, tied_pendulum
 
 import eomgen
@@ -65,7 +66,7 @@ def test_a_small_swing_has_the_period_of_the_textbook():
     assert end == pytest.approx([angle, 0.0], abs=1e-9)
 
 
-@pytest.mark.parametrize("method", METHODS)
+@each("method", METHODS)
 def test_the_error_falls_with_the_tolerance(method):
     """Against y' = -y, y(2) = e^-2: the error stays near the tolerance for every method."""
     errors = [
@@ -267,7 +268,7 @@ BAD = {
 }
 
 
-@pytest.mark.parametrize("message", BAD)
+@each("message", BAD)
 def test_senseless_questions_are_refused(message):
     """What is wrong, said before anything is integrated."""
     with pytest.raises(UsageError, match=message):
@@ -298,7 +299,7 @@ def test_ties_that_stay_independent_end_no_run():
 # -- stiff methods, Baumgarte's rows, conditions that end a run --------------------------------------
 
 
-@pytest.mark.parametrize("name", ["double_pendulum", "four_bar", "four_cranks", "gyrostat", "spherical_pendulum"])
+@each("name", ["double_pendulum", "four_bar", "four_cranks", "gyrostat", "spherical_pendulum"])
 def test_the_derivative_of_the_right_hand_side_is_exact(name):
     """d(x')/dx against central differences: trees, dependent coordinates, redundant ties, quaternions."""
     equations = eomgen.derive(eomgen.load(MODELS / f"{name}.toml"))
@@ -341,7 +342,7 @@ pull = { kind = "force", point = "cart.origin", force = ["cos(t)", 0] }
 """
 
 
-@pytest.mark.parametrize("method", ["Radau", "BDF", "LSODA"])
+@each("method", ["Radau", "BDF", "LSODA"])
 def test_stiff_methods_take_few_steps_where_the_others_need_many(method):
     """Rates from 1 to 2e5 1/s: (m1 + m2) x'' = cos(t) to the tolerance, in a hundredth of the steps."""
     model = eomgen.loads(STIFF)
@@ -417,8 +418,8 @@ def test_a_condition_may_ask_for_a_reaction():
     assert -found["y"][-1] == pytest.approx(2 / 3, abs=1e-8)
 
 
-@pytest.mark.parametrize(
-    ("until", "message"),
+@each(
+    "until, message",
     [
         ("thta = 1", "unknown name 'thta'"),
         ("theta1", "is no equation"),
@@ -504,7 +505,7 @@ NAMES = {
 }
 
 
-@pytest.mark.parametrize("name", NAMES)
+@each("name", NAMES)
 def test_names_are_set_as_mathematics(name):
     """Dots for primes, subscripts for numbers."""
     assert mathtext(name) == NAMES[name]

@@ -6,6 +6,7 @@ import math
 from random import Random
 
 import pytest
+from each import each
 
 from eomgen.symbolic.exact.normal_form import simplest
 from eomgen.symbolic.exact.signs import sign_of_terms
@@ -62,7 +63,7 @@ KNOWN = {
 }
 
 
-@pytest.mark.parametrize("text", KNOWN)
+@each("text", KNOWN)
 def test_the_real_roots_are_found_and_no_others(text):
     """The textbook's solutions, one turn of those in angles."""
     names, (equation, *expected) = scalars(text, *KNOWN[text])
@@ -73,7 +74,7 @@ def test_the_real_roots_are_found_and_no_others(text):
     assert turned[0] == pytest.approx(turned[1])
 
 
-@pytest.mark.parametrize("text", [*KNOWN, "a*x^2 + b*x - c", "a*sin(x) + b*cos(x) - a/2", "5*sin(x)^2 + 3*cos(x) - 1"])
+@each("text", [*KNOWN, "a*x^2 + b*x - c", "a*sin(x) + b*cos(x) - a/2", "5*sin(x)^2 + 3*cos(x) - 1"])
 def test_every_root_satisfies_its_equation(text):
     """equation(root) = 0"""
     names, (equation,) = scalars(text)
@@ -85,7 +86,7 @@ def test_every_root_satisfies_its_equation(text):
         assert values and max(map(abs, values)) < 1e-9
 
 
-@pytest.mark.parametrize("text", ["x - cos(x)", "x*exp(x) - a", "x^5 - x - a", "cos(x) + cos(a*x)"])
+@each("text", ["x - cos(x)", "x*exp(x) - a", "x^5 - x - a", "cos(x) + cos(a*x)"])
 def test_an_equation_without_closed_roots_has_none(text):
     """Nothing is made of numbers."""
     assert solved(text) == []
@@ -98,8 +99,8 @@ def test_a_period_is_seen():
     assert [has_period(e, names["x"], turn) for e in equations] == [True, True, False, False]
 
 
-@pytest.mark.parametrize(
-    ("text", "folded"),
+@each(
+    "text, folded",
     {
         "sin(acos(2/3))": "1/3*sqrt(5)",
         "cos(acos(x))": "x",
@@ -132,8 +133,8 @@ def test_the_direction_of_what_stays_the_same_is_that_of_its_triangle():
     assert to_text(moving) == "cos(atan2(x, b))"
 
 
-@pytest.mark.parametrize("function", ["sin", "cos"])
-@pytest.mark.parametrize("angle", ["3*acos(x) + a", "asin(x) - 2*acos(a)", "4*atan(x) + pi/3", "-atan(x) + acos(1/3)"])
+@each("function", ["sin", "cos"])
+@each("angle", ["3*acos(x) + a", "asin(x) - 2*acos(a)", "4*atan(x) + pi/3", "-atan(x) + acos(1/3)"])
 def test_sines_of_multiples_of_inverse_functions_keep_their_value(function, angle):
     """sin(n y + rest) by the addition theorem, against the library's functions."""
     names, (folded,) = scalars(f"{function}({angle})")
@@ -142,8 +143,8 @@ def test_sines_of_multiples_of_inverse_functions_keep_their_value(function, angl
     assert evaluate((folded,), {names["x"]: 0.4, names["a"]: -0.7}, FLOAT)[0] == pytest.approx(expected)
 
 
-@pytest.mark.parametrize(
-    ("text", "short"),
+@each(
+    "text, short",
     {
         "sqrt(l^2)": "l",
         "l*sqrt(g/l)": "sqrt(g*l)",
@@ -177,8 +178,8 @@ def test_the_sign_of_a_sum_is_that_of_its_terms():
     assert [sign_of_terms(each, [names["a"], names["m"]]) for each in sums] == [1, -1, None, 0]
 
 
-@pytest.mark.parametrize(
-    ("text", "outside"),
+@each(
+    "text, outside",
     {
         "sin(x) + 2*cos(3*x - a)": "",
         "sin(x/2) + cos(a)": "x",

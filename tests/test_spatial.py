@@ -9,6 +9,7 @@ from typing import Any
 
 import pytest
 import sympy
+from each import each
 
 from eomgen.symbolic.expression.graph import Graph
 from eomgen.symbolic.expression.spatial import (
@@ -254,7 +255,7 @@ def test_kinetic_energy_is_the_sum_over_particles(world):
     assert same(world, inertia_of(particles).kinetic_energy(xi), T)
 
 
-@pytest.mark.parametrize("kind", ARITHMETICS[1:], ids=lambda kind: kind.__name__)
+@each("kind", ARITHMETICS[1:])
 def test_every_arithmetic_gives_the_values_of_the_fractions(kind):
     """The same text of the law, the same numbers: T of a turned and moved body."""
 

@@ -6,6 +6,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from each import each
 from tools import needs
 
 import eomgen
@@ -33,7 +34,7 @@ def test_a_state_space_has_the_transfer_functions(cart):
     assert np.allclose(W[:, 0], [x, theta, s**2 * theta])
 
 
-@pytest.mark.parametrize("name", ["cart_pole", "half_car", "double_pendulum", "balancing_robot", "furuta_pendulum"])
+@each("name", ["cart_pole", "half_car", "double_pendulum", "balancing_robot", "furuta_pendulum"])
 def test_the_exact_state_space_is_that_in_numbers(name):
     """A and B of the parameters' values, and their eigenvalues those of the modes"""
     found = eomgen.linearize(MODELS / f"{name}.toml")

@@ -6,6 +6,7 @@ import math
 from fractions import Fraction
 
 import pytest
+from each import each
 from mpmath.ctx_mp import MPContext
 from slider_crank import SLIDER_CRANK
 
@@ -35,7 +36,7 @@ def test_the_force_on_a_slider_at_nice_angles_is_mass_times_acceleration():
         assert answers[f"t{k}"].value == pytest.approx(force, rel=1e-12)
 
 
-@pytest.mark.parametrize("x", [Fraction(1, 10**k) for k in (1, 5, 9, 15, 40)])
+@each("x", [Fraction(1, 10**k) for k in (1, 5, 9, 15, 40)])
 def test_what_cancels_in_a_form_takes_no_digit_of_its_number(x):
     """(1 - cos x)/x^2 = 1/2 - x^2/24 + ..., (sqrt(1 + x) - sqrt(1 - x))/x = 1 + x^2/8 + ..."""
     versine = (1 - cos(X)) / X**2
@@ -96,8 +97,8 @@ def _wide(arithmetic, c):
 FUNCTIONS = "sqrt sin cos tan asin acos atan sinh cosh tanh exp log abs".split()
 
 
-@pytest.mark.parametrize("x", [Fraction(3, 10), Fraction(999999, 1000000), Fraction(1, 10**12)])
-@pytest.mark.parametrize("name", FUNCTIONS)
+@each("x", [Fraction(3, 10), Fraction(999999, 1000000), Fraction(1, 10**12)])
+@each("name", FUNCTIONS)
 def test_a_ball_holds_the_true_value(name, x):
     """The ball of f around x, 1e-25 wide, holds f with 120 digits at both ends of it."""
     mp = MPContext()
@@ -110,7 +111,7 @@ def test_a_ball_holds_the_true_value(name, x):
     assert r <= 1e-10 * abs(value) + 1e-20
 
 
-@pytest.mark.parametrize("op", "add sub mul div pow atan2 min max".split())
+@each("op", "add sub mul div pow atan2 min max".split())
 def test_a_ball_of_two_arguments_holds_the_true_value(op):
     """As of one argument, at the four corners."""
     mp = MPContext()

@@ -23,6 +23,7 @@ import pytest
 from click.testing import CliRunner
 from forked import needs_sh
 from scipy import stats
+from slow_run import beside
 
 import eomgen
 from eomgen.cli import main
@@ -259,13 +260,13 @@ def done_runs(folder: Path) -> int:
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("count", [1, 2])
+@pytest.mark.parametrize("count", [*beside(1), 2])
 def test_a_sweep_that_is_killed_goes_on_and_has_each_run_once(spring, tmp_path, count):
     """SIGKILL of the parent again and again, at whatever instant; its workers end by themselves; the bits are those
     of a sweep that nobody disturbed."""
     folder, kills = tmp_path / "out", 0
     words = (spring, *SWEEP, "--workers", str(count), "-o", str(folder), "--no-certify")
-    for wait in (1, 30, 90, 170, 260):
+    for wait in (1, *beside(30), 90, 170, *beside(260)):
         process = swept(*words)
         while process.poll() is None and done_runs(folder) < wait:
             time.sleep(0.02)

@@ -8,6 +8,7 @@ from __future__ import annotations
 import re
 
 import pytest
+from each import each
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
@@ -73,8 +74,8 @@ def test_what_is_let_in_is_mathematics_for_a_browser(text):
         assert "<math" in converter.convert_with_local_state(tex, displaystyle=False)
 
 
-@pytest.mark.parametrize(
-    ("text", "tex", "rate"),
+@each(
+    "text, tex, rate",
     [
         (r"\dot\gamma", r"\dot{\gamma}", r"\ddot{\gamma}"),
         ("J_C", "J_{C}", r"\dot{J}_{C}"),
@@ -88,8 +89,8 @@ def test_a_rate_has_its_dot_over_the_letter(text, tex, rate):
     assert (parse_symbol(text).tex, parse_symbol(text).dotted(1)) == (tex, rate)
 
 
-@pytest.mark.parametrize(
-    ("text", "what", "column", "mend"),
+@each(
+    "text, what, column, mend",
     [
         (r"\dot\gama", r"unknown command '\gama'", 4, r"did you mean \gamma?"),
         ("a_b_c", "'_' where the letter has an index already", 3, "one pair of { }"),

@@ -8,6 +8,7 @@ from fractions import Fraction
 
 import pytest
 from cpu_limit import cpu_limit
+from each import each
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
@@ -35,7 +36,7 @@ def read(text: str, graph: Graph | None = None):
     return parse(text, longest=10**7).evaluate(Names(graph or Graph()))
 
 
-@pytest.mark.parametrize(
+@each(
     "text",
     [
         "6*M*R^2*theta'^2 + 27/2*M*R^2*cos(theta)^2*theta'^2",
@@ -94,8 +95,8 @@ def test_what_is_written_as_in_a_textbook_is_printed_as_it_is(text):
     assert to_text(read(text)) == text
 
 
-@pytest.mark.parametrize(
-    ("text", "printed"),
+@each(
+    "text, printed",
     [
         ("-(a - b)", "b - a"),
         ("-a + b", "b - a"),

@@ -3,8 +3,10 @@
 from __future__ import annotations
 
 import statistics
+from pathlib import Path
 
 import pytest
+from each import each
 from golden_formulas import (
     LIST,
     OWN,
@@ -24,13 +26,13 @@ MEDIAN = 1.0
 SAME = {"cot": "tan"}  # a function that the grammar has not, by the one that stands in the text for it
 
 
-@pytest.mark.parametrize("golden", golden_formulas(), ids=lambda golden: golden.name)
-def test_ours_says_what_the_author_says(golden: Golden) -> None:
+@each("path, golden", [(golden.path, golden) for golden in golden_formulas()], by="path")
+def test_ours_says_what_the_author_says(path: Path, golden: Golden) -> None:
     """f_ours = f_his at random exact states; of an equation of motion up to a factor."""
     assert agrees(golden, ours_of(golden))
 
 
-@pytest.mark.parametrize("golden", golden_formulas(), ids=lambda golden: golden.name)
+@each("golden", golden_formulas())
 def test_latex_and_text_of_the_author_hold_the_same_letters(golden: Golden) -> None:
     """What is proven equal is what is measured: neither has a letter more."""
     letters = letters_of_latex(golden.author)

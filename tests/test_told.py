@@ -8,6 +8,7 @@ from functools import cache
 from typing import Any
 
 import pytest
+from each import each
 
 import eomgen
 from eomgen.model.values import exact_parameters
@@ -102,7 +103,7 @@ RUNS: dict[str, Callable[[ToldRun], ToldRun]] = {
 }
 
 
-@pytest.mark.parametrize("change", RUNS)
+@each("change", RUNS)
 def test_what_is_told_otherwise_of_a_run_is_seen(change: str):
     assert wrong_run(RUNS[change](told()))
 
@@ -170,7 +171,7 @@ SMALL: dict[str, Callable[[dict[str, Any]], None]] = {
 }
 
 
-@pytest.mark.parametrize("change", SMALL)
+@each("change", SMALL)
 def test_what_is_told_otherwise_of_small_motions_is_seen(change: str):
     assert wrong_modes(SMALL[change])
 
@@ -208,8 +209,8 @@ def wrong_sections(change: Callable[[Any, Any], None]) -> str:
     sections = eomgen.statics(eomgen.loads(BEAM)).sections
     told = dict(enumerate(told_sections(sections, section_steps(sections), section_payload(sections))))
     assert len(told) == 2
-    for _, each in told.values():
-        change(each.pieces[0], each.extremes[0])
+    for _, one in told.values():
+        change(one.pieces[0], one.extremes[0])
     return "; ".join(c.detail for c in sections_told(sections.found, told.values(), {}) if c.status == "fails")
 
 
@@ -226,7 +227,7 @@ SECTIONS: dict[str, Callable[[Any, Any], None]] = {
 }
 
 
-@pytest.mark.parametrize("change", SECTIONS)
+@each("change", SECTIONS)
 def test_section_forces_that_are_told_otherwise_are_seen(change: str):
     """dM/dx = V, under the heads that are printed."""
     assert wrong_sections(SECTIONS[change])

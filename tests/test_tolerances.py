@@ -7,7 +7,7 @@ import re
 from collections.abc import Callable
 from pathlib import Path
 
-import pytest
+from each import each
 
 PACKAGE = Path(__file__).parent.parent / "eomgen"
 HOME = PACKAGE / "symbolic" / "numeric" / "tolerances.py"
@@ -59,7 +59,7 @@ def test_every_tolerance_is_used():
     assert names - set(re.findall(r"\w+", text)) == set()
 
 
-@pytest.mark.parametrize("planted", ["x = 1e-9", "def f(tol=5e-16): pass", "g(rcond=0.0001)", "c = 'if (x < 1e-12)'"])
+@each("planted", ["x = 1e-9", "def f(tol=5e-16): pass", "g(rcond=0.0001)", "c = 'if (x < 1e-12)'"])
 def test_a_planted_tolerance_is_seen(planted):
     assert small_numbers(planted) == [1]
 
@@ -90,6 +90,6 @@ def test_no_module_holds_a_budget_of_its_own():
     assert wrong_lines(own_budgets) == []
 
 
-@pytest.mark.parametrize("planted", ["readable(x, 2000)", "reactions_of(s, work=300)", "cancelled(x, WORK)"])
+@each("planted", ["readable(x, 2000)", "reactions_of(s, work=300)", "cancelled(x, WORK)"])
 def test_a_planted_budget_is_seen(planted):
     assert own_budgets(planted) == [1]

@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 
 import pytest
+from each import each
 
 from eomgen.errors import ExpressionError
 from eomgen.symbolic.expression.expressions import parse
@@ -13,8 +14,8 @@ from eomgen.symbolic.expression.rational import Fraction
 from eomgen.symbolic.expression.units import UNITS, parse_unit
 
 
-@pytest.mark.parametrize(
-    ("text", "value", "si"),
+@each(
+    "text, value, si",
     [
         ("cm", 40, Fraction(2, 5)),
         ("kg*cm^2", 5, Fraction(1, 2000)),
@@ -38,8 +39,8 @@ def test_a_value_with_a_unit_is_its_value_in_si_exactly(text, value, si):
     assert parse_unit(text).from_si(si, None) == value
 
 
-@pytest.mark.parametrize(
-    ("text", "per_pi"),
+@each(
+    "text, per_pi",
     [
         ("deg", Fraction(1, 180)),
         ("rev", 2),
@@ -58,8 +59,8 @@ def test_an_angle_is_a_multiple_of_pi_exactly(text, per_pi):
     assert parse_unit(text).expression_in_si(parse("3")).evaluate({"pi": graph.pi}) is 3 * per_pi * graph.pi
 
 
-@pytest.mark.parametrize(
-    ("one", "other"),
+@each(
+    "one, other",
     [
         ("N", "kg*m/s^2"),
         ("J", "N*m"),
@@ -78,16 +79,14 @@ def test_units_of_one_dimension_fit(one, other):
     assert parse_unit(one).fits(parse_unit(other)) and parse_unit(other).fits(parse_unit(one))
 
 
-@pytest.mark.parametrize(
-    ("one", "other"), [("m", "kg"), ("deg", "kg"), ("N", "N*m"), ("m/s", "m/s^2"), ("Hz", "rad/s"), ("1", "m")]
-)
+@each("one, other", [("m", "kg"), ("deg", "kg"), ("N", "N*m"), ("m/s", "m/s^2"), ("Hz", "rad/s"), ("1", "m")])
 def test_units_of_different_dimensions_do_not_fit(one, other):
     """Nor do Hz and rad/s: between them lies 2 pi, silently."""
     assert not parse_unit(one).fits(parse_unit(other)) and not parse_unit(other).fits(parse_unit(one))
 
 
-@pytest.mark.parametrize(
-    ("text", "what", "column", "mend"),
+@each(
+    "text, what, column, mend",
     [
         ("Nm", "there is no unit 'Nm'", 0, "did you mean 'N*m'?"),
         ("cmm", "there is no unit 'cmm'", 0, "did you mean 'mm'?"),

@@ -8,6 +8,7 @@ from pathlib import Path
 
 import pytest
 from click.testing import CliRunner
+from each import each
 
 import eomgen
 from eomgen.cli import main
@@ -76,8 +77,8 @@ forces.g = { kind = "gravity", acceleration = [0, "-g"] }
 """
 
 
-@pytest.mark.parametrize(
-    ("model", "equation", "factor"),
+@each(
+    "model, equation, factor",
     [
         ("elastic_pendulum", "r*theta'' + 2*r'*theta' + g*sin(theta) = 0", "the factor 1/(m*r)"),
         ("elastic_pendulum", "r'' - r*theta'^2 - g*cos(theta) + k/m*(r - l0) = 0", "the factor 1/m"),
@@ -98,7 +99,7 @@ def test_a_factor_beside_ties_is_of_the_equation_alone():
         assert found.verdict == "right" and "factor 2" in found.up_to
 
 
-@pytest.mark.parametrize(
+@each(
     "equation",
     [
         "y1'' + y2'' = g",
@@ -120,8 +121,8 @@ def test_what_is_too_much_in_a_wrong_equation_is_not_zero(equation):
     assert not is_zero_everywhere(case.system, left).holds
 
 
-@pytest.mark.parametrize(
-    ("equation", "verdict", "unknown"),
+@each(
+    "equation, verdict, unknown",
     [
         ("S = m*g*cos(theta) + m*l*theta'^2", "right", ()),
         (r"S - m g \cos\theta = m l \dot\theta^2", "right", ()),
@@ -152,8 +153,8 @@ def test_an_unknown_name_stays_in_the_list_with_exit_code_2():
     assert judged("F_S = m*g*cos(theta)", "l*theta'' = g*sin(theta)")[0] == 5
 
 
-@pytest.mark.parametrize(
-    ("equation", "verdict"),
+@each(
+    "equation, verdict",
     [
         ("omega = sqrt((M + m)*g/(M*l))", "right"),
         ("omega_1^2 = (M + m)*g/(M*l)", "right"),
@@ -231,9 +232,7 @@ def told_laws(model: eomgen.Model) -> dict[str, str]:
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize(
-    "text", [ATWOOD, TACKLE, ATWOOD.replace("speed = 1 }, y2 = 0", "speed = 1 }, y2 = { speed = 2 }")]
-)
+@each("text", [ATWOOD, TACKLE, ATWOOD.replace("speed = 1 }, y2 = 0", "speed = 1 }, y2 = { speed = 2 }")])
 def test_the_start_that_ties_complete_is_one_for_every_verb(text):
     """The rope gives, or changes, speeds: laws of motion, x0, runs and the table of `derive` begin with the same."""
     model = eomgen.loads(text)
@@ -253,8 +252,8 @@ def test_the_start_that_ties_complete_is_one_for_every_verb(text):
         assert float(found) == pytest.approx(run[q][-1], abs=1e-9)
 
 
-@pytest.mark.parametrize(
-    ("text", "equation", "verdict"),
+@each(
+    "text, equation, verdict",
     [
         (ATWOOD, "y1 = 5*t + (m1 - m2)*g/(2*(m1 + m2))*t^2", "wrong"),
         (ATWOOD, "y1 = t + (m1 - m2)*g/(2*(m1 + m2))*t^2", "right"),
@@ -412,7 +411,7 @@ def test_a_judge_that_errs_fails_its_certificate(monkeypatch):
     assert result.exit_code == 3 and "it is told right, and its sides differ" in result.output
 
 
-@pytest.mark.parametrize("equation", ["V = -m*g*l*cos(theta) + 7*m", "T + V = E", "omega = sqrt(g/l)", "theta = 0"])
+@each("equation", ["V = -m*g*l*cos(theta) + 7*m", "T + V = E", "omega = sqrt(g/l)", "theta = 0"])
 def test_what_numbers_do_not_decide_is_no_alarm(equation):
     """Constants of potentials and of integration; small motions and rest, which the solver of outputs decides."""
     result = CliRunner().invoke(main, ["verify", "-", equation], input=PENDULUM)

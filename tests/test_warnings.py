@@ -8,6 +8,7 @@ from pathlib import Path
 
 import pytest
 from click.testing import CliRunner
+from each import each
 
 import eomgen
 from eomgen.cli import main
@@ -66,7 +67,7 @@ DOUBTFUL = {
 LIGHT = '[bodies.dust]\nshape = { kind = "particle", mass = 0.001 }\njoint = { kind = "placed", on = "bob.end" }\n'
 
 
-@pytest.mark.parametrize("path", MODELS, ids=lambda path: path.stem)
+@each("path", MODELS)
 def test_no_model_of_ours_is_warned_of(path):
     """No false alarm."""
     assert warnings_of(eomgen.load(path)) == ()
@@ -87,7 +88,7 @@ def test_what_is_hardly_meant_is_told_with_its_place(old, new, told, mend, tmp_p
     assert (result.exit_code, CliRunner().invoke(main, [*words, "--strict"]).exit_code) == (0, 1)
 
 
-@pytest.mark.parametrize("angle", ["phi - pi/2", "phi + 6", "90*phi", "phi/90", "sin(90*phi)", "phi*(1 + 90*phi)"])
+@each("angle", ["phi - pi/2", "phi + 6", "90*phi", "phi/90", "sin(90*phi)", "phi*(1 + 90*phi)"])
 def test_numbers_that_multiply_are_no_degrees(angle):
     """Only terms of the sum that is the angle."""
     assert warnings_of(eomgen.loads(PENDULUM.replace("phi - pi/2", angle))) == ()
@@ -157,7 +158,7 @@ TIES = {
 }
 
 
-@pytest.mark.parametrize(("guess", "tie", "told"), [("near", "guide", True), ("start", "guide", False)])
+@each("guess, tie, told", [("near", "guide", True), ("start", "guide", False)])
 def test_a_guess_that_would_be_geometry_is_told(guess, tie, told):
     """A guide lies where its point starts: of `near` that is a guess, of `start` what somebody says"""
     found = warnings_of(eomgen.loads(SLIDER.replace("GUESS", guess).replace("TIE", TIES[tie])))

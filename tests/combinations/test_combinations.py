@@ -14,6 +14,8 @@ from typing import Any
 import numpy as np
 import pytest
 from click.testing import CliRunner
+from each import each
+from slow_run import beside, usual
 
 sys.path.insert(0, str(Path(__file__).parent))
 
@@ -137,7 +139,7 @@ def test_every_level_stands_in_some_pair():
             assert others == set(FACTORS) - {factor}, (factor, level)
 
 
-@pytest.mark.parametrize("number", range(12))
+@pytest.mark.parametrize("number", usual(range(12), 2))
 def test_a_sample_of_combinations_moves_as_the_oracle_says(number):
     """Accelerations, determinate reactions and energies of the product are the oracle's; a refusal, after which another
     model is drawn, is one by name.
@@ -175,7 +177,7 @@ REFUSED = {
 }
 
 
-@pytest.mark.parametrize("what", REFUSED)
+@each("what", REFUSED)
 def test_a_refusal_names_an_object_its_place_and_what_to_do(what):
     """What cannot be asked of a model is refused by a name of the model, and with a mend."""
     levels, ask = REFUSED[what]
@@ -301,7 +303,7 @@ EXPECTED: dict[str, Callable[[str, str], None]] = {
 }
 
 
-@pytest.mark.parametrize("pair", [f for f in FORBIDDEN if f.refused], ids=lambda f: f"{f.one[1]}-{f.two[1]}")
+@each("pair", [f for f in FORBIDDEN if f.refused])
 def test_a_pair_that_cannot_be_is_refused_by_name(pair):
     """The message says what does not go together, names it, its place, and what to do."""
     levels = PLAIN | {"space": "space"} | dict([pair.one, pair.two])
@@ -316,7 +318,7 @@ def test_a_pair_that_cannot_be_is_refused_by_name(pair):
     assert not lacking(problems_of(told.value), text)
 
 
-@pytest.mark.parametrize("number", range(4))
+@pytest.mark.parametrize("number", [0, *beside(1), 2, 3])
 def test_verbs_say_of_one_quantity_one_number(number):
     """`solve`, `reactions`, a run, small motions and inverse dynamics agree with the oracle, so with one another."""
     levels = [

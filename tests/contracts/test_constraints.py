@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
+from each import each
 from moving import State, at, equal, solved, state_of, written
 
 import eomgen
@@ -144,7 +145,7 @@ EXAMPLES = {
 }
 CASES = [(k, space, f) for k, spaces in EXAMPLES.items() for space, fields in spaces.items() for f in fields]
 KINDS = {tie.kind: tie for tie in ALL}
-built = pytest.mark.parametrize(("kind", "space", "fields"), CASES, ids=[f"{k}-{s}-{f[:50]}" for k, s, f in CASES])
+built = each("kind, space, fields", CASES, by="kind")
 WITHOUT_GAP = {"rolling": ["t", "s"], "skate": ["n"]}
 """The components whose rows are of velocities alone."""
 
@@ -327,7 +328,7 @@ def test_a_tie_that_moves_by_itself_has_the_power_of_its_own_motion(kind, space,
 INNER = [c for c in CASES if c[0] in ("pin", "clamp", "link") and c[2].count(".P") >= 2 and '"G"' not in c[2]]
 
 
-@pytest.mark.parametrize(("kind", "space", "fields"), INNER, ids=[f"{k}-{s}-{f[:50]}" for k, s, f in INNER])
+@each("kind, space, fields", INNER)
 def test_a_tie_between_bodies_pushes_equally_on_both(kind, space, fields):
     """sum F = 0, and the moments about the ground's origin differ by gap x F: none when the points meet."""
     system = system_with(kind, space, fields)
@@ -347,7 +348,7 @@ def test_a_tie_between_bodies_pushes_equally_on_both(kind, space, fields):
 ONE_PLACE = [c for c in CASES if (c[0] == "slider" and '"G"' not in c[2]) or (c[0] == "rolling" and "on =" in c[2])]
 
 
-@pytest.mark.parametrize(("kind", "space", "fields"), ONE_PLACE, ids=[f"{k}-{f[:50]}" for k, _, f in ONE_PLACE])
+@each("kind, space, fields", ONE_PLACE)
 def test_a_contact_of_two_bodies_pushes_both_at_one_place(kind, space, fields):
     """sum F = 0 and sum M = 0 about any point, of every row and of the friction: also where the contact is open."""
     system = system_with(kind, space, fields)

@@ -7,6 +7,7 @@ from fractions import Fraction
 
 import numpy as np
 import pytest
+from each import each
 from moving import at, equal, state_of, written
 
 import eomgen
@@ -107,11 +108,7 @@ EXAMPLES = {
 }
 CASES = [(k, space, f) for k, spaces in EXAMPLES.items() for space, fields in spaces.items() for f in fields]
 BUILT = {force.kind for force in ALL if force.works}
-built = pytest.mark.parametrize(
-    ("kind", "space", "fields"),
-    [c for c in CASES if c[0] in BUILT],
-    ids=[f"{k}-{s}-{f[:50]}" for k, s, f in CASES if k in BUILT],
-)
+built = each("kind, space, fields", [c for c in CASES if c[0] in BUILT], by="kind")
 
 HEAD = """
 [parameters]
@@ -303,7 +300,7 @@ BETWEEN_POINTS, BETWEEN_BODIES = ("spring", "damper", "between"), ("torsion_spri
 INNER = [case for case in CASES if case[0] in BETWEEN_POINTS or (case[0] in BETWEEN_BODIES and "bodies" in case[2])]
 
 
-@pytest.mark.parametrize(("kind", "space", "fields"), INNER, ids=[f"{k}-{s}-{f[:60]}" for k, s, f in INNER])
+@each("kind, space, fields", INNER)
 def test_inner_forces_sum_to_zero(kind, space, fields):
     """sum F = 0, and about any ground point sum (M + r x F) = 0: what acts between two acts on both."""
     system = system_with(kind, space, fields)
@@ -347,7 +344,7 @@ joint = {{ {joint} }}
     )
 
 
-@pytest.mark.parametrize(("space", "joint"), JOINTS)
+@each("space, joint", JOINTS)
 def test_the_effort_of_a_joint_is_an_inner_force(space, joint):
     """Its wrenches on child and parent have no resultant and no moment about any ground point."""
     system = system_with_joint(space, joint)
@@ -359,7 +356,7 @@ def test_the_effort_of_a_joint_is_an_inner_force(space, joint):
     assert equal((*F, *M), (*ZERO, *ZERO))
 
 
-@pytest.mark.parametrize(("space", "joint"), JOINTS)
+@each("space, joint", JOINTS)
 def test_the_wrenches_of_a_joint_do_the_work_of_its_effort(space, joint):
     """sum of W . xi over child and parent = effort * s'; and Q = effort ds/dq."""
     system = system_with_joint(space, joint)
@@ -375,7 +372,7 @@ def test_the_wrenches_of_a_joint_do_the_work_of_its_effort(space, joint):
 DAMPERS = [case for case in CASES if "damper" in case[0]]
 
 
-@pytest.mark.parametrize(("kind", "space", "fields"), DAMPERS, ids=[f"{k}-{s}-{f[:60]}" for k, s, f in DAMPERS])
+@each("kind, space, fields", DAMPERS)
 def test_dampers_take_power(kind, space, fields):
     """sum F . v + M . w <= 0 at every state, and < 0 where the damper moves."""
     system = system_with(kind, space, fields)

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
+from each import each
 from moving import at, equal, rate, state_of, written
 
 import eomgen
@@ -135,7 +136,7 @@ def works(kind: str, space: str, fields: str) -> bool:
 
 BUILT = [case for case in CASES if works(*case)]
 UNBUILT = [case for case in CASES if not works(*case)]
-built = pytest.mark.parametrize(("kind", "space", "fields"), BUILT, ids=[f"{k}-{s}-{f[:40]}" for k, s, f in BUILT])
+built = each("kind, space, fields", BUILT, by="kind")
 
 
 def system_with(kind: str, space: str, fields: str) -> tuple[System, BodyLink]:
@@ -234,7 +235,7 @@ def test_every_drive_belongs_to_a_variable(kind, space, fields):
     assert len(link.joint.efforts()) in (0, len(link.s))
 
 
-@pytest.mark.parametrize(("kind", "space", "fields"), [case for case in BUILT if case[1] == PLANE])
+@each("kind, space, fields", [case for case in BUILT if case[1] == PLANE])
 def test_in_the_plane_the_turn_is_the_angle_of_the_pose(kind, space, fields):
     """R = Rot(z, turn)"""
     system, link = system_with(kind, space, fields)
@@ -243,8 +244,8 @@ def test_in_the_plane_the_turn_is_the_angle_of_the_pose(kind, space, fields):
     assert equal([x for row in link.relative.R for x in row], [x for row in R for x in row])
 
 
-@pytest.mark.parametrize("longer", ["[1, 2, 2]", "[10, 20, 20]", '["l", "2*l", "2*l"]'])
-@pytest.mark.parametrize("kind", ["revolute", "prismatic"])
+@each("longer", ["[1, 2, 2]", "[10, 20, 20]", '["l", "2*l", "2*l"]'])
+@each("kind", ["revolute", "prismatic"])
 def test_only_the_direction_of_an_axis_counts(kind, longer):
     """axis and k axis, k > 0, give the same pose."""
     variable = "angle" if kind == "revolute" else "displacement"

@@ -10,6 +10,7 @@ from pathlib import Path
 from random import Random
 
 import pytest
+from each import each
 
 import eomgen
 from eomgen.documents.linearize.result import linearize
@@ -288,13 +289,13 @@ def test_every_function_is_named_once_and_has_an_example():
     assert called | {"az", "vz", "z"} >= FUNCTIONS.keys()
 
 
-@pytest.mark.parametrize("function", ALL, ids=lambda f: f.names[0])
+@each("function", ALL)
 def test_the_reference_has_its_row(function):
     """models/README.md says of each what it is, in the words and the unit of its own file."""
     assert function.row in REFERENCE, f"put this line into models/README.md:\n{function.row}"
 
 
-@pytest.mark.parametrize("function", ALL, ids=lambda f: f.names[0])
+@each("function", ALL)
 def test_what_has_no_second_definition_is_proven_otherwise(function):
     """By a check of the certificate; by the balance of the bodies, solved twice; by `linearize`; by a run's samples."""
     otherwise = CERTIFIED.keys() >= {*function.names} or function.source in (BALANCE, SMALL_MOTIONS, OF_A_RUN)
@@ -307,7 +308,7 @@ def test_the_checks_that_stand_for_second_definitions_are_made():
     assert [checks[name] for name in CERTIFIED.values() if name] == [True, True]
 
 
-@pytest.mark.parametrize(("name", "call"), PROVEN_TWICE, ids=[call for _, call in PROVEN_TWICE])
+@each("name, call", PROVEN_TWICE, by="name")
 def test_its_value_is_what_its_second_definition_says(name, call):
     """At a random state, moving as the equations say: differences of poses and sums over particles give the same."""
     try:
@@ -316,7 +317,7 @@ def test_its_value_is_what_its_second_definition_says(name, call):
         assert "depends on time" in str(reason)
 
 
-@pytest.mark.parametrize(("name", "call"), CASES, ids=[call for _, call in CASES])
+@each("name, call", CASES, by="name")
 def test_its_unit_is_the_one_in_which_its_number_grows(name, call):
     """In units of length, mass and time that are 2, 3 and 5 times smaller its number is 2^a 3^b 5^c times larger."""
     asked, model = parse(call, references=True).calls[0], system(name).scope.model
@@ -412,4 +413,4 @@ def test_a_wrong_unit_is_seen(monkeypatch):
     """A velocity in m does not grow as one in m/s."""
     monkeypatch.setitem(FUNCTIONS, "vx", replace(velocity.VELOCITY, unit="m"))
     with pytest.raises(AssertionError):
-        test_its_unit_is_the_one_in_which_its_number_grows("plane", "vx(arm.end)")
+        test_its_unit_is_the_one_in_which_its_number_grows.__wrapped__("plane", "vx(arm.end)")

@@ -13,6 +13,7 @@ from pathlib import Path
 
 import pytest
 from click.testing import CliRunner
+from each import each
 
 if __name__ == "__main__":
     sys.path.insert(0, str(Path(__file__).parents[1] / "helpers"))
@@ -52,7 +53,7 @@ def of_call(what: str) -> str:
     return str(caught.value)
 
 
-@pytest.mark.parametrize("what", IN_FILES)
+@each("what", IN_FILES)
 def test_a_mistake_in_a_file_is_told_with_its_mend(what):
     """The word that mends it stands in the message."""
     assert IN_FILES[what][2] in of_file(what)

@@ -21,6 +21,11 @@ def usual(items: Sequence[Item], every: int, first: int = 0) -> Sequence[Item]:
     return items if ALL else items[first::every]
 
 
+def beside(*items: Item) -> tuple[Item, ...]:
+    """These in the slow run alone: dear ones of a law whose other cases every run asks."""
+    return items if ALL else ()
+
+
 def usual_models(models: Iterable[Path], times: int = 2) -> tuple[Path, ...]:
     """Of these models those that hold each of their features `times` times; in the slow run all of them."""
     return tuple(models) if ALL else covering(tuple(models), times)

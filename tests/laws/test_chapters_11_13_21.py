@@ -13,6 +13,7 @@ import pytest
 from answers_of_chapters_11_13_21 import ANSWERS, AS_PRINTED
 from derivations import answers as answers_of
 from derivations import model_path
+from each import each
 from oracle_of_chapters_11_13_21 import ORACLES
 from other_units import grown
 
@@ -81,7 +82,7 @@ def value_of(text: str, numbers: dict[str, Fraction]) -> Any:
     return evaluate((scalar,), {symbols[name]: digits.number(x) for name, x in numbers.items()}, digits)[0]
 
 
-@pytest.mark.parametrize("other", [False, True], ids=["file", "other"])
+@each("other", [False, True])
 @pytest.mark.parametrize("system", ANSWERS)
 def test_the_answers_by_hand_are_those_of_the_oracle(system, other):
     """Velocity fields, sums over particles and equilibrium of bodies and joints, in floats."""
@@ -92,7 +93,7 @@ def test_the_answers_by_hand_are_those_of_the_oracle(system, other):
         assert by_hand == pytest.approx(found[output], rel=1e-10, abs=1e-10), output
 
 
-@pytest.mark.parametrize(("system", "output"), ASKED)
+@each("system, output", ASKED, by="system")
 def test_the_exact_answer_is_the_one_by_hand(system, output):
     """The text that solve gives, read back, at two sets of numbers to 30 digits."""
     answer = answers(system)[output]
@@ -104,8 +105,8 @@ def test_the_exact_answer_is_the_one_by_hand(system, output):
         assert abs(ours - book) <= 1e-30 * max(1.0, abs(book)), answer.exact
 
 
-@pytest.mark.parametrize("other", [False, True], ids=["file", "other"])
-@pytest.mark.parametrize(("system", "output"), ASKED)
+@each("other", [False, True])
+@each("system, output", ASKED, by="system")
 def test_the_number_is_the_oracles(system, output, other):
     """At the file's parameters and at others."""
     answer, expected = answers(system, other)[output], found_by_the_oracle(system, other)[output]
@@ -114,12 +115,12 @@ def test_the_number_is_the_oracles(system, output, other):
     assert answer.value == pytest.approx(in_unit * expected, rel=1e-9, abs=1e-9)
 
 
-@pytest.mark.parametrize(("system", "output"), AS_PRINTED)
+@each("system, output", AS_PRINTED, by="system")
 def test_an_exact_answer_is_as_short_as_the_books(system, output):
     assert answers(system)[output].exact == AS_PRINTED[system, output]
 
 
-@pytest.mark.parametrize(("system", "output"), ASKED)
+@each("system, output", ASKED, by="system")
 def test_an_answer_is_in_the_unit_that_is_asked_for(system, output):
     """Each output has one: declared, or that of its quantity."""
     (expected,) = (unit for pattern, unit in UNITS if re.fullmatch(pattern, f"{system} {output}"))

@@ -15,6 +15,7 @@ import sympy
 from answers_of_chapters_16_17 import ANSWERS, NUMBERS_ONLY, OTHER_NUMBERS
 from derivations import answers as answers_of
 from derivations import model_path
+from each import each
 
 import eomgen
 from eomgen.model.values import numeric_parameters, start_values
@@ -104,7 +105,7 @@ def test_the_answers_by_hand_are_those_of_newton_and_euler(system):
             assert close(value_of(text, state), oracle_value(oracle[output], state)), output
 
 
-@pytest.mark.parametrize(("system", "output"), EXACT)
+@each("system, output", EXACT, by="system")
 def test_the_exact_answer_is_the_one_by_hand(system, output):
     """The text that solve gives, read back, at random states to 30 digits."""
     answer = answers(system)[output]
@@ -114,8 +115,8 @@ def test_the_exact_answer_is_the_one_by_hand(system, output):
         assert close(value_of(answer.exact, state), value_of(ANSWERS[system][output], state)), answer.exact
 
 
-@pytest.mark.parametrize("other", [False, True], ids=["file", "other"])
-@pytest.mark.parametrize(("system", "output"), ASKED)
+@each("other", [False, True])
+@each("system, output", ASKED, by="system")
 def test_the_number_is_the_one_of_newton_and_euler(system, output, other):
     """At the file's parameters and at others; a function of the place at the start."""
     model, answer = model_of(system, other), answers(system, other)[output]

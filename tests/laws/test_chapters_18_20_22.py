@@ -15,6 +15,7 @@ from alternatives_of_chapters_18_20_22 import ALTERNATIVES, CLOSURES, HEAD
 from answers_of_chapters_18_20_22 import ANSWERS, LINEARIZED
 from derivations import answers as answers_of
 from derivations import model_path
+from each import each
 
 import eomgen
 from eomgen.model.values import start_values
@@ -116,7 +117,7 @@ def test_newton_and_euler_keep_the_energy(system):
 # -- the model files ---------------------------------------------------------------------------------------------
 
 
-@pytest.mark.parametrize(("system", "output"), ASKED)
+@each("system, output", ASKED, by="system")
 def test_the_exact_answer_is_the_one_by_hand(system, output):
     """The text that solve gives, read back, at random states to 30 digits."""
     answer = answers(system)[output]
@@ -126,8 +127,8 @@ def test_the_exact_answer_is_the_one_by_hand(system, output):
         assert close(value_of(answer.exact, state), value_of(ANSWERS[system][output], state)), answer.exact
 
 
-@pytest.mark.parametrize("other", [False, True], ids=["file", "other"])
-@pytest.mark.parametrize(("system", "output"), ASKED)
+@each("other", [False, True])
+@each("system, output", ASKED, by="system")
 def test_the_number_is_the_one_of_newton_and_euler(system, output, other):
     """At the file's parameters and at others; a function of the place at the start."""
     model, answer = model_of(system, other), answers(system, other)[output]
@@ -187,7 +188,7 @@ def closed_states(name: str) -> list[dict[str, Fraction]]:
     return states
 
 
-@pytest.mark.parametrize(("name", "output"), [(name, o) for name in ALTERNATIVES for o in alternative(name).outputs])
+@each("name, output", [(name, o) for name in ALTERNATIVES for o in alternative(name).outputs], by="name")
 def test_a_system_answers_the_same_however_it_is_written(name, output):
     """With free bodies, dependent coordinates or multipliers: the number, and the exact text where there is one."""
     model, answer, text = alternative(name), alternative_answers(name)[output], ANSWERS[ALTERNATIVES[name][0]][output]

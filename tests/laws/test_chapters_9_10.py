@@ -12,6 +12,7 @@ import pytest
 from answers_of_chapters_9_10 import ANSWERS, BOOK_SURDS, INFERRED, PRINTED, UNITS
 from derivations import answers as answers_of
 from derivations import model_path
+from each import each
 from oracle_of_chapters_9_10 import DIGITS, ORACLES, OTHER, STATEMENT
 from other_units import grown
 
@@ -82,7 +83,7 @@ def test_the_files_have_the_numbers_of_the_statements():
         assert all(value_of(OTHER[system][name], {}) != value_of(text, {}) for name, text in texts.items())
 
 
-@pytest.mark.parametrize("numbers", SETS)
+@each("numbers", SETS)
 @pytest.mark.parametrize("system", ANSWERS)
 def test_the_answers_by_hand_are_the_derivatives_of_the_positions(system, numbers):
     """To 30 digits, and every one that is asked."""
@@ -92,7 +93,7 @@ def test_the_answers_by_hand_are_the_derivatives_of_the_positions(system, number
         assert close(value_of(text, state_of(system, numbers)), found[output]), output
 
 
-@pytest.mark.parametrize(("system", "output"), [(system, output) for system in PRINTED for output in PRINTED[system]])
+@each("system, output", [(system, output) for system in PRINTED for output in PRINTED[system]], by="system")
 def test_the_book_prints_these_numbers(system, output):
     """Mended, to half a unit of its last digit."""
     text = PRINTED[system][output]
@@ -101,14 +102,14 @@ def test_the_book_prints_these_numbers(system, output):
     assert abs(float(value) - float(text)) <= 0.500001 * 10**-digits
 
 
-@pytest.mark.parametrize("system", ANSWERS)
+@each("system", ANSWERS)
 def test_the_file_names_what_is_asked_in_its_unit(system):
     outputs = model_of(system).outputs
     assert {name: str(output.unit or "") for name, output in outputs.items()} == UNITS[system]
 
 
-@pytest.mark.parametrize("numbers", SETS)
-@pytest.mark.parametrize(("system", "output"), ASKED)
+@each("numbers", SETS)
+@each("system, output", ASKED, by="system")
 def test_the_exact_answer_is_the_one_by_hand(system, output, numbers):
     """The text that solve gives for the statement, read back at both sets, to 30 digits."""
     answer = answers(system)[output]
@@ -117,8 +118,8 @@ def test_the_exact_answer_is_the_one_by_hand(system, output, numbers):
     assert close(found, by_hand(system, numbers)[output]), answer.exact
 
 
-@pytest.mark.parametrize("numbers", SETS)
-@pytest.mark.parametrize(("system", "output"), ASKED)
+@each("numbers", SETS)
+@each("system, output", ASKED, by="system")
 def test_the_number_is_the_one_of_the_positions(system, output, numbers):
     """A function of the state at the start."""
     model, answer = model_of(system, numbers), answers(system, numbers)[output]
@@ -130,7 +131,7 @@ def test_the_number_is_the_one_of_the_positions(system, output, numbers):
     assert answer.unit == (UNITS[system][output] or INFERRED[system][output])
 
 
-@pytest.mark.parametrize(("system", "output"), [(system, output) for system in INFERRED for output in INFERRED[system]])
+@each("system, output", [(system, output) for system in INFERRED for output in INFERRED[system]], by="system")
 def test_the_answer_by_hand_grows_as_the_unit_of_its_quantity(system, output):
     """kg, m and s replaced by others: a force grows as kg m/s^2."""
     units = {name: part.unit.text for name, part in model_of(system).parameters.items()} | UNITS_OF_STATE
@@ -140,14 +141,14 @@ def test_the_answer_by_hand_grows_as_the_unit_of_its_quantity(system, output):
     assert known and close(found, known * FIFTY.number(grown(answers(system)[output].unit)))
 
 
-@pytest.mark.parametrize(("system", "output"), BOOK_SURDS)
+@each("system, output", BOOK_SURDS, by="system")
 def test_exact_answers_are_the_books_at_its_numbers(system, output):
     """In the book's units: sqrt(61 - 30*sqrt(2))/5."""
     found = value_of(answers(system)[output].exact, state_of(system, "statement"))
     assert close(in_unit(system, output, found), value_of(BOOK_SURDS[system, output], {}))
 
 
-@pytest.mark.parametrize(("system", "output"), ASKED)
+@each("system, output", ASKED, by="system")
 def test_exact_answers_are_short(system, output):
     """No longer than a reader's own: at most three times the formula by hand, and 60 characters."""
     exact = answers(system)[output].exact

@@ -6,6 +6,7 @@ import math
 
 import numpy as np
 import pytest
+from each import each
 from scipy.integrate import solve_ivp
 
 import eomgen
@@ -76,7 +77,7 @@ def place(result: Trajectory) -> np.ndarray:
     return np.column_stack([r * np.sin(result["theta"]), -r * np.cos(result["theta"])])
 
 
-@pytest.mark.parametrize("coordinates", [ANGLE, PLANE], ids=["angle", "plane"])
+@each("coordinates", [ANGLE, PLANE])
 def test_a_ball_on_a_wire_leaves_its_circle_where_the_tension_vanishes(coordinates):
     """T = 0 at cos(theta) = (2 g l - v0^2)/(3 g l); a parabola until it is taut; then the radial speed is lost."""
     m, l, v0 = 0.7, 1.2, 5.9
@@ -120,7 +121,7 @@ FREE_LADDER = LADDER.replace(
 ).replace('at = ["l*sin(theta)", "l*cos(theta)"]', 'at = ["x", "y"]')
 
 
-@pytest.mark.parametrize("text", [LADDER, FREE_LADDER], ids=["angle", "free"])
+@each("text", [LADDER, FREE_LADDER])
 def test_a_ladder_leaves_the_wall_at_two_thirds_of_its_height(text):
     """N_wall = 0 at cos(theta) = 2/3 cos(theta_0); from there the mass centre keeps its horizontal speed."""
     result = run(text, 0.9)
@@ -289,8 +290,8 @@ constraints.floor = { kind = "support", point = "sled.center", normal = NORMAL, 
 """
 
 
-@pytest.mark.parametrize("normal", ['["-sin(beta)", "cos(beta)"]', '["-s", "c"]'])
-@pytest.mark.parametrize("beta", [-0.1, 0, 1e-9, 0.1])
+@each("normal", ['["-sin(beta)", "cos(beta)"]', '["-s", "c"]'])
+@each("beta", [-0.1, 0, 1e-9, 0.1])
 def test_a_sled_slides_on_a_slope_as_on_level_ground(beta, normal):
     """N = m g cos b and x'' = -g (sin b + mu cos b) cos b: nothing is divided by sin b, which may be 0."""
     sine, cosine = math.sin(beta), math.cos(beta)
@@ -392,13 +393,12 @@ def test_what_drags_a_block_over_a_rough_floor_overcomes_its_friction():
     assert run(text, 1.0).reactions["drive(x)"] == pytest.approx(2 * 1.5 + 0.3 * 2 * G)
 
 
-@pytest.mark.parametrize(
+@each(
     "coordinates",
     [
         'coordinates.x = { speed = "v0" }',
         'coordinates = { x = { speed = "v0" }, y = 0 }',
     ],
-    ids=["reacts", "closes"],
 )
 def test_a_rail_that_pulls_brakes_as_one_that_pushes(coordinates):
     """N = -m g along the normal [0, -1]: x'' = -mu g sign(x') in the equations that `derive` gives, too."""

@@ -10,6 +10,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from each import each
 from moving import equal
 
 import eomgen
@@ -287,7 +288,7 @@ def test_dependent_coordinates_that_ties_leave_free_are_named():
 # -- the start ---------------------------------------------------------------------------------------
 
 
-@pytest.mark.parametrize(("near", "below"), [("1.1", False), ("-1.2", True)])
+@each("near, below", [("1.1", False), ("-1.2", True)])
 def test_near_picks_the_branch(near, below):
     """The anti-parallelogram has the other crank below: b in (-pi, 0)."""
     guess = {"1.1": "0.05", "-1.2": "-1"}[near]

@@ -7,6 +7,8 @@ from itertools import pairwise
 
 import numpy as np
 import pytest
+from each import each
+from slow_run import usual
 
 import eomgen
 from eomgen.documents import rendered
@@ -74,7 +76,7 @@ value = "VALUE"
 """
 
 
-@pytest.mark.parametrize("l", ["1", "1e-3", "1e-6", "1e-8"])
+@each("l", usual(["1e-8", "1", "1e-3", "1e-6"], 2))
 @pytest.mark.parametrize(
     ("force", "places"),
     [
@@ -607,9 +609,10 @@ GAPS = {
 }
 
 
-@pytest.mark.parametrize("order", [1, 2, 3])
-@pytest.mark.parametrize("gap", GAPS)
-@pytest.mark.parametrize("scale", [1.0, 50.0])
+@pytest.mark.parametrize(
+    ("gap", "order", "scale"),
+    usual([(gap, order, scale) for gap in GAPS for scale in (1.0, 50.0) for order in (2, 1, 3)], 4),
+)
 def test_a_place_where_the_stiffness_vanishes_is_judged_by_the_force_beside_it(gap, order, scale):
     """V = c f^(n+1)/(n+1): stable for odd n, a point of inflection for even n; to first order only n = 1 holds it"""
     slope, root = GAPS[gap]

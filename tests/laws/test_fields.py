@@ -10,6 +10,7 @@ from functools import cache
 from random import Random
 
 import pytest
+from each import each
 from mpmath import mp, mpf
 
 import eomgen
@@ -139,7 +140,7 @@ def many_digits():
         yield
 
 
-@pytest.mark.parametrize("space", CHAINS)
+@each("space", CHAINS)
 def test_transport_is_the_motion_of_the_point_of_the_body_that_is_passed(space):
     """v_t and a_t are derivatives of the place of the arm's point at which the bead is now."""
     text, chain, letters = CHAINS[space]
@@ -153,7 +154,7 @@ def test_transport_is_the_motion_of_the_point_of_the_body_that_is_passed(space):
             assert abs(found - true[i]) < TOLERANCE * 10
 
 
-@pytest.mark.parametrize("space", CHAINS)
+@each("space", CHAINS)
 def test_what_the_body_sees_is_the_motion_in_its_axes(space):
     """v_r, a_r: derivatives of R^T (p - p_O); in the ground's axes by a third argument."""
     text, chain, letters = CHAINS[space]
@@ -170,7 +171,7 @@ def test_what_the_body_sees_is_the_motion_in_its_axes(space):
             assert abs(value(text, f"{name}{letter}(bead.origin, arm, ground)") - ground[i]) < TOLERANCE * 10
 
 
-@pytest.mark.parametrize("space", CHAINS)
+@each("space", CHAINS)
 def test_the_parts_make_up_the_acceleration(space):
     """a = a_t + a_r + a_C and a_t = a_O + epsilon x r + omega x (omega x r), against differences of places."""
     text, chain, letters = CHAINS[space]
@@ -184,7 +185,7 @@ def test_the_parts_make_up_the_acceleration(space):
         assert abs(left) < TOLERANCE
 
 
-@pytest.mark.parametrize("space", CHAINS)
+@each("space", CHAINS)
 def test_parts_in_the_axes_of_a_body_have_the_same_magnitude(space):
     """|R^T a_C| = |a_C|"""
     text, _, letters = CHAINS[space]
@@ -194,7 +195,7 @@ def test_parts_in_the_axes_of_a_body_have_the_same_magnitude(space):
         assert abs(value(text, f"sqrt({squares}) - {size}(bead.origin, arm)")) < TOLERANCE
 
 
-@pytest.mark.parametrize("model", ["arm3", "elastic_pendulum", "bead_on_turning_hoop", "cart_pole", "four_bar"])
+@each("model", ["arm3", "elastic_pendulum", "bead_on_turning_hoop", "cart_pole", "four_bar"])
 def test_two_ways_to_the_motion_of_a_point_agree(model):
     """d/dt p = v_t + v_r and d/dt v = a_t + a_r + a_C at random exact states, from every body."""
     system = system_of(eomgen.load(f"models/{model}.toml"))
@@ -219,7 +220,7 @@ def exact_field(seed: int) -> VelocityField:
     return VelocityField(p, v, a, (0, 0, rng.randint(1, 9)), (0, 0, rng.randint(-9, 9)))
 
 
-@pytest.mark.parametrize("seed", range(5))
+@each("seed", range(5))
 def test_centre_and_pole_have_no_velocity_and_no_acceleration(seed):
     """v(C) = 0, a(P) = 0"""
     field = exact_field(seed)
@@ -227,7 +228,7 @@ def test_centre_and_pole_have_no_velocity_and_no_acceleration(seed):
     assert field.acceleration(acceleration_pole(field)) == (0, 0, 0)
 
 
-@pytest.mark.parametrize("seed", range(5))
+@each("seed", range(5))
 def test_points_of_the_inflection_circle_have_no_acceleration_across_their_path(seed):
     """v x a = 0 at the point opposite to the centre of rotation, and at the one a quarter further."""
     field = exact_field(seed)
@@ -237,7 +238,7 @@ def test_points_of_the_inflection_circle_have_no_acceleration_across_their_path(
         assert cross(field.velocity(place), field.acceleration(place)) == (0, 0, 0)
 
 
-@pytest.mark.parametrize("seed", range(12))
+@each("seed", range(12))
 def test_no_point_of_a_bar_is_slower_than_its_least_speed(seed):
     """min |v(A + s (B - A))| over 0 <= s <= 1, in the plane and in space."""
     rng = Random(seed)
@@ -344,7 +345,7 @@ KINDS = {
 }
 
 
-@pytest.mark.parametrize("kind", KINDS)
+@each("kind", KINDS)
 def test_kinds_of_motion_in_space_are_told_apart(kind):
     """By omega, its direction, omega.v, and the rate of the axis."""
     use = 'outputs = { a = "q + p + s + z" }\n'
@@ -451,7 +452,7 @@ def test_the_centre_of_a_crossed_parallelogram_runs_on_an_ellipse_with_the_pivot
             assert abs(to_first + to_second - 2) < 1e-25
 
 
-@pytest.mark.parametrize("text", [CARDAN, WHEEL, ANTIPARALLELOGRAM])
+@each("text", [CARDAN, WHEEL, ANTIPARALLELOGRAM])
 def test_the_moving_centrode_touches_the_fixed_one(text):
     """Both places of the centre are the same place, and it has the same velocity along both curves."""
     kinds, _ = kinds_of(text)

@@ -6,6 +6,7 @@ import math
 import re
 
 import pytest
+from each import each
 
 import eomgen
 from eomgen.documents.statements import Formula
@@ -49,7 +50,7 @@ def arm(law: str) -> eomgen.Equations:
     return eomgen.derive(eomgen.loads(ARM.format(law=law)))
 
 
-@pytest.mark.parametrize("law", LAWS)
+@each("law", LAWS)
 def test_equations_with_names_are_those_with_the_laws_put_in(law: str) -> None:
     """M, c, Q at psi' = f(t), psi'' = f'(t)"""
     equations = arm(law)
@@ -81,7 +82,7 @@ def test_laws_stand_once_and_formulas_hold_the_names(law: str) -> None:
     assert eomgen.reactions(equations.model).certify().ok
 
 
-@pytest.mark.parametrize("law", CONSTANT)
+@each("law", CONSTANT)
 def test_a_rate_that_is_one_letter_stands_for_itself(law: str) -> None:
     """psi' = W: W^2, as an author writes it"""
     equations = arm(law)
@@ -89,7 +90,7 @@ def test_a_rate_that_is_one_letter_stands_for_itself(law: str) -> None:
     assert "W^2" in side_text(equations.derivation.equations[0].left)
 
 
-@pytest.mark.parametrize("W", [3, 0])
+@each("W", [3, 0])
 def test_what_holds_for_one_value_of_a_parameter_alone_is_not_printed(W: int) -> None:
     """psi' = A/W - A*exp(-W*t)/W + W, as an author writes it; where W is 0 the motion is that of A t all the same."""
     text = ARM.format(law=LAWS[-1])
@@ -101,7 +102,7 @@ def test_what_holds_for_one_value_of_a_parameter_alone_is_not_printed(W: int) ->
     assert run["psi"][-1] - run["psi"][0] == pytest.approx(W + gained, rel=1e-6)
 
 
-@pytest.mark.parametrize(("k", "V"), [(0.0, 3 * 1.5), (0.5, -3 * math.exp(-0.5 * 1.5) / 0.5)])
+@each("k, V", [(0.0, 3 * 1.5), (0.5, -3 * math.exp(-0.5 * 1.5) / 0.5)])
 def test_a_potential_has_its_number_where_a_parameter_is_0_too(k: float, V: float) -> None:
     """Of the pull F exp(-k r) it is F r at k = 0, and -F exp(-k r)/k else; the second alone is printed."""
     found = eomgen.solve(eomgen.loads(PULLED.replace("k = 0", f"k = {k}")))

@@ -6,6 +6,7 @@ from fractions import Fraction
 from random import Random
 
 import pytest
+from each import each
 
 import eomgen
 from eomgen.mechanics.equations.system import system_of
@@ -111,7 +112,7 @@ FRAME_ASKED = [
 ]
 
 
-@pytest.mark.parametrize(("text", "asked"), [*((GERBER, a) for a in GERBER_ASKED), *((FRAME, a) for a in FRAME_ASKED)])
+@each("text, asked", [*((GERBER, a) for a in GERBER_ASKED), *((FRAME, a) for a in FRAME_ASKED)])
 def test_it_is_the_balance_with_a_unit_load_at_any_place(text, asked):
     """At a random place of every straight part, of the body that is cut on both sides of the section."""
     rng = Random(asked)
@@ -122,7 +123,7 @@ def test_it_is_the_balance_with_a_unit_load_at_any_place(text, asked):
         assert value == pytest.approx(by_balance(text, asked, span.name, (x, y)), abs=1e-9), (span.name, x, y)
 
 
-@pytest.mark.parametrize("member", ["b0-b1", "t1-t2", "b1-t2", "b2-t2", "t2-b1"])
+@each("member", ["b0-b1", "t1-t2", "b1-t2", "b2-t2", "t2-b1"])
 def test_of_a_member_it_runs_from_node_to_node(member):
     """A unit load at each of the lowest nodes gives the vertices."""
     found = line(TRUSS, f"tension(T, {member})").spans
@@ -171,7 +172,7 @@ WRONG = {
 }
 
 
-@pytest.mark.parametrize(("asked", "error", "told"), [(a, *rest) for a, rest in WRONG.items()], ids=WRONG)
+@each("asked, error, told", [(a, *rest) for a, rest in WRONG.items()])
 def test_what_has_no_influence_line_is_said(asked, error, told):
     """By name."""
     with pytest.raises(error, match=told):
@@ -197,7 +198,7 @@ forces.force = { kind = "force", point = "I.Q", force = [0, "F"] }
 )
 
 
-@pytest.mark.parametrize("x", [1, 3])
+@each("x", [1, 3])
 def test_unknown_loads_hold_a_beam_as_reactions_do(x):
     """F = 1, couple s - 2 of a unit load at s:  M(x) = couple - [s > x] (s - x) + [2 > x] (2 - x)"""
     found = eomgen.statics(eomgen.loads(BESIDE_UNKNOWNS), influence=f"bending_moment(I, {x})")

@@ -7,6 +7,7 @@ from typing import Any
 
 import numpy as np
 import pytest
+from each import each
 from scipy.integrate import solve_ivp
 
 import eomgen
@@ -315,7 +316,7 @@ KNOWN: dict[str, tuple[str, str, dict[str, str], str]] = {
 }
 
 
-@pytest.mark.parametrize("name", KNOWN)
+@each("name", KNOWN)
 def test_the_instant_in_closed_form_is_the_textbook_s(name):
     """What is known of the state, as functions of the parameters."""
     text, condition, expected, method = KNOWN[name]
@@ -326,7 +327,7 @@ def test_the_instant_in_closed_form_is_the_textbook_s(name):
     assert instant.method == method
 
 
-@pytest.mark.parametrize("name", KNOWN)
+@each("name", KNOWN)
 def test_the_instant_in_closed_form_is_the_one_located(name):
     """exact = number, of every coordinate and speed."""
     text, condition, _, _ = KNOWN[name]
@@ -337,7 +338,7 @@ def test_the_instant_in_closed_form_is_the_one_located(name):
         assert math.isnan(number) or evaluate((x,), values, FLOAT)[0] == pytest.approx(number, rel=1e-8, abs=1e-8)
 
 
-@pytest.mark.parametrize("name", KNOWN)
+@each("name", KNOWN)
 def test_the_numbers_are_those_of_an_integration_and_keep_the_energy(name):
     """The state of scipy's integration at the same time; E = E(start) also where the time is not known."""
     text, condition, _, _ = KNOWN[name]
@@ -385,7 +386,7 @@ def test_closed_forms_need_no_values():
     assert instant.numbers == {} and is_exactly(each, instant.exact[u], "-sqrt(3*g/l)")
 
 
-@pytest.mark.parametrize("condition", ["theta - 3", "theta' - 100", "t + 1"])
+@each("condition", ["theta - 3", "theta' - 100", "t + 1"])
 def test_what_never_holds_is_refused(condition):
     """A pendulum from the horizontal does not come to 3 rad."""
     with pytest.raises(eomgen.EomgenError):
@@ -432,7 +433,7 @@ def test_small_conditions_are_as_good_as_large_ones():
     assert met(lambda x: 1e-12 * (x - 3)).end == pytest.approx(3, abs=1e-13)
 
 
-@pytest.mark.parametrize("ends", [{"end": 5.0}, {"second": lambda x: 2.0 - x}])
+@each("ends", [{"end": 5.0}, {"second": lambda x: 2.0 - x}])
 def test_a_path_that_ends_before_is_refused(ends):
     """x = 10 is not met within 5, nor where the path ends at 2."""
     found = met(lambda x: x - 10, *([ends["second"]] if "second" in ends else []), end=ends.get("end", 100.0))

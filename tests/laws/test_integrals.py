@@ -6,6 +6,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from each import each
 from scipy.integrate import solve_ivp
 
 import eomgen
@@ -259,7 +260,7 @@ def _integrals(equations):
     return (*energy_integral(equations), *momentum_integrals(equations))
 
 
-@pytest.mark.parametrize("name", ONE_WAY)
+@each("name", ONE_WAY)
 def test_first_integrals_stay_constant(name):
     """E and p_k - integral of Q_k dt at seven instants of a motion."""
     text, end = ONE_WAY[name]
@@ -270,8 +271,8 @@ def test_first_integrals_stay_constant(name):
         assert np.ptp(values) < 1e-8 * (1 + max(map(abs, values))), integral.name
 
 
-@pytest.mark.parametrize(
-    ("name", "expected"),
+@each(
+    "name, expected",
     {
         "pendulum": {"energy"},
         "falling bar": {"energy", "momentum(x)"},
@@ -305,7 +306,7 @@ def test_a_momentum_on_which_a_force_of_time_acts_grows_by_its_impulse():
     assert equal_at_random_states([(integral.expression, expected)]).equal
 
 
-@pytest.mark.parametrize("name", ONE_WAY)
+@each("name", ONE_WAY)
 def test_speeds_by_the_integrals_are_those_of_the_motion(name):
     """u(q) of the energy theorem and the momenta against u(t) at q(t)."""
     text, end = ONE_WAY[name]
@@ -413,7 +414,7 @@ LAWS = {name: BLOCK.replace("FORCES", forces) for name, forces in FORCES.items()
 }
 
 
-@pytest.mark.parametrize("name", LAWS)
+@each("name", LAWS)
 def test_laws_of_motion_are_the_motion(name):
     """q(t) and u(t) in closed form against an integration in time."""
     each = phase(LAWS[name])
@@ -438,7 +439,7 @@ def test_a_law_from_a_later_start_counts_time_from_there():
     assert equal_at_random_states([(laws[symbols.q[0]], expected)]).equal
 
 
-@pytest.mark.parametrize("name", ["pendulum", "orbit", "bead on a rough ring"])
+@each("name", ["pendulum", "orbit", "bead on a rough ring"])
 def test_what_is_not_linear_has_no_law(name):
     """No law is made up."""
     each = phase(ONE_WAY[name][0])
@@ -506,7 +507,7 @@ pull = "G*m1*m2/r^2"
 """
 
 
-@pytest.mark.parametrize("space", ["plane", "space"])
+@each("space", ["plane", "space"])
 def test_momenta_of_the_whole_stay_though_no_coordinate_is_cyclic(space):
     """Kepler's problem in coordinates of each body: P and L, beside roots that have no meaning in a prime field."""
     height = "z1 = 0\nz2 = { start = 0, speed = 0.2 }\n" if space == "space" else ""

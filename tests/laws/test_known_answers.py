@@ -12,6 +12,7 @@ import answers_of_turning_bodies
 import numpy as np
 import pytest
 import sympy
+from each import each
 from known_answers import CLASSICS, MODELS, OUTPUTS, SEEDS
 from newton_euler import inverse_dynamics, read_arm
 
@@ -69,7 +70,7 @@ def file_parameters(model) -> dict[str, float]:
     return {name: float(parameter.value.literal) for name, parameter in model.parameters.items()}
 
 
-@pytest.mark.parametrize("name", KNOWN)
+@each("name", KNOWN)
 def test_the_kinetic_energy_is_the_textbooks(name):
     """T, exactly, at random states of a prime field (50 digits where a root has two signs)."""
     path, known = KNOWN[name]
@@ -77,7 +78,7 @@ def test_the_kinetic_energy_is_the_textbooks(name):
     assert equal_at_random_states([(graph.T, in_graph(known.kinetic_energy, graph.symbols))]).equal
 
 
-@pytest.mark.parametrize("name", KNOWN)
+@each("name", KNOWN)
 def test_the_equations_of_motion_are_the_textbooks(name):
     """factor (left - right) = M a - forcing, for each speed."""
     path, known = KNOWN[name]
@@ -96,7 +97,7 @@ def test_a_wrong_coefficient_of_the_book_is_seen():
     assert not equal_at_random_states([(residuals(graph)[0], in_graph(printed, graph.symbols))]).equal
 
 
-@pytest.mark.parametrize("name", sorted(OUTPUTS))
+@each("name", sorted(OUTPUTS))
 def test_a_seed_names_what_the_book_asks_for(name):
     """Every output that the exercise asks for stands in the file, which names its source."""
     model = eomgen.load(MODELS / "seeds" / f"{name}.toml")
@@ -158,7 +159,7 @@ def test_the_shipped_chain_is_what_its_generator_prints():
     assert (MODELS / "chain20.toml").read_text() == chain(20)
 
 
-@pytest.mark.parametrize("name", ["arm3", "arm7"])
+@each("name", ["arm3", "arm7"])
 def test_an_arm_takes_the_torques_of_newton_and_euler(name):
     """M a - forcing = tau_NewtonEuler(q, u, a) - tau_applied, at 20 random states, 1e-12 of the largest torque."""
     path = MODELS / f"{name}.toml"

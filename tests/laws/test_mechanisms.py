@@ -11,6 +11,7 @@ import mpmath
 import numpy as np
 import pytest
 from click.testing import CliRunner
+from each import each
 from float_linkages import ALL, HEAD, Linkage, four_bar, slider_crank
 
 import eomgen
@@ -52,8 +53,8 @@ def given(w: object, e: object = 0) -> str:
 # -- velocities and accelerations ----------------------------------------------------------------------
 
 
-@pytest.mark.parametrize("kind", ALL, ids=lambda kind: kind.__name__)
-@pytest.mark.parametrize("seed", SEEDS)
+@each("kind", ALL)
+@each("seed", SEEDS)
 def test_linkages_move_as_their_ties_allow(kind, seed):
     """J u = 0 and J a + gamma = 0 with the given rate, against the same equations written for floats."""
     rng = Random(seed)
@@ -110,8 +111,8 @@ def test_velocities_and_accelerations_are_the_differences_of_assembled_places():
 # -- centres of rotation ---------------------------------------------------------------------------------
 
 
-@pytest.mark.parametrize("kind", ALL, ids=lambda kind: kind.__name__)
-@pytest.mark.parametrize("seed", SEEDS)
+@each("kind", ALL)
+@each("seed", SEEDS)
 def test_at_a_relative_centre_both_bodies_have_one_velocity(kind, seed):
     """v_j - v_i = 0 at c_ij, in the velocities of the float linkage."""
     linkage: Linkage = kind(Random(seed))
@@ -124,8 +125,8 @@ def test_at_a_relative_centre_both_bodies_have_one_velocity(kind, seed):
         assert (vx - w * y, vy + w * x) == pytest.approx((0, 0), abs=1e-9 * (1 + abs(w)) * (1 + abs(x) + abs(y)))
 
 
-@pytest.mark.parametrize("kind", ALL, ids=lambda kind: kind.__name__)
-@pytest.mark.parametrize("seed", SEEDS)
+@each("kind", ALL)
+@each("seed", SEEDS)
 def test_three_bodies_have_their_centres_in_one_line(kind, seed):
     """det(c_ij, c_jk, c_ik) = 0, exactly (Aronhold, Kennedy)."""
     _, mechanism = mechanism_in(kind(Random(seed)).text())
@@ -140,7 +141,7 @@ def test_three_bodies_have_their_centres_in_one_line(kind, seed):
         )
 
 
-@pytest.mark.parametrize("kind", ALL, ids=lambda kind: kind.__name__)
+@each("kind", ALL)
 def test_the_drawing_finds_the_centres_of_the_velocities(kind):
     """Two lines meet where the velocities have their centre; linkages with a four-bar in them have all found so."""
     for seed in SEEDS:
@@ -232,7 +233,7 @@ def test_a_field_is_recovered_from_partial_data_with_unknown_magnitudes():
     assert found == {"w": "v/l", "e": "v^2/l^2", "k": "v^2/l"}
 
 
-@pytest.mark.parametrize("seed", SEEDS)
+@each("seed", SEEDS)
 def test_a_field_in_space_is_recovered_from_three_points(seed):
     """v = v_O + omega x r and a = a_O + epsilon x r + omega x (omega x r) from six components each."""
     rng = np.random.default_rng(seed)
@@ -273,8 +274,8 @@ def test_a_rod_between_two_balls_in_space_may_spin_and_its_ends_move_all_the_sam
     assert "2 freedoms, 1 rate given" in (found["w"].message or "")
 
 
-@pytest.mark.parametrize(
-    ("equations", "words"),
+@each(
+    "equations, words",
     [
         ('"vx(plate.A) = 1", "vx(plate.B) = 2"', "'vx(plate.B) = 2' contradicts 'vx(plate.A) = 1'"),
         ('"speed(plate.A) = 1"', "'speed(plate.A) = 1' is not linear in what it gives"),

@@ -6,6 +6,7 @@ import math
 
 import numpy as np
 import pytest
+from each import each
 from rolling_bodies import RoundBody, rotation_of
 
 import eomgen
@@ -72,8 +73,8 @@ def text(contact: str, more: str = "", last: str = "", mass: str = UNEVEN) -> st
     return FREE.format(contact=contact, more=more, last=last, mass=mass)
 
 
-@pytest.mark.parametrize("plane", PLANES)
-@pytest.mark.parametrize("surface", SURFACES)
+@each("plane", PLANES)
+@each("surface", SURFACES)
 def test_a_round_body_rolls_as_newton_and_euler_say(surface, plane):
     """The contact force holds the material point in contact to the plane, and the point of contact wanders."""
     fields, body = SURFACES[surface]
@@ -164,7 +165,7 @@ def test_a_rolling_disc_by_independent_speeds_has_the_equations_of_the_textbooks
         assert rhs(0.0, x, rhs.p0)[-3:] == pytest.approx(expected, rel=1e-12)
 
 
-@pytest.mark.parametrize(("shape", "limit"), [("disc", 1 / 3), ("ring", 1 / 4)])
+@each("shape, limit", [("disc", 1 / 3), ("ring", 1 / 4)])
 def test_a_rolling_disc_stays_upright_above_its_critical_speed(shape, limit):
     """Omega^2 > g/(3 R) of a disc, g/(4 R) of a hoop: I_t m g R/(I_a (I_a + m R^2)) with its two moments of inertia.
 
@@ -285,8 +286,8 @@ def test_a_coin_that_falls_flat_ends_the_run():
         eomgen.derive(eomgen.loads(written.replace("start = 0.5", 'start = "pi/2"')))
 
 
-@pytest.mark.parametrize(
-    ("contact", "what"),
+@each(
+    "contact, what",
     [
         ("line = { at = [0, 0, 0], normal = [0, 0, 1] }\nradius = 1", "'line' of 'contact' is for the plane"),
         ("plane = { at = [0, 0, 0], normal = [0, 0, 1] }", "the radius of 'body', which rolls, is not known"),
@@ -331,7 +332,7 @@ def disc_on(track: str, size: float, near: float, start: float = 0, yaw: float =
     return text.replace("START", str(start)).replace("YAW", str(yaw)).replace("LEAN", str(lean))
 
 
-@pytest.mark.parametrize("inside", [False, True])
+@each("inside", [False, True])
 def test_a_disc_rolls_on_a_very_large_ball_as_on_a_plane(inside):
     """Outside and inside: all accelerations, to the curvature R/S = 3e-8."""
     track = f'circle = {{ at = [0, 0, "{"" if inside else "-"}S"], radius = "S", inside = {str(inside).lower()} }}'

@@ -16,6 +16,7 @@ from typing import Any
 
 import numpy as np
 import pytest
+from each import each
 from float_statics import Numbers, Structure
 
 import eomgen
@@ -252,8 +253,8 @@ def answers(name: str, other: bool = False) -> dict[str, Any]:
     return eomgen.solve(model_of(name, other))
 
 
-@pytest.mark.parametrize("other", [False, True], ids=["file", "other"])
-@pytest.mark.parametrize("name", KNOWN)
+@each("other", [False, True])
+@each("name", KNOWN)
 def test_a_structure_of_the_classics_balances(name, other):
     """Every output that equilibrium knows, at two sets of numbers; all of them exact."""
     model = model_of(name, other)
@@ -264,7 +265,7 @@ def test_a_structure_of_the_classics_balances(name, other):
     assert {output: found[output].value for output in asked} == pytest.approx(asked, rel=1e-9, abs=1e-9 * scale)
 
 
-@pytest.mark.parametrize("name", KNOWN)
+@each("name", KNOWN)
 def test_virtual_work_and_equilibrium_agree(name):
     """Each reaction from its released mechanism alone is that of the balance of the bodies."""
     found = eomgen.statics(model_of(name, False)).found
@@ -382,7 +383,7 @@ REDUNDANT = {  # the model, degree, {reaction: its value, None where it is open}
 }
 
 
-@pytest.mark.parametrize("name", LOOSE)
+@each("name", LOOSE)
 def test_a_loose_structure_is_refused_with_the_motion_named(name):
     """The rank of the equations of equilibrium is less than their number: some bodies can move."""
     text, motion = LOOSE[name]
@@ -392,7 +393,7 @@ def test_a_loose_structure_is_refused_with_the_motion_named(name):
     assert "mend:" in str(refused.value)
 
 
-@pytest.mark.parametrize("name", REDUNDANT)
+@each("name", REDUNDANT)
 def test_a_redundant_structure_keeps_its_determinate_forces(name):
     """Degree = reactions - rank; what no self-stress reaches has a value, by both ways."""
     text, degree, expected = REDUNDANT[name]

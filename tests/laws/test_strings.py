@@ -8,6 +8,7 @@ from math import cos, sin
 
 import numpy as np
 import pytest
+from each import each
 from moving import at, moved, state_of
 from tied import AXLE, FREE, GIVEN, R, accelerations, block, disc, frozen_velocity, g, m, particle, system_with, tie
 
@@ -17,7 +18,7 @@ from eomgen.symbolic.expression.graph import Scalar
 from eomgen.symbolic.numeric.evaluation import evaluate, fifty_digits
 
 
-@pytest.mark.parametrize("strands", ['\nstrands = ["up", "down"]', ""])
+@each("strands", ['\nstrands = ["up", "down"]', ""])
 def test_a_massive_pulley_has_different_tensions_on_its_sides(strands):
     """ch18-p1: 2 m and m over a disc of 6 m: the heavy side descends with g/6, T = 5/3 m g and 7/6 m g."""
     system = system_with(
@@ -204,7 +205,7 @@ def near_the_start(system: System):
     return state | {p[name]: one * value for name, value in GIVEN.items()}
 
 
-@pytest.mark.parametrize("path", ROPES.values(), ids=list(ROPES))
+@each("path", ROPES.values())
 def test_strands_pull_along_the_common_tangents_of_what_they_touch(path):
     """J u + sigma = d . (v_1 - v_2) of the material points at the tangent points, summed over what slips."""
     system = system_with(MOVERS + tie("string", f"path = {path}"), **STARTS)
@@ -223,7 +224,7 @@ def test_strands_pull_along_the_common_tangents_of_what_they_touch(path):
     assert at([row.velocity for row in system.ties.rows], state) == pytest.approx(list(expected.values()), rel=1e-11)
 
 
-@pytest.mark.parametrize("path", [p for p in ROPES.values() if p.count("slip") == p.count("turn")])
+@each("path", [p for p in ROPES.values() if p.count("slip") == p.count("turn")])
 def test_the_row_of_a_smooth_string_is_the_rate_of_its_whole_length(path):
     """J u + sigma = - d/dt (straight pieces + r * angle wrapped), by differences of lengths found by angles."""
     system = system_with(MOVERS + tie("string", f"path = {path}"), **STARTS)
@@ -254,8 +255,8 @@ def test_a_strand_that_is_said_to_stay_vertical_forbids_the_pendulum():
 BESIDE = "[points]\nA = [0, 0]\n" + particle("P", "R", "y")
 
 
-@pytest.mark.parametrize(
-    ("text", "message"),
+@each(
+    "text, message",
     [
         ('path = ["A", "P.origin"]\nstrands = ["down"]', "between the ground and 'P' cannot have the direction given"),
         ('path = [{ at = [0, 0], radius = "R", turn = "cw" }, "P.origin"]\nstrands = ["up"]', "runs against the direc"),
@@ -269,7 +270,7 @@ def test_a_strand_that_cannot_be_is_refused_by_name(text, message):
     assert caught.value.problems[0].where == "constraints.tie" and caught.value.problems[0].mend
 
 
-@pytest.mark.parametrize(("time", "passes"), [(0.5, False), (1.2, True)])
+@each("time, passes", [(0.5, False), (1.2, True)])
 def test_a_run_in_which_a_load_passes_its_pulley_is_warned_of(time, passes):
     """a = g/3 up from 1 m below the axle: nothing is left of the strand at t = sqrt(6 m / g) = 0.782 s."""
     model = eomgen.loads(ATWOOD)

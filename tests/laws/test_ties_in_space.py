@@ -11,6 +11,7 @@ from math import cos, hypot, sin, sqrt
 
 import numpy as np
 import pytest
+from each import each
 from moving import solved, written
 
 import eomgen
@@ -612,7 +613,7 @@ CASES = {
 }
 
 
-@pytest.mark.parametrize("name", CASES)
+@each("name", CASES)
 def test_frobenius_and_chow_tell_what_a_row_of_velocities_is(name):
     """dw(X, Y) = 0 on what is allowed; the fields and their brackets span the positions that are reached."""
     laws, integrable, in_velocity, in_position = CASES[name]
@@ -696,7 +697,7 @@ WRONG = [
 ]
 
 
-@pytest.mark.parametrize(("text", "message"), WRONG)
+@each("text, message", WRONG)
 def test_what_an_equation_or_a_tie_cannot_say_in_space_is_an_error_of_the_model(text, message):
     """The culprit and the mend, from reading the model."""
     with pytest.raises(ModelError) as caught:
@@ -727,7 +728,7 @@ NOT_DERIVED = [
 ]
 
 
-@pytest.mark.parametrize(("text", "message"), NOT_DERIVED)
+@each("text, message", NOT_DERIVED)
 def test_what_cannot_be_derived_in_space_says_why(text, message):
     """One clear error, never a traceback or a wrong answer."""
     with pytest.raises(EomgenError) as caught:

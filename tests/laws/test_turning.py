@@ -7,6 +7,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from each import each
 from scipy.spatial.transform import Rotation
 
 import eomgen
@@ -138,7 +139,7 @@ def test_a_body_on_a_ball_joint_hangs_or_stands():
     assert frequencies(hanging) == pytest.approx([np.sqrt(0.5 * 9.81 * 0.06 / 0.003)] * 2)
 
 
-@pytest.mark.parametrize("C", [16, 6], ids=["stable", "unstable"])
+@each("C", [16, 6])
 def test_a_satellite_librates_in_the_gradient_of_gravity(C):
     """Pitch w^2 = 3 n^2 (B - A)/C; roll and yaw by C th1'' and so on, worked out by hand below."""
     n, A, B = 0.001, 10.0, 12.0
@@ -306,7 +307,7 @@ def test_a_body_on_a_wire_swings_the_same_by_a_quaternion_and_by_angles():
 SEQUENCES = [a + b + c for a in "xyz" for b in "xyz" for c in "xyz" if a != b and b != c]
 
 
-@pytest.mark.parametrize("sequence", SEQUENCES)
+@each("sequence", SEQUENCES)
 def test_a_sequence_of_angles_is_scipys(sequence):
     """R = R1(a) R2(b) R3(c), child to parent: scipy's intrinsic rotations, in capital letters."""
     angles, place = (0.3, 0.7, -1.1), np.array([0.2, -0.5, 0.4])

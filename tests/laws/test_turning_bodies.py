@@ -12,6 +12,7 @@ import pytest
 from answers_of_turning_bodies import ANSWERS, INFERRED, UNITS
 from derivations import answers as answers_of
 from derivations import model_path
+from each import each
 from oracle_of_turning_bodies import ORACLES
 from other_units import grown
 
@@ -58,8 +59,8 @@ def found_by_the_oracle(system: str, other: bool) -> dict[str, float]:
     return ORACLES[system]({name: float(x) for name, x in numbers_of(system, other).items()})
 
 
-@pytest.mark.parametrize("other", [False, True], ids=["file", "other"])
-@pytest.mark.parametrize(("system", "output"), ASKED)
+@each("other", [False, True])
+@each("system, output", ASKED, by="system")
 def test_the_number_is_the_oracles(system, output, other):
     """dL/dt = torque and R' = R w~, at the file's parameters and at others."""
     answer, expected = answers(system, other)[output], found_by_the_oracle(system, other)[output]
@@ -68,7 +69,7 @@ def test_the_number_is_the_oracles(system, output, other):
     assert answer.unit == ALL_UNITS[system][output]
 
 
-@pytest.mark.parametrize("system", ANSWERS)
+@each("system", ANSWERS)
 def test_each_output_has_a_unit_declared_or_of_its_quantity(system):
     """One of the two, and the files declare what is said here."""
     declared = {name: part.unit.text for name, part in model_of(system).outputs.items() if part.unit is not None}
@@ -77,7 +78,7 @@ def test_each_output_has_a_unit_declared_or_of_its_quantity(system):
     assert ALL_UNITS[system].keys() == ANSWERS[system].keys()
 
 
-@pytest.mark.parametrize(("system", "output"), BY_HAND)
+@each("system, output", BY_HAND, by="system")
 def test_the_answer_by_hand_grows_as_its_unit_says(system, output):
     """kg, m and s replaced by others: p_phi grows as kg m^2/s."""
     rng, digits, graph = Random(system), fifty_digits(), Graph()
@@ -94,7 +95,7 @@ def test_the_answer_by_hand_grows_as_its_unit_says(system, output):
     assert known and abs(found - expected) <= 1e-30 * abs(expected)
 
 
-@pytest.mark.parametrize(("system", "output"), BY_HAND)
+@each("system, output", BY_HAND, by="system")
 def test_the_exact_answer_is_the_one_by_hand(system, output):
     """The text that solve gives, at random states and parameters, to 30 digits."""
     answer, rng, digits, graph = answers(system)[output], Random(system), fifty_digits(), Graph()

@@ -7,6 +7,7 @@ import sys
 from pathlib import Path
 
 import pytest
+from slow_run import ALL
 
 sys.path.insert(0, str(Path(__file__).parent))
 
@@ -15,7 +16,7 @@ import long_motions
 pytestmark = pytest.mark.slow
 
 
-SHORT = [("stick_slip", 20), ("impacts", 20), ("stiffness", 3.0), ("chaos", 0.4)]
+SHORT = [("stick_slip", 20), ("impacts", 20), ("stiffness", 3.0), ("chaos", 0.4 if ALL else 0.1)]
 
 
 @pytest.mark.parametrize(("motion", "length"), SHORT)
