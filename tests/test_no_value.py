@@ -72,3 +72,27 @@ def test_an_answer_that_would_need_such_a_start_names_the_damper():
     )
     found = eomgen.solve(eomgen.loads(BLOCK.format(start='0\na = { motion = "0.3*sin(2*t)" }', joint="", more=text)))
     assert "the motion starts where force 'pull' is 0/0 at x = 0" in found["M"].message
+
+
+ROUGH = """
+eomgen = 1
+space = "{space}"
+parameters = {{ m = 1, g = 9.81, mu = 0.3 }}
+coordinates = {{ x = 0, y = 0, {z}s = 0 }}
+bodies.p.shape = {{ kind = "particle", mass = "m" }}
+bodies.p.joint = {{ kind = "placed", at = {at} }}
+bodies.q.shape = {{ kind = "particle", mass = "m" }}
+bodies.q.joint = {{ kind = "prismatic", axis = [1, 0{o}], displacement = "s", stiffness = 10 }}
+constraints.floor = {{ kind = "support", point = "p.center", normal = [0{o}, 1], unilateral = true, friction = "mu" }}
+forces.weight = {{ kind = "gravity", acceleration = [0{o}, "-g"] }}
+"""
+FLAT = {"space": "plane", "z": "", "at": '["x", "y"]', "o": ""}
+SPACE = {"space": "space", "z": "z = 0, ", "at": '["x", "y", "z"]', "o": ", 0"}
+
+
+@pytest.mark.parametrize(("how", "told"), [(FLAT, "a corner or a jump"), (SPACE, "is 0/0 at")])
+def test_small_motions_about_what_does_not_slide_name_its_friction(how, told):
+    """mu N v/|v| jumps at v = 0; on a surface its direction has no value there."""
+    with pytest.raises(eomgen.EomgenError, match=told) as refused:
+        eomgen.linearize(eomgen.loads(ROUGH.format(**how)), about="start")
+    assert "the friction of 'floor'" in str(refused.value)

@@ -76,6 +76,7 @@ def _parts(system: System) -> Iterator[tuple[str, str, Any]]:
         yield f"bodies.{effort.body}.joint", f"the joint of body '{effort.body}'", effort.effort
     for row in system.ties.rows:
         yield f"constraints.{row.tie}", f"constraint '{row.tie}'", (row.gap, row.velocity, row.wrenches)
+        yield f"constraints.{row.tie}", f"the friction of '{row.tie}'", (row.friction, row.shares)
 
 
 def _scalars(part: Any) -> Iterator[Scalar]:

@@ -10,6 +10,7 @@ from typing import Any
 import numpy as np
 
 from eomgen.errors import DerivationError
+from eomgen.mechanics.balance.friction import frictions
 from eomgen.mechanics.constraints.elimination import refuse_undetermined
 from eomgen.mechanics.equations.work import acting
 from eomgen.mechanics.small_motions.field import NumberField, Numbers
@@ -20,6 +21,7 @@ from eomgen.mechanics.small_motions.reference import ReferenceMotion
 from eomgen.mechanics.small_motions.spin_axes import over_turns, spinning, turned_on
 from eomgen.symbolic.expression.derivative import depends_on_any
 from eomgen.symbolic.expression.graph import Node
+from eomgen.symbolic.expression.node import ScalarRow
 from eomgen.symbolic.expression.traversal import order
 from eomgen.symbolic.numeric import dense
 from eomgen.symbolic.numeric.evaluation import NoValue, fifty_digits
@@ -59,19 +61,24 @@ def refuse_corners(
     Raises:
         DerivationError: they are not.
     """
-    if not any(node.op in CORNERS for node in order(first.residual)):
+    if not _cornered(first.residual):
         return
     symbols, rng = first.system.symbols, Random(7)
     changes = _changed(first, choice, reference, raw, kept)
     for _ in range(SIDES):
         aside = {x: fifty_digits().number(1) * SQUARED_SINE * rng.uniform(-1, 1) for x in (*symbols.q, *symbols.u)}
         if changes(aside) or changes({x: -d for x, d in aside.items()}):
-            named = acting(first.system.loads, lambda row: any(node.op in CORNERS for node in order(row)))
+            rough = [f"the friction of '{name}'" for name, factor, _ in frictions(first.system) if _cornered((factor,))]
+            named = [*filter(None, [acting(first.system.loads, _cornered)]), *dict.fromkeys(rough)]
             raise DerivationError(
-                f"{named or 'the forces'}: a corner or a jump at the place of reference",
+                f"{' and '.join(named) or 'the forces'}: a corner or a jump at the place of reference",
                 "linearize",
                 "take a place beside it, or forces that are smooth there",
             )
+
+
+def _cornered(row: ScalarRow) -> bool:
+    return any(node.op in CORNERS for node in order(row))
 
 
 def steady_coordinates(
