@@ -532,11 +532,11 @@ def test_runs_between_the_first_and_the_last_are_proven_too(spring):
     """max(x') and the frequency of three runs: what is told otherwise of the middle one is contradicted."""
     found = eomgen.sweep(spring, over={"k": "10:30:3"}, ask=["max(x')", "frequency(1)"], time=1)
     runs = SweepKernel(found.plan)
-    assert all(check.ok for check in _answers_proven(found, runs))
+    assert all(check.ok for check in _answers_proven(found, runs, {}))
     for k, name in enumerate(("max(x')", "frequency(1)"), start=5):
         rows = [(*row[:k], row[k] + 0.5, *row[k + 1 :]) if row[0] == 1 else row for row in found.ledger.rows()]
         other = SimpleNamespace(plan=found.plan, ledger=SimpleNamespace(rows=lambda rows=rows: rows))
-        (check,) = _answers_proven(other, runs)
+        (check,) = _answers_proven(other, runs, {})
         assert check.ok is False and f"{name} of run 1" in check.detail
 
 

@@ -223,10 +223,10 @@ def _work(leg: Leg, wanted: float) -> tuple[np.ndarray, float]:
     places = np.flatnonzero(leg.integrated)
     work, unsure = np.zeros(len(leg.t) - 1), np.zeros(len(leg.t) - 1)
     with np.errstate(all="ignore"):
-        P = leg.energies.powers(leg.t, leg.x)
-        dt = np.diff(leg.t)
-        work[:] = 0.5 * (P[1:] + P[:-1]) * dt
-        unsure[:] = np.abs(np.diff(P)) * dt
+        if not np.all(leg.integrated):
+            P, dt = leg.energies.powers(leg.t, leg.x), np.diff(leg.t)
+            work[:] = 0.5 * (P[1:] + P[:-1]) * dt
+            unsure[:] = np.abs(np.diff(P)) * dt
         for parts in PARTS:
             begin, end = leg.t[places], leg.t[places + 1]
             _, found, doubt = followed(leg.rates, leg.energies.powers, begin, leg.x[places], end, parts)

@@ -95,15 +95,17 @@ def followed(
     from scipy.integrate import DOP853
 
     y, h = np.column_stack([x, np.zeros(len(t))]), (later - t) / parts
-    unsure = np.zeros_like(y)
+    unsure, errors = np.zeros_like(y), (DOP853.E5[:-1], DOP853.E3[:-1])  # the state at the end has no share in them
+    counted = np.any([DOP853.B, *errors], axis=0)  # the power of other stages stands in no sum
     for part in range(parts):
-        K = np.zeros((DOP853.n_stages + 1, *y.shape))
-        for i in range(DOP853.n_stages + 1):
-            last = i == DOP853.n_stages
-            weights = DOP853.B if last else DOP853.A[i, :i]
-            now = y + h[:, None] * np.tensordot(weights, K[: len(weights)], axes=1)
-            when = t + (part + (1.0 if last else DOP853.C[i])) * h
-            K[i] = np.column_stack([rates(when, now[:, :-1]), powers(when, now[:, :-1])])
-        fine, coarse = (np.abs(h[:, None] * np.tensordot(E, K, axes=1)) for E in (DOP853.E5, DOP853.E3))
-        y, unsure = now, unsure + fine * fine / np.maximum(np.hypot(fine, 0.1 * coarse), np.finfo(float).tiny)
+        K = np.zeros((DOP853.n_stages, *y.shape))
+        for i in range(DOP853.n_stages):
+            now = (y + h[:, None] * np.tensordot(DOP853.A[i, :i], K[:i], axes=1))[:, :-1]
+            when = t + (part + DOP853.C[i]) * h
+            K[i, :, :-1] = rates(when, now)
+            if counted[i]:
+                K[i, :, -1:] = powers(when, now).reshape(len(t), -1)
+        y = y + h[:, None] * np.tensordot(DOP853.B, K, axes=1)
+        fine, coarse = (np.abs(h[:, None] * np.tensordot(E, K, axes=1)) for E in errors)
+        unsure = unsure + fine * fine / np.maximum(np.hypot(fine, 0.1 * coarse), np.finfo(float).tiny)
     return y[:, :-1], y[:, -1], unsure

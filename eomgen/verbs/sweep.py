@@ -181,41 +181,45 @@ def _proof(found: Sweep) -> Certificate | None:
     formulas = [text for text in plan.asked if text not in plan.slopes]
     asked = {f"asked{k}": asked_of(plan.model, text) for k, text in enumerate(formulas)}
     model = replace(model, outputs=Table(asked))
-    how = plan.how
-    if first[2] == "computed":
-        certificate = solve(model).certify()
-    else:
-        run = simulate(model, time=how.time, rtol=how.rtol, atol=how.atol, method=how.method)
-        certificate = run.certify()
-    slopes = [check for pair in plan.slopes.values() for check in checks_of_slope(model, *pair, how.time)]
+    run = None if first[2] == WITHOUT_MOTION else _run_anew(model, plan.how)
+    certificate = solve(model).certify() if run is None else run.certify()
+    slopes = [check for pair in plan.slopes.values() for check in checks_of_slope(model, *pair, plan.how.time)]
     same = found.again(first[0]) == first
     again = Check(
         "a run made again has the same bits", "holds" if same else "fails", f"run {first[0]}, by the same kernel"
     )
-    return Certificate((*certificate.checks, *slopes, again, *_answers_proven(found, kernel), *_rows_proven(found)))
+    answers = _answers_proven(found, kernel, {} if run is None else {first[0]: (model, run)})
+    return Certificate((*certificate.checks, *slopes, again, *answers, *_rows_proven(found)))
 
 
-def _answers_proven(found: Sweep, kernel: SweepKernel) -> Iterator[Check]:
-    """What the table tells of the first run, of the last, and of one between, drawn by the plan: each made anew."""
+def _answers_proven(found: Sweep, kernel: SweepKernel, made: Mapping[int, tuple[Model, Trajectory]]) -> Iterator[Check]:
+    """What the table tells of the first run, of the last, and of one between, drawn by the plan: each made anew.
+
+    Args:
+        made: (model, run) of those that are made anew already.
+    """
     plan = found.plan
     done = [row for row in found.ledger.rows() if row[2] != FAILED]
     between = [Random(plan.hash).choice(done[1:-1])] if len(done) > 2 else []
     tally = Tally("what is asked of a run is answered as its samples and equations say", "first, last, one between")
     for row in {row[0]: row for row in (*done[:1], *between, *done[-1:])}.values():
         told = dict(zip(plan.asked, row[4 + len(plan.runs.names) :], strict=True))
-        model = replace(kernel.valued(dict(zip(plan.runs.names, row[4:], strict=False))), outputs=Table({}))
-        for text, wrong in _answered_otherwise(plan, model, told, moved=row[2] != WITHOUT_MOTION):
+        if row[0] in made:
+            model, run = made[row[0]]
+        else:
+            model = replace(kernel.valued(dict(zip(plan.runs.names, row[4:], strict=False))), outputs=Table({}))
+            run = None if row[2] == WITHOUT_MOTION else _run_anew(model, plan.how)
+        for text, wrong in _answered_otherwise(plan, model, told, run):
             tally.add(f"{text} of run {row[0]}", wrong)
     yield from tally.checks()
 
 
 def _answered_otherwise(
-    plan: SweepPlan, model: Model, told: Mapping[str, float | None], *, moved: bool
+    plan: SweepPlan, model: Model, told: Mapping[str, float | None], run: Trajectory | None
 ) -> Iterator[tuple[str, Callable[[], str]]]:
     """(what is asked of a run, how what is told of it differs): by its samples, by `solve`, by derivatives alone."""
     how = plan.how
     outputs = {text: asked_of(plan.model, text) for text in plan.asked if text not in plan.slopes}
-    run = _run_anew(model, how) if moved else None
     for text, output in outputs.items():
         if is_without_motion(output):
             yield text, partial(_solved_otherwise, model, replace(output, unit=None), told[text])
