@@ -47,3 +47,14 @@ def test_a_text_is_written_only_where_it_is_short(depth):
     assert (text is None) == (text_size(y) > LONGEST_RESULT)
     assert text is None or text == to_text(y)
     assert (text is None) == (depth > 5)
+
+
+@pytest.mark.slow
+def test_what_has_no_number_and_is_longer_than_a_reader_takes_stands_on_the_page_by_its_size():
+    """Two bodies at angles without values: a table of their moments as formulas was thousands of characters wide."""
+    text = "eomgen = 1\nspace = 'space'\n[parameters]\na1 = {}\na2 = {}\n[coordinates]\n"
+    text += "q1 = { start = 'a1' }\nq2 = { start = 'a2' }\n"
+    bodies = (BODY.format(k=k, m=3 - k / 4, on=f', on = "b{k - 1}.E"' if k > 1 else "") for k in (1, 2))
+    page = eomgen.inertia(eomgen.loads(text + "".join(bodies))).render("text")
+    assert " operations, not printed)" in page
+    assert max(map(len, page.splitlines())) < 1000

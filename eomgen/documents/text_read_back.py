@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import re
 import unicodedata
+from collections import deque
 from collections.abc import Iterable, Iterator
 from itertools import chain
 
@@ -59,7 +60,7 @@ class TextRead:
     """
 
     def __init__(self, text: str) -> None:
-        self.lines = [line for line in text.split("\n") if line.strip()]
+        self.lines = deque(line for line in text.split("\n") if line.strip())
 
     def document(self, document: Document) -> int:
         """The whole page; how many statements it has.
@@ -102,15 +103,15 @@ class TextRead:
 
     def _says(self, wanted: str) -> None:
         """The next lines say this, and no more."""
-        rest = flat(wanted)
-        while rest:
+        whole, said = flat(wanted), 0
+        while said < len(whole):
             if not self.lines:
                 raise Unlike(f"'{wanted[:SHOWN]}' is missing")
             line = flat(self.lines[0])
-            if not rest.startswith(line):
+            if not whole.startswith(line, said):
                 raise Unlike(f"'{self.lines[0].strip()[:SHOWN]}' for '{wanted[:SHOWN]}'")
-            rest = rest[len(line) :]
-            self.lines.pop(0)
+            said += len(line)
+            self.lines.popleft()
 
     def _table(self, grid: Grid) -> None:
         """Heads, then rows: each cell begins where its head does, or where it does in the other rows."""
@@ -123,7 +124,7 @@ class TextRead:
             while rest:
                 if not self.lines:
                     raise Unlike(f"a row of a table is missing: '{where[:SHOWN]}'")
-                line = self.lines.pop(0)
+                line = self.lines.popleft()
                 for k, begin, text in _placed(line, rest):
                     if begins.setdefault(k, begin) != begin:
                         raise Unlike(f"'{text[:SHOWN]}' does not stand under its head, row '{where[:SHOWN]}'")

@@ -204,9 +204,8 @@ def _answers_proven(found: Sweep, kernel: SweepKernel, made: Mapping[int, tuple[
     tally = Tally("what is asked of a run is answered as its samples and equations say", "first, last, one between")
     for row in {row[0]: row for row in (*done[:1], *between, *done[-1:])}.values():
         told = dict(zip(plan.asked, row[4 + len(plan.runs.names) :], strict=True))
-        if row[0] in made:
-            model, run = made[row[0]]
-        else:
+        model, run = made.get(row[0], (None, None))
+        if model is None:
             model = replace(kernel.valued(dict(zip(plan.runs.names, row[4:], strict=False))), outputs=Table({}))
             run = None if row[2] == WITHOUT_MOTION else _run_anew(model, plan.how)
         for text, wrong in _answered_otherwise(plan, model, told, run):

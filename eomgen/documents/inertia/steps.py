@@ -9,7 +9,7 @@ import numpy as np
 
 from eomgen.documents.inertia.rows import InertiaSum
 from eomgen.documents.latex_names import letter_law
-from eomgen.documents.statements import Cell, Formula, Grid, Law, Side, Statement, prose
+from eomgen.documents.statements import Cell, Formula, Grid, Law, Omitted, Side, Statement, prose
 from eomgen.mechanics.masses.principal import Principal, principal_of
 from eomgen.model.outputs.moments_of_inertia import about_axis, polar, second_moments
 from eomgen.records import dataclass
@@ -22,7 +22,8 @@ from eomgen.symbolic.print.text import text_size
 
 AXES = "xyz"
 LONGEST = 24  # characters of an exact entry of a table; where one is longer, all are numbers
-LONGEST_LINE = 300  # of an exact side of a formula
+LONGEST_LINE = 300  # of an exact side of a formula, where it has a number too; of a formula in a table
+MOST_PRINTED = 4000  # of one without a number; of a longer one its size is told, machines get it whole
 PRODUCTS = ((0, 1), (1, 2), (2, 0))
 
 
@@ -80,15 +81,25 @@ def number(section: Section, x: Scalar) -> str:
 
 
 def grid(section: Section, head: tuple[Cell, ...], rows: Sequence[Sequence[str | Law | Scalar]]) -> Grid:
-    """A table of scalars and words: exact where all are short or one has no value, else in numbers."""
+    """A table of scalars and words: exact where all are short or one has no value, else in numbers.
+
+    What is longer than a line, and has no number, stands there by its size.
+    """
     scalars = [x for row in rows for x in row if not isinstance(x, str | Law)]
     valued = section.sum.numbers(scalars) is not None
     in_numbers = valued and any(text_size(section.sum.short(x)) > LONGEST for x in scalars)
 
     def cell(x: str | Law | Scalar) -> Cell:
-        return x if isinstance(x, str | Law) else number(section, x) if in_numbers else section.sum.short(x)
+        if isinstance(x, str | Law):
+            return x
+        return number(section, x) if in_numbers else _bounded(section.sum.short(x), LONGEST_LINE)
 
     return Grid(head, tuple(tuple(map(cell, row)) for row in rows))
+
+
+def _bounded(x: Scalar, most: int) -> Scalar | Omitted:
+    """A formula of at most so many characters; of a longer one how large it is."""
+    return x if text_size(x) <= most else Omitted(((x,),))
 
 
 def line(section: Section, result: InertiaEntry) -> Formula:
@@ -97,7 +108,7 @@ def line(section: Section, result: InertiaEntry) -> Formula:
     value = number(section, result.value)
     of_digits = type(result.value) is Node and not symbols_of((result.value,)) and holds_many_digits(result.value)
     if (text_size(result.value) <= LONGEST_LINE and not of_digits) or not value:
-        sides.append(result.value)
+        sides.append(_bounded(result.value, MOST_PRINTED))
     if value and (of_digits or text_size(result.value) > len(value)):
         sides.append(Law(value, value))
     return Formula(tuple(sides))
