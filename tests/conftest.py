@@ -23,6 +23,7 @@ os.environ.setdefault("EOMGEN_FRESH", "1")  # tests patch laws: nothing is told 
 
 gc.set_threshold(*SELDOM)
 
+COLLECTED = ("test_gc_pause.py", "test_public_values.py")
 ZERO = b"\0after"
 
 
@@ -38,9 +39,11 @@ def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
     """What is asked of one model by several files stands together, first: one process derives it, and once.
 
     Tests that import jax come last, in each worker too: its threads hold locks that a forked process waits for.
+    Tests of the garbage collector come first: what others keep would be looked at by it again and again.
     """
     items.sort(key=lambda item: (1, "") if item.get_closest_marker("by_model") is None else (0, model_of(item)))
     items.sort(key=lambda item: "jax" in item.name)
+    items.sort(key=lambda item: item.path.name not in COLLECTED)
 
 
 def pytest_collection_finish() -> None:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from functools import cache
 from importlib import resources
 from importlib.util import find_spec
 from pathlib import Path
@@ -32,6 +33,7 @@ return found;
 """
 
 
+@cache
 def report(name: str) -> str:
     return html_page(eomgen.report(MODELS / f"{name}.toml", time=0.5))
 

@@ -47,7 +47,7 @@ def printed(how, verb, model, *more):
     return done.stdout, done.stderr.splitlines()[0]
 
 
-@pytest.mark.parametrize("words", usual(VERBS, 2, 1), ids=" ".join)
+@pytest.mark.parametrize("words", usual(VERBS, 5, 1), ids=" ".join)
 def test_the_same_bytes_come_out_with_and_without_compiled_numbers(words):
     """Every verb prints the same text, whatever its rationals and polynomials are made of."""
     pytest.importorskip("quicktions")

@@ -6,6 +6,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from slow_run import usual
 
 import eomgen
 from eomgen.codegen.build import compiler
@@ -75,7 +76,7 @@ RUNS = [  # contacts that change, ties in all forms, change points, quaternions,
 ]
 
 
-@pytest.mark.parametrize(("name", "time"), RUNS)
+@pytest.mark.parametrize(("name", "time"), usual([*RUNS], 3, 2))
 def test_a_run_in_c_is_that_of_scipy(name, time):
     """The same phases, instants of events, crossings and states; both within the tolerance of the run."""
     model = eomgen.load(MODELS / f"{name}.toml")

@@ -7,6 +7,7 @@ from pathlib import Path
 
 import pytest
 from click.testing import CliRunner
+from slow_run import usual
 
 from eomgen.cli import main
 
@@ -21,7 +22,7 @@ def derived(model: str, *options: str) -> str:
     return result.stdout
 
 
-@pytest.mark.parametrize("format", ["text", "latex", "markdown", "json"])
+@pytest.mark.parametrize("format", usual(["text", "latex", "markdown", "json"], 2))
 def test_full_leaves_nothing_out_in_any_format(format):
     """26 more are too long to print here: not with --full"""
     assert "too long to print here" in derived("arm7", "--format", format)

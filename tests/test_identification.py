@@ -135,7 +135,7 @@ def look_at(name: str) -> Any:
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("name", QUICK)
+@pytest.mark.parametrize("name", usual(QUICK, 2))
 def test_regressor_times_parameters_is_the_force_and_its_base_has_the_rank_of_samples(name):
     """Y pi + y0 = M a + c - Q without inputs, exactly; as many groups as Y has independent columns."""
     look_at(name)

@@ -199,14 +199,18 @@ def test_one_place_of_a_contribution_is_named(model, equation, cause, words):
 
 @pytest.mark.parametrize(
     ("model", "equation", "cause", "words"),
-    [
-        ("simple_pendulum", "theta'^2 = 2*g/l*(cos(theta) - cos(1)*l)", "factor", ("factor l is too many",)),
-        ("simple_pendulum", "theta' = 2*g/l*(cos(theta) - cos(1))", "factor", ("the square is missing",)),
-        ("simple_pendulum", "m*l^2*theta'^2/2 + m*g*l*cos(theta) = E", "sign", ("weight of bob",)),
-        ("half_car", "stiffness(theta, theta) = k_f*l_f + k_r*l_r^2", "factor", ("l_f stands where l_f^2",)),
-        ("slider_crank", "x = r*cos(theta) + l*sin(phi)", "wrong_axis", ("phi",)),
-        ("atwood", "s'' = (m1 - m2)*g/(m1 + m2 + M*R/2)", "factor", ("rotation of pulley", "factor R is too many")),
-    ],
+    usual(
+        [
+            ("simple_pendulum", "theta'^2 = 2*g/l*(cos(theta) - cos(1)*l)", "factor", ("factor l is too many",)),
+            ("simple_pendulum", "theta' = 2*g/l*(cos(theta) - cos(1))", "factor", ("the square is missing",)),
+            ("simple_pendulum", "m*l^2*theta'^2/2 + m*g*l*cos(theta) = E", "sign", ("weight of bob",)),
+            ("half_car", "stiffness(theta, theta) = k_f*l_f + k_r*l_r^2", "factor", ("l_f stands where l_f^2",)),
+            ("slider_crank", "x = r*cos(theta) + l*sin(phi)", "wrong_axis", ("phi",)),
+            ("atwood", "s'' = (m1 - m2)*g/(m1 + m2 + M*R/2)", "factor", ("rotation of pulley", "factor R is too many")),
+        ],
+        3,
+        1,
+    ),
 )
 def test_one_place_of_the_own_formula_is_mended(model, equation, cause, words):
     """The change that makes it right, by what the place would have to be; where roots, units and ties fail, too."""
@@ -524,22 +528,25 @@ def test_what_is_wrong_by_little_is_wrong():
 @pytest.mark.slow
 @pytest.mark.parametrize(
     ("model", "equation", "kind", "told"),
-    [
-        ("block_on_wedge", "reaction_n(block) = m*g*cos(alpha)", "missing_term", "inertia force of block"),
-        ("spherical_pendulum", "tension(rod) = m*g*cos(theta)", "missing_term", "all that holds speeds"),
-        ("seeds/ch17_p2", "y = (v_A + v_B)/2*t + g*t^2/2", "sign", "the weight of rod"),
-        (
-            "seeds/ch18_p2",
-            "theta'^2 = g*(3*sin(theta) - 8 + 8*cos(theta))/(2*l*(1 + 7*sin(theta)^2))",
-            "sign",
-            "force P",
-        ),
-        ("half_car", "stiffness(y, theta) = k_f*l_f + k_r*l_r", "sign", "the force rear"),
-        ("bead_on_turning_hoop", "sin(theta) = g/(R*omega^2)", "wrong_axis", "theta"),
-        ("gerber_beam", "reaction_y(B) = 15*p*a", "missing_term", "on_AC in the balance of moments about C of AC"),
-        ("seeds/ch13_p3", "inertia_point(O) = m_bar*l^2/3 + m_ring*(R^2 + r^2)/2", "missing_term", "Steiner"),
-        ("cart_pole", "(M + m)*x'' = m*l/2*(cos(theta)*theta'' - sin(theta)*theta'^2) + F*cos(theta)", "", "F"),
-    ],
+    usual(
+        [
+            ("block_on_wedge", "reaction_n(block) = m*g*cos(alpha)", "missing_term", "inertia force of block"),
+            ("spherical_pendulum", "tension(rod) = m*g*cos(theta)", "missing_term", "all that holds speeds"),
+            ("seeds/ch17_p2", "y = (v_A + v_B)/2*t + g*t^2/2", "sign", "the weight of rod"),
+            (
+                "seeds/ch18_p2",
+                "theta'^2 = g*(3*sin(theta) - 8 + 8*cos(theta))/(2*l*(1 + 7*sin(theta)^2))",
+                "sign",
+                "force P",
+            ),
+            ("half_car", "stiffness(y, theta) = k_f*l_f + k_r*l_r", "sign", "the force rear"),
+            ("bead_on_turning_hoop", "sin(theta) = g/(R*omega^2)", "wrong_axis", "theta"),
+            ("gerber_beam", "reaction_y(B) = 15*p*a", "missing_term", "on_AC in the balance of moments about C of AC"),
+            ("seeds/ch13_p3", "inertia_point(O) = m_bar*l^2/3 + m_ring*(R^2 + r^2)/2", "missing_term", "Steiner"),
+            ("cart_pole", "(M + m)*x'' = m*l/2*(cos(theta)*theta'' - sin(theta)*theta'^2) + F*cos(theta)", "", "F"),
+        ],
+        3,
+    ),
 )
 def test_the_derivation_is_replayed_with_one_thing_wrong(model, equation, kind, told):
     """What stood still or was left out on the way to an answer; the energy theorem; slopes at rest; another place."""
@@ -553,39 +560,51 @@ STRANGERS = Path(__file__).parent / "helpers" / "unseen_mistakes"
 @pytest.mark.slow
 @pytest.mark.parametrize(
     ("model", "equation", "words"),
-    [
-        # linearized, and a mistake beside it
-        ("04_rocking_half_disc", r"(\frac32R^2 - 2Re)\ddot\theta = g e\,\theta", ["small motion", "weight of half"]),
-        ("32_quarter_car", r"m\ddot z + c\dot z + kz = cY\cos(wt) + kY\sin(wt) + kl_0 - mg", ["factor w is missing"]),
-        (
-            "20_block_drawn_up",
-            r"(m_A g + m_B g + m_D g/2)\ddot x = m_B g - m_A g(\sin\alpha + \mu\cos\alpha)",
-            ["weights"],
-        ),
-        ("22_geared_hoist", "(J1 + (J2 + m rho^2) n^2) phi'' = tau - m g rho n", ["n is turned over"]),
-        ("28_satellite_booms", "(J + 2*m*r^2)*theta'^2 = C", ["energy", "not constant", "drives r does work"]),
-        ("26_edge_mill", r"w_run = b\dot\psi/r", ["under the root", "psi'^2 is missing"]),
-        ("40_plate_with_hole", "J_O = m*(b^2 + h^2)/12 - mh*r^2/2", ["Steiner", "part 2", "hole"]),
-        ("10_roller_on_cart", "frequency(2) = sqrt(2*k/(3*m))", ["as if x (cart, cylinder) stood still"]),
-        ("53_triatomic", "frequency(3) = sqrt(k/m + k/M)", ["middle stands with the factor 2"]),
-        ("41_bead_on_wire", "(1 + x^2/p^2)*x'' + g*x/p = 0", ["tie wire differentiated twice", "is missing"]),
-        ("30_doubled_cord", "(mA + mB/4)*x'' = mB*g/2 - mu*mA*g", ["move a quarter as far"]),
-        ("60_box_on_two_links", "T1 + T2 = m*g*sin(theta) - m*l*theta'^2", ["inertia force", "sin and cos"]),
-        ("44_mass_on_turntable", "T = m*(x'^2 + y'^2)/2 + m*w*(x^2 + y^2)/2", ["no sum"]),
-        ("../blind_mistakes/35_ladder_at_rest", "reaction_t(floor) = mu*N_floor", ["at its limit, mu*N_floor"]),
-        ("../blind_mistakes/35_ladder_at_rest", "N_floor + mu*N_wall = G + W", ["mu*N_wall does not belong"]),
-        (
-            "../blind_mistakes/45_sleeve_on_swinging_bar",
-            "ay(sleeve.center, ground, bar) = r*theta'' + r'*theta'",
-            ["Coriolis"],
-        ),
-        # either ... or
-        (
-            "01_clock_pendulum",
-            "(m*l^2/12 + M*l^2 + M*R^2/2)*theta'' = -(m/2 + M)*g*l*sin(theta) - kt*theta",
-            ["or else", "Steiner"],
-        ),
-    ],
+    usual(
+        [
+            # linearized, and a mistake beside it
+            (
+                "04_rocking_half_disc",
+                r"(\frac32R^2 - 2Re)\ddot\theta = g e\,\theta",
+                ["small motion", "weight of half"],
+            ),
+            (
+                "32_quarter_car",
+                r"m\ddot z + c\dot z + kz = cY\cos(wt) + kY\sin(wt) + kl_0 - mg",
+                ["factor w is missing"],
+            ),
+            (
+                "20_block_drawn_up",
+                r"(m_A g + m_B g + m_D g/2)\ddot x = m_B g - m_A g(\sin\alpha + \mu\cos\alpha)",
+                ["weights"],
+            ),
+            ("22_geared_hoist", "(J1 + (J2 + m rho^2) n^2) phi'' = tau - m g rho n", ["n is turned over"]),
+            ("28_satellite_booms", "(J + 2*m*r^2)*theta'^2 = C", ["energy", "not constant", "drives r does work"]),
+            ("26_edge_mill", r"w_run = b\dot\psi/r", ["under the root", "psi'^2 is missing"]),
+            ("40_plate_with_hole", "J_O = m*(b^2 + h^2)/12 - mh*r^2/2", ["Steiner", "part 2", "hole"]),
+            ("10_roller_on_cart", "frequency(2) = sqrt(2*k/(3*m))", ["as if x (cart, cylinder) stood still"]),
+            ("53_triatomic", "frequency(3) = sqrt(k/m + k/M)", ["middle stands with the factor 2"]),
+            ("41_bead_on_wire", "(1 + x^2/p^2)*x'' + g*x/p = 0", ["tie wire differentiated twice", "is missing"]),
+            ("30_doubled_cord", "(mA + mB/4)*x'' = mB*g/2 - mu*mA*g", ["move a quarter as far"]),
+            ("60_box_on_two_links", "T1 + T2 = m*g*sin(theta) - m*l*theta'^2", ["inertia force", "sin and cos"]),
+            ("44_mass_on_turntable", "T = m*(x'^2 + y'^2)/2 + m*w*(x^2 + y^2)/2", ["no sum"]),
+            ("../blind_mistakes/35_ladder_at_rest", "reaction_t(floor) = mu*N_floor", ["at its limit, mu*N_floor"]),
+            ("../blind_mistakes/35_ladder_at_rest", "N_floor + mu*N_wall = G + W", ["mu*N_wall does not belong"]),
+            (
+                "../blind_mistakes/45_sleeve_on_swinging_bar",
+                "ay(sleeve.center, ground, bar) = r*theta'' + r'*theta'",
+                ["Coriolis"],
+            ),
+            # either ... or
+            (
+                "01_clock_pendulum",
+                "(m*l^2/12 + M*l^2 + M*R^2/2)*theta'' = -(m/2 + M)*g*l*sin(theta) - kt*theta",
+                ["or else", "Steiner"],
+            ),
+        ],
+        3,
+        1,
+    ),
 )
 def test_the_thought_behind_a_mistake_is_told(model, equation, words):
     """What somebody did who derived it so: in equations, energies, frequencies and reactions of a stranger."""
@@ -699,14 +718,18 @@ acceleration = [0, "-g"]
 
 @pytest.mark.parametrize(
     ("equation", "words"),
-    [
-        ("l*theta'' + (g - y'')*sin(theta) = 0", ["y'", "wrong sign"]),
-        ("T = m*(l^2*theta'^2 + y'^2)/2 + 3/4*m*s'^2", ["the product y'*theta'", "missing"]),
-        ("7/5*s'' = -W*s'", ["that of a solid ball", "1/2*m*r^2"]),
-        ("m*s'' = m*W*s'", ["the rotation of roller", "is missing", "air", "wrong sign"]),
-        ("3/2*s'' = -W^2*s'", ["W"]),
-        ("s' = 2*exp(-W*t)", ["the rotation of roller", "is missing"]),
-    ],
+    usual(
+        [
+            ("l*theta'' + (g - y'')*sin(theta) = 0", ["y'", "wrong sign"]),
+            ("T = m*(l^2*theta'^2 + y'^2)/2 + 3/4*m*s'^2", ["the product y'*theta'", "missing"]),
+            ("7/5*s'' = -W*s'", ["that of a solid ball", "1/2*m*r^2"]),
+            ("m*s'' = m*W*s'", ["the rotation of roller", "is missing", "air", "wrong sign"]),
+            ("3/2*s'' = -W^2*s'", ["W"]),
+            ("s' = 2*exp(-W*t)", ["the rotation of roller", "is missing"]),
+        ],
+        3,
+        1,
+    ),
 )
 def test_a_mistake_is_told_by_the_names_of_its_author(equation, words):
     """y'' where y is driven, other shapes, two mistakes of one freedom, a rate as a function of time."""
@@ -742,7 +765,7 @@ def test_an_equation_of_rest_beside_what_turns_is_decided():
 @pytest.mark.parametrize(
     ("equation", "words"),
     [
-        ("x' = -r*sin(theta)*theta' + l*sin(phi)*phi'", ["l*sin(phi)*phi'", "wrong sign"]),
+        *beside(("x' = -r*sin(theta)*theta' + l*sin(phi)*phi'", ["l*sin(phi)*phi'", "wrong sign"])),
         ("phi' = -r*theta'/(l*cos(phi))", ["cos(theta)", "missing"]),
     ],
 )
@@ -807,16 +830,19 @@ O = [0, "R"]
 
 @pytest.mark.parametrize(
     ("equation", "up_to"),
-    [
-        ("3/2*m*R*phi'' + 20*m/R*x = 0", "k"),
-        ("3/2*m*R*phi'' + k*x = 0", ""),
-        ("x'' = R*phi''", "the ties"),
-        ("y'' = -9*a*sin(3*t)", "the given motion of y"),
-        ("frequency(1)^2 = 2*k/(3*m)", ""),
-        ("frequency(1)^2 = 40/(3*R)", ""),
-        ("frequency(1)^2 = 160/(9*pi*e)", ""),
-        ("T = 3/4*m*R^2*phi'^2 + m*y'^2/2 + e2 - 3*e", ""),
-    ],
+    usual(
+        [
+            ("3/2*m*R*phi'' + 20*m/R*x = 0", "k"),
+            ("3/2*m*R*phi'' + k*x = 0", ""),
+            ("x'' = R*phi''", "the ties"),
+            ("y'' = -9*a*sin(3*t)", "the given motion of y"),
+            ("frequency(1)^2 = 2*k/(3*m)", ""),
+            ("frequency(1)^2 = 40/(3*R)", ""),
+            ("frequency(1)^2 = 160/(9*pi*e)", ""),
+            ("T = 3/4*m*R^2*phi'^2 + m*y'^2/2 + e2 - 3*e", ""),
+        ],
+        3,
+    ),
 )
 def test_what_follows_from_the_file_is_right(equation, up_to):
     """Parameters that are formulas of others, ties once more differentiated, given motions."""

@@ -8,6 +8,7 @@ from pathlib import Path
 
 import pytest
 from click.testing import CliRunner
+from slow_run import usual
 
 import eomgen
 from eomgen.cli import main
@@ -49,7 +50,7 @@ def test_the_result_for_machines_has_every_part():
 
 
 @pytest.mark.parametrize(
-    ("format", "word"), [("text", "omega_1 = "), ("latex", r"\omega_{1}"), ("markdown", "| mode |")]
+    ("format", "word"), usual([("text", "omega_1 = "), ("latex", r"\omega_{1}"), ("markdown", "| mode |")], 2, 1)
 )
 def test_every_format_shows_the_frequencies(format, word):
     """Text, LaTeX, Markdown."""

@@ -99,7 +99,7 @@ def test_a_run_that_fails_is_recorded_and_the_rest_go_on():
 
 @pytest.mark.slow
 @needs_compiler
-@pytest.mark.parametrize("threads", [1, 2])
+@pytest.mark.parametrize("threads", [*beside(1), 2])
 def test_runs_with_ties_are_marched_and_those_that_cannot_start_are_told(threads, monkeypatch):
     """Four-bars with couplers of 0.9 to 5 m: what closes is stepped in C, the rest is refused as `simulate` does."""
     alone = []

@@ -20,6 +20,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 from browser import visited
+from slow_run import usual
 from tools import REQUIRED, needs
 from typesetting import lost_in_mathml, lost_in_typst
 
@@ -72,14 +73,17 @@ def page(pendulum):
 
 @pytest.mark.parametrize(
     ("name", "expected"),
-    [
-        ("double_pendulum", "data derivation reactions plots certificate downloads"),
-        ("a_frame", "data reactions statics outputs certificate downloads"),
-        ("slider_crank", "data derivation reactions outputs plots certificate downloads"),
-        ("cart_pole", "data derivation reactions outputs linearize plots certificate downloads"),
-        ("seeds/ch11_p3", "kinematics outputs certificate downloads"),
-        ("seeds/s1_inertia_tensor", "data inertia outputs certificate downloads"),
-    ],
+    usual(
+        [
+            ("double_pendulum", "data derivation reactions plots certificate downloads"),
+            ("a_frame", "data reactions statics outputs certificate downloads"),
+            ("slider_crank", "data derivation reactions outputs plots certificate downloads"),
+            ("cart_pole", "data derivation reactions outputs linearize plots certificate downloads"),
+            ("seeds/ch11_p3", "kinematics outputs certificate downloads"),
+            ("seeds/s1_inertia_tensor", "data inertia outputs certificate downloads"),
+        ],
+        3,
+    ),
 )
 def test_the_sections_are_those_that_fit_the_model(name, expected):
     """A motion has its derivation, a structure its reactions, a mechanism its instant, a lone body its inertia."""
@@ -186,7 +190,7 @@ return files;
 
 
 @needs("chromium")
-@pytest.mark.parametrize("name", ["double_pendulum", "disc_leaves_cylinder", "sleeping_top"])
+@pytest.mark.parametrize("name", usual(["double_pendulum", "disc_leaves_cylinder", "sleeping_top"], 2, 1))
 def test_files_come_out_of_the_page_as_they_went_in(name):
     """The model and the code byte by byte; the motion, which the page computes where it can, to 9 digits."""
     found = of(name, time=2)
@@ -247,7 +251,9 @@ def test_nothing_is_wider_than_a_telephone(name):
     assert width <= 360 and count > 0 and reachable
 
 
-@pytest.mark.parametrize(("name", "most"), [("double_pendulum", 180_000), ("heavy_top", 400_000), ("arm7", 500_000)])
+@pytest.mark.parametrize(
+    ("name", "most"), usual([("double_pendulum", 180_000), ("heavy_top", 400_000), ("arm7", 500_000)], 2, 1)
+)
 def test_a_page_is_small(name, most):
     """With its motion of 10 s, its letters and its files; benchmarks/pages.py counts all models."""
     assert len(html_page(of(name)).encode()) <= most

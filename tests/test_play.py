@@ -12,6 +12,7 @@ import pytest
 from browser import visited
 from click.testing import CliRunner
 from each import each
+from slow_run import usual
 from tools import needs
 
 import eomgen
@@ -36,7 +37,7 @@ def page(name: str, **options) -> str:
     return play(MODELS / f"{name}.toml", time=END, **options).html
 
 
-@pytest.mark.parametrize("name", GIVEN)
+@pytest.mark.parametrize("name", usual([*GIVEN], 2))
 def test_the_page_moves_as_a_simulation_says(name):
     """state(t) of the recorded run, then of one with other parameters and starts, equals eomgen.simulate's to 1e-6."""
     model, given = eomgen.load(MODELS / f"{name}.toml"), GIVEN[name]
@@ -202,12 +203,15 @@ IN_SPACE = """
 
 @pytest.mark.parametrize(
     ("name", "taken"),
-    [
-        ("double_pendulum", IN_THE_PLANE % (2, 40, -30)),
-        ("four_bar", IN_THE_PLANE % (1, 30, -20)),  # a closed loop
-        ("heavy_top", IN_SPACE),
-        ("arm3", IN_SPACE),
-    ],
+    usual(
+        [
+            ("double_pendulum", IN_THE_PLANE % (2, 40, -30)),
+            ("four_bar", IN_THE_PLANE % (1, 30, -20)),  # a closed loop
+            ("heavy_top", IN_SPACE),
+            ("arm3", IN_SPACE),
+        ],
+        2,
+    ),
 )
 def test_a_body_is_drawn_to_where_the_pointer_goes(name, taken):
     """The start is another then, one at which the ties hold; the motion from there is a simulation's."""

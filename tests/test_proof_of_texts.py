@@ -10,6 +10,7 @@ from typing import Any
 
 import pytest
 from click.testing import CliRunner
+from slow_run import usual
 
 import eomgen
 from eomgen.certificate import certify
@@ -107,7 +108,7 @@ VERBS = [
 ]
 
 
-@pytest.mark.parametrize(("verb", "name"), VERBS)
+@pytest.mark.parametrize(("verb", "name"), usual([*VERBS], 3, 2))
 def test_a_sign_lost_in_printing_is_a_contradiction_of_every_verb(
     verb: str, name: str, monkeypatch: pytest.MonkeyPatch
 ):

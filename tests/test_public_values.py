@@ -8,6 +8,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from slow_run import ALL, usual
 
 import eomgen
 
@@ -44,7 +45,7 @@ VALUES = {
 }
 
 
-@pytest.mark.parametrize("what", VALUES)
+@pytest.mark.parametrize("what", usual([*VALUES], 3))
 def test_a_value_goes_into_a_pickle_and_back(pendulum, what):
     """repr(loads(dumps(x))) = repr(x)"""
     value = VALUES[what](pendulum)
@@ -108,14 +109,15 @@ def test_values_that_replace_others_do_not_reach_what_is_kept(pendulum):
 
 
 def test_runs_leave_memory_as_it_was(pendulum):
-    """Of 30 runs no object is left behind, with the collector as Python starts it; there were 1500 a run"""
+    """Of many runs no object is left behind, with the collector as Python starts it; there were 1500 a run"""
     for _ in range(3):
         eomgen.simulate(pendulum, time=0.1, samples=3)
     gc.collect()
     before = len(gc.get_objects())
-    for _ in range(30):
+    many = 30 if ALL else 10
+    for _ in range(many):
         eomgen.simulate(pendulum, time=0.1, samples=3)
-    assert len(gc.get_objects()) - before < 30 * 5
+    assert len(gc.get_objects()) - before < many * 5
 
 
 def test_what_notebooks_show(pendulum):

@@ -23,7 +23,7 @@ import pytest
 from click.testing import CliRunner
 from forked import needs_sh
 from scipy import stats
-from slow_run import beside
+from slow_run import beside, in_slow_run
 
 import eomgen
 from eomgen.cli import main
@@ -405,6 +405,7 @@ def test_dask_gives_the_same_bits(spring):
     assert list(found.ledger.rows()) == list(alone.ledger.rows())
 
 
+@in_slow_run
 @pytest.mark.slow
 def test_loky_gives_the_same_bits(spring):
     loky = pytest.importorskip("loky")

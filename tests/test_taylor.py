@@ -8,6 +8,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from slow_run import usual
 
 import eomgen
 from eomgen.codegen.build import compiler
@@ -86,7 +87,7 @@ def test_the_rate_of_a_series_is_that_of_the_equations_to_its_order(force):
 SYSTEMS = ["double_pendulum", "n_four_bar", "four_bar", "tumbling_body", "arm3", "car_axis", "bricard"]
 
 
-@pytest.mark.parametrize("name", SYSTEMS)
+@pytest.mark.parametrize("name", usual([*SYSTEMS], 3, 1))
 def test_a_motion_by_series_is_that_of_dop853(name):
     """The same states between the steps, energy and ties kept; with multipliers, quaternions and given motions."""
     model = eomgen.load(MODELS / f"{name}.toml")
@@ -184,7 +185,7 @@ def test_without_a_compiler_the_motion_is_the_same():
     assert "Not by power series (not in C)" in other.message and own.x == pytest.approx(other.x, abs=1e-7)
 
 
-@pytest.mark.parametrize("name", ["double_pendulum", "tumbling_body", "arm3", "cart_pole"])
+@pytest.mark.parametrize("name", usual(["double_pendulum", "tumbling_body", "arm3", "cart_pole"], 2, 1))
 def test_runs_in_lanes_by_series_are_those_one_by_one(name):
     """Each with its own start, instants between the steps, quaternions; a lane does not know its neighbours."""
     model = eomgen.load(MODELS / f"{name}.toml")

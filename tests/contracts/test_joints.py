@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from functools import cache
+
 import numpy as np
 import pytest
 from each import each
@@ -129,6 +131,7 @@ joint = {{ kind = "prismatic"{axis}, displacement = "l*sin(w*t)" }}
 """
 
 
+@cache
 def works(kind: str, space: str, fields: str) -> bool:
     model = eomgen.loads(f'eomgen = 1\nname = "joint"\nspace = "{space}"\n{text(kind, space, fields)}')
     return model.bodies["child"].joint.works_in(space)

@@ -11,6 +11,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 from hand_made import PUSHED, cart_pole, pendulum, spring_row, symbols, tied_pendulum
+from slow_run import ALL
 from tools import marked, needs, tool
 
 import eomgen
@@ -96,6 +97,8 @@ def test_a_program_calls_what_comes_before_it_and_names_what_it_reads(language, 
 @pytest.mark.parametrize("name", ["inputs", "a tie", "closed loops"])
 def test_every_language_runs_a_program_that_is_cut_into_parts(target, name, monkeypatch):
     """Functions of at most 12 operations, that leave what others read in an array: the same vectors."""
+    if target == "numba" and name != "closed loops" and not ALL:
+        pytest.skip("it compiles for ten seconds: of the slow run")
     monkeypatch.setattr("eomgen.codegen.layout.LENGTH", 12)
 
     def cut(program, language, *more):

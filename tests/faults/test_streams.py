@@ -14,6 +14,7 @@ from pathlib import Path
 
 import pytest
 from forked import forked, needs_fork
+from slow_run import usual
 
 from eomgen import pipeline
 from eomgen.edge import IN_ASCII, in_ascii
@@ -170,7 +171,7 @@ def test_more_samples_than_there_can_be_are_refused():
     assert ended.code == 2 and "at most" in ended.said
 
 
-@pytest.mark.parametrize("home", [None, "/nowhere/at/all", "", "relative"])
+@pytest.mark.parametrize("home", usual([None, "/nowhere/at/all", "", "relative"], 2, 1))
 def test_a_user_without_a_home_loses_nothing(home, tmp_path):
     """HOME away, empty, or no folder, and nobody in the list of users: runs go on, and no folder `~` is made."""
 

@@ -187,7 +187,7 @@ class AtEachEvent:
             (self.folder / name).write_bytes(data)
 
 
-@pytest.mark.parametrize(("verb", "option"), usual([*ways()], 4, 1))
+@pytest.mark.parametrize(("verb", "option"), usual([*ways()], 6, 1))
 def test_a_fault_at_any_write_of_any_verb_leaves_whole_files(verb, option, tmp_path):
     """INT, TERM: exit code 130, all old or all new. A full disk: 74, likewise. KILL: each file whole.
 

@@ -22,9 +22,16 @@ NAMED = frozenset(
 CALL = re.compile(r"\b([a-z][a-z_0-9]*)\(")
 
 
+@cache
+def declared(path: Path) -> dict[str, Any]:
+    """The tables of a model file."""
+    return tomllib.loads(path.read_text(encoding="utf-8"))
+
+
+@cache
 def features(path: Path) -> frozenset[str]:
     """What a model declares: its kind of space, each field of each kind of part, each function that it writes."""
-    return frozenset(_features(tomllib.loads(path.read_text(encoding="utf-8")), ""))
+    return frozenset(_features(declared(path), ""))
 
 
 def _features(value: Any, where: str) -> Iterator[str]:
@@ -51,7 +58,7 @@ def cost(path: Path) -> int:
 
     (fitted by eye to the time that the laws take of each model; only the order of the models counts)
     """
-    model = tomllib.loads(path.read_text(encoding="utf-8"))
+    model = declared(path)
     parts = len(model.get("bodies", ())) + len(model.get("coordinates", ())) + 2 * len(model.get("constraints", ()))
     return parts * (4 if model["space"] == "space" else 1)
 
@@ -68,12 +75,15 @@ def covering(models: tuple[Path, ...], times: int = 2) -> tuple[Path, ...]:
     asked = {feature: min(times, n) for feature, n in held.items()}
     order = sorted(models, key=lambda path: (cost(path), path.stem))
     left, taken = dict(asked), []
-    while any(n > 0 for n in left.values()):
-        best = max((p for p in order if p not in taken), key=lambda p: sum(left[f] > 0 for f in has[p]))
+    while left:
+        best = max(order, key=lambda p: len(has[p] & left.keys()))
+        order.remove(best)
         taken.append(best)
-        left = {f: n - (f in has[best]) for f, n in left.items()}
+        left |= {f: left[f] - 1 for f in has[best] & left.keys()}
+        left = {f: n for f, n in left.items() if n}
+    often = Counter(f for path in taken for f in has[path])
     for path in sorted(taken, key=lambda p: (-cost(p), p.stem)):
-        others = Counter(f for p in taken if p != path for f in has[p])
-        if all(others[f] >= n for f, n in asked.items()):
+        if all(often[f] > asked[f] for f in has[path]):
             taken.remove(path)
+            often.subtract(has[path])
     return tuple(path for path in models if path in taken)

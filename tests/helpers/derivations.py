@@ -10,6 +10,7 @@ from functools import cache
 from pathlib import Path
 from typing import Any
 
+from covering_models import declared
 from slow_run import usual, usual_models
 
 from eomgen import solve
@@ -19,7 +20,6 @@ from eomgen.mechanics.equations.system import System
 from eomgen.model.parts import Model
 from eomgen.model.reader import load, loads
 from eomgen.model.unbuilt import unbuilt
-from eomgen.model.unknowns import in_loads
 from eomgen.pipeline import METHODS, Equations, derive
 from eomgen.questions.answers import Answers
 from eomgen.symbolic.expression.derivative import substituted
@@ -181,7 +181,8 @@ def moving() -> tuple[Path, ...]:
 
     Where a force is asked for there is rest, and no motion.
     """
-    return usual_models(path for path in PATHS if not in_loads(loaded(path)) and not unbuilt(loaded(path)))
+    known = usual_models(path for path in PATHS if "unknowns" not in declared(path))
+    return tuple(path for path in known if not unbuilt(loaded(path)))
 
 
 def model_called(name: str) -> Model:
@@ -199,12 +200,12 @@ def derivable() -> tuple[str, ...]:
 
 
 def by_every_method() -> tuple[tuple[str, str], ...]:
-    """(model, method) of everything derivable, by energies all, by the other methods a third, in the slow run all.
+    """(model, method) of everything derivable, by energies all, by the other methods a fourth, in the slow run all.
 
     What nothing holds has no kineto-statics. How a model reads by a method is proven with each derivation besides.
     """
     energies, *others = METHODS
-    asked = set(usual(derivable(), 3))
+    asked = set(usual(derivable(), 4))
     pairs = ((name, method) for name in derivable() for method in (energies, *(others if name in asked else ())))
     return tuple(pair for pair in pairs if pair[0] not in LOOSE or pair[1] != "kinetostatic")
 

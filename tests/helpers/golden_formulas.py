@@ -88,9 +88,9 @@ def golden_formulas() -> tuple[Golden, ...]:
 
 
 @cache
-def compared() -> tuple[Compared, ...]:
-    """Every formula beside ours."""
-    return tuple(Compared(golden, ours_of(golden)) for golden in golden_formulas())
+def compared(formulas: Sequence[Golden] = ()) -> tuple[Compared, ...]:
+    """These formulas beside ours; without any all."""
+    return tuple(Compared(golden, ours_of(golden)) for golden in formulas or golden_formulas())
 
 
 def ours_of(golden: Golden) -> Ours:

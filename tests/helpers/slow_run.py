@@ -10,10 +10,15 @@ from collections.abc import Iterable, Sequence
 from pathlib import Path
 from typing import TypeVar
 
+import pytest
 from covering_models import covering
 
 Item = TypeVar("Item")
 ALL = bool(os.environ.get("EOMGEN_ALL_MODELS"))
+
+
+in_slow_run = pytest.mark.skipif(not ALL, reason="of the slow run")
+"""The mark of one dear example of a law that others hold in every run."""
 
 
 def usual(items: Sequence[Item], every: int, first: int = 0) -> Sequence[Item]:

@@ -16,6 +16,7 @@ from answers_of_chapters_18_20_22 import ANSWERS, LINEARIZED
 from derivations import answers as answers_of
 from derivations import model_path
 from each import each
+from slow_run import usual
 
 import eomgen
 from eomgen.model.values import start_values
@@ -97,7 +98,7 @@ def close(a: Any, b: Any) -> bool:
 # -- the answers by hand against Newton and Euler ------------------------------------------------------------------
 
 
-@pytest.mark.parametrize("system", ANSWERS)
+@pytest.mark.parametrize("system", usual([*ANSWERS], 3, 2))
 def test_the_answers_by_hand_are_those_of_newton_and_euler(system):
     """m a_C = sum F and I alpha = sum M_C, body by body, at random states to 30 digits."""
     book = oracle.ALL[system]()

@@ -12,6 +12,7 @@ import numpy as np
 import pytest
 from each import each
 from moving import equal
+from slow_run import usual
 
 import eomgen
 from eomgen import certificate
@@ -200,7 +201,7 @@ def with_multipliers(name: str) -> str:
     return text
 
 
-@pytest.mark.parametrize("name", [name for name in CASES if name != "three cranks"])
+@pytest.mark.parametrize("name", usual([*[name for name in CASES if name != "three cranks"]], 3))
 def test_the_motion_is_that_with_multipliers(name):
     """M a + c = Q + J^T lam, J a + gamma = 0 over all coordinates gives the same q(t), up to a change point."""
     run = eomgen.simulate(model(name), time=0.2, target="numpy")
@@ -321,12 +322,15 @@ WIDE = OPEN.replace("at = [1, 0]", "at = [9, 0]")
 
 @pytest.mark.parametrize(
     ("text", "message"),
-    [
-        (OUT_OF_REACH, "'P' (row 1) does not close at the start: it is open by "),
-        (OUT_OF_REACH, "mend: give start values at which it can close, or another guess: `near` of 'b', 'd'"),
-        (WIDE, "'P' (row 1) does not close at the start: it is open by 7.94"),
-        (WIDE, "mend: give start values that close it, or mark a coordinate as `dependent`: 'a', 'b', 'd'"),
-    ],
+    usual(
+        [
+            (OUT_OF_REACH, "'P' (row 1) does not close at the start: it is open by "),
+            (OUT_OF_REACH, "mend: give start values at which it can close, or another guess: `near` of 'b', 'd'"),
+            (WIDE, "'P' (row 1) does not close at the start: it is open by 7.94"),
+            (WIDE, "mend: give start values that close it, or mark a coordinate as `dependent`: 'a', 'b', 'd'"),
+        ],
+        2,
+    ),
 )
 def test_a_loop_that_does_not_close_at_the_start_is_refused(text, message):
     """From the run, not from the derivation: which tie, by how much, and the mend."""
@@ -347,7 +351,7 @@ def test_start_values_rounded_to_seven_digits_close():
 # -- singular configurations -------------------------------------------------------------------------
 
 
-@pytest.mark.parametrize("speed", [0, -3, 8])
+@pytest.mark.parametrize("speed", usual([0, -3, 8], 2, 1))
 def test_a_parallelogram_passes_its_change_point(speed):
     """All hinges in line: N is 0/0 there, and 1 on either side."""
     text = PARALLELOGRAM.replace("speed = -3", f"speed = {speed}")

@@ -12,6 +12,7 @@ import numpy as np
 import pytest
 from click.testing import CliRunner
 from random_systems import random_model
+from slow_run import usual
 
 import eomgen
 from eomgen.cli import main
@@ -300,7 +301,8 @@ def test_what_has_no_single_answer_is_refused(text, actuated, what):
 
 @pytest.mark.skipif(compiler() is None, reason="no C compiler")
 @pytest.mark.parametrize(
-    ("name", "options"), [("arm7", ["--inverse"]), ("cart_pole", ["--inverse"]), ("four_bar", ["--actuated", "alpha"])]
+    ("name", "options"),
+    usual([("arm7", ["--inverse"]), ("cart_pole", ["--inverse"]), ("four_bar", ["--actuated", "alpha"])], 2, 1),
 )
 def test_emitted_inverse_dynamics_compiles_as_it_is_and_agrees(tmp_path, name, options):
     """Every warning an error; the files' own vectors, held against the recursion in 50 digits; numpy alike."""

@@ -10,6 +10,7 @@ import numpy as np
 import pytest
 from float_loops import Chain, Closing, Link, bricard
 from scipy.integrate import solve_ivp
+from slow_run import usual
 
 import eomgen
 from eomgen.mechanics.initial_state.assembly_modes import branches_of_loops
@@ -64,7 +65,7 @@ def test_accelerations_are_those_of_the_free_bodies_and_their_hinges(name, targe
         assert a == pytest.approx(chain.accelerations(x[:n], x[n:]), rel=1e-6, abs=1e-6)
 
 
-@pytest.mark.parametrize("name", [*CHAINS, "spatial_four_bar"])
+@pytest.mark.parametrize("name", usual([*CHAINS, "spatial_four_bar"], 2))
 def test_energy_stays_and_the_loop_keeps_closed(name):
     """T + V, phi and J u over a few turns."""
     run = eomgen.simulate(model(name), time=5)

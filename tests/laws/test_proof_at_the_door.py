@@ -18,7 +18,7 @@ from eomgen.documents.proven import proven, proven_for_machines
 from eomgen.errors import EomgenError
 
 MODELS = sorted((Path(__file__).parents[2] / "models").rglob("*.toml"))
-ASKED = usual(MODELS, 12)
+ASKED = usual(MODELS, 12, 5)
 VERBS = ("inertia", "kinematics", "linearize", "statics")
 
 

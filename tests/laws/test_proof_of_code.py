@@ -11,6 +11,7 @@ from pathlib import Path
 import pytest
 from click.testing import CliRunner
 from forked import needs_sh
+from slow_run import beside
 from tools import each_target, every_target
 
 import eomgen
@@ -41,7 +42,7 @@ def failing(found) -> set[str]:
 
 
 @each_target
-@pytest.mark.parametrize("name", ["cart_pole", "four_bar"])
+@pytest.mark.parametrize("name", [*beside("cart_pole"), "four_bar"])  # the other is asked below, role by role
 def test_every_function_that_is_written_is_run(target, name):
     """Equations, reactions, inverse dynamics and Y in each language, trees and loops."""
     certificate = generated_once(target, name).certify()

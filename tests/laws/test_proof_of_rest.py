@@ -6,6 +6,7 @@ from dataclasses import replace
 from pathlib import Path
 
 import pytest
+from slow_run import usual
 
 import eomgen
 from eomgen.documents.statics.result import statics
@@ -32,7 +33,7 @@ def status(name: str, check: str) -> str:
     return next(each.status for each in certificate_of(name).checks if each.name == check)
 
 
-@pytest.mark.parametrize("name", ["four_bar", "flyball_governor", "car_axis", "heavy_top"])
+@pytest.mark.parametrize("name", usual(["four_bar", "flyball_governor", "car_axis", "heavy_top"], 2))
 def test_multipliers_at_rest_hold_the_free_bodies(name):
     """Q + J^T lam = 0, body by body."""
     assert status(name, HELD) == "holds"

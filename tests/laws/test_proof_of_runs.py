@@ -11,6 +11,7 @@ import numpy as np
 import pytest
 from click.testing import CliRunner
 from forked import needs_sh
+from slow_run import usual
 
 import eomgen
 from eomgen.cli import main
@@ -41,7 +42,7 @@ def failing(run) -> set[str]:
     return {check.name for check in run.certify().checks if check.status == "fails"}
 
 
-@pytest.mark.parametrize("name", ["simple_pendulum", "four_bar", "sliding_ladder", "gyrostat", "car_axis"])
+@pytest.mark.parametrize("name", usual(["simple_pendulum", "four_bar", "sliding_ladder", "gyrostat", "car_axis"], 2, 1))
 def test_a_run_keeps_its_promises(name):
     """E - E0 is the integral of the power for pendulums, loops, contacts, quaternions and moving axes alike."""
     certificate = run_of(name).certify()

@@ -6,6 +6,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from slow_run import in_slow_run
 
 import eomgen
 
@@ -140,6 +141,7 @@ force = {drag}
     return text
 
 
+@in_slow_run
 def test_particles_on_a_sphere_come_to_rest_where_the_test_set_says():
     """Problem fekete after 1000 s: places of four of the twenty, and the tension -2 lambda = 9.5 of every rod."""
     run = eomgen.simulate(eomgen.loads(repelling(fekete())), time=1000, samples=2)

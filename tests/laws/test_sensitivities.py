@@ -8,7 +8,7 @@ from pathlib import Path
 import mpmath
 import numpy as np
 import pytest
-from slow_run import beside
+from slow_run import beside, in_slow_run
 
 import eomgen
 from eomgen.sensitivities.sensitivity import slope_asked
@@ -80,6 +80,7 @@ def test_a_damped_frequency_changes_as_its_closed_form_does():
         assert slope == pytest.approx(second(lambda x, name=name: w(**{**p, name: x}), p[name]), rel=1e-12)
 
 
+@in_slow_run
 @pytest.mark.slow
 def test_frequencies_of_the_double_pendulum_by_fifty_digits():
     """det(K - w^2 M) = 0 of two rods, solved by hand."""
@@ -133,7 +134,7 @@ def test_a_right_hand_side_has_its_slopes_in_closed_form():
         ("four_bar", "rhs", ("a", "b", "m")),
         ("rolling_disc", ("rhs", "reaction_n(floor)"), ("m", "R")),
         *beside(("flyball_governor", ("frequency(2)", "equilibrium", "stiffness(s, s)"), "a")),
-        ("whipple_bicycle", "frequencies", "w"),
+        *beside(("whipple_bicycle", "frequencies", "w")),
         ("slider_crank", (), ("r", "P")),
         ("two_mass_oscillator", ("frequency(2)/frequency(1)", "mass(x1, x1)"), ()),
     ],
@@ -179,7 +180,7 @@ VALUES = {name: value for name, value in (("m1", 1), ("m2", 1), ("l1", 1), ("l2"
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("by", [1.001, -1.0])
+@pytest.mark.parametrize("by", [1.001, *beside(-1.0)])
 def test_a_wrong_derivative_is_seen(by):
     """A thousandth more, or another sign, fails; where it is zero there is nothing to see."""
     found = eomgen.sensitivity(MODELS / "double_pendulum.toml", ("theta1''", "frequency(1)"), "m1")

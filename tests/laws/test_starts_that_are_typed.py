@@ -67,7 +67,7 @@ LOOPS = {
 CASES = [(name, tuple(start)) for name, (_, *starts) in LOOPS.items() for start in starts]
 
 
-@pytest.fixture(params=usual(CASES, 2), ids=lambda case: f"{case[0]} {' '.join(case[1])}")
+@pytest.fixture(params=usual(CASES, 3), ids=lambda case: f"{case[0]} {' '.join(case[1])}")
 def typed(request, tmp_path):
     """(path, what is typed, the start of the run in SI) of a loop that does not close as it is typed."""
     name, starts = request.param

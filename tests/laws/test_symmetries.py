@@ -14,7 +14,7 @@ from random import Random
 
 import numpy as np
 import pytest
-from slow_run import usual
+from slow_run import usual, usual_models
 from transformed_models import (
     SCALES,
     Tables,
@@ -41,7 +41,7 @@ IN_UNITS = ("double_pendulum", "cart_pole", "elastic_pendulum", "simple_pendulum
 
 def with_motion() -> Iterable[Path]:
     """The models that move freely, with values of all their parameters."""
-    for path in sorted(MODELS.rglob("*.toml")):
+    for path in usual_models(sorted(MODELS.rglob("*.toml"))):
         if "coordinates" in tables_of(path):
             model = eomgen.load(path)
             free = any(not (part.driven or part.dependent) for part in model.coordinates.values())
@@ -54,7 +54,7 @@ MOVING = list(with_motion())
 
 def pairs() -> Iterable[tuple[Path, str]]:
     """(model, transformation) that can be said of it."""
-    for path in usual(MOVING, 10, first=3):
+    for path in usual(MOVING, 5, first=3):
         for how, change in TRANSFORMATIONS.items():
             try:
                 change(tables_of(path))
@@ -119,7 +119,7 @@ def is_conservative(path: Path) -> bool:
 REVERSIBLE = [path for path in MOVING if is_conservative(path)]
 
 
-@pytest.mark.parametrize("path", usual(REVERSIBLE, 8, first=1), ids=lambda p: p.stem)
+@pytest.mark.parametrize("path", usual(REVERSIBLE, 4, first=1), ids=lambda p: p.stem)
 def test_a_conservative_motion_runs_backwards_on_its_own_path(path):
     """q(T) reached with u(T): from there with -u(T), the start comes back after T, with -u(0)."""
     model = eomgen.load(path)

@@ -7,6 +7,7 @@ from functools import cache
 import numpy as np
 import pytest
 from lagrange import Frame, accelerations, numbers
+from slow_run import usual
 from textbook import SYSTEMS
 
 import eomgen
@@ -45,8 +46,9 @@ def of_the_model(equations, frame, q) -> np.ndarray:
     return np.array([by_name[name] for name in equations.coordinates])
 
 
-@pytest.mark.parametrize("target", ["numpy", "c"])
-@pytest.mark.parametrize("name", SYSTEMS)
+@pytest.mark.parametrize(
+    ("name", "target"), usual([(name, target) for target in ("numpy", "c") for name in SYSTEMS], 2)
+)
 def test_accelerations_are_those_of_lagrange_by_sympy(name, target):
     """M a = forcing + J^T lam, J a + gamma = 0 from d/dt dT/dq' - dT/dq + dV/dq = Q + dphi/dq lam"""
     equations, frame, book = derived(name)

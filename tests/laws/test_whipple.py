@@ -9,6 +9,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from slow_run import usual
 
 import eomgen
 
@@ -34,7 +35,7 @@ def at_speed(v: float) -> eomgen.Linearization:
     return eomgen.linearize(eomgen.loads(TEXT.replace("value = 5,", f"value = {v},")))
 
 
-@pytest.mark.parametrize("v", [0.5, 2, 5])
+@pytest.mark.parametrize("v", usual([0.5, 2, 5], 2, 1))
 def test_the_linearized_equations_are_those_of_the_benchmark(v):
     """M q'' + v C1 q' + (g K0 + v^2 K2) q = 0 in lean and steer"""
     small = at_speed(v)
@@ -53,7 +54,7 @@ def test_eigenvalues_are_those_of_the_benchmark(v):
     assert np.allclose(found, expected, rtol=1e-11, atol=1e-11)
 
 
-@pytest.mark.parametrize(("v", "stable"), [(4.292, False), (4.293, True), (6.02, True), (6.03, False)])
+@pytest.mark.parametrize(("v", "stable"), usual([(4.292, False), (4.293, True), (6.02, True), (6.03, False)], 2))
 def test_it_balances_by_itself_between_weave_and_capsize_speed(v, stable):
     """4.29238253634111 m/s < v < 6.02426201538837 m/s"""
     assert (at_speed(v).spectrum.stability == "asymptotically stable") == stable
