@@ -205,7 +205,7 @@ def _motions_elsewhere(free: System, state: State, regular: float) -> float:
     """How many motions the ties allow at another state in which they hold; without end where none is found."""
     if ELSEWHERE not in free.found:
         try:
-            there = state | generic_state(free.ties, Random(1))
+            there = state | generic_state(free.ties, 1)
             held = np.vstack([rows_where_closed(free.ties, there), *_unit_lengths(free, there)])
             free.found[ELSEWHERE] = _allowed(held, regular).shape[1]
         except (DerivationError, MissingValues, ModelError, NoValue):

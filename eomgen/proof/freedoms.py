@@ -52,7 +52,7 @@ def counted_otherwise(model: Model, modes: ContactModes, found: Freedom) -> str:
             return wrong
         if not ties.closing or len(ties.motion.scope.symbols.u) > MOST:
             return ""
-        return _by_differences(ties, generic_state(ties, Random(29)), found)
+        return _by_differences(ties, generic_state(ties, 29), found)
     except (DerivationError, MissingValues, ModelError, NoValue, ZeroDivisionError):  # the count has said so
         return ""
 

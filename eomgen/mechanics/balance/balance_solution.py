@@ -5,7 +5,6 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from dataclasses import replace
 from functools import cache
-from random import Random
 from typing import Any
 
 from eomgen.errors import DerivationError
@@ -208,9 +207,9 @@ def _generic_state(system: System, seed: int) -> dict[Node, Any]:
 
     Two cranks are a parallelogram only where they have one length: then the values are the model's.
     """
-    own = generic_state(system.ties, Random(seed))
+    own = generic_state(system.ties, seed)
     try:
-        shaken = generic_state(system.ties, Random(seed), shaken=True)
+        shaken = generic_state(system.ties, seed, shaken=True)
         return shaken if rank_of_ties(system.ties, shaken) == rank_of_ties(system.ties, own) else own
     except (DerivationError, NoValue):
         return own

@@ -16,7 +16,7 @@ import numpy as np
 from eomgen.errors import EomgenError, MissingValues, OpenTies
 from eomgen.mechanics.constraints.ties import Ties
 from eomgen.model.values import exact_parameters, first_guesses, start_values
-from eomgen.records import dataclass
+from eomgen.records import dataclass, recalled
 from eomgen.symbolic.expression.derivative import jacobian
 from eomgen.symbolic.expression.functions import sqrt
 from eomgen.symbolic.expression.graph import Node, Scalar
@@ -30,20 +30,22 @@ CLOSING = Newton(enough=CLOSED_AT_50, stalls=SUMMED, damped=True, again=True)
 SPREADS = (0.1, 0.01, 0.001)  # how far from the start a generic configuration is looked for
 
 
-def generic_state(
-    ties: Ties, rng: Random | None = None, *, shaken: bool = False, spreads: Sequence[float] = ()
-) -> State:
+def generic_state(ties: Ties, rng: Random | int = 1, *, shaken: bool = False, spreads: Sequence[float] = ()) -> State:
     """Values of every symbol: near the start, off any special position, with phi = 0 and J u + sigma = 0.
 
     Parameters without a value get one. Driven coordinates and t are near the start too, as if given by another law.
 
     Args:
+        rng: its numbers, or their seed; of a seed it is found once.
         shaken: parameters have values of their own, near the model's, so that nothing vanishes for these alone.
         spreads: how far from the start it is looked for, the first first; before those near to it.
     Raises:
         MissingValues, DerivationError: the ties do not close there.
     """
-    rng = rng or Random(1)
+    if isinstance(rng, int):
+        seed, key = rng, (generic_state, rng, shaken, tuple(spreads))
+        known = recalled(ties, key, lambda: generic_state(ties, Random(seed), shaken=shaken, spreads=spreads))
+        return dict(known)
     state, q = still_values(ties, rng, shaken=shaken)
     for spread in (*spreads, *SPREADS):
         found = closed(ties, state | _scattered(ties, q, spread, rng), movable(ties))

@@ -11,7 +11,6 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from contextlib import suppress
 from dataclasses import replace
-from random import Random
 from typing import Any
 
 import numpy as np
@@ -241,7 +240,7 @@ class _LinearRows:
         zero = self.numbers == 0
         try:
             for seed in SHAKEN:
-                zero &= rows_where_closed(self.ties, generic_state(self.ties, Random(seed), shaken=True)) == 0
+                zero &= rows_where_closed(self.ties, generic_state(self.ties, seed, shaken=True)) == 0
         except (DerivationError, MissingValues, NoValue):
             return self
         return replace(self, vanishing=frozenset((int(i), int(k)) for i, k in np.argwhere(zero)))
@@ -255,7 +254,7 @@ class _LinearRows:
         rows, shares = [*self.rows, *sharing], []
         for seed in range(FAR_STATES):
             with suppress(DerivationError, MissingValues, NoValue, ZeroDivisionError):
-                state = generic_state(self.ties, Random(seed), spreads=FAR)
+                state = generic_state(self.ties, seed, spreads=FAR)
                 J = (rows_where_closed(self.ties, state) / divisor(lengths))[rows]
                 J_d = J[:, self.dependent]
                 whole = np.linalg.det(J_d.T @ J_d)

@@ -25,7 +25,7 @@ from eomgen.model.constraints.row import TieRow
 from eomgen.model.forces.load import PointForce, Push
 from eomgen.model.unbuilt import unbuilt_ties
 from eomgen.model.values import exact_parameters
-from eomgen.records import dataclass
+from eomgen.records import RECALLED, dataclass
 from eomgen.symbolic.exact.equality import Equality, equal_at_random_states, equal_at_real_states, equal_in_field
 from eomgen.symbolic.expression.derivative import depends_on, jacobian, substituted
 from eomgen.symbolic.expression.functions import over, sqrt
@@ -103,6 +103,10 @@ class Ties:
 
     motion: Motion
     rows: tuple[Row, ...]
+
+    def __getstate__(self) -> dict[str, Any]:
+        """Without what was found of them."""
+        return {name: value for name, value in self.__dict__.items() if name != RECALLED}
 
     @property
     def closing(self) -> tuple[Row, ...]:
