@@ -4,6 +4,8 @@ from __future__ import annotations
 
 import json
 import re
+from collections.abc import Callable
+from typing import Any
 
 from eomgen.records import dataclass
 
@@ -130,7 +132,30 @@ class DerivationError(EomgenError):
 
 
 class OpenTies(DerivationError):
-    """Constraints that no place near the start closes."""
+    """Constraints that no place near the start closes.
+
+    Args:
+        nearest: how near they come to closing, in words; it takes a search, and is sought when somebody reads it.
+    """
+
+    def __init__(self, what: str, where: str = "", mend: str = "", nearest: Callable[[], str] = str) -> None:
+        self._said: str = what
+        self._nearest: Callable[[], str] = str
+        super().__init__(what, where, mend)
+        self._nearest = nearest
+
+    @property
+    def what(self) -> str:
+        """What is wrong, and how near it is to being right."""
+        self._said, self._nearest = self._said + self._nearest(), str
+        return self._said
+
+    @what.setter
+    def what(self, said: str) -> None:
+        self._said = said
+
+    def __reduce__(self) -> tuple[Any, ...]:
+        return OpenTies, (self.what, self.where, self.mend)
 
 
 class NotYet(DerivationError):

@@ -65,6 +65,9 @@ class Outcome:
     note: str = ""
 
 
+AGAIN = 0.5  # seconds of CPU after which a call is stopped once more: within a callback of the collector nothing is
+
+
 class TooLong(BaseException):
     """The CPU of a call is used up."""
 
@@ -75,7 +78,7 @@ def limit(seconds: float) -> Iterator[None]:
         raise TooLong
 
     old = signal.signal(signal.SIGVTALRM, stop)
-    signal.setitimer(signal.ITIMER_VIRTUAL, seconds)
+    signal.setitimer(signal.ITIMER_VIRTUAL, seconds, AGAIN)
     try:
         yield
     finally:

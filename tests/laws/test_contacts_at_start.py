@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import pickle
 import subprocess
 from pathlib import Path
 
@@ -10,9 +11,12 @@ import pytest
 
 import eomgen
 from eomgen.codegen.rhs import RightHandSide
+from eomgen.errors import OpenTies
 from eomgen.mechanics.balance.friction import equations_of_motion
 from eomgen.mechanics.bodies.contact_modes import ContactMode
 from eomgen.mechanics.equations.system import system_of
+from eomgen.mechanics.initial_state import open_ties
+from eomgen.mechanics.initial_state.initial_state import start_of_motion
 from eomgen.model.contacts import contacts_of
 from eomgen.proof.friction_laws import leaving_at_start
 from eomgen.simulation.phase_models import PhaseModels
@@ -201,3 +205,18 @@ def test_places_of_rest_have_no_speeds_of_the_start():
     found = eomgen.statics(thrown)
     assert found.places and found.certify().ok
     assert eomgen.derive(thrown).certify().ok
+
+
+@pytest.mark.slow
+def test_how_near_ties_come_to_closing_is_sought_for_a_reader_alone(monkeypatch):
+    """That a contact is open at the start is found by its gap; the search, of seconds beside a loop, is for words."""
+    model = eomgen.loads(BALL.replace("HEIGHT", "0.5").replace('{ start = "START" }', "0.5"))
+    sought = []
+    monkeypatch.setattr(open_ties, "nearest_miss", lambda *_: sought.append(1))
+    assert eomgen.derive(model).graph.system.modes["floor"].closed is False
+    assert eomgen.simulate(model, time=0.1, target="numpy").ok
+    assert not sought
+    with pytest.raises(OpenTies) as refused:
+        start_of_motion(system_of(model))
+    assert "open by 0.5" in str(pickle.loads(pickle.dumps(refused.value)))
+    assert sought == [1]

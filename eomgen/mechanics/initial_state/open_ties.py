@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
+from functools import partial
 
 from eomgen.errors import DerivationError, OpenTies
 from eomgen.mechanics.constraints.assembly import open_by
@@ -37,7 +38,7 @@ def refuse_open_gaps(system: System, state: State) -> None:
         )
     size = _in_full(system, row, size, state)
     what = f"'{row.tie}' (row {row.number}) does not close at the start: it is open by {size:.3g}"
-    raise OpenTies(f"{what}{_nearest(system, state)}", f"constraints.{row.tie}", _mend(system, gap))
+    raise OpenTies(what, f"constraints.{row.tie}", _mend(system, gap), partial(_nearest, system, state))
 
 
 def _lacking(gap: Scalar, state: State) -> str:
