@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import math
 from dataclasses import replace
 from pathlib import Path
 
@@ -197,3 +198,23 @@ def test_small_turns_of_a_quaternion_are_proven_as_far_as_they_can_be():
     """A free top about a steady spin: what grows like t is looked at along coordinates, and small turns are none."""
     top = eomgen.load(MODELS / "seeds" / "s1_symmetric_top.toml")
     assert eomgen.linearize(top, about="start").certify().ok
+
+
+TILTED = """
+eomgen = 1
+space = "plane"
+parameters = { m = 2, k = 50, alpha = { value = 25, unit = "deg" } }
+coordinates = { x = 0 }
+[bodies.mass]
+mass = "m"
+joint = { kind = "prismatic", displacement = "x", axis = [1, 0], stiffness = "k*cos(alpha)" }
+"""
+
+
+def test_matrices_with_an_angle_in_degrees_are_read_back_as_printed():
+    """K = k cos(alpha) at alpha = 25 deg, a multiple of pi: the proof of what is printed needs its number."""
+    found = eomgen.linearize(eomgen.loads(TILTED))
+    assert found.certify().ok
+    assert abs(found.frequencies[0].mode.eigenvalue) == pytest.approx(
+        math.sqrt(25 * math.cos(math.radians(25))), rel=1e-12
+    )

@@ -19,7 +19,7 @@ def printed_modes(derivation: Document) -> PrintedModes:
     """Formulas at the values of the parameters; where one has none, nan."""
     statements = [s for step in derivation.steps for s in step.statements]
     named = list(_named(statements))
-    values = derivation.parameters
+    values = {name: _number(x) for name, x in derivation.parameters.items() if x is not None}
     matrices: dict[str, Any] = {}
     for name, side in named:
         if isinstance(side, Matrix):
@@ -45,7 +45,12 @@ def _named(statements: list[Any]) -> Iterator[tuple[str, Side]]:
             yield statement.sides[0].text, statement.sides[1]
 
 
-def _worth(side: Any, values: Mapping[str, Any]) -> float:
+def _number(value: Any) -> float:
+    """The value of a parameter: an angle in degrees is an expression of pi."""
+    return float(evaluate((value,), {}, FLOAT)[0] if isinstance(value, Node) else value)
+
+
+def _worth(side: Any, values: Mapping[str, float]) -> float:
     if isinstance(side, Law):
         try:
             return float(side.text)
@@ -56,4 +61,4 @@ def _worth(side: Any, values: Mapping[str, Any]) -> float:
     symbols = symbols_of((side,))
     if any(x.name not in values for x in symbols):
         return math.nan
-    return float(evaluate((side,), {x: float(values[x.name]) for x in symbols}, FLOAT)[0])
+    return float(evaluate((side,), {x: values[x.name] for x in symbols}, FLOAT)[0])
