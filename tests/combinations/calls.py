@@ -94,8 +94,12 @@ WEIGHTS = {
 PAGES = ("r.html", "r.ipynb", "r.md", "r.tex", "r.pdf")
 
 
-def commands(text: str, rng: Random, more: int = 3) -> list[list[str]]:
-    """The command lines of one model: what everybody asks, and of the rest some, with their ways in turn."""
+def commands(text: str, rng: Random, more: int = 3, *, every_format: bool = False) -> list[list[str]]:
+    """The command lines of one model: what everybody asks, and of the rest some, with their ways in turn.
+
+    Args:
+        every_format: each in all formats, not in one that is drawn.
+    """
     form = lambda: ["--format", rng.choice(FORMATS)]  # noqa: E731
     first = re.search(r"^\[coordinates\]\n(\w+) =", text, re.M)
     q = first[1] if first else "q"
@@ -125,7 +129,17 @@ def commands(text: str, rng: Random, more: int = 3) -> list[list[str]]:
         "simulate": ["simulate", "MODEL", *run, "-o", "OUT/run.csv", "--units"],
     }
     drawn = sorted(rest, key=lambda verb: rng.random() ** (1 / WEIGHTS[verb]), reverse=True)
-    return found + [rest[verb] for verb in drawn[:more]]
+    asked = found + [rest[verb] for verb in drawn[:more]]
+    return [each for words in asked for each in (in_every_format(words) if every_format else [words])]
+
+
+def in_every_format(words: list[str]) -> list[list[str]]:
+    """The same words with each format in the place of the one they name, which comes first; else the words alone."""
+    if "--format" not in words or words[0] == "simulate":
+        return [words]
+    place = words.index("--format") + 1
+    others = [form for form in FORMATS if form != words[place]]
+    return [[*words[:place], form, *words[place + 1 :]] for form in (words[place], *others)]
 
 
 def by_command(text: str, words: list[str], folder: Path) -> Outcome:

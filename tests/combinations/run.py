@@ -89,7 +89,9 @@ def _of_model(text: str, levels: dict[str, str], seed: int, through_verbs: bool)
     if through_verbs:
         rng = Random(f"calls{sorted(levels.items())}{seed}")
         with tempfile.TemporaryDirectory() as folder:
-            outcomes += [calls.by_command(text, words, Path(folder)) for words in calls.commands(text, rng)]
+            outcomes += [
+                calls.by_command(text, words, Path(folder)) for words in calls.commands(text, rng, every_format=True)
+            ]
         outcomes += calls.by_python(text, calls.python_doors(rng))
         if not row["refused"] and rng.random() < 0.3:
             outcomes += calls.judged(text, rng)
