@@ -23,7 +23,7 @@ from typing import Any
 import sympy
 
 import eomgen
-from eomgen.codegen.reactions import determinate
+from eomgen.codegen.programs import determinate
 from eomgen.symbolic.expression.traversal import operations
 
 HERE = Path(__file__).parent

@@ -15,16 +15,16 @@ PACKAGE = Path(__file__).resolve().parent.parent / "eomgen"
 LATER = {  # what was built after the house was laid out, by what it is for: patterns of paths inside the package
     "pages and pictures": "page/ scene/ documents/*motion* documents/*pictur* documents/*drawing* documents/letters* "
     "verbs/play.py verbs/animate.py verbs/report.py",
-    "equations that somebody derived": "judge/ verbs/verify.py symbolic/expression/habits.py",
-    "other languages, series, lanes": "codegen/targets/[d-z]*.py codegen/targets/beside.py "
-    "codegen/targets/branch_free.py codegen/targets/casadi.py codegen/targets/cpp.py "
-    "codegen/targets/c_integrator.py codegen/targets/c_lanes.py "
-    "codegen/taylor.py codegen/series.py codegen/batching.py codegen/matrices.py codegen/given_motion.py "
-    "codegen/single_precision.py",
+    "equations that somebody derived": "judge/ verbs/verify.py symbolic/expression/text.py",
+    "other languages, series, lanes": "codegen/targets/[d-z]*.py codegen/targets/loading.py "
+    "codegen/targets/python_files.py codegen/targets/casadi.py codegen/targets/cpp.py "
+    "codegen/targets/c_lanes.py codegen/targets/c_lanes.py "
+    "codegen/taylor.py codegen/taylor.py codegen/batching.py codegen/programs.py codegen/rhs.py "
+    "codegen/vectors.py",
     "robots and other programs": "robots/ exported.py verbs/importing.py verbs/exporting.py",
     "many runs, sweeps, parameters": "sweeps/ sensitivities/ identification/ questions/many_runs.py "
-    "questions/simulator.py questions/controlled.py questions/of_a_run.py verbs/sweep.py verbs/identify.py",
-    "compiled steps": "simulation/compiled_steps.py simulation/heyoka_steps.py simulation/dense_motion.py "
+    "questions/simulator.py questions/simulator.py questions/of_a_run.py verbs/sweep.py verbs/identify.py",
+    "compiled steps": "simulation/compiled_steps.py simulation/compiled_steps.py simulation/motion.py "
     "simulation/phase_functions.py",
     "kept and compared derivations": "kept.py verbs/kept_derivation.py verbs/derive_difference.py",
     "units of what is written": "symbolic/expression/dimensions.py",

@@ -209,7 +209,7 @@ def against_mujoco(text_or_path: str | Path, ours: Ours, rng: Any) -> float:
 
 
 def _spec(path: Path) -> Any:
-    from eomgen.robots.mjcf_files import spec_of
+    from eomgen.robots.mjcf import spec_of
 
     return spec_of(path)
 

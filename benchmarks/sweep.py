@@ -17,7 +17,7 @@ import time
 from pathlib import Path
 
 import eomgen
-from eomgen.sweeps import kernel
+from eomgen.sweeps import workers as kernel
 
 MODEL = Path(__file__).parent.parent / "models" / "cart_pole.toml"
 ASKED = ("last(x)", "max(theta)", "last(theta')")

@@ -1,13 +1,13 @@
 """The public names, for type checkers: at run time each is imported on its first use (`__init__.py`)."""
 
-from eomgen.codegen.inverse import InverseDynamics as InverseDynamics
+from eomgen.codegen.programs import InverseDynamics as InverseDynamics
+from eomgen.documents.figures import run_picture as run_picture
 from eomgen.documents.inertia.result import Inertia as Inertia
 from eomgen.documents.inertia.result import inertia as inertia
 from eomgen.documents.kinematics.result import Kinematics as Kinematics
 from eomgen.documents.linearize.result import Linearization as Linearization
 from eomgen.documents.linearize.result import linearize as linearize
 from eomgen.documents.rest_picture import rest_picture as rest_picture
-from eomgen.documents.run_pictures import run_picture as run_picture
 from eomgen.documents.statics.result import Statics as Statics
 from eomgen.documents.statics.result import statics as statics
 from eomgen.equations import Equations as Equations
@@ -29,8 +29,8 @@ from eomgen.identification.regressor import Regressor as Regressor
 from eomgen.identification.regressor import regressor as regressor
 from eomgen.judge.judge import verify as verify
 from eomgen.judge.verdict import Verdict as Verdict
-from eomgen.mechanics.constraints.freedom import Freedom as Freedom
-from eomgen.mechanics.constraints.freedom import freedom_of as freedom_of
+from eomgen.mechanics.constraints.rank import Freedom as Freedom
+from eomgen.mechanics.constraints.rank import freedom_of as freedom_of
 from eomgen.model import constraints as constraints
 from eomgen.model import forces as forces
 from eomgen.model import joints as joints
@@ -62,7 +62,7 @@ from eomgen.proof.check import Certificate as Certificate
 from eomgen.proof.check import Check as Check
 from eomgen.questions.answers import Answer as Answer
 from eomgen.questions.answers import solve as solve
-from eomgen.questions.runs import Runs as Runs
+from eomgen.questions.simulator import Runs as Runs
 from eomgen.questions.simulator import Simulator as Simulator
 from eomgen.questions.velocities import kinematics as kinematics
 from eomgen.robots.importing import import_robot as import_robot

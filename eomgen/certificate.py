@@ -10,15 +10,14 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from eomgen.mechanics.balance.friction import has_friction
-from eomgen.mechanics.equations.equations_of_motion import EquationsOfMotion
+from eomgen.mechanics.dynamics.system import EquationsOfMotion
+from eomgen.mechanics.free_bodies.friction import has_friction
 from eomgen.proof import identities
 from eomgen.proof.check import Certificate
 from eomgen.proof.parameters import other_data
 from eomgen.proof.printed import Printed
 from eomgen.proof.trials import Trials
-from eomgen.symbolic.numeric.gc_pause import growing
-from eomgen.symbolic.numeric.work import doing
+from eomgen.symbolic.numeric.work import doing, growing
 
 if TYPE_CHECKING:
     from eomgen.codegen.rhs import RightHandSide

@@ -323,7 +323,7 @@ def linearize_command(view: str, over: str | None, **options: Any) -> int:
     modes, stability with the conditions of Hurwitz, transfer functions from the inputs.
     """
     from eomgen.documents.linearize.result import linearize
-    from eomgen.model.ranges import range_of
+    from eomgen.model.replaced import range_of
 
     refuse_idle(view=(options["plot"] is not None, OF_PLOT))
     if (over is not None) != (view == "locus"):

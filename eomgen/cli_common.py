@@ -22,9 +22,8 @@ from eomgen.cli_options import form_asked
 from eomgen.edge import INTERRUPTED, Placed, failure, guarded, problems_of, say
 from eomgen.errors import DerivationError, EomgenError, ModelError, OpenTies, RunFailed, UsageError
 from eomgen.records import dataclass
-from eomgen.symbolic.expression.habits import other_words
-from eomgen.symbolic.numeric.gc_pause import growing, seldom
-from eomgen.symbolic.numeric.work import doing, patience
+from eomgen.symbolic.expression.text import other_words
+from eomgen.symbolic.numeric.work import doing, growing, patience, seldom
 from eomgen.version import SCHEMA_VERSION
 
 if TYPE_CHECKING:

@@ -69,7 +69,7 @@ def time_typed(typed: object) -> float:
         BadParameter: it is none.
     """
     from eomgen.errors import UsageError
-    from eomgen.symbolic.expression.typed import seconds
+    from eomgen.symbolic.expression.units import seconds
 
     try:
         return seconds(typed)

@@ -169,7 +169,7 @@ def sweep_command(where: str, wants_json: bool, output: str | None, strict: bool
     DIR/table.csv, what failed with its message. The same command goes on where it was stopped. `--replay RUN DIR` makes
     one run once more.
     """
-    from eomgen.sweeps.plan import Stepped
+    from eomgen.sweeps.design import Stepped
     from eomgen.verbs.sweep import SweepAsked, replay_document, sweep_document
 
     form, drawn = form_asked(wants_json, None), bool(options["random"])

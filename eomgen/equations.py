@@ -10,47 +10,51 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from eomgen.certificate import certify
-from eomgen.codegen.asked_outputs import AskedOutputs, outputs_of_state
-from eomgen.codegen.inverse import InverseDynamics
-from eomgen.codegen.matrices import RateSlopes, slopes_of
 from eomgen.codegen.program import Program, right_hand_side
-from eomgen.codegen.reactions import ReactionFunction, determinate, reactions_program
+from eomgen.codegen.programs import (
+    AskedOutputs,
+    InverseDynamics,
+    RateSlopes,
+    ReactionFunction,
+    determinate,
+    outputs_of_state,
+    reactions_program,
+    slopes_of,
+)
 from eomgen.codegen.rhs import RightHandSide, compiled, parameter_vector
 from eomgen.documents.derivation import derivation_of, printed_formulas
 from eomgen.documents.document import Document
+from eomgen.documents.json_form import Texts, equations_payload, payload_texts
 from eomgen.documents.latex import equations_latex
-from eomgen.documents.payload import Texts, equations_payload, payload_texts
+from eomgen.documents.motion_steps import assumption_steps
 from eomgen.documents.proven import proven
 from eomgen.documents.reaction_steps import letters_of
 from eomgen.documents.result import Result
-from eomgen.documents.setting_steps import assumption_steps
 from eomgen.errors import DerivationError, MissingValues, UsageError
-from eomgen.mechanics.balance.friction import equations_of_motion, with_rest
-from eomgen.mechanics.equations.articulated import with_accelerations
-from eomgen.mechanics.equations.equations_of_motion import EquationsOfMotion
-from eomgen.mechanics.equations.matrices import coriolis_of, gravity_of, jacobian_of_point
-from eomgen.mechanics.equations.system import System, system_of
-from eomgen.mechanics.equations.wellposed import refuse_massless
-from eomgen.mechanics.formulations import derived_by
-from eomgen.mechanics.initial_state.initial_state import start_state
+from eomgen.mechanics.dynamics.accelerations import with_accelerations
+from eomgen.mechanics.dynamics.formulations import derived_by
+from eomgen.mechanics.dynamics.matrices import coriolis_of, gravity_of, jacobian_of_point
+from eomgen.mechanics.dynamics.system import EquationsOfMotion, System, system_of
+from eomgen.mechanics.dynamics.wellposed import refuse_massless
+from eomgen.mechanics.free_bodies.friction import equations_of_motion, with_rest
 from eomgen.mechanics.reactions.inverse import inverse_of
 from eomgen.mechanics.reactions.reactions import Reactions, reactions_of
+from eomgen.mechanics.start.state import start_state
 from eomgen.model.findings import nearest
 from eomgen.model.parts import Model
 from eomgen.proof.check import Certificate
 from eomgen.proof.printed import Printed
 from eomgen.records import dataclass
 from eomgen.symbolic.exact.normal_form import readable_all
-from eomgen.symbolic.expression.expressions import as_expression
-from eomgen.symbolic.expression.graph import Scalar
+from eomgen.symbolic.expression.node import Scalar
+from eomgen.symbolic.expression.text import as_expression
 from eomgen.symbolic.expression.traversal import operations
 from eomgen.symbolic.numeric.evaluation import FLOAT, evaluate
-from eomgen.symbolic.numeric.gc_pause import growing
-from eomgen.symbolic.numeric.work import Work, doing
+from eomgen.symbolic.numeric.work import Work, doing, growing
 from eomgen.symbolic.print.text import text_size
 
 if TYPE_CHECKING:
-    from eomgen.mechanics.small_motions.first_order import FirstOrder
+    from eomgen.mechanics.linearization.first_order import FirstOrder
 
 FEW = 200  # operations of a matrix that a person reads
 
@@ -169,7 +173,7 @@ class Equations(Result):
         Raises:
             MissingValues: parameters without values.
         """
-        from eomgen.mechanics.small_motions.slopes import slopes_at
+        from eomgen.mechanics.linearization.first_order import slopes_at
 
         s = self.graph.symbols
         values = (t, *(parameter_vector(self.model) if p is None else p), *(self.start() if x is None else x))
@@ -180,7 +184,7 @@ class Equations(Result):
 
     @cached_property
     def _first_order(self) -> FirstOrder:
-        from eomgen.mechanics.small_motions.first_order import FirstOrder
+        from eomgen.mechanics.linearization.first_order import FirstOrder
 
         return FirstOrder(self.system, ())
 
@@ -192,7 +196,7 @@ class Equations(Result):
         Raises:
             DerivationError: friction that hangs on the reactions.
         """
-        from eomgen.mechanics.equations.sympy_system import sympy_system
+        from eomgen.mechanics.dynamics.matrices import sympy_system
 
         return sympy_system(self.graph)
 

@@ -14,16 +14,16 @@ from xml.sax.saxutils import quoteattr
 
 from eomgen.codegen.rhs import parameter_vector
 from eomgen.errors import DerivationError, visible
-from eomgen.mechanics.bodies.inertia import mass_properties
-from eomgen.mechanics.bodies.kinematics import GROUND, BodyLink
-from eomgen.mechanics.equations.system import System
+from eomgen.mechanics.dynamics.system import System
+from eomgen.mechanics.kinematics.inertia import mass_properties
+from eomgen.mechanics.kinematics.motion import GROUND, BodyLink
 from eomgen.model.forces.load import UniformField
 from eomgen.model.reader import ModelOrPath
 from eomgen.pipeline import derive
 from eomgen.records import dataclass
-from eomgen.robots.drawn_up import UNLIMITED, LeftOut, LegalNames, remarked
+from eomgen.robots.tables import UNLIMITED, LeftOut, LegalNames, remarked
 from eomgen.symbolic.expression.derivative import depends_on, depends_on_any, gradient, substituted, symbols_of
-from eomgen.symbolic.expression.graph import Scalar
+from eomgen.symbolic.expression.node import Scalar
 from eomgen.symbolic.expression.spatial import Pose, minus
 from eomgen.symbolic.numeric.evaluation import FLOAT, evaluate
 from eomgen.symbolic.numeric.tolerances import ROUNDING

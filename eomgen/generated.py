@@ -12,12 +12,9 @@ import numpy as np
 
 from eomgen import files, pipeline
 from eomgen.certificate import certify
-from eomgen.codegen.files import texts_of
-from eomgen.codegen.matrices import Blocks, entries_of, matrices_of, program_of_blocks
-from eomgen.codegen.names import stem_of
-from eomgen.codegen.program import Program, Solve, program_of
+from eomgen.codegen.program import Program, Solve, program_of, stem_of
+from eomgen.codegen.programs import Blocks, entries_of, matrices_of, program_of_blocks
 from eomgen.codegen.rhs import RightHandSide, target_named
-from eomgen.codegen.single_precision import single_error, single_vectors
 from eomgen.codegen.targets import ALL
 from eomgen.codegen.targets.base import (
     INVERSE,
@@ -33,27 +30,25 @@ from eomgen.codegen.targets.base import (
     Role,
     TestVector,
 )
-from eomgen.codegen.targets.c_integrator import RUN_USE, integrator_files
-from eomgen.codegen.vectors import vectors
+from eomgen.codegen.targets.c_lanes import RUN_USE, integrator_files
+from eomgen.codegen.vectors import single_error, single_vectors, texts_of, vectors
 from eomgen.equations import Equations
 from eomgen.errors import DerivationError, RunFailed, ToolMissing, UsageError, visible
 from eomgen.identification.proof_of_groups import groups_checked
 from eomgen.identification.regressor import Regressor, regressor_of
-from eomgen.mechanics.balance.named_reactions import named_reactions
-from eomgen.mechanics.formulations.massless_nodes import with_nodes_balanced
+from eomgen.mechanics.dynamics.formulations import with_nodes_balanced
+from eomgen.mechanics.free_bodies.named_reactions import named_reactions
 from eomgen.model.contacts import contacts_of
 from eomgen.model.parts import Model
 from eomgen.model.reader import ModelOrPath, model_at
 from eomgen.model.replaced import Values
 from eomgen.proof.check import Certificate, Check, checked, unchecked
-from eomgen.proof.emitted_code import PhaseMotion, TriedState
-from eomgen.proof.shipped_fmu import fmu_told
+from eomgen.proof.emitted_code import Judged, PhaseMotion, TriedState, Written, fmu_told, start_state_tried, unwritten
 from eomgen.proof.states import consistent_states
-from eomgen.proof.written_code import Judged, Written, start_state_tried, unwritten
 from eomgen.questions.run import pulling
 from eomgen.records import dataclass
-from eomgen.simulation.configuration import paths_of
-from eomgen.symbolic.expression.graph import Scalar
+from eomgen.simulation.contacts import paths_of
+from eomgen.symbolic.expression.node import Scalar
 from eomgen.symbolic.numeric.tolerances import BEST, RUN, SINGLE
 from eomgen.symbolic.numeric.work import doing
 from eomgen.version import __version__

@@ -7,32 +7,29 @@ from collections.abc import Mapping, Sequence
 from threading import get_ident
 from typing import TYPE_CHECKING, Any
 
-from eomgen.codegen.inverse import InverseDynamics
+from eomgen.codegen.programs import InverseDynamics
 from eomgen.equations import Equations
 from eomgen.errors import UsageError
-from eomgen.mechanics.balance.friction import equations_of_motion
-from eomgen.mechanics.bodies.contact_modes import ContactModes
-from eomgen.mechanics.constraints.edges import limits_passed
-from eomgen.mechanics.equations.system import system_of
-from eomgen.mechanics.formulations import METHODS
-from eomgen.mechanics.formulations.massless_nodes import told_of_nodes, with_nodes_balanced
+from eomgen.mechanics.constraints.rows import limits_passed
+from eomgen.mechanics.dynamics.formulations import METHODS, told_of_nodes, with_nodes_balanced
+from eomgen.mechanics.dynamics.system import system_of
+from eomgen.mechanics.free_bodies.friction import equations_of_motion
+from eomgen.mechanics.kinematics.scene import ContactModes
 from eomgen.mechanics.reactions.reactions import reactions_of
-from eomgen.mechanics.statics.contacts_at_start import ContactsAtStart, contacts_at_start
+from eomgen.mechanics.statics.contacts import ContactsAtStart, contacts_at_start
 from eomgen.model.fields import WrittenEquation
 from eomgen.model.reader import ModelOrPath, model_at
 from eomgen.model.replaced import Values, with_inputs
 from eomgen.model.samples import left_tables
 from eomgen.model.unknowns import refuse_motion
 from eomgen.records import recalled
-from eomgen.symbolic.expression.typed import Typed
-from eomgen.symbolic.numeric.gc_pause import growing
+from eomgen.symbolic.expression.units import Typed
 from eomgen.symbolic.numeric.tolerances import RUN
-from eomgen.symbolic.numeric.work import doing
+from eomgen.symbolic.numeric.work import doing, growing
 
 if TYPE_CHECKING:  # what moves is loaded where something moves
     from eomgen.model.parts import Model
-    from eomgen.questions.runs import Runs
-    from eomgen.questions.simulator import Simulator
+    from eomgen.questions.simulator import Runs, Simulator
     from eomgen.simulation.result import Trajectory
 
 
@@ -174,8 +171,7 @@ def simulate(
     Raises:
         MissingValues: parameters without a value, all named.
     """
-    from eomgen.questions.controlled import controlled_run, controllers_of, with_controlled
-    from eomgen.questions.simulator import OUTPUTS, REACTIONS
+    from eomgen.questions.simulator import OUTPUTS, REACTIONS, controlled_run, controllers_of, with_controlled
     from eomgen.simulation.integrate import SAMPLES
 
     model = with_nodes_balanced(model_at(model, parameters, start))

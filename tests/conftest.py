@@ -14,7 +14,7 @@ from typing import NoReturn
 import pytest
 from quick_set import is_slow, model_of
 
-from eomgen.symbolic.numeric.gc_pause import SELDOM
+from eomgen.symbolic.numeric.work import SELDOM
 
 os.environ.setdefault("EOMGEN_PATIENCE", "none")  # no test hangs on how busy the machine is
 if shutil.which("cc"):  # a third of all tests' time went into optimizing what runs for milliseconds

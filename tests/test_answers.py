@@ -8,7 +8,7 @@ import pytest
 
 import eomgen
 from eomgen import Answer
-from eomgen.symbolic.expression.expressions import parse
+from eomgen.symbolic.expression.text import parse
 
 pytestmark = pytest.mark.slow
 

@@ -8,10 +8,9 @@ import pytest
 from slow_run import usual
 
 import eomgen
-from eomgen.judge.acting import what_acts
 from eomgen.judge.balances import Balances
 from eomgen.judge.case import Case
-from eomgen.judge.cut_beams import cut_beam
+from eomgen.judge.cut_bodies import cut_beam, what_acts
 from eomgen.judge.decision import is_zero_everywhere
 from eomgen.symbolic.expression.derivative import substituted
 

@@ -8,8 +8,7 @@ import numpy as np
 import pytest
 
 from eomgen.symbolic.expression.graph import Graph
-from eomgen.symbolic.numeric.batch_evaluation import Layers
-from eomgen.symbolic.numeric.evaluation import FLOAT, evaluate
+from eomgen.symbolic.numeric.evaluation import FLOAT, Layers, evaluate
 
 
 def formulas():

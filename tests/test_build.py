@@ -16,9 +16,9 @@ from eomgen.codegen.program import program_of, right_hand_side
 from eomgen.codegen.rhs import compiled
 from eomgen.codegen.targets.c import c_text
 from eomgen.errors import RunFailed, TextRefused, ToolMissing
-from eomgen.symbolic.expression.functions import cos, sin, sqrt
+from eomgen.symbolic.expression.formula import cos, sin, sqrt
 from eomgen.symbolic.expression.graph import Graph
-from eomgen.symbolic.expression.symbols import Symbols
+from eomgen.symbolic.expression.traversal import Symbols
 
 needs_cc = pytest.mark.skipif(build.compiler() is None, reason="no C compiler")
 

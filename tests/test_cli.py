@@ -22,8 +22,7 @@ from eomgen.codegen.build import compiler
 from eomgen.codegen.targets import ALL
 from eomgen.documents import rendered
 from eomgen.documents.document import Document
-from eomgen.documents.quantity import Quantity
-from eomgen.documents.statements import Found, Listing, Step
+from eomgen.documents.statements import Found, Listing, Quantity, Step
 from eomgen.proof.check import Certificate, Check
 from eomgen.version import __version__
 
@@ -240,7 +239,7 @@ def test_a_missing_package_is_exit_code_4(monkeypatch):
     monkeypatch.setitem(sys.modules, "numpy", None)
     with monkeypatch.context() as patch:
         patch.delitem(sys.modules, "eomgen.verbs.check")
-        patch.delitem(sys.modules, "eomgen.mechanics.constraints.freedom", raising=False)
+        patch.delitem(sys.modules, "eomgen.mechanics.constraints.rank", raising=False)
         result = run("check", PENDULUM)
     assert result.exit_code == 4
     assert "the package 'numpy' is not installed" in result.stderr

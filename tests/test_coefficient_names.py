@@ -8,7 +8,8 @@ import pytest
 from each import each
 
 import eomgen
-from eomgen.documents import coefficient_names, rendered
+from eomgen.documents import reading as coefficient_names
+from eomgen.documents import rendered
 from eomgen.documents.text import side_text
 from eomgen.proof.check import Certificate
 
@@ -107,7 +108,7 @@ def test_the_proof_sees_through_the_names(monkeypatch: pytest.MonkeyPatch) -> No
 
     assert proof().ok
     monkeypatch.setattr("eomgen.documents.equation_steps.with_coefficients_named", twice)
-    monkeypatch.setattr("eomgen.documents.maggi_steps.with_coefficients_named", twice)
+    monkeypatch.setattr("eomgen.documents.energy_steps.with_coefficients_named", twice)
     assert proof().ok is False
 
 

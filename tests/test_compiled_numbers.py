@@ -13,7 +13,7 @@ import pytest
 import sympy
 from slow_run import usual
 
-from eomgen.symbolic.expression.functions import over, sqrt
+from eomgen.symbolic.expression.formula import over, sqrt
 from eomgen.symbolic.expression.graph import Graph
 from eomgen.symbolic.expression.rational import Fraction, fraction_of, known_to_sympy
 

@@ -11,7 +11,7 @@ from slow_run import usual
 import eomgen
 from eomgen.codegen.build import compiler
 from eomgen.simulation.compiled_steps import CompiledSteps
-from eomgen.simulation.contact_signals import ContactSignals, divisors
+from eomgen.simulation.contacts import ContactSignals, divisors
 from eomgen.simulation.integrator import Stepping, march
 from eomgen.symbolic.expression.graph import Graph
 

@@ -10,7 +10,7 @@ import pytest
 import eomgen
 from eomgen.questions import many_runs
 from eomgen.records import with_fields
-from eomgen.simulation.accuracy import accuracy_of
+from eomgen.simulation.solvers import accuracy_of
 
 pytestmark = pytest.mark.slow
 

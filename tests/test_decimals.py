@@ -8,8 +8,8 @@ from each import each
 from hypothesis import given
 from hypothesis import strategies as st
 
-from eomgen.symbolic.expression.expressions import parse
-from eomgen.symbolic.print.decimals import decimal_of, number_text
+from eomgen.symbolic.expression.text import parse
+from eomgen.symbolic.print.layout import decimal_of, number_text
 
 
 @each(

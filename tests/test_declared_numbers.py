@@ -11,7 +11,7 @@ from each import each
 import eomgen
 from eomgen.cli import main
 from eomgen.proof.declared_numbers import numbers_otherwise
-from eomgen.symbolic.expression.expressions import Expression
+from eomgen.symbolic.expression.formula import Expression
 
 MODEL = """
 eomgen = 1

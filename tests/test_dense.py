@@ -7,7 +7,8 @@ import pytest
 from maximal import dense_solution
 
 import eomgen
-from eomgen.symbolic.numeric import dense, modular
+from eomgen.symbolic.numeric import arithmetic as modular
+from eomgen.symbolic.numeric import dense
 from eomgen.symbolic.numeric.dense import independent, scaled_condition
 from eomgen.symbolic.numeric.evaluation import NoValue, fifty_digits
 

@@ -19,7 +19,8 @@ from eomgen.symbolic.expression.derivative import (
     tangent,
     tangents,
 )
-from eomgen.symbolic.expression.graph import Graph, Node
+from eomgen.symbolic.expression.graph import Graph
+from eomgen.symbolic.expression.node import Node
 from eomgen.symbolic.numeric.evaluation import FLOAT, evaluate
 
 pytestmark = pytest.mark.slow

@@ -12,8 +12,8 @@ import eomgen
 from eomgen.documents import rendered
 from eomgen.documents.document import Document
 from eomgen.model.values import exact_parameters
-from eomgen.symbolic.expression.expressions import parse
 from eomgen.symbolic.expression.graph import Graph
+from eomgen.symbolic.expression.text import parse
 from eomgen.symbolic.numeric.evaluation import FLOAT, evaluate
 from eomgen.verbs.reactions import reactions_document
 from eomgen.verbs.solve import solve_document

@@ -13,16 +13,9 @@ from hypothesis import strategies as st
 
 import eomgen
 from eomgen.errors import ExpressionError
-from eomgen.symbolic.expression.expressions import (
-    Call,
-    Expression,
-    Reference,
-    as_expression,
-    is_name,
-    parse,
-    parse_equation,
-)
+from eomgen.symbolic.expression.formula import Call, Expression, Reference
 from eomgen.symbolic.expression.graph import Graph
+from eomgen.symbolic.expression.text import as_expression, is_name, parse, parse_equation
 
 VALUES = {"x": Fraction(3), "y": Fraction(5), "z": Fraction(-7, 2)}
 

@@ -9,16 +9,14 @@ import pytest
 import eomgen
 from eomgen import documents
 from eomgen.documents.document import Document
-from eomgen.documents.kinematics.centrode_plot import centrode_panel
-from eomgen.documents.kinematics.field_steps import field_payload, field_steps
-from eomgen.documents.kinematics.relative_steps import relative_payload, relative_steps
-from eomgen.mechanics.fields.centrodes import all_centrodes
-from eomgen.mechanics.fields.motion_kind import Kinds
+from eomgen.documents.kinematics.plots import centrode_panel
+from eomgen.documents.kinematics.steps import field_payload, field_steps, relative_payload, relative_steps
+from eomgen.mechanics.instant.motion_kind import Kinds, all_centrodes
 from eomgen.questions.at_instant import parameters_of
 from eomgen.questions.in_phase import PhaseEquations
 from eomgen.questions.motion_from_start import MotionFromStart
 from eomgen.symbolic.exact.normal_form import equal
-from eomgen.symbolic.expression.expressions import parse
+from eomgen.symbolic.expression.text import parse
 
 TURNTABLE = """
 eomgen = 1

@@ -6,8 +6,8 @@ from fractions import Fraction
 
 import pytest
 
-from eomgen.symbolic.expression.expressions import Expression, as_expression, parse
-from eomgen.symbolic.expression.functions import cos, selected, sin
+from eomgen.symbolic.expression.formula import Expression, cos, selected, sin
+from eomgen.symbolic.expression.text import as_expression, parse
 
 A, B = parse("x + 2*y"), parse("-x/y^2")
 VALUES = {"x": Fraction(3, 7), "y": Fraction(-5, 2), "pi": 3}

@@ -9,7 +9,7 @@ import pytest
 
 import eomgen
 from eomgen.documents import rendered
-from eomgen.mechanics.constraints.freedom import freedom_of
+from eomgen.mechanics.constraints.rank import freedom_of
 from eomgen.proof.freedoms import counted_otherwise, lines_otherwise, standing_otherwise
 from eomgen.verbs.check import check_document
 from eomgen.verbs.checked import checked_model

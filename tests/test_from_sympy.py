@@ -27,8 +27,8 @@ from sympy.physics.mechanics import (
 
 import eomgen
 from eomgen.errors import DerivationError, UsageError
-from eomgen.robots import sympy_words
-from eomgen.robots.sympy_words import file_texts
+from eomgen.robots import sympy_joints as sympy_words
+from eomgen.robots.sympy_joints import file_texts
 from tests.helpers.sympy_systems import SYSTEMS, accelerations_by_kane, accelerations_by_sympy, bicycle
 
 pytestmark = pytest.mark.slow
@@ -158,7 +158,7 @@ def test_what_is_too_long_for_a_model_file_is_said_to_be(monkeypatch):
     long = sum(sm.Symbol(f"a{k}".ljust(80, "x")) * sm.sin(k * q) for k in range(1, 120))
     model = eomgen.from_sympy(LagrangesMethod(q.diff() ** 2 / 2 - long, [q]))
     assert "; " in model.forces["V"].energy.text and len(model.parameters) == 119
-    monkeypatch.setattr("eomgen.robots.sympy_words.LONGEST_WITH_PARTS", 10_000)
+    monkeypatch.setattr("eomgen.robots.sympy_joints.LONGEST_WITH_PARTS", 10_000)
     with pytest.raises(DerivationError, match=r"characters to write, of which a model file may have 10000"):
         eomgen.from_sympy(LagrangesMethod(q.diff() ** 2 / 2 - long, [q]))
 

@@ -7,8 +7,9 @@ from hypothesis import given
 from random_expressions import POINT, on_graph, smooth, trigonometric, values_at, with_floats
 
 from eomgen.errors import DerivationError
-from eomgen.symbolic.expression.functions import function
-from eomgen.symbolic.expression.graph import Graph, Node, collected, linear_terms
+from eomgen.symbolic.expression.formula import function
+from eomgen.symbolic.expression.graph import Graph
+from eomgen.symbolic.expression.node import Node, collected, linear_terms
 from eomgen.symbolic.expression.rational import Fraction
 from eomgen.symbolic.numeric.evaluation import FLOAT, evaluate
 from eomgen.symbolic.print.text import to_text

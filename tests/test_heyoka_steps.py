@@ -11,7 +11,7 @@ from tools import needs
 
 import eomgen
 from eomgen.errors import UsageError
-from eomgen.simulation.heyoka_steps import smooth
+from eomgen.simulation.compiled_steps import smooth
 
 pytestmark = pytest.mark.slow
 

@@ -19,8 +19,7 @@ from eomgen.cli import main
 from eomgen.errors import DerivationError, EomgenError, UsageError
 from eomgen.identification import fit
 from eomgen.identification.base_parameters import Group
-from eomgen.identification.consistent import numbers_of
-from eomgen.identification.fit import _begun_checked, noise_of
+from eomgen.identification.fit import _begun_checked, noise_of, numbers_of
 from eomgen.identification.proof_of_groups import certify_regressor, fit_checked, samples_checked, spread_checked
 from eomgen.identification.regressor import Regressor, regressor_of
 from eomgen.identification.tied_rows import sampled_rows

@@ -17,9 +17,8 @@ from slow_run import usual
 import eomgen
 from eomgen.cli import main
 from eomgen.codegen.program import program_of
-from eomgen.codegen.targets.base import RHS, Description
+from eomgen.codegen.targets.base import RHS, Description, SingleWords
 from eomgen.codegen.targets.c import SINGLE, TARGET
-from eomgen.codegen.targets.in_single import SingleWords
 from eomgen.errors import UsageError
 
 MODELS = Path(__file__).parent.parent / "models"

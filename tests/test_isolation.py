@@ -8,12 +8,12 @@ import numpy as np
 import pytest
 from each import each
 
-from eomgen.symbolic.expression.functions import NAMES
+from eomgen.symbolic.expression.formula import NAMES
 from eomgen.symbolic.expression.graph import Graph
+from eomgen.symbolic.numeric.arithmetic import INTERVALS
 from eomgen.symbolic.numeric.evaluation import FLOAT, evaluate, fifty_digits
-from eomgen.symbolic.numeric.intervals import INTERVALS
 from eomgen.symbolic.numeric.isolation import can_isolate, isolated
-from eomgen.symbolic.numeric.roots_nearby import Descent
+from eomgen.symbolic.numeric.roots import Descent
 
 graph = Graph()
 x, y = graph.symbol("x"), graph.symbol("y")

@@ -25,8 +25,7 @@ from eomgen.judge.case import Case
 from eomgen.judge.diagnosis import fitting, in_other_units, samples_of
 from eomgen.judge.handwriting import transcript
 from eomgen.judge.judge import Judge
-from eomgen.judge.products import Products
-from eomgen.judge.terms import powers_of
+from eomgen.judge.terms import Products, powers_of
 from eomgen.proof.verdicts import verdicts_again
 from eomgen.symbolic.expression.graph import Graph
 from eomgen.symbolic.expression.rational import Fraction

@@ -12,8 +12,7 @@ from each import each
 import eomgen
 from eomgen.model.part import slots_of
 from eomgen.page.figure import rest_figure
-from eomgen.scene.instant import drawn_start, frame_at
-from eomgen.scene.scene import Mark, Scene
+from eomgen.scene.scene import Mark, Scene, drawn_start, frame_at
 
 ROOT = Path(__file__).parent.parent
 sys.path.insert(0, str(ROOT / "docs" / "_ext"))

@@ -11,13 +11,13 @@ from slow_run import usual
 
 import eomgen
 from eomgen.errors import DerivationError, ModelError
-from eomgen.mechanics.bodies.kinematics import slide_of, velocity_of
-from eomgen.mechanics.bodies.system_scene import SystemScene
-from eomgen.mechanics.equations.system import System
-from eomgen.mechanics.formulations import recursive
+from eomgen.mechanics.dynamics import formulations as recursive
+from eomgen.mechanics.dynamics.system import System
+from eomgen.mechanics.kinematics.motion import slide_of, velocity_of
+from eomgen.mechanics.kinematics.scene import SystemScene
 from eomgen.symbolic.expression.derivative import substituted
-from eomgen.symbolic.expression.expressions import parse
 from eomgen.symbolic.expression.spatial import ZERO, apply
+from eomgen.symbolic.expression.text import parse
 
 pytestmark = pytest.mark.slow
 

@@ -11,19 +11,19 @@ from derivations import LOOSE, by_every_method, derivable, entries, equations, i
 
 from eomgen.documents import rendered
 from eomgen.documents.document import Document
-from eomgen.documents.reaction_names import Lettered
 from eomgen.documents.reaction_steps import letters_of
+from eomgen.documents.reaction_values import Lettered
 from eomgen.documents.statements import Formula
 from eomgen.equations import Equations
 from eomgen.errors import DerivationError
-from eomgen.mechanics.balance.named_reactions import named_reactions
-from eomgen.mechanics.equations.explicit_accelerations import short_accelerations
+from eomgen.mechanics.dynamics.explicit_accelerations import short_accelerations
+from eomgen.mechanics.free_bodies.named_reactions import named_reactions
 from eomgen.mechanics.reactions.reactions import reactions_of
 from eomgen.model.reader import loads
 from eomgen.pipeline import derive
 from eomgen.symbolic.exact.equality import equal_at_random_states
 from eomgen.symbolic.expression.derivative import substituted
-from eomgen.symbolic.expression.graph import Node, Scalar, is_zero
+from eomgen.symbolic.expression.node import Node, Scalar, is_zero
 from eomgen.symbolic.numeric.evaluation import FLOAT, evaluate
 
 pytestmark = [pytest.mark.slow, pytest.mark.by_model]

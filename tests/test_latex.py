@@ -16,13 +16,12 @@ from typesetting import lost_in_mathml, lost_in_typst
 from eomgen.documents import rendered
 from eomgen.documents.derivation import derivation_of
 from eomgen.documents.latex import equations_latex, unit_latex, value_latex
-from eomgen.documents.latex_lines import LINE, pieces, rows_of, runs_of
-from eomgen.documents.latex_math import Setter
-from eomgen.documents.latex_names import Notation, latex_escaped
+from eomgen.documents.latex_math import LINE, Notation, Setter, latex_escaped, pieces, rows_of, runs_of
 from eomgen.documents.markdown import markdown_escaped as escaped_markdown
 from eomgen.documents.statements import Omitted
-from eomgen.symbolic.expression.functions import cos, sin, sqrt
-from eomgen.symbolic.expression.graph import Graph, Scalar
+from eomgen.symbolic.expression.formula import cos, sin, sqrt
+from eomgen.symbolic.expression.graph import Graph
+from eomgen.symbolic.expression.node import Scalar
 
 pytestmark = [pytest.mark.slow, pytest.mark.by_model]
 

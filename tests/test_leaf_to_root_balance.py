@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from eomgen.simulation.leaf_to_root_balance import balanced_from_leaves, steps_of
+from eomgen.simulation.reaction_columns import balanced_from_leaves, steps_of
 
 
 def _bodies(parents: list[int], loops: list[tuple[int, int]], rng: np.random.Generator) -> tuple[np.ndarray, list]:

@@ -8,8 +8,9 @@ from each import each
 
 from eomgen.symbolic.exact.equality import equal_at_random_states, equal_at_real_states
 from eomgen.symbolic.expression.derivative import symbols_of
-from eomgen.symbolic.expression.functions import cos, function, sin, sqrt
-from eomgen.symbolic.expression.graph import Graph, Node
+from eomgen.symbolic.expression.formula import cos, function, sin, sqrt
+from eomgen.symbolic.expression.graph import Graph
+from eomgen.symbolic.expression.node import Node
 from eomgen.symbolic.numeric.evaluation import evaluate, fifty_digits
 from eomgen.symbolic.solve.linear import LinearSystem, Pivots, sparse_solution
 

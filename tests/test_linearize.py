@@ -15,7 +15,7 @@ import eomgen
 from eomgen.cli import main
 from eomgen.documents import rendered
 from eomgen.symbolic.exact.book_form import book_form
-from eomgen.symbolic.expression.expressions import parse
+from eomgen.symbolic.expression.text import parse
 from eomgen.symbolic.numeric.evaluation import evaluate, fifty_digits
 from eomgen.symbolic.numeric.tolerances import MET_AT_50
 from eomgen.symbolic.print.text import text_size, to_text

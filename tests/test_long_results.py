@@ -5,7 +5,7 @@ from __future__ import annotations
 import pytest
 
 import eomgen
-from eomgen.symbolic.expression.functions import cos, sin
+from eomgen.symbolic.expression.formula import cos, sin
 from eomgen.symbolic.expression.graph import Graph
 from eomgen.symbolic.print.text import LONGEST_RESULT, readable_text, text_size, to_text
 

@@ -10,12 +10,12 @@ from each import each
 
 import eomgen
 from eomgen.errors import MissingValues, ModelError
+from eomgen.model.fields import Table
 from eomgen.model.forces import Distributed, Gravity
 from eomgen.model.joints import Placed, Revolute
 from eomgen.model.parts import Body, Coordinate, Model, Output, Parameter, Piece
 from eomgen.model.reader import loads
 from eomgen.model.shapes import Disc, Rod
-from eomgen.model.table import Table
 from eomgen.model.unbuilt import unbuilt, unbuilt_ties
 from eomgen.model.values import exact_parameters, numeric_parameters, start_values
 

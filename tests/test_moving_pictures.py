@@ -23,15 +23,14 @@ from eomgen.codegen.program import program_of
 from eomgen.codegen.rhs import compiled
 from eomgen.documents import moving_picture
 from eomgen.documents.linearize.result import linearize
-from eomgen.documents.motion_frames import FINE, frame_times, mode_movies, movie_of
+from eomgen.documents.moving_picture import FINE, frame_times, mode_movies, movie_of
 from eomgen.documents.space_drawing import SpacePicture, sight
-from eomgen.mechanics.equations.system import system_of
+from eomgen.mechanics.dynamics.system import system_of
 from eomgen.scene.bodies import parameters_as_drawn
 from eomgen.scene.forms import ArrowForm, CoupleForm
-from eomgen.scene.instant import frames_along
 from eomgen.scene.making import scene_of_system
 from eomgen.scene.phase_frames import phase_frames
-from eomgen.scene.scene import scalars_of
+from eomgen.scene.scene import frames_along, scalars_of
 from eomgen.scene.space_strokes import space_drawing
 from eomgen.scene.strokes import SceneNumbers
 from eomgen.scene.virtual import SWING, VirtualDisplacement

@@ -11,7 +11,7 @@ import numpy as np
 import pytest
 
 from eomgen.symbolic.numeric.evaluation import NoValue, fifty_digits
-from eomgen.symbolic.numeric.newton import Newton, least_left
+from eomgen.symbolic.numeric.roots import Newton, least_left
 
 
 @dataclass(frozen=True)

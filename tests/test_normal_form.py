@@ -14,7 +14,6 @@ from eomgen.errors import DerivationError
 from eomgen.symbolic.exact import normal_form as normal_form_module
 from eomgen.symbolic.exact.equality import equal_at_random_states
 from eomgen.symbolic.exact.normal_form import (
-    TooLarge,
     cancelled,
     collected_in,
     common_factor,
@@ -24,10 +23,11 @@ from eomgen.symbolic.exact.normal_form import (
     readable_all,
     simplest,
 )
-from eomgen.symbolic.exact.powers import power_form
-from eomgen.symbolic.exact.terms import wave
+from eomgen.symbolic.exact.polynomials import power_form
+from eomgen.symbolic.exact.terms import TooLarge, wave
 from eomgen.symbolic.expression.derivative import gradient, tangent
-from eomgen.symbolic.expression.graph import Graph, Node
+from eomgen.symbolic.expression.graph import Graph
+from eomgen.symbolic.expression.node import Node
 from eomgen.symbolic.print.text import to_text
 
 HALF = Fraction(1, 2)
@@ -399,8 +399,8 @@ def test_equations_of_a_chain_agree_with_themselves_read(graph):
 
 def test_constants_without_a_graph_are_taken_in(the):
     """sqrt(2) and cos(3/10) of the table of functions meet expressions of any graph."""
-    from eomgen.symbolic.expression.functions import cos as cos_of
-    from eomgen.symbolic.expression.functions import sqrt as sqrt_of
+    from eomgen.symbolic.expression.formula import cos as cos_of
+    from eomgen.symbolic.expression.formula import sqrt as sqrt_of
 
     (x,) = the("x")
     assert readable_all((sqrt_of(2), x * (x + 1)))[0] is x.graph.sqrt(2)

@@ -9,12 +9,11 @@ import pytest
 
 import eomgen
 from eomgen.errors import ExpressionError, ModelError
-from eomgen.symbolic.expression.expressions import parse
 from eomgen.symbolic.expression.graph import Graph
 from eomgen.symbolic.expression.rational import Fraction
-from eomgen.symbolic.numeric.batch_evaluation import ARRAYS
-from eomgen.symbolic.numeric.evaluation import FLOAT, evaluate
-from eomgen.symbolic.numeric.intervals import INTERVALS
+from eomgen.symbolic.expression.text import parse
+from eomgen.symbolic.numeric.arithmetic import INTERVALS
+from eomgen.symbolic.numeric.evaluation import ARRAYS, FLOAT, evaluate
 from eomgen.symbolic.numeric.sure_numbers import number_of
 
 SPRING = """

@@ -15,9 +15,9 @@ from scipy.special import ellipj, ellipk
 import eomgen
 from eomgen.cli import main
 from eomgen.errors import UsageError
-from eomgen.model.table import Table
+from eomgen.model.fields import Table
 from eomgen.questions.of_a_run import asked_of
-from eomgen.symbolic.numeric.chebyshev import ChebyshevPieces, resolved_curve
+from eomgen.symbolic.numeric.isolation import ChebyshevPieces, resolved_curve
 
 pytestmark = pytest.mark.slow
 

@@ -11,9 +11,9 @@ import pytest
 from slow_run import usual
 
 import eomgen
-from eomgen.model.table import Table
-from eomgen.proof.run_columns import output_columns_hold
-from eomgen.simulation.output_columns import formulas_of
+from eomgen.model.fields import Table
+from eomgen.proof.run_told import output_columns_hold
+from eomgen.simulation.columns import formulas_of
 
 pytestmark = pytest.mark.slow
 
@@ -103,7 +103,7 @@ def test_columns_are_written_with_their_units(tmp_path: Path):
     run.to_csv(tmp_path / "plain.csv")
     head = next(csv.reader((tmp_path / "plain.csv").open()))
     assert {"theta (output)", "v", "hinge_x"} <= set(head)
-    from eomgen.model.own_units import units_of
+    from eomgen.model.units import units_of
 
     run.to_csv(tmp_path / "units.csv", units_of(model, run.columns()))
     head, first, *_ = csv.reader((tmp_path / "units.csv").open())

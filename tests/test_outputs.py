@@ -9,13 +9,13 @@ import pytest
 from each import each
 
 import eomgen
-from eomgen.codegen.solved_equations import accelerations_and_multipliers
-from eomgen.mechanics.equations.system import system_of
-from eomgen.mechanics.formulations import recursive
-from eomgen.mechanics.instant.outputs import Quantities
+from eomgen.codegen.programs import accelerations_and_multipliers
+from eomgen.mechanics.dynamics import formulations as recursive
+from eomgen.mechanics.dynamics.system import system_of
+from eomgen.mechanics.instant.quantities import Quantities
 from eomgen.symbolic.expression.derivative import derivative
-from eomgen.symbolic.expression.expressions import parse
 from eomgen.symbolic.expression.spatial import apply, cross, dot, minus, plus, transposed
+from eomgen.symbolic.expression.text import parse
 from eomgen.symbolic.numeric.evaluation import FLOAT, evaluate
 
 PLANE = """

@@ -12,7 +12,7 @@ from click.testing import CliRunner
 
 import eomgen
 from eomgen.cli import main
-from eomgen.model.own_units import units_of
+from eomgen.model.units import units_of
 
 WHEEL = """
 eomgen = 1

@@ -14,7 +14,7 @@ from tools import needs, tool
 
 import eomgen
 from eomgen.codegen.targets.javascript import javascript_expression
-from eomgen.page.player_data import PlayedRun, PlayerOptions
+from eomgen.page.player import PlayedRun, PlayerOptions
 
 pytestmark = [pytest.mark.slow, needs("node")]
 

@@ -28,15 +28,13 @@ import eomgen
 from eomgen.documents.document import DISTRUST
 from eomgen.equations import Equations
 from eomgen.errors import ToolMissing, UsageError
-from eomgen.page.columns import packed_columns
 from eomgen.page.contents import SECTIONS
-from eomgen.page.formats import written_as
+from eomgen.page.formats import CALLS, written_as
 from eomgen.page.html import html_page
-from eomgen.page.notebook import CALLS
-from eomgen.page.paper import typst_text
-from eomgen.page.typst_math import UnknownCommand, typst_math
+from eomgen.page.packing import packed_columns
+from eomgen.page.paper import UnknownCommand, typst_math, typst_text
 from eomgen.proof.check import Certificate, Check
-from eomgen.symbolic.print.declared_symbol import COMMANDS
+from eomgen.symbolic.print.names import COMMANDS
 from eomgen.verbs.report import report, report_document
 
 pytestmark = pytest.mark.slow
@@ -420,7 +418,7 @@ def test_a_notebook_shows_no_picture_of_what_has_none(tmp_path):
 )
 def test_a_missing_extra_is_named_with_what_mends_it(monkeypatch, pendulum, package, ending, mend):
     """Exit 4, and what to install; nothing is imported before it is needed."""
-    from eomgen.page import mathml
+    from eomgen.page import markup as mathml
 
     monkeypatch.setitem(sys.modules, package, None)
     monkeypatch.setenv("PATH", "")

@@ -7,7 +7,7 @@ import re
 import numpy as np
 import pytest
 
-from eomgen.page.paths import SEEN, curve_path, stepped
+from eomgen.page.markup import SEEN, curve_path, stepped
 
 WORD = re.compile(r"[a-zA-Z]|-?(?:\d+\.?\d*|\.\d+)")
 TAKES = {"m": 2, "l": 2, "q": 4, "c": 6}

@@ -8,7 +8,7 @@ import pickle
 import pytest
 
 import eomgen
-from eomgen.symbolic.expression.functions import cos, sqrt
+from eomgen.symbolic.expression.formula import cos, sqrt
 from eomgen.symbolic.expression.graph import CONSTANTS, Graph
 
 CART = """

@@ -8,12 +8,11 @@ import numpy as np
 import pytest
 
 import eomgen
-from eomgen.documents.arrows import is_freer_outward
+from eomgen.documents.drawing import is_freer_outward
 from eomgen.documents.figures import figures, scale_of
-from eomgen.documents.inertia.picture import inertia_scene
+from eomgen.documents.inertia.result import inertia_scene
 from eomgen.scene import forms, plane_strokes
-from eomgen.scene.instant import drawn_start, frame_at
-from eomgen.scene.scene import Mark
+from eomgen.scene.scene import Mark, drawn_start, frame_at
 from eomgen.scene.strokes import PictureSizes, SceneNumbers
 
 pytestmark = pytest.mark.slow

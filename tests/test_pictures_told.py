@@ -13,14 +13,12 @@ import pytest
 from slow_run import usual
 
 import eomgen
-from eomgen.documents.motion_frames import Movie, movie_of
+from eomgen.documents.moving_picture import Movie, movie_of
 from eomgen.documents.rest_picture import drawing_at_rest
-from eomgen.page.player_data import PlayedRun, PlayerOptions
-from eomgen.page.player_page import player_page_of
-from eomgen.page.player_read_back import _named_otherwise, player_read_back, player_told
+from eomgen.page.player import PlayedRun, PlayerOptions, _named_otherwise, player_page_of, player_read_back, player_told
 from eomgen.proof.pictures_told import pictures_told, states_shown
 from eomgen.scene.making import scene_of
-from eomgen.scene.told import picture_told
+from eomgen.scene.phase_frames import picture_told
 from eomgen.simulation.result import Trajectory
 from eomgen.verbs.animate import movie_read_back
 from tests.test_shapes import EXAMPLES as SHAPES

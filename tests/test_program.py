@@ -12,20 +12,30 @@ from each import each
 from hand_made import cart_pole, pendulum, spring_row, symbols, tied_pendulum
 
 import eomgen
-from eomgen.codegen import layout
+from eomgen.codegen import lowering as layout
 from eomgen.codegen.kernel_reader import solve_bordered
-from eomgen.codegen.layout import stripped
-from eomgen.codegen.names import RESERVED, identifier, identifiers
-from eomgen.codegen.program import Assign, Solve, program_in_motion, program_of, right_hand_side
+from eomgen.codegen.lowering import stripped
+from eomgen.codegen.program import (
+    RESERVED,
+    Assign,
+    Solve,
+    identifier,
+    identifiers,
+    program_in_motion,
+    program_of,
+    right_hand_side,
+    scheduled,
+    traffic,
+)
 from eomgen.codegen.rhs import compiled
-from eomgen.codegen.scheduling import scheduled, traffic
 from eomgen.codegen.targets.base import RHS
 from eomgen.codegen.targets.c import C, c_text
 from eomgen.codegen.targets.numpy import PYTHON
 from eomgen.codegen.vectors import vectors
 from eomgen.errors import DerivationError
-from eomgen.symbolic.expression.functions import cos, sin
-from eomgen.symbolic.expression.graph import Graph, is_zero
+from eomgen.symbolic.expression.formula import cos, sin
+from eomgen.symbolic.expression.graph import Graph
+from eomgen.symbolic.expression.node import is_zero
 from eomgen.symbolic.expression.traversal import operations, order
 from eomgen.symbolic.numeric.evaluation import FLOAT, evaluate, fifty_digits
 from eomgen.symbolic.solve.factorization import factor_solution, operation_count

@@ -9,8 +9,9 @@ import pytest
 from each import each
 
 from eomgen.symbolic.exact.normal_form import simplest
-from eomgen.symbolic.expression.expressions import parse
-from eomgen.symbolic.expression.graph import Graph, Node, Scalar
+from eomgen.symbolic.expression.graph import Graph
+from eomgen.symbolic.expression.node import Node, Scalar
+from eomgen.symbolic.expression.text import parse
 from eomgen.symbolic.expression.traversal import order
 from eomgen.symbolic.numeric.evaluation import FLOAT, evaluate
 from eomgen.symbolic.print.text import to_text

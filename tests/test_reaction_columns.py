@@ -19,17 +19,17 @@ from moving import at
 from slow_run import usual
 
 import eomgen
-from eomgen.documents.plots import over_time
+from eomgen.documents.figures import over_time
 from eomgen.equations import Equations
 from eomgen.errors import DerivationError
-from eomgen.mechanics.balance.balance_solution import Indeterminate
-from eomgen.mechanics.balance.named_reactions import named_reactions
 from eomgen.mechanics.constraints.closure import generic_state
-from eomgen.mechanics.equations.accelerations import accelerations_at
-from eomgen.mechanics.instant.outputs import Quantities
+from eomgen.mechanics.dynamics.accelerations import accelerations_at
+from eomgen.mechanics.free_bodies.named_reactions import named_reactions
+from eomgen.mechanics.free_bodies.solution import Indeterminate
+from eomgen.mechanics.instant.quantities import Quantities
 from eomgen.model.values import numeric_parameters
 from eomgen.simulation.reaction_columns import ReactionColumns
-from eomgen.symbolic.expression.expressions import parse
+from eomgen.symbolic.expression.text import parse
 from eomgen.symbolic.numeric.evaluation import evaluate, fifty_digits
 
 pytestmark = [pytest.mark.slow, pytest.mark.by_model]

@@ -10,11 +10,10 @@ import pytest
 import eomgen
 from eomgen.documents import rendered
 from eomgen.documents.document import Document
-from eomgen.documents.json_read_back import json_read_back
-from eomgen.documents.latex_names import Notation
+from eomgen.documents.latex_math import Notation
 from eomgen.documents.read_back import misspelt, page_read_back
-from eomgen.documents.text_read_back import text_read_back
-from eomgen.proof.typeset import SetLetters, tokens_of, typeset, worth
+from eomgen.documents.texts_read import json_read_back, text_read_back
+from eomgen.proof.pages_read import SetLetters, tokens_of, typeset, worth
 from eomgen.symbolic.numeric.evaluation import FLOAT
 
 SWING = """

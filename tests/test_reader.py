@@ -12,7 +12,7 @@ from each import each
 import eomgen
 from eomgen.errors import ModelError
 from eomgen.model.reader import load, loads
-from eomgen.model.warnings import warnings_of
+from eomgen.model.unbuilt import warnings_of
 
 MODELS = sorted((Path(__file__).parents[1] / "models").rglob("*.toml"))
 

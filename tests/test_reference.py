@@ -20,7 +20,7 @@ from eomgen.model.outputs import FUNCTIONS
 from eomgen.model.part import slots_of
 from eomgen.model.parts import Body, Coordinate, Model, Output, Parameter
 from eomgen.questions.of_a_run import is_of_a_run
-from eomgen.symbolic.expression.functions import NAMES
+from eomgen.symbolic.expression.formula import NAMES
 from eomgen.symbolic.expression.units import UNITS
 
 pytestmark = pytest.mark.slow

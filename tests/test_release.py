@@ -6,9 +6,9 @@ import pytest
 
 import eomgen
 from eomgen.errors import DerivationError
-from eomgen.mechanics.balance.release import released, stays_straight
-from eomgen.mechanics.constraints.ties import rows_of_tie
-from eomgen.mechanics.equations.system import System, system_of
+from eomgen.mechanics.constraints.rows import rows_of_tie
+from eomgen.mechanics.dynamics.system import System, system_of
+from eomgen.mechanics.free_bodies.release import released, stays_straight
 from eomgen.symbolic.numeric.evaluation import FLOAT, evaluate
 
 HEAD = """

@@ -33,23 +33,22 @@ from eomgen.documents.derivation import derivation_of
 from eomgen.documents.document import Document
 from eomgen.documents.json_form import as_dict
 from eomgen.documents.latex import symbols_in
-from eomgen.documents.notation import MEANINGS, quantities
+from eomgen.documents.motion_steps import moved_coordinates
 from eomgen.documents.proven import proven
 from eomgen.documents.reading import Reader
-from eomgen.documents.setting_steps import moved_coordinates
-from eomgen.documents.statements import Entry, Formula, Name, Partial, Prose, Rate, Step
+from eomgen.documents.statements import MEANINGS, Entry, Formula, Name, Partial, Prose, Rate, Step, quantities
 from eomgen.documents.text import WIDTH, broken, formula_text
 from eomgen.equations import Equations
 from eomgen.errors import UsageError
-from eomgen.mechanics.bodies.inertia import kinetic_energy
-from eomgen.mechanics.equations.system import System
-from eomgen.mechanics.equations.work import generalized_forces, per_speed
+from eomgen.mechanics.dynamics.system import System, generalized_forces, per_speed
+from eomgen.mechanics.kinematics.inertia import kinetic_energy
 from eomgen.proof.check import Certificate
 from eomgen.symbolic.exact.equality import equal_at_random_states
 from eomgen.symbolic.expression.derivative import gradient, substituted
-from eomgen.symbolic.expression.functions import sqrt
-from eomgen.symbolic.expression.graph import Graph, Node, Scalar
-from eomgen.symbolic.print.decimals import MOST_DIGITS
+from eomgen.symbolic.expression.formula import sqrt
+from eomgen.symbolic.expression.graph import Graph
+from eomgen.symbolic.expression.node import Node, Scalar
+from eomgen.symbolic.print.layout import MOST_DIGITS
 from eomgen.symbolic.print.text import to_text
 
 pytestmark = [pytest.mark.slow, pytest.mark.by_model]

@@ -11,9 +11,9 @@ from click.testing import CliRunner
 
 import eomgen
 from eomgen.cli import main
-from eomgen.documents.linearize.response_pictures import dashes, roots_over
-from eomgen.documents.run_pictures import VIEWS, resultants
-from eomgen.model.ranges import range_of
+from eomgen.documents.figures import VIEWS, resultants
+from eomgen.documents.linearize.pictures import dashes, roots_over
+from eomgen.model.replaced import range_of
 from eomgen.verbs.reaction_picture import turn_of
 
 pytestmark = pytest.mark.slow

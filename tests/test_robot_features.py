@@ -12,8 +12,8 @@ import pytest
 import eomgen
 from eomgen.errors import DerivationError, ModelError
 from eomgen.exported import urdf_of
-from eomgen.robots.drawn_up import LegalNames
-from eomgen.robots.mjcf_reading import CompiledRobot
+from eomgen.robots.mjcf_acting import CompiledRobot
+from eomgen.robots.tables import LegalNames
 from eomgen.symbolic.numeric.evaluation import FLOAT, evaluate
 from tests.helpers.tools import needs
 from tests.test_robots import dynamics, robot

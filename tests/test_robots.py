@@ -18,9 +18,8 @@ import eomgen
 from eomgen.cli import main
 from eomgen.errors import DerivationError, ModelError, ToolMissing
 from eomgen.exported import urdf_of
+from eomgen.proof.imported import imported_otherwise, sdf_otherwise, unsaid_otherwise, without_units
 from eomgen.proof.imported_mjcf import OTHER_THINGS, mjcf_otherwise
-from eomgen.proof.imported_sdf import sdf_otherwise
-from eomgen.proof.imported_urdf import imported_otherwise, unsaid_otherwise, without_units
 from eomgen.robots.importing import imported
 from eomgen.symbolic.numeric.evaluation import FLOAT, evaluate
 from eomgen.verbs import importing

@@ -8,8 +8,9 @@ from eomgen.symbolic.exact.equality import equal_at_random_states
 from eomgen.symbolic.exact.roots import is_root_of_sum, readable_over, rooted
 from eomgen.symbolic.exact.terms import TooLarge
 from eomgen.symbolic.expression.derivative import gradient, tangent
-from eomgen.symbolic.expression.functions import cos, sin, sqrt
-from eomgen.symbolic.expression.graph import Graph, Scalar
+from eomgen.symbolic.expression.formula import cos, sin, sqrt
+from eomgen.symbolic.expression.graph import Graph
+from eomgen.symbolic.expression.node import Scalar
 from eomgen.symbolic.print.text import to_text
 
 LIMIT = 2000

@@ -6,12 +6,12 @@ from fractions import Fraction
 
 from eomgen.symbolic.exact.equality import equal_at_random_states
 from eomgen.symbolic.expression.derivative import symbols_of
-from eomgen.symbolic.expression.functions import sin, sqrt
-from eomgen.symbolic.expression.graph import Graph, Node
+from eomgen.symbolic.expression.formula import sin, sqrt
+from eomgen.symbolic.expression.graph import Graph
+from eomgen.symbolic.expression.node import Node
 from eomgen.symbolic.numeric.evaluation import evaluate, fifty_digits
 from eomgen.symbolic.print.text import to_text
-from eomgen.symbolic.solve.linear import LinearSystem, Pivots
-from eomgen.symbolic.solve.scaling import monomial, scaled_solution, without_common_factors
+from eomgen.symbolic.solve.linear import LinearSystem, Pivots, monomial, scaled_solution, without_common_factors
 
 
 def values(scalars):

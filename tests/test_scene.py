@@ -17,17 +17,15 @@ from slow_run import usual, usual_models
 
 import eomgen
 from eomgen.documents.figures import Picture
-from eomgen.documents.letters import PageBox, room_for
-from eomgen.documents.letters_artist import NamesArtist
+from eomgen.documents.letters import NamesArtist, PageBox, room_for
 from eomgen.documents.rest_picture import rest_picture
 from eomgen.documents.space_drawing import sight
 from eomgen.scene import forms, plane_strokes, space_strokes
-from eomgen.scene.instant import drawn_start, frame_at
-from eomgen.scene.scene import ROLES, Mark, Scene, plain_number
+from eomgen.scene.scene import ROLES, Mark, Scene, drawn_start, frame_at, plain_number
 from eomgen.scene.space_strokes import space_drawing
 from eomgen.scene.strokes import PictureSizes, SceneNumbers
 from eomgen.symbolic.numeric.evaluation import FLOAT, evaluate
-from eomgen.symbolic.print.declared_symbol import COMMANDS, SIGNS, parse_symbol
+from eomgen.symbolic.print.names import COMMANDS, SIGNS, parse_symbol
 
 MODELS = Path(__file__).parent.parent / "models"
 ALL = [str(path.relative_to(MODELS))[:-5] for path in sorted((*MODELS.glob("*.toml"), *MODELS.glob("seeds/*.toml")))]

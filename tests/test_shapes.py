@@ -21,7 +21,8 @@ from eomgen.model.shapes import (
     Triangle,
 )
 from eomgen.proof.masses import filled
-from eomgen.symbolic.expression.graph import Graph, Node
+from eomgen.symbolic.expression.graph import Graph
+from eomgen.symbolic.expression.node import Node
 from eomgen.symbolic.expression.rational import Fraction
 
 EXAMPLES = {

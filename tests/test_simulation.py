@@ -15,17 +15,17 @@ from hand_made import cart_pole, pendulum, symbols, tied_pendulum
 import eomgen
 from eomgen.codegen.program import program_of, right_hand_side
 from eomgen.codegen.rhs import compiled, parameter_vector
-from eomgen.documents.figures import mathtext
-from eomgen.documents.plots import over_time
+from eomgen.documents.figures import mathtext, over_time
 from eomgen.errors import UsageError, WriteFailed
-from eomgen.mechanics.equations.stabilization import stabilized
-from eomgen.mechanics.formulations import recursive
+from eomgen.mechanics.dynamics import formulations as recursive
+from eomgen.mechanics.dynamics.accelerations import stabilized
 from eomgen.questions.run import page_time, run_of_a_page
 from eomgen.questions.run import run as run_equations
-from eomgen.simulation.integrate import METHODS, drift_of, integrate
+from eomgen.simulation.integrate import drift_of, integrate
 from eomgen.simulation.integrator import Stepping
+from eomgen.simulation.phase_model import slope_of
 from eomgen.simulation.result import Trajectory
-from eomgen.simulation.slopes import slope_of
+from eomgen.simulation.solvers import METHODS
 from eomgen.symbolic.expression.units import parse_unit
 from eomgen.verbs.animate import Showing, animate_document
 

@@ -8,7 +8,7 @@ import mpmath
 import numpy as np
 import pytest
 
-from eomgen.codegen.targets.branch_free import SOLVERS
+from eomgen.codegen.targets.python_files import SOLVERS
 
 SPACE: dict[str, Any] = {
     "sqrt": np.sqrt,

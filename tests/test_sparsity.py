@@ -15,16 +15,16 @@ import eomgen
 from eomgen.codegen import kernels
 from eomgen.codegen.kernel_reader import solve_bordered
 from eomgen.codegen.lowering import lowered
-from eomgen.codegen.matrices import program_of_blocks, slopes_of
 from eomgen.codegen.program import Program, Solve, bordered, program_of, right_hand_side
+from eomgen.codegen.programs import program_of_blocks, slopes_of
 from eomgen.codegen.rhs import compiled
 from eomgen.codegen.targets.c import C, c_text
 from eomgen.codegen.vectors import vectors
-from eomgen.mechanics.equations.equations_of_motion import EquationsOfMotion
-from eomgen.symbolic.expression.functions import cos, sin
-from eomgen.symbolic.expression.graph import is_zero
+from eomgen.mechanics.dynamics.system import EquationsOfMotion
+from eomgen.symbolic.expression.formula import cos, sin
+from eomgen.symbolic.expression.node import is_zero
 from eomgen.symbolic.numeric.evaluation import FLOAT, evaluate
-from eomgen.symbolic.solve.sparsity import zeros_of, zeros_with_ties
+from eomgen.symbolic.solve.factorization import zeros_of, zeros_with_ties
 
 pytestmark = pytest.mark.slow
 MODELS = Path(__file__).parent.parent / "models"

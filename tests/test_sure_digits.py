@@ -11,7 +11,7 @@ import pytest
 from eomgen.symbolic.expression.derivative import gradient, jacobian
 from eomgen.symbolic.expression.graph import Graph
 from eomgen.symbolic.numeric import sure_digits
-from eomgen.symbolic.numeric.balls import balls
+from eomgen.symbolic.numeric.arithmetic import balls
 from eomgen.symbolic.numeric.evaluation import NoValue, evaluate, fifty_digits, solved_quickly, sums_of_products
 from eomgen.symbolic.numeric.tolerances import MET_AT_50
 

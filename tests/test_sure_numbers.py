@@ -11,9 +11,9 @@ from mpmath.ctx_mp import MPContext
 from slider_crank import SLIDER_CRANK
 
 import eomgen
-from eomgen.symbolic.expression.functions import cos, sqrt
+from eomgen.symbolic.expression.formula import cos, sqrt
 from eomgen.symbolic.expression.graph import Graph
-from eomgen.symbolic.numeric.balls import balls
+from eomgen.symbolic.numeric.arithmetic import balls
 from eomgen.symbolic.numeric.evaluation import FLOAT, evaluate
 from eomgen.symbolic.numeric.sure_numbers import number_of, numbers_of
 

@@ -29,10 +29,11 @@ import eomgen
 from eomgen.cli import main
 from eomgen.errors import UsageError
 from eomgen.proof.drawn_values import drawn_otherwise, told_of_all
-from eomgen.sweeps import kernel, workers
+from eomgen.sweeps import workers
+from eomgen.sweeps import workers as kernel
 from eomgen.sweeps.design import DESIGNS, Design, DrawnValues, spread_of
-from eomgen.sweeps.kernel import SweepKernel
 from eomgen.sweeps.sweep import sweep_at
+from eomgen.sweeps.workers import SweepKernel
 from eomgen.symbolic.numeric import work
 from eomgen.symbolic.numeric.work import check_patience
 from eomgen.verbs.sweep import _answers_proven

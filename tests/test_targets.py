@@ -21,16 +21,15 @@ from tools import each_target, every_target, marked, needs, tool
 import eomgen
 from eomgen import files
 from eomgen.codegen import build
-from eomgen.codegen.files import texts_of
 from eomgen.codegen.program import program_of, right_hand_side
 from eomgen.codegen.rhs import compiled
-from eomgen.codegen.single_precision import single_vectors
 from eomgen.codegen.targets import ALL, wasm
 from eomgen.codegen.targets.base import REACTIONS, Description
-from eomgen.codegen.vectors import outputs_at, vectors
+from eomgen.codegen.vectors import outputs_at, single_vectors, texts_of, vectors
 from eomgen.errors import DerivationError, UsageError
-from eomgen.proof.written_code import unwritten
-from eomgen.symbolic.expression.graph import Graph, Node
+from eomgen.proof.emitted_code import unwritten
+from eomgen.symbolic.expression.graph import Graph
+from eomgen.symbolic.expression.node import Node
 from eomgen.symbolic.numeric.evaluation import FLOAT, evaluate
 
 pytestmark = pytest.mark.slow

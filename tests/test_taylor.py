@@ -12,7 +12,7 @@ from slow_run import usual
 
 import eomgen
 from eomgen.codegen.build import compiler
-from eomgen.codegen.series import ALONE, LEAST, MOST, order_for
+from eomgen.codegen.taylor import ALONE, LEAST, MOST, order_for
 
 MODELS = Path(__file__).parent.parent / "models"
 

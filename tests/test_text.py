@@ -12,8 +12,9 @@ from each import each
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from eomgen.symbolic.expression.expressions import parse
-from eomgen.symbolic.expression.graph import Graph, Node
+from eomgen.symbolic.expression.graph import Graph
+from eomgen.symbolic.expression.node import Node
+from eomgen.symbolic.expression.text import parse
 from eomgen.symbolic.numeric.evaluation import FLOAT, evaluate
 from eomgen.symbolic.print.layout import factors, terms
 from eomgen.symbolic.print.text import named_parts, text_size, to_text, with_definitions

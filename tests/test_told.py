@@ -135,7 +135,7 @@ def small() -> Any:
 
 
 def wrong_modes(change: Callable[[dict[str, Any]], None]) -> str:
-    from eomgen.documents.linearize.printed_modes import printed_modes
+    from eomgen.documents.linearize.steps import printed_modes
 
     entries = small().entries()
     change(entries)
@@ -260,7 +260,7 @@ joint = { kind = "revolute", on = "arm.E", angle = "b" }
 @pytest.mark.parametrize("said", ["", "now", "in the long run"])
 def test_a_kind_of_motion_is_that_of_the_spin_and_the_velocities(said: str, monkeypatch: pytest.MonkeyPatch):
     """A body without spin translates; one that turns about a fixed axis keeps a point of it at rest."""
-    from eomgen.mechanics.instant import body_motion
+    from eomgen.mechanics.instant import kinematic_state as body_motion
 
     if said == "now":
         monkeypatch.setattr(body_motion, "instant_kind", lambda field: "rotation")
@@ -274,8 +274,8 @@ def test_a_kind_of_motion_is_that_of_the_spin_and_the_velocities(said: str, monk
 
 def told_works(change=lambda told: told) -> str:
     """What is wrong with the virtual works of the beam, each changed."""
+    from eomgen.proof.sections_told import works_told
     from eomgen.proof.structure import state_of
-    from eomgen.proof.works_told import works_told
 
     beam = eomgen.statics(eomgen.loads(BEAM))
     found = works_told(beam.found, state_of(beam.found), map(change, beam._told_works()))

@@ -8,9 +8,9 @@ import pytest
 from each import each
 
 from eomgen.errors import ExpressionError
-from eomgen.symbolic.expression.expressions import parse
 from eomgen.symbolic.expression.graph import Graph
 from eomgen.symbolic.expression.rational import Fraction
+from eomgen.symbolic.expression.text import parse
 from eomgen.symbolic.expression.units import UNITS, parse_unit
 
 

@@ -16,11 +16,11 @@ from eomgen.cli import main
 from eomgen.judge.case import Case
 from eomgen.judge.decision import is_zero_everywhere
 from eomgen.judge.judge import Judge
-from eomgen.judge.right import Decided
-from eomgen.mechanics.initial_state.exact_start import ExactStart
+from eomgen.judge.truth import Decided
+from eomgen.mechanics.start.exact import ExactStart
 from eomgen.model.values import exact_parameters
 from eomgen.proof.verdicts import verdicts_again
-from eomgen.symbolic.expression.expressions import parse
+from eomgen.symbolic.expression.text import parse
 from eomgen.symbolic.numeric.evaluation import FLOAT, evaluate
 
 MODELS = Path(__file__).parent.parent / "models"

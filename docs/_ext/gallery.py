@@ -20,7 +20,7 @@ import eomgen
 from eomgen.documents import markdown
 from eomgen.documents.document import Document
 from eomgen.page.figure import rest_figure
-from eomgen.page.player_page import player_page
+from eomgen.page.player import player_page
 from eomgen.verbs.report import Subject
 
 ROOT = Path(__file__).parents[2]

@@ -19,14 +19,22 @@ from cut_reference import cut, linked, sections, write
 from gallery import parts_of, told
 
 import eomgen
-from eomgen.mechanics.balance.components import components_of
-from eomgen.mechanics.balance.unit_wrenches import Axes
-from eomgen.mechanics.equations.system import System
+from eomgen.mechanics.dynamics.system import System
+from eomgen.mechanics.free_bodies.wrenches import Axes, components_of
 from eomgen.model import constraints, forces, joints
-from eomgen.model.containers import EitherRule, ListRule
-from eomgen.model.fields import PARAMETERS, AxialRule, FlagRule, FormulaRule, NameRule, TextRule, VectorRule
+from eomgen.model.fields import (
+    PARAMETERS,
+    AxialRule,
+    EitherRule,
+    FlagRule,
+    FormulaRule,
+    ListRule,
+    NameRule,
+    TextRule,
+    VectorRule,
+)
+from eomgen.model.kinds import ReactionSymbolsRule
 from eomgen.model.part import PartRule, Slot, slots_of
-from eomgen.model.symbols import ReactionSymbolsRule
 from eomgen.page.figure import rest_figure
 
 ROOT = Path(__file__).parents[2]

@@ -13,8 +13,7 @@ from typing import Any
 import numpy as np
 
 from eomgen.codegen.build import function_of, library
-from eomgen.codegen.program import Program
-from eomgen.codegen.spheres import SpherePlaces
+from eomgen.codegen.program import Program, SpherePlaces
 from eomgen.codegen.targets.c import C
 from eomgen.codegen.targets.c_lanes import LANES, constants_of, lanes_text, text_of, vector_compiler
 from eomgen.codegen.taylor import series_text

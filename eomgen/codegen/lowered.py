@@ -12,7 +12,7 @@ from dataclasses import field, replace
 
 from eomgen.codegen.expressions import RankedText, ranked_number
 from eomgen.records import dataclass
-from eomgen.symbolic.expression.graph import Number
+from eomgen.symbolic.expression.numbers import Number
 from eomgen.symbolic.expression.rational import Fraction
 
 REAL, INT = "Real", "Int"

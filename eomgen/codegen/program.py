@@ -1,25 +1,30 @@
-"""Equations of motion -> Program: a right-hand side as a list of statements, which every target can write down.
+"""Equations of motion -> Program: a right-hand side as a list of statements, which every language prints.
+
+Equations of motion -> Program: a right-hand side as a list of statements, which every target can write down.
 
 Equations that need a linear solve carry it as one statement, `Solve`; an inverse is never formed.
 """
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping, Sequence
+import re
+import unicodedata
+from collections.abc import Callable, Container, Iterable, Mapping, Sequence, Set
 from functools import cached_property
-from typing import Literal
+from heapq import heapify, heappop, heappush
+from typing import Any, Literal
+
+import numpy as np
 
 from eomgen.codegen.lowered import INT, Table
 from eomgen.errors import DerivationError
-from eomgen.mechanics.equations.equations_of_motion import EquationsOfMotion
+from eomgen.mechanics.dynamics.system import EquationsOfMotion
 from eomgen.records import dataclass
 from eomgen.symbolic.expression.derivative import substituted
-from eomgen.symbolic.expression.graph import Node, Scalar, is_zero
-from eomgen.symbolic.expression.node import ScalarRow
-from eomgen.symbolic.expression.symbols import Symbols
-from eomgen.symbolic.expression.traversal import FREE, Count, order
+from eomgen.symbolic.expression.node import Node, Scalar, ScalarRow, is_zero
+from eomgen.symbolic.expression.traversal import FREE, Count, Symbols, order
 from eomgen.symbolic.solve import factorization
-from eomgen.symbolic.solve.sparsity import PlaceLists, Zeros, zeros_of, zeros_with_ties
+from eomgen.symbolic.solve.factorization import PlaceLists, Zeros, zeros_of, zeros_with_ties
 
 UNROLLED_AT_MOST = 1000  # operations of a factorization written out; a dense one of n = 12 takes 914
 
@@ -344,3 +349,200 @@ def _refuse_strangers(needed: Sequence[Node], symbols: Symbols, others: Sequence
             f"not an argument of the program: {', '.join(map(repr, strangers))}",
             mend="name a coordinate, speed, parameter or input",
         )
+
+
+# -------- scheduling ------------------------------------------------------------------------------------------
+# Statements in the order of their making -> the same in one in which fewer values leave the registers.
+#
+# A long straight program has far more values that wait than a machine has registers: most are stored and loaded
+# again. Here a statement comes soon after the newest of its arguments; before them comes what calls functions, with
+# what these need, for no value stays in a register across a call. How much the place of the arguments weighs beside
+# the order of making is tried, and how often values go to memory and back is counted: of all orders the best is
+# taken, that of making among them. What is computed is the same, bit for bit.
+
+
+REGISTERS = 14  # of sixteen, two for what is under way
+WEIGHTS = (0.0, 0.25, 0.5)  # of the order of making
+INSTRUCTIONS = frozenset("symbol add sub mul div sqrt abs min max less less_equal select".split())  # others are calls
+
+Needs = Mapping[Node, Set[Node]]
+
+
+def scheduled(needs: Needs, later: Set[Node]) -> Sequence[Node]:
+    """The statements in the order that takes the fewest loads and stores.
+
+    Args:
+        needs: of each statement what it reads, other statements and symbols, in the order of their making.
+        later: what is read after them.
+    """
+    symbols = {a for needed in needs.values() for a in needed if a.op == "symbol"}
+    made = {x: set[Node]() for x in sorted(symbols, key=lambda x: x.index)} | {
+        x: {a for a in needed if a in needs or a in symbols} for x, needed in needs.items()
+    }
+    orders = [list(made), *(_close_together(made, of, weight) for of in (_mean, max) for weight in WEIGHTS)]
+    best = min(orders, key=lambda order: traffic(order, made, later))
+    return [x for x in best if x in needs]
+
+
+def _users(needs: Needs) -> dict[Node, list[Node]]:
+    """Of each statement those that read it."""
+    found: dict[Node, list[Node]] = {x: [] for x in needs}
+    for x, needed in needs.items():
+        for a in needed:
+            found[a].append(x)
+    return found
+
+
+def _mean(places: Sequence[int]) -> float:
+    return sum(places) / len(places)
+
+
+def _close_together(needs: Needs, of: Callable[[Sequence[int]], float], weight: float) -> list[Node]:
+    """What calls take, then each as soon as its arguments are there, those of the newest first.
+
+    Args:
+        of: the places of the arguments, how new they are.
+    """
+    rank, early = {x: k for k, x in enumerate(needs)}, set[Node]()
+    for x in reversed(list(needs)):
+        if x in early or x.op not in INSTRUCTIONS:
+            early |= {x, *needs[x]}
+    users, place = _users(needs), dict[Node, int]()
+    left = {x: len(needed) for x, needed in needs.items()}
+
+    def lateness(x: Node) -> tuple[bool, float, int]:
+        if x in early:
+            return False, 0.0, rank[x]
+        newest = of([place[a] + 1 for a in needs[x]] or [0])
+        return True, weight * rank[x] - (1 - weight) * newest, rank[x]
+
+    ready = [(*lateness(x), x) for x, count in left.items() if not count]
+    heapify(ready)
+    while ready:
+        x = heappop(ready)[-1]
+        place[x] = len(place)
+        for user in users[x]:
+            left[user] -= 1
+            if not left[user]:
+                heappush(ready, (*lateness(user), user))
+    return list(place)
+
+
+def traffic(order: Sequence[Node], needs: Needs, later: Set[Node]) -> int:
+    """How many loads and stores it takes, where that value leaves the registers which is used last (Belady)."""
+    place = {x: k for k, x in enumerate(order)}
+    again = {x: sorted((place[u] for u in users), reverse=True) for x, users in _users(needs).items()}
+    for x in later & again.keys():
+        again[x].insert(0, len(order))
+    kept, stored, moves = set[Node](), {x for x in order if x.op == "symbol"}, 0
+    for x in order:
+        moves += len(needs[x] - kept)
+        for a in needs[x]:
+            again[a].pop()
+        kept = {a for a in kept | needs[x] if again[a]}
+        waiting = sorted(kept, key=lambda a: (again[a][-1], a.index))
+        lost = set(waiting if x.op not in INSTRUCTIONS else waiting[REGISTERS:])
+        moves += len(lost - stored)
+        stored |= lost
+        kept -= lost
+        if again[x]:
+            kept.add(x)
+    return moves
+
+
+# -------- names -----------------------------------------------------------------------------------------------
+# The user's names -> identifiers of a language, no two alike.
+
+
+MATH_WORDS = frozenset(
+    "acos asin atan atan2 cos sin tan acosh asinh atanh cosh sinh tanh exp exp2 expm1 frexp ilogb ldexp log log10 "
+    "log1p log2 logb modf cbrt fabs hypot pow sqrt erf erfc lgamma tgamma gamma ceil floor nearbyint rint lrint round "
+    "lround trunc fmod remainder remquo copysign nan nextafter fdim fmax fmin fma abs sign j0 j1 jn y0 y1 yn min max "
+    "select less less_equal pi np math signgam isnan isinf isfinite signbit div printf size_t".split()
+)
+OWN_WORDS = frozenset(
+    "between acting t x p c inputs dx out given n constants evaluate math float SIZE "
+    "rhs reactions inverse outputs matrices jacobian".split()
+)
+RESERVED = MATH_WORDS | OWN_WORDS
+# our own variables, functions and macros, and what C keeps for itself
+LOCAL = re.compile(
+    r"[vi][0-9]+|samples[0-9]+|.*part[0-9]+|solve.*|.*_(rhs|reactions|inverse|outputs|matrices|jacobian).*|.*_(STATES|PARAMETERS|INPUTS|CONSTANTS|OUTPUTS)|_.*"
+)
+
+
+LONGEST = 31  # what is no longer every language takes
+LONGEST_STEM = 48  # Fortran and MATLAB take 63, `_regressor_test` after it
+
+
+def identifiers(
+    names: Iterable[str], taken: Container[str], folded: Callable[[str], str] = lambda word: word
+) -> dict[str, str]:
+    """An identifier for every name, by the name's own letters where that can be: theta' -> theta_dot.
+
+    Args:
+        taken: words of the language, and what stands for something else.
+        folded: what no two identifiers have in common: of a language without capitals, the small letters.
+    """
+    chosen: dict[str, str] = {}
+    used: set[str] = set()
+    for name in names:
+        word = identifier(name)[:LONGEST]
+        word = word if word[0].isalpha() else f"n{word}"
+        if {word, folded(word)} & RESERVED or word in taken or folded(word) in taken or LOCAL.fullmatch(word):
+            word += "_"
+        unique, number = word, 2
+        while folded(unique) in used:
+            unique, number = f"{word}_{number}", number + 1
+        chosen[name] = unique
+        used.add(folded(unique))
+    return chosen
+
+
+def identifier(name: str) -> str:
+    """The letters, digits and underscores nearest to a name: 'ω₁' -> 'omega1', 'arm-7' -> 'arm_7'."""
+    word = "".join(_plain(letter) for letter in unicodedata.normalize("NFKC", name))
+    return f"n{word}" if not word or word[0].isdigit() else word
+
+
+def stem_of(name: str) -> str:
+    """What files and functions of a model are called by, with `_rhs` and the like after it."""
+    return identifier(name)[:LONGEST_STEM]
+
+
+def _plain(letter: str) -> str:
+    if letter == "'":
+        return "_dot"
+    if letter.isascii():
+        return letter if letter.isalnum() or letter == "_" else "_"
+    spelled = unicodedata.name(letter, "")
+    greek = re.fullmatch(r"GREEK (SMALL|CAPITAL) LETTER (?:FINAL )?(\w+)(?: WITH .*)?", spelled)
+    if greek:
+        word = greek[2].replace("LAMDA", "LAMBDA")
+        return word.lower() if greek[1] == "SMALL" else word.capitalize()
+    bare = unicodedata.normalize("NFKD", letter)[0]
+    return bare if bare.isascii() and bare.isalnum() else f"u{ord(letter):04x}"
+
+
+# -------- spheres ---------------------------------------------------------------------------------------------
+# Program -> the places in its state of quaternions, and states in which these have norm 1.
+
+
+SpherePlaces = tuple[int, ...]
+
+
+def spheres_of(program: Program) -> tuple[SpherePlaces, ...]:
+    """Of every quaternion among the states, the places of its four numbers."""
+    place = {node: k for k, node in enumerate(program.states)}
+    spheres = program.symbols.graph.spheres
+    return tuple(tuple(place[x] for x in symbols) for symbols in spheres if all(x in place for x in symbols))
+
+
+def on_spheres(x: Any, spheres: Sequence[SpherePlaces]) -> Any:
+    """The state, or one state a row, with every quaternion over its norm; 0 stays."""
+    found = np.array(x, dtype=float)
+    for places in spheres:
+        four = found[..., list(places)]
+        norm = np.sqrt(np.sum(four * four, axis=-1, keepdims=True))
+        found[..., list(places)] = four / np.where(norm > 0, norm, 1)
+    return found

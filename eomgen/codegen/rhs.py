@@ -11,17 +11,22 @@ from typing import Any, TypeVar
 import numpy as np
 
 from eomgen.codegen.batching import ProgramInLanes
-from eomgen.codegen.program import Program
-from eomgen.codegen.series import Series, series_of
-from eomgen.codegen.spheres import spheres_of
+from eomgen.codegen.program import Program, bordered, program_of, spheres_of
 from eomgen.codegen.targets import ALL
 from eomgen.codegen.targets.base import RHS, Address, Functions, Target
 from eomgen.codegen.targets.c import c_together
-from eomgen.codegen.taylor import without_series
-from eomgen.errors import RunFailed, ToolMissing, UsageError
+from eomgen.codegen.taylor import Series, series_of, without_series
+from eomgen.errors import ExpressionError, RunFailed, ToolMissing, UsageError
+from eomgen.mechanics.constraints.rank import rank_of_ties
+from eomgen.mechanics.dynamics.system import EquationsOfMotion, System
+from eomgen.model.findings import nearest
 from eomgen.model.parts import Model
-from eomgen.model.replaced import with_values
+from eomgen.model.replaced import TypedNumbers, are_several, time_law, typed_values, with_values
 from eomgen.model.values import numeric_parameters
+from eomgen.records import dataclass
+from eomgen.symbolic.expression.derivative import depends_on, tangent
+from eomgen.symbolic.numeric.dense import of_one_length
+from eomgen.symbolic.numeric.tolerances import OPEN_GAP, RANK, SHARE
 
 _Made = TypeVar("_Made")
 
@@ -226,3 +231,148 @@ def parameter_vector(model: Model, overrides: Mapping[str, Any] | None = None) -
     if overrides and not all(isinstance(x, (int, float, np.number)) for x in overrides.values()):
         model, overrides = with_values(model, overrides).model, None
     return np.array(list(numeric_parameters(model, overrides).values()), dtype=float)
+
+
+# -------- accelerations ---------------------------------------------------------------------------------------
+# Equations, a state -> the accelerations and multipliers there, those that have a single value.
+#
+#     M a - J^T lam = forcing,   J a = -gamma
+#
+# lam_i has one value where no combination of rows that vanishes holds it: n_i = 0 for every n with n^T J = 0.
+
+
+@dataclass(frozen=True)
+class Accelerations:
+    """a and lam at one state by name, "theta''" and "lam(pin, 1)"; None where there is no single value."""
+
+    a: dict[str, float | None]
+    lam: dict[str, float | None]
+
+
+def closing_accelerations(equations: EquationsOfMotion, t: float, x: np.ndarray, p: np.ndarray) -> Accelerations:
+    """The accelerations and multipliers at one state; none has a single value where branches meet.
+
+    Args:
+        p: the parameters' values.
+    """
+    system = equations.system
+    symbols, rows = system.symbols, [row.label for row in system.ties.closing]
+    names = [f"{u.name}'" for u in symbols.u]
+    if not names:
+        return Accelerations({}, {})
+    outputs = (*symbols.a, *symbols.lam, *(entry for row in equations.J for entry in row))
+    program = program_of(outputs, symbols, inputs=system.inputs, solve=bordered(equations))
+    values = compiled(program, "numpy")(t, x, p)
+    a, lam, J = np.split(values, [len(names), len(names) + len(rows)])
+    left = _left(J.reshape(len(rows), len(names)))
+    if len(left) and len(rows) - len(left) < rank_of_ties(system.ties):
+        return Accelerations(dict.fromkeys(names), dict.fromkeys(rows))
+    single = np.max(np.abs(left), axis=0, initial=0.0) < SHARE
+    return Accelerations(
+        {name: _number(value) for name, value in zip(names, a, strict=True)},
+        {name: _number(value) if one else None for name, value, one in zip(rows, lam, single, strict=True)},
+    )
+
+
+def _left(J: np.ndarray) -> np.ndarray:
+    """n with n^T J = 0, one a row; all where J has no value."""
+    if not J.size or not np.all(np.isfinite(J)):
+        return np.eye(len(J))
+    U, sizes, _ = np.linalg.svd(of_one_length(J))
+    left: np.ndarray = U[:, int(np.sum(sizes > RANK)) :].T
+    return left
+
+
+def _number(x: float) -> float | None:
+    return float(x) if np.isfinite(x) else None
+
+
+# -------- given motion ----------------------------------------------------------------------------------------
+# Coordinates as functions of time -> states and accelerations at instants: rates by derivatives, or of a spline.
+
+
+@dataclass(frozen=True)
+class GivenMotion:
+    """Coordinates as functions of time -> (q, u) and accelerations at instants."""
+
+    system: System
+    t: np.ndarray
+    motion: Mapping[str, Any]
+    p: np.ndarray
+
+    @cached_property
+    def _columns(self) -> dict[str, tuple[np.ndarray, np.ndarray, np.ndarray]]:
+        """{coordinate: (q, q', q'')}"""
+        model = self.system.scope.model
+        for name in self.motion:
+            if name not in model.coordinates:
+                raise UsageError(f"there is no coordinate '{name}'", mend=nearest(name, model.coordinates))
+        found = {}
+        for name, part in model.coordinates.items():
+            law = self.motion.get(name, part.motion)
+            if law is None:
+                raise UsageError(f"'{name}' has no motion", mend=f'give an expression of t: {{"{name}": "sin(t)"}}')
+            found[name] = self._of(name, law)
+        return found
+
+    def _of(self, name: str, law: Any) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+        """One coordinate with its rates, n each."""
+        model = self.system.scope.model
+        if are_several(law):
+            typed = TypedNumbers(model, name, declared=False)
+            try:
+                values = np.array([typed.number(x) for x in typed_values(law)])
+            except (ValueError, TypeError, ExpressionError) as error:
+                what = error.what if isinstance(error, ExpressionError) else "they are no numbers"
+                raise UsageError(f"the values of '{name}': {what}", mend=getattr(error, "mend", "")) from error
+            return self._through(name, values)
+        scope, symbols = self.system.scope, self.system.symbols
+        scalar = scope.value(time_law(model, name, law, "motion").named(name))
+        rate = tangent((scalar,), {symbols.t: 1})
+        scalars = (scalar, *rate, *tangent(rate, {symbols.t: 1}))
+        strangers = [x.name for x in (*symbols.q, *symbols.u) if depends_on(scalar, (x,))]
+        if strangers:
+            raise UsageError(f"the motion of '{name}' depends on '{strangers[0]}'", mend="give it as a function of t")
+        program = program_of(scalars, symbols, inputs=self.system.inputs)
+        states = np.zeros((len(self.t), len(symbols.q) + len(symbols.u)))
+        values = compiled(program, "numpy").many(self.t, states, self.p)
+        return values[:, 0], values[:, 1], values[:, 2]
+
+    def _through(self, name: str, values: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+        from scipy.interpolate import CubicSpline
+
+        if values.shape != self.t.shape or len(values) < 2:
+            raise UsageError(
+                f"'{name}' has {values.size} values at {len(self.t)} instants",
+                mend="give one value for each instant of t",
+            )
+        spline = CubicSpline(self.t, values)
+        return spline(self.t), spline(self.t, 1), spline(self.t, 2)
+
+    @cached_property
+    def x(self) -> np.ndarray:
+        """(q, u), n x states.
+
+        Raises:
+            UsageError: a speed that is no rate; ties that are open.
+        """
+        symbols, columns = self.system.symbols, self._columns
+        strange = [u.name for u in symbols.u if u.name.removesuffix("'") not in columns]
+        if strange:
+            raise UsageError(
+                f"'{strange[0]}' is a speed of its own: the motion gives coordinates", mend="take .function()"
+            )
+        places = [columns[q.name][0] for q in symbols.q]
+        found = np.column_stack([*places, *(columns[u.name[:-1]][1] for u in symbols.u)])
+        gaps = tuple(row.gap for row in self.system.ties.closing if row.gap is not None)
+        if gaps:
+            program = program_of(gaps, symbols, inputs=self.system.inputs)
+            open_ = np.abs(compiled(program, "numpy").many(self.t, found, self.p))
+            if not np.max(open_, initial=0.0) <= OPEN_GAP:
+                raise UsageError(f"the motion opens the ties by {np.max(open_):.3g}", mend="give one that they allow")
+        return found
+
+    @property
+    def a(self) -> np.ndarray:
+        """The accelerations, n x speeds."""
+        return np.column_stack([self._columns[u.name[:-1]][2] for u in self.system.symbols.u])

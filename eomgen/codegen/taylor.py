@@ -1,4 +1,6 @@
-"""Program -> C text of the power series of its motion: x(t + h) = sum of X[j] h^j, from x' = f(t, x).
+"""Program -> C text of the power series of its motion, compiled.
+
+Program -> C text of the power series of its motion: x(t + h) = sum of X[j] h^j, from x' = f(t, x).
 
 Every node of the graph has its own series; the coefficient j of a result follows from those of its arguments up to j:
 
@@ -11,14 +13,19 @@ right side. Source: Griewank & Walther, Evaluating Derivatives, 2nd ed., ch. 13.
 
 from __future__ import annotations
 
+import ctypes
+import math
 from dataclasses import field
+from typing import Any
 
-from eomgen.codegen.layout import Layout
+from eomgen.codegen.build import function_of, library
 from eomgen.codegen.lowered import Language
+from eomgen.codegen.lowering import Layout, lowered
 from eomgen.codegen.program import Assign, Program, Solve
-from eomgen.codegen.targets.c_lanes import WIDTH, text_of
+from eomgen.codegen.targets.c import C
+from eomgen.codegen.targets.c_lanes import WIDTH, text_of, vector_compiler
 from eomgen.records import dataclass
-from eomgen.symbolic.expression.graph import Node, Scalar
+from eomgen.symbolic.expression.node import Node, Scalar
 
 MOST_UNROLLED = 8000  # sums x order^2 that are written out for each order: they take a compiler a second
 UNROLL, INLINE = '_Pragma("GCC unroll 32")', "static inline __attribute__((always_inline))"
@@ -371,3 +378,57 @@ class _Writer:
             self.say(*(f"(void)solve_g, solve_plain{by}(&{M}, solve_f);" for by in ("", "_by")))
         for place, x in zip(unknown, solve.unknowns, strict=True):
             self.define(x, f"own_{len(self.named)}", place, place)
+
+
+# -------- series ----------------------------------------------------------------------------------------------
+# Program -> the power series of its motion, compiled, and the order to which they go.
+
+
+LEAST, MOST = 3, 20  # orders: the highest is what 1e-16 asks for
+ALONE = 24.0  # products beside its sums that a coefficient takes where one motion is followed: measured at equal error
+
+
+@dataclass(frozen=True)
+class Series:
+    """Compiled functions of the series of a motion.
+
+    Args:
+        address: of that which gives the coefficients; along: of that which gives x and x' by them.
+        size: the first works in so many numbers.
+        kept: what keeps it there.
+    """
+
+    address: int
+    along: int
+    size: int
+    kept: Any
+
+
+def series_of(program: Program, order: int) -> Series | None:
+    """The series of a program in C, up to an order; None of what has none.
+
+    Raises:
+        RunFailed, ToolMissing: as of `library`.
+    """
+    if without_series(program):
+        return None
+    text, size = series_text(program, C, order)
+    made = lowered(program, C, "dx", "eomgen_")
+    kernels = made.texts(C)[: -len(made.bodies)]
+    found = library("\n".join(["#include <math.h>\n#include <string.h>", *kernels, text]), by=vector_compiler())
+    functions = (function_of(found, f"eomgen_{name}") for name in ("series", "along"))
+    series, along = (ctypes.cast(each, ctypes.c_void_p).value or 0 for each in functions)
+    return Series(series, along, size, found)
+
+
+def order_for(rtol: float, beside: float = 0.0) -> int:
+    """The order that costs least at a relative tolerance: 1 + p, p (p + beside) exp(-ln(rtol)/p) least.
+
+    A step goes as far as exp(ln(rtol)/p), and takes p^2 products in its sums, and beside them p times so much as
+    `beside` of them: then 1/p + 1/(p + beside) = -ln(rtol)/p^2, where nothing is beside them p = -ln(rtol)/2.
+
+    Source: Jorba & Zou, Experimental Mathematics 14 (2005), 99-117.
+    """
+    digits = -math.log(rtol)
+    least = (digits - beside + math.hypot(digits - beside, math.sqrt(8 * beside * digits))) / 4
+    return min(MOST, max(LEAST, math.ceil(1 + least)))

@@ -1,22 +1,29 @@
-"""Program -> right answers at random states, in 50 digits: what emitted code is held against."""
+"""Program -> the texts of files that others can use, and right answers at random states.
+
+Program -> right answers at random states, in 50 digits: what emitted code is held against.
+"""
 
 from __future__ import annotations
 
+import json
 import random
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import replace
+from types import MappingProxyType
 from typing import Any
 
+import numpy as np
+
 from eomgen.codegen.kernel_reader import solve_bordered
-from eomgen.codegen.program import Program, Solve
-from eomgen.codegen.rhs import RightHandSide, compiled
-from eomgen.codegen.spheres import on_spheres, spheres_of
-from eomgen.codegen.targets.base import TestVector
+from eomgen.codegen.program import Program, Solve, on_spheres, spheres_of, stem_of
+from eomgen.codegen.rhs import RightHandSide, compiled, target_named
+from eomgen.codegen.targets.base import RHS, Called, Description, Emitted, FileContent, Target, TestVector, header
 from eomgen.errors import DerivationError
-from eomgen.symbolic.expression.graph import Node
+from eomgen.symbolic.expression.node import Node
 from eomgen.symbolic.expression.rational import Fraction
 from eomgen.symbolic.numeric.evaluation import Arithmetic, evaluate, fifty_digits
-from eomgen.symbolic.numeric.tolerances import COMPUTED, SOLVED
+from eomgen.symbolic.numeric.tolerances import COMPUTED, SINGLE, SINGLE_ROUNDING, SOLVED
+from eomgen.version import SCHEMA_VERSION
 
 TRIES = 60
 PARTIAL = 2  # states, at most, at which some result has no value
@@ -134,3 +141,164 @@ def _is_partial_nearby(program: Program, exact: dict[Node, Fraction], result: Se
     missing = [value != value for value in result]
     near = ({node: x * (1 + away) + away for node, x in exact.items()} for away in (NEAR, -NEAR))
     return all([value != value for value in _right(program, state)] == missing for state in near)
+
+
+# -------- single precision ------------------------------------------------------------------------------------
+# How near single precision comes: the tolerances of its vectors, measured, and the errors of a text that is run.
+
+
+DRAWS = 16  # states around one, by which it is measured what rounding does
+GROWN = 8  # times what the arguments' rounding does: that of all operations
+
+
+def single_vectors(program: Program, vectors: Sequence[TestVector]) -> tuple[TestVector, ...]:
+    """The vectors with the tolerances of single precision, measured at states that rounding cannot tell apart."""
+    rhs, rng = compiled(program, "numpy"), random.Random(1)
+
+    def beside(values: Sequence[float]) -> list[float]:
+        return [x * (1 + rng.choice((-1, 1)) * SINGLE_ROUNDING) for x in values]
+
+    def measured(v: TestVector) -> TestVector:
+        size = max([1.0, *(abs(y) for y in v.result if y == y)])
+        far = 0.0
+        for _ in range(DRAWS):
+            found = rhs(v.t, beside([*v.x, *v.a]), beside(v.p), beside(v.inputs or ()))
+            far = max([far, *(abs(a - b) for a, b in zip(found, v.result, strict=True) if a == a and b == b)])
+        x, a, p, result = map(_in_range, (v.x, v.a, v.p, v.result))
+        inputs = None if v.inputs is None else _in_range(v.inputs)
+        return replace(v, x=x, a=a, p=p, inputs=inputs, result=result, tolerance=float(SINGLE + GROWN * far / size))
+
+    return tuple(map(measured, vectors))
+
+
+def _in_range(values: Sequence[float]) -> tuple[float, ...]:
+    """Numbers, 0 where single precision has none so small: compilers warn of such a one."""
+    return tuple(0.0 if abs(x) < np.finfo(np.float32).tiny else x for x in values)
+
+
+def single_error(called: Called, vectors: Sequence[TestVector]) -> float:
+    """The largest error of a text in single precision against its tolerance, at all vectors.
+
+    Args:
+        called: the text, run.
+    """
+    worst = 0.0
+    for v in vectors:
+        size = max([1.0, *(abs(y) for y in v.result if y == y)])
+        for a, b in zip(called(v.t, v.x, v.a, v.p, v.inputs), v.result, strict=True):
+            if b == b:
+                worst = max(worst, abs(a - b) / size / v.tolerance if a == a else float("inf"))
+    return worst
+
+
+# -------- files -----------------------------------------------------------------------------------------------
+# Programs -> the texts of files that others can use as they are.
+
+
+def texts_of(
+    name: str,
+    emitted: Sequence[Emitted],
+    *,
+    targets: Sequence[str],
+    notes: Sequence[str] = (),
+    uses: Mapping[str, Sequence[str]] = MappingProxyType({}),
+) -> dict[str, FileContent]:
+    """{path: content}: NAME_rhs.c, NAME_rhs.h (or the target's own), the same of the others, README, test_vectors.json.
+
+    Args:
+        name: of the functions: the model file's stem; what is no identifier is made one.
+        emitted: the right-hand side first, then reactions and whatever else is asked for.
+        targets: names of languages, "c" or "numpy"; the files of one lie in the directory, of several each in its own.
+        notes: what is not in the code, and why, a line each.
+        uses: by language, how files are used that lie beside its own.
+    """
+    answers, stem = vectors_text(emitted), stem_of(name)
+    texts: dict[str, FileContent] = {}
+    for target in map(target_named, dict.fromkeys(targets)):
+        folder = "" if len(set(targets)) == 1 else f"{target.name}/"
+        files = target.files(stem, emitted)
+        files |= {
+            "README.md": readme(target, stem, emitted, notes, uses.get(target.name, ())),
+            "test_vectors.json": answers,
+        }
+        texts |= {f"{folder}{file}": text for file, text in files.items()}
+    return texts
+
+
+def readme(
+    target: Target, stem: str, emitted: Sequence[Emitted], notes: Sequence[str], uses: Sequence[str] = ()
+) -> str:
+    """What lies beside it: the functions, the order of their arguments, how they are used and tested."""
+    lines = [f"# {stem}: {target.about}", ""]
+    for line in (*target.use, *uses):
+        lines.append(f"    {line.format(stem=stem)}")
+    for program, told in emitted:
+        if not target.writes(told.role):
+            continue
+        lines += ["", *(f"    {line}".rstrip() for line in header(program, told))]
+    lines += ["", "All in SI and radians; without inputs the model's own act. Right answers are in test_vectors.json."]
+    lines += [line for note in notes for line in ("", f"Not here: {note}")]
+    return "\n".join([*lines, ""])
+
+
+def vectors_text(emitted: Sequence[Emitted]) -> str:
+    """The test vectors as JSON, one a line: names in order, then t, x, p, inputs (null: the model's own), result."""
+    program, description = emitted[0]
+    symbols = program.symbols
+    head = {
+        "schema_version": SCHEMA_VERSION,
+        "model": description.title,
+        "origin": description.origin,
+        "coordinates": [x.name for x in symbols.q],
+        "speeds": [x.name for x in symbols.u],
+        "parameters": list(symbols.parameters),
+        "inputs": list(symbols.inputs),
+        "tolerance": "of |result - given| / max(1, largest |result|); the result is dx, of the others out or tau; "
+        "null: no value there, not a number",
+    }
+    lines = [f" {json.dumps(name)}: {json.dumps(value, ensure_ascii=False)}," for name, value in head.items()]
+    if not any(told.role.name == "reactions" for _, told in emitted):
+        lines.append(' "reactions": null,')
+    for other, told in emitted:
+        if told.role is not RHS:
+            lines += _other(other, told)
+    return "\n".join(["{", *lines, *_listed(description, " "), "}", ""])
+
+
+def _other(program: Program, told: Description) -> list[str]:
+    """The vectors of a function beside the right-hand side."""
+    own: dict[str, object] = {"names": told.outputs}
+    if told.blocks:
+        meant = told.columns or ((),) * len(told.blocks)
+        own = {
+            "blocks": [
+                {"name": name, "rows": n, "columns": k, **({"of": of} if of else {})}
+                for (name, n, k), of in zip(told.blocks, meant, strict=True)
+            ]
+        }
+    if program.accelerations:
+        own |= {
+            "accelerations": [x.name for x in program.accelerations],
+            "inputs": list(program.symbols.inputs),
+        }
+    lines = [f"  {json.dumps(key)}: {json.dumps(value, ensure_ascii=False)}," for key, value in own.items()]
+    return [f' "{told.role.name}": {{', *lines, *_listed(told, "  "), " },"]
+
+
+def _listed(description: Description, indent: str) -> list[str]:
+    """The vectors, a line each."""
+    result = description.role.result
+    rows = [
+        {
+            "t": v.t,
+            "x": v.x,
+            **({"a": v.a} if v.a else {}),
+            "p": v.p,
+            "inputs": v.inputs,
+            result: [value if value == value else None for value in v.result],
+            "tolerance": v.tolerance,
+        }
+        for v in description.vectors
+    ]
+    listed = ",\n".join(f"{indent} {json.dumps(row)}" for row in rows)
+    return [f'{indent}"vectors": [', *([listed] if rows else []), f"{indent}]"]

@@ -4,11 +4,11 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
 
-from eomgen.documents.latex_names import latex_escaped
+from eomgen.documents.latex_math import latex_escaped
 from eomgen.documents.reading import Reader, omitted
 from eomgen.documents.statements import Cell, Code, Formula, Grid, Law, Omitted, Prose, Side, Statement, prose
 from eomgen.documents.text import side_text
-from eomgen.symbolic.expression.graph import Scalar
+from eomgen.symbolic.expression.node import Scalar
 from eomgen.symbolic.print.text import text_size
 
 WIDE = 96  # characters of a table, all columns beside one another

@@ -4,31 +4,29 @@ from __future__ import annotations
 
 from dataclasses import replace
 
-from eomgen.documents import energy_steps, motion_steps, projection_steps
-from eomgen.documents.balance_steps import kinetostatic_steps, reactions_table_step
+from eomgen.documents import energy_steps, motion_steps
 from eomgen.documents.document import Document, document_of, with_symbols
-from eomgen.documents.energy_steps import Momenta
+from eomgen.documents.energy_steps import MAGGI, Momenta, balance_step, integral_steps, maggi_equations, twists_step
 from eomgen.documents.equation_steps import EquationSteps, Sides, equations_of, multiplier_forces, sides_of
-from eomgen.documents.integral_steps import integral_steps
-from eomgen.documents.maggi_steps import MAGGI, maggi_equations
-from eomgen.documents.naming import Written, with_coefficients_throughout, with_parts_named, with_roots_named
-from eomgen.documents.notation import notation_step
-from eomgen.documents.reaction_names import Lettered, lettered
-from eomgen.documents.reaction_steps import along_the_motion, letters_of, reactions_step
-from eomgen.documents.reading import Reader
-from eomgen.documents.setting_steps import setting_steps
-from eomgen.documents.statements import Formula, Law, Prose, Step
+from eomgen.documents.motion_steps import setting_steps
+from eomgen.documents.reaction_steps import (
+    along_the_motion,
+    kinetostatic_steps,
+    letters_of,
+    reactions_step,
+    reactions_table_step,
+)
+from eomgen.documents.reaction_values import Lettered, lettered
+from eomgen.documents.reading import Reader, Written, with_coefficients_throughout, with_parts_named, with_roots_named
+from eomgen.documents.statements import Formula, Law, Prose, Step, notation_step
 from eomgen.documents.text import prose_text, side_text
-from eomgen.mechanics.bodies.armature import given_energy
-from eomgen.mechanics.bodies.inertia import BodyEnergy, armature_energy, body_energies, kinetic_energy
-from eomgen.mechanics.equations.equations_of_motion import EquationsOfMotion
-from eomgen.mechanics.equations.system import System
-from eomgen.mechanics.equations.work import generalized_forces
-from eomgen.mechanics.formulations import derived_by, lagrange
+from eomgen.mechanics.dynamics.formulations import derived_by, inertia_by_energies
+from eomgen.mechanics.dynamics.system import EquationsOfMotion, System, generalized_forces
+from eomgen.mechanics.kinematics.inertia import BodyEnergy, armature_energy, body_energies, given_energy, kinetic_energy
 from eomgen.mechanics.reactions.reactions import reactions_of
 from eomgen.proof.printed import Printed
 from eomgen.symbolic.exact.equality import equal_at_random_states
-from eomgen.symbolic.expression.graph import Node, Scalar
+from eomgen.symbolic.expression.node import Node, Scalar
 from eomgen.symbolic.print.text import text_size
 
 LAGRANGE = Law(
@@ -121,7 +119,7 @@ def _lagrange(equations: EquationsOfMotion, reader: Reader) -> tuple[tuple[Step,
 
 def _is_integrable(equations: EquationsOfMotion) -> bool:
     """Whether Lagrange's equations hold in the independent speeds alone, as they do where ties are ones of position."""
-    _, c = lagrange.inertia_by_energies(equations.system.motion, kinetic_energy(equations.system.motion))
+    _, c = inertia_by_energies(equations.system.motion, kinetic_energy(equations.system.motion))
     return equal_at_random_states(zip(c, equations.c, strict=True)).equal
 
 
@@ -190,11 +188,11 @@ def _projection(equations: EquationsOfMotion, reader: Reader) -> tuple[tuple[Ste
     steps: tuple[Step, ...] = (
         motion_steps.positions_step(system, reader),
         *motion_steps.speeds_step(system, reader),
-        projection_steps.twists_step(system, reader),
+        twists_step(system, reader),
         *motion_steps.constraints_step(system, reader),
     )
     if own.Q:
-        steps = (*steps, projection_steps.balance_step(own, reader))
+        steps = (*steps, balance_step(own, reader))
     sides = sides_of(equations, own.M, own.c, own.Q)
     law = MATRICES_WITH_TIES if equations.J else MATRICES
     return steps, equations_of(equations, reader, sides, ("The equations ", law, ":"))

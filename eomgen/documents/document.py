@@ -6,17 +6,17 @@ from collections.abc import Callable, Iterator, Mapping
 from dataclasses import field, replace
 from typing import Any
 
-from eomgen.documents.latex_names import Notation, notation_of
-from eomgen.documents.quantity import Quantity
-from eomgen.documents.statements import Equation, Lines, Meaning, Statement, Step, Table
+from eomgen.documents.latex_math import Notation, notation_of
+from eomgen.documents.statements import Equation, Lines, Meaning, Quantity, Statement, Step, Table
 from eomgen.errors import Problem
 from eomgen.model.parts import Model
 from eomgen.model.replaced import Taken
 from eomgen.model.values import constant_parameters
 from eomgen.proof.check import Certificate
 from eomgen.records import Pickled, dataclass
-from eomgen.symbolic.expression.graph import Graph, Node, Scalar
-from eomgen.symbolic.print.symbols import Symbol
+from eomgen.symbolic.expression.graph import Graph
+from eomgen.symbolic.expression.node import Node, Scalar
+from eomgen.symbolic.print.names import Symbol
 
 DISTRUST = "the certificate FAILS: do not trust this result"
 NOTHING_CHECKED = Problem("", "nothing of this result could be checked")

@@ -1,28 +1,47 @@
-"""System, values -> a drawing of a plane model in one configuration, from its scene; arrows stand beside it."""
+"""System, values -> a drawing of it in one configuration, with matplotlib.
+
+System, values -> a drawing of a plane model in one configuration, from its scene; arrows stand beside it.
+"""
 
 from __future__ import annotations
 
+import math
 from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import replace
 from functools import cached_property
+from itertools import pairwise
 from typing import Any
 
 import numpy as np
 
-from eomgen.documents.latex_names import notation_of
+from eomgen.documents.figures import mathtext
+from eomgen.documents.latex_math import Notation, notation_of
 from eomgen.documents.letters import PlacedName
-from eomgen.documents.scene_drawing import LOAD, REACTION, draw, limits
-from eomgen.mechanics.bodies.kinematics import BodyLink
-from eomgen.mechanics.equations.system import System
+from eomgen.mechanics.dynamics.system import System
+from eomgen.mechanics.kinematics.motion import BodyLink
 from eomgen.records import dataclass
 from eomgen.scene.making import scene_of_system
 from eomgen.scene.plane_strokes import plane_drawing
-from eomgen.scene.strokes import Drawing, SceneNumbers
-from eomgen.symbolic.expression.graph import Node, Scalar
+from eomgen.scene.strokes import Drawing, Letter, SceneNumbers, Stroke
+from eomgen.symbolic.expression.node import Node, Scalar
 from eomgen.symbolic.expression.spatial import Vector
 from eomgen.symbolic.numeric.sure_numbers import numbers_of
 
-__all__ = ["ARROW", "LOAD", "REACTION", "PagePoint", "Sketch", "draw_model", "name_along", "name_beside"]
+__all__ = [
+    "ARROW",
+    "LOAD",
+    "REACTION",
+    "PagePoint",
+    "Sketch",
+    "arrow",
+    "distributed",
+    "draw_model",
+    "is_freer_outward",
+    "moment_arc",
+    "name_along",
+    "name_beside",
+]
+
 
 PagePoint = tuple[float, float]
 ARROW = 0.13  # length of the longest arrow, of the extent
@@ -113,10 +132,247 @@ def name_along(panel: Any, text: str, ends: Sequence[Any], color: str) -> None:
 
 
 def _named(panel: Any, name: PlacedName) -> None:
-    from eomgen.documents.letters_artist import NamesArtist
+    from eomgen.documents.letters import NamesArtist
 
     shown = [artist for artist in panel.artists if isinstance(artist, NamesArtist)]
     if shown:
         shown[0].add(name)
     else:
         panel.add_artist(NamesArtist([name], []))
+
+
+# -------- scene drawing ---------------------------------------------------------------------------------------
+# Drawing -> matplotlib: the strokes and names of a scene on a panel, in the colours of their roles.
+
+
+INK, GREY, PAPER = "#2b2b2b", "#6a6a6a", "#ffffff"
+BODY, TINT, LOAD, REACTION, VELOCITY = "#2f5d8a", "#c9d8e8", "#b03a2e", "#2e7d4f", "#2e7d4f"
+LINES: Mapping[str, tuple[str, float]] = {  # colour and width [points]
+    "ground": (GREY, 1.2),
+    "track": (GREY, 1.2),
+    "axes": ("#707070", 1.0),
+    "member": ("#44627f", 1.8),
+    "string": (INK, 1.3),
+    "spring": (INK, 1.2),
+    "damper": (INK, 1.2),
+    "body": (BODY, 1.5),
+    "hole": (BODY, 1.5),
+    "inertia": (BODY, 1.0),
+    "joint": (GREY, 1.2),
+    "solid": (GREY, 1.0),
+    "support": (GREY, 1.2),
+    "contact": (GREY, 1.0),
+    "point": (INK, 1.0),
+    "dimension": ("#7a5c3e", 0.9),
+    "center": ("#8e44ad", 1.2),
+    "velocity": (VELOCITY, 1.5),
+    "drive": (VELOCITY, 1.3),
+    "force": (LOAD, 1.5),
+    "reaction": (REACTION, 1.5),
+}
+FILLS: Mapping[str, str] = {"body": TINT, "inertia": "#e3ebf3", "joint": PAPER, "support": PAPER}
+OPEN, FINE = 2.6, 0.9  # widths of a body that is a line, and of marks on something [points]
+RANKS: Mapping[str, int] = {"reaction": 0, "force": 1, "dimension": 2, "label": 3, "axes": 5}
+MARGIN, NARROWEST = 3.5, 0.4  # around what is drawn [symbol units]; the shorter side, of the longer
+SMALLEST = 22.0  # side of a picture [symbol units]
+
+
+def draw(
+    panel: Any,
+    drawing: Drawing,
+    notation: Notation,
+    *,
+    names: bool = True,
+    colors: Mapping[str, str] | None = None,
+) -> list[tuple[Any, Stroke]]:
+    """A scene in the plane at its first frame, on matplotlib axes with equal scales and no frame.
+
+    Args:
+        notation: how the names of the model are set.
+        names: bodies and points are named.
+        colors: of bodies that have one of their own.
+    Returns:
+        Each artist with the stroke that it shows.
+    """
+    panel.set_aspect("equal")
+    panel.axis("off")
+    strokes = [stroke for stroke in drawing.strokes if stroke.path.size]
+    shown = [(artist_of(panel, s, 0, colors or {}, 1 + k / len(strokes)), s) for k, s in enumerate(strokes)]
+    low, high = limits(drawing)
+    panel.set_xlim(low[0], high[0])
+    panel.set_ylim(low[1], high[1])
+    if names:
+        from eomgen.documents.letters import NamesArtist
+
+        lines = [stroke.path[0] for stroke in drawing.strokes if stroke.role != "label"]
+        panel.add_artist(NamesArtist(tuple(letter_names(drawing.letters, colors or {}, notation)), lines))
+    return shown
+
+
+def artist_of(panel: Any, stroke: Stroke, frame: int, colors: Mapping[str, str], layer: float) -> Any:
+    """One stroke, in its layer."""
+    color, width = LINES[stroke.role]
+    own = colors.get(stroke.of) if stroke.role in ("body", "inertia", "hole") else None
+    color = own or color
+    x, y = stroke.path[frame].T
+    if stroke.dot:
+        size = 3.5 if stroke.role == "center" else 7
+        return panel.plot(x, y, marker="o", markersize=size, color=color, zorder=layer, linestyle="none")[0]
+    if stroke.filled:
+        solid = stroke.role not in FILLS and not stroke.hole
+        fill = color if solid else PAPER if stroke.hole else _tinted(own) if own else FILLS[stroke.role]
+        return panel.fill(x, y, facecolor=fill, edgecolor=color, linewidth=0.4 if solid else width, zorder=layer)[0]
+    thin = FINE if stroke.fine else OPEN if stroke.role == "body" else width
+    return panel.plot(x, y, color=color, linewidth=thin, zorder=layer, solid_capstyle="round", solid_joinstyle="round")[
+        0
+    ]
+
+
+def _tinted(color: str) -> tuple[float, float, float]:
+    """A colour, three quarters of it paper."""
+    from matplotlib.colors import to_rgb
+
+    r, g, b = (0.72 + 0.28 * x for x in to_rgb(color))
+    return r, g, b
+
+
+def limits(drawing: Drawing) -> tuple[np.ndarray, np.ndarray]:
+    """The corners of the picture: all that is drawn, but for tracks, which go on."""
+    clouds = [s.path.reshape(-1, s.path.shape[-1]) for s in drawing.strokes if s.role != "track"]
+    cloud = np.vstack([*clouds, drawing.sizes.low[None, :], drawing.sizes.high[None, :]])
+    cloud = cloud[np.isfinite(cloud).all(axis=1)]
+    margin = MARGIN * (drawing.sizes.unit or 0.03)
+    low, high = cloud.min(axis=0) - margin, cloud.max(axis=0) + margin
+    size, middle = high - low, 0.5 * (low + high)
+    size = np.maximum(size, max(NARROWEST * size.max(), SMALLEST * drawing.sizes.unit))
+    return middle - 0.5 * size, middle + 0.5 * size
+
+
+def letter_names(letters: Sequence[Letter], colors: Mapping[str, str], notation: Notation) -> Iterable[PlacedName]:
+    """The names of a picture; of several points at one place the first, of a length or coordinate the first time."""
+    there: set[tuple[str, int, int] | str] = set()
+    for letter in letters:
+        x, y = (float(v) for v in letter.at[0])
+        if not np.isfinite([x, y]).all():
+            continue
+        key = (letter.role, round(x * 1e6), round(y * 1e6))
+        if (letter.role == "point" and key in there) or (letter.role == "dimension" and letter.text in there):
+            continue
+        there |= {key, letter.text} if letter.role == "dimension" else {key}
+        color = colors.get(letter.of, BODY) if letter.role == "label" else LINES.get(letter.role, (INK, 1.0))[0]
+        yield PlacedName(written(letter, notation), (x, y), color, 9.0, RANKS.get(letter.role, 4))
+
+
+def written(letter: Letter, notation: Notation) -> str:
+    """A name as matplotlib sets it: of bodies and forces as it is, of points and lengths as mathematics.
+
+    A body that declares its symbol is called by that.
+    """
+    if letter.role == "label" and letter.of in notation.indices:
+        return f"${notation.indices[letter.of]}$"
+    if letter.role in ("label", "force", "reaction"):
+        return letter.text.replace("$", r"\$")
+    return f"${mathtext(letter.text, notation)}$"
+
+
+# -------- arrows ----------------------------------------------------------------------------------------------
+# Arrows of a drawing: forces that end at their point, couples as arcs, loads that are spread along a line.
+
+
+STEEP = 0.25  # sine of the angle below which two lines run along one another
+CLEAR = 0.15  # of an arrow: nearer to a line it is on it; so much of it is at its own place
+
+
+def arrow(panel: Any, tip: PagePoint, vector: PagePoint, *, color: str, label: str = "", outward: bool = False) -> None:
+    """An arrow whose tip is at a place; `outward`: that begins there (velocities, displacements).
+
+    Args:
+        vector: direction and length, in the drawing's units.
+        label: at its free end.
+    """
+    (x, y), (dx, dy) = tip, vector
+    length = math.hypot(dx, dy)
+    if not length:
+        return
+    begin, end = ((x, y), (x + dx, y + dy)) if outward else ((x - dx, y - dy), (x, y))
+    panel.annotate(
+        "",
+        end,
+        xytext=begin,
+        zorder=7,
+        arrowprops={"arrowstyle": "-|>", "color": color, "linewidth": 1.5, "shrinkA": 0, "shrinkB": 0},
+    )
+    free = end if outward else begin
+    panel.plot(*free, alpha=0)  # so that the axes hold it
+    if label:
+        name_beside(panel, label, free, color)
+
+
+def is_freer_outward(lines: Iterable[np.ndarray], at: PagePoint, vector: PagePoint) -> bool:
+    """Whether an arrow meets fewer lines where it begins at its place than where it ends there."""
+    pieces = [piece for line in lines for piece in pairwise(line)]
+    place, stroke = np.array(at), np.array(vector)
+    begun, ended = (sum(_meets(a, b, place, s) for a, b in pieces) for s in (stroke, -stroke))
+    return begun < ended
+
+
+def _meets(a: np.ndarray, b: np.ndarray, at: np.ndarray, stroke: np.ndarray) -> bool:
+    """Whether a stroke from a place runs along the piece a b, or crosses it further on."""
+    along, away = b - a, at - a
+    turn = along[0] * stroke[1] - along[1] * stroke[0]
+    sizes = float(np.hypot(*along) * np.hypot(*stroke))
+    if not sizes:
+        return False
+    if abs(turn) < STEEP * sizes:
+        middle = away + stroke / 2
+        share = float(np.clip(middle @ along / (along @ along), 0, 1))
+        return bool(np.hypot(*(middle - share * along)) < CLEAR * np.hypot(*stroke))
+    on_piece = (away[0] * stroke[1] - away[1] * stroke[0]) / turn
+    on_stroke = (away[0] * along[1] - away[1] * along[0]) / turn
+    return bool(0 <= on_piece <= 1 and CLEAR < on_stroke <= 1)
+
+
+def moment_arc(panel: Any, sketch: Sketch, at: PagePoint, sense: float, *, color: str, label: str = "") -> None:
+    """A couple: three quarters of a circle with an arrow, counter-clockwise for a positive sense."""
+    r = 1.9 * sketch.symbol
+    turns = np.linspace(-0.25 * math.pi, 1.25 * math.pi, 40)
+    turns = turns if sense > 0 else turns[::-1]
+    x, y = at[0] + r * np.cos(turns), at[1] + r * np.sin(turns)
+    panel.plot(x[:-2], y[:-2], color=color, linewidth=1.5, zorder=7)
+    panel.annotate(
+        "",
+        (x[-1], y[-1]),
+        xytext=(x[-4], y[-4]),
+        zorder=7,
+        arrowprops={"arrowstyle": "-|>", "color": color, "linewidth": 1.5, "shrinkA": 0, "shrinkB": 0},
+    )
+    if label:
+        name_beside(panel, label, (at[0], at[1] + r), color)
+
+
+def distributed(
+    panel: Any,
+    ends: tuple[PagePoint, PagePoint],
+    vectors: tuple[PagePoint, PagePoint],
+    *,
+    color: str = LOAD,
+    label: str = "",
+) -> None:
+    """A load along a line: arrows whose tips are on it, their tails joined.
+
+    Args:
+        ends: of the line.
+        vectors: of the load there, in the drawing's units.
+    """
+    (a, b), (p, q) = (np.array(ends), np.array(vectors))
+    highest = max(float(np.linalg.norm(p)), float(np.linalg.norm(q)))
+    count = 3 + int(min(8.0, 3 * float(np.linalg.norm(b - a)) / (highest or 1.0)))
+    tails = []
+    for share in np.linspace(0, 1, count):
+        tip, vector = a + share * (b - a), p + share * (q - p)
+        tails.append(tip - vector)
+        arrow(panel, (tip[0], tip[1]), (vector[0], vector[1]), color=color)
+    panel.plot(*np.array(tails).T, color=color, linewidth=1.2, zorder=6)
+    if label:
+        x, y = np.mean(tails, axis=0)
+        name_beside(panel, label, (float(x), float(y)), color)

@@ -1,23 +1,78 @@
-"""System -> the steps of Lagrange's method: energies, work and generalized forces, the three derivatives."""
+"""Steps of Lagrange's method, of Newton-Euler projected, of Maggi's equations, and first integrals.
+
+System -> the steps of Lagrange's method: energies, work and generalized forces, the three derivatives.
+"""
 
 from __future__ import annotations
 
 from collections.abc import Sequence
+from itertools import groupby
 
 from eomgen.documents.bounded import page
-from eomgen.documents.motion_steps import Pair, axes, component_pairs
-from eomgen.documents.reading import Reader
-from eomgen.documents.setting_steps import moved_coordinates
-from eomgen.documents.statements import Law, Name, Partial, Rate, Side, Statement, Step, prose
-from eomgen.mechanics.bodies.armature import given_energy
-from eomgen.mechanics.bodies.inertia import BodyEnergy, armature_energy, body_energies
-from eomgen.mechanics.bodies.loads import Applied, JointEffort
-from eomgen.mechanics.equations.system import System
-from eomgen.mechanics.equations.work import effort_row, force_row, per_speed
+from eomgen.documents.equation_steps import (
+    EquationSteps,
+    Sides,
+    closing,
+    multiplier_forces,
+    printed,
+    readable_equations,
+    taken_in,
+)
+from eomgen.documents.motion_steps import (
+    Pair,
+    axes,
+    component_pairs,
+    is_still,
+    listed_symbols,
+    moved_coordinates,
+    spins,
+)
+from eomgen.documents.reading import Reader, with_coefficients_named
+from eomgen.documents.statements import (
+    Entry,
+    Formula,
+    Law,
+    Name,
+    Omitted,
+    Partial,
+    Piece,
+    Prose,
+    Rate,
+    Side,
+    Statement,
+    Step,
+    prose,
+)
+from eomgen.mechanics.dynamics.explicit_accelerations import short_accelerations
+from eomgen.mechanics.dynamics.formulations import free_rates
+from eomgen.mechanics.dynamics.pieces import Extent
+from eomgen.mechanics.dynamics.system import EquationsOfMotion, System, effort_row, force_row, per_speed
+from eomgen.mechanics.integrals.first_integrals import (
+    Constant,
+    Integral,
+    energy_integral,
+    momenta_of_the_whole,
+    momentum_integrals,
+    work_of_constant_forces,
+)
+from eomgen.mechanics.integrals.laws import laws_of_motion
+from eomgen.mechanics.kinematics.inertia import (
+    BodyEnergy,
+    armature_energy,
+    body_energies,
+    given_energy,
+    mass_properties,
+)
+from eomgen.mechanics.kinematics.loads import Applied, JointEffort
+from eomgen.mechanics.kinematics.motion import velocity_of
+from eomgen.mechanics.start.exact import known_start
 from eomgen.model.forces.load import Couple, Load, PointForce
 from eomgen.records import dataclass
-from eomgen.symbolic.expression.derivative import gradient
-from eomgen.symbolic.expression.graph import Scalar, is_zero
+from eomgen.symbolic.expression.derivative import depends_on, gradient, jacobian
+from eomgen.symbolic.expression.formula import inner
+from eomgen.symbolic.expression.node import Node, Scalar, ScalarRow, is_zero
+from eomgen.symbolic.expression.traversal import order
+from eomgen.symbolic.print.text import text_size, to_text
 
 T, V = Name("T"), Name("V")
 
@@ -161,3 +216,256 @@ def derivatives_step(system: System, reader: Reader, momenta: Momenta) -> Step:
             (Partial(T, q), momenta.held[k]),
         ]
     return Step("derivatives", "Derivatives of the kinetic energy", page(reader, formulas))
+
+
+# -------- projection steps ------------------------------------------------------------------------------------
+# System -> the steps of the projection of Newton-Euler: velocities by twists, M, c and Q as projected wrenches.
+
+
+BALANCE = Law(
+    "m*a = F, I*epsilon + omega x I*omega = tau",
+    r"m a = F, \quad I \varepsilon + \omega \times I \omega = \tau",
+)
+PROJECTED = Law(
+    "sum (m*a - F)*dv/du_k + (I*epsilon + omega x I*omega - tau)*domega/du_k = 0",
+    r"\sum \left(m a - F\right) \cdot \frac{\partial v}{\partial u_{k}}"
+    r" + \left(I \varepsilon + \omega \times I \omega - \tau\right) \cdot \frac{\partial \omega}{\partial u_{k}} = 0",
+)
+
+
+def twists_step(system: System, reader: Reader) -> Step:
+    """Velocities of the mass centres and angular velocities, from body to body along the tree."""
+    formulas: list[Pair] = []
+    for link in system.motion.links:
+        body = mass_properties(system.scope, link.name)
+        if not is_zero(body.m):
+            velocity = velocity_of(system.motion, (link.name, body.com))
+            if not is_still(velocity):
+                formulas += component_pairs(system, "v", f"{link.name}.center", velocity)
+        formulas += spins(system, link.name, link.twist.w)
+    words = "Each body moves with the one it hangs on and by its joint:"
+    return Step("velocities", "Velocities", (prose(words), *page(reader, formulas)))
+
+
+def balance_step(equations: EquationsOfMotion, reader: Reader) -> Step:
+    """M, c and Q: the balance of momentum of every body along the motions that the joints allow."""
+    u, q = equations.system.symbols.u, moved_coordinates(equations.system)
+    inertia: list[Pair] = [
+        (Entry("M", u[i], u[j]), equations.M[i][j])
+        for i in range(len(u))
+        for j in range(i, len(u))
+        if not is_zero(equations.M[i][j])
+    ]
+    inertia += [(Name("c", by=x), c) for x, c in zip(u, equations.c, strict=True)]
+    forces: list[Pair] = [(Name("Q", by=x), Q) for x, Q in zip(q, equations.Q, strict=True)]
+    statements = (
+        prose("For each body ", BALANCE, ". Ideal joints do no work on the motions that they allow, so that"),
+        Formula((PROJECTED,)),
+        prose("Sorted by accelerations:"),
+        *page(reader, inertia),
+        *page(reader, forces),
+    )
+    return Step("balance", "Balance of momentum along the free motions", statements)
+
+
+# -------- maggi steps -----------------------------------------------------------------------------------------
+# System with dependent coordinates -> Maggi's equations: Lagrange's of all coordinates, put together along the ties.
+#
+#     sum_i N_ik (d/dt dT/dq_i' - dT/dq_i - Q_i) = (J^T lam)_k
+#
+# They need no T in which the dependent rates were replaced, and hold where ties restrict velocities only. Source:
+# Neimark & Fufaev, Dynamics of Nonholonomic Systems (1972), chapter III.
+
+
+MAGGI = Law(
+    "sum_i N_ik*(d/dt(dT/dq_i') - dT/dq_i) = sum_i N_ik*Q_i",
+    r"\sum_{i} N_{ik} \left(\frac{d}{dt} \frac{\partial T}{\partial \dot{q}_{i}}"
+    r" - \frac{\partial T}{\partial q_{i}}\right) = \sum_{i} N_{ik} Q_{i}",
+)
+WITH_TIES = Law(MAGGI.text + " + (J^T*lam)_k", MAGGI.latex + r" + \left(J^{\mathsf{T}} \lambda\right)_{k}")
+
+
+def maggi_equations(
+    equations: EquationsOfMotion, free: System, reader: Reader, momenta: Momenta, forces: ScalarRow
+) -> EquationSteps | None:
+    """The equations in the rates of all coordinates, and what the dependent ones stand for; None where they are long.
+
+    Args:
+        momenta, forces: of the free system, one entry a coordinate.
+    """
+    system = equations.system
+    N = jacobian(free_rates(system, free), system.scope.symbols.u)
+    inertia = [rate - held for rate, held in zip(momenta.rates, momenta.held, strict=True)]
+    columns = list(zip(*N, strict=True))
+    ties = multiplier_forces(equations)
+    sides = [
+        Sides(inner(column, inertia), inner(column, forces) + tie) for column, tie in zip(columns, ties, strict=True)
+    ]
+    written = readable_equations(reader, equations, sides)
+    followers = _followers(system, free, N)
+    shown = [(symbol, reader.shown(x)) for symbol, x in followers]
+    if written is None or any(isinstance(x, Omitted) for _, x in shown):
+        return None
+    law = WITH_TIES if equations.J else MAGGI
+    words = "Lagrange's equations of all coordinates, put together along the motions that the constraints allow, "
+    named = with_coefficients_named(system.scope, written, taken_in(equations))
+    statements = (
+        prose(words, law, ":"),
+        *printed(system, named.equations),
+        *closing(reader, equations),
+        prose("The dependent coordinates follow, their rates as above:"),
+        *map(Formula, shown[len(shown) // 2 :]),
+    )
+    definitions = tuple((symbol, x) for symbol, x in shown if not isinstance(x, Omitted))
+    definitions = (*named.definitions, *definitions)
+    steps = (Step("equations", "Equations of motion", statements),)
+    return EquationSteps(named.equations, definitions, steps, named.meanings)
+
+
+def _followers(system: System, free: System, N: Sequence[ScalarRow]) -> list[tuple[Node, Scalar]]:
+    """u_d = A u + b, then a_d = A a + A' u + b', in the rates of all coordinates, of each dependent one."""
+    rates = dict(zip(free.symbols.u, free_rates(system, free), strict=True))
+    dependent = [k for k, u in enumerate(free.symbols.u) if u not in system.symbols.u]
+    found = [(free.symbols.u[k], rates[free.symbols.u[k]]) for k in dependent]
+    for k in dependent:
+        bias = dict(zip(system.symbols.q, system.scope.nu, strict=True))
+        own = next(x for q, x in bias.items() if f"{q.name}'" == free.symbols.u[k].name)
+        *slopes, drift = free.scope.time_derivative((*N[k], own))
+        found.append((free.symbols.a[k], inner(N[k], system.symbols.a) + inner(slopes, system.symbols.u) + drift))
+    return found
+
+
+# -------- integral steps --------------------------------------------------------------------------------------
+# Equations of motion -> the steps after the equations of motion: cyclic coordinates, energy, laws of motion.
+
+
+MOST_SPEEDS = 6  # of a system whose laws of motion are sought
+LONGEST_LAW = 400  # characters of a law that is printed
+
+ENERGY = Law("T + V", "T + V")
+ENERGY_AND_WORK = Law("T + V - W", "T + V - W")
+AT_MOST, AT_LEAST = Law("<=", r"\le"), Law(">=", r"\ge")
+JACOBI = Law("sum u_k*dT/du_k - T + V", r"\sum u_{k} \frac{\partial T}{\partial u_{k}} - T + V")
+
+
+def integral_steps(
+    equations: EquationsOfMotion, reader: Reader, in_time: EquationsOfMotion | None = None
+) -> tuple[Step, ...]:
+    """First integrals, and laws of motion from the model's start; no step where there are none.
+
+    Args:
+        in_time: the same with all that is driven as functions of time; None: they are so.
+    """
+    laws = (
+        _laws(equations, reader)
+        if in_time is None
+        else _laws(in_time, Reader(gathers=reader.gathers, positive=reader.positive))
+    )
+    return (*_integrals(equations, reader), *laws)
+
+
+def _integrals(equations: EquationsOfMotion, reader: Reader) -> tuple[Step, ...]:
+    symbols = equations.symbols
+    cyclic = [each for each in momentum_integrals(equations) if not depends_on(each.expression, (symbols.t,))]
+    statements: list[Statement] = []
+    if cyclic:
+        moving = {q.name: q for q in symbols.q}
+        speeds = {u.name.removesuffix("'"): u for u in symbols.u}
+        rates = [each for each in cyclic if speeds[each.coordinate].name != each.coordinate]
+        for held, group in groupby(rates, key=lambda each: each.held):
+            each_held = tuple(group)
+            statements.append(_cyclic(tuple(moving[each.coordinate] for each in each_held), held))
+            pairs = [(Partial(Name("T"), speeds[each.coordinate]), each.expression) for each in each_held]
+            statements += page(reader, pairs)
+        for each in (other for other in cyclic if other not in rates):
+            words = ("The momentum of the speed ", speeds[each.coordinate], " stays constant")
+            statements.append(prose(*words, *while_words(each.held), ":"))
+            statements += page(reader, [(Partial(Name("T"), speeds[each.coordinate]), each.expression)])
+    energies = energy_integral(equations)
+    for energy in energies:
+        statements += _energy(reader, equations, energy)
+    statements += _of_the_whole(equations, reader, [each.expression for each in (*cyclic, *energies)])
+    return (Step("integrals", "First integrals", tuple(statements)),) if statements else ()
+
+
+def _of_the_whole(equations: EquationsOfMotion, reader: Reader, known: Sequence[Scalar]) -> list[Statement]:
+    """Momentum and angular momentum of all bodies together, ground axes, where they stay."""
+    statements: list[Statement] = []
+    found = momenta_of_the_whole(equations, known)
+    for about, group in groupby(found, key=lambda each: (each.letter, each.about)):
+        what = "momentum" if about[0] == "P" else f"angular momentum about {about[1]}"
+        statements.append(prose(f"The {what}, in the axes of the ground, stays constant:"))
+        statements += page(reader, [(_side(each), each.expression) for each in group])
+    return statements
+
+
+def _side(each: Constant) -> Name:
+    return Name(f"{each.letter}_{each.axis}") if each.axis else Name(each.letter, power=2)
+
+
+def _cyclic(coordinates: tuple[Node, ...], held: Extent) -> Prose:
+    many = len(coordinates) > 1
+    verb = ("s ", " are cyclic: their momenta stay") if many else (" ", " is cyclic: its momentum stays")
+    if not held.everywhere:
+        verb = ("s ", ": their momenta stay") if many else (" ", ": its momentum stays")
+    return prose(
+        f"The coordinate{verb[0]}", *listed_symbols(coordinates), f"{verb[1]} constant", *while_words(held), ":"
+    )
+
+
+def while_words(held: Extent) -> tuple[Piece, ...]:
+    """ " while y >= 0" of what holds in some pieces alone."""
+    words: list[Piece] = []
+    for each in held.within:
+        left, right = (x if type(x) is Node else to_text(x) for x in (each.left, each.right))
+        words += [
+            " and " if words else " while ",
+            left,
+            " ",
+            AT_MOST if each.relation == "<=" else AT_LEAST,
+            " ",
+            right,
+        ]
+    return tuple(words)
+
+
+def _energy(reader: Reader, equations: EquationsOfMotion, energy: Integral) -> list[Statement]:
+    """T + V, or T + V - W, and that it stays constant; in words alone where it is written piece by piece."""
+    law = ENERGY
+    words: tuple[Piece, ...] = ("The energy ", ENERGY, " stays constant")
+    if energy.name == "jacobi":
+        law = JACOBI
+        words = ("What moves by itself does so at a steady rate, and Jacobi's integral ", JACOBI, " stays constant")
+    elif energy.expression is not equations.T + equations.V:
+        law = ENERGY_AND_WORK
+        words = ("The energy less the work of the constant forces, ", law, ", stays constant")
+    words = (*words, *while_words(energy.held))
+    if any(node.op == "select" for node in order((energy.expression,))):
+        return [prose(*words, ".")]
+    if law is not JACOBI:
+        T, V = energies_by_parts(equations.system, reader, equations.T)
+        parts = [T, V, *([-work_of_constant_forces(equations.system)] if law is ENERGY_AND_WORK else [])]
+        return [prose(*words, ":"), *page(reader, [(law, reader.as_sum(energy.expression, parts))])]
+    return [prose(*words, ":"), *page(reader, [(law, energy.expression)])]
+
+
+def _laws(equations: EquationsOfMotion, reader: Reader) -> tuple[Step, ...]:
+    """q(t) of the coordinates whose equations are solved in closed form."""
+    system = equations.system
+    symbols = system.symbols
+    if not 0 < len(symbols.u) <= MOST_SPEEDS or symbols.inputs or system.free is not None:
+        return ()
+    accelerations = short_accelerations(equations)
+    start = None if accelerations is None else known_start(system)
+    laws = {} if accelerations is None or start is None else laws_of_motion(system, accelerations, start)
+    free = {u.name.removesuffix("'") for u in symbols.u}
+    found = [(q, laws[q]) for q in symbols.q if q in laws and q.name in free and text_size(laws[q]) <= LONGEST_LAW]
+    if not found:
+        return ()
+    words = prose("From the start values, in closed form:")
+    return (Step("laws", "Laws of motion", (words, *(Formula((q, _law(reader, x))) for q, x in found))),)
+
+
+def _law(reader: Reader, x: Scalar) -> Scalar:
+    """A law as it was found, which is shorter than multiplied out, with symbols for its roots."""
+    return reader.with_symbols((x,))[0]

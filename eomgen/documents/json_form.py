@@ -1,18 +1,27 @@
-"""Document -> JSON: its entries, its steps; formulas as text that the grammar of the model file reads back."""
+"""Document -> JSON; what `derive --json` carries.
+
+Document -> JSON: its entries, its steps; formulas as text that the grammar of the model file reads back.
+"""
 
 from __future__ import annotations
 
 import json
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from typing import Any
 
 from eomgen.documents.document import Document
+from eomgen.documents.equation_steps import multiplier_forces
 from eomgen.documents.latex import names_in, setter_of
-from eomgen.documents.quantity import Quantity
-from eomgen.documents.statements import Formula, Grid, Prose, Statement, Table
+from eomgen.documents.reaction_values import reactions_payload
+from eomgen.documents.reading import TRIED, Reader, without_cases
+from eomgen.documents.statements import Formula, Grid, Prose, Quantity, Statement, Table
 from eomgen.documents.text import cell_text, formula_text, prose_text, side_text, statement_lines
+from eomgen.mechanics.dynamics.system import EquationsOfMotion
 from eomgen.model.replaced import Taken
-from eomgen.symbolic.print.text import to_text
+from eomgen.model.values import exact_parameters
+from eomgen.records import dataclass
+from eomgen.symbolic.expression.node import Node, Scalar
+from eomgen.symbolic.print.text import text_size, to_text, with_definitions
 from eomgen.version import SCHEMA_VERSION
 
 name = "json"
@@ -99,3 +108,151 @@ def _statement(statement: Statement) -> dict[str, Any]:
         for row in statement.rows
     ]
     return {"kind": "table", "rows": rows}
+
+
+# -------- payload ---------------------------------------------------------------------------------------------
+# Equations -> what `derive --json` carries, as plain data. Every expression is text that the grammar reads back.
+#
+# q' = N u + nu,   M a = forcing + J^T lam,   J a + gamma = 0
+
+
+LARGEST = 16_000_000  # characters of all expressions together that are written out in full
+NAMED_PART = 200  # characters of a text in which long parts have names
+
+
+@dataclass(frozen=True)
+class Texts:
+    """The expressions of the payload as texts.
+
+    Args:
+        fields: the scalars, by entry.
+        definitions: (name, text) of parts that have a name, each before its use.
+        texts: of all scalars, one entry after the other.
+    """
+
+    fields: Mapping[str, Field]
+    definitions: Sequence[tuple[str, str]]
+    texts: Sequence[str]
+
+    @property
+    def scalars(self) -> Iterator[tuple[str, Scalar]]:
+        """(entry, scalar), as they stand beside the texts."""
+        return ((name, x) for name, field in self.fields.items() for x in field.scalars)
+
+
+def payload_texts(equations: EquationsOfMotion) -> Texts:
+    """What the payload says of the equations of motion, the reactions left out."""
+    fields = _fields(equations)
+    definitions, texts = _texts(
+        [x for field in fields.values() for x in field.scalars], equations.system.scope.positive, _taken(equations)
+    )
+    return Texts(fields, definitions, texts)
+
+
+def equations_payload(equations: EquationsOfMotion, method: str, found: Texts) -> dict[str, Any]:
+    """The equations of motion as plain data, ready for JSON.
+
+    Matrices are lists of rows, vectors flat lists. Small expressions are multiplied out. Where everything written out
+    would be longer than 16 megabytes, long and repeated parts stand under `definitions`, [[name, text], ...], each
+    before its use.
+    """
+    model, symbols = equations.system.scope.model, equations.symbols
+    definitions, rest = found.definitions, iter(found.texts)
+    written = {name: field.shaped([next(rest) for _ in field.scalars]) for name, field in found.fields.items()}
+    sides = written.pop("equations")
+    values = exact_parameters(model)
+    return {
+        "name": model.name,
+        "space": model.space,
+        "source": model.source or "",
+        "method": method,
+        "coordinates": [q.name for q in symbols.q],
+        "speeds": [u.name for u in symbols.u],
+        "parameters": {name: float(values[name]) if name in values else None for name in symbols.parameters},
+        "inputs": {name: part.value.text for name, part in model.inputs.items()},
+        **({"definitions": [list(pair) for pair in definitions]} if definitions else {}),
+        **written,
+        "unknowns": [x.name for x in (*symbols.a, *symbols.lam)],
+        "generalized_forces": dict(zip((u.name for u in symbols.u), written["generalized_forces"], strict=True)),
+        "equations": [f"{left} = {right}" for left, right in sides],
+        **reactions_payload(equations, _taken(equations) | {name for name, _ in definitions}),
+    }
+
+
+@dataclass(frozen=True)
+class Field:
+    """The scalars of one entry of the payload, and how its texts stand together.
+
+    Args:
+        scalars: in order.
+        rows: of a matrix, each as long as the others; None for a flat list.
+        single: one text instead of a list.
+        present: for a list with nulls, which of its places have a scalar.
+    """
+
+    scalars: tuple[Scalar, ...]
+    rows: int | None = None
+    single: bool = False
+    present: tuple[bool, ...] | None = None
+
+    def shaped(self, texts: Sequence[str]) -> Any:
+        """The texts of the scalars in the entry's shape."""
+        if self.single:
+            return texts[0]
+        if self.rows is not None:
+            width = len(texts) // max(self.rows, 1)
+            return [list(texts[width * i : width * (i + 1)]) for i in range(self.rows)]
+        if self.present is None:
+            return list(texts)
+        found = iter(texts)
+        return [next(found) if there else None for there in self.present]
+
+
+def _fields(equations: EquationsOfMotion) -> dict[str, Field]:
+    """Every expression of the payload."""
+    gaps = tuple(gap for gap in equations.phi if gap is not None)
+    return {
+        "kinematic_matrix": _matrix(equations.N),
+        "kinematic_bias": Field(equations.nu),
+        "mass_matrix": _matrix(equations.M),
+        "forcing": Field(equations.forcing),
+        "constraint_jacobian": _matrix(equations.J),
+        "velocity_bias": Field(equations.sigma),
+        "constraint_bias": Field(equations.gamma),
+        "gaps": Field(gaps, present=tuple(gap is not None for gap in equations.phi)),
+        "kinetic_energy": Field((equations.T,), single=True),
+        "potential_energy": Field((equations.V,), single=True),
+        "generalized_forces": Field(equations.Q),
+        "equations": Field(_sides(equations), rows=len(equations.symbols.u)),
+    }
+
+
+def _matrix(rows: Sequence[Sequence[Scalar]]) -> Field:
+    return Field(tuple(x for row in rows for x in row), rows=len(rows))
+
+
+def _sides(equations: EquationsOfMotion) -> tuple[Scalar, ...]:
+    """Left and right of M a + c = Q + J^T lam, row by row."""
+    sides: list[Scalar] = []
+    for k, reaction in enumerate(multiplier_forces(equations)):
+        left = sum((m * a for m, a in zip(equations.M[k], equations.symbols.a, strict=True)), start=equations.c[k])
+        sides += [left, equations.Q[k] + reaction]
+    return tuple(sides)
+
+
+def _texts(
+    scalars: Sequence[Scalar], positive: frozenset[Node], taken: frozenset[str]
+) -> tuple[list[tuple[str, str]], list[str]]:
+    """The texts, and the named parts that they share where all in full would be too long."""
+    whole = sum(text_size(x) for x in scalars)
+    written = without_cases(Reader(positive=positive).short(scalars) if whole <= TRIED * len(scalars) else scalars)
+    if sum(text_size(x) for x in written) <= LARGEST:
+        return [], [to_text(x) for x in written]
+    return with_definitions(without_cases(scalars), NAMED_PART, taken)
+
+
+def _taken(equations: EquationsOfMotion) -> frozenset[str]:
+    """Names that no named part may have."""
+    s = equations.symbols
+    symbols: tuple[Node, ...] = (s.t, *s.parameters.values(), *s.inputs.values(), *s.q, *s.u, *s.a, *s.lam)
+    return frozenset(symbol.name for symbol in symbols)

@@ -8,10 +8,7 @@ from dataclasses import replace
 from itertools import zip_longest
 
 from eomgen.documents.document import Document
-from eomgen.documents.latex_lines import aligned, lead_of, rows_of, runs_of
-from eomgen.documents.latex_math import Set, Setter, width_of
-from eomgen.documents.latex_names import latex_escaped
-from eomgen.documents.quantity import Quantity
+from eomgen.documents.latex_math import Set, Setter, aligned, latex_escaped, lead_of, rows_of, runs_of, width_of
 from eomgen.documents.statements import (
     Cell,
     Code,
@@ -27,6 +24,7 @@ from eomgen.documents.statements import (
     Partial,
     Piece,
     Prose,
+    Quantity,
     Rate,
     Side,
     Statement,
@@ -34,8 +32,9 @@ from eomgen.documents.statements import (
     parts_of,
     prose,
 )
-from eomgen.symbolic.expression.expressions import parse
-from eomgen.symbolic.expression.graph import Graph, Node, Scalar
+from eomgen.symbolic.expression.graph import Graph
+from eomgen.symbolic.expression.node import Node, Scalar
+from eomgen.symbolic.expression.text import parse
 from eomgen.symbolic.expression.traversal import order
 
 name = "latex"

@@ -1,4 +1,6 @@
-"""Node -> LaTeX as a textbook sets it: \\frac{27}{2} M R^{2} \\dot{\\theta}^{2} \\cos^{2}\\theta, and how wide that is.
+r"""Node -> LaTeX as a textbook sets it.
+
+Node -> LaTeX as a textbook sets it: \frac{27}{2} M R^{2} \dot{\theta}^{2} \cos^{2}\theta, and how wide that is.
 
 Only amsmath and KaTeX's common ground is used. Factors are juxtaposed, functions last, quotients are fractions.
 Loops over an explicit stack, as the printing of text does.
@@ -7,18 +9,30 @@ Loops over an explicit stack, as the printing of text does.
 from __future__ import annotations
 
 import re
-from collections.abc import Callable
-from itertools import pairwise
+from collections.abc import Callable, Iterable, Mapping, Sequence
+from dataclasses import field, replace
+from itertools import groupby, pairwise
 
-from eomgen.documents.latex_names import Notation
+from eomgen.documents.statements import Law
+from eomgen.model.parts import Model
 from eomgen.records import dataclass
-from eomgen.symbolic.expression.graph import Node, Number, Scalar
-from eomgen.symbolic.expression.node import SUMS
+from eomgen.symbolic.expression.node import SUMS, Node, Scalar
+from eomgen.symbolic.expression.numbers import Number
 from eomgen.symbolic.expression.rational import Fraction
 from eomgen.symbolic.expression.splines import sampled_of
-from eomgen.symbolic.print.decimals import decimal_of
-from eomgen.symbolic.print.layout import Factor, Product, is_base, is_part_of_letter, is_part_of_turn, is_time
-from eomgen.symbolic.print.printed import TRIGONOMETRIC, is_bare_argument, summands
+from eomgen.symbolic.print.layout import (
+    TRIGONOMETRIC,
+    Factor,
+    Product,
+    decimal_of,
+    is_bare_argument,
+    is_base,
+    is_part_of_letter,
+    is_part_of_turn,
+    is_time,
+    summands,
+)
+from eomgen.symbolic.print.names import LETTERS, Symbol, index_latex, symbol_of, upright
 
 ATOM, TALL, SUM = range(3)  # a symbol or number; what needs parentheses under an exponent; a sum or a product
 FUNCTIONS = {op: rf"\{op}" for op in ("sin", "cos", "tan", "sinh", "cosh", "tanh")} | {
@@ -235,3 +249,254 @@ def _between(before: str, after: str) -> str:
 def is_sum(node: Node) -> bool:
     """True for a factor that is a sum."""
     return node.op in SUMS
+
+
+# -------- latex lines -----------------------------------------------------------------------------------------
+# Formulas -> lines of an aligned block, each about LINE characters wide, broken before + and -.
+
+
+LINE = 87.0  # characters
+NARROW = 24.0  # a left side that stands before the alignment
+
+
+def aligned(rows: list[str]) -> str:
+    """Rows as one aligned block."""
+    return "\\begin{aligned}\n" + " \\\\\n".join(rows) + "\n\\end{aligned}"
+
+
+def runs_of(setter: Setter, formulas: Sequence[Sequence[Set | Scalar]], longest: int) -> list[list[str]]:
+    """The rows of the formulas, in runs of about `longest` rows; the equality signs of a run stand below one another.
+
+    A formula whose left side is too wide for that begins another run.
+
+    Args:
+        formulas: the sides of each, what is set already, or scalars.
+    """
+    runs: list[list[str]] = []
+    leads: list[float] = []
+    for lead, sides in _with_leads(setter, formulas):
+        rows = rows_of(setter, sides, lead)
+        if not runs or leads[-1] != lead or len(runs[-1]) + len(rows) > longest:
+            runs.append([])
+            leads.append(lead)
+        runs[-1] += rows
+    return runs
+
+
+def _with_leads(
+    setter: Setter, formulas: Sequence[Sequence[Set | Scalar]]
+) -> list[tuple[float, Sequence[Set | Scalar]]]:
+    """(room on the left, sides): neighbours share the room; 0 where the left side is too wide."""
+    own = [lead_of(setter, sides) for sides in formulas]
+    found = []
+    for is_narrow, group in groupby(range(len(own)), key=lambda i: own[i] > 0):
+        indices = list(group)
+        widest = max(own[i] for i in indices) if is_narrow else 0.0
+        found += [(widest, formulas[i]) for i in indices]
+    return found
+
+
+def lead_of(setter: Setter, sides: Sequence[Set | Scalar]) -> float:
+    """The width of the left side; 0 where it is too wide to stand before the equality sign of a run."""
+    width = _set(setter, sides[0]).width
+    return width if width <= NARROW and len(sides) > 1 else 0.0
+
+
+def rows_of(setter: Setter, sides: Sequence[Set | Scalar], lead: float | None = None) -> list[str]:
+    """The rows of one formula: its sides joined by equality signs.
+
+    Args:
+        sides: what is set already, or scalars.
+        lead: the room for the left side, 0 for none before the alignment; by its own width where none is given.
+    """
+    lead = lead_of(setter, sides) if lead is None else lead
+    if lead:
+        return _rows_after(setter, sides, LINE - lead)
+    parts = pieces(setter, sides[0], LINE)
+    for side in sides[1:]:
+        head, *rest = pieces(setter, side, LINE)
+        parts += [Set(f"= {head.tex}", head.width + 3), *rest]
+    filled = _filled(parts, LINE)
+    return [f"& {filled[0]}", *(rf"&\quad {part}" for part in filled[1:])]
+
+
+def _rows_after(setter: Setter, sides: Sequence[Set | Scalar], room: float) -> list[str]:
+    """left &= right, the right in as many rows as it needs."""
+    rows, line, width = [], f"{_set(setter, sides[0]).tex} &=", 0.0
+    for number, side in enumerate(sides[1:]):
+        whole = _set(setter, side)
+        if number and width + whole.width <= room:
+            line, width = f"{line} = {whole.tex}", width + whole.width + 3
+            continue
+        if number:
+            rows.append(line)
+            line = "&="
+        filled = _filled(pieces(setter, side, room), room)
+        line = f"{line} {filled[0]}"
+        for part in filled[1:]:
+            rows.append(line)
+            line = rf"&\quad {part}"
+        width = whole.width
+    return [*rows, line]
+
+
+def _set(setter: Setter, side: Set | Scalar) -> Set:
+    return side if isinstance(side, Set) else setter.set(side)
+
+
+def pieces(setter: Setter, side: Set | Scalar, room: float) -> list[Set]:
+    """What may not be broken further, each piece but the first with its sign in front."""
+    whole = _set(setter, side)
+    if isinstance(side, Set) or type(side) is not Node or whole.width <= room:
+        return [whole]
+    found: list[Set] = []
+    for number, product in enumerate(setter.summands(side)):
+        term = setter.term(product, first=number == 0)
+        found += [term] if term.width <= room else _opened(setter, product, term, room)
+    return found
+
+
+def _opened(setter: Setter, product: Product, term: Set, room: float) -> list[Set]:
+    """A term that is too long for a line, broken inside the parentheses of its longest sum."""
+    if product.denominator:
+        return _quotient(setter, product, term.tex[:2] if term.tex.startswith(("+", "-")) else "", room)
+    bases = [base for base, _ in product.numerator]
+    bases += [a for base in bases if base.op in FUNCTIONS for a in base.args if type(a) is Node]
+    sums = [base for base in bases if is_sum(base)]
+    if not sums:
+        return [term]
+    longest = max(sums, key=lambda base: setter.set(base).width)
+    bracket = bracketed(setter.set(longest)).tex
+    if term.tex.count(bracket) != 1:
+        return [term]
+    before, after = term.tex.split(bracket)
+    parts = pieces(setter, longest, room / 2)
+    parts[0] = Set(rf"{before}\bigl({parts[0].tex}", term.width - setter.set(longest).width + parts[0].width)
+    parts[-1] = Set(rf"{parts[-1].tex}\bigr){after}", parts[-1].width + 2)
+    return parts
+
+
+def _quotient(setter: Setter, product: Product, sign: str, room: float) -> list[Set]:
+    """A quotient that is too long for a fraction, in which no line can end: (above) / (below)."""
+    c = max(product.coefficient, -product.coefficient)
+    above = _factor_pieces(setter, Product(c.numerator, product.numerator, ()), room)
+    below = _factor_pieces(setter, Product(c.denominator, product.denominator, ()), room)
+    above[0] = Set(f"{sign}{above[0].tex}", above[0].width + len(sign))
+    joined = Set(rf"{above[-1].tex} \big/ {below[0].tex}", above[-1].width + below[0].width + 2)
+    return [*above[:-1], joined, *below[1:]]
+
+
+def _factor_pieces(setter: Setter, product: Product, room: float) -> list[Set]:
+    """A side of a quotient, in parentheses where it is more than one symbol."""
+    lone = product.coefficient == 1 and len(product.numerator) == 1
+    if lone and product.numerator[0][1] == 1 and is_sum(product.numerator[0][0]):
+        parts = pieces(setter, product.numerator[0][0], room / 2)
+    else:
+        term = setter.product(product)
+        parts = [term] if term.width <= room else _opened(setter, product, term, room)
+        if lone or not product.numerator:
+            return parts
+    parts[0] = Set(rf"\bigl({parts[0].tex}", parts[0].width + 1)
+    parts[-1] = Set(rf"{parts[-1].tex}\bigr)", parts[-1].width + 1)
+    return parts
+
+
+def _filled(parts: list[Set], room: float) -> list[str]:
+    """The pieces in lines."""
+    lines: list[str] = []
+    width = 0.0
+    for part in parts:
+        if lines and width + part.width <= room:
+            lines[-1] += f" {part.tex}"
+            width += part.width
+        else:
+            lines.append(part.tex)
+            width = part.width + (2 if lines else 0)
+    return lines
+
+
+# -------- latex names -----------------------------------------------------------------------------------------
+# Names of a document -> LaTeX: those that a model declares, else by their own letters, each told from the others.
+
+
+SPECIAL = {
+    "\\": r"\textbackslash{}",
+    "{": r"\{",
+    "}": r"\}",
+    "$": r"\$",
+    "&": r"\&",
+    "#": r"\#",
+    "%": r"\%",
+    "_": r"\_",
+    "^": r"\textasciicircum{}",
+    "~": r"\textasciitilde{}",
+    "<": r"\textless{}",
+    ">": r"\textgreater{}",
+    "²": r"\textsuperscript{2}",
+    "³": r"\textsuperscript{3}",
+    "µ": r"$\mu$",
+    "°": r"$^{\circ}$",
+    "·": r"$\cdot$",
+}
+_MULTIPLIER = re.compile(r"lam\((?P<tie>.*), (?P<row>\d+)\)")
+
+
+@dataclass(frozen=True)
+class Notation:
+    """How the names of a model are set.
+
+    Args:
+        symbols: the symbols that are declared, by name without primes.
+        indices: how bodies and ties are called in an index, where they declare it.
+    """
+
+    symbols: Mapping[str, Symbol] = field(default_factory=dict)
+    indices: Mapping[str, str] = field(default_factory=dict)
+
+    def with_symbols(self, symbols: Mapping[str, Symbol]) -> Notation:
+        """With more of them, the model's own first."""
+        return replace(self, symbols={**symbols, **self.symbols})
+
+    def latex(self, name: str) -> str:
+        """A symbol of the formulas, dots and index included."""
+        multiplier = _MULTIPLIER.fullmatch(name)
+        if multiplier:
+            return rf"\lambda_{{{self.index(multiplier['tie'])},{multiplier['row']}}}"
+        bare = name.rstrip("'")
+        symbol = self.symbols.get(bare) or symbol_of(bare, self.indices)
+        return symbol.dotted(len(name) - len(bare))
+
+    def index(self, name: str) -> str:
+        """The name of a body, a tie, a force or a point as an index: bar, or what it declares; bar.end."""
+        owner, dot, point = name.partition(".")
+        found = self.indices.get(owner) or index_latex(owner)
+        return f"{found}{dot}{index_latex(point)}" if dot else found
+
+    def told_apart(self, names: Iterable[str]) -> Notation:
+        """With every name set by itself: where two would look alike (theta1, theta_1) the later one is spelt out."""
+        bare = list(dict.fromkeys(name.rstrip("'") for name in names))
+        taken: dict[str, str] = {}
+        spelt: dict[str, Symbol] = {}
+        for name in sorted(bare, key=lambda name: name not in self.symbols):  # those that are declared keep theirs
+            if taken.setdefault(self.latex(name), name) != name and name not in self.symbols:
+                spelt[name] = Symbol(name, upright(name))
+        return replace(self, symbols={**self.symbols, **spelt})
+
+
+def notation_of(model: Model) -> Notation:
+    """What a model declares of it."""
+    tables = (model.parameters, model.coordinates, model.speeds, model.inputs, model.unknowns)
+    symbols = {name: part.symbol for table in tables for name, part in table.items() if part.symbol is not None}
+    indices = {name: body.symbol.tex for name, body in model.bodies.items() if body.symbol is not None}
+    ties = {name: tie.symbol.letter for name, tie in model.constraints.items() if tie.symbol is not None}
+    return Notation(symbols, indices | {name: letter.tex for name, letter in ties.items() if letter is not None})
+
+
+def letter_law(text: str) -> Law:
+    """A letter, with an index or without: v_x, J_xy, omega."""
+    return Law(text, symbol_of(text).tex)
+
+
+def latex_escaped(text: str) -> str:
+    """Plain text for LaTeX outside formulas."""
+    return "".join(rf"${LETTERS[c]}$" if c in LETTERS else SPECIAL.get(c, c) for c in text)

@@ -16,11 +16,8 @@ from eomgen.documents.latex import (
     side_latex,
     with_listings_typeset,
 )
-from eomgen.documents.latex_lines import LINE
-from eomgen.documents.latex_math import Setter
-from eomgen.documents.latex_names import Notation, notation_of
-from eomgen.documents.quantity import Quantity, unit_text
-from eomgen.documents.statements import Cell, Code, Found, Grid, Lines, Piece, Prose, Statement
+from eomgen.documents.latex_math import LINE, Notation, Setter, notation_of
+from eomgen.documents.statements import Cell, Code, Found, Grid, Lines, Piece, Prose, Quantity, Statement, unit_text
 from eomgen.model.parts import Model
 from eomgen.symbolic.expression.graph import Graph
 

@@ -11,17 +11,17 @@ from typing import Any
 
 from eomgen.documents import drawn
 from eomgen.documents.document import Document, quantities_of
-from eomgen.documents.json_read_back import json_read_back
-from eomgen.documents.quantity import Quantity
 from eomgen.documents.read_back import page_read_back
-from eomgen.documents.statements import Equation, Listing, Matrix, Statement, parts_of
+from eomgen.documents.statements import Equation, Listing, Matrix, Quantity, Statement, parts_of
 from eomgen.documents.text import cases_text, is_piecewise, side_text
-from eomgen.documents.text_read_back import text_read_back
+from eomgen.documents.texts_read import json_read_back, text_read_back
 from eomgen.errors import ExpressionError, NumberBeyond
 from eomgen.proof.check import Certificate, Check, Tally, differing
 from eomgen.symbolic.expression.derivative import symbols_of
-from eomgen.symbolic.expression.expressions import LONGEST, Expression, parse
-from eomgen.symbolic.expression.graph import Graph, Node, Scalar
+from eomgen.symbolic.expression.formula import Expression
+from eomgen.symbolic.expression.graph import Graph
+from eomgen.symbolic.expression.node import Node, Scalar
+from eomgen.symbolic.expression.text import LONGEST, parse
 from eomgen.symbolic.expression.traversal import order
 from eomgen.symbolic.expression.units import parse_unit
 from eomgen.symbolic.numeric.evaluation import NoValue, evaluate, fifty_digits

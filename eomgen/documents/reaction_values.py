@@ -1,4 +1,6 @@
-"""System -> every reaction in its shortest readable form, with the accelerations in it and without them.
+"""Every reaction by its name: a symbol, its shortest readable form, and what machines get.
+
+System -> every reaction in its shortest readable form, with the accelerations in it and without them.
 
 A body held by more equations than it has unknowns gives a reaction in several ways that agree on every motion: from as
 few equations as can be, or by all of them, projected on the reaction. The shorter one is read.
@@ -6,29 +8,49 @@ few equations as can be, or by all of them, projected on the reaction. The short
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping, Sequence
+import re
+from collections.abc import Callable, Container, Mapping, Sequence
 from functools import cached_property
+from typing import Any
 
-from eomgen.documents.reading import TRIED, Reader, conditions_in, readable_value
+from eomgen.documents.reading import (
+    LONGEST,
+    TRIED,
+    Reader,
+    conditions_in,
+    length_in_print,
+    readable_value,
+    without_cases,
+)
+from eomgen.documents.statements import Meaning, Table
 from eomgen.errors import DerivationError
-from eomgen.mechanics.balance.balance_solution import Combination
-from eomgen.mechanics.equations.equations_of_motion import EquationsOfMotion
-from eomgen.mechanics.equations.explicit_accelerations import short_accelerations
-from eomgen.mechanics.equations.system import System
-from eomgen.mechanics.reactions.reactions import Reactions, reactions_of
-from eomgen.mechanics.reactions.sides import reactions_by_sides
+from eomgen.mechanics.constraints.rank import is_placed
+from eomgen.mechanics.constraints.rows import Row
+from eomgen.mechanics.dynamics.explicit_accelerations import short_accelerations
+from eomgen.mechanics.dynamics.system import EquationsOfMotion, System
+from eomgen.mechanics.free_bodies.balance import Balance
+from eomgen.mechanics.free_bodies.friction import FrictionContact, friction_contacts
+from eomgen.mechanics.free_bodies.named_reactions import NamedReaction, named_reactions, unit_of
+from eomgen.mechanics.free_bodies.solution import Combination, Indeterminate
+from eomgen.mechanics.free_bodies.wrenches import EACH_AXIS, Component
+from eomgen.mechanics.reactions.equilibrium import reactions_by_sides
+from eomgen.mechanics.reactions.reactions import Reactions, determinate_sums, reactions_of
+from eomgen.model.constraints.link import trusses_of
+from eomgen.model.forces.load import PointForce
+from eomgen.model.kinds import ReactionSymbols
 from eomgen.records import dataclass
 from eomgen.symbolic.exact.book_form import book_form
 from eomgen.symbolic.exact.signs import never_vanishes
 from eomgen.symbolic.expression.derivative import depends_on, substituted
-from eomgen.symbolic.expression.graph import Node, Scalar
-from eomgen.symbolic.expression.node import holds_op
-from eomgen.symbolic.expression.traversal import order
+from eomgen.symbolic.expression.node import Node, Scalar, holds_op, is_zero
+from eomgen.symbolic.expression.spatial import Vector
+from eomgen.symbolic.expression.traversal import operations, order
 from eomgen.symbolic.numeric.work import Work
 from eomgen.symbolic.print.length import length_of
-from eomgen.symbolic.print.text import text_size
+from eomgen.symbolic.print.names import Symbol, index_latex
+from eomgen.symbolic.print.text import text_size, to_text, with_definitions
 
-LONGEST = 3000  # characters of accelerations that are put into reactions
+LONGEST_REACTION = 3000  # characters of accelerations that are put into reactions
 TOO_MANY = 2000  # components times equations, from which on one way must do
 
 
@@ -138,7 +160,7 @@ def readings_of(equations: EquationsOfMotion, reader: Reader, *, free: bool = Fa
     """
     system = equations.system
     found = short_accelerations(equations)
-    long = found is None or sum(map(text_size, found)) > LONGEST
+    long = found is None or sum(map(text_size, found)) > LONGEST_REACTION
     accelerations = {} if found is None or long else dict(zip(equations.symbols.a, found, strict=True))
     return Readings(system, shown_system(system) if free else system, reader, accelerations)
 
@@ -177,3 +199,429 @@ def _ways(system: System) -> tuple[Reactions, ...]:
     few = reactions_of(system, short=True)
     size = len(few.balance.equations) * len(few.components)
     return (few,) if size > TOO_MANY else (few, reactions_of(system))
+
+
+# -------- reaction names --------------------------------------------------------------------------------------
+# Balance -> a symbol and its meaning for every reaction: B_x, R_stick_x, N_wall, F_floor, T_rope, M_E.
+
+
+LETTERS = {"n": "N", "t": "F", "s": "S", "tension": "T", "couple": "M", "drive": "D", "wrench": "W", "": "L"}
+"""label -> the letter of a symbol whose owner stands behind it."""
+
+AXES = ("x", "y", "z")
+_LETTER = re.compile(r"[A-Z]+\d*")
+HEAD = ("reaction", "meaning", "unit", "")
+
+
+@dataclass(frozen=True)
+class Lettered:
+    """The reactions of a system with a symbol for each.
+
+    Args:
+        reactions: solved.
+        symbols: one for each component, in order.
+        contacts: those with friction.
+        frictions: a symbol for the friction of each, along each direction in which it slides.
+        declared: how they are set in LaTeX, of joints and ties that say so, by name.
+    """
+
+    reactions: Reactions
+    symbols: tuple[Node, ...]
+    contacts: tuple[FrictionContact, ...]
+    frictions: tuple[tuple[Node, ...], ...]
+    declared: Mapping[str, Symbol]
+
+    @property
+    def balance(self) -> Balance:
+        return self.reactions.balance
+
+    @property
+    def names(self) -> frozenset[str]:
+        return frozenset(symbol.name for symbol in (*self.symbols, *(x for each in self.frictions for x in each)))
+
+    def table(self, shown: Container[object] | None = None) -> Table:
+        """What the symbols stand for, all or those that are shown, in the order of the components."""
+        rows = []
+        named = {contact.component: symbols for contact, symbols in zip(self.contacts, self.frictions, strict=True)}
+        for j, (component, symbol) in enumerate(zip(self.balance.components, self.symbols, strict=True)):
+            if shown is None or symbol in shown:
+                rows.append(Meaning(symbol, meaning(self.balance, component), unit_of(component)))
+            for share, friction in zip(component.friction, named.get(j, ()), strict=True):
+                if shown is None or friction in shown:
+                    rows.append(Meaning(friction, _friction(self.balance, component, share.label), "N"))
+        return Table(HEAD, tuple(rows))
+
+    def of_row(self, row: Row) -> Scalar | None:
+        """The multiplier of a row as a reaction, sign included; None where no reaction belongs to it."""
+        for component, symbol in zip(self.balance.components, self.symbols, strict=True):
+            if component.kind == "tie" and (component.owner, component.number) == (row.tie, row.number):
+                return -symbol if _is_turned(row, component) else symbol
+        return None
+
+
+def lettered(reactions: Reactions, taken: Container[str]) -> Lettered:
+    """A symbol for every reaction, none of them a name of the model."""
+    balance = reactions.balance
+    graph = balance.system.scope.graph
+    contacts = tuple(friction_contacts(balance.system, reactions.components))
+    used: set[str] = set()
+    declared: dict[str, Symbol] = {}
+
+    def symbol(label: str, owner: str, more: tuple[str, ...], given: Symbol | None) -> Node:
+        name = reaction_name(label, owner, *more)
+        while name in taken or name in used:
+            name += "_r"
+        used.add(name)
+        declared.update({} if given is None else {name: given})
+        return graph.symbol(name)
+
+    symbols = tuple(
+        symbol(c.label, _owner(balance, c), more := _more(balance, c), _declared(balance, c, c.label, more))
+        for c in reactions.components
+    )
+    frictions = [(contact.name, reactions.components[contact.component]) for contact in contacts]
+    named = tuple(
+        tuple(symbol(x.label, name, (), _declared(balance, c, x.label, ())) for x in c.friction)
+        for name, c in frictions
+    )
+    return Lettered(reactions, symbols, contacts, named, declared)
+
+
+def reaction_name(label: str, owner: str, *more: str) -> str:
+    """B_x, R_stick_x, N_wall, T_rope_2, M_E: what a reaction is called.
+
+    A force along an axis of an owner that is no letter has R before it: stick_x would be a position of the stick.
+    """
+    if label in AXES:
+        pieces = ("" if _LETTER.fullmatch(owner) else "R", owner, *more, label)
+    else:
+        pieces = (LETTERS[label.partition(" ")[0]], owner, *more)
+    return "_".join(filter(None, pieces))
+
+
+def reaction_symbol(given: ReactionSymbols | None, label: str, more: Sequence[str], *, alone: bool) -> Symbol | None:
+    """How a joint or a tie calls a reaction in LaTeX; None where it does not say so.
+
+    Args:
+        more: what its name has behind the owner: a side, a number.
+        alone: it is the only one there.
+    """
+    kind = label.partition(" ")[0]
+    if given is None or (given.letter is None and kind not in given.each):
+        return None
+    index = [index_latex(piece) for piece in more]
+    if kind in given.each:
+        return given.each[kind].with_index(*index)
+    assert given.letter is not None
+    if alone:
+        return given.letter
+    if label in AXES:
+        return given.letter.with_index(*index, label)
+    return Symbol(label, LETTERS[kind], ",".join([given.letter.tex, *index]))
+
+
+def own_symbol(balance: Balance, named: NamedReaction) -> Symbol | None:
+    """The symbol that a joint or a tie gives a reaction of its own; None of sums, and where it gives none."""
+    if len(named.combination) != 1 or not is_zero(named.given):
+        return None
+    ((j, factor),) = named.combination.items()
+    component = balance.components[j]
+    if type(factor) is Node or factor != 1:
+        return None
+    return _declared(balance, component, component.label, _more(balance, component))
+
+
+def _declared(balance: Balance, component: Component, label: str, more: tuple[str, ...]) -> Symbol | None:
+    """The symbol of a component, or of its friction along a direction, where its joint or tie gives one."""
+    model = balance.system.scope.model
+    part = model.constraints.get(component.owner) or getattr(model.bodies.get(component.owner), "joint", None)
+    mine = [c for c in balance.components if c.owner == component.owner and c.kind == component.kind]
+    alone = len(mine) == 1 and not component.friction
+    return None if part is None else reaction_symbol(part.symbol, label, more, alone=alone)
+
+
+def _owner(balance: Balance, component: Component) -> str:
+    """In whose name it is: of the only truss there is nobody's."""
+    if component.label != "tension" or not component.side:
+        return component.owner
+    return component.owner if len(trusses_of(balance.system.scope.model.constraints)) > 1 else ""
+
+
+def _more(balance: Balance, component: Component) -> tuple[str, ...]:
+    """What the name has behind its owner: the side of a hinge, the ends of a member, a number."""
+    if component.label in AXES:
+        return (component.side,) if component.side else ()
+    kind, _, number = component.label.partition(" ")
+    if kind == "tension" and component.side:
+        return tuple(component.side.split("-"))
+    number = number or _strand(balance, component) or _couple(balance, component)
+    return (number,) if number else ()
+
+
+def _strand(balance: Balance, component: Component) -> str:
+    """The number of the first strand that has this tension, of a string that has several; else ""."""
+    tie = balance.system.scope.model.constraints.get(component.owner)
+    rows = () if tie is None or component.label != "tension" else tie.strand_rows()
+    return str(rows.index(component.number) + 1) if max(rows, default=1) > 1 else ""
+
+
+def _couple(balance: Balance, component: Component) -> str:
+    """Of a tie with several couples x, y, z where all are along axes of the body, else the number; else ""."""
+    if component.label != "couple" or component.kind != "tie":
+        return ""
+    couples = [c for c in balance.components if c.kind == "tie" and c.owner == component.owner and c.label == "couple"]
+    if len(couples) == 1:
+        return ""
+    axes = [axis for c in couples for axis, e in zip(AXES, EACH_AXIS, strict=True) if c.effects[0].couple == e]
+    where = couples.index(component)
+    return axes[where] if len(axes) == len(couples) else str(where + 1)
+
+
+def meaning(balance: Balance, component: Component) -> str:
+    """What a component is, on which body, and in which sense, in words."""
+    kind = component.label.partition(" ")[0]
+    on = _on(balance, component)
+    if kind == "tension" and component.side:
+        return f"tension of member {component.side} of {component.owner}"
+    if kind == "tension":
+        strand = _strand(balance, component)
+        return f"tension of {component.owner}" + (f", strand {strand}" if strand else "")
+    if kind == "drive":
+        return f"what drives {component.side or component.owner}, {on}"
+    if kind in AXES:
+        return f"force {on}, along {_axis(balance, component, kind)}"
+    if kind == "couple":
+        return f"couple {on}, {_sense(balance, component)}"
+    if kind in ("t", "s"):
+        return _friction(balance, component, kind) + (
+            ", without sliding" if component.bilateral_friction is None else ""
+        )
+    if kind == "n":
+        return f"normal force {on}{_direction(balance, component)}"
+    return f"wrench {on}" if kind == "wrench" else f"reaction {on}"
+
+
+def said(balance: Balance, named: NamedReaction) -> str:
+    """What a reaction is that an output asks for by name, in words."""
+    kind, _, rest = named.name.removeprefix("reaction_").partition("(")
+    axis = kind.removeprefix("couple_")
+    of_one = [j for j, k in named.combination.items() if type(k) is int and k == 1]
+    if axis not in AXES and of_one and not balance.components[of_one[0]].is_wrench:
+        return meaning(balance, balance.components[of_one[0]])
+    place = rest.removesuffix(")")
+    side = place.partition(".")[2]
+    mine = [c for c in balance.components if c.owner == named.owner and c.kind != "drive"]
+    component = next((c for c in mine if c.side == side), mine[0])
+    on = _on(balance, component)
+    if kind in ("t", "s"):
+        return _friction(balance, component, kind)
+    if kind == "couple":
+        return f"couple {on}, counter-clockwise"
+    if kind.startswith("couple_"):
+        return f"couple {on}, about {axis}"
+    return f"force {on}, along {axis}"
+
+
+def _friction(balance: Balance, component: Component, label: str) -> str:
+    """Friction along the contact; in space along one of its two tangents."""
+    along = f"{label} of the contact" if balance.system.scope.model.space == "space" else "the contact"
+    return f"friction {_on(balance, component)}, along {along}"
+
+
+def _on(balance: Balance, component: Component) -> str:
+    """on bar in its joint, from the ground; on AB by B, from CB."""
+    links = balance.system.motion.links
+    first, *others = dict.fromkeys(effect.link for effect in component.effects)
+    body, other = (links[first].name, links[others[0]].name if others else "the ground")
+    if component.kind != "tie":
+        where = "place" if is_placed(links[first]) else "joint"
+        return f"on {body} in its {where}, from {other}"
+    if component.side:
+        return f"on {component.side} in the hinge {component.owner}, from the others"
+    return f"on {body} at {component.owner}, from {other}"
+
+
+def _axis(balance: Balance, component: Component, label: str) -> str:
+    """Ground axes in the plane and of ties, else those of the body whose joint it is."""
+    own = balance.system.scope.model.space != "plane" and component.kind == "joint"
+    return f"{label} of its own axes" if own else label
+
+
+def _sense(balance: Balance, component: Component) -> str:
+    if balance.system.scope.model.space == "plane":
+        return "counter-clockwise"
+    return f"about {_named(component.effects[0].couple)}"
+
+
+def _direction(balance: Balance, component: Component) -> str:
+    """Along the tie's own normal; of a joint across the way on which it slides."""
+    if component.kind == "tie":
+        return ", along the normal"
+    if balance.system.scope.model.space == "plane":
+        return ", to the left of its way"
+    return f", along {_named(component.effects[0].force)}"
+
+
+def _named(direction: Vector) -> str:
+    """An axis of the body by its letter, another direction by its components where these are numbers."""
+    for axis, x in zip(AXES, direction, strict=True):
+        others = sum(not is_zero(y) for y in direction) - (not is_zero(x))
+        if type(x) is int and x in (1, -1) and not others:
+            return f"{axis if x > 0 else f'-{axis}'} of its own axes"
+    if all(type(x) is not Node for x in direction):
+        return f"({', '.join(str(x) for x in direction)}) of its own axes"
+    return "a direction across its freedom"
+
+
+def _is_turned(row: Row, component: Component) -> bool:
+    """Whether the component is minus the multiplier: the force on another body than the row's first one."""
+    first = row.pushes[0]
+    if row.component not in AXES or not isinstance(first, PointForce):
+        return False
+    return bool(component.side) or first.place[0] is None
+
+
+# -------- reaction payload ------------------------------------------------------------------------------------
+# System -> every reaction by its name, for machines: with accelerations, without them where that is short.
+
+
+LONGEST_SUM = 200  # characters of a sum of reactions that is told
+LARGEST = 2_000_000  # characters of all reactions together that are written out in full
+NAMED_PART = 200  # characters of a text in which long parts have names
+
+
+def reactions_payload(equations: EquationsOfMotion, taken: frozenset[str]) -> dict[str, Any]:
+    """`reactions` {name: text, null where it is indeterminate}, `reaction_null_space` [{name: coefficient}, ...].
+
+    Texts hold q, u, and accelerations as `theta''`. Long ones share parts, under `reaction_definitions`; where there
+    are no reactions, `reactions_message` says why.
+
+    Args:
+        taken: names that no shared part may have.
+    """
+    try:
+        readings = readings_of(equations, Reader(positive=equations.system.scope.positive))
+        names = named_reactions(readings.ways[0].balance)
+    except DerivationError as error:
+        message = f"{error.what}; {error.mend}" if error.mend else error.what
+        return {"reactions": {}, "reaction_null_space": [], "reactions_message": message}
+    values = [_value(readings, named) for named in names]
+    spaces = _null_space(readings, names)
+    flat = [x for x in values if x is not None] + [x for space in spaces for x in space.values()]
+    definitions, texts = _texts(readings, flat, taken)
+    rest = iter(texts)
+    found = {
+        "reactions": {n.name: None if x is None else next(rest) for n, x in zip(names, values, strict=True)},
+        "reaction_null_space": [{name: next(rest) for name in space} for space in spaces],
+    }
+    return {**found, **({"reaction_definitions": [list(pair) for pair in definitions]} if definitions else {})}
+
+
+def null_space(equations: EquationsOfMotion) -> list[dict[str, str]]:
+    """What may be added to indeterminate reactions without a trace: for each free one {name: coefficient}."""
+    readings = readings_of(equations, Reader(positive=equations.system.scope.positive))
+    spaces = _null_space(readings, named_reactions(readings.ways[0].balance))
+    texts = iter(_texts(readings, [x for space in spaces for x in space.values()], frozenset())[1])
+    return [{name: next(texts) for name in space} for space in spaces]
+
+
+def sums_of_open(equations: EquationsOfMotion) -> tuple[tuple[str, str], ...]:
+    """(text as an output asks it, unit) of sums of indeterminate reactions that have one value, as far as short."""
+    readings = readings_of(equations, Reader(positive=equations.system.scope.positive))
+    names = named_reactions(readings.ways[0].balance)
+    units, graph = {named.name: named.unit for named in names}, equations.system.scope.graph
+    found = []
+    for combination in determinate_sums(_null_space(readings, names)):
+        reader, positive = readings.reader, equations.system.scope.positive
+        terms = [readable_value(reader, k, positive) * graph.symbol(name) for name, k in combination.items()]
+        text = to_text(sum(terms, start=0))
+        if len(text) <= LONGEST_SUM:
+            found.append((text, units[next(iter(combination))]))
+    return tuple(found)
+
+
+def _value(readings: Readings, named: NamedReaction) -> Scalar | None:
+    try:
+        return readings.with_accelerations(named.combination, named.given)
+    except Indeterminate:
+        return None
+
+
+def _null_space(readings: Readings, names: Sequence[NamedReaction]) -> list[dict[str, Scalar]]:
+    solution = readings.ways[0].solution
+    return [_share(readings, names, f) for f in solution.free]
+
+
+def _share(readings: Readings, names: Sequence[NamedReaction], free: int) -> dict[str, Scalar]:
+    """What a unit of one free component adds to each reaction; those to which it adds nothing are left out."""
+    shares = readings.ways[0].solution.shares
+    found = {}
+    for named in names:
+        total: Scalar = 0
+        for j, k in named.combination.items():
+            if j == free:
+                total = total + k
+            elif free in shares.get(j, {}):
+                total = total - k * shares[j][free]
+        total = readable_value(readings.reader, total, readings.system.scope.positive)
+        if not is_zero(total):
+            found[named.name] = total
+    return found
+
+
+def _texts(
+    readings: Readings, scalars: Sequence[Scalar], taken: frozenset[str]
+) -> tuple[list[tuple[str, str]], list[str]]:
+    written = without_cases([readings.reader.whole(x) for x in scalars])
+    if sum(map(text_size, written)) <= LARGEST:
+        return [], [to_text(x) for x in written]
+    return with_definitions(written, NAMED_PART, taken)
+
+
+SHORT = 600  # characters of a formula in which accelerations were replaced
+CLEARER = 3  # times as long as with accelerations: longer ones keep them
+
+
+@dataclass(frozen=True)
+class ReactionFormula:
+    """One reaction.
+
+    Args:
+        text: of q, u and t, of accelerations as `theta''` where these are left in it; None where it is too long, or
+            has no single value.
+        accelerated: whether accelerations stand in it.
+        message: why there is no text, or None.
+    """
+
+    text: str | None
+    accelerated: bool = False
+    message: str | None = None
+
+
+def reaction_formulas(equations: EquationsOfMotion) -> dict[str, ReactionFormula]:
+    """The formula of every reaction.
+
+    Raises:
+        DerivationError: a body is held by nothing; a force acts at no place.
+    """
+    readings = readings_of(equations, Reader(positive=equations.system.scope.positive))
+    return {named.name: _formula(readings, named) for named in named_reactions(readings.ways[0].balance)}
+
+
+def _formula(readings: Readings, named: NamedReaction) -> ReactionFormula:
+    try:
+        readings.ways[0].combined(named.combination, named.name)
+    except Indeterminate as error:
+        return ReactionFormula(None, message=f"{error.what}; {error.mend}")
+    with_a = readings.with_accelerations(named.combination, named.given)
+    without = readings.without(named.combination, named.given)
+    if without is not None and length_in_print(without) <= min(SHORT, CLEARER * length_in_print(with_a)):
+        return ReactionFormula(_text(readings.reader, without))
+    if text_size(with_a) <= LONGEST:
+        return ReactionFormula(_text(readings.reader, with_a), depends_on(with_a, readings.system.symbols.a))
+    number = operations((with_a,)).total
+    return ReactionFormula(None, message=f"its formula takes {number} operations and is not printed")
+
+
+def _text(reader: Reader, x: Scalar) -> str:
+    return to_text(without_cases((reader.whole(x),))[0])

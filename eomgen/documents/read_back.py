@@ -15,8 +15,7 @@ from random import Random
 from typing import Any
 
 from eomgen.documents.document import Document
-from eomgen.documents.latex_names import Notation
-from eomgen.documents.quantity import Quantity
+from eomgen.documents.latex_math import Notation
 from eomgen.documents.statements import (
     Cell,
     Code,
@@ -33,6 +32,7 @@ from eomgen.documents.statements import (
     Partial,
     Piece,
     Prose,
+    Quantity,
     Rate,
     Side,
     Statement,
@@ -41,22 +41,29 @@ from eomgen.documents.statements import (
 )
 from eomgen.errors import ExpressionError
 from eomgen.proof.check import Check, checked, differing, unchecked
-from eomgen.proof.pages_read import GREEK_LETTERS, PAGES, PageBlock, PageLine, said_by, spoken, unlike_words
-from eomgen.proof.typeset import (
+from eomgen.proof.pages_read import (
+    GREEK_LETTERS,
+    PAGES,
+    PageBlock,
+    PageLine,
     SetLetters,
     Tokens,
     Tree,
     between_equals,
     closing_brace,
     names_of_tree,
+    said_by,
+    spoken,
     tokens_of,
     typeset,
+    unlike_words,
     worth,
 )
 from eomgen.records import dataclass
-from eomgen.symbolic.expression.expressions import LONGEST, parse
-from eomgen.symbolic.expression.graph import Graph, Node, Scalar
+from eomgen.symbolic.expression.graph import Graph
+from eomgen.symbolic.expression.node import Node, Scalar
 from eomgen.symbolic.expression.splines import sampled_of
+from eomgen.symbolic.expression.text import LONGEST, parse
 from eomgen.symbolic.expression.traversal import order
 from eomgen.symbolic.numeric.evaluation import NoValue, evaluate, fifty_digits
 from eomgen.symbolic.numeric.tolerances import COMPUTED, ZERO_AT_50

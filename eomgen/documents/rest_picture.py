@@ -4,15 +4,14 @@ from __future__ import annotations
 
 from typing import Any
 
+from eomgen.documents.drawing import draw, limits
 from eomgen.documents.figures import Picture
-from eomgen.documents.latex_names import notation_of
-from eomgen.documents.scene_drawing import draw, limits
+from eomgen.documents.latex_math import notation_of
 from eomgen.documents.space_drawing import draw_space, page_limits
 from eomgen.model.parts import Model
-from eomgen.scene.instant import drawn_start, frame_at
 from eomgen.scene.making import scene_of
 from eomgen.scene.plane_strokes import plane_drawing
-from eomgen.scene.scene import Scene
+from eomgen.scene.scene import Scene, drawn_start, frame_at
 from eomgen.scene.space_strokes import space_drawing
 from eomgen.scene.strokes import Drawing, SceneNumbers
 

@@ -11,7 +11,7 @@ from eomgen.documents import json_form, rendered
 from eomgen.documents.document import Document
 from eomgen.documents.figures import Picture
 from eomgen.proof.check import Certificate, Check
-from eomgen.proof.drawn_panels import DrawnPanel
+from eomgen.proof.reports_read import DrawnPanel
 
 
 class Result:

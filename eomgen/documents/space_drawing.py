@@ -10,9 +10,9 @@ from typing import Any
 
 import numpy as np
 
-from eomgen.documents.latex_names import Notation
+from eomgen.documents.drawing import BODY, FILLS, FINE, INK, LINES, MARGIN, NARROWEST, RANKS, SMALLEST, written
+from eomgen.documents.latex_math import Notation
 from eomgen.documents.letters import PlacedName
-from eomgen.documents.scene_drawing import BODY, FILLS, FINE, INK, LINES, MARGIN, NARROWEST, RANKS, SMALLEST, written
 from eomgen.records import dataclass
 from eomgen.scene.strokes import Drawing, Stroke, corners_of
 
@@ -272,7 +272,7 @@ def draw_space(panel: Any, drawing: Drawing, notation: Notation) -> SpacePicture
     Args:
         notation: how the names of the model are set.
     """
-    from eomgen.documents.letters_artist import NamesArtist
+    from eomgen.documents.letters import NamesArtist
 
     picture = SpacePicture(panel, drawing)
     picture.show(0)

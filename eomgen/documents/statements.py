@@ -1,16 +1,20 @@
-"""What a derivation is made of: steps of typed statements, in which formulas are graph scalars until they are printed.
+"""What a derivation is made of: steps of typed statements, in which formulas are graph scalars.
+
+What a derivation is made of: steps of typed statements, in which formulas are graph scalars until they are printed.
 
 Plain strings are plain text in every format: each format escapes them in its own way.
 """
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+import re
+from collections.abc import Container, Iterator, Mapping, Sequence
+from dataclasses import field
 from functools import cached_property
+from typing import Any
 
-from eomgen.documents.quantity import Quantity
 from eomgen.records import dataclass
-from eomgen.symbolic.expression.graph import Node, Scalar
+from eomgen.symbolic.expression.node import Node, Scalar
 from eomgen.symbolic.expression.traversal import operations
 
 
@@ -233,3 +237,140 @@ class Equation:
     left: Scalar
     right: Scalar
     divisor: Scalar = 1
+
+
+# -------- notation --------------------------------------------------------------------------------------------
+# Steps -> the last step: what the letters mean that stand for quantities.
+
+
+MEANINGS = {
+    "T": ("kinetic energy, of the whole or of a body", "J"),
+    "V": ("potential energy, of the whole or of a force", "J"),
+    "Q": ("generalized force along a coordinate, of everything applied or of one force", ""),
+    "M": ("mass matrix", ""),
+    "c": ("inertia terms that are left when nothing accelerates", ""),
+    "x": ("position along x, ground axes", "m"),
+    "y": ("position along y, ground axes", "m"),
+    "z": ("position along z, ground axes", "m"),
+    "vx": ("velocity along x, ground axes", "m/s"),
+    "vy": ("velocity along y, ground axes", "m/s"),
+    "vz": ("velocity along z, ground axes", "m/s"),
+    "speed": ("magnitude of the velocity", "m/s"),
+    "angle": ("angle of a body against the x axis, counter-clockwise", "rad"),
+    "omega": ("angular velocity of a body, counter-clockwise", "rad/s"),
+    "omega_1": ("angular velocity of a body about its own x axis", "rad/s"),
+    "omega_2": ("angular velocity of a body about its own y axis", "rad/s"),
+    "omega_3": ("angular velocity of a body about its own z axis", "rad/s"),
+    "Fx": ("force along x, ground axes", "N"),
+    "Fy": ("force along y, ground axes", "N"),
+    "Fz": ("force along z, ground axes", "N"),
+    "couple": ("couple on a body, counter-clockwise", "N*m"),
+    "gap": ("what a constraint keeps at zero", ""),
+    "Fin_x": ("inertia force of a body along x, minus mass times acceleration of the mass centre", "N"),
+    "Fin_y": ("inertia force of a body along y, minus mass times acceleration of the mass centre", "N"),
+    "Fin_z": ("inertia force of a body along z, minus mass times acceleration of the mass centre", "N"),
+    "Min": ("inertia couple of a body, minus moment of inertia times angular acceleration", "N*m"),
+    "Min_x": ("inertia couple of a body about its x axis, minus the rate of its angular momentum", "N*m"),
+    "Min_y": ("inertia couple of a body about its y axis, minus the rate of its angular momentum", "N*m"),
+    "Min_z": ("inertia couple of a body about its z axis, minus the rate of its angular momentum", "N*m"),
+    "P_x": ("momentum of all bodies together along x, ground axes", "kg*m/s"),
+    "P_y": ("momentum of all bodies together along y, ground axes", "kg*m/s"),
+    "P_z": ("momentum of all bodies together along z, ground axes", "kg*m/s"),
+    "L_x": ("angular momentum of all bodies together, along x, ground axes", "kg*m^2/s"),
+    "L_y": ("angular momentum of all bodies together, along y, ground axes", "kg*m^2/s"),
+    "L_z": ("angular momentum of all bodies together, along z, ground axes", "kg*m^2/s"),
+    "L": ("magnitude of the angular momentum of all bodies together", "kg*m^2/s"),
+    "Delta": ("what may be added to a reaction that is indeterminate", ""),
+}
+"""letter -> what it stands for, and its unit ("" where that depends on the coordinate)"""
+
+
+def notation_step(steps: Sequence[Step], taken: Container[str], more: Sequence[Meaning] = ()) -> Step:
+    """The letters that the steps use.
+
+    Args:
+        more: names that were given on the way.
+        taken: the model's own names; where one of them is such a letter, the table says so.
+    """
+    letters = {name.letter for step in steps for statement in step.statements for name in quantities(statement)}
+    rows = tuple(
+        Meaning(Name(letter), meaning + (f"; not the model's own {letter}" if letter in taken else ""), unit)
+        for letter, (meaning, unit) in MEANINGS.items()
+        if letter in letters
+    )
+    return Step("notation", "Notation", (Table(("symbol", "meaning", "unit", ""), (*rows, *more)),))
+
+
+def quantities(statement: Statement) -> Iterator[Name]:
+    """The quantities that a statement names."""
+    part: object
+    for part in parts_of(statement):
+        while isinstance(part, (Partial, Rate)):
+            part = part.of
+        if isinstance(part, Entry):
+            yield Name(part.letter)
+        elif isinstance(part, Name):
+            yield part
+
+
+# -------- quantity --------------------------------------------------------------------------------------------
+# What was found of one quantity, and how it is told: exact, as a number, by which way; else what is missing.
+
+
+_RAISED = str.maketrans("-0123456789", "⁻⁰¹²³⁴⁵⁶⁷⁸⁹")
+_POWER = re.compile(r"\^(?:\((-?\d+)\)|(-?\d+))")
+
+
+def unit_text(unit: str) -> str:
+    """A unit as it is printed: kg*m^2 as kg·m², which is read back as well."""
+    return _POWER.sub(lambda power: (power[1] or power[2]).translate(_RAISED), unit).replace("*", "·")
+
+
+@dataclass(frozen=True)
+class Quantity:
+    """One thing that was found: exact, as a number, by which way; else what is missing.
+
+    Args:
+        exact: text of the grammar with every parameter as a symbol, or None: an equation between quantities.
+        value: a number in the unit, parameters and start (or instant) put in, or None.
+        unit: of the number; "" for SI, None where nobody names one.
+        method: the way on which it was found.
+        message: what is missing, or None.
+        beside: what else machines get of it, by name: the way of its proof, its work.
+    """
+
+    exact: str | None = None
+    value: float | None = None
+    unit: str | None = ""
+    method: str = ""
+    message: str | None = None
+    beside: Mapping[str, Any] = field(default_factory=dict)
+
+    @property
+    def answered(self) -> bool:
+        return self.exact is not None or self.value is not None
+
+    @property
+    def number(self) -> str:
+        """The number with its unit, as it is printed; "" where there is none."""
+        return "" if self.value is None else f"{self.value:.10g} {unit_text(self.unit or '')}".rstrip()
+
+    @property
+    def lines(self) -> list[str]:
+        """A line for each thing that is known of it."""
+        if not self.answered:
+            return [f"not answered: {self.message}"]
+        found = [f"= {part}" for part in (self.exact, self.number) if part]
+        found[-1] += f"   [{self.method}]" if self.method else ""
+        return [*found, f"({self.message})"] if self.message else found
+
+    def as_dict(self) -> dict[str, Any]:
+        """For `--json`; without what nobody says: unit, method and message."""
+        told: dict[str, Any] = {"exact": self.exact, "value": self.value}
+        told |= {} if self.unit is None else {"unit": self.unit}
+        told |= {"method": self.method, "message": self.message} if self.method or self.message else {}
+        return told | dict(self.beside)
+
+    def _repr_markdown_(self) -> str:
+        parts = [f"`{self.exact}`" if self.exact is not None else "", self.number]
+        return " = ".join(part for part in parts if part) or (self.message or "")

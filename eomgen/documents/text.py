@@ -8,7 +8,6 @@ from functools import lru_cache
 from typing import TypeGuard
 
 from eomgen.documents.document import Document
-from eomgen.documents.quantity import unit_text
 from eomgen.documents.reading import without_cases
 from eomgen.documents.statements import (
     Cell,
@@ -28,8 +27,9 @@ from eomgen.documents.statements import (
     Rate,
     Side,
     Statement,
+    unit_text,
 )
-from eomgen.symbolic.expression.graph import Node, Scalar
+from eomgen.symbolic.expression.node import Node, Scalar
 from eomgen.symbolic.print.text import to_text
 
 name = "text"

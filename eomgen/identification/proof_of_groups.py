@@ -21,18 +21,17 @@ import numpy as np
 from eomgen.certificate import certify
 from eomgen.identification.base_parameters import BaseParameters, Group
 from eomgen.identification.tied_rows import columns_along, in_50_digits, tied_states
-from eomgen.mechanics.balance.friction import equations_of_motion
-from eomgen.mechanics.equations.equations_of_motion import EquationsOfMotion
-from eomgen.mechanics.equations.system import System
-from eomgen.mechanics.initial_state.values_at_rest import values_of_parameters
+from eomgen.mechanics.dynamics.system import EquationsOfMotion, System
+from eomgen.mechanics.free_bodies.friction import equations_of_motion
+from eomgen.mechanics.start.exact import values_of_parameters
 from eomgen.proof.check import Certificate, Check, Tally, attempted, checked, first_wrong
 from eomgen.proof.emitted_code import PhaseMotion, TriedState
 from eomgen.records import dataclass
 from eomgen.symbolic.exact.equality import equal_at_random_states
 from eomgen.symbolic.expression.derivative import substituted
-from eomgen.symbolic.expression.expressions import parse
 from eomgen.symbolic.expression.node import ScalarRow
 from eomgen.symbolic.expression.rational import Fraction
+from eomgen.symbolic.expression.text import parse
 from eomgen.symbolic.numeric.evaluation import evaluate, fifty_digits
 from eomgen.symbolic.numeric.tolerances import COMPUTED, FOLLOWS_AT_50, RANK, RANK_NEARBY
 

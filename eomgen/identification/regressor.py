@@ -17,14 +17,11 @@ from functools import cached_property
 from typing import Any
 
 from eomgen.errors import DerivationError
-from eomgen.identification.base_parameters import BaseParameters, base_of
+from eomgen.identification.base_parameters import MOMENTS, PLACES, BaseParameters, base_of, named_entries
 from eomgen.identification.proof_of_groups import certify_regressor
-from eomgen.identification.transfers import MOMENTS, PLACES, named_entries
-from eomgen.mechanics.balance.friction import frictions, has_friction
-from eomgen.mechanics.bodies.armature import given_inertia, joint_row
-from eomgen.mechanics.bodies.inertia import mass_properties
-from eomgen.mechanics.equations.system import System
-from eomgen.mechanics.equations.work import force_row
+from eomgen.mechanics.dynamics.system import System, force_row
+from eomgen.mechanics.free_bodies.friction import frictions, has_friction
+from eomgen.mechanics.kinematics.inertia import given_inertia, joint_row, mass_properties
 from eomgen.model.forces.load import UniformField
 from eomgen.model.parts import Model
 from eomgen.model.reader import ModelOrPath
@@ -32,8 +29,7 @@ from eomgen.pipeline import derive
 from eomgen.proof.check import Certificate
 from eomgen.records import dataclass
 from eomgen.symbolic.expression.derivative import depends_on, gradient, substituted
-from eomgen.symbolic.expression.graph import Node, Scalar, is_zero
-from eomgen.symbolic.expression.node import ScalarRow
+from eomgen.symbolic.expression.node import Node, Scalar, ScalarRow, is_zero
 from eomgen.symbolic.expression.spatial import (
     SpatialInertia,
     Twist,

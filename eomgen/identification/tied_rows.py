@@ -9,8 +9,8 @@ from typing import Any
 import numpy as np
 
 from eomgen.mechanics.constraints.closure import gaps_of, generic_state, movable, norms_of
-from eomgen.mechanics.equations.system import System
-from eomgen.mechanics.initial_state.values_at_rest import values_of_parameters
+from eomgen.mechanics.dynamics.system import System
+from eomgen.mechanics.start.exact import values_of_parameters
 from eomgen.records import dataclass
 from eomgen.symbolic.expression.derivative import jacobian
 from eomgen.symbolic.expression.node import ScalarRow, State

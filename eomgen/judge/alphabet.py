@@ -8,7 +8,7 @@ from collections.abc import Container, Iterable, Mapping
 from functools import cached_property
 
 from eomgen.records import dataclass
-from eomgen.symbolic.expression.habits import spelled
+from eomgen.symbolic.expression.text import spelled
 
 ALIKE = {"−": "-", "–": "-", "·": "*", "⋅": "*", "×": "*", "∙": "*", "÷": "/", "[": "(", "]": ")", "′": "'", "’": "'"}
 ALIKE |= {

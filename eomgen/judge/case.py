@@ -10,42 +10,35 @@ from functools import cached_property
 from eomgen.documents.equation_steps import multiplier_forces
 from eomgen.errors import DerivationError, ExpressionError, MissingValues, ModelError
 from eomgen.judge.contributions import Contributions
-from eomgen.judge.corruptions import Corruptions
 from eomgen.judge.decision import Follows, combination, is_zero_everywhere, linear_row, vanish_at
-from eomgen.judge.edits import Edits
+from eomgen.judge.mistakes import Corruptions
 from eomgen.judge.reading import MULTIPLIER, HandEquation, Reading, side_value
-from eomgen.mechanics.bodies.system_scene import let_go
-from eomgen.mechanics.equations.equations_of_motion import EquationsOfMotion
-from eomgen.mechanics.equations.pieces import Extent
-from eomgen.mechanics.equations.system import System, system_of
-from eomgen.mechanics.equations.work import per_speed
-from eomgen.mechanics.equilibria.search import Equilibrium, all_equilibria
-from eomgen.mechanics.first_integrals.integrals import where_momenta_hold
-from eomgen.mechanics.first_integrals.speeds import rates_and_extent
-from eomgen.mechanics.first_integrals.speeds_from_momenta import relations_of
-from eomgen.mechanics.formulations.lagrange import free_rates
-from eomgen.mechanics.initial_state.exact_start import ExactStart
-from eomgen.mechanics.initial_state.numeric_value import known_parameters
-from eomgen.mechanics.instant.outputs import Quantities
-from eomgen.mechanics.statics.contacts_at_start import contacts_at_start
+from eomgen.judge.terms import Edits
+from eomgen.mechanics.dynamics.formulations import free_rates
+from eomgen.mechanics.dynamics.pieces import Extent
+from eomgen.mechanics.dynamics.system import EquationsOfMotion, System, per_speed, system_of
+from eomgen.mechanics.equilibrium.search import Equilibrium, all_equilibria
+from eomgen.mechanics.instant.quantities import Quantities
+from eomgen.mechanics.integrals.first_integrals import where_momenta_hold
+from eomgen.mechanics.integrals.speeds import rates_and_extent, relations_of
+from eomgen.mechanics.kinematics.scene import let_go
+from eomgen.mechanics.start.exact import ExactStart, known_parameters
+from eomgen.mechanics.statics.contacts import contacts_at_start
 from eomgen.model.catalog import Catalog
 from eomgen.model.dimensions import inferred
-from eomgen.model.fields import AtRest, WrittenEquation
+from eomgen.model.fields import AtRest, Table, WrittenEquation
 from eomgen.model.part import leaves_of
 from eomgen.model.parts import Model, Output
-from eomgen.model.table import Table
 from eomgen.questions import answers
 from eomgen.questions.answers import Answer
 from eomgen.questions.in_phase import PhaseEquations
 from eomgen.questions.motion_from_start import MotionFromStart
 from eomgen.records import dataclass
-from eomgen.simulation.configuration import has_phases
+from eomgen.simulation.contacts import has_phases
 from eomgen.symbolic.expression.derivative import depends_on, derivative, gradient, substituted
-from eomgen.symbolic.expression.expressions import Call, Expression, Reference, parse
-from eomgen.symbolic.expression.functions import inner
-from eomgen.symbolic.expression.graph import Node, Scalar, is_zero
-from eomgen.symbolic.expression.habits import SLOPE
-from eomgen.symbolic.expression.node import ScalarRow
+from eomgen.symbolic.expression.formula import Call, Expression, Reference, inner
+from eomgen.symbolic.expression.node import Node, Scalar, ScalarRow, is_zero
+from eomgen.symbolic.expression.text import SLOPE, parse
 from eomgen.symbolic.print.text import to_text
 
 

@@ -12,20 +12,30 @@ import numpy as np
 
 from eomgen.errors import DerivationError, ExpressionError, ModelError
 from eomgen.judge.case import Case
-from eomgen.judge.causes import other_calls
-from eomgen.judge.corruption import PIECES, SHARED, SHORTER, TERMS, Corruption
 from eomgen.judge.decision import combination, is_zero_everywhere, linear_row
-from eomgen.judge.diagnosis import WHOLE, Explanation, Samples, Search, explained, fitting, in_other_units, samples_of
+from eomgen.judge.diagnosis import (
+    PIECES,
+    SHARED,
+    SHORTER,
+    TERMS,
+    WHOLE,
+    Corruption,
+    Explanation,
+    Samples,
+    Search,
+    explained,
+    fitting,
+    in_other_units,
+    samples_of,
+)
 from eomgen.judge.inertias import Inertias
-from eomgen.judge.kinds import FUNCTION_KINDS
 from eomgen.judge.terms import short_text, term_text, terms_of
+from eomgen.judge.verdict import FUNCTION_KINDS, other_calls
 from eomgen.judge.wrong_terms import Term, WrongTerms
 from eomgen.records import dataclass
 from eomgen.symbolic.expression.derivative import depends_on, derivative, gradient, substituted, symbols_of
-from eomgen.symbolic.expression.expressions import Call
-from eomgen.symbolic.expression.functions import over
-from eomgen.symbolic.expression.graph import Node, Scalar, is_zero
-from eomgen.symbolic.expression.node import ScalarRow
+from eomgen.symbolic.expression.formula import Call, over
+from eomgen.symbolic.expression.node import Node, Scalar, ScalarRow, is_zero
 from eomgen.symbolic.expression.traversal import operations
 from eomgen.symbolic.numeric.tolerances import CARRIED
 from eomgen.symbolic.solve.cramer import determinant

@@ -11,8 +11,8 @@ from eomgen.judge.decision import is_zero_everywhere
 from eomgen.judge.terms import short_text
 from eomgen.judge.verdict import Cause
 from eomgen.symbolic.expression.derivative import depends_on, derivative, gradient
-from eomgen.symbolic.expression.functions import over
-from eomgen.symbolic.expression.graph import Scalar, is_zero
+from eomgen.symbolic.expression.formula import over
+from eomgen.symbolic.expression.node import Scalar, is_zero
 
 
 def not_conserved(case: Case, scalar: Scalar) -> Cause | None:

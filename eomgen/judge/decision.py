@@ -16,18 +16,17 @@ from typing import Any
 import numpy as np
 
 from eomgen.errors import DerivationError, ModelError
-from eomgen.mechanics.balance.friction import equations_of_motion
-from eomgen.mechanics.equations.pieces import NOWHERE, Extent, division_of
-from eomgen.mechanics.equations.system import System
+from eomgen.mechanics.dynamics.pieces import NOWHERE, Extent, division_of
+from eomgen.mechanics.dynamics.system import System
+from eomgen.mechanics.free_bodies.friction import equations_of_motion
 from eomgen.model.values import exact_parameters
 from eomgen.records import dataclass
 from eomgen.symbolic.exact.equality import exact_state
 from eomgen.symbolic.expression.derivative import gradient, symbols_of
-from eomgen.symbolic.expression.graph import Node, Scalar, linear_terms
-from eomgen.symbolic.expression.node import ScalarRow, holds_op
+from eomgen.symbolic.expression.node import Node, Scalar, ScalarRow, holds_op, linear_terms
 from eomgen.symbolic.expression.rational import Fraction
 from eomgen.symbolic.expression.traversal import united
-from eomgen.symbolic.numeric.balls import Ball, balls
+from eomgen.symbolic.numeric.arithmetic import Ball, balls
 from eomgen.symbolic.numeric.evaluation import (
     FLOAT,
     PRIME,
@@ -437,7 +436,7 @@ def _rational(x: float) -> Any:
 
 def _start(system: System, own: Mapping[Node, float]) -> dict[Node, float]:
     """Where coordinates start, as far as numbers say it."""
-    from eomgen.mechanics.bodies.system_scene import start_values
+    from eomgen.mechanics.kinematics.scene import start_values
 
     values = {**dict.fromkeys(system.symbols.parameters.values(), 1.0), **own, system.symbols.t: 0.0}
     found = {}

@@ -1,4 +1,6 @@
-"""An equation that is wrong -> why: the least set of named corruptions that makes the model's equations the author's.
+"""An equation that is wrong -> why, in sentences.
+
+An equation that is wrong -> why: the least set of named corruptions that makes the model's equations the author's.
 
     sigma D = E + sum y_j C_j
 
@@ -17,16 +19,14 @@ from random import Random
 
 import numpy as np
 
-from eomgen.judge.corruption import PLAIN, Corruption
 from eomgen.judge.decision import states_of
-from eomgen.mechanics.equations.system import System
+from eomgen.mechanics.dynamics.system import System
 from eomgen.records import dataclass
 from eomgen.symbolic.expression.dimensions import SECOND, Dimension
-from eomgen.symbolic.expression.functions import over
-from eomgen.symbolic.expression.graph import Node, Scalar
+from eomgen.symbolic.expression.formula import over
+from eomgen.symbolic.expression.node import Node, Scalar, ScalarRow
 from eomgen.symbolic.expression.rational import Fraction
-from eomgen.symbolic.numeric.batch_evaluation import ARRAYS
-from eomgen.symbolic.numeric.evaluation import evaluate
+from eomgen.symbolic.numeric.evaluation import ARRAYS, evaluate
 from eomgen.symbolic.numeric.tolerances import CARRIED, COMPUTED, SAME_EIGENVALUE
 
 BELIEVED = 12.5  # the cost of one mistake up to which nothing else is looked at
@@ -485,3 +485,38 @@ def explained(
             near = [x for x in found[k + 1 :] if x.cost <= each.cost + NEARLY][:MOST_NEAR]
             return [each, *(x for x in near if proves(x))]
     return []
+
+
+# -------- corruption ------------------------------------------------------------------------------------------
+# One thing that may have gone wrong in an equation, and how readily it is believed.
+
+
+# how readily a mistake is believed, the smaller the sooner
+PLAIN, PLACED, SHARED, PIECES, TERMS, EXCHANGED, ODD = range(7)
+SHORTER = 0.3  # of what a shorter name tells as well
+
+
+@dataclass(frozen=True)
+class Corruption:
+    """One thing that may have gone wrong.
+
+    Args:
+        name: what it concerns, in words; of a wrong factor the contribution.
+        kind: of the cause: "factor" where the factor is open, else as in `AREAS`.
+        rows: what one unit of it adds to each equation.
+        rank: how readily it is believed.
+        body, force: whose it is.
+        open: whether any simple factor is possible; else it is there once.
+        text: the sentence, of what is there once.
+        squares: it is made of squares of speeds, of which nobody takes the wrong sign.
+    """
+
+    name: str
+    kind: str
+    rows: ScalarRow
+    rank: float
+    body: str = ""
+    force: str = ""
+    open: bool = True
+    text: str = ""
+    squares: bool = False

@@ -14,8 +14,8 @@ from contextlib import suppress
 from eomgen.errors import ExpressionError
 from eomgen.judge.alphabet import Vocabulary, plain_forms, spelled_command
 from eomgen.records import dataclass
-from eomgen.symbolic.expression.functions import NAMES
-from eomgen.symbolic.expression.habits import RATES, SLOPE, called_rate, meant_name, spelled
+from eomgen.symbolic.expression.formula import NAMES
+from eomgen.symbolic.expression.text import RATES, SLOPE, called_rate, meant_name, spelled
 from eomgen.symbolic.expression.units import parse_unit
 
 RATE = "rate_of"  # d/dt of what stands in parentheses

@@ -14,17 +14,18 @@ from functools import cached_property
 
 from eomgen.errors import DerivationError, EomgenError, ExpressionError
 from eomgen.judge.case import Case
-from eomgen.judge.corruption import EXCHANGED, PLACED, PLAIN, Corruption
+from eomgen.judge.contributions import other_shapes
+from eomgen.judge.diagnosis import EXCHANGED, PLACED, PLAIN, Corruption
 from eomgen.judge.terms import wrong_parameters
-from eomgen.judge.wrong_points import other_shapes
-from eomgen.mechanics.bodies.composition import made_of
-from eomgen.mechanics.bodies.inertia import mass_properties
+from eomgen.mechanics.kinematics.inertia import mass_properties
+from eomgen.mechanics.kinematics.motion import made_of
 from eomgen.model.composite import PlacedPiece
-from eomgen.model.table import Table
+from eomgen.model.fields import Table
 from eomgen.records import dataclass
 from eomgen.symbolic.expression.derivative import substituted, symbols_of
-from eomgen.symbolic.expression.expressions import Call, Reference, parse
-from eomgen.symbolic.expression.graph import Scalar, is_zero
+from eomgen.symbolic.expression.formula import Call, Reference
+from eomgen.symbolic.expression.node import Scalar, is_zero
+from eomgen.symbolic.expression.text import parse
 from eomgen.symbolic.print.text import to_text
 
 

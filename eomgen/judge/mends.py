@@ -4,29 +4,42 @@ from __future__ import annotations
 
 import math
 from collections import Counter
-from collections.abc import Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from contextlib import suppress
+from dataclasses import field
 from functools import cached_property
+from typing import Any
 
 import numpy as np
 
 from eomgen.errors import EomgenError
-from eomgen.judge.authored import Authored
+from eomgen.judge.case import Case
 from eomgen.judge.comparison import excess
-from eomgen.judge.contributions import FEW, Contribution
-from eomgen.judge.corruption import Corruption
+from eomgen.judge.contributions import ANGLES, FEW, Contribution
 from eomgen.judge.decision import is_zero_everywhere
-from eomgen.judge.diagnosis import PLAINEST, Explanation, Share
-from eomgen.judge.edits import power, wrong_power
-from eomgen.judge.products import Amended
-from eomgen.judge.right import truth_of
-from eomgen.judge.terms import powers_of, short_text, term_text, terms_of
+from eomgen.judge.diagnosis import PLAINEST, Corruption, Explanation, Samples, Share, samples_of
+from eomgen.judge.reading import HandEquation
+from eomgen.judge.terms import (
+    Amended,
+    Products,
+    angles_in,
+    other_forms,
+    power,
+    powers_of,
+    short_text,
+    term_text,
+    terms_of,
+    wrong_power,
+)
+from eomgen.judge.truth import truth_of
 from eomgen.records import dataclass
-from eomgen.symbolic.expression.derivative import substituted, symbols_of
-from eomgen.symbolic.expression.functions import over
-from eomgen.symbolic.expression.graph import Node, Scalar, is_zero
+from eomgen.symbolic.expression.derivative import depends_on, substituted, symbols_of
+from eomgen.symbolic.expression.formula import Call, Expression, over
+from eomgen.symbolic.expression.node import Node, Scalar, is_zero
 from eomgen.symbolic.expression.rational import Fraction
 from eomgen.symbolic.expression.traversal import order
+from eomgen.symbolic.numeric.evaluation import ARRAYS, evaluate
+from eomgen.symbolic.numeric.tolerances import COMPUTED
 
 MOST_TRIED = 6  # changes that are proven before it is given up
 SHORT = 60  # characters of a place that is told
@@ -161,3 +174,190 @@ class Mends:
         if 2 * often <= len(mine) or not any(matched[term] for term in mine if term in before):
             return {}  # the equation is not made of such terms, or all of them differ
         return {part.name: part for term in mine if term not in before for part in matched[term]}
+
+
+# -------- authored --------------------------------------------------------------------------------------------
+# The formula that somebody wrote -> the value that each place of it would need to be right, at states of the motion.
+#
+# Every name in it counts by itself, as it was written: what is wrong with one length need not be with the same one
+# elsewhere.
+
+
+MOST_PLACES, MOST_ATOMS = 80, 24  # nodes that are looked at; names and waves of which products are made
+PLACES, PLACES_OF_MOTION = 12, 5  # configurations at which it is looked at
+LEAST_STATES = 5  # at which it must have a value
+STEPS = 8  # of the secant method
+FARTHEST = 1e9  # times what stands there: as far as a value is sought
+
+
+class _Occurrences(dict[str, Scalar]):
+    """A symbol of its own for every name that is looked up; what each stands for."""
+
+    def __init__(self, known: Mapping[str, Scalar], pi: Node) -> None:
+        super().__init__()
+        self.known, self.pi = known, pi
+        self.meant = dict[Node, Scalar]()
+
+    def get(self, name: str, default: Any = None) -> Any:
+        return self[name] if name in self.known else default
+
+    def __getitem__(self, name: str) -> Scalar:
+        return self.pi if name == "pi" else self.of(name, self.known[name])
+
+    def of(self, name: str, meant: Scalar) -> Node:
+        symbol = self.pi.graph.symbol(f"({len(self.meant)}) {name}")
+        self.meant[symbol] = meant
+        return symbol
+
+
+@dataclass(frozen=True)
+class Authored:
+    """An equation of somebody, name by name.
+
+    Args:
+        case: the model.
+        written: the equation.
+        kind: what it is about.
+        place: coordinates at the place of which it speaks; {} in every motion.
+        true: the true value of what stands alone on the left; None: it follows from the state.
+    """
+
+    case: Case
+    written: HandEquation
+    kind: str
+    place: Mapping[Node, Scalar] = field(default_factory=dict)
+    true: Scalar | None = None
+
+    @property
+    def is_still(self) -> bool:
+        """Whether it is about one place or instant."""
+        return bool(self.place) or self.true is not None
+
+    @cached_property
+    def _sides(self) -> tuple[Scalar, Scalar, Mapping[Node, Scalar]]:
+        """Both sides over occurrences, and what these stand for."""
+        scope = self.case.system.scope
+        names = _Occurrences(self.case.names, scope.graph.pi)
+
+        def called(call: Call) -> Scalar:
+            return names.of(str(call), self.case.value(Expression(str(call), (("call", call),), (0,))))
+
+        right = self.written.right.evaluate(names, called)
+        if self.true is not None:
+            return names.of(self.written.left.text, self.true), right, names.meant
+        return self.written.left.evaluate(names, called), right, names.meant
+
+    @cached_property
+    def difference(self) -> Scalar:
+        """The left side less the right one."""
+        return self._sides[0] - self._sides[1]
+
+    @cached_property
+    def meant(self) -> Mapping[Node, Scalar]:
+        """What each occurrence stands for, at the place."""
+        known = self._sides[2]
+        return dict(zip(known, substituted(tuple(known.values()), self.place), strict=True))
+
+    def plain(self, x: Scalar) -> Scalar:
+        """With the names in place of their occurrences."""
+        graph = self.case.system.scope.graph
+        return substituted((x,), {y: graph.symbol(y.name.partition(") ")[2]) for y in self.meant})[0]
+
+    # -- states of the true motion -------------------------------------------------------------------
+
+    @cached_property
+    def samples(self) -> Samples | None:
+        case, ties = self.case, self.case.system.ties
+        places = PLACES_OF_MOTION if self.kind == "motion" else PLACES
+        tied = bool(ties.rows) and not self.is_still
+        found = samples_of(case.system, tuple(self.meant.values()), on_ties=tied, places=places)
+        if found is None or self.is_still:
+            return found
+        by_integrals = (case.speeds or case.by_momenta) if self.kind == "law" else None
+        speeds = {} if by_integrals is None else by_integrals[0]
+        found = found.with_values(dict(zip(speeds, found.flat(tuple(speeds.values())), strict=True)))
+        return found if case.equations is None else self._moving(found)
+
+    def _moving(self, found: Samples) -> Samples:
+        """With the accelerations and multipliers of the motion: [[M, -J^T], [J, 0]] [a; lam] = [forcing; -gamma]."""
+        e = self.case.equations
+        assert e is not None
+        n, k = len(e.M), len(e.J)
+        rows = [(*row, *(-J[i] for J in e.J), e.forcing[i]) for i, row in enumerate(e.M)]
+        rows += [(*row, *[0] * k, -gamma) for row, gamma in zip(e.J, e.gamma, strict=True)]
+        flat = found.of([x for row in rows for x in row])
+        system = np.moveaxis(flat.reshape(n + k, n + k + 1, -1), 2, 0)
+        solved = np.linalg.pinv(system[:, :, :-1]) @ system[:, :, -1:]
+        return found.with_values(dict(zip((*e.symbols.a, *e.symbols.lam), solved[:, :, 0].T, strict=True)))
+
+    @cached_property
+    def _atoms(self) -> tuple[Node, ...]:
+        """Of what changes are made: names of the model, and waves of angles."""
+        symbols, known = self.case.system.symbols, tuple(self.meant.values())
+        atoms: list[Node] = [*symbols.parameters.values(), *symbols.inputs.values()]
+        formulas = known if self.is_still else (*self.case.rows, *known)
+        if not self.is_still:
+            held = {*symbols_of(formulas)}
+            atoms += [x for x in (*symbols.q, *symbols.u) if x in held]
+        angles = angles_in(formulas)
+        angles += [x for x in atoms if str(self.case.parts.dimensions.get(x.name, "")) in ANGLES[:2]]
+        waves = [x.graph.call(op, x) for x in dict.fromkeys(angles) for op in ("sin", "cos")]
+        atoms += [x for x in waves if type(x) is Node and x not in atoms]
+        return tuple(atoms[:MOST_ATOMS])
+
+    # -- what a place of it would have to be ----------------------------------------------------------
+
+    def changes(self) -> Iterator[tuple[Node, Amended]]:
+        """(place, change) by which the equation holds in numbers."""
+        left, samples, difference = self._sides[0], self.samples, self.difference
+        if type(difference) is not Node or samples is None:
+            return
+        flat = samples.flat([*self.meant.values(), *substituted(self._atoms, self.place)])
+        n = len(self.meant)
+        there = np.all(np.isfinite(flat[:n]), axis=0)
+        if np.count_nonzero(there) < LEAST_STATES:
+            return
+        values = dict(zip(self.meant, flat[:n, there], strict=True))
+        usable = [k for k, row in enumerate(flat[n:, there]) if np.all(np.isfinite(row) & (row != 0))]
+        products = Products(tuple(self._atoms[k] for k in usable), flat[n:, there][usable])
+        nodes = order((difference,))
+        factors = {x for y in nodes if y.op in ("mul", "div", "neg") for x in y.args}
+        forced = [x for x, meant in self.meant.items() if meant in self.case.system.symbols.a]
+        whole = {difference, *(difference.args if difference.op == "neg" else ())}
+        for node in [x for x in nodes if x not in whole][:MOST_PLACES]:
+            found = _needed(difference, node, values)
+            if found is None:
+                continue
+            if node is left and len(self.written.left.code) == 1:
+                known = list(other_forms(node, *found))
+            else:
+                known = products.changes(node, *found, inner=node in factors, forced=depends_on(node, forced))
+            for each in known:
+                if each.kind != "extra_term" or node not in self._sides[:2]:
+                    yield node, each
+
+
+def _needed(difference: Node, node: Node, values: Mapping[Node, np.ndarray]) -> tuple[np.ndarray, np.ndarray] | None:
+    """The values of a node, and those with which the difference vanishes at every state; None: there are none."""
+    zero = np.zeros(len(next(iter(values.values()))))
+
+    def at(x: Node, known: Mapping[Node, np.ndarray]) -> np.ndarray:
+        found: np.ndarray = np.asarray(evaluate((x,), known, ARRAYS)[0], dtype=float) + zero
+        return found
+
+    with np.errstate(all="ignore"):
+        own = at(node, values)
+        size = np.abs(own) + COMPUTED
+        x, y = own, own + size / 10
+        f, g = (at(difference, {**values, node: each}) for each in (x, y))
+        scale = np.abs(f) + np.abs(g)
+        for _ in range(STEPS):
+            step = g * (y - x) / (g - f)
+            x, f = y, g
+            y = np.where(np.isfinite(step), y - step, y)
+            g = at(difference, {**values, node: y})
+            if not np.all(np.isfinite(g)):
+                return None
+            if np.all(np.abs(g) <= COMPUTED * scale):
+                return (own, y) if np.all(np.abs(y) < FARTHEST * size) else None
+    return None

@@ -13,21 +13,20 @@ from dataclasses import field, replace
 from functools import cached_property
 from typing import Any
 
-from eomgen.documents.latex_names import notation_of
-from eomgen.documents.reaction_names import own_symbol, reaction_name
+from eomgen.documents.latex_math import notation_of
+from eomgen.documents.reaction_values import own_symbol, reaction_name
 from eomgen.errors import DerivationError, ExpressionError
 from eomgen.judge.alphabet import Vocabulary, vocabulary
 from eomgen.judge.handwriting import RATE, Transcript, transcript
-from eomgen.mechanics.balance.balance import balance_of
-from eomgen.mechanics.balance.named_reactions import NamedReaction, named_reactions
-from eomgen.mechanics.equations.system import System
+from eomgen.mechanics.dynamics.system import System
+from eomgen.mechanics.free_bodies.balance import balance_of
+from eomgen.mechanics.free_bodies.named_reactions import NamedReaction, named_reactions
 from eomgen.model.outputs import FUNCTIONS
 from eomgen.records import dataclass
-from eomgen.symbolic.expression.expressions import Call, Expression, Reference, parse, parse_equation
-from eomgen.symbolic.expression.formula import Instruction
-from eomgen.symbolic.expression.graph import Scalar
-from eomgen.symbolic.expression.habits import SLOPE
-from eomgen.symbolic.print.symbols import Symbol
+from eomgen.symbolic.expression.formula import Call, Expression, Instruction, Reference
+from eomgen.symbolic.expression.node import Scalar
+from eomgen.symbolic.expression.text import SLOPE, parse, parse_equation
+from eomgen.symbolic.print.names import Symbol
 
 LETTERS = {"T": "kinetic_energy", "V": "potential_energy", "Q": "generalized_force", "p": "momentum"}
 """letter -> the function that it stands for"""

@@ -10,14 +10,13 @@ from itertools import islice, product
 
 from eomgen.judge.case import Case
 from eomgen.judge.comparison import excess
-from eomgen.judge.corruption import TERMS, Corruption
-from eomgen.judge.diagnosis import PLAINEST, Explanation, Share
+from eomgen.judge.contributions import ANGLES
+from eomgen.judge.diagnosis import PLAINEST, TERMS, Corruption, Explanation, Share
 from eomgen.judge.reading import HandEquation
-from eomgen.judge.right import truth_of
-from eomgen.judge.substitutions import ANGLES
+from eomgen.judge.truth import truth_of
 from eomgen.records import dataclass
-from eomgen.symbolic.expression.functions import over
-from eomgen.symbolic.expression.graph import Node, Scalar, is_zero
+from eomgen.symbolic.expression.formula import over
+from eomgen.symbolic.expression.node import Node, Scalar, is_zero
 from eomgen.symbolic.expression.rational import Fraction
 from eomgen.symbolic.print.text import to_text
 

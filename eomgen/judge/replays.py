@@ -13,12 +13,12 @@ from typing import Any
 from eomgen.errors import EomgenError
 from eomgen.judge.case import Case
 from eomgen.judge.contributions import FEW
-from eomgen.judge.corruption import PLAIN, SHARED, Corruption
+from eomgen.judge.diagnosis import PLAIN, SHARED, Corruption
 from eomgen.judge.wrong_terms import WrongTerms
+from eomgen.model.fields import Table
 from eomgen.model.parts import Coordinate, Model
-from eomgen.model.table import Table
-from eomgen.symbolic.expression.expressions import Expression
-from eomgen.symbolic.expression.graph import Scalar, is_zero
+from eomgen.symbolic.expression.formula import Expression
+from eomgen.symbolic.expression.node import Scalar, is_zero
 
 MOST_LOADS = 30  # of a model that are left out, one by one
 MOST_HELD = 6  # coordinates of a model that are held, one by one

@@ -1,19 +1,31 @@
-"""Formulas -> their terms, and what may stand in them in the place of a name or an angle."""
+"""Formulas -> their terms, and what people make of them by mistake.
+
+Formulas -> their terms, and what may stand in them in the place of a name or an angle.
+"""
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator, Sequence
-from itertools import combinations
+from collections.abc import Collection, Iterable, Iterator, Sequence
+from contextlib import suppress
+from dataclasses import replace
+from functools import cached_property
+from itertools import chain, combinations
 
+import numpy as np
+
+from eomgen.errors import DerivationError
+from eomgen.judge.diagnosis import EXCHANGED, MINUS, ODD, PLAINEST, TERMS, UNUSUAL, USUAL, WELL_KNOWN, simple_factor
+from eomgen.records import dataclass
 from eomgen.symbolic.exact.expansion import Expansion
-from eomgen.symbolic.exact.normal_form import TooLarge, legible, readable
+from eomgen.symbolic.exact.normal_form import legible, readable
+from eomgen.symbolic.exact.terms import TooLarge
 from eomgen.symbolic.exact.writing import Writer
-from eomgen.symbolic.expression.derivative import substituted
-from eomgen.symbolic.expression.functions import over
-from eomgen.symbolic.expression.graph import Node, Scalar
-from eomgen.symbolic.expression.node import linear_terms
+from eomgen.symbolic.expression.derivative import substituted, symbols_of
+from eomgen.symbolic.expression.formula import over
+from eomgen.symbolic.expression.node import Node, Scalar, ScalarRow, is_zero, linear_terms
 from eomgen.symbolic.expression.rational import Fraction
 from eomgen.symbolic.expression.traversal import order
+from eomgen.symbolic.numeric.tolerances import CARRIED, COMPUTED
 from eomgen.symbolic.numeric.work import Work
 from eomgen.symbolic.print.text import readable_text
 
@@ -164,3 +176,368 @@ def all_turned(angles: Sequence[Node]) -> Iterator[tuple[str, dict[Node, Scalar]
             graph.held(op, (x,)): graph.call(op, factor * x) for x in angles for op in ("sin", "cos")
         }
         yield "unit", mapping, f"the angles are taken in {how}"
+
+
+# -------- edits -----------------------------------------------------------------------------------------------
+# A formula -> what people make of it by mistake: one place of it changed.
+#
+# A place is a node of the formula as it was derived or as it is written. Of a product a factor is left out, stands
+# once too often or too few, multiplies where it should divide, is another function of its angle; of a sum a term is
+# left out, turned, or there with twice or half of it; springs in a row are taken for springs side by side. The
+# formula may be an energy before it is differentiated, a force, a row of an equation or an answer: the changes are
+# the same.
+
+
+MOST_PLACES = 80  # nodes of a formula that are looked at
+SHOWN = 60  # characters of a place that is told
+WAVES = ("sin", "cos", "tan")
+
+
+@dataclass(frozen=True)
+class Edit:
+    """A formula with one mistake in it.
+
+    Args:
+        kind: of the cause.
+        to: the formulas with the mistake.
+        text: what is wrong, to be read behind "in ...".
+        rank: how readily it is believed.
+    """
+
+    kind: str
+    to: ScalarRow
+    text: str
+    rank: float
+
+
+@dataclass(frozen=True)
+class Edits:
+    """What may go wrong in formulas.
+
+    Args:
+        positive: symbols that stand for positive numbers.
+        alike: groups of parameters of one dimension; the ratio of two of them is looked at as a whole.
+        also: nodes by which somebody may multiply or divide although they do not stand there.
+    """
+
+    positive: Collection[Node] = ()
+    alike: Sequence[frozenset[Node]] = ()
+    also: Sequence[Node] = ()
+
+    def of(self, formulas: ScalarRow) -> Iterator[Edit]:
+        """Those of formulas as they are and as they are written, each once; a place of several in all of them."""
+        seen = {formulas}
+        for form in dict.fromkeys((formulas, self.written(formulas))):
+            for each in self._in_form(form):
+                if each.to not in seen:
+                    seen.add(each.to)
+                    yield each
+
+    def of_answer(self, answer: ScalarRow) -> Iterator[Edit]:
+        """Those of an answer as it is written, which may also stand upside down or under a root."""
+        for each in self.of(answer):
+            yield replace(each, rank=max(each.rank, ODD))
+        for x in answer if len(answer) == 1 else ():
+            if type(x) is Node:
+                yield Edit(
+                    "factor", (over(1, x),), "what is above and below is exchanged: its reciprocal stands there", TERMS
+                )
+                yield Edit("factor", (x * x,), "the root is missing: its square stands there", TERMS)
+                if x.op != "sqrt":
+                    yield Edit("factor", (x.graph.sqrt(x),), "a root is too many", EXCHANGED)
+
+    def written(self, formulas: ScalarRow) -> ScalarRow:
+        """Formulas as people write them."""
+        return tuple(legible(x, Work.FORMULA, self.positive, LONG) for x in formulas)
+
+    def _in_form(self, formulas: ScalarRow) -> Iterator[Edit]:
+        places = [node for node in order(formulas) if node.args]
+        for node in places[-MOST_PLACES:][::-1]:
+            where = "" if node in formulas or len(name := term_text(node)) > SHOWN else f" in {name}"
+            for kind, other, text, rank in chain(self._of_product(node), _of_sum(node), self._in_series(node)):
+                with suppress(DerivationError):  # it has no value there
+                    yield Edit(kind, substituted(formulas, {node: other}), text + where, rank)
+
+    def of_term(self, term: Node) -> Iterator[Edit]:
+        """Those of a term of a sum multiplied out: other functions of its angles, too, and factors too many."""
+        for kind, other, text, rank in self._of_product(term):
+            yield Edit(kind, (other,), text, rank)
+        angles = angles_in((term,))
+        for angle in angles:
+            for kind, mapping, what in turned_angles(angle, (term,)):
+                with suppress(DerivationError):
+                    rank = EXCHANGED if kind == "factor" else TERMS
+                    yield Edit(kind, substituted((term,), mapping), what.format(term_text(angle)), rank)
+        if len(angles) > 1:
+            for kind, mapping, what in all_turned(angles):
+                with suppress(DerivationError):
+                    yield Edit(kind, substituted((term,), mapping), what, TERMS)
+        held = powers_of(term)
+        waves = [term.graph.call(op, x) for x in angles for op in ("sin", "cos")]
+        for f in (*self.also, *(x for x in waves if type(x) is Node)):
+            if f not in held:
+                yield Edit("factor", (term * f,), f"a factor {term_text(f)} is too many", ODD)
+                yield Edit("factor", (over(term, f),), f"a division by {term_text(f)} is too many", ODD)
+
+    # -- products --------------------------------------------------------------------------------
+
+    def _of_product(self, x: Node) -> Iterator[tuple[str, Scalar, str, float]]:
+        powers = powers_of(x)
+        if x.op in ("mul", "div", "pow", "sqrt") or len(powers) > 1:
+            for f, k in powers.items():
+                name = term_text(f)
+                for other in _other_powers(k):
+                    if other != k and (len(powers) > 1 or other != 0):
+                        yield "factor", x * power(f, other - k), wrong_power(name, k, other), EXCHANGED
+                yield from _other_waves(x, f, k)
+                yield from _of_square(x, f, k)
+            yield from _in_parallel(x, powers)
+            for p, q in self._ratios(powers):
+                yield from _of_ratio(x, p, q, powers[p])
+
+    def _in_series(self, x: Node) -> Iterator[tuple[str, Scalar, str, float]]:
+        """Constants a + b taken for a b/(a + b)."""
+        terms = linear_terms(x) if x.op == "add" and {*symbols_of((x,))} <= {*self.also} else {}
+        if len(terms) == 2 and None not in terms and all(c == 1 for c in terms.values()):
+            a, b = terms
+            series = over(a * b, x)  # type: ignore[operator]
+            told = f"{term_text(series)} stands where {term_text(x)} is meant: what adds up is taken to act in series"
+            yield "wrong_formula", series, told, TERMS
+
+    def _ratios(self, powers: Powers) -> Iterator[tuple[Node, Node]]:
+        """Parameters of one dimension of which one stands above and one below with the same power."""
+        for p, k in powers.items():
+            for q, n in powers.items():
+                if k > 0 and k == -n and any(p in some and q in some for some in self.alike):
+                    yield p, q
+
+
+def _of_ratio(x: Node, p: Node, q: Node, k: Fraction) -> Iterator[tuple[str, Scalar, str, float]]:
+    ratio, name = over(p, q), f"{p.name}/{q.name}"
+    yield "factor", x * power(ratio, -k), f"the ratio {name} is missing", EXCHANGED
+    yield "factor", x * power(ratio, -2 * k), f"the ratio {name} is turned over: {q.name}/{p.name} stands there", TERMS
+    for other in dict.fromkeys((k - 1, k + 1, 2 * k, k / 2)):
+        if other > 0 and other != k:
+            told = (f"({name})" + (f"^{n}" if n != 1 else "") for n in (other, k))
+            there, meant = told
+            square = ": the square is missing" if 2 * other == k else ""
+            yield "factor", x * power(ratio, other - k), f"{there} stands where {meant} is meant{square}", EXCHANGED
+
+
+def _other_powers(k: Fraction) -> tuple[Fraction, ...]:
+    """What people write for a power k, each once."""
+    halved = (k / 2,) if (k / 2).denominator <= 2 else ()
+    return tuple(dict.fromkeys((Fraction(0), k - 1 if k > 0 else k + 1, k + 1 if k > 0 else k - 1, -k, 2 * k, *halved)))
+
+
+def _other_waves(x: Node, f: Node, k: Fraction) -> Iterator[tuple[str, Scalar, str, float]]:
+    """Another function of the same angle."""
+    for op in WAVES if f.op in WAVES else ():
+        other = f.graph.call(op, f.args[0])
+        if op != f.op and not is_zero(other):
+            told = f"{op} stands for {f.op}({term_text(f.args[0])})"
+            told += ": the angle is taken from the other axis" if "tan" not in (op, f.op) else ""
+            yield "wrong_axis", x * power(over(other, f), k), told, TERMS
+
+
+def power(x: Scalar, k: Fraction) -> Scalar:
+    """x^k, k a multiple of 1/2."""
+    if type(x) is not Node:
+        return x
+    if k.denominator == 1:
+        n = int(k)
+        return x**n if n >= 0 else over(1, x**-n)
+    root: Scalar = x.graph.sqrt(x)
+    return power(root, 2 * k)
+
+
+def wrong_power(name: str, k: Fraction, other: Fraction) -> str:
+    """In words that x^other stands where x^k is meant."""
+    name = f"({name})" if any(c in name for c in " +-*/") and not name.endswith(")") else name
+    if other == 0:
+        return f"a factor {name} is missing" if k > 0 else f"a division by {name} is missing"
+    if k == 0:
+        return (
+            f"a factor {_with_power(name, other)} is too many"
+            if other > 0
+            else f"a division by {_with_power(name, -other)} is too many"
+        )
+    there, meant = (_with_power(name, abs(x)) for x in (other, k))
+    if k * other > 0:
+        root = ": a root is missing" if k.denominator == 2 and other.denominator == 1 else ""
+        square = ": the square is missing" if abs(k) == 2 and abs(other) == 1 else ""
+        return f"{there} stands where {meant} is meant{root}{square}"
+    does, should = ("multiplies", "divide") if other > 0 else ("divides", "multiply")
+    return f"{there} {does} where {meant} should {should}"
+
+
+def _with_power(name: str, k: Fraction) -> str:
+    if k == 1:
+        return name
+    return f"sqrt({name})" if k == Fraction(1, 2) else f"{name}^{k}" if k.denominator == 1 else f"{name}^({k})"
+
+
+def _of_square(x: Node, f: Node, k: Fraction) -> Iterator[tuple[str, Scalar, str, float]]:
+    """The squares of the terms for the square of their sum."""
+    terms = linear_terms(f) if k == 2 and f.op in ("add", "sub") else {}
+    if len(terms) > 1:
+        squares = sum((c * c * (1 if t is None else t * t) for t, c in terms.items()), start=0)
+        told = f"of the square of {term_text(f)} the product is missing: the squares of its terms alone stand there"
+        yield "missing_term", over(x * squares, f * f), told, TERMS
+
+
+# -- sums ----------------------------------------------------------------------------------------
+
+
+def _in_parallel(x: Node, powers: Powers) -> Iterator[tuple[str, Scalar, str, float]]:
+    """a b/(a + b) taken for a + b."""
+    for f, k in powers.items():
+        terms = linear_terms(f) if k == -1 and f.op == "add" else {}
+        if len(terms) == 2 and all(n is not None and c == 1 and powers.get(n, 0) >= 1 for n, c in terms.items()):
+            a, b = terms
+            told = f"{term_text(f)} stands where {term_text(over(a * b, f))} is meant: what acts in series is added"  # type: ignore[operator]
+            yield "wrong_formula", over(x * f * f, a * b), told, TERMS  # type: ignore[operator]
+
+
+def _of_sum(x: Node) -> Iterator[tuple[str, Scalar, str, float]]:
+    if x.op not in ("add", "sub"):
+        return
+    terms = linear_terms(x)
+    parts: list[Scalar] = [c * node if node is not None else c for node, c in terms.items()]
+    for t in parts:
+        name, what = term_text(t), "product" if is_product(t, parts) else "term"
+        rank = TERMS if len(name) <= SHOWN else ODD
+        yield "missing_term", x - t, f"the {what} {name} is missing", rank
+        yield "sign", x - 2 * t, f"the sign of the term {name} is wrong", rank
+        yield "factor", x + t, f"the term {name} stands with the factor 2", ODD
+        yield "factor", x - over(t, 2), f"the term {name} stands with the factor 1/2", ODD
+
+
+# -------- products --------------------------------------------------------------------------------------------
+# Values that a formula has, and should have, at many states -> the simple change that makes the one the other.
+#
+# What is meant is the formula times a simple product of names, or such a product beside it or in its place, or the
+# formula's square, root or reciprocal.
+
+
+SIGN, NUMBER, PRODUCT, LONGER = 2.5, 2.7, 3.0, 4.5  # how much less than the plainest mistake each is believed
+ELSEWHERE, BESIDE, A_RATE = 0.5, 0.7, 1.0  # of a product in its place; beside it; of a rate that is left out
+SQUARES = (Fraction(9), Fraction(16), Fraction(1, 9), Fraction(1, 16))  # numbers of which people take twice a power
+_EXPONENTS = (  # of two names: powers, how much less they are believed
+    *(((k, -k), PRODUCT) for k in (1, -1)),
+    *(((k, -k), PRODUCT + ELSEWHERE) for k in (2, -2)),
+    *(((k, k), LONGER) for k in (1, -1)),
+    *(((k, n), LONGER) for k, n in ((2, -1), (-2, 1), (1, -2), (-1, 2))),
+)
+
+
+@dataclass(frozen=True)
+class Amended:
+    """What is meant in the place of a formula.
+
+    Args:
+        cost: how much less it is believed than the plainest mistake.
+        to: what is meant.
+        kind: of the cause.
+    """
+
+    cost: float
+    to: Scalar
+    kind: str
+
+
+@dataclass(frozen=True)
+class Products:
+    """Products of names with simple powers.
+
+    Args:
+        atoms: the names, and waves of angles.
+        values: of each at every state.
+    """
+
+    atoms: tuple[Node, ...]
+    values: np.ndarray
+
+    @cached_property
+    def _known(self) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+        """Of each product the powers of the atoms, how much less it is believed, and its values."""
+        n = len(self.atoms)
+        unit = np.eye(n)
+        rows = [np.zeros(n), *(k * unit[i] for k in (1, -1, 2, -2, 0.5, -0.5) for i in range(n))]
+        dear = [x.op == "symbol" and x.name.endswith("'") for x in self.atoms]
+        costs = [0.0, *(PRODUCT + A_RATE * each for _ in range(2) for each in dear), *[PRODUCT + ELSEWHERE] * 4 * n]
+        for i, j in combinations(range(n), 2):
+            rows += [k * unit[i] + m * unit[j] for (k, m), _ in _EXPONENTS]
+            costs += [cost for _, cost in _EXPONENTS]
+        powers = np.array(rows)
+        with np.errstate(all="ignore"):
+            sizes = np.exp(powers @ np.log(np.abs(self.values)))
+            negative = (powers % 2 == 1).astype(int) @ (self.values < 0).astype(int)
+        return powers, np.array(costs), np.where(negative % 2 == 1, -sizes, sizes)
+
+    def changes(self, node: Node, own: np.ndarray, needed: np.ndarray, *, inner: bool, forced: bool) -> list[Amended]:
+        """Those by which a node gets the value that is needed.
+
+        Args:
+            inner: it is a factor of a product: a number is one of that.
+            forced: it holds accelerations, of which nobody takes the wrong sign.
+        """
+        if np.all(np.abs(needed) <= COMPUTED * np.abs(own)):
+            return [Amended(PRODUCT, 0, "extra_term")]
+        with np.errstate(all="ignore"):
+            found = list(other_forms(node, own, needed))
+            ratios = list(self._fits(needed / own))
+            for k, c in ratios:
+                if not (c < 0 and forced) and (k or (c != 1 and not inner)):
+                    number = SIGN if c == -1 else NUMBER + _of_number(c)
+                    cost = self._cost(k, c) if k else number
+                    found.append(Amended(cost, self._product(k, c) * node, self._kind(k, c)))
+            if any(k == 0 for k, _ in ratios):
+                return found
+            for k, c in self._fits(needed):
+                if k and self._known[1][k] < LONGER:
+                    found.append(Amended(self._cost(k, c) + ELSEWHERE, self._product(k, c), "wrong_quantity"))
+            for k, c in self._fits(needed - own) if node.op not in ("mul", "div") else ():
+                if k and self._known[1][k] < LONGER:
+                    cost = float(self._known[1][k]) + BESIDE + _of_number(abs(c))
+                    found.append(Amended(cost, node + self._product(k, c), "missing_term"))
+        return found
+
+    def _fits(self, values: np.ndarray) -> Iterator[tuple[int, Fraction]]:
+        """(which product, how often) the values are at every state."""
+        ratios = values / self._known[2]
+        first = ratios[:, :1]
+        good = np.all(np.abs(ratios - first) <= CARRIED * np.abs(first), axis=1) & (np.abs(first[:, 0]) > 0)
+        for k in np.flatnonzero(good):
+            c = simple_factor(float(first[k, 0]), WELL_KNOWN**2)
+            if c and (max(abs(c.numerator), c.denominator) <= WELL_KNOWN or c in SQUARES):
+                yield int(k), c
+
+    def _cost(self, k: int, c: Fraction) -> float:
+        """Of a product; a wrong sign beside it is a mistake of its own."""
+        return float(self._known[1][k]) + _of_number(abs(c)) + (PLAINEST if c < 0 else 0.0)
+
+    def _product(self, k: int, c: Fraction) -> Scalar:
+        found: Scalar = c
+        for i in np.flatnonzero(self._known[0][k]):
+            found = found * power(self.atoms[i], Fraction(float(self._known[0][k][i])))
+        return found
+
+    def _kind(self, k: int, c: Fraction) -> str:
+        held = [self.atoms[i] for i in np.flatnonzero(self._known[0][k])]
+        if len(held) == 2:
+            return "wrong_axis" if {x.op for x in held} == {"sin", "cos"} else "wrong_quantity"
+        return "sign" if not held and c == -1 else "factor"
+
+
+def other_forms(node: Node, own: np.ndarray, needed: np.ndarray) -> Iterator[Amended]:
+    """Its square, its root, its reciprocal."""
+    for value, k in ((own * own, Fraction(2)), (np.sqrt(np.abs(own)), Fraction(1, 2)), (1 / own, Fraction(-1))):
+        if np.all(np.abs(value - needed) <= CARRIED * np.abs(needed)):
+            yield Amended(NUMBER, power(node, k), "factor")
+
+
+def _of_number(c: Fraction) -> float:
+    """How much less a number is believed than none."""
+    size = next((more / 2 for known, more in USUAL if abs(c) in known), UNUSUAL)
+    return size + (MINUS if c < 0 else 0.0)

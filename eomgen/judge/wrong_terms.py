@@ -6,12 +6,11 @@ from collections.abc import Collection, Iterator, Mapping, Sequence
 from contextlib import suppress
 
 from eomgen.errors import DerivationError
-from eomgen.judge.corruption import EXCHANGED, ODD, TERMS, Corruption
-from eomgen.judge.edits import Edits
-from eomgen.judge.terms import angles_in, is_product, term_text, terms_of, turned_angles, wrong_parameters
+from eomgen.judge.diagnosis import EXCHANGED, ODD, TERMS, Corruption
+from eomgen.judge.terms import Edits, angles_in, is_product, term_text, terms_of, turned_angles, wrong_parameters
 from eomgen.records import dataclass
 from eomgen.symbolic.expression.derivative import depends_on, substituted, symbols_of
-from eomgen.symbolic.expression.graph import Node, Scalar
+from eomgen.symbolic.expression.node import Node, Scalar
 
 Term = tuple[int, Scalar]  # of which row
 

@@ -3,7 +3,7 @@
 from collections.abc import Iterator, Mapping
 
 from eomgen.errors import ExpressionError
-from eomgen.symbolic.expression.expressions import Expression
+from eomgen.symbolic.expression.formula import Expression
 from eomgen.symbolic.expression.rational import Fraction
 
 AnyNumber = int | Fraction | float

@@ -9,7 +9,7 @@ from eomgen.model.findings import Finding
 from eomgen.model.part import leaves_of
 from eomgen.model.positions import DocumentPath
 from eomgen.records import dataclass
-from eomgen.symbolic.expression.expressions import Expression
+from eomgen.symbolic.expression.formula import Expression
 
 SYMBOL_TABLES = ("parameters", "coordinates", "speeds", "inputs", "unknowns")
 OBJECT_TABLES = ("bodies", "trusses", "constraints")

@@ -14,8 +14,8 @@ from eomgen.model.joints.base import Z, oriented, unit, vector
 from eomgen.model.kinds import ValueOf
 from eomgen.model.shapes import MassProperties
 from eomgen.records import dataclass
-from eomgen.symbolic.expression.functions import cos, over, sin
-from eomgen.symbolic.expression.graph import is_zero
+from eomgen.symbolic.expression.formula import cos, over, sin
+from eomgen.symbolic.expression.node import is_zero
 from eomgen.symbolic.expression.spatial import (
     ZERO,
     Matrix,

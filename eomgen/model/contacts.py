@@ -5,10 +5,10 @@ from __future__ import annotations
 from collections.abc import Iterator
 from typing import Any
 
-from eomgen.model.friction import Resistance
+from eomgen.model.kinds import Resistance
 from eomgen.model.parts import Body, Model
 from eomgen.records import dataclass
-from eomgen.symbolic.expression.expressions import Expression
+from eomgen.symbolic.expression.formula import Expression
 
 
 @dataclass(frozen=True)

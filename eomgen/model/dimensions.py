@@ -22,7 +22,7 @@ from eomgen.symbolic.expression.dimensions import (
     Walk,
     dimension_of_unit,
 )
-from eomgen.symbolic.expression.expressions import Call, Expression, Reference
+from eomgen.symbolic.expression.formula import Call, Expression, Reference
 from eomgen.symbolic.expression.units import Unit, parse_unit
 
 PER_NAME = ("coordinate", "coordinate or speed")

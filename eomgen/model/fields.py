@@ -1,4 +1,6 @@
-"""What a value of a model may be: one rule per concept, written once in a field's type.
+"""What a value of a model may be: one rule per concept, and rules made of rules.
+
+What a value of a model may be: one rule per concept, written once in a field's type.
 
 A part of the model is a frozen dataclass whose fields are annotated `Annotated[type, rule]`. From
 these rules alone come the reading of texts and numbers (`read`), the walk that every check makes
@@ -12,10 +14,10 @@ from eomgen.errors import ExpressionError
 from eomgen.model.findings import Decimal, Finding, article, nearest, shown, unknown_keys
 from eomgen.model.positions import DocumentPath
 from eomgen.records import dataclass
-from eomgen.symbolic.expression.expressions import Expression, as_expression
+from eomgen.symbolic.expression.formula import Expression
 from eomgen.symbolic.expression.rational import EXACT
-from eomgen.symbolic.expression.typed import parse_typed_equation
-from eomgen.symbolic.expression.units import Unit, parse_unit
+from eomgen.symbolic.expression.text import as_expression
+from eomgen.symbolic.expression.units import Unit, parse_typed_equation, parse_unit
 
 PARAMETERS = "parameters"  # what names may stand in an expression: parameters only
 TIME = "parameters and time"
@@ -389,3 +391,119 @@ class ParsedTextRule(WholeRule, Generic[Parsed]):
 
 
 UNIT = ParsedTextRule(Unit, parse_unit, "a unit", 'like "kg*m^2"')
+
+
+# -------- table -----------------------------------------------------------------------------------------------
+# A mapping that stays as it was made: ordered, hashable, read-only.
+
+
+Value = TypeVar("Value")
+
+
+class Table(Mapping[str, Value], Generic[Value]):
+    """A read-only mapping that keeps its order; two in another order are not equal (the order of q is a fact)."""
+
+    __slots__ = ("_items",)
+
+    def __init__(self, items: Mapping[str, Value] | None = None) -> None:
+        self._items = dict(items or {})
+
+    def __getitem__(self, name: str) -> Value:
+        return self._items[name]
+
+    def __iter__(self) -> Iterator[str]:
+        return iter(self._items)
+
+    def __len__(self) -> int:
+        return len(self._items)
+
+    def __hash__(self) -> int:
+        return hash(tuple(self._items.items()))
+
+    def __eq__(self, other: object) -> bool:
+        if not isinstance(other, Mapping):
+            return NotImplemented
+        return list(self.items()) == list(other.items())
+
+    def __repr__(self) -> str:
+        return f"Table({', '.join(self._items)})"
+
+
+# -------- containers ------------------------------------------------------------------------------------------
+# Rules made of rules: a list of things, a table of named things, one thing or another.
+
+
+@dataclass(frozen=True)
+class ListRule:
+    """A list of things of one rule (`single`: one of them may stand for itself)."""
+
+    item: Any
+    least: int = 1
+    most: int | None = None
+    single: bool = False
+
+    def read(self, raw: Any, path: DocumentPath, found: list[Finding]) -> tuple[Any, ...] | None:
+        if self.single and not isinstance(raw, (list, tuple)):
+            one = self.item.read(raw, path, found)
+            return None if one is None else (one,)
+        if not isinstance(raw, (list, tuple)):
+            found.append(Finding(path, f"a list is needed here, not {shown(raw)}"))
+            return None
+        if len(raw) < self.least or (self.most is not None and len(raw) > self.most):
+            count = str(self.least) if self.least == self.most else f"at least {self.least}"
+            count = f"at most {self.most}" if self.most is not None and len(raw) > self.most > self.least else count
+            found.append(Finding(path, f"{count} entries are needed here, not {len(raw)}"))
+            return None
+        return read_items(self.item, raw, path, found)
+
+    def leaves(self, value: Any, path: DocumentPath, part: Any) -> Iterator[Leaf]:
+        for i, x in enumerate(value):
+            yield from self.item.leaves(x, path if self.single and len(value) == 1 else (*path, i), part)
+
+    def schema(self, definitions: dict[str, Any]) -> dict[str, Any]:
+        many: dict[str, Any] = {"type": "array", "items": self.item.schema(definitions), "minItems": self.least}
+        if self.most is not None:
+            many["maxItems"] = self.most
+        return {"anyOf": [self.item.schema(definitions), many]} if self.single else many
+
+
+@dataclass(frozen=True)
+class TableRule:
+    """A table of named things of one rule; `what` names one of them in messages."""
+
+    item: Any
+    what: str
+
+    def read(self, raw: Any, path: DocumentPath, found: list[Finding]) -> Table[Any] | None:
+        if not isinstance(raw, Mapping):
+            found.append(Finding(path, f"a table of {self.what}s is needed here, not {shown(raw)}"))
+            return None
+        return Table({str(name): self.item.read(x, (*path, name), found) for name, x in raw.items()})
+
+    def leaves(self, value: Any, path: DocumentPath, part: Any) -> Iterator[Leaf]:
+        for name, x in value.items():
+            if x is not None:
+                yield from self.item.leaves(x, (*path, name), part)
+
+    def schema(self, definitions: dict[str, Any]) -> dict[str, Any]:
+        return {"type": "object", "additionalProperties": self.item.schema(definitions)}
+
+
+@dataclass(frozen=True)
+class EitherRule:
+    """A text is read by one rule, anything else by another."""
+
+    text: Any
+    other: Any
+
+    def _rule(self, value: Any) -> Any:
+        return self.text if isinstance(value, str) and not isinstance(value, Decimal) else self.other
+
+    def read(self, raw: Any, path: DocumentPath, found: list[Finding]) -> Any:
+        return self._rule(raw).read(raw, path, found)
+
+    def leaves(self, value: Any, path: DocumentPath, part: Any) -> Iterator[Leaf]:
+        yield from self._rule(value).leaves(value, path, part)
+
+    def schema(self, definitions: dict[str, Any]) -> dict[str, Any]:
+        return {"anyOf": [self.text.schema(definitions), self.other.schema(definitions)]}

@@ -8,7 +8,7 @@ from typing import Any
 
 from eomgen.model.positions import DocumentPath
 from eomgen.records import dataclass
-from eomgen.symbolic.expression.habits import other_words
+from eomgen.symbolic.expression.text import other_words
 
 
 class Decimal(str):

@@ -1,9 +1,11 @@
-"""The concepts that several parts share, each with its rule: what a mass, a length, a point's name may be."""
+"""The concepts that several parts share, each with its rule, and how a part is called in formulas.
 
-from collections.abc import Callable
-from typing import Annotated, Any
+The concepts that several parts share, each with its rule: what a mass, a length, a point's name may be.
+"""
 
-from eomgen.model.containers import ListRule
+from collections.abc import Callable, Iterator, Mapping
+from typing import Annotated, Any, ClassVar
+
 from eomgen.model.fields import (
     CONFIGURATION,
     MOTION,
@@ -13,13 +15,22 @@ from eomgen.model.fields import (
     AxialRule,
     FlagRule,
     FormulaRule,
+    Leaf,
+    ListRule,
     NameRule,
+    ParsedTextRule,
+    Table,
     TextRule,
     VectorRule,
 )
+from eomgen.model.findings import Finding, unknown_keys
+from eomgen.model.part import Part, PartRule
+from eomgen.model.positions import DocumentPath
 from eomgen.model.samples import TimeLawRule
-from eomgen.symbolic.expression.expressions import Expression
+from eomgen.records import dataclass
+from eomgen.symbolic.expression.formula import Expression
 from eomgen.symbolic.expression.splines import SMOOTH
+from eomgen.symbolic.print.names import LONGEST, Symbol, parse_symbol
 
 ValueOf = Callable[[Expression], Any]
 """What an expression is worth, in the arithmetic of whoever asks."""
@@ -96,3 +107,80 @@ Points = Annotated[tuple[str, ...], ListRule(NameRule("point"), 1)]
 TwoBodies = Annotated[tuple[str, ...], ListRule(NameRule("body"), 2, 2)]
 Bodies = Annotated[tuple[str, ...], ListRule(NameRule("body"), 1)]
 Coordinates = Annotated[tuple[str, ...], ListRule(NameRule("coordinate"), 1)]
+
+
+# -------- symbols ---------------------------------------------------------------------------------------------
+# How a part is called in formulas, where it says so: LaTeX, checked when it is read.
+
+
+REACTIONS = ("x", "y", "z", "n", "t", "s", "couple", "tension", "drive")
+SYMBOL = ParsedTextRule(
+    Symbol,
+    parse_symbol,
+    "a symbol",
+    r"like '\theta_A' or 'J_C', in single quotes",
+    (("minLength", 1), ("maxLength", LONGEST)),
+)
+
+
+@dataclass(frozen=True)
+class ReactionSymbols:
+    """What the reactions of a joint or a tie are called.
+
+    Args:
+        letter: of all of them: A gives A_x, A_y, M_A; of one that is alone its symbol.
+        each: the symbol of a component by its label: {x: H, n: N_1}.
+    """
+
+    letter: Symbol | None = None
+    each: Table[Symbol] = Table()
+
+
+@dataclass(frozen=True)
+class ReactionSymbolsRule:
+    """One symbol for all reactions, or a table with one for each: { x = 'H', y = 'V' }."""
+
+    def read(self, raw: Any, path: DocumentPath, found: list[Finding]) -> ReactionSymbols | None:
+        if isinstance(raw, ReactionSymbols):
+            return raw
+        if not isinstance(raw, Mapping):
+            letter = SYMBOL.read(raw, path, found)
+            return None if letter is None else ReactionSymbols(letter)
+        unknown_keys(raw, REACTIONS, path, found, "the symbols of reactions")
+        read = {label: SYMBOL.read(raw[label], (*path, label), found) for label in REACTIONS if label in raw}
+        return ReactionSymbols(None, Table({label: symbol for label, symbol in read.items() if symbol is not None}))
+
+    def leaves(self, value: Any, path: DocumentPath, part: Any) -> Iterator[Leaf]:
+        if value.letter is not None:
+            yield Leaf(path, self, value.letter, part)
+        for label, symbol in value.each.items():
+            yield Leaf((*path, label), self, symbol, part)
+
+    def schema(self, definitions: dict[str, Any]) -> dict[str, Any]:
+        one = SYMBOL.schema(definitions)
+        table = {"type": "object", "properties": dict.fromkeys(REACTIONS, one), "additionalProperties": False}
+        return {"anyOf": [one, table]}
+
+
+SymbolField = Annotated[Symbol, SYMBOL]
+ReactionSymbolsField = Annotated[ReactionSymbols, ReactionSymbolsRule()]
+
+
+# -------- friction --------------------------------------------------------------------------------------------
+# Friction of a contact: Coulomb's `mu`, or a viscous coefficient.
+
+
+Viscosity = Annotated[Expression, FormulaRule("s/m", "nonnegative")]  # -c N v
+
+
+@dataclass(frozen=True, kw_only=True)
+class Resistance(Part):
+    """`friction = mu`: mu |N| against the sliding velocity; `{ viscous = c }`: -c N v."""
+
+    shorthand: ClassVar[str] = "coulomb"
+    title: ClassVar[str] = "friction"
+    coulomb: Friction | None = None
+    viscous: Viscosity | None = None
+
+
+FrictionLaw = Annotated[Resistance, PartRule(Resistance)]

@@ -7,10 +7,9 @@ from typing import Any
 from eomgen.errors import ModelError, Problem
 from eomgen.model.catalog import Catalog
 from eomgen.model.checks.everything import ALL
-from eomgen.model.fields import WrittenEquation
+from eomgen.model.fields import Table, WrittenEquation
 from eomgen.model.findings import Finding
 from eomgen.model.part import Made, altered, read_part, slots_of
-from eomgen.model.table import Table
 from eomgen.model.typed import Typing, typing_of
 
 MOST_FINDINGS = 200  # of one model: more say nothing new

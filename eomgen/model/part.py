@@ -12,10 +12,10 @@ from eomgen.model.fields import Leaf, WrittenEquation, in_si
 from eomgen.model.findings import Finding, meant, nearest, shown, unknown_keys, whereabouts
 from eomgen.model.positions import DocumentPath
 from eomgen.records import dataclass
-from eomgen.symbolic.expression.expressions import Expression
-from eomgen.symbolic.expression.habits import other_words
+from eomgen.symbolic.expression.formula import Expression
+from eomgen.symbolic.expression.text import other_words
 from eomgen.symbolic.expression.units import Unit
-from eomgen.symbolic.print.symbols import Symbol
+from eomgen.symbolic.print.names import Symbol
 
 Made = TypeVar("Made")
 

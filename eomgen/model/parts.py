@@ -7,15 +7,17 @@ from typing import Annotated, Any, ClassVar
 from eomgen.errors import EomgenError
 from eomgen.model import constraints, forces, joints, shapes
 from eomgen.model.constraints import Constraint
-from eomgen.model.containers import ListRule, TableRule
 from eomgen.model.fields import (
     UNIT,
     AtRest,
     EquationRule,
     EventRule,
     InstantRule,
+    ListRule,
     NameRule,
     OutputRule,
+    Table,
+    TableRule,
     TextRule,
     WrittenEquation,
 )
@@ -35,6 +37,7 @@ from eomgen.model.kinds import (
     RateInTime,
     RateLaw,
     SpaceDirection,
+    SymbolField,
     Text,
     TimeLaw,
     TwoOwnPoints,
@@ -42,10 +45,8 @@ from eomgen.model.kinds import (
 from eomgen.model.making import finish
 from eomgen.model.part import Part, PartRule, SeamRule
 from eomgen.model.shapes import Shape
-from eomgen.model.symbols import SymbolField
-from eomgen.model.table import Table
 from eomgen.records import RECALLED, dataclass
-from eomgen.symbolic.expression.expressions import Expression
+from eomgen.symbolic.expression.formula import Expression
 from eomgen.symbolic.expression.units import Unit
 
 UnitText = Annotated[Unit, UNIT]

@@ -9,10 +9,10 @@ from eomgen.model.findings import Finding, shown, unknown_keys
 from eomgen.model.part import leaves_of
 from eomgen.model.positions import DocumentPath
 from eomgen.records import dataclass
-from eomgen.symbolic.expression.expressions import Expression, as_expression
+from eomgen.symbolic.expression.formula import Expression, is_exact
 from eomgen.symbolic.expression.rational import Fraction
-from eomgen.symbolic.expression.scalar_operations import is_exact
 from eomgen.symbolic.expression.splines import ENDS, SMOOTH, WAYS, DeclaredSamples, Sampled, spline_of
+from eomgen.symbolic.expression.text import as_expression
 
 MOST = 10_000  # samples of one function: more make code that is long to compile
 KEYS = ("samples", "between", "ends")

@@ -4,13 +4,13 @@ A node "T.n1" is a body of that name: a particle without mass, placed where the 
 the rows of one tie T.
 """
 
-from eomgen.model.constraints.members import Members
+from eomgen.model.constraints.link import Members
+from eomgen.model.fields import Table
 from eomgen.model.joints.placed import Placed
 from eomgen.model.part import altered, part_of_values
 from eomgen.model.parts import Body, Model, Truss
-from eomgen.model.shapes.particle import Particle
-from eomgen.model.table import Table
-from eomgen.symbolic.expression.expressions import Expression
+from eomgen.model.shapes.lines import Particle
+from eomgen.symbolic.expression.formula import Expression
 
 
 def in_parts(model: Model) -> Model:

@@ -19,9 +19,9 @@ from eomgen.model.fields import WrittenEquation
 from eomgen.model.findings import nearest
 from eomgen.records import dataclass
 from eomgen.symbolic.expression.dimensions import Dimension, Walk, dimension_of_unit, quoted, told
-from eomgen.symbolic.expression.expressions import Expression, parse
-from eomgen.symbolic.expression.typed import Typed, is_plain, read_typed, unit_for_name
-from eomgen.symbolic.expression.units import Unit
+from eomgen.symbolic.expression.formula import Expression
+from eomgen.symbolic.expression.text import parse
+from eomgen.symbolic.expression.units import Typed, Unit, is_plain, read_typed, unit_for_name
 
 
 @dataclass(frozen=True)

@@ -6,7 +6,7 @@ from eomgen.errors import DerivationError
 from eomgen.model.part import leaves_of
 from eomgen.model.parts import Model
 from eomgen.model.positions import DocumentPath
-from eomgen.symbolic.expression.expressions import Expression
+from eomgen.symbolic.expression.formula import Expression
 
 ASKED = ("given", "outputs", "unknowns")
 """Tables in which an unknown is asked for, or is one of the kinematics of an instant."""

@@ -8,9 +8,10 @@ from eomgen.errors import ExpressionError, MissingValues, ModelError
 from eomgen.model.arithmetic import AnyNumber, in_order
 from eomgen.model.findings import nearest
 from eomgen.model.parts import Model
-from eomgen.model.quaternions import quaternions_of
-from eomgen.symbolic.expression.expressions import Expression, as_expression
+from eomgen.records import dataclass
+from eomgen.symbolic.expression.formula import Expression
 from eomgen.symbolic.expression.graph import Graph
+from eomgen.symbolic.expression.text import as_expression
 
 
 def exact_parameters(model: Model, overrides: Mapping[str, Any] | None = None) -> dict[str, AnyNumber]:
@@ -169,3 +170,30 @@ def _slope(motion: Expression, values: Mapping[str, Any], where: str) -> float:
     rate = derivative(motion.evaluate({**symbols, "pi": graph.pi}), graph.symbol("t"))
     numbers = {node: float(values[name]) for name, node in symbols.items()}
     return float(evaluate((rate,), numbers, FLOAT)[0])
+
+
+# -------- quaternions -----------------------------------------------------------------------------------------
+# Model -> its unit quaternions: the four coordinates and the three speeds of each.
+
+
+@dataclass(frozen=True)
+class Quaternion:
+    """How one body turns against its parent.
+
+    Args:
+        body: its name.
+        coordinates: e0, e1, e2, e3.
+        speeds: its angular velocity against the parent, its own axes.
+    """
+
+    body: str
+    coordinates: tuple[str, ...]
+    speeds: tuple[str, ...]
+
+
+def quaternions_of(model: Model) -> tuple[Quaternion, ...]:
+    """Of every joint that turns by one, in the model's order."""
+    joints = ((name, body.joint) for name, body in model.bodies.items() if body.joint is not None)
+    return tuple(
+        Quaternion(name, tuple(e.text for e in joint.turns()), joint.spins) for name, joint in joints if joint.spins
+    )

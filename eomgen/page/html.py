@@ -21,11 +21,9 @@ from eomgen.documents.latex_math import Setter
 from eomgen.documents.statements import Cell, Code, Formula, Grid, Lines, Piece, Prose, Step
 from eomgen.documents.text import formula_text
 from eomgen.errors import ToolMissing
-from eomgen.page.columns import table_bytes
 from eomgen.page.contents import Attachment, Report, ReportFigure, ReportSection
-from eomgen.page.far_copies import with_far_copies
-from eomgen.page.markup import Html, element, html, in_a_row, in_a_script, packed, script, style
-from eomgen.page.mathml import font_face, mathml
+from eomgen.page.markup import Html, element, font_face, html, in_a_row, in_a_script, mathml, packed, script, style
+from eomgen.page.packing import table_bytes, with_far_copies
 from eomgen.proof.check import SIGNS, Certificate
 from eomgen.version import __version__
 

@@ -14,21 +14,19 @@ from collections.abc import Sequence
 from functools import cached_property
 from typing import Any
 
-from eomgen.codegen.program import Program, kinematic_rates, program_in_motion, program_of, right_hand_side
-from eomgen.codegen.reactions import determinate
-from eomgen.codegen.spheres import spheres_of
+from eomgen.codegen.program import Program, kinematic_rates, program_in_motion, program_of, right_hand_side, spheres_of
+from eomgen.codegen.programs import determinate
 from eomgen.errors import DerivationError
-from eomgen.mechanics.balance.friction import with_rest
-from eomgen.mechanics.bodies.scope import Scope
-from eomgen.mechanics.bodies.tree import branches_of
 from eomgen.mechanics.constraints.assembly import fixed_by_position
-from eomgen.mechanics.constraints.closure import gaps_of
-from eomgen.mechanics.constraints.consistency import is_guess, is_typed
-from eomgen.mechanics.constraints.edges import left_of
-from eomgen.mechanics.equations.articulated import with_accelerations
-from eomgen.mechanics.equations.system import System
-from eomgen.mechanics.formulations import recursive
-from eomgen.mechanics.initial_state.initial_state import start_speeds
+from eomgen.mechanics.constraints.closure import gaps_of, is_guess, is_typed
+from eomgen.mechanics.constraints.rows import left_of
+from eomgen.mechanics.dynamics.accelerations import with_accelerations
+from eomgen.mechanics.dynamics.formulations import mass
+from eomgen.mechanics.dynamics.system import System
+from eomgen.mechanics.free_bodies.friction import with_rest
+from eomgen.mechanics.kinematics.symbols import Scope
+from eomgen.mechanics.kinematics.tree import branches_of
+from eomgen.mechanics.start.state import start_speeds
 from eomgen.model.arithmetic import in_order
 from eomgen.model.parts import Coordinate, Model
 from eomgen.records import dataclass
@@ -36,8 +34,8 @@ from eomgen.scene.scene import Scene
 from eomgen.simulation.phase_model import PhaseModel
 from eomgen.simulation.solvers import breakpoints_of
 from eomgen.symbolic.expression.derivative import jacobian, substituted, symbols_of
-from eomgen.symbolic.expression.graph import Node, Scalar, is_zero
-from eomgen.symbolic.numeric.gc_pause import growing
+from eomgen.symbolic.expression.node import Node, Scalar, is_zero
+from eomgen.symbolic.numeric.work import growing
 
 Slopes = list[tuple[int, int]]
 
@@ -229,5 +227,5 @@ def _begun(scope: Scope, part: Coordinate) -> Scalar:
 
 
 def _inertia(system: System) -> Program:
-    M = recursive.mass(system.motion, branches_of(system.motion))
+    M = mass(system.motion, branches_of(system.motion))
     return program_of(tuple(x for row in M for x in row), system.symbols, inputs=system.inputs)

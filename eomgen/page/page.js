@@ -52,7 +52,7 @@ async function unzipped(packed) {
   return new Uint8Array(await new Response(stream).arrayBuffer());
 }
 
-/** A file of gzip, base64, that eomgen/page/far_copies.py wrote. */
+/** A file of gzip, base64, that eomgen/page/packing.py wrote. */
 async function fileOf(packed) {
   const read = await unzipped(packed);
   let at = 0;

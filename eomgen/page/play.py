@@ -14,19 +14,16 @@ from eomgen import files, pipeline
 from eomgen.codegen.rhs import compiled
 from eomgen.codegen.targets.base import TestVector
 from eomgen.errors import ExpressionError, RunFailed, ToolMissing, UsageError
-from eomgen.mechanics.formulations.massless_nodes import with_nodes_balanced
+from eomgen.mechanics.dynamics.formulations import with_nodes_balanced
 from eomgen.model.parts import Model
-from eomgen.model.ranges import TypedNumbers
 from eomgen.model.reader import ModelOrPath, model_at
-from eomgen.model.replaced import Taken, Values
+from eomgen.model.replaced import Taken, TypedNumbers, Values
 from eomgen.page.contents import framed
-from eomgen.page.player_data import PlayedRun, PlayerOptions, SliderRange
-from eomgen.page.player_page import player_page_of
-from eomgen.page.player_read_back import player_read_back
+from eomgen.page.player import PlayedRun, PlayerOptions, SliderRange, player_page_of, player_read_back
 from eomgen.proof.check import Certificate, Check, checked, unchecked
 from eomgen.questions.run import run_of_a_page
 from eomgen.records import dataclass
-from eomgen.symbolic.expression.typed import Typed, seconds
+from eomgen.symbolic.expression.units import Typed, seconds
 from eomgen.symbolic.numeric.work import doing
 
 SAMPLES = 401  # of a run in a page

@@ -14,12 +14,12 @@ import numpy as np
 
 from eomgen.documents.read_back import HOW, PageComparison, Wanted, wanted_of
 from eomgen.documents.statements import Formula
-from eomgen.documents.text_read_back import flat, formula_said
+from eomgen.documents.texts_read import flat, formula_said
 from eomgen.errors import ExpressionError
 from eomgen.page.contents import Report, ReportSection
 from eomgen.page.formats import FilesByName
 from eomgen.proof.check import Check, Tally, checked
-from eomgen.proof.pages_read import PageLine, spoken
+from eomgen.proof.pages_read import PageLine, SetLetters, spoken, tokens_of, typeset
 from eomgen.proof.reports_read import (
     ReadCurves,
     ReadReport,
@@ -29,7 +29,6 @@ from eomgen.proof.reports_read import (
     markdown_report,
     notebook_report,
 )
-from eomgen.proof.typeset import SetLetters, tokens_of, typeset
 from eomgen.simulation.result import Trajectory
 from eomgen.symbolic.expression.units import parse_unit
 from eomgen.symbolic.numeric.evaluation import NoValue

@@ -5,10 +5,9 @@ from __future__ import annotations
 from collections.abc import Mapping
 
 from eomgen.documents.latex import PREAMBLE, latex_blocks, setter_of
-from eomgen.documents.latex_math import Setter
-from eomgen.documents.latex_names import latex_escaped
+from eomgen.documents.latex_math import Setter, latex_escaped
 from eomgen.page.contents import Report, ReportFigure, ReportSection
-from eomgen.page.pictures import Pictures
+from eomgen.page.figure import Pictures
 from eomgen.proof.check import Status
 from eomgen.version import __version__
 

@@ -16,15 +16,13 @@ import numpy as np
 from eomgen.codegen.program import right_hand_side
 from eomgen.codegen.rhs import RightHandSide, compiled
 from eomgen.errors import DerivationError
-from eomgen.mechanics.balance.balance import Balance
-from eomgen.mechanics.balance.balance_solution import Indeterminate
-from eomgen.mechanics.bodies.loads import weights
 from eomgen.mechanics.constraints.closure import of_50_digits as precise
-from eomgen.mechanics.equations.accelerations import exact_accelerations
-from eomgen.mechanics.equations.articulated import with_accelerations
-from eomgen.mechanics.equations.equations_of_motion import EquationsOfMotion
-from eomgen.mechanics.equations.system import System
-from eomgen.mechanics.instant.outputs import Quantities
+from eomgen.mechanics.dynamics.accelerations import exact_accelerations, with_accelerations
+from eomgen.mechanics.dynamics.system import EquationsOfMotion, System
+from eomgen.mechanics.free_bodies.balance import Balance
+from eomgen.mechanics.free_bodies.solution import Indeterminate
+from eomgen.mechanics.instant.quantities import Quantities
+from eomgen.mechanics.kinematics.loads import weights
 from eomgen.mechanics.reactions.reactions import reactions_of
 from eomgen.model.outputs import FUNCTIONS
 from eomgen.model.outputs.base import BALANCE
@@ -36,10 +34,10 @@ from eomgen.proof.trials import Trials, refuse_noise
 from eomgen.records import dataclass
 from eomgen.simulation.reaction_columns import ReactionColumns
 from eomgen.symbolic.expression.derivative import depends_on, substituted
-from eomgen.symbolic.expression.expressions import Call, Expression, parse
-from eomgen.symbolic.expression.graph import Node, Scalar
-from eomgen.symbolic.expression.node import State
+from eomgen.symbolic.expression.formula import Call, Expression
+from eomgen.symbolic.expression.node import Node, Scalar, State
 from eomgen.symbolic.expression.rational import Fraction
+from eomgen.symbolic.expression.text import parse
 from eomgen.symbolic.expression.traversal import order
 from eomgen.symbolic.numeric.evaluation import NoValue, evaluate, fifty_digits
 from eomgen.symbolic.numeric.tolerances import BESIDE_A_PLACE, COMPUTED, RANK_NEARBY, ROUNDING, SAME_PLACE

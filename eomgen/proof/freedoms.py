@@ -1,4 +1,6 @@
-"""Ties, what was counted -> whether degrees of freedom and redundant rows are so, by the rank of differences.
+"""Degrees of freedom, closed constraints, and states beside a state.
+
+Ties, what was counted -> whether degrees of freedom and redundant rows are so, by the rank of differences.
 
 J of every row that moves something: of a gap its differences (phi+ - phi-)/2h along the rates of the coordinates, of a
 row without a gap what its velocity has for each speed; at a state in which the ties hold, drawn by another lot.
@@ -13,28 +15,35 @@ from __future__ import annotations
 
 import re
 from collections.abc import Iterable, Iterator, Mapping, Sequence
+from functools import cached_property
 from random import Random
 from typing import Any
 
 import numpy as np
 
 from eomgen.errors import DerivationError, MissingValues, ModelError
-from eomgen.mechanics.bodies.contact_modes import ContactModes
-from eomgen.mechanics.bodies.kinematics import motion_of
-from eomgen.mechanics.bodies.scope import scope_of
 from eomgen.mechanics.constraints.closure import generic_state
-from eomgen.mechanics.constraints.freedom import Freedom, RowName
-from eomgen.mechanics.constraints.ties import Row, Ties, ties_of
-from eomgen.mechanics.initial_state.values_at_rest import values_of_parameters
-from eomgen.mechanics.structures.structure import Structure
+from eomgen.mechanics.constraints.rank import Freedom, RowName
+from eomgen.mechanics.constraints.rows import Row, Ties, ties_of
+from eomgen.mechanics.dynamics.system import EquationsOfMotion, System
+from eomgen.mechanics.kinematics.loads import Applied
+from eomgen.mechanics.kinematics.motion import motion_of
+from eomgen.mechanics.kinematics.scene import ContactModes
+from eomgen.mechanics.kinematics.symbols import Scope, scope_of
+from eomgen.mechanics.rigidity.structure import Structure
+from eomgen.mechanics.start.exact import values_of_parameters
+from eomgen.mechanics.start.state import start_of_motion
 from eomgen.model.parts import Model
+from eomgen.model.values import exact_parameters
 from eomgen.proof.check import first_wrong
 from eomgen.proof.in_numbers import STEP
-from eomgen.symbolic.expression.node import State
+from eomgen.records import dataclass
+from eomgen.symbolic.expression.derivative import jacobian, symbols_of
+from eomgen.symbolic.expression.node import Node, Scalar, State
 from eomgen.symbolic.expression.spatial import Vector
-from eomgen.symbolic.numeric.dense import rank
-from eomgen.symbolic.numeric.evaluation import NoValue, evaluate, fifty_digits
-from eomgen.symbolic.numeric.tolerances import DIFFERENCE_AT_50
+from eomgen.symbolic.numeric.dense import follows_in_digits, rank
+from eomgen.symbolic.numeric.evaluation import FLOAT, NoValue, evaluate, fifty_digits, solved_quickly
+from eomgen.symbolic.numeric.tolerances import DIFFERENCE_AT_50, MET_AT_50, SOLVED, ZERO_AT_50
 
 MOST = 60  # speeds, of which the differences are taken
 SUMMAND = re.compile(r"([+-]?)\s*(?:(\d+)\*)?(\d+) \([^)]*\)")  # of a count: "3*2 (bodies) - 4 (joints)"
@@ -212,3 +221,263 @@ def _lines(ties: Ties, rows: Sequence[Row], state: State) -> list[list[float]]:
 
 def _moved(ties: Ties, state: State, by: Sequence[Any]) -> State:
     return {q: state[q] + x for q, x in zip(ties.motion.scope.symbols.q, by, strict=True)}
+
+
+# -------- kept ties -------------------------------------------------------------------------------------------
+# System, state -> whether what stays as at the start is closed there.
+#
+# phi(q_0, t = 0) = 0,   q_0 as the coordinates are declared to start, quaternions of length 1
+
+
+def rows_that_stay(system: System) -> tuple[tuple[Row, Scalar], ...]:
+    """The rows whose ties say only that something stays as it is at the start, with their gaps."""
+    ties = system.scope.model.constraints
+    named = ((row, row.gap) for row in system.ties.rows if row.tie in ties and row.gap is not None)
+    return tuple((row, gap) for row, gap in named if ties[row.tie].stays(row.component))
+
+
+def open_at_start(system: System, state: State) -> str:
+    """Which of them is open at the start, with the parameters of a state; "" where none is.
+
+    Raises:
+        NoValue: something has no value there.
+    """
+    begun = {**state, **_declared_start(system.scope, state)}
+    kept = rows_that_stay(system)
+    for (row, _), gap in zip(kept, evaluate([gap for _, gap in kept], begun, fifty_digits()), strict=True):
+        if abs(gap) > ZERO_AT_50 * (1 + max(map(abs, begun.values()))):
+            return f"'{row.tie}' is open by {float(gap):.10g} where it starts"
+    return ""
+
+
+def springs_of_the_start(system: System) -> tuple[Applied, ...]:
+    """The springs that are slack at the length, or angle, which they have at the start."""
+    forces = system.scope.model.forces
+    return tuple(applied for applied in system.loads.applied if forces[applied.name].of_the_start)
+
+
+def pulled_at_start(system: System) -> str:
+    """Which of them is not slack where the motion starts, all ties closed; "" where all are.
+
+    Raises:
+        NoValue: the start is not known in numbers.
+    """
+    try:
+        start = start_of_motion(system).values
+    except (DerivationError, MissingValues, ModelError) as error:
+        raise NoValue(str(error).splitlines()[0]) from None
+    symbols = system.symbols
+    known = exact_parameters(system.scope.model)
+    state = {node: float(known[name]) for name, node in symbols.parameters.items() if name in known}
+    state |= {node: start.get(node.name, 0.0) for node in (*symbols.q, *symbols.u)} | {symbols.t: 0.0}
+    for applied in springs_of_the_start(system):
+        if applied.potential is not None and evaluate((applied.potential,), state, FLOAT)[0] > SOLVED:
+            return f"forces.{applied.name} is not slack where the motion starts"
+    return ""
+
+
+def _declared_start(scope: Scope, state: State) -> dict[Any, Any]:
+    """t = 0, and where every coordinate is declared to start."""
+    digits, parts = fifty_digits(), scope.model.coordinates
+    found: dict[Any, Any] = {scope.symbols.t: digits.number(0)}
+    for q in scope.symbols.q:
+        part = parts[q.name]
+        declared = part.motion or (part.near if part.start is None else part.start)
+        (found[q],) = evaluate((scope.value(declared),), {**state, **found}, digits)
+    for four in scope.quaternions:
+        length = digits.functions["sqrt"](sum(found[e] ** 2 for e in four))
+        found |= {e: found[e] / length for e in four}
+    return found
+
+
+# -------- nearby ----------------------------------------------------------------------------------------------
+# Equations, a state -> states beside it that the ties allow, and how the system moves on from each, at 50 digits.
+#
+#     phi(q) = 0,   J u + sigma = 0               dependent coordinates and speeds follow the independent ones
+#     M a - J^T lam = forcing,   J a + gamma = 0
+#
+# Everything is taken from the nonlinear equations: derivatives of them serve as slopes of a Newton iteration alone,
+# whose end does not depend on them.
+
+
+STEPS = 12  # of Newton's method with the slope of the start; from doubles two or three are taken
+
+Numbers50 = Mapping[Node, Any]
+DigitRow = list[Any]
+
+
+def solved_nearby(rows: Sequence[Sequence[Any]]) -> DigitRow | None:
+    """x of consistent rows [A | b] by elimination with full pivots; None where A leaves an x open.
+
+    Rows that follow from others are not looked at.
+    """
+    found = solved_quickly(rows)
+    if found is not None:
+        return found
+    left = [_of_one_size(row) for row in rows]
+    unknowns = len(rows[0]) - 1 if rows else 0
+    chosen: list[tuple[int, Sequence[Any]]] = []
+    columns = set(range(unknowns))
+    while columns and left:
+        i, k = max(((i, k) for i in range(len(left)) for k in columns), key=lambda at: abs(left[at[0]][at[1]]))
+        row = left.pop(i)
+        if abs(row[k]) < ZERO_AT_50:
+            return None
+        columns.remove(k)
+        chosen.append((k, row))
+        left = [_without(other, row, k) for other in left]
+    if columns:
+        return None
+    x: DigitRow = [0] * unknowns
+    for k, row in reversed(chosen):
+        x[k] = (row[-1] - sum(row[j] * x[j] for j in range(unknowns) if j != k and row[j])) / row[k]
+    return x
+
+
+def _of_one_size(row: Sequence[Any]) -> Sequence[Any]:
+    size = max(map(abs, row[:-1]), default=0)
+    return [x / size for x in row] if size else row
+
+
+def _without(row: Sequence[Any], pivot: Sequence[Any], k: int) -> Sequence[Any]:
+    if not row[k]:
+        return row
+    factor = row[k] / pivot[k]
+    return [0 if j == k else x - factor * y if y else x for j, (x, y) in enumerate(zip(row, pivot, strict=True))]
+
+
+@dataclass(frozen=True)
+class Going:
+    """How a system moves on from a state.
+
+    Args:
+        state: q, u, t, inputs and parameters.
+        q1, q2: q' and q''.
+        a: u'.
+    """
+
+    state: Numbers50
+    q1: Mapping[Node, Any]
+    q2: Mapping[Node, Any]
+    a: Mapping[Node, Any]
+
+
+@dataclass(frozen=True)
+class Nearby:
+    """The states beside one of them.
+
+    Args:
+        equations: of motion.
+        relations: what vanishes between positions.
+        numbers: the state, all symbols with 50 digits.
+        q, u: the coordinates and speeds that stay independent; driven coordinates are neither these nor sought.
+    """
+
+    equations: EquationsOfMotion
+    relations: tuple[Scalar, ...]
+    numbers: Numbers50
+    q: tuple[Node, ...]
+    u: tuple[Node, ...]
+
+    def at(self, scalars: Sequence[Scalar], state: Numbers50) -> DigitRow:
+        return evaluate(tuple(scalars), state, fifty_digits())
+
+    def state(self, given: Mapping[Node, Any]) -> Numbers50:
+        """The state in which some are as `given`, the dependent ones as the ties say.
+
+        Raises:
+            NoValue: the ties do not close there, or leave a coordinate or speed open.
+        """
+        state = self._closed({**self.numbers, **given})
+        if not self._dependent_u:
+            return state
+        J, sigma = self._rows(state, self.equations.sigma)
+        u, index = self.equations.symbols.u, {u: k for k, u in enumerate(self.equations.symbols.u)}
+        columns = [index[x] for x in self._dependent_u]
+        known = [k for k, x in enumerate(u) if x not in self._dependent_u]
+        rows = [
+            [*(row[k] for k in columns), -s - sum(row[k] * state[u[k]] for k in known)]
+            for row, s in zip(J, sigma, strict=True)
+        ]
+        found = solved_nearby(rows)
+        if found is None:
+            raise NoValue("the ties do not determine the dependent speeds")
+        return {**state, **dict(zip(self._dependent_u, found, strict=True))}
+
+    def going(self, state: Numbers50) -> Going:
+        """Accelerations by M a - J^T lam = forcing, J a + gamma = 0, and the rates of the coordinates.
+
+        Raises:
+            NoValue: the equations do not determine them.
+        """
+        symbols, graph = self.equations.symbols, self.equations
+        n, k = len(graph.M), len(graph.J)
+        flat = self.at([*(x for row in graph.M for x in row), *graph.forcing], state)
+        J, gamma = self._rows(state, graph.gamma)
+        rows = [[*flat[n * i : n * i + n], *(-J[r][i] for r in range(k)), flat[n * n + i]] for i in range(n)]
+        rows += [[*row, *([0] * k), -g] for row, g in zip(J, gamma, strict=True)]
+        a = _first(rows, n)
+        if a is None:
+            raise NoValue("the equations of motion are singular")
+        moving = {**state, **dict(zip(symbols.a, a, strict=True))}
+        rates = self.equations.system.scope.rates
+        q1, q2 = self.at(rates, state), self.at(self.equations.system.scope.with_accelerations(rates), moving)
+        return Going(
+            state,
+            dict(zip(symbols.q, q1, strict=True)),
+            dict(zip(symbols.q, q2, strict=True)),
+            dict(zip(symbols.u, a, strict=True)),
+        )
+
+    # -- the ties --------------------------------------------------------------------------------------------
+
+    def _rows(self, state: Numbers50, bias: Sequence[Scalar]) -> tuple[list[DigitRow], DigitRow]:
+        """(J, a bias of it) at a state."""
+        J, n = self.equations.J, len(self.equations.M)
+        flat = self.at([*(x for row in J for x in row), *bias], state)
+        return [flat[n * i : n * i + n] for i in range(len(J))], flat[n * len(J) :]
+
+    @cached_property
+    def _dependent_u(self) -> tuple[Node, ...]:
+        return tuple(x for x in self.equations.symbols.u if x not in self.u)
+
+    @cached_property
+    def _dependent_q(self) -> tuple[Node, ...]:
+        """Those that stand in what is known between positions; others stay where they are."""
+        coordinates, bound = self.equations.system.scope.model.coordinates, {*symbols_of(self.relations)}
+        return tuple(q for q in self.equations.symbols.q if q in bound - {*self.q} and not coordinates[q.name].driven)
+
+    @cached_property
+    def _slopes(self) -> list[DigitRow]:
+        """d relations/d dependent coordinates, at the state."""
+        rows = jacobian(self.relations, self._dependent_q)
+        flat, n = self.at([x for row in rows for x in row], self.numbers), len(self._dependent_q)
+        return [flat[n * i : n * i + n] for i in range(len(rows))]
+
+    def _closed(self, state: Numbers50) -> Numbers50:
+        """The dependent coordinates by phi(q) = 0."""
+        if not self._dependent_q:
+            return state
+        for _ in range(STEPS):
+            open_ = self.at(self.relations, state)
+            step = solved_nearby([[*row, -x] for row, x in zip(self._slopes, open_, strict=True)])
+            if step is None:
+                raise NoValue("the ties do not determine the dependent coordinates")
+            state = {**state, **{q: state[q] + d for q, d in zip(self._dependent_q, step, strict=True)}}
+            if all(abs(d) < MET_AT_50 * (1 + abs(state[q])) for q, d in zip(self._dependent_q, step, strict=True)):
+                return state
+        raise NoValue("the ties do not close beside the state")
+
+
+def _first(rows: Sequence[Sequence[Any]], n: int) -> DigitRow | None:
+    """The first n unknowns, the multipliers of rows that follow from others at 0; None where they are open."""
+    found = solved_nearby(rows)
+    if found is not None:
+        return found[:n]
+    kept, independent = list(range(n)), list[Sequence[Any]]()
+    for r, row in enumerate(rows[n:], start=n):
+        if not follows_in_digits(independent, row[:n]):
+            independent.append(row[:n])
+            kept.append(r)
+    found = solved_nearby([[*(rows[i][j] for j in kept), rows[i][-1]] for i in kept]) if len(kept) < len(rows) else None
+    return None if found is None else found[:n]

@@ -9,22 +9,19 @@ from collections.abc import Iterable, Sequence
 from typing import Any
 
 from eomgen.errors import DerivationError
-from eomgen.mechanics import formulations
-from eomgen.mechanics.balance.friction import with_friction
-from eomgen.mechanics.bodies.inertia import kinetic_energy
-from eomgen.mechanics.equations.equations_of_motion import EquationsOfMotion
-from eomgen.mechanics.equations.system import System
-from eomgen.mechanics.equations.work import powered_forces, summed
-from eomgen.mechanics.formulations.lagrange import free_rates
+from eomgen.mechanics.dynamics import formulations
+from eomgen.mechanics.dynamics.formulations import free_rates
+from eomgen.mechanics.dynamics.system import EquationsOfMotion, System, powered_forces, summed
+from eomgen.mechanics.free_bodies.friction import with_friction
+from eomgen.mechanics.kinematics.inertia import kinetic_energy
 from eomgen.mechanics.reactions.inverse import inverse_residual
 from eomgen.proof.check import Check, checked, unchecked
 from eomgen.proof.states import States
 from eomgen.records import dataclass
 from eomgen.symbolic.exact.equality import Equality, equal_at_real_states, equal_in_field
 from eomgen.symbolic.expression.derivative import gradient, substituted, tangent
-from eomgen.symbolic.expression.functions import inner
-from eomgen.symbolic.expression.graph import Node, Scalar
-from eomgen.symbolic.expression.node import ScalarRow
+from eomgen.symbolic.expression.formula import inner
+from eomgen.symbolic.expression.node import Node, Scalar, ScalarRow
 
 Pairs = list[tuple[Scalar, Scalar]]
 

@@ -14,7 +14,7 @@ from typing import Any
 
 import numpy as np
 
-from eomgen.mechanics.equations.equations_of_motion import EquationsOfMotion
+from eomgen.mechanics.dynamics.system import EquationsOfMotion
 from eomgen.model.joints.base import Joint
 from eomgen.model.parts import Model
 from eomgen.proof.check import first_wrong

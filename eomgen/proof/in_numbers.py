@@ -9,14 +9,13 @@ from collections.abc import Iterable, Sequence
 from functools import cached_property
 from typing import Any
 
-from eomgen.mechanics.bodies.kinematics import Motion
-from eomgen.mechanics.bodies.loads import in_ground_axes
-from eomgen.mechanics.equations.system import System
+from eomgen.mechanics.dynamics.system import System
+from eomgen.mechanics.kinematics.loads import in_ground_axes
+from eomgen.mechanics.kinematics.motion import Motion
 from eomgen.model.forces.load import Couple, PointForce
 from eomgen.model.samples import given_samples
 from eomgen.records import dataclass
-from eomgen.symbolic.expression.graph import Scalar
-from eomgen.symbolic.expression.node import State
+from eomgen.symbolic.expression.node import Scalar, State
 from eomgen.symbolic.expression.spatial import (
     ZERO,
     Matrix,

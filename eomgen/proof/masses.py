@@ -19,19 +19,18 @@ from typing import Any
 
 import numpy as np
 
-from eomgen.mechanics.bodies.composition import made_of
-from eomgen.mechanics.bodies.inertia import mass_properties
-from eomgen.mechanics.bodies.kinematics import Motion
-from eomgen.mechanics.bodies.scope import Scope
 from eomgen.mechanics.constraints.closure import of_50_digits, on_unit_spheres
-from eomgen.mechanics.initial_state.values_at_rest import values_of_parameters
+from eomgen.mechanics.kinematics.inertia import mass_properties
+from eomgen.mechanics.kinematics.motion import Motion, made_of
+from eomgen.mechanics.kinematics.symbols import Scope
+from eomgen.mechanics.start.exact import values_of_parameters
 from eomgen.model.composite import PlacedPiece, pose_of
 from eomgen.model.shapes import MassProperties, Shape
 from eomgen.model.shapes.base import Cell
 from eomgen.proof.check import Check, attempted, checked, first_wrong, unchecked
 from eomgen.records import dataclass
-from eomgen.symbolic.expression.expressions import Expression
-from eomgen.symbolic.expression.graph import Node, Scalar
+from eomgen.symbolic.expression.formula import Expression
+from eomgen.symbolic.expression.node import Node, Scalar
 from eomgen.symbolic.expression.spatial import Pose, Vector
 from eomgen.symbolic.numeric.evaluation import FLOAT, NoValue, evaluate, fifty_digits, floats_of
 from eomgen.symbolic.numeric.tolerances import COMPUTED, IMAGINARY_STEP, LARGEST_SQUARED, ROUNDING

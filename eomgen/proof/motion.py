@@ -1,25 +1,33 @@
-"""A run -> checks: the code that ran, its steps, the energy, the ties and the norms, all at states that it visited."""
+"""A run -> checks: its steps, energy, constraints and norms.
+
+A run -> checks: the code that ran, its steps, the energy, the ties and the norms, all at states that it visited.
+"""
 
 from __future__ import annotations
 
-from collections.abc import Hashable, Sequence
+from collections.abc import Callable, Hashable, Iterator, Sequence
 from dataclasses import field, replace
 from functools import cached_property
 from typing import Any
 
 import numpy as np
 
-from eomgen.codegen.program import program_of
+from eomgen.codegen.program import bordered, program_of
 from eomgen.codegen.rhs import RightHandSide, compiled
-from eomgen.mechanics.equations.equations_of_motion import EquationsOfMotion
+from eomgen.mechanics.dynamics.system import EquationsOfMotion, System
+from eomgen.mechanics.free_bodies.friction import with_rest
+from eomgen.mechanics.kinematics.inertia import HALF, mass_properties
+from eomgen.model.forces.base import GivenEnergy, PushOfMass
 from eomgen.proof import emitted_code
 from eomgen.proof.check import Check, checked, unchecked
 from eomgen.proof.emitted_code import PhaseMotion, TriedState
-from eomgen.proof.power import Energies, followed
+from eomgen.proof.identities import energy_function, given_power
 from eomgen.records import dataclass
-from eomgen.symbolic.expression.derivative import gradient
-from eomgen.symbolic.expression.graph import Scalar, is_zero
-from eomgen.symbolic.numeric.tolerances import ITERATED, LARGEST_SQUARED, SUMMED
+from eomgen.symbolic.expression.derivative import depends_on, gradient
+from eomgen.symbolic.expression.node import Scalar, State, is_zero
+from eomgen.symbolic.expression.spatial import apply, dot
+from eomgen.symbolic.numeric.evaluation import evaluate, fifty_digits
+from eomgen.symbolic.numeric.tolerances import ITERATED, LARGEST_SQUARED, SUMMED, ZERO_AT_50
 
 PER_STEP = 10  # tolerances of the run that one step may cost
 SURE = 0.1  # of a limit: how unsure an integral may be to be judged by it
@@ -298,3 +306,158 @@ def _function(leg: Leg, scalars: tuple[Scalar, ...]) -> np.ndarray:
     function: RightHandSide = leg.known[key]
     with np.errstate(all="ignore"):
         return function.many(leg.t, leg.x, leg.p)
+
+
+# -------- power -----------------------------------------------------------------------------------------------
+# Equations, states along a motion -> what its energy does: H - H(0) against the integral of the power.
+#
+#     H = u . dT/du - T + V    (T + V where nothing moves by itself)
+#     dH/dt = Q_nc . u + u . J^T lam + d(V - T)/dt of what moves by itself
+#
+# The integral is taken along the motion by an explicit method of order 8, one step from each state to the next, with
+# the error that its formulas of orders 5 and 3 tell.
+
+
+Rates = Callable[[np.ndarray, np.ndarray], np.ndarray]
+"""(t n, x n x states) -> x', n x states."""
+
+
+@dataclass(frozen=True)
+class Energies:
+    """The energies of one phase, and the power that changes them.
+
+    Args:
+        p: the parameters' values.
+        pulled: whether the ties take power by being open: Baumgarte's rows.
+        known: what was compiled of the equations, whatever the parameters' values.
+    """
+
+    equations: EquationsOfMotion
+    p: np.ndarray
+    pulled: bool = False
+    known: dict[Hashable, Any] = field(default_factory=dict, repr=False, compare=False)
+
+    @cached_property
+    def power(self) -> Scalar:
+        """dH/dt = Q_nc . u + u . J^T lam + what moves by itself."""
+        equations = self.equations
+        found = given_power(equations)
+        for sigma, row, lam in zip(equations.sigma, equations.J, equations.symbols.lam, strict=True):
+            if self.pulled:
+                found = found + lam * sum((x * u for x, u in zip(row, equations.symbols.u, strict=True)), start=0)
+            elif not is_zero(sigma):
+                found = found - lam * sigma
+        return with_rest(self.equations.system, (found,))[0]
+
+    def along(self, t: np.ndarray, x: np.ndarray) -> np.ndarray:
+        """(T, V, H), each n [J]."""
+        return self._energies.many(t, x, self.p).T
+
+    def powers(self, t: np.ndarray, x: np.ndarray) -> np.ndarray:
+        """dH/dt, n [W]."""
+        return self._power.many(t, x, self.p)[:, 0] if not is_zero(self.power) else np.zeros(len(t))
+
+    @cached_property
+    def _energies(self) -> RightHandSide:
+        return self._compiled((self.equations.T, self.equations.V, energy_function(self.equations)))
+
+    @cached_property
+    def _power(self) -> RightHandSide:
+        return self._compiled((self.power,))
+
+    def _compiled(self, scalars: tuple[Scalar, ...]) -> RightHandSide:
+        key = ("proof of energies", scalars)
+        if key not in self.known:
+            self.known[key] = self._program(scalars)
+        found: RightHandSide = self.known[key]
+        return found
+
+    def _program(self, scalars: tuple[Scalar, ...]) -> RightHandSide:
+        symbols = self.equations.symbols
+        solve = bordered(self.equations) if depends_on(scalars[-1], symbols.lam) else None
+        return compiled(program_of(scalars, symbols, inputs=self.equations.inputs, solve=solve), "numpy")
+
+
+def followed(
+    rates: Rates, powers: Rates, t: np.ndarray, x: np.ndarray, later: np.ndarray, parts: int = 1
+) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    """(the state at `later`, the work until then, how unsure both are), of each of n states by itself.
+
+    y = (x, W), y' = (rates, powers), by Dormand and Prince's formulas of order 8 in so many equal steps.
+    """
+    from scipy.integrate import DOP853
+
+    y, h = np.column_stack([x, np.zeros(len(t))]), (later - t) / parts
+    unsure, errors = np.zeros_like(y), (DOP853.E5[:-1], DOP853.E3[:-1])  # the state at the end has no share in them
+    counted = np.any([DOP853.B, *errors], axis=0)  # the power of other stages stands in no sum
+    for part in range(parts):
+        K = np.zeros((DOP853.n_stages, *y.shape))
+        for i in range(DOP853.n_stages):
+            now = (y + h[:, None] * np.tensordot(DOP853.A[i, :i], K[:i], axes=1))[:, :-1]
+            when = t + (part + DOP853.C[i]) * h
+            K[i, :, :-1] = rates(when, now)
+            if counted[i]:
+                K[i, :, -1:] = powers(when, now).reshape(len(t), -1)
+        y = y + h[:, None] * np.tensordot(DOP853.B, K, axes=1)
+        fine, coarse = (np.abs(h[:, None] * np.tensordot(E, K, axes=1)) for E in errors)
+        unsure = unsure + fine * fine / np.maximum(np.hypot(fine, 0.1 * coarse), np.finfo(float).tiny)
+    return y[:, :-1], y[:, -1], unsure
+
+
+# -------- energies --------------------------------------------------------------------------------------------
+# System, state -> whether T and V are those of its bodies: their constant parts, which no equation of motion knows.
+#
+#     T = sum of (m v_C . v_C + w . I w)/2 by the twists,      V = - sum of m g . r_C, and what else has one
+#
+# Rotors, springs of joints and given energies are taken from their fields.
+
+
+def other_energies(equations: EquationsOfMotion, state: State) -> str:
+    """Which energy is another one at a state; "" where neither is."""
+    terms = {"T": [*_of_motion(equations.system)], "V": [*_of_places(equations.system)]}
+    values = iter(evaluate((equations.T, equations.V, *terms["T"], *terms["V"]), state, fifty_digits()))
+    stated = {"T": next(values), "V": next(values)}
+    for letter, parts in terms.items():
+        due = [next(values) for _ in parts]
+        total = sum(due, start=0 * stated[letter])
+        if abs(stated[letter] - total) > ZERO_AT_50 * (1 + sum(map(abs, due))):
+            return f"{letter} is {float(stated[letter]):.10g}, that of the bodies {float(total):.10g}"
+    return ""
+
+
+def _of_motion(system: System) -> Iterator[Scalar]:
+    scope = system.scope
+    for force in scope.model.forces.values():
+        yield from (scope.value(act.kinetic) for act in force.acts if isinstance(act, GivenEnergy))
+    for link in system.motion.links:
+        mass, w = mass_properties(scope, link.name), link.twist.w
+        v = link.twist.at(mass.com).v
+        yield HALF * mass.m * dot(v, v)
+        yield HALF * dot(w, apply(mass.I, w))
+        for push in () if link.joint is None else link.joint.pushes():
+            rate = scope.time_derivative((scope.value(push.way),))[0]
+            yield HALF * scope.value(push.armature) * rate * rate
+
+
+def _of_places(system: System) -> Iterator[Scalar]:
+    """Of weights and given energies as they are declared; springs' and pulls' own are looked at by themselves."""
+    scope = system.scope
+    for applied in system.loads.applied:
+        for act in scope.model.forces[applied.name].acts:
+            if isinstance(act, PushOfMass):
+                yield from _of_weights(system, act)
+            elif isinstance(act, GivenEnergy):
+                yield scope.value(act.potential)
+            elif applied.potential is not None:
+                yield applied.potential
+    for link in system.motion.links:
+        for push in () if link.joint is None else link.joint.pushes():
+            stretch = scope.value(push.way) - scope.value(push.rest)
+            yield HALF * scope.value(push.stiffness) * stretch * stretch
+
+
+def _of_weights(system: System, act: PushOfMass) -> Iterator[Scalar]:
+    g = system.scope.vector(act.acceleration)
+    for name in act.bodies or [link.name for link in system.motion.links]:
+        mass = mass_properties(system.scope, name)
+        yield -mass.m * dot(g, system.motion.position((name, mass.com)))

@@ -12,14 +12,14 @@ from typing import Any
 
 import numpy as np
 
-from eomgen.mechanics.small_motions.linearization import SmallMotions
-from eomgen.mechanics.small_motions.spin_axes import NAME
-from eomgen.model.joints.orientation import rotation_of
-from eomgen.model.quaternions import quaternions_of
+from eomgen.mechanics.linearization.linearization import SmallMotions
+from eomgen.mechanics.linearization.reduction import NAME
+from eomgen.model.joints.ball import rotation_of
+from eomgen.model.values import quaternions_of
+from eomgen.proof.freedoms import Going, Nearby, Numbers50
 from eomgen.proof.in_numbers import STEP
-from eomgen.proof.nearby import Going, Nearby, State
 from eomgen.records import dataclass
-from eomgen.symbolic.expression.graph import Node
+from eomgen.symbolic.expression.node import Node
 from eomgen.symbolic.expression.spatial import Matrix, apply, cross, plus, transposed, vector_of
 from eomgen.symbolic.numeric.evaluation import fifty_digits
 
@@ -223,7 +223,7 @@ class Differences:
         ]
         return late + early - 2 * here, q1, u
 
-    def _rates(self, state: State) -> Going:
+    def _rates(self, state: Numbers50) -> Going:
         """The rates of the coordinates at a state; of accelerations nothing is asked."""
         symbols, scope = self.nearby.equations.symbols, self.nearby.equations.system.scope
         q1 = dict(zip(symbols.q, self.nearby.at(scope.rates, state), strict=True))

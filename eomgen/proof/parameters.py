@@ -5,13 +5,13 @@ from __future__ import annotations
 import math
 from collections.abc import Iterator
 
-from eomgen.mechanics.bodies.kinematics import Motion
-from eomgen.mechanics.bodies.scope import Scope
-from eomgen.mechanics.initial_state.values_at_rest import values_of_parameters
+from eomgen.mechanics.kinematics.motion import Motion
+from eomgen.mechanics.kinematics.symbols import Scope
+from eomgen.mechanics.start.exact import values_of_parameters
 from eomgen.model.values import exact_parameters
 from eomgen.proof.check import Check, checked
+from eomgen.proof.declared_numbers import other_functions
 from eomgen.proof.masses import other_masses
-from eomgen.proof.sampled_functions import other_functions
 from eomgen.symbolic.numeric.tolerances import COMPUTED
 
 

@@ -18,20 +18,20 @@ from typing import Any
 
 import numpy as np
 
-from eomgen.mechanics.bodies.inertia import mass_properties
-from eomgen.mechanics.bodies.kinematics import BodyLink
-from eomgen.mechanics.bodies.system_scene import SystemScene
+from eomgen.mechanics.kinematics.inertia import mass_properties
+from eomgen.mechanics.kinematics.motion import BodyLink
+from eomgen.mechanics.kinematics.scene import SystemScene
 from eomgen.model.composite import pose_of
-from eomgen.model.constraints.meeting import TouchingRound
-from eomgen.model.forces.element import PushAt
+from eomgen.model.constraints.base import TouchingRound
+from eomgen.model.forces.base import PushAt
 from eomgen.model.shapes import Shape
 from eomgen.proof.at_a_state import NumericState
 from eomgen.proof.check import Check, Tally
 from eomgen.proof.in_numbers import InNumbers
-from eomgen.proof.run_columns import state_of_row
+from eomgen.proof.run_told import state_of_row
 from eomgen.records import dataclass
 from eomgen.simulation.result import Trajectory
-from eomgen.symbolic.expression.graph import is_zero
+from eomgen.symbolic.expression.node import is_zero
 from eomgen.symbolic.numeric.evaluation import NoValue
 from eomgen.symbolic.numeric.tolerances import BETWEEN_PLACES, COMPUTED, DRAWN, SAME_ARROW, STANDS_FOR_A_MASS
 

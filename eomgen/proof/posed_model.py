@@ -1,4 +1,6 @@
-"""A model at values of its coordinates that are nothing special -> poses and weights of its bodies, in doubles.
+"""Poses of bodies and contacts from the declaration alone.
+
+A model at values of its coordinates that are nothing special -> poses and weights of its bodies, in doubles.
 
     T = (R, p) of a body in the axes of the ground
 
@@ -8,21 +10,31 @@ What proofs of imported robots share, which know a robot by another reading: nam
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator, Mapping, Sequence
+from functools import cached_property
 from typing import Any
 
 import numpy as np
 
-from eomgen.mechanics.bodies.inertia import mass_properties
-from eomgen.mechanics.bodies.kinematics import motion_of
-from eomgen.mechanics.bodies.scope import scope_of
-from eomgen.model.joints.base import Joint
+from eomgen.mechanics.dynamics.system import System
+from eomgen.mechanics.kinematics.inertia import mass_properties
+from eomgen.mechanics.kinematics.loads import body_wrench
+from eomgen.mechanics.kinematics.motion import BodyLink, ground_place, motion_of
+from eomgen.mechanics.kinematics.scene import SystemScene
+from eomgen.mechanics.kinematics.symbols import scope_of
+from eomgen.model.constraints.base import BodyLine, FlatSurface, Groove, Meeting, RoundSurface, TouchingPoint
+from eomgen.model.forces.load import Push
+from eomgen.model.joints.base import Joint, Move, QuaternionTurn, SlideAlong, TurnAbout, WayAlongPieces
 from eomgen.model.parts import Model
 from eomgen.model.values import exact_parameters
-from eomgen.symbolic.expression.graph import Node, Scalar
-from eomgen.symbolic.expression.symbols import Symbols
-from eomgen.symbolic.numeric.evaluation import FLOAT, evaluate
-from eomgen.symbolic.numeric.tolerances import COMPUTED
+from eomgen.proof.in_numbers import InNumbers, direction_at
+from eomgen.proof.states import refuse_open
+from eomgen.records import dataclass
+from eomgen.symbolic.expression.node import Node, Scalar, State
+from eomgen.symbolic.expression.spatial import IDENTITY, ZERO, Numbers, cross, dot, minus, plus, times, vector_of
+from eomgen.symbolic.expression.traversal import Symbols
+from eomgen.symbolic.numeric.evaluation import FLOAT, evaluate, fifty_digits
+from eomgen.symbolic.numeric.tolerances import COMPUTED, ZERO_AT_50
 
 FIRST, STEP = 0.3, 0.17  # values of the coordinates, one after the other
 REMARKED = ("link", "joint", "body")  # "link upper arm, from ...": what something was called
@@ -144,3 +156,410 @@ def _by_remark(parts: Mapping[str, Any]) -> dict[str, str]:
         other = rest.partition(", from ")[0].partition(", at most ")[0]
         found.setdefault(other if kind in REMARKED and other else name, name)
     return found
+
+
+# -------- joint places ----------------------------------------------------------------------------------------
+# System, state -> whether every body stands against its parent as its joint is declared, in numbers.
+#
+# Moves one after another, each in the axes that those before left. A turn by an angle a about n is the quaternion
+# (cos a/2, n sin a/2); it takes v to v + 2 e x (e x v + e_0 v). An arc of angle a and radius r is its chord 2 r sin
+# a/2, at half of a from where it begins.
+
+
+Quaternion = tuple[Any, Numbers]
+
+
+def misplaced(system: System, state: State) -> str:
+    """Which body does not stand as its joint is declared at a state; "" where none does.
+
+    Raises:
+        NoValue: something has no value there.
+    """
+    links = system.motion.links
+    flat = [x for link in links for x in (*link.pose.p, *(x for row in link.pose.R for x in row), _angle(link))]
+    values = evaluate(flat, state, fifty_digits())
+    bodies = (values[k : k + 13] for k in range(0, len(values), 13))
+    stands = [_stand(own) for own in bodies]
+    for link, here in zip(links, stands, strict=True):
+        above = stands[link.parent] if link.parent >= 0 else _Stand(ZERO, *IDENTITY, 0)
+        if wrong := _Seated(system, state, link).wrong(above, here):
+            return f"'{link.name}' {wrong}"
+    return ""
+
+
+@dataclass(frozen=True)
+class _Stand:
+    """A body in numbers: its place, the rows of its axes, in the plane its angle."""
+
+    p: Numbers
+    x: Numbers
+    y: Numbers
+    z: Numbers
+    angle: Any
+
+    def from_above(self, v: Numbers) -> Numbers:
+        """A vector of the ground in the axes of the body: R^T v."""
+        return plus(plus(times(v[0], self.x), times(v[1], self.y)), times(v[2], self.z))
+
+    def column(self, k: int) -> Numbers:
+        return vector_of((self.x[k], self.y[k], self.z[k]))
+
+
+def _angle(link: BodyLink) -> Scalar:
+    return 0 if link.angle is None else link.angle
+
+
+def _stand(own: Sequence[Any]) -> _Stand:
+    p, x, y, z = (vector_of(own[k : k + 3]) for k in (0, 3, 6, 9))
+    return _Stand(p, x, y, z, own[12])
+
+
+@dataclass(frozen=True)
+class _Seated(InNumbers):
+    """One body at one state."""
+
+    link: BodyLink
+
+    def wrong(self, above: _Stand, here: _Stand) -> str:
+        joint = self.link.joint
+        moves = () if joint is None else (*(TurnAbout(t.axis, t.angle) for t in joint.turned or ()), *joint.moves())
+        place, e = self._seat, (self.one(1), ZERO)
+        for move in moves:
+            way, turn = self._moved(move)
+            place, e = plus(place, _turned(e, way)), _after(e, turn)
+        place = minus(place, _turned(e, self.vector(self._own_point)))
+        stated: Numbers = above.from_above(minus(here.p, above.p))
+        if _apart(stated, place):
+            return "is not where its joint says"
+        if any(_apart(above.from_above(here.column(k)), _turned(e, axis)) for k, axis in enumerate(IDENTITY)):
+            return "is not turned as its joint says"
+        functions = fifty_digits().functions
+        heading: Numbers = (functions["cos"](here.angle), functions["sin"](here.angle), 0)
+        flat = self.link.angle is not None
+        return "has another angle than its axes" if flat and _apart(heading, here.column(0)) else ""
+
+    # -- as it is declared -----------------------------------------------------------------------------------
+
+    @property
+    def _seat(self) -> Numbers:
+        """Where the joint sits: a point of the parent, or `at`."""
+        joint = self.link.joint
+        if joint is None:
+            return ZERO
+        if joint.on is not None and "." in joint.on:
+            return self.vector(self.motion.place(joint.on)[1])
+        return self.vector(ground_place(self.motion.scope, joint.at)) if joint.seated else ZERO
+
+    @property
+    def _own_point(self) -> Sequence[Scalar]:
+        joint = self.link.joint
+        named = joint is not None and joint.point is not None
+        return self.motion.points[self.link.name][joint.point.rpartition(".")[2]] if named else ZERO
+
+    def _moved(self, move: Move) -> tuple[Numbers, Quaternion]:
+        """(how far, how it turns)"""
+        still = (self.one(1), ZERO)
+        if isinstance(move, SlideAlong):
+            return times(self._typed(move.way), self._unit(move.axis)), still
+        if isinstance(move, TurnAbout):
+            half, functions = self._typed(move.angle) / 2, fifty_digits().functions
+            return ZERO, (functions["cos"](half), times(functions["sin"](half), self._unit(move.axis)))
+        if isinstance(move, QuaternionTurn):
+            e0, e1, e2, e3 = self.at([self.motion.scope.names[name] for name in move.quaternion])
+            return ZERO, (e0, (e1, e2, e3))
+        return self._walked(move), still
+
+    def _walked(self, route: WayAlongPieces) -> Numbers:
+        left, heading, functions = self._typed(route.way), self._typed(route.heading), fifty_digits().functions
+        place: Numbers = ZERO
+        for piece in route.pieces:
+            length = self._typed(piece.line) if piece.arc is None else self._typed(piece.arc) * self._typed(piece.angle)
+            way = left if piece is route.pieces[-1] else min(left, length)
+            turn = 0 * way
+            if piece.arc is not None:
+                turn = way / self._typed(piece.arc) * (1 if piece.turn == "ccw" else -1)
+                way = 2 * self._typed(piece.arc) * functions["sin"](abs(turn) / 2) * (1 if way >= 0 else -1)
+            across = heading + turn / 2
+            place = plus(place, times(way, (functions["cos"](across), functions["sin"](across), 0)))
+            left, heading = left - length, heading + turn
+            if left <= 0:
+                break
+        return place
+
+    # -- numbers ---------------------------------------------------------------------------------------------
+
+    def _typed(self, expression: Any) -> Any:
+        """What is declared; nothing is 0."""
+        return self.one(0 if expression is None else self.motion.scope.value(expression))
+
+    def _unit(self, axis: Any) -> Numbers:
+        """A declared direction, of length 1; None: z."""
+        entries = (0, 0, 1) if axis is None else axis
+        given = [x if isinstance(x, int) else self.motion.scope.value(x) for x in entries]
+        return direction_at(self.vector((*given, *[0] * (3 - len(given)))))
+
+
+def _after(first: Quaternion, second: Quaternion) -> Quaternion:
+    """The turn that is the second in the axes that the first one left."""
+    (a, u), (b, v) = first, second
+    real: Any = a * b - dot(u, v)
+    return real, plus(plus(times(a, v), times(b, u)), cross(u, v))
+
+
+def _turned(e: Quaternion, v: Numbers) -> Numbers:
+    e0, u = e
+    return plus(v, times(2, cross(u, plus(cross(u, v), times(e0, v)))))
+
+
+def _apart(a: Numbers, b: Numbers) -> bool:
+    gap: Sequence[Any] = minus(a, b)
+    most: Any = max(map(abs, b))
+    return any(abs(x) > ZERO_AT_50 * (1 + most) for x in gap)
+
+
+# -------- contact geometry ------------------------------------------------------------------------------------
+# System, state -> whether what touches touches: the nearest points of both surfaces coincide, and move as one.
+#
+# The surfaces are taken as they are declared (`Meeting`), the places from the poses, velocities from the twists.
+#
+#     ball on a plane      P = C - R n                          P on the plane
+#     wheel on a plane     P = C - R d/|d| - tube n,  d = n - a (a . n),  a its axis
+#     ellipsoid            P = C + R_B S x,  the ball |x| = 1 stretched by S:  x = - S R_B^T n / |S R_B^T n|
+#     ball on a ball       P = C - R o,  o from the other's centre to C;  P = A + r o   (inside: C + R o)
+#     wheel on a ball      the same, of the tyre's section about the place of its centre line nearest to A
+#     point on a line      P, and its foot on the line
+#
+# What such a contact does it does there: a unit lam pushes with 1 N along the normal, what holds or brakes across it
+# with 1 N across it, both at P and opposite on both bodies. That the rows' wrenches are such is looked at too.
+
+
+Y, Z = (0, 1, 0), (0, 0, 1)
+
+
+@dataclass(frozen=True)
+class Touch:
+    """Where two things touch at a state.
+
+    Args:
+        first, second: the nearest points of both, ground axes.
+        held: directions in which they cannot part, ground axes.
+    """
+
+    first: Numbers
+    second: Numbers
+    held: tuple[Numbers, ...]
+
+
+@dataclass(frozen=True)
+class _Form:
+    """What touches, in numbers: a ball, a wheel about an axis (ground axes) with a tyre, or an ellipsoid."""
+
+    radius: Any
+    tube: Any = 0
+    axis: Numbers | None = None
+    semiaxes: Numbers | None = None
+
+
+def meetings_of(system: System) -> dict[str, Meeting]:
+    """What touches what in every tie that is closed."""
+    closed = {row.tie for row in system.ties.rows}
+    ties = system.scope.model.constraints
+    found = {name: ties[name].meeting() for name in ties if name in closed}
+    return {name: x for name, x in found.items() if x is not None}
+
+
+def apart(system: System, state: State) -> str:
+    """Which contact does not touch, or parts, at a state; "" where none does.
+
+    Raises:
+        NoValue: something has no value there, or the ties do not hold.
+    """
+    refuse_open(system, state)
+    for name, meeting in meetings_of(system).items():
+        wrong = _Contact(system, state, name, meeting).wrong
+        if wrong:
+            return f"'{name}': {wrong}"
+    return ""
+
+
+@dataclass(frozen=True)
+class _Contact(InNumbers):
+    """One contact at one state, in numbers."""
+
+    name: str
+    meeting: Meeting
+
+    @property
+    def wrong(self) -> str:
+        touch = self._touch
+        distance: Numbers = minus(touch.first, touch.second)
+        size = 1 + max(map(abs, touch.first))
+        if max(map(abs, distance)) > COMPUTED * size:
+            return "its two points of contact are apart"
+        slip = minus(self.velocity(self._body, touch.first), self.velocity(self.meeting.surface.on, touch.first))
+        held = (slip,) if self.meeting.sticks else tuple(times(dot(slip, e), e) for e in touch.held)
+        if self._rigid and any(abs(x) > COMPUTED * (1 + size) for part in held for x in part):
+            return "its two points of contact part or slip"
+        return self._wrong_force(touch)
+
+    def _wrong_force(self, touch: Touch) -> str:
+        """Which force of the contact is no unit force at its point, along the normal or across it, or ""."""
+        for row in self.system.ties.rows:
+            if row.tie != self.name:
+                continue
+            for label, pushes in ((row.component, row.pushes), ("t", row.tangent), ("s", row.cross_tangent)):
+                if pushes and label and self._misplaced(touch, label, pushes):
+                    return f"its force '{label}' is not of 1 N at the contact, in its direction"
+        return ""
+
+    def _misplaced(self, touch: Touch, label: str, pushes: Sequence[Push]) -> bool:
+        """Whether pushes do not come to a unit force at the contact on its body, and its opposite on the other."""
+        found: dict[str, tuple[Numbers, Numbers]] = {}
+        for push in pushes:
+            wrench = body_wrench(self.motion, push)
+            if wrench is not None:
+                body, W = wrench
+                f, tau = found.get(body, (ZERO, ZERO))
+                found[body] = plus(f, self.vector(W.f)), plus(tau, self.vector(W.tau))
+        forces = []
+        for body, (own_force, own_couple) in found.items():
+            f, tau = (self.carried(body, x, direction=True) for x in (own_force, own_couple))
+            about_contact: Numbers = minus(tau, cross(minus(touch.first, self.carried(body, ZERO)), f))
+            if max(map(abs, about_contact)) > COMPUTED * (1 + max(map(abs, touch.first))):
+                return True
+            forces.append(f if body == self._body else times(-1, f))
+        return any(self._misdirected(touch, label, f) for f in forces)
+
+    def _misdirected(self, touch: Touch, label: str, f: Numbers) -> bool:
+        """Whether a force on the first body is not of length 1, or not in its direction."""
+        along = sum(dot(f, e) ** 2 for e in touch.held)
+        wrong: list[Any] = [dot(f, f) - 1, along - 1 if label[0] == "n" else along]
+        if not isinstance(self.meeting.surface, BodyLine):
+            n = touch.held[0]
+            wrong += [dot(f, n) - 1] if label == "n" else []
+            if not self._space and label == "t":
+                wrong += minus(f, (n[1], -n[0], 0))
+        return any(abs(x) > COMPUTED for x in wrong)
+
+    @cached_property
+    def _scene(self) -> SystemScene:
+        return SystemScene(self.motion, f"constraints.{self.name}")
+
+    @property
+    def _body(self) -> str | None:
+        what = self.meeting.what
+        return self._scene.place(what.point)[0] if isinstance(what, TouchingPoint) else what.body
+
+    @property
+    def _rigid(self) -> bool:
+        """Whether point and surface are fixed in their bodies: else velocities of material points are others."""
+        what, surface = self.meeting.what, self.meeting.surface
+        own = self._scene.place(what.point)[1] if isinstance(what, TouchingPoint) else ZERO
+        seats = [own] if isinstance(surface, (BodyLine, Groove)) else [own, self._anchor]
+        return not any(self.motion.moves(tuple(seat)) for seat in seats)
+
+    @cached_property
+    def _anchor(self) -> Numbers:
+        """`at` of the surface in its body's axes, over the graph; where it is not given, where the point stands."""
+        surface = self.meeting.surface
+        assert not isinstance(surface, (BodyLine, Groove))
+        if surface.at is not None:
+            return self._scene.ground_place(surface.at)
+        if isinstance(surface, RoundSurface):
+            return ZERO
+        what = self.meeting.what
+        assert isinstance(what, TouchingPoint)
+        return vector_of(map(self._scene.start, self._scene.position(self._scene.place(what.point))))
+
+    @property
+    def _center(self) -> Numbers:
+        """The point, or the centre of what is round, ground axes."""
+        what, scene = self.meeting.what, self._scene
+        place = scene.place(what.point) if isinstance(what, TouchingPoint) else scene.own_place(what.body, what.center)
+        return self.carried(place[0], self.vector(place[1]))
+
+    @cached_property
+    def _form(self) -> _Form:
+        """What touches; sizes that are left out are those of the shape."""
+        what, scene = self.meeting.what, self._scene
+        if isinstance(what, TouchingPoint):
+            return _Form(0)
+        shape = scene.shape(what.body)
+        semiaxes, radius, axis, tube = what.semiaxes, what.radius, what.axis, what.tube
+        if radius is None and axis is None and semiaxes is None:
+            semiaxes = getattr(shape, "semiaxes", None)
+        if semiaxes is not None:
+            return _Form(0, semiaxes=self.vector(scene.vector(semiaxes)))
+        if radius is None and self._space and shape is not None and shape.is_tyre:
+            radius, tube = shape.major, shape.minor if tube is None else tube
+            axis = Z if axis is None else axis
+        R = scene.radius(what.body) if radius is None else scene.value(radius)
+        R, section = self.at([R, 0 if tube is None else scene.value(tube)])
+        if axis is None:
+            return _Form(R)
+        own = axis if axis is Z else scene.vector(axis)
+        return _Form(R, section, direction_at(self.carried(what.body, self.vector(own), direction=True)))
+
+    @property
+    def _touch(self) -> Touch:
+        surface, C = self.meeting.surface, self._center
+        if isinstance(surface, Groove):
+            normal = Z if surface.normal is None else self.vector(self._scene.vector(surface.normal))
+            edge = self.carried(surface.on, self.vector(self._scene.vector(surface.along)), direction=True)
+            return Touch(C, C, (direction_at(cross(normal, edge)),))
+        if isinstance(surface, BodyLine):
+            a, b = (self.carried(surface.on, self.vector(r)) for _, r in self._scene.line(surface.on))
+            along = direction_at(minus(b, a))
+            foot = plus(a, times(dot(along, minus(C, a)), along))
+            return Touch(C, foot, tuple(_across(along)) if self._space else (_quarter_turn(along),))
+        A = self.carried(surface.on, self.vector(self._anchor))
+        if isinstance(surface, FlatSurface):
+            normal = self.vector(self._scene.vector(surface.normal))
+            n = direction_at(self.carried(surface.on, normal, direction=True))
+            P = self._lowest(C, n)
+            return Touch(P, minus(P, times(dot(n, minus(P, A)), n)), (n,))
+        return self._on_round(surface, C, A)
+
+    def _on_round(self, surface: RoundSurface, C: Numbers, A: Numbers) -> Touch:
+        """A ball, or the section of a tyre where its centre line is nearest, on a ball or pipe about A."""
+        form, side = self._form, -1 if surface.inside else 1
+        if form.axis is not None:
+            h = minus(minus(C, A), times(dot(minus(C, A), form.axis), form.axis))
+            C = minus(C, times(side * form.radius, direction_at(h)))
+        if surface.axis is not None:
+            axis = self.vector(self._scene.vector(surface.axis))
+            a = direction_at(self.carried(surface.on, axis, direction=True))
+            A = plus(A, times(dot(minus(C, A), a), a))
+        out = direction_at(minus(C, A))
+        r = self._scene.radius(str(surface.on)) if surface.radius is None else self._scene.value(surface.radius)
+        section = form.radius if form.axis is None else form.tube
+        first, second = minus(C, times(side * section, out)), plus(A, times(self.one(r), out))
+        return Touch(first, second, (times(side, out),))
+
+    def _lowest(self, C: Numbers, n: Numbers) -> Numbers:
+        """The point of a round body that is farthest along -n."""
+        form, body = self._form, getattr(self.meeting.what, "body", None)
+        if form.semiaxes is not None:
+            axes = [self.carried(body, e, direction=True) for e in ((1, 0, 0), Y, Z)]
+            x = direction_at(vector_of(-s * dot(n, e) for s, e in zip(form.semiaxes, axes, strict=True)))
+            for s, k, e in zip(form.semiaxes, x, axes, strict=True):
+                C = plus(C, times(s * k, e))
+            return C
+        d = n if form.axis is None else direction_at(minus(n, times(dot(form.axis, n), form.axis)))
+        return minus(minus(C, times(form.radius, d)), times(form.tube, n))
+
+    @property
+    def _space(self) -> bool:
+        return self.system.scope.model.space == "space"
+
+
+def _quarter_turn(a: Numbers) -> Numbers:
+    return (-a[1], a[0], 0)
+
+
+def _across(a: Numbers) -> Iterator[Numbers]:
+    """Two unit vectors across a unit vector."""
+    k = min(range(3), key=lambda i: abs(a[i]))
+    first = direction_at(cross(a, vector_of(int(i == k) for i in range(3))))
+    yield first
+    yield cross(a, first)

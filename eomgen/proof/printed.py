@@ -15,11 +15,11 @@ from typing import Any
 import numpy as np
 
 from eomgen.errors import DerivationError, ExpressionError, UsageError
-from eomgen.mechanics.bodies.inertia import spin_of
 from eomgen.mechanics.constraints.closure import of_50_digits as precise
-from eomgen.mechanics.equations.accelerations import exact_accelerations
-from eomgen.mechanics.equations.equations_of_motion import EquationsOfMotion
-from eomgen.mechanics.instant.outputs import Quantities
+from eomgen.mechanics.dynamics.accelerations import exact_accelerations
+from eomgen.mechanics.dynamics.system import EquationsOfMotion
+from eomgen.mechanics.instant.quantities import Quantities
+from eomgen.mechanics.kinematics.inertia import spin_of
 from eomgen.model.outputs import FUNCTIONS
 from eomgen.model.outputs.base import BALANCE
 from eomgen.model.values import exact_parameters
@@ -27,12 +27,11 @@ from eomgen.proof.in_numbers import way_through
 from eomgen.proof.states import refuse_open
 from eomgen.records import dataclass
 from eomgen.symbolic.expression.derivative import gradient
-from eomgen.symbolic.expression.expressions import LONGEST, Call, parse
-from eomgen.symbolic.expression.functions import inner
-from eomgen.symbolic.expression.graph import Node, Scalar
-from eomgen.symbolic.expression.node import State
+from eomgen.symbolic.expression.formula import Call, inner
+from eomgen.symbolic.expression.node import Node, Scalar, State
 from eomgen.symbolic.expression.rational import Fraction
 from eomgen.symbolic.expression.spatial import Vector
+from eomgen.symbolic.expression.text import LONGEST, parse
 from eomgen.symbolic.numeric.dense import of_one_length
 from eomgen.symbolic.numeric.evaluation import NoValue, evaluate, fifty_digits
 from eomgen.symbolic.numeric.tolerances import COMPUTED

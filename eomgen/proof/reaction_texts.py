@@ -5,8 +5,8 @@ from __future__ import annotations
 from collections.abc import Iterator, Mapping
 from functools import partial
 
-from eomgen.codegen.reactions import determinate
-from eomgen.mechanics.equations.equations_of_motion import EquationsOfMotion
+from eomgen.codegen.programs import determinate
+from eomgen.mechanics.dynamics.system import EquationsOfMotion
 from eomgen.mechanics.reactions.reactions import reactions_of
 from eomgen.proof.at_a_state import NumericState, moving_states, off_by, place_of, read_back
 from eomgen.proof.check import Check, Tally

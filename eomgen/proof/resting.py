@@ -15,18 +15,17 @@ from typing import Any
 
 import numpy as np
 
-from eomgen.mechanics.equilibria.search import Equilibrium
-from eomgen.mechanics.equilibria.standing import standing_system
-from eomgen.mechanics.equilibria.static_equations import StaticEquations
-from eomgen.mechanics.initial_state.values_at_rest import values_of_parameters
-from eomgen.mechanics.small_motions.first_order import FirstOrder
+from eomgen.mechanics.equilibrium.equations import StaticEquations, standing_system
+from eomgen.mechanics.equilibrium.search import Equilibrium
+from eomgen.mechanics.linearization.first_order import FirstOrder
+from eomgen.mechanics.start.exact import values_of_parameters
 from eomgen.proof.check import Check, attempted, checked, first_wrong, unchecked
 from eomgen.proof.free_bodies import demand_of
+from eomgen.proof.freedoms import Nearby
 from eomgen.proof.in_numbers import STEP, with_inputs
-from eomgen.proof.nearby import Nearby
 from eomgen.records import dataclass
 from eomgen.symbolic.expression.derivative import jacobian
-from eomgen.symbolic.expression.graph import Node
+from eomgen.symbolic.expression.node import Node
 from eomgen.symbolic.numeric.evaluation import NoValue, evaluate, fifty_digits
 from eomgen.symbolic.numeric.tolerances import COMPUTED, DIFFERENCE_STEP, SAME_PLACE, SHARE, ZERO_AT_50
 

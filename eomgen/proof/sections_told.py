@@ -1,4 +1,6 @@
-"""Section forces as they are told -> a check: by the names of their columns they are those that were found.
+"""Virtual work and section forces as they are told.
+
+Section forces as they are told -> a check: by the names of their columns they are those that were found.
 
     dM/dx = V between the ends of each piece,   V = 0 and M as told at an extreme,   N, V, M the piece's polynomials
 
@@ -9,18 +11,26 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterable, Iterator, Mapping, Sequence
-from functools import partial
+from functools import cached_property, partial
 from random import Random
 from typing import Any
 
+import numpy as np
+
 from eomgen.errors import ExpressionError
+from eomgen.mechanics.free_bodies.wrenches import Axes
+from eomgen.mechanics.kinematics.scene import SystemScene
+from eomgen.mechanics.rigidity.velocity_plan import members_of
 from eomgen.mechanics.statics.section_forces import SectionForces
+from eomgen.mechanics.statics.virtual_work import StaticReaction, StaticReactions
+from eomgen.proof.at_a_state import balanced_least
 from eomgen.proof.check import Check, Tally, differing
+from eomgen.proof.declared_loads import declared_pushes
 from eomgen.records import dataclass
 from eomgen.symbolic.expression.derivative import symbols_of
-from eomgen.symbolic.expression.expressions import LONGEST, parse
-from eomgen.symbolic.expression.graph import Node, Scalar
-from eomgen.symbolic.numeric.evaluation import FLOAT, NoValue, evaluate
+from eomgen.symbolic.expression.node import Node, Scalar, State
+from eomgen.symbolic.expression.text import LONGEST, parse
+from eomgen.symbolic.numeric.evaluation import FLOAT, NoValue, evaluate, fifty_digits
 from eomgen.symbolic.numeric.tolerances import CARRIED
 
 NAME, HOW = "section forces as they are told are those that were found", "heads and texts read back, random values"
@@ -134,3 +144,263 @@ class _Values:
             value = self.near.get(name)
             self.known[name] = self.random.uniform(0.5, 2) if value is None else value * self.random.uniform(0.98, 1.02)
         return self.known[name]
+
+
+# -------- works told ------------------------------------------------------------------------------------------
+# Steps of virtual work as they are told -> a check: the blocks move as their ties let them, the loads work so much.
+#
+# Taken as they stand, tables by their heads and texts for machines, at one choice of the parameters, delta = 1:
+#
+#     v(P) = v_0 + w x P of each block,    w x C = -v_0 at its centre
+#     sum of the wrenches of component j with it = along k_j        where R = sum k_j rho_j: nothing else does work
+#     work of each force as its fields declare it,    along (R - given) + sum of works = 0,    R by the bodies' balance
+
+
+WORKS_NAME = "virtual displacements and works are told as they are"
+WORKS_HOW = "wrenches of every tie, declared forces, balance of the bodies"
+MIDDLE = "middle of "
+SaidWork = Scalar | str
+
+
+@dataclass(frozen=True)
+class ToldBlock:
+    """A block that moves.
+
+    Args:
+        parts: its bodies, members ("T n1-n2") and nodes.
+        spin: about z; shift: of its point at the ground's origin.
+    """
+
+    parts: tuple[str, ...]
+    spin: SaidWork
+    shift: Sequence[SaidWork]
+
+
+@dataclass(frozen=True)
+class ToldMotion:
+    """A row of the table of blocks, by its heads; the row of a load, where it has a place.
+
+    Args:
+        center: None at infinity.
+        shift: of a block that does not turn, of the place.
+        at: where the load acts, in words.
+    """
+
+    center: Sequence[SaidWork] | None = None
+    spin: SaidWork = 0
+    shift: Sequence[SaidWork] = (0, 0)
+    at: str = ""
+
+
+@dataclass(frozen=True)
+class ToldWork:
+    """How one reaction is found.
+
+    Args:
+        name: of the reaction.
+        blocks, along, works, value: as machines get them; works are (load, work).
+        rows: of the printed table of blocks; places: of the printed loads.
+        printed: the works as they are printed; left, right: of the printed equation R delta_R + ... = 0; last: R.
+    """
+
+    name: str
+    blocks: Sequence[ToldBlock]
+    along: SaidWork
+    works: Sequence[tuple[str, SaidWork]]
+    value: SaidWork
+    rows: Sequence[ToldMotion]
+    places: Sequence[ToldMotion]
+    printed: Sequence[tuple[str, SaidWork]]
+    left: SaidWork
+    last: SaidWork
+
+
+def works_told(found: StaticReactions, state: State, told: Iterable[ToldWork]) -> Iterator[Check]:
+    """Of structures in the plane.
+
+    Args:
+        state: every symbol with 50 digits.
+    """
+    tally, proof = (
+        Tally(WORKS_NAME, WORKS_HOW),
+        _Works(found, {**state, **dict.fromkeys(found.structure.unknowns, 0)}, state),
+    )
+    for each in told:
+        tally.add(each.name, partial(proof.wrong, each))
+    return tally.checks()
+
+
+@dataclass(frozen=True)
+class _Works:
+    """
+    Args:
+        state: with unknown loads 0; whole: with what they come to.
+    """
+
+    found: StaticReactions
+    state: State
+    whole: State
+
+    def wrong(self, told: ToldWork) -> str:
+        reaction = self.found.by_name[told.name]
+        field = _Field(self, told)
+        along, R = self.worth(told.along), self.balanced(reaction)
+        factors = self.factors(reaction)
+        for j, (owner, _) in enumerate(self.found.structure.pushes):
+            work, size = field.work_of(j)
+            if abs(work - along * factors.get(j, 0.0)) > CARRIED * (size + abs(along)):
+                return f"what moves does the work {work:.6g} along {self.found.structure.names[j]} of {owner}"
+        if wrong := field.wrong_works():
+            return wrong
+        given = 0.0 if reaction.work is None else self.worth(reaction.work.given)
+        total = sum(self.worth(work) for _, work in told.works)
+        size = sum(abs(self.worth(work)) for _, work in told.works) + abs(along * R)
+        if abs(along * (R - given) + total) > CARRIED * (1 + size):
+            return f"the works come to {total:.6g}, for {-along * (R - given):.6g}"
+        values = (("machines", told.value), ("people", told.last))
+        if off := next((who for who, x in values if abs(self.worth(x) - R) > CARRIED * (1 + abs(R))), ""):
+            return f"another value is told to {off} than {R:.10g}"
+        here, beside = (self.worth(told.left, R + step, told.name) for step in (0, 1))
+        if abs(here) > CARRIED * (1 + size) or abs(abs(beside - here) - abs(along)) > CARRIED * (1 + abs(along)):
+            return "the equation that is printed is another one"
+        return field.wrong_rows()
+
+    @cached_property
+    def numbers(self) -> dict[Node, float]:
+        return {node: float(x) for node, x in self.state.items()}
+
+    def worth(self, told: SaidWork, R: float = 0.0, asked: str = "") -> float:
+        """In numbers, delta = 1; of the equation with R, which an unknown load has under its own name."""
+        if isinstance(told, str):
+            return self._of_text(told)
+        if not isinstance(told, Node):
+            return float(told)
+        known = {x: self.numbers.get(x, 1.0 if x.name.startswith("\u03b4") else R) for x in symbols_of((told,))}
+        known |= {x: R for x in known if x.name == asked}
+        return float(evaluate((told,), known, FLOAT)[0])
+
+    def _of_text(self, text: str) -> float:
+        if len(text) > LONGEST:
+            raise NoValue("too long to be read back")
+        try:
+            expression = parse(text)
+        except ExpressionError as error:
+            raise NoValue(error.what) from error
+        named = {node.name: x for node, x in self.numbers.items()}
+        if not expression.names <= named.keys() | {"pi"}:
+            raise NoValue(f"'{text[:60]}' is not of parameters alone")
+        return float(expression.evaluate({**named, "pi": np.pi}))
+
+    def vector(self, v: Sequence[Scalar]) -> np.ndarray:
+        return np.array([float(x) for x in evaluate(tuple(v), self.numbers, FLOAT)])
+
+    def factors(self, reaction: StaticReaction) -> dict[int, float]:
+        """k_j of R = sum k_j rho_j."""
+        if reaction.named is None:
+            return {self.found.structure.index(reaction.name): 1.0}
+        return {j: float(self.vector((k,))[0]) for j, k in reaction.named.combination.items()}
+
+    @cached_property
+    def _least(self) -> np.ndarray:
+        return balanced_least(self.found.balance.balance, self.whole)[0]
+
+    def balanced(self, reaction: StaticReaction) -> float:
+        """R by the balance of the bodies in numbers."""
+        given = 0 if reaction.named is None else reaction.named.given
+        (own,) = evaluate((given,), self.whole, fifty_digits())
+        return float(sum(k * self._least[j] for j, k in self.factors(reaction).items())) + float(own)
+
+    @cached_property
+    def centers(self) -> dict[str, np.ndarray]:
+        """Mass centres, ground axes."""
+        motion = self.found.system.motion
+        pairs = zip(motion.links, Axes(motion).masses, strict=True)
+        return {link.name: self.vector(link.pose.point(mass.com)) for link, mass in pairs}
+
+    def place(self, words: str) -> tuple[str, np.ndarray] | None:
+        """(body, place) of "beam.tip", "mass centre of beam", "T.n2"; None of other words."""
+        if words.startswith("mass centre of "):
+            body = words.removeprefix("mass centre of ")
+            return body, self.centers[body]
+        if "." not in words:
+            return None
+        scene = SystemScene(self.found.system.motion)
+        place = scene.place(words)
+        return None if place[0] is None else (place[0], self.vector(scene.position(place)))
+
+
+@dataclass(frozen=True)
+class _Field:
+    """Velocities of all that moves, as machines are told of the blocks."""
+
+    proof: _Works
+    told: ToldWork
+
+    @cached_property
+    def motions(self) -> dict[str, np.ndarray]:
+        """body or node -> (w, v_x, v_y) of the point at the ground's origin; what is not told is at rest."""
+        found: dict[str, np.ndarray] = {}
+        ends = {f"{truss} {member}": pair for truss, member, pair in members_of(self.proof.found.system)}
+        for block in self.told.blocks:
+            own = np.array([self.proof.worth(x) for x in (block.spin, *block.shift[:2])])
+            for part in block.parts:
+                found |= dict.fromkeys(ends.get(part, (part,)), own)
+        return found
+
+    def at(self, body: str, place: np.ndarray) -> np.ndarray:
+        w, vx, vy = self.motions.get(body, np.zeros(3))
+        return np.array([vx - w * place[1], vy + w * place[0]])
+
+    def work_of(self, j: int) -> tuple[float, float]:
+        """(work of a unit of a component, how large its parts are)."""
+        proof, total, size = self.proof, 0.0, 0.0
+        for effect in proof.found.structure.pushes[j][1]:
+            name = proof.found.system.motion.links[effect.link].name
+            force, couple, arm = (proof.vector(v) for v in (effect.force, effect.couple, effect.arm))
+            parts = [*(force[:2] * self.at(name, proof.centers[name] + arm)), couple[2] * self._spin(name)]
+            total, size = total + float(sum(parts)), size + float(sum(map(abs, parts)))
+        return total, size
+
+    def _spin(self, body: str) -> float:
+        return float(self.motions.get(body, np.zeros(3))[0])
+
+    def wrong_works(self) -> str:
+        """The work of a force is that of what its fields declare."""
+        model = self.proof.found.system.scope.model
+        for who, works in (("machines", self.told.works), ("people", self.told.printed)):
+            stated: dict[str, float] = {}
+            for name, work in works:
+                stated[name] = stated.get(name, 0.0) + self.proof.worth(work)
+            for name in model.forces:
+                due = 0.0
+                for body, (moment, force) in declared_pushes(self.proof.found.system, self.proof.state, name).items():
+                    if body is not None:
+                        six = np.array([moment[2], force[0], force[1]], dtype=float)
+                        due += float(six @ self.motions.get(body, np.zeros(3)))
+                if abs(stated.get(name, 0.0) - due) > CARRIED * (1 + abs(due)):
+                    return f"{name} works {stated.get(name, 0.0):.6g}, as {who} are told, for {due:.6g}"
+        return ""
+
+    def wrong_rows(self) -> str:
+        """Printed centres, turns and shifts are those of the blocks; those of loads of their places."""
+        if len(self.told.rows) != len(self.told.blocks):
+            return f"{len(self.told.rows)} blocks are printed of {len(self.told.blocks)}"
+        for k, (row, block) in enumerate(zip(self.told.rows, self.told.blocks, strict=True), start=1):
+            own = np.array([self.proof.worth(x) for x in (block.spin, *block.shift[:2])])
+            moved = np.array([self.proof.worth(x) for x in row.shift])
+            if row.center is not None:
+                x, y = (self.proof.worth(x) for x in row.center)
+                moved = self.proof.worth(row.spin) * np.array([y, -x])
+            if np.any(
+                np.abs([self.proof.worth(row.spin) - own[0], *(moved - own[1:])]) > CARRIED * (1 + abs(own).max())
+            ):
+                return f"block {k} is printed with another motion"
+        for row in self.told.places:
+            words = [row.at] if not row.at.startswith(MIDDLE) else row.at.removeprefix(MIDDLE).split(", ")
+            places = [self.proof.place(each) for each in words]
+            if all(places):
+                due = np.mean([self.at(*place) for place in places if place is not None], axis=0)
+                moved = np.array([self.proof.worth(x) for x in row.shift])
+                if np.any(np.abs(moved - due) > CARRIED * (1 + abs(due).max())):
+                    return f"{row.at} is printed with the shift {moved}, for {due}"
+        return ""

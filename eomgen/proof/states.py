@@ -13,13 +13,12 @@ from typing import Any
 
 from eomgen.errors import DerivationError, ModelError, UsageError
 from eomgen.mechanics.constraints.closure import closed, generic_state, movable, of_50_digits, on_unit_spheres
-from eomgen.mechanics.equations.system import System
-from eomgen.mechanics.initial_state.initial_state import start_state
+from eomgen.mechanics.dynamics.system import System
+from eomgen.mechanics.start.state import start_state
 from eomgen.model.values import exact_parameters
 from eomgen.proof.in_numbers import with_inputs
 from eomgen.records import dataclass
-from eomgen.symbolic.expression.graph import Scalar, is_zero
-from eomgen.symbolic.expression.node import State
+from eomgen.symbolic.expression.node import Scalar, State, is_zero
 from eomgen.symbolic.numeric.evaluation import NoValue, evaluate, fifty_digits
 from eomgen.symbolic.numeric.pieces import Switch, switches_of
 from eomgen.symbolic.numeric.tolerances import COMPUTED, LARGEST_AT_50, LARGEST_SQUARED

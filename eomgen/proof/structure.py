@@ -19,27 +19,25 @@ from typing import Any
 
 import numpy as np
 
-from eomgen.mechanics.balance.named_reactions import named_reactions
-from eomgen.mechanics.balance.unit_wrenches import Axes
-from eomgen.mechanics.initial_state.values_at_rest import values_of_parameters
+from eomgen.mechanics.free_bodies.named_reactions import named_reactions
+from eomgen.mechanics.free_bodies.wrenches import Axes
 from eomgen.mechanics.reactions.equilibrium import imbalance
+from eomgen.mechanics.rigidity.velocity_plan import RigidBlock, VelocityPlan, blocks_of, members_of
+from eomgen.mechanics.start.exact import values_of_parameters
 from eomgen.mechanics.statics.influence import InfluenceLine, InfluenceSpan
 from eomgen.mechanics.statics.member_axis import MemberAxis
-from eomgen.mechanics.statics.member_loads import MemberLoads, place_of
-from eomgen.mechanics.statics.section_forces import KINDS, SectionForces, SectionPiece
-from eomgen.mechanics.statics.two_ways import StaticReactions, StaticSum
-from eomgen.mechanics.structures.blocks import RigidBlock, blocks_of, members_of
-from eomgen.mechanics.structures.velocity_plan import VelocityPlan
+from eomgen.mechanics.statics.section_forces import KINDS, MemberLoads, SectionForces, SectionPiece, place_of
+from eomgen.mechanics.statics.virtual_work import StaticReactions, StaticSum
 from eomgen.proof.at_a_state import balanced_least
 from eomgen.proof.check import Check, Tally, attempted, checked, first_wrong
-from eomgen.proof.declared_work import acting_otherwise
-from eomgen.proof.drawn_panels import DrawnCurve, DrawnPanel, said_of
-from eomgen.proof.named_axes import named_otherwise
+from eomgen.proof.declared_loads import acting_otherwise
+from eomgen.proof.free_bodies import named_otherwise
+from eomgen.proof.reports_read import DrawnCurve, DrawnPanel, said_of
 from eomgen.records import dataclass
 from eomgen.symbolic.expression.derivative import symbols_of
-from eomgen.symbolic.expression.expressions import single_call
-from eomgen.symbolic.expression.graph import Node, Scalar
+from eomgen.symbolic.expression.node import Node, Scalar
 from eomgen.symbolic.expression.spatial import ZERO, Vector
+from eomgen.symbolic.expression.text import single_call
 from eomgen.symbolic.numeric.evaluation import FLOAT, evaluate, fifty_digits
 from eomgen.symbolic.numeric.tolerances import CARRIED, COMPUTED, FOUR_DIGITS, RANK, SAME_PLACE
 

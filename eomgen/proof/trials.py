@@ -13,34 +13,42 @@ from random import Random
 from typing import TYPE_CHECKING, Any
 
 from eomgen.errors import DerivationError
-from eomgen.mechanics.balance.friction import friction_contacts, frictions, push_sizes
-from eomgen.mechanics.bodies.contact_modes import CLOSED
-from eomgen.mechanics.bodies.inertia import mass_properties
-from eomgen.mechanics.bodies.kinematics import spin_between
-from eomgen.mechanics.equations.accelerations import exact_accelerations
-from eomgen.mechanics.equations.equations_of_motion import EquationsOfMotion
-from eomgen.mechanics.equations.system import System
+from eomgen.mechanics.dynamics.accelerations import exact_accelerations
+from eomgen.mechanics.dynamics.system import EquationsOfMotion, System
+from eomgen.mechanics.free_bodies.friction import friction_contacts, frictions, push_sizes
+from eomgen.mechanics.kinematics.inertia import mass_properties
+from eomgen.mechanics.kinematics.motion import spin_between
+from eomgen.mechanics.kinematics.scene import CLOSED
 from eomgen.mechanics.reactions.equilibrium import imbalance
 from eomgen.mechanics.reactions.reactions import reactions_of
 from eomgen.proof.check import Check, attempted, checked, unchecked
-from eomgen.proof.contact_geometry import apart, meetings_of
-from eomgen.proof.declared_work import acting_otherwise, working_otherwise
-from eomgen.proof.elements import elements_of, undeclared
-from eomgen.proof.energies import other_energies
-from eomgen.proof.free_bodies import Demand, demand_of, moved_otherwise
-from eomgen.proof.friction_laws import leaving_at_start, other_friction, pushing_otherwise
+from eomgen.proof.contact_phases import leaving_at_start, other_friction, pushing_otherwise
+from eomgen.proof.declared_loads import (
+    acting_otherwise,
+    elements_of,
+    strung_otherwise,
+    threads_of,
+    undeclared,
+    working_otherwise,
+)
+from eomgen.proof.free_bodies import (
+    Demand,
+    demand_of,
+    driven_otherwise,
+    drives_beside,
+    moved_otherwise,
+    named_otherwise,
+)
+from eomgen.proof.freedoms import open_at_start, pulled_at_start, rows_that_stay, springs_of_the_start
 from eomgen.proof.in_numbers import FINER_STEP, STEP, way_through
-from eomgen.proof.joint_places import misplaced
-from eomgen.proof.kept_ties import open_at_start, pulled_at_start, rows_that_stay, springs_of_the_start
-from eomgen.proof.named_axes import driven_otherwise, drives_beside, named_otherwise
+from eomgen.proof.motion import other_energies
+from eomgen.proof.posed_model import apart, meetings_of, misplaced
 from eomgen.proof.printed import Printed, ReadBack, least_multipliers
 from eomgen.proof.states import States, TrialState, consistent_states, in_doubles, is_open, own_start, refuse_open
-from eomgen.proof.strands import strung_otherwise, threads_of
 from eomgen.records import dataclass
 from eomgen.symbolic.exact.equality import rounding_decides
-from eomgen.symbolic.expression.functions import inner
-from eomgen.symbolic.expression.graph import Scalar, is_zero
-from eomgen.symbolic.expression.node import State
+from eomgen.symbolic.expression.formula import inner
+from eomgen.symbolic.expression.node import Scalar, State, is_zero
 from eomgen.symbolic.expression.spatial import apply, dot, matrix_of, transposed, vector_of
 from eomgen.symbolic.numeric.evaluation import NoValue, evaluate, fifty_digits, floats_of
 from eomgen.symbolic.numeric.tolerances import COMPUTED, DIFFERENCE_AT_50, ZERO_AT_50

@@ -22,24 +22,24 @@ import numpy as np
 from eomgen.codegen.program import right_hand_side
 from eomgen.codegen.rhs import compiled
 from eomgen.errors import ExpressionError
-from eomgen.mechanics.equations.articulated import with_accelerations
-from eomgen.mechanics.equations.equations_of_motion import EquationsOfMotion
-from eomgen.mechanics.formulations.lagrange import free_rates
-from eomgen.mechanics.initial_state.initial_state import start_state
-from eomgen.mechanics.instant.outputs import Quantities
+from eomgen.mechanics.dynamics.accelerations import with_accelerations
+from eomgen.mechanics.dynamics.formulations import free_rates
+from eomgen.mechanics.dynamics.system import EquationsOfMotion
+from eomgen.mechanics.instant.quantities import Quantities
+from eomgen.mechanics.start.state import start_state
 from eomgen.model.outputs import FUNCTIONS
 from eomgen.model.outputs.base import BALANCE
 from eomgen.model.values import exact_parameters
 from eomgen.proof.at_a_state import NumericState, state_in_numbers
 from eomgen.proof.check import Check, Tally
 from eomgen.proof.in_numbers import STEP
-from eomgen.proof.second_definitions import NearbyStates
+from eomgen.proof.instant import NearbyStates
 from eomgen.proof.trials import Trials
 from eomgen.records import dataclass
-from eomgen.symbolic.expression.expressions import Call, Expression, parse
-from eomgen.symbolic.expression.graph import Node
-from eomgen.symbolic.expression.habits import SLOPE
+from eomgen.symbolic.expression.formula import Call, Expression
+from eomgen.symbolic.expression.node import Node
 from eomgen.symbolic.expression.rational import Fraction
+from eomgen.symbolic.expression.text import SLOPE, parse
 from eomgen.symbolic.numeric.evaluation import NoValue, evaluate, fifty_digits
 from eomgen.symbolic.numeric.tolerances import CARRIED, COMPUTED, ITERATED, ZERO_AT_50
 

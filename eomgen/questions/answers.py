@@ -16,10 +16,9 @@ from typing import Any
 from eomgen.documents.document import Document, plain_document
 from eomgen.documents.linearize.result import Linearization, linearize
 from eomgen.documents.markdown import listing_markdown
-from eomgen.documents.quantity import Quantity
 from eomgen.documents.reading import without_cases
 from eomgen.documents.result import Result
-from eomgen.documents.statements import Found, Listing
+from eomgen.documents.statements import Found, Listing, Quantity
 from eomgen.documents.statics.result import why_not_at_rest
 from eomgen.errors import (
     DerivationError,
@@ -29,39 +28,37 @@ from eomgen.errors import (
     ModelError,
     RunFailed,
 )
-from eomgen.mechanics.equations.jumps import refuse_jump, signs_of_rates
-from eomgen.mechanics.equations.pieces import Extent
-from eomgen.mechanics.first_integrals.constants_of_motion import stay_constant
-from eomgen.mechanics.first_integrals.speeds import rates_and_extent
-from eomgen.mechanics.formulations.massless_nodes import with_nodes_balanced
-from eomgen.mechanics.initial_state.initial_state import start_state
-from eomgen.mechanics.initial_state.numeric_value import known_exactly, known_parameters
-from eomgen.mechanics.instant.outputs import asks_motion, asks_of
+from eomgen.mechanics.dynamics.formulations import with_nodes_balanced
+from eomgen.mechanics.dynamics.pieces import Extent, refuse_jump, signs_of_rates
+from eomgen.mechanics.instant.quantities import asks_motion, asks_of
 from eomgen.mechanics.instant.velocity_analysis import Snapshot, snapshot_of
+from eomgen.mechanics.integrals.first_integrals import stay_constant
+from eomgen.mechanics.integrals.speeds import rates_and_extent
+from eomgen.mechanics.start.exact import known_exactly, known_parameters
+from eomgen.mechanics.start.state import start_state
 from eomgen.model.fields import AtRest
 from eomgen.model.outputs import FUNCTIONS
 from eomgen.model.outputs.base import SMALL_MOTIONS
-from eomgen.model.own_units import units_of_outputs
 from eomgen.model.parts import Model, Output
 from eomgen.model.reader import ModelOrPath, model_at
 from eomgen.model.replaced import Values
+from eomgen.model.units import units_of_outputs
 from eomgen.proof.check import Certificate
 from eomgen.questions.at_instant import StateAtInstant, resting
 from eomgen.questions.in_phase import PhaseEquations, exact_numbers
-from eomgen.questions.motion_from_start import MotionFromStart
+from eomgen.questions.motion_from_start import MotionFromStart, leaves_at
 from eomgen.questions.of_a_run import is_of_a_run
-from eomgen.questions.one_phase_run import leaves_at
 from eomgen.questions.proof_of_answers import Solver, certificate_of
 from eomgen.records import dataclass
 from eomgen.symbolic.exact.book_form import book_form
 from eomgen.symbolic.expression.derivative import depends_on, substituted, symbols_of
-from eomgen.symbolic.expression.expressions import Call
-from eomgen.symbolic.expression.graph import Graph, Node, Scalar
+from eomgen.symbolic.expression.formula import Call
+from eomgen.symbolic.expression.graph import Graph
+from eomgen.symbolic.expression.node import Node, Scalar
 from eomgen.symbolic.expression.traversal import order
 from eomgen.symbolic.expression.units import Unit
-from eomgen.symbolic.numeric.evaluation import FLOAT, evaluate
+from eomgen.symbolic.numeric.evaluation import FLOAT, evaluate, transplanted
 from eomgen.symbolic.numeric.sure_numbers import number_of
-from eomgen.symbolic.numeric.transplant import transplanted
 from eomgen.symbolic.numeric.work import PatienceEnded, Work, doing, keep_what_there_is
 from eomgen.symbolic.print.text import LONGEST_RESULT, readable_text, text_size
 

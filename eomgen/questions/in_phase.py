@@ -12,36 +12,34 @@ from collections.abc import Mapping, Sequence
 from functools import cached_property
 from typing import Any
 
-from eomgen.codegen.solved_equations import accelerations_and_multipliers
+from eomgen.codegen.programs import accelerations_and_multipliers
 from eomgen.errors import MissingValues
-from eomgen.mechanics.balance.balance_solution import values_at_a_state
-from eomgen.mechanics.balance.friction import equations_of_motion
-from eomgen.mechanics.balance.unknown_loads import still
-from eomgen.mechanics.bodies.contact_modes import ContactModes
-from eomgen.mechanics.constraints.freedom import freedoms
-from eomgen.mechanics.constraints.ties import holds_identically
-from eomgen.mechanics.equations.equations_of_motion import EquationsOfMotion
-from eomgen.mechanics.equations.explicit_accelerations import bordered_rows, by_short_rows, regular_rows
-from eomgen.mechanics.equations.jumps import refuse_jump, signs_of_rates
-from eomgen.mechanics.equations.system import System, system_of
-from eomgen.mechanics.equations.wellposed import refuse_massless
-from eomgen.mechanics.instant.outputs import Quantities, asks_of
+from eomgen.mechanics.constraints.rank import freedoms
+from eomgen.mechanics.constraints.rows import holds_identically
+from eomgen.mechanics.dynamics.explicit_accelerations import bordered_rows, by_short_rows, regular_rows
+from eomgen.mechanics.dynamics.pieces import refuse_jump, signs_of_rates
+from eomgen.mechanics.dynamics.system import EquationsOfMotion, System, system_of
+from eomgen.mechanics.dynamics.wellposed import refuse_massless
+from eomgen.mechanics.free_bodies.balance import still
+from eomgen.mechanics.free_bodies.friction import equations_of_motion
+from eomgen.mechanics.free_bodies.solution import values_at_a_state
+from eomgen.mechanics.instant.quantities import Quantities, asks_of
+from eomgen.mechanics.kinematics.scene import ContactModes
 from eomgen.model.outputs.base import BALANCE, MASSES
 from eomgen.model.parts import Model
 from eomgen.model.unknowns import in_loads, refuse_motion
 from eomgen.records import dataclass
 from eomgen.symbolic.exact.normal_form import legible, readable_all
 from eomgen.symbolic.expression.derivative import depends_on, substituted
-from eomgen.symbolic.expression.expressions import Call, Expression
-from eomgen.symbolic.expression.graph import Node, Scalar
-from eomgen.symbolic.expression.node import ScalarRow, State
+from eomgen.symbolic.expression.formula import Call, Expression
+from eomgen.symbolic.expression.node import Node, Scalar, ScalarRow, State
 from eomgen.symbolic.expression.rational import Fraction
 from eomgen.symbolic.numeric.evaluation import FLOAT, evaluate
 from eomgen.symbolic.numeric.sure_numbers import number_of, numbers_of
 from eomgen.symbolic.numeric.tolerances import COMPUTED
 from eomgen.symbolic.numeric.work import Work
 from eomgen.symbolic.print.text import text_size
-from eomgen.symbolic.solve.linear_systems import LinearSystem, general_solution
+from eomgen.symbolic.solve.linear import LinearSystem, general_solution
 
 LONG = 400  # characters from which a formula is no easier to read than it came
 NO_FORMULA = 10 * LONG  # characters that nobody takes for a formula: rows are shortened before they are eliminated

@@ -18,31 +18,27 @@ import numpy as np
 
 from eomgen.codegen.batching import STATUS, Asked, Batch, FoundRuns
 from eomgen.codegen.rhs import in_c, parameter_vector
-from eomgen.codegen.series import order_for
-from eomgen.codegen.taylor import without_series
+from eomgen.codegen.taylor import order_for, without_series
 from eomgen.errors import EomgenError, ExpressionError, RunFailed, ToolMissing, UsageError
-from eomgen.mechanics.initial_state.initial_state import start_of_motion
+from eomgen.mechanics.start.state import start_of_motion
+from eomgen.model.fields import Table
 from eomgen.model.findings import nearest
 from eomgen.model.part import altered
 from eomgen.model.parts import Model, Parameter
-from eomgen.model.ranges import TypedNumbers, are_several, typed_values
-from eomgen.model.replaced import with_inputs, with_values
-from eomgen.model.table import Table
+from eomgen.model.replaced import TypedNumbers, are_several, typed_values, with_inputs, with_values
 from eomgen.proof.motion import Promise
-from eomgen.questions.runs import Runs
-from eomgen.questions.simulator import SAMPLES, KnownEquations, Simulator
+from eomgen.questions.simulator import SAMPLES, KnownEquations, Runs, Simulator
 from eomgen.records import dataclass, with_fields
 from eomgen.simulation.compiled_runs import marched
-from eomgen.simulation.configuration import Configuration, has_phases
+from eomgen.simulation.contacts import Configuration, has_phases
 from eomgen.simulation.integrate import drift_of, instants_of, refuse_bad_run
 from eomgen.simulation.integrator import ended_words, reached_words
-from eomgen.simulation.many_starts import ManyStarts
-from eomgen.simulation.march import BATCHED
+from eomgen.simulation.many_runs import BATCHED, ManyStarts
 from eomgen.simulation.phase_model import PhaseModel
 from eomgen.simulation.phase_models import one_phase
 from eomgen.simulation.solvers import AUTO, TAYLOR, breakpoints_of
-from eomgen.symbolic.expression.expressions import Expression
-from eomgen.symbolic.expression.typed import Typed, seconds
+from eomgen.symbolic.expression.formula import Expression
+from eomgen.symbolic.expression.units import Typed, seconds
 from eomgen.symbolic.numeric.tolerances import COMPUTED
 from eomgen.symbolic.numeric.work import check_patience, doing
 

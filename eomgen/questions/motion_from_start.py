@@ -1,4 +1,6 @@
-"""Model, condition -> StateAtInstant: the state at which a motion first meets a condition, exactly where it can be.
+"""Model, condition -> the state at which a motion first meets it.
+
+Model, condition -> StateAtInstant: the state at which a motion first meets a condition, exactly where it can be.
 
 A motion may pass through several phases: contacts end, slide, stick, a path goes over from one piece to the next. Each
 phase is followed in numbers; the instants between are then sought in closed form, and taken where both agree.
@@ -14,30 +16,39 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from eomgen.codegen.program import program_of, right_hand_side
+from eomgen.codegen.rhs import compiled
 from eomgen.errors import DerivationError, EomgenError, MissingValues, RunFailed
-from eomgen.mechanics.bodies.places import Located
-from eomgen.mechanics.constraints.ties import holds_identically
-from eomgen.mechanics.equations.system import system_of
-from eomgen.mechanics.initial_state.exact_start import ExactStart
-from eomgen.mechanics.statics.contacts_at_start import contacts_at_start
-from eomgen.mechanics.statics.rest_contacts import modes_at_rest
-from eomgen.model.fields import WrittenEquation
-from eomgen.model.parts import Model
+from eomgen.mechanics.constraints.rows import holds_identically
+from eomgen.mechanics.dynamics.accelerations import with_accelerations
+from eomgen.mechanics.dynamics.pieces import Extent
+from eomgen.mechanics.dynamics.system import system_of
+from eomgen.mechanics.kinematics.places import Located
+from eomgen.mechanics.start.exact import ExactStart, known_exactly
+from eomgen.mechanics.statics.contacts import contacts_at_start, modes_at_rest
+from eomgen.model.fields import AtRest, WrittenEquation
+from eomgen.model.parts import Model, Output
 from eomgen.questions.at_instant import StateAtInstant, carried, parameters_of, placed
 from eomgen.questions.in_phase import PhaseEquations, phase_equations_of
+from eomgen.questions.run import RunProof
 from eomgen.records import dataclass
-from eomgen.simulation.configuration import by_the_law, has_phases
+from eomgen.simulation.constraint_drift import nearness_of, projection_of
+from eomgen.simulation.contacts import by_the_law, has_phases
+from eomgen.simulation.integrate import integrate
+from eomgen.simulation.phase_run import PhaseRun, joined
+from eomgen.simulation.result import Trajectory
 from eomgen.symbolic.expression.derivative import depends_on, substituted
-from eomgen.symbolic.expression.graph import Node, Scalar
+from eomgen.symbolic.expression.node import Node, Scalar
 from eomgen.symbolic.numeric.evaluation import FLOAT, evaluate
-from eomgen.symbolic.numeric.tolerances import CARRIED, COMPUTED, FINE_RUN
+from eomgen.symbolic.numeric.sure_numbers import number_of
+from eomgen.symbolic.numeric.tolerances import CARRIED, COMPUTED, FINE_RUN, RUNS_AGREE
 
-if TYPE_CHECKING:  # what runs is loaded where something runs
+if TYPE_CHECKING:
     from eomgen.simulation.integrator import Stepping
     from eomgen.simulation.phase_change import PhaseStart
     from eomgen.simulation.phase_model import PhaseModel
     from eomgen.simulation.phase_models import PhaseModels
-    from eomgen.simulation.phase_run import PhaseRun
+
 
 HORIZONS = (10.0, 100.0, 1000.0)  # s, for conditions that are met late
 MOST_STEPS = 4000
@@ -178,7 +189,7 @@ class MotionFromStart:
         numbers: Mapping[Node, float],
     ) -> StateAtInstant:
         """In one phase."""
-        from eomgen.questions.first_instant import reached
+        from eomgen.questions.at_instant import reached
 
         moment = reached(phase, difference_of(phase, condition), start, numbers)
         moment = replace(moment, exact=placed(phase, moment.exact, moment.numbers))
@@ -294,7 +305,7 @@ def _end_of(
     by_time = StateAtInstant(phase, {}, numbers, "integration in time")
     if not start or ended_by is None:
         return by_time
-    from eomgen.questions.first_instant import closed_form
+    from eomgen.questions.at_instant import closed_form
 
     try:
         exact, way = closed_form(phase, phase.eliminated(ended_by), start, numbers)
@@ -328,3 +339,132 @@ def _is_moved_by_time(first: PhaseModel, phase: PhaseEquations) -> bool:
 def difference_of(phase: PhaseEquations, condition: WrittenEquation) -> Scalar:
     """Left side minus right side as a function of q, u and t."""
     return phase.of_state(condition.left) - phase.of_state(condition.right)
+
+
+# -------- one phase run ---------------------------------------------------------------------------------------
+# Motion from the start -> a run of it in one phase; whether it stays in the pieces in which its integrals hold.
+
+
+STEPS = 2000  # of a run in time that one instant is compared with
+WATCHED, INSTANTS = 100.0, 8001  # s of a motion that is watched for whether it stays in its piece, and how closely
+WATCHED_BRIEFLY = 10.0  # s, where a hundred take too many steps
+WATCHED_STEPS = 20_000
+
+
+def run_from_start(motion: MotionFromStart, time: float, samples: int | None = None, steps: int = STEPS) -> Trajectory:
+    """The motion from the start, in one phase, by emitted code.
+
+    Raises:
+        RunFailed: it does not get there.
+    """
+    phase, p = motion.phase, parameters_in_numbers(motion)
+    system, equations, symbols = phase.system, phase.equations, phase.system.symbols
+    x0 = np.array([motion.numbers[node] for node in (*symbols.q, *symbols.u)])
+    rhs = compiled(right_hand_side(with_accelerations(equations)), "numpy")
+    run = integrate(
+        rhs,
+        time=time,
+        x0=x0,
+        p=p,
+        rtol=FINE_RUN,
+        atol=FINE_RUN,
+        samples=samples,
+        projection=projection_of(system, p, "numpy"),
+        nearness=nearness_of(equations, p, system),
+        most_steps=steps,
+    )
+    if not run.ok:
+        raise RunFailed(f"the run does not get there: {run.message}", mend="ask for an earlier instant")
+    return run
+
+
+def parameters_in_numbers(motion: MotionFromStart) -> np.ndarray:
+    """The parameters of the phase; nan of those without a value."""
+    known = known_exactly(motion.phase.system.scope)
+    symbols = motion.phase.system.symbols
+    return np.array([number_of(known[node]) if node in known else math.nan for node in symbols.parameters.values()])
+
+
+def leaves_at(motion: MotionFromStart, held: Extent) -> float | None:
+    """When the motion first leaves the pieces in which something holds; None: it stays, as far as it was watched.
+
+    Raises:
+        RunFailed: it cannot be followed.
+    """
+    try:
+        run = run_from_start(motion, WATCHED, INSTANTS, WATCHED_STEPS)
+    except RunFailed:
+        run = run_from_start(motion, WATCHED_BRIEFLY, INSTANTS, WATCHED_STEPS)
+    system = motion.phase.system
+    function = compiled(program_of(held.limits, system.symbols, inputs=system.inputs), "numpy")
+    with np.errstate(all="ignore"):
+        over = function.many(run.t, run.x, parameters_in_numbers(motion))
+    worst = np.max(over, axis=1)
+    out = worst > COMPUTED * (1 + np.max(np.abs(over), initial=0.0))
+    if not out.any():
+        return None
+    k = max(int(np.argmax(out)), 1)
+    share = -worst[k - 1] / (worst[k] - worst[k - 1]) if worst[k - 1] < 0 else 0.0  # of the way between two instants
+    return float(run.t[k - 1] + share * (run.t[k] - run.t[k - 1]))
+
+
+# -------- proof of phases -------------------------------------------------------------------------------------
+# An instant behind several phases -> whether the motion leads to it: the run that was followed, looked at as a run.
+#
+# In each phase steps are taken again by another method, energy, ties and contacts are what the phase takes them for,
+# and between phases only impulses that push give momentum. The state is that at the end, and the condition holds not
+# before.
+
+
+def wrong_way(motion: MotionFromStart, output: Output, moment: StateAtInstant) -> str:
+    """What contradicts an instant of a motion with phases, in words; "".
+
+    Raises:
+        DerivationError: nothing of the motion can be looked at.
+    """
+    assert output.at is not None and not isinstance(output.at, AtRest) and motion.models is not None
+    t = moment.numbers.get(moment.phase.system.symbols.t, math.nan)
+    if t == 0:
+        return ""
+    runs = motion.runs_to(output.at)
+    found = RunProof(None, motion.models.p, fine_stepping(), motion.models)(joined(motion.models, runs))
+    if found.ok is None:
+        raise DerivationError(
+            "the motion has phases of which nothing could be checked",
+            mend="give every parameter a value in [parameters]",
+        )
+    failing = [f"{check.name}: {check.detail}" for check in found.checks if check.ok is False]
+    return next(iter(failing), "") or _elsewhere(runs, output, moment) or _met_before(runs, output)
+
+
+def _elsewhere(runs: Sequence[PhaseRun], output: Output, moment: StateAtInstant) -> str:
+    """That the state is not that at the end of the runs, or after what ended them."""
+    last = runs[-1]
+    end = last.after.values if output.side == "after" and last.after is not None else last.end
+    symbols, numbers = moment.phase.system.symbols, moment.numbers
+    wrong = [node for node in (*symbols.q, *symbols.u) if _apart(numbers[node], end.get(node.name, 0.0))]
+    wrong += [symbols.t] if _apart(numbers[symbols.t], last.run.end) else []
+    return "".join(f"{node.name} is {numbers[node]:.10g} there" for node in wrong[:1])
+
+
+def _apart(x: float, y: float) -> bool:
+    return not abs(x - y) <= RUNS_AGREE * (1 + abs(y))
+
+
+def _met_before(runs: Sequence[PhaseRun], output: Output) -> str:
+    """That left - right changes its sign within a phase, at the integrator's steps."""
+    condition = output.at
+    assert condition is not None and not isinstance(condition, AtRest)
+    for run in runs:
+        phase = run.phase
+        scalar = difference_of(PhaseEquations(phase.system), condition)
+        if type(scalar) is not Node:
+            continue
+        track = run.run.tracks[0] if run.run.tracks else None
+        t, x = (run.run.t, run.run.x) if track is None else track.all
+        with np.errstate(all="ignore"):
+            values = phase.functions.function((scalar,)).many(t, phase.functions.inner(x), phase.p)[:, 0]
+        sure = values[np.abs(values) > CARRIED * np.max(np.abs(values), initial=0.0)]
+        if np.any(sure > 0) and np.any(sure < 0):
+            return f"'{condition.text}' holds before t = {run.run.end:.10g} s"
+    return ""

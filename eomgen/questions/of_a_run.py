@@ -16,22 +16,21 @@ from typing import Any
 import numpy as np
 
 from eomgen.errors import DerivationError, ExpressionError, ModelError, RunFailed, UsageError
-from eomgen.mechanics.instant.outputs import asks_of
-from eomgen.model.fields import EVERY, AtRest, WrittenEquation
+from eomgen.mechanics.instant.quantities import asks_of
+from eomgen.model.fields import EVERY, AtRest, Table, WrittenEquation
 from eomgen.model.outputs.base import OF_A_RUN, SMALL_MOTIONS, formula_at
 from eomgen.model.parts import Model, Output
 from eomgen.model.replaced import Taken, equation_typed
-from eomgen.model.table import Table
 from eomgen.model.values import numeric_parameters
 from eomgen.proof.check import Check, Tally, differing
 from eomgen.records import dataclass
-from eomgen.simulation.dense_motion import DenseMotion, dense_motion
-from eomgen.simulation.motion import Plan
-from eomgen.simulation.output_columns import OutputColumns
+from eomgen.simulation.columns import OutputColumns
+from eomgen.simulation.motion import DenseMotion, Plan, dense_motion
 from eomgen.simulation.phase_run import PhaseRun
-from eomgen.symbolic.expression.expressions import Call, Expression, parse
-from eomgen.symbolic.expression.typed import parse_typed_equation
-from eomgen.symbolic.numeric.chebyshev import ChebyshevPieces, resolved_curve
+from eomgen.symbolic.expression.formula import Call, Expression
+from eomgen.symbolic.expression.text import parse
+from eomgen.symbolic.expression.units import parse_typed_equation
+from eomgen.symbolic.numeric.isolation import ChebyshevPieces, resolved_curve
 from eomgen.symbolic.numeric.tolerances import CARRIED, COMPUTED, SAME_PERIOD, SAME_PLACE, SOLVED
 
 

@@ -13,29 +13,28 @@ from eomgen.certificate import certify
 from eomgen.codegen.rhs import parameter_vector
 from eomgen.equations import Equations
 from eomgen.errors import DerivationError
-from eomgen.mechanics.balance.friction import with_friction
-from eomgen.mechanics.equations.stabilization import stabilized
-from eomgen.mechanics.formulations import recursive
+from eomgen.mechanics.dynamics.accelerations import stabilized
+from eomgen.mechanics.dynamics.formulations import assembled_by_recursion
+from eomgen.mechanics.free_bodies.friction import with_friction
 from eomgen.model.fields import WrittenEquation
 from eomgen.model.parts import Output
 from eomgen.proof import motion
 from eomgen.proof.check import Certificate, Check, unchecked
 from eomgen.proof.contact_phases import bodies_stand_as_told, changes_follow_impulses, contacts_do_as_told
-from eomgen.proof.run_columns import output_columns_hold, reaction_columns_hold, rows_left_out
+from eomgen.proof.run_told import output_columns_hold, reaction_columns_hold, rows_left_out
 from eomgen.questions.of_a_run import WholeRun
 from eomgen.records import dataclass, with_fields
-from eomgen.simulation.accuracy import Accuracy, accuracy_of, finer
+from eomgen.simulation.columns import formulas_of
 from eomgen.simulation.integrate import SAMPLES, instants_of, refuse_bad_run
 from eomgen.simulation.integrator import Run, Stepping
-from eomgen.simulation.joined import joined, thinned, with_outputs, with_reactions
 from eomgen.simulation.motion import Plan, through
-from eomgen.simulation.output_columns import formulas_of
 from eomgen.simulation.phase_change import PhaseStart, at_start
 from eomgen.simulation.phase_models import PhaseModels
-from eomgen.simulation.phase_run import PhaseRun, condition_of
+from eomgen.simulation.phase_run import PhaseRun, condition_of, joined, thinned, with_outputs, with_reactions
 from eomgen.simulation.result import Phase, Trajectory
-from eomgen.symbolic.expression.expressions import Expression
-from eomgen.symbolic.expression.typed import Typed
+from eomgen.simulation.solvers import Accuracy, accuracy_of, finer
+from eomgen.symbolic.expression.formula import Expression
+from eomgen.symbolic.expression.units import Typed
 from eomgen.symbolic.numeric.evaluation import NoValue
 from eomgen.symbolic.numeric.tolerances import COMPUTED
 from eomgen.symbolic.numeric.work import PatienceEnded, doing, keep_what_there_is
@@ -347,7 +346,7 @@ def pulling(equations: Equations, rates: tuple[float, float]) -> Equations:
     Raises:
         UsageError: see `stabilized`.
     """
-    pulled = stabilized(recursive.assembled_by_recursion(equations.graph.system), rates)
+    pulled = stabilized(assembled_by_recursion(equations.graph.system), rates)
     return replace(equations, graph=with_friction(pulled))
 
 

@@ -1,37 +1,50 @@
-"""Equations -> Simulator: one motion after another, from other values and starts; derived and compiled once."""
+"""Equations -> Simulator: one motion after another, with controllers; many as arrays.
+
+Equations -> Simulator: one motion after another, from other values and starts; derived and compiled once.
+"""
 
 from __future__ import annotations
 
+import inspect
+import math
 from collections import OrderedDict
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import field, replace
 from functools import cached_property
+from typing import Any
 
 import numpy as np
 
 from eomgen.codegen.rhs import parameter_vector
 from eomgen.equations import Equations
-from eomgen.errors import DerivationError, ExpressionError, UsageError
-from eomgen.model.fields import WrittenEquation
+from eomgen.errors import DerivationError, ExpressionError, NotYet, RunFailed, UsageError
+from eomgen.model.driven import law_of
+from eomgen.model.fields import Table, WrittenEquation
 from eomgen.model.findings import nearest
 from eomgen.model.outputs import FUNCTIONS
 from eomgen.model.outputs.base import BALANCE
-from eomgen.model.part import altered
-from eomgen.model.parts import Model
+from eomgen.model.part import altered, part_of_values
+from eomgen.model.parts import Model, Parameter
 from eomgen.model.replaced import Valued, Values, with_values
-from eomgen.proof.kept_ties import rows_that_stay
-from eomgen.questions.of_a_run import asked_of
-from eomgen.questions.run import phase_models, run
+from eomgen.proof.check import Certificate, checked
+from eomgen.proof.freedoms import rows_that_stay
+from eomgen.questions.of_a_run import WholeRun, asked_of
+from eomgen.questions.run import finished_run, phase_models, run
 from eomgen.records import dataclass
-from eomgen.simulation.configuration import has_phases
-from eomgen.simulation.derived_at import DerivedAt
+from eomgen.simulation.columns import formulas_of
+from eomgen.simulation.contacts import has_phases
+from eomgen.simulation.integrate import instants_of, refuse_bad_run
 from eomgen.simulation.integrator import Stepping
-from eomgen.simulation.output_columns import formulas_of
-from eomgen.simulation.phase_change import at_start
-from eomgen.simulation.phase_models import PhaseModels
-from eomgen.simulation.result import Trajectory
-from eomgen.symbolic.expression.expressions import Expression, single_call
-from eomgen.symbolic.expression.typed import Typed, seconds
+from eomgen.simulation.motion import Plan, through
+from eomgen.simulation.phase_change import PhaseStart, after_jump, at_start
+from eomgen.simulation.phase_models import DerivedAt, PhaseModels
+from eomgen.simulation.phase_run import PhaseRun
+from eomgen.simulation.result import NO_EQUATIONS, Trajectory
+from eomgen.simulation.solvers import breakpoints_of
+from eomgen.symbolic.expression.formula import Expression
+from eomgen.symbolic.expression.text import as_expression, single_call
+from eomgen.symbolic.expression.units import Typed, seconds
+from eomgen.symbolic.numeric.tolerances import SOLVED
 
 SAMPLES = 101
 MOST_BASES = 4  # derivations that are looked at whether they hold at other values
@@ -249,3 +262,294 @@ def _with_columns(found: Trajectory, asked: tuple[str, ...], formulas: Mapping[s
         if name not in found.reactions:
             raise UsageError(f"no column '{name}'", mend=nearest(name, found.reactions) or f"ask for '{REACTIONS}'")
     return replace(found, reactions={name: found.reactions[name] for name in names})
+
+
+# -------- controlled ------------------------------------------------------------------------------------------
+# Equations, controllers -> Trajectory: inputs by a law of the state that is sampled and held, or by a Python
+# function.
+#
+# What a controller sets is a parameter of the equations: held, it changes at the controller's instants alone, and
+# between two of them the motion goes on in the compiled march with another value of it. A Python function of (t, x)
+# is called at every evaluation: scipy steps, and no step is compiled.
+
+
+ControlLaw = Callable[[float, np.ndarray], float]
+"""(t, x) -> the input, x = (q, u)"""
+MOST_SAMPLES = 1_000_000  # of a controller in a run
+
+
+@dataclass(frozen=True)
+class Controller:
+    """What sets one input.
+
+    Args:
+        law: (t, x) -> value, or an expression of the state.
+        every: it is sampled so often, and held [s]; None: a function that is called at every evaluation.
+    """
+
+    law: ControlLaw | Expression
+    every: float | None
+
+    def value(self, t: float, state: Mapping[str, float], x: np.ndarray) -> float:
+        """What it sets at a state; by name, and as (q, u).
+
+        Raises:
+            RunFailed: no number.
+        """
+        law = self.law
+        found = law.evaluate({**state, "t": t, "pi": math.pi}) if isinstance(law, Expression) else law(t, x)
+        value = float(np.asarray(found, dtype=float).reshape(()))
+        if not math.isfinite(value):
+            raise RunFailed(f"a controller gives {value} at t = {t:.6g} s", mend="return a finite number")
+        return value
+
+
+def controllers_of(model: Model, inputs: Mapping[str, Any]) -> dict[str, Controller]:
+    """Those among the inputs: functions, and tables {"value": law, "every": time}.
+
+    Raises:
+        UsageError: no input of that name; a table with other keys; a time that makes no sense; a function of other
+            arguments.
+    """
+    found: dict[str, Controller] = {}
+    for name, value in inputs.items():
+        held = isinstance(value, Mapping) and "every" in value
+        if not held and not callable(value):
+            continue
+        if name not in model.inputs:
+            raise UsageError(f"there is no input '{name}'", mend=nearest(name, model.inputs))
+        if not held:
+            _refuse_other_arguments(name, value)
+            found[name] = Controller(value, None)
+            continue
+        if set(value) != {"value", "every"}:
+            raise UsageError(f"input '{name}' is no controller", mend='write {"value": "-k*x", "every": 0.01}')
+        every, law = seconds(value["every"]), value["value"]
+        if not every > 0:
+            raise UsageError(f"input '{name}': every {every:g} s makes no sense", mend="give a time above 0")
+        if callable(law):
+            _refuse_other_arguments(name, law)
+        found[name] = Controller(law if callable(law) else law_of(model, law) or as_expression(law), every)
+    return found
+
+
+def _refuse_other_arguments(name: str, law: Callable[..., Any]) -> None:
+    """Before the run, where Python can tell what a function takes."""
+    try:
+        takes = inspect.signature(law)
+    except (TypeError, ValueError):
+        return
+    try:
+        takes.bind(0.0, np.zeros(0))
+    except TypeError:
+        what = f"input '{name}' is given by a Python function of {takes}, and is called with (t, x)"
+        raise UsageError(what, mend="a function of the time and the state x = (q, u)") from None
+
+
+def with_controlled(model: Model, names: Sequence[str]) -> Model:
+    """The model in which what controllers set are parameters."""
+    left = {name: part for name, part in model.inputs.items() if name not in names}
+    zero = Expression.number(0)
+    more = {name: part_of_values(Parameter, {"value": zero, "unit": model.inputs[name].unit}) for name in names}
+    return altered(model, inputs=Table(left), parameters=Table({**model.parameters, **more}))
+
+
+@dataclass(frozen=True)
+class _Control:
+    """The controllers of one run.
+
+    Args:
+        places: of what they set, among the parameters.
+        names: of x.
+        known: the parameters' values by name.
+    """
+
+    controllers: Mapping[str, Controller]
+    places: Mapping[str, int]
+    names: tuple[str, ...]
+    known: Mapping[str, float]
+
+    def set_(self, p: np.ndarray, t: float, values: Mapping[str, float], due: Sequence[str]) -> np.ndarray:
+        """p with what some controllers set at a state."""
+        found, x = p.copy(), np.array([values[name] for name in self.names])
+        state = {**self.known, **values}
+        for name in due:
+            found[self.places[name]] = self.controllers[name].value(t, state, x)
+        return found
+
+    def fed(self, names: Sequence[str]) -> Callable[[np.ndarray, float, np.ndarray], np.ndarray] | None:
+        """(p, t, x) -> p with what the functions set, x the integrated state; None without functions."""
+        due = [name for name, each in self.controllers.items() if each.every is None]
+        if not due:
+            return None
+        kept = [names.index(name) for name in self.names]
+
+        def found(p: np.ndarray, t: float, x: np.ndarray) -> np.ndarray:
+            given = p.copy()
+            for name in due:
+                given[self.places[name]] = self.controllers[name].value(t, {}, x[kept])
+            return given
+
+        return found
+
+
+def controlled_run(
+    equations: Equations,
+    controllers: Mapping[str, Controller],
+    *,
+    time: Typed,
+    samples: int | Sequence[Typed],
+    how: Stepping,
+    target: str | None = None,
+) -> Trajectory:
+    """The motion of a model in which what controllers set are parameters.
+
+    Raises:
+        NotYet: a Python function sets an input, and contacts change.
+    """
+    model = equations.model
+    time = seconds(time)
+    refuse_bad_run(0.0, time, how)
+    functions = [name for name, each in controllers.items() if each.every is None]
+    if functions and has_phases(model):
+        raise NotYet(
+            f"'{functions[0]}' is set by a Python function, and contacts change", mend="an expression, or `every`"
+        )
+    models = phase_models(equations, parameter_vector(model), how, target)
+    here = at_start(models, 0.0, None, None)
+    instants = instants_of(samples, 0.0, time)
+    plan = Plan(time, replace(how.of_one_step(), breakpoints=breakpoints_of(model), keeps=True), instants)
+    phases = list(_phases(_control(models, here, controllers), models, here, plan))
+    values = dict(zip(model.parameters, models.p.tolist(), strict=True))
+    whole = WholeRun(model, [run for run, _, _ in phases], plan, values, [end for _, end, _ in phases])
+    found = finished_run(equations, phases[-1][2], whole, how, instants)
+    told = f"{', '.join(functions)} set by Python functions: stepped by scipy, one call of Python an evaluation."
+    return replace(found, told=" ".join(filter(None, [told if functions else "", found.told])))
+
+
+def _control(models: PhaseModels, here: PhaseStart, controllers: Mapping[str, Controller]) -> _Control:
+    first, names = models.of(here.configuration), list(models.model.parameters)
+    places = {name: names.index(name) for name in controllers}
+    known = dict(zip(names, models.p.tolist(), strict=True))
+    return _Control(controllers, places, (*first.coordinates, *first.shown), known)
+
+
+def _phases(
+    control: _Control, models: PhaseModels, here: PhaseStart, plan: Plan
+) -> Iterator[tuple[PhaseRun, float, PhaseModels]]:
+    """(a phase, up to when it was planned, its equations at the values that are held in it), one after the other."""
+    first = models.of(here.configuration)
+    p, fed = models.p, control.fed((*first.coordinates, *first.speeds))
+    for start, end, due in _stretches(control.controllers, plan.end):
+        p = control.set_(p, start, here.values, due)
+        models = models.at(p, fed)
+        here = after_jump(models, here)
+        inside = None if plan.instants is None else plan.instants[(plan.instants >= start) & (plan.instants <= end)]
+        for phase in through(models, here, replace(plan, end=end, instants=inside)):
+            yield phase, end, models
+        if phase.run.status != "finished":
+            return
+        here = PhaseStart(end, phase.end, phase.here.configuration, begun=here.begun)
+
+
+def _stretches(controllers: Mapping[str, Controller], time: float) -> Iterator[tuple[float, float, list[str]]]:
+    """(start, end, those that are sampled at the start) of the times between two samples of any controller."""
+    periods = {name: each.every for name, each in controllers.items() if each.every is not None}
+    if sum(time / every for every in periods.values()) > MOST_SAMPLES:
+        raise UsageError(f"more than {MOST_SAMPLES} samples of controllers", mend="a shorter run, or a longer `every`")
+    instants = {0.0} | {k * every for every in periods.values() for k in range(1, math.ceil(time / every - SOLVED))}
+    marks: list[float] = []
+    for t in sorted(instants):
+        if not marks or t - marks[-1] > SOLVED * time:
+            marks.append(t)
+    for start, end in zip(marks, [*marks[1:], time], strict=True):
+        due = [
+            name
+            for name, every in periods.items()
+            if abs(start / every - round(start / every)) * every <= SOLVED * time
+        ]
+        yield start, end, due
+
+
+# -------- runs ------------------------------------------------------------------------------------------------
+# Runs: what many motions of one model left, as arrays, a DataFrame or a Dataset.
+
+
+@dataclass(frozen=True, eq=False, repr=False)
+class Runs:
+    """Many motions of one model.
+
+    Args:
+        t: the instants, k [s].
+        x: states (q, u), runs x k x states; nan all along in a run that failed.
+        names: of the coordinates and speeds.
+        status: "finished", or why a run failed; message: the same as a sentence.
+        steps: taken by each.
+        given: the values of each run, by name, of those that are not the same in all.
+        proof: -> the certificate of the equations; None out of a pickle.
+        drifts: (t, x) -> of each run how far its energy went; None where it need not stay.
+    """
+
+    t: np.ndarray
+    x: np.ndarray
+    names: tuple[str, ...]
+    status: np.ndarray
+    message: np.ndarray
+    steps: np.ndarray
+    given: Mapping[str, np.ndarray]
+    proof: Callable[[], Certificate] | None = field(repr=False)
+    drifts: Callable[[np.ndarray, np.ndarray], np.ndarray] | None = field(default=None, repr=False)
+
+    def __getstate__(self) -> dict[str, Any]:
+        """All its numbers, the drift among them; its equations do not go into a pickle."""
+        own = {name: self.__dict__[name] for name in self.__dataclass_fields__}
+        return own | {"drift": self.drift, "drifts": None, "proof": None}
+
+    def __len__(self) -> int:
+        return len(self.x)
+
+    def __getitem__(self, name: str) -> np.ndarray:
+        """A coordinate or speed, runs x instants."""
+        if name not in self.names:
+            raise KeyError(f"no column '{name}'; there are {', '.join(self.names)}")
+        return np.asarray(self.x[:, :, self.names.index(name)])
+
+    @cached_property
+    def drift(self) -> np.ndarray | None:
+        """Of each run the largest |E - E(0)| over the energy that moves; None where it need not stay."""
+        return None if self.drifts is None else self.drifts(self.t, self.x)
+
+    def certify(self) -> Certificate:
+        """The proof of the equations that all runs share.
+
+        Raises:
+            UsageError: they come out of a pickle.
+        """
+        if self.proof is None:
+            raise UsageError(NO_EQUATIONS, mend="take eomgen.simulate_many(model), in the process that asks")
+        finished = self.status == "finished"
+        whole = np.isfinite(self.x).all(axis=(1, 2))
+        lost = [str(k) for k in np.flatnonzero(finished != whole)]
+        wrong = f"not of run {', '.join(lost[:3])}" if lost else ""
+        more = [checked("runs that are finished have numbers at all instants", wrong, "every run")]
+        return self.proof() + more
+
+    def to_pandas(self) -> Any:
+        """All runs as one DataFrame over (run, t) (needs pandas)."""
+        import pandas
+
+        index = pandas.MultiIndex.from_product([range(len(self)), self.t], names=["run", "t"])
+        return pandas.DataFrame(self.x.reshape(-1, len(self.names)), index=index, columns=list(self.names))
+
+    def to_xarray(self) -> Any:
+        """A Dataset over (run, time) (needs xarray)."""
+        import xarray
+
+        columns = {name: (("run", "time"), self[name]) for name in self.names}
+        of_runs = {"status": self.status, "message": self.message, "steps": self.steps, **self.given}
+        told = {name: ("run", np.asarray(values)) for name, values in of_runs.items()}
+        return xarray.Dataset({**columns, **told}, coords={"run": np.arange(len(self)), "time": self.t})
+
+    def __repr__(self) -> str:
+        failed = int(np.sum(self.status != "finished"))
+        return f"<{len(self)} runs of {', '.join(self.names)}: {len(self.t)} instants, {failed} failed>"

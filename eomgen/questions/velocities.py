@@ -14,11 +14,11 @@ from math import isfinite
 from eomgen.documents.kinematics.result import Kinematics
 from eomgen.errors import DerivationError, ModelError, UsageError
 from eomgen.mechanics.constraints.elimination import refuse_undetermined
-from eomgen.mechanics.constraints.freedom import counted, freedoms
-from eomgen.mechanics.fields.motion_kind import Kinds
-from eomgen.mechanics.initial_state.initial_state import refuse_lost
+from eomgen.mechanics.constraints.rank import counted, freedoms
 from eomgen.mechanics.instant.kinematic_state import KinematicState
+from eomgen.mechanics.instant.motion_kind import Kinds
 from eomgen.mechanics.instant.velocity_analysis import Snapshot, snapshot_of
+from eomgen.mechanics.start.state import refuse_lost
 from eomgen.model.fields import WrittenEquation
 from eomgen.model.part import altered, part_of_values
 from eomgen.model.parts import Given, Model
@@ -29,9 +29,8 @@ from eomgen.questions.at_instant import StateAtInstant, parameters_of
 from eomgen.questions.in_phase import PhaseEquations, exact_numbers
 from eomgen.questions.motion_from_start import MotionFromStart
 from eomgen.symbolic.expression.derivative import depends_on, substituted
-from eomgen.symbolic.expression.expressions import Expression
-from eomgen.symbolic.expression.graph import Node, is_zero
-from eomgen.symbolic.expression.node import State
+from eomgen.symbolic.expression.formula import Expression
+from eomgen.symbolic.expression.node import Node, State, is_zero
 from eomgen.symbolic.expression.rational import Fraction
 from eomgen.symbolic.numeric.work import doing
 from eomgen.symbolic.print.text import text_size

@@ -11,12 +11,10 @@ from eomgen.files import read
 from eomgen.model.parts import Model
 from eomgen.model.reader import loads
 from eomgen.records import dataclass
-from eomgen.robots.drawn_up import Imported, LeftOut
 from eomgen.robots.mjcf import mjcf
-from eomgen.robots.numbers import EXACTLY
 from eomgen.robots.sdf import sdf
 from eomgen.robots.sdf_models import LARGEST
-from eomgen.robots.toml_text import toml_text
+from eomgen.robots.tables import EXACTLY, Imported, LeftOut, toml_text
 from eomgen.robots.urdf import urdf
 
 COMMENT = re.compile(rb"<!--.*?-->", re.S)

@@ -1,4 +1,6 @@
-"""MJCF -> tables of a model file, by MuJoCo's own reader and compiler (the extra `[mujoco]`).
+"""MJCF -> tables of a model file, by MuJoCo's own reader.
+
+MJCF -> tables of a model file, by MuJoCo's own reader and compiler (the extra `[mujoco]`).
 
 What MuJoCo has compiled is what is imported: defaults are in it, inertias of geoms, names of meshes. A body's joints
 become joints one after the other, with frames without mass between them; each sits at its own place in the body.
@@ -9,34 +11,47 @@ angular velocity in the body's axes, as here.
 from __future__ import annotations
 
 import importlib
+import math
+import re
+import warnings
 from collections.abc import Mapping
 from decimal import Decimal
 from pathlib import Path
 from typing import Any
 
-from eomgen.robots.drawn_up import (
+from eomgen.errors import ModelError, ToolMissing
+from eomgen.files import read
+from eomgen.robots.mjcf_acting import (
+    BALL,
+    FREE,
+    HINGE,
+    CompiledRobot,
+    equalities,
+    motors,
+    motors_in_space,
+    rotors,
+    start_of,
+    tendons,
+    turn_by,
+)
+from eomgen.robots.sdf_models import LARGEST
+from eomgen.robots.tables import (
+    ZERO,
     Entries,
     Imported,
     Moved,
     Seat,
+    decimal_of_double,
+    decimal_text,
+    decimals,
     hung,
+    inertia_in,
     signed_sum,
+    six,
+    tensor_of,
     told_left,
     without_empty,
 )
-from eomgen.robots.mjcf_acting import equalities, start_of, tendons
-from eomgen.robots.mjcf_files import compiled, spec_of
-from eomgen.robots.mjcf_motors import motors, motors_in_space, rotors
-from eomgen.robots.mjcf_reading import BALL, FREE, HINGE, CompiledRobot, turn_by
-from eomgen.robots.numbers import (
-    ZERO,
-    decimal_of_double,
-    decimals,
-    inertia_in,
-    six,
-    tensor_of,
-)
-from eomgen.robots.toml_text import decimal_text
 from eomgen.robots.urdf import free_joint, turned_freely, with_mass
 from eomgen.symbolic.expression.spatial import IDENTITY
 from eomgen.symbolic.numeric.tolerances import SLOPE_AT_REST
@@ -348,3 +363,145 @@ def _rest(r: CompiledRobot) -> None:
         ("plugins", m.nplugin - sum(r.by_plugin(k) for k in range(len(m.actuator_trntype))), "code of a simulator"),
     ):
         r.leave(what, [str(size)] * bool(size), why)
+
+
+# -------- mjcf files ------------------------------------------------------------------------------------------
+# An MJCF file -> MuJoCo's own reading of it, pictures left away.
+
+
+MOST_MADE = (
+    3_000  # elements that <replicate> makes: MuJoCo takes the square of it, of 3000 some 3 s, and cannot be stopped
+)
+MOST_VALUES = 10_000_000  # of one array that a file asks for
+SIZES = {  # what makes arrays as large as a number in the file, or as the product of several
+    "hfield": ("nrow", "ncol"),
+    "texture": ("width", "height"),
+    "flexcomp": ("count",),
+    "composite": ("count",),
+    "numeric": ("size",),
+    "size": ("nkey", "nuser_body", "nuser_jnt", "nuser_geom", "nuser_site", "nuser_cam", "nuser_tendon"),
+}
+ALONE = ("size",)  # of these each attribute is an array of its own
+COMMENT = re.compile(r"<!--.*?-->", re.S)
+TAG = re.compile(r"<\s*(/?)\s*([A-Za-z_]+)([^<>]*?)(/?)>", re.S)
+ATTRIBUTE = re.compile(r"""([A-Za-z_]+)\s*=\s*["']([^"']*)["']""")
+DEEPEST = 30  # files that include one another
+NOT_THERE = "Error opening file"  # so MuJoCo says it
+
+
+def spec_of(path: Path, data: bytes) -> Any:
+    """A file as MuJoCo reads it; files of pictures need not be there, nor those of meshes that give no mass.
+
+    Raises:
+        ToolMissing: MuJoCo is not installed.
+        ModelError: MuJoCo cannot read it; it says why.
+    """
+    try:
+        mujoco: Any = importlib.import_module("mujoco")
+    except ImportError as error:
+        raise ToolMissing("MJCF is read by MuJoCo, which is not installed", mend="pip install mujoco") from error
+    _refuse_endless(path, data, path, 1, 0)
+    try:
+        try:
+            return _read(mujoco, path, data)
+        except ValueError as error:
+            if NOT_THERE not in str(error):
+                raise
+        return _read(mujoco, path, data, meshes=False)
+    except (ValueError, RuntimeError) as error:
+        why = " ".join(str(error).split())
+        mend = "put the file there" if NOT_THERE in why else "mend the file"
+        raise ModelError(f"MuJoCo cannot read it: {why}", str(path), mend) from error
+
+
+def _refuse_endless(path: Path, data: bytes, first: Path, times: int, depth: int) -> int:
+    """How many elements replicas make of a file, and of those that it includes.
+
+    Args:
+        first: beside which included files lie.
+        times: how often this file stands there.
+    Raises:
+        ModelError: more than anything can be computed with; MuJoCo would ask for the memory, or work on it for hours.
+    """
+    text = data.decode("utf-8", "replace")
+    text = COMMENT.sub(lambda found: "\n" * found[0].count("\n"), text)
+    made, copies = 0, [times]
+    for found in TAG.finditer(text):
+        closes, tag, inner, closed = found.groups()
+        if closes:
+            if tag == "replicate" and len(copies) > 1:
+                copies.pop()
+            continue
+        given = dict(ATTRIBUTE.findall(inner))
+        where = f"{path}:{text.count(chr(10), 0, found.start()) + 1}:1"
+        if tag == "replicate" and not closed:
+            copies.append(copies[-1] * _product(given.get("count", "1")))
+        elif tag == "include" and depth < DEEPEST and "file" in given:
+            part = first.parent / given["file"]
+            made += _refuse_endless(part, _included(part), first, copies[-1], depth + 1)
+        made += copies[-1] if copies[-1] > 1 and tag != "replicate" else 0
+        if made > MOST_MADE:
+            what = f"replicas make more than {MOST_MADE} elements"
+            raise ModelError(what, where, "make fewer: equations of so many bodies are not derived")
+        sizes = [_product(given[key]) for key in SIZES.get(tag, ()) if key in given]
+        if sizes and max(max(sizes), 1 if tag in ALONE else math.prod(sizes)) > MOST_VALUES:
+            what = f"<{tag}> asks for more than {MOST_VALUES} values"
+            raise ModelError(what, where, "make it smaller: no equation depends on it")
+    return made
+
+
+def _included(path: Path) -> bytes:
+    """A part of a file; nothing where it is missing, which MuJoCo says."""
+    try:
+        return read(path, LARGEST)
+    except OSError:
+        return b""
+
+
+def _product(text: str) -> int:
+    """The product of whole numbers; 1 of what is none: MuJoCo says so."""
+    words = text.split()
+    return math.prod(int(word) for word in words) if all(word.isdigit() and len(word) < 20 for word in words) else 1
+
+
+def compiled(spec: Any) -> Any:
+    """What MuJoCo makes of it, without a word of what it will not read some day."""
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore")
+        return spec.compile()
+
+
+def _read(mujoco: Any, path: Path, data: bytes, *, meshes: bool = True) -> Any:
+    """Without textures; without `meshes` what has a mesh on a body whose mass is given, or that stands, is a ball."""
+    pipe = not path.is_file()
+    spec = mujoco.MjSpec.from_string(data.decode()) if pipe else mujoco.MjSpec.from_file(str(path))
+    spec.compiler.fusestatic = False
+    for material in spec.materials:
+        material.textures = ["" for _ in material.textures]
+    for texture in list(spec.textures):
+        _delete(spec, texture)
+    if not meshes:
+        by_geoms = spec.compiler.inertiafromgeom == mujoco.mjtInertiaFromGeom.mjINERTIAFROMGEOM_TRUE
+        _without_meshes(spec, mujoco.mjtGeom.mjGEOM_SPHERE, by_geoms)
+    compiled(spec)
+    return spec
+
+
+def _without_meshes(spec: Any, ball: Any, by_geoms: bool) -> None:
+    needed = set()
+    for body in spec.bodies:
+        for geom in body.geoms:
+            if geom.meshname and (body.name == "world" or (body.explicitinertial and not by_geoms)):
+                geom.type, geom.size[0], geom.meshname = ball, 1, ""
+            needed.add(geom.meshname)
+    for mesh in list(spec.meshes):
+        if mesh.name not in needed:
+            _delete(spec, mesh)
+
+
+def _delete(spec: Any, what: Any) -> None:
+    """As each MuJoCo has it."""
+    if hasattr(spec, "delete"):
+        spec.delete(what)
+    else:
+        what.delete()

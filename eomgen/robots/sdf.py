@@ -15,21 +15,25 @@ from typing import Any
 from eomgen.errors import ModelError
 from eomgen.model.findings import nearest
 from eomgen.records import dataclass
-from eomgen.robots.drawn_up import (
+from eomgen.robots.sdf_models import YES, FlatModel, SdfChoice, choice_named, choices, link_masses, own_pose
+from eomgen.robots.tables import (
+    ORIGIN,
+    ZERO,
     Entries,
     Imported,
     LegalNames,
     Moved,
     Seat,
+    computed,
+    decimals,
     gap,
     hung,
     in_file,
+    quaternion_of,
     told_left,
+    turn_of,
     without_empty,
 )
-from eomgen.robots.numbers import ORIGIN, ZERO, computed, decimals, quaternion_of, turn_of
-from eomgen.robots.sdf_masses import YES, link_masses, own_pose
-from eomgen.robots.sdf_models import FlatModel, SdfChoice, choice_named, choices
 from eomgen.robots.urdf import LEFT_OUT, by_name, free_joint, left_out, turned_freely
 from eomgen.robots.xml_tree import XmlElement, xml_tree
 from eomgen.symbolic.expression.spatial import IDENTITY, Pose, apply

@@ -32,11 +32,8 @@ from eomgen.errors import DerivationError, UsageError
 from eomgen.model.parts import Model
 from eomgen.model.reader import loads
 from eomgen.records import dataclass
-from eomgen.robots.drawn_up import Entries, without_empty
-from eomgen.robots.numbers import Nine, Triple
-from eomgen.robots.sympy_joints import lagrangian_method, tables_of_joints
-from eomgen.robots.sympy_words import Words, file_texts, speeds_as_rates
-from eomgen.robots.toml_text import toml_text
+from eomgen.robots.sympy_joints import Words, file_texts, lagrangian_method, speeds_as_rates, tables_of_joints
+from eomgen.robots.tables import Entries, Nine, Triple, toml_text, without_empty
 from eomgen.symbolic.expression.derivative import (
     depends_on_any,
     gradient,
@@ -45,14 +42,14 @@ from eomgen.symbolic.expression.derivative import (
     symbols_of,
     tangent,
 )
-from eomgen.symbolic.expression.expressions import LONGEST
-from eomgen.symbolic.expression.graph import Node, Scalar, is_zero
+from eomgen.symbolic.expression.node import Node, Scalar, is_zero
 from eomgen.symbolic.expression.rational import Fraction
 from eomgen.symbolic.expression.spatial import IDENTITY, apply, dot, plus, product, times, transposed
+from eomgen.symbolic.expression.text import LONGEST
 from eomgen.symbolic.numeric.evaluation import FLOAT, evaluate
 from eomgen.symbolic.numeric.tolerances import RANK_NEARBY
 from eomgen.symbolic.print.text import text_size
-from eomgen.symbolic.solve.linear_systems import LinearSystem, unique_solution
+from eomgen.symbolic.solve.linear import LinearSystem, unique_solution
 from eomgen.symbolic.solve.solving import vanishes
 
 HALF = Fraction(1, 2)

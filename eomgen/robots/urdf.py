@@ -12,35 +12,33 @@ from decimal import Decimal
 from typing import Any
 
 from eomgen.errors import ModelError
-from eomgen.model.checks.triangle import possible
+from eomgen.model.checks.bodies import possible
 from eomgen.model.findings import nearest
 from eomgen.records import dataclass
-from eomgen.robots.drawn_up import (
+from eomgen.robots.tables import (
     NO_COUNTERPART,
+    ORIGIN,
     UNLIMITED,
+    ZERO,
     Entries,
     Imported,
     LeftOut,
     LegalNames,
     Moved,
-    Seat,
-    gap,
-    hung,
-    in_file,
-    told_left,
-    without_empty,
-)
-from eomgen.robots.numbers import (
-    ORIGIN,
-    ZERO,
     Nine,
+    Seat,
     Triple,
     computed,
     decimals,
+    gap,
+    hung,
+    in_file,
     inertia_in,
     roll_pitch_yaw,
     six,
     tensor_of,
+    told_left,
+    without_empty,
 )
 from eomgen.robots.xml_tree import XmlElement, xml_tree
 from eomgen.symbolic.expression.spatial import IDENTITY, cross

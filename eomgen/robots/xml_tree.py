@@ -10,8 +10,8 @@ from xml.parsers import expat
 
 from eomgen.errors import ModelError
 from eomgen.records import dataclass
-from eomgen.robots.numbers import Triple
-from eomgen.symbolic.expression.tokens import LARGEST_EXPONENT, MOST_DIGITS
+from eomgen.robots.tables import Triple
+from eomgen.symbolic.expression.text import LARGEST_EXPONENT, MOST_DIGITS
 
 DEEPEST = 200  # elements one within the other
 

@@ -6,9 +6,9 @@ from collections.abc import Iterable, Sequence
 from dataclasses import replace
 from typing import Any
 
-from eomgen.mechanics.bodies.inertia import mass_properties
-from eomgen.mechanics.bodies.kinematics import GROUND, BodyLink
-from eomgen.mechanics.equations.system import System
+from eomgen.mechanics.dynamics.system import System
+from eomgen.mechanics.kinematics.inertia import mass_properties
+from eomgen.mechanics.kinematics.motion import GROUND, BodyLink
 from eomgen.model.composite import pose_of
 from eomgen.model.shapes import MassProperties
 from eomgen.model.shapes.forms import ArcForm, EllipsoidForm, Form, LineForm, PolygonForm
@@ -16,8 +16,8 @@ from eomgen.model.trusses import is_node
 from eomgen.model.values import exact_parameters
 from eomgen.scene.forms import PointForm, RodForm, SymbolForm
 from eomgen.scene.scene import Mark, SceneFrame
-from eomgen.symbolic.expression.functions import function, over, sqrt
-from eomgen.symbolic.expression.graph import Node, is_zero
+from eomgen.symbolic.expression.formula import function, over, sqrt
+from eomgen.symbolic.expression.node import Node, is_zero
 from eomgen.symbolic.expression.rational import Fraction
 from eomgen.symbolic.expression.spatial import ZERO, Vector, apply, cross, dot, minus, plus, times
 from eomgen.symbolic.numeric.evaluation import FLOAT, evaluate

@@ -1,16 +1,21 @@
-"""Joints, ties and force elements -> marks: hinges and supports, strings, members, springs and dampers."""
+"""Joints, constraints, force elements and loads -> marks.
+
+Joints, ties and force elements -> marks: hinges and supports, strings, members, springs and dampers.
+"""
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Sequence
+import math
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from itertools import pairwise
 from typing import Any
 
-from eomgen.mechanics.bodies.kinematics import GROUND, BodyLink, ground_place
-from eomgen.mechanics.bodies.system_scene import SystemScene
-from eomgen.mechanics.equations.system import System
-from eomgen.mechanics.structures.blocks import members_of
-from eomgen.model.constraints.meeting import (
+from eomgen.mechanics.dynamics.system import System
+from eomgen.mechanics.kinematics.loads import in_ground_axes
+from eomgen.mechanics.kinematics.motion import GROUND, BodyLink, ground_place
+from eomgen.mechanics.kinematics.scene import SystemScene
+from eomgen.mechanics.rigidity.velocity_plan import members_of
+from eomgen.model.constraints.base import (
     BodyLine,
     FlatSurface,
     Groove,
@@ -20,17 +25,31 @@ from eomgen.model.constraints.meeting import (
     TouchingRound,
 )
 from eomgen.model.constraints.strand import Stop, Strand
+from eomgen.model.driven import driven_coordinates, driving_ties
 from eomgen.model.forces.load import Couple, PointForce
 from eomgen.model.joints.base import unit
 from eomgen.model.shapes.forms import ArcForm, EllipsoidForm, LineForm
-from eomgen.scene.anchors import walls
-from eomgen.scene.bodies import gimbal_of, is_block, seen, shaft_of, wedge_of
-from eomgen.scene.forms import DamperForm, RodForm, SpringForm, SymbolForm, TrackForm, WheelForm
+from eomgen.scene.bodies import gimbal_of, is_block, parameters_as_drawn, seen, shaft_of, wedge_of
+from eomgen.scene.forms import (
+    ArrowForm,
+    CoupleForm,
+    DamperForm,
+    FieldForm,
+    LabelForm,
+    LoadForm,
+    RodForm,
+    SpringForm,
+    SymbolForm,
+    TrackForm,
+    WheelForm,
+)
 from eomgen.scene.scene import Mark
-from eomgen.symbolic.expression.functions import function
-from eomgen.symbolic.expression.graph import is_zero
+from eomgen.symbolic.expression.derivative import substituted, symbols_of
+from eomgen.symbolic.expression.formula import function
+from eomgen.symbolic.expression.node import Node, Scalar, is_zero
 from eomgen.symbolic.expression.rational import Fraction
-from eomgen.symbolic.expression.spatial import ZERO, Pose, Vector, apply, cross, vector_of
+from eomgen.symbolic.expression.spatial import ZERO, Pose, Vector, apply, cross, minus, times, vector_of
+from eomgen.symbolic.numeric.evaluation import FLOAT, evaluate
 
 BESIDE = 1  # of springs and dampers between the same places, each to its side [symbol units]
 
@@ -343,3 +362,127 @@ def _held(system: System, rows: Sequence[Any], of: str) -> list[Mark]:
 def ordered(marks: Iterable[Mark], roles: Sequence[str]) -> tuple[Mark, ...]:
     """The marks as they are drawn: by their roles, then as they came."""
     return tuple(sorted(marks, key=lambda mark: roles.index(mark.role)))
+
+
+# -------- anchors ---------------------------------------------------------------------------------------------
+# Springs at the ground, driven coordinates -> marks in the plane: walls that hold the ones, arrows of the others.
+
+
+def walls(system: System, grounded: Sequence[Vector], free: Vector, of: str) -> list[Mark]:
+    """The hatched lines on which a spring or damper ends at the ground, along x or y, its free end before them."""
+    if system.scope.model.space == "space":
+        return []
+    scene, known = SystemScene(system.motion), parameters_as_drawn(system)
+    found = []
+    for at in grounded:
+        way = tuple(map(scene.start, minus(free, at)))
+        still = dict.fromkeys(symbols_of(way), 0.0)  # the share of a virtual displacement
+        dx, dy, _ = (float(x) for x in evaluate(way, still | known, FLOAT))
+        if math.hypot(dx, dy) > 0:
+            level = abs(dy) >= abs(dx)
+            along: Vector = (int(math.copysign(1, dy)), 0, 0) if level else (0, -int(math.copysign(1, dx)), 0)
+            found.append(Mark(SymbolForm("wall", at, along), 0, "support", of))
+    return found
+
+
+def drive_marks(system: System) -> list[Mark]:
+    """An arrow at the first joint that turns or slides as a driven coordinate says, and the coordinate's name."""
+    if system.scope.model.space == "space":
+        return []
+    driven, ties = driven_coordinates(system.scope.model), driving_ties(system.scope.model)
+    waiting = [q for q in system.symbols.q if q.name in driven]
+    found = []
+    for k, link in enumerate(system.motion.links, start=1):
+        for q in [q for q in waiting if q in symbols_of(link.s)]:
+            waiting.remove(q)
+            of = ties.get(q.name, (link.name,))[0]
+            found += [
+                Mark(_arrow(link, q), k, "support", of),
+                Mark(LabelForm(q.name, link.point), k, "dimension", of),
+            ]
+    return found
+
+
+def _arrow(link: BodyLink, q: Node) -> SymbolForm:
+    """Round the joint, or along what slides."""
+    w, v = next(column for s, column in zip(link.s, link.S, strict=False) if q in symbols_of((s,)))
+    return SymbolForm("shifted", link.point, v) if all(map(is_zero, w)) else SymbolForm("turned", link.point)
+
+
+# -------- applied ---------------------------------------------------------------------------------------------
+# Loads, reactions -> marks: arrows of what is applied, the field of gravity, forces of joints and ties.
+
+
+def field_marks(system: System) -> list[Mark]:
+    """The direction of the weight."""
+    g = system.loads.fields
+    return [] if all(map(is_zero, g)) else [Mark(FieldForm(g, "g"), 0, "axes", "")]
+
+
+def applied_marks(system: System) -> Iterator[Mark]:
+    """Forces and couples at bodies, but for weights, springs and dampers, and drives of joints."""
+    motion, model = system.motion, system.scope.model
+    for applied in system.loads.applied:
+        if model.forces[applied.name].element is not None:
+            continue
+        for spread in applied.spread:
+            a, b = motion.position(spread.start), motion.position(spread.end)
+            ends = _known(system, spread.at_start), _known(system, spread.at_end)
+            yield Mark(LoadForm(a, b, *ends, applied.name), 0, "force", applied.name)
+        for load in () if applied.spread else applied.loads:
+            if isinstance(load, PointForce) and load.place[0] is not None:
+                f = _known(system, in_ground_axes(motion, load.force, load.axes))
+                at = motion.position(load.place)
+                yield Mark(ArrowForm(at, f, "N", text=applied.name), 0, "force", applied.name)
+            elif isinstance(load, Couple):
+                at = motion.position(load.place or (load.body, ZERO))
+                couple = _known(system, in_ground_axes(motion, load.couple, load.axes))
+                yield Mark(CoupleForm(at, couple, applied.name), 0, "force", applied.name)
+    yield from _drives(system)
+
+
+def _known(system: System, v: Vector) -> Vector:
+    """A load in which a number that is asked for is drawn as 1."""
+    return vector_of(substituted(v, dict.fromkeys(system.symbols.unknowns.values(), 1)))
+
+
+def _drives(system: System) -> Iterator[Mark]:
+    """The drives of joints, on the child."""
+    for link in system.motion.links:
+        efforts = () if link.joint is None else link.joint.efforts()
+        for (w, v), effort in zip(link.S, efforts, strict=False):
+            if effort is None or effort.drive is None:
+                continue
+            value = system.scope.value(effort.drive)
+            at = link.pose.point(link.point)
+            turns = not all(map(is_zero, w))
+            along = apply(link.pose.R, times(value, w if turns else v))
+            form = CoupleForm(at, along) if turns else ArrowForm(at, along, "N", outward=True)
+            yield Mark(form, 0, "force", link.name)
+
+
+def reaction_marks(system: System, values: Mapping[str, Scalar]) -> Iterator[Mark]:
+    """The resultant force of every joint and tie, on the body that it holds, from its components `reaction_x(A)`."""
+    components = {"x": (1, 0, 0), "y": (0, 1, 0), "z": (0, 0, 1)}
+    sums: dict[str, Vector] = {}
+    for name, value in values.items():
+        head, _, owner = name.rstrip(")").partition("(")
+        axis = head.removeprefix("reaction_")
+        if head.startswith("reaction_") and axis in components:
+            x, y, z = sums.get(owner, ZERO)
+            e = components[axis]
+            sums[owner] = (x + value * e[0], y + value * e[1], z + value * e[2])
+    motion = system.motion
+    for owner, force in sums.items():
+        place = _seat(system, owner)
+        if place is not None:
+            yield Mark(ArrowForm(motion.position(place), force, "N"), 0, "reaction", owner)
+
+
+def _seat(system: System, owner: str) -> tuple[str | None, Vector] | None:
+    """Where a joint or tie acts."""
+    motion = system.motion
+    if owner in motion.index:
+        return owner, motion.link(owner).point
+    pushes = [push for row in system.ties.rows if row.tie == owner for push in row.pushes]
+    return next((push.place for push in pushes if isinstance(push, PointForce)), None)

@@ -1,25 +1,36 @@
-"""System -> Scene: bodies, joints, ties, springs and names of a model, put together."""
+"""System -> Scene: bodies, their shapes, names and dimensions, put together.
+
+System -> Scene: bodies, joints, ties, springs and names of a model, put together.
+"""
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
+from itertools import combinations, pairwise
 
-from eomgen.mechanics.bodies.kinematics import BodyLink
-from eomgen.mechanics.equations.equations_of_motion import EquationsOfMotion
-from eomgen.mechanics.equations.system import System, system_of
-from eomgen.mechanics.formulations.massless_nodes import with_nodes_balanced
-from eomgen.mechanics.statics.contacts_at_start import contacts_at_start
+from eomgen.mechanics.dynamics.formulations import with_nodes_balanced
+from eomgen.mechanics.dynamics.system import EquationsOfMotion, System, system_of
+from eomgen.mechanics.kinematics.motion import GROUND, BodyLink
+from eomgen.mechanics.statics.contacts import contacts_at_start
 from eomgen.model.reader import ModelOrPath, model_at
+from eomgen.model.shapes.forms import ArcForm, PolygonForm
 from eomgen.model.trusses import is_node
-from eomgen.scene.anchors import drive_marks
-from eomgen.scene.applied import applied_marks, field_marks
 from eomgen.scene.bodies import body_marks, piece_marks, places_of_body, without_veils
-from eomgen.scene.connections import force_elements, joint_marks, ordered, tie_marks
-from eomgen.scene.forms import AxesForm, LabelForm
+from eomgen.scene.connections import (
+    applied_marks,
+    drive_marks,
+    field_marks,
+    force_elements,
+    joint_marks,
+    ordered,
+    tie_marks,
+)
+from eomgen.scene.forms import AngleForm, AxesForm, DimensionForm, LabelForm
 from eomgen.scene.scene import ROLES, Mark, Scene, SceneFrame
-from eomgen.scene.sizes import size_marks
+from eomgen.symbolic.expression.derivative import derivative
+from eomgen.symbolic.expression.node import Node, collected, is_zero
 from eomgen.symbolic.expression.rational import Fraction
-from eomgen.symbolic.expression.spatial import ZERO, Vector, plus, times
+from eomgen.symbolic.expression.spatial import ZERO, Vector, minus, plus, times
 
 
 def scene_of_system(system: System, equations: EquationsOfMotion | None = None) -> Scene:
@@ -91,3 +102,115 @@ def _middle(system: System, link: BodyLink) -> Vector:
     places = places_of_body(system, link) or [ZERO]
     half = len(places) // 2
     return times(Fraction(1, 2), plus(places[max(half - 1, 0)], places[min(half, len(places) - 1)]))
+
+
+# -------- sizes -----------------------------------------------------------------------------------------------
+# Lengths, radii, angles and displacements by their names -> dimension marks of the rest picture.
+
+
+MOST = 12  # lengths, or coordinates, that a picture has room for
+TIERS = (3, 5, 4, 6)  # of angles at one place, one after the other [symbol units]
+OBLIQUE: Vector = (Fraction(3, 5), Fraction(4, 5), 0)  # along which the radius of a circle is drawn
+
+
+def size_marks(system: System, marks: Iterable[Mark]) -> list[Mark]:
+    """Every parameter that is a length and every coordinate, once, where one first sees it; in the plane.
+
+    Of a chain of many bodies neither: nothing could be read.
+    """
+    if system.scope.model.space != "plane":
+        return []
+    names = {node: name for name, node in system.symbols.parameters.items()}
+    found: dict[str, Mark] = {}
+    for mark in (*_body_lengths(system, names), *_of_forms(marks, names), *_ground_lengths(system, names)):
+        found.setdefault(getattr(mark.form, "text", ""), mark)
+    return [
+        mark for marks in (list(found.values()), list(_coordinates(system))) if len(marks) <= MOST for mark in marks
+    ]
+
+
+def _body_lengths(system: System, names: dict[Node, str]) -> Iterator[Mark]:
+    """Between two places of a body that are a parameter apart along one of its axes."""
+    for k, link in enumerate(system.motion.links, start=1):
+        part = system.scope.model.bodies.get(link.name)
+        if part is None:
+            continue
+        own = system.motion.points[link.name]
+        ends = [own[name] for name in ("start", "end", "center") if name in own]
+        places = dict.fromkeys([link.point, *ends, *places_of_body(system, link)])
+        yield from _between(places, names, k, link.name)
+
+
+def _ground_lengths(system: System, names: dict[Node, str]) -> Iterator[Mark]:
+    """Between two places of the ground, the same."""
+    motion = system.motion
+    seats = [link.before.p for link in motion.links if link.parent == GROUND and link.joint is not None]
+    points = [motion.scope.vector(place) for place in system.scope.model.points.values()]
+    fixed = [place for place in (*seats, *points) if not motion.moves(place)]
+    yield from _between(dict.fromkeys(fixed), names, 0, "")
+
+
+def _between(places: Iterable[Vector], names: dict[Node, str], frame: int, of: str) -> Iterator[Mark]:
+    for a, b in combinations(places, 2):
+        if (name := _length(minus(b, a), names)) is not None:
+            yield Mark(DimensionForm(a, b, name), frame, "dimension", of)
+
+
+def _length(v: Vector, names: dict[Node, str]) -> str | None:
+    """The parameter that is the length of a vector along an axis."""
+    parts = [collected(x) for x in v if not is_zero(x)]
+    if len(parts) != 1:
+        return None
+    (x,) = parts
+    return next((names[y] for y in (x, -x) if type(y) is Node and y in names), None)
+
+
+def _of_forms(marks: Iterable[Mark], names: dict[Node, str]) -> Iterator[Mark]:
+    """Radii of circles, and edges of polygons along the axes of their body."""
+    for mark in marks:
+        form = mark.form
+        if isinstance(form, ArcForm) and type(form.radius) is Node and form.radius in names:
+            rim = plus(form.at, times(form.radius, OBLIQUE))
+            yield Mark(DimensionForm(form.at, rim, names[form.radius], 0), mark.frame, "dimension", mark.of)
+        elif isinstance(form, PolygonForm):
+            for a, b in pairwise((*form.points, form.points[0])):
+                if (name := _length(minus(b, a), names)) is not None:
+                    yield Mark(DimensionForm(a, b, name, 2), mark.frame, "dimension", mark.of)
+
+
+def _coordinates(system: System) -> Iterator[Mark]:
+    """The angle or the displacement that each coordinate is, at the first joint that shows it alone."""
+    tiers: dict[Vector, int] = {}
+    for q in system.symbols.q:
+        for link in system.motion.links:
+            mark = _turn(system, link, q, tiers) or _slide(system, link, q)
+            if mark is not None:
+                yield mark
+                break
+
+
+def _turn(system: System, link: BodyLink, q: Node, tiers: dict[Vector, int]) -> Mark | None:
+    """angle = reference + q or reference - q: the arc from the reference to the body."""
+    if link.angle is None or type(link.angle) is not Node:
+        return None
+    slope = derivative(link.angle, q)
+    if type(slope) is Node or slope not in (1, -1):
+        return None
+    at = system.motion.position((link.name, link.point))
+    tier = tiers[at] = tiers.get(at, -1) + 1
+    reference = collected(link.angle - slope * q)
+    return Mark(AngleForm(at, reference, link.angle, q.name, TIERS[tier % len(TIERS)]), 0, "dimension", q.name)
+
+
+def _slide(system: System, link: BodyLink, q: Node) -> Mark | None:
+    """place = seat + q n: the way from the seat."""
+    if (
+        link.joint is None
+        or not link.joint.straight
+        or link.s != (q,)
+        or len(link.S) != 1
+        or any(not is_zero(w) for w in link.S[0][0])
+    ):
+        return None
+    above = link.parent + 1 if link.parent != GROUND else 0
+    return Mark(DimensionForm(link.before.p, link.local.p, q.name), above, "dimension", q.name)

@@ -1,4 +1,6 @@
-"""System -> Scene: what can be drawn of a model at a state, as data over the scalars of the graph.
+"""System -> Scene: what can be drawn of a model at a state, as data; and the frame at one state.
+
+System -> Scene: what can be drawn of a model at a state, as data over the scalars of the graph.
 
 All numbers of a picture are slots of one frame: scalars of (t, q, u, a, lam, parameters) that one `Program` computes.
 Python runs it by numpy or C, a page by JavaScript; a drawer reads marks whose numbers are constants or slots.
@@ -11,14 +13,19 @@ from dataclasses import fields
 from functools import cached_property
 from typing import Any
 
+import numpy as np
+
 from eomgen.codegen.program import Program, program_in_motion, program_of
-from eomgen.mechanics.equations.equations_of_motion import EquationsOfMotion
-from eomgen.mechanics.equations.system import System
+from eomgen.codegen.rhs import compiled
+from eomgen.errors import DerivationError
+from eomgen.mechanics.dynamics.system import EquationsOfMotion, System
+from eomgen.mechanics.start.state import start_state
 from eomgen.model.shapes.forms import Form
+from eomgen.model.values import exact_parameters, start_values
 from eomgen.records import dataclass
 from eomgen.scene.symbols import symbols_used
 from eomgen.symbolic.expression.derivative import symbols_of
-from eomgen.symbolic.expression.graph import Node, Scalar
+from eomgen.symbolic.expression.node import Node, Scalar
 from eomgen.symbolic.expression.spatial import Pose, Vector
 from eomgen.symbolic.numeric.evaluation import FLOAT, evaluate
 
@@ -230,3 +237,57 @@ def scalars_of(form: Form) -> Iterator[Scalar]:
             waiting += reversed(value)
         elif value is not None and not isinstance(value, (str, bool)):
             yield value
+
+
+# -------- instant ---------------------------------------------------------------------------------------------
+# Scene -> numbers: the frame at one state, and where a model stands before anything moves.
+
+
+@dataclass(frozen=True)
+class DrawnState:
+    """A state in numbers.
+
+    Args:
+        x: coordinates then speeds.
+        p: parameters in the model's order.
+        assumed: the parameters without a value, drawn as 1.
+    """
+
+    t: float
+    x: np.ndarray
+    p: np.ndarray
+    assumed: tuple[str, ...] = ()
+
+
+def drawn_start(system: System) -> DrawnState:
+    """Where the model starts; a parameter without a value is 1, and where the ties do not close so they stay open."""
+    model, symbols = system.scope.model, system.symbols
+    known = exact_parameters(model)
+    assumed = {name: 1 for name in model.parameters if name not in known}
+    try:
+        values = start_state(system, assumed)
+    except DerivationError:
+        q, u = start_values(model, assumed)
+        values = {**q, **u}
+    x = [float(values[node.name]) for node in (*symbols.q, *symbols.u)]
+    p = [float(known.get(name, 1)) for name in symbols.parameters]
+    return DrawnState(0.0, np.array(x), np.array(p), tuple(assumed))
+
+
+def frame_at(scene: Scene, state: DrawnState) -> np.ndarray:
+    """The numbers of the scene's frame at a state: slot i is that of `scene.values[i]`; nan where there is none."""
+    found: np.ndarray = frames_along(scene, np.array([state.t]), state.x[None, :], state.p)[0]
+    return found
+
+
+def frames_along(scene: Scene, t: np.ndarray, x: np.ndarray, p: np.ndarray, target: str | None = "numpy") -> np.ndarray:
+    """The same along a motion: n x slots.
+
+    Args:
+        t, x: n instants and their states.
+        target: as of `Equations.rhs`.
+    """
+    if not scene.values:
+        return np.zeros((len(t), 0))
+    with np.errstate(all="ignore"):
+        return compiled(scene.program, target).many(t, x, p)

@@ -18,14 +18,13 @@ import numpy as np
 
 from eomgen.codegen.program import program_of
 from eomgen.codegen.rhs import compiled
-from eomgen.mechanics.balance.unit_wrenches import Axes, Effect
-from eomgen.mechanics.bodies.kinematics import BodyLink
-from eomgen.mechanics.bodies.system_scene import SystemScene
-from eomgen.mechanics.equations.system import System
-from eomgen.mechanics.statics.two_ways import StaticReaction
-from eomgen.mechanics.statics.virtual_work import WorkEquation
-from eomgen.mechanics.structures.blocks import blocks_of, numeral
-from eomgen.mechanics.structures.structure import Structure
+from eomgen.mechanics.dynamics.system import System
+from eomgen.mechanics.free_bodies.wrenches import Axes, Effect
+from eomgen.mechanics.kinematics.motion import BodyLink
+from eomgen.mechanics.kinematics.scene import SystemScene
+from eomgen.mechanics.rigidity.structure import Structure
+from eomgen.mechanics.rigidity.velocity_plan import blocks_of, numeral
+from eomgen.mechanics.statics.virtual_work import StaticReaction, WorkEquation
 from eomgen.model.forces.load import UniformField
 from eomgen.records import dataclass
 from eomgen.scene.bodies import parameters_as_drawn
@@ -35,7 +34,7 @@ from eomgen.scene.plane_strokes import plane_drawing
 from eomgen.scene.scene import Mark, Scene
 from eomgen.scene.space_strokes import space_drawing
 from eomgen.scene.strokes import SceneNumbers
-from eomgen.symbolic.expression.graph import Node, Scalar, is_zero
+from eomgen.symbolic.expression.node import Node, Scalar, is_zero
 from eomgen.symbolic.expression.spatial import ZERO, Pose, Vector, cross, plus, times, transposed
 from eomgen.symbolic.numeric.evaluation import FLOAT, evaluate
 from eomgen.symbolic.numeric.tolerances import WIDE_STEP

@@ -18,41 +18,37 @@ import numpy as np
 
 from eomgen.documents.document import Document, plain_document
 from eomgen.documents.linearize.result import Linearization, linearize
-from eomgen.documents.quantity import Quantity
 from eomgen.documents.result import Result
-from eomgen.documents.statements import Found, Listing
+from eomgen.documents.statements import Found, Listing, Quantity
 from eomgen.errors import DerivationError, EomgenError, UsageError
-from eomgen.mechanics.formulations.massless_nodes import with_nodes_balanced
-from eomgen.mechanics.initial_state.initial_state import start_state
-from eomgen.mechanics.initial_state.start_slopes import Seeds, parameter_seeds, start_seeds
-from eomgen.mechanics.instant.outputs import asks_of
-from eomgen.mechanics.small_motions.modes import MATRICES
-from eomgen.mechanics.small_motions.parameter_slopes import ParameterSlopes
-from eomgen.mechanics.statics.contacts_at_start import contacts_at_start
-from eomgen.model.fields import AtRest
+from eomgen.mechanics.dynamics.formulations import with_nodes_balanced
+from eomgen.mechanics.instant.quantities import asks_of
+from eomgen.mechanics.linearization.modes import MATRICES
+from eomgen.mechanics.linearization.parameter_slopes import ParameterSlopes
+from eomgen.mechanics.start.exact import Seeds, parameter_seeds, start_seeds
+from eomgen.mechanics.start.state import start_state
+from eomgen.mechanics.statics.contacts import contacts_at_start
+from eomgen.model.fields import AtRest, Table
 from eomgen.model.outputs.base import OF_A_RUN, SMALL_MOTIONS, names_of
-from eomgen.model.own_units import units_of
 from eomgen.model.parts import Model, Output
 from eomgen.model.reader import ModelOrPath, model_at
 from eomgen.model.replaced import Values
-from eomgen.model.table import Table
+from eomgen.model.units import units_of
 from eomgen.model.values import numeric_parameters
 from eomgen.proof.check import Certificate, Check, Tally, checked, differing
 from eomgen.questions.in_phase import PhaseEquations, phase_equations_of
 from eomgen.questions.of_a_run import asked_of
 from eomgen.records import dataclass
-from eomgen.sensitivities.along_a_run import ChangingRun, changing_run
-from eomgen.sensitivities.at_a_state import ChangingState
-from eomgen.sensitivities.differences import Derivatives, checks_of
+from eomgen.sensitivities.runs import ChangingRun, ChangingState, Derivatives, changing_run, checks_of
 from eomgen.simulation.integrate import instants_of
 from eomgen.symbolic.exact.book_form import book_form
 from eomgen.symbolic.exact.normal_form import legible
 from eomgen.symbolic.expression.derivative import jacobian, substituted, tangent
-from eomgen.symbolic.expression.expressions import Call, Expression, parse, single_call
-from eomgen.symbolic.expression.graph import Node, Scalar
+from eomgen.symbolic.expression.formula import Call, Expression
+from eomgen.symbolic.expression.node import Node, Scalar
 from eomgen.symbolic.expression.rational import Fraction
-from eomgen.symbolic.expression.typed import Typed, seconds
-from eomgen.symbolic.expression.units import Unit, parse_unit
+from eomgen.symbolic.expression.text import parse, single_call
+from eomgen.symbolic.expression.units import Typed, Unit, parse_unit, seconds
 from eomgen.symbolic.numeric.evaluation import NoValue, evaluate, fifty_digits, floats_of
 from eomgen.symbolic.numeric.tolerances import COMPUTED, RANK_NEARBY
 from eomgen.symbolic.numeric.work import Work, doing

@@ -16,12 +16,11 @@ import numpy as np
 from eomgen.codegen.batching import in_threads, pieces_of
 from eomgen.records import dataclass
 from eomgen.simulation.compiled_steps import CompiledSteps
-from eomgen.simulation.constraint_rank import RankLookout
+from eomgen.simulation.constraint_drift import RankLookout
 from eomgen.simulation.integrator import Stepping
-from eomgen.simulation.march import library_of_march
+from eomgen.simulation.many_runs import library_of_march
 from eomgen.simulation.phase_model import PhaseModel
-from eomgen.simulation.singular import vanishing_after
-from eomgen.simulation.singular_crossing import NEARNESS
+from eomgen.simulation.singular import NEARNESS, vanishing_after
 from eomgen.simulation.solvers import SEEN
 
 AT_ONCE = 20_000  # steps in a call, a few hundredths of a second: between two calls somebody may have lost patience

@@ -18,13 +18,13 @@ import numpy as np
 from eomgen.codegen.program import program_of
 from eomgen.codegen.rhs import RightHandSide, compiled
 from eomgen.errors import DerivationError
-from eomgen.mechanics.constraints.ties import Row, rows_of_tie
-from eomgen.mechanics.equations.system import System
-from eomgen.mechanics.formulations import recursive
+from eomgen.mechanics.constraints.rows import Row, rows_of_tie
+from eomgen.mechanics.dynamics.formulations import assembled_by_recursion
+from eomgen.mechanics.dynamics.system import System
 from eomgen.records import dataclass
 from eomgen.simulation.phase_model import Values, slack_name
 from eomgen.symbolic.expression.derivative import jacobian, substituted
-from eomgen.symbolic.expression.graph import Scalar
+from eomgen.symbolic.expression.node import Scalar
 from eomgen.symbolic.numeric.tolerances import COMPUTED, LEAST_CHANGE
 
 
@@ -108,7 +108,7 @@ class WithoutContacts:
 
     def _entries(self) -> tuple[Scalar, ...]:
         """M, the rows (J, sigma) of the ties that stay, and those of the contacts."""
-        M = tuple(x for row in recursive.assembled_by_recursion(self.system).M for x in row)
+        M = tuple(x for row in assembled_by_recursion(self.system).M for x in row)
         rows = (*self.system.ties.closing, *(row for own in self._rows.values() for row in own))
         return (*M, *self._with_bias([row.velocity for row in rows]))
 

@@ -12,15 +12,14 @@ import numpy as np
 
 from eomgen.codegen.rhs import RightHandSide
 from eomgen.errors import UsageError
-from eomgen.model.ranges import are_several, typed_values
-from eomgen.simulation.constraint_drift import Projection
-from eomgen.simulation.constraint_rank import Nearness
+from eomgen.model.replaced import are_several, typed_values
+from eomgen.simulation.constraint_drift import Nearness, Projection
 from eomgen.simulation.event_location import Events
 from eomgen.simulation.integrator import MOST_STEPS, STABILIZATIONS, Run, Stepping, measured
 from eomgen.simulation.result import Kept, Phase, Trajectory
-from eomgen.simulation.singular_crossing import Flow, march_across
+from eomgen.simulation.singular import Flow, march_across
 from eomgen.simulation.solvers import HEYOKA, METHODS, Slope
-from eomgen.symbolic.expression.typed import Typed, seconds
+from eomgen.symbolic.expression.units import Typed, seconds
 from eomgen.symbolic.numeric.tolerances import RUN, SOLVED
 
 SAMPLES = 1001

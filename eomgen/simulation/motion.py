@@ -3,27 +3,37 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from dataclasses import replace
+from functools import cached_property
+from typing import Any
 
 import numpy as np
 
-from eomgen.errors import DerivationError, UsageError
-from eomgen.mechanics.constraints.edges import left_of, stopped_at
-from eomgen.mechanics.equations.jumps import SMOOTH, signs_of_rates
+from eomgen.codegen.program import program_of
+from eomgen.codegen.rhs import compiled
+from eomgen.errors import DerivationError, RunFailed, UsageError
+from eomgen.mechanics.constraints.elimination import PLACE, singular_blocks
+from eomgen.mechanics.constraints.rows import left_of, stopped_at
+from eomgen.mechanics.dynamics.pieces import SMOOTH, signs_of_rates
+from eomgen.mechanics.dynamics.system import EquationsOfMotion
 from eomgen.records import dataclass
-from eomgen.simulation.configuration import Configuration
+from eomgen.simulation.contacts import Configuration
+from eomgen.simulation.departure import RestDeparture
 from eomgen.simulation.event_location import TOUCH, Events
-from eomgen.simulation.integrator import Run, Stepping
+from eomgen.simulation.integrator import Run, Stepping, march
 from eomgen.simulation.phase_change import PhaseStart, next_start
 from eomgen.simulation.phase_model import PhaseModel
-from eomgen.simulation.phase_models import PhaseModels
+from eomgen.simulation.phase_models import PhaseModels, one_phase
 from eomgen.simulation.phase_run import PhaseCondition, PhaseRun, ended
-from eomgen.simulation.singular import ended_where_singular
-from eomgen.simulation.singular_crossing import Flow, march_across
-from eomgen.symbolic.expression.graph import Node
-from eomgen.symbolic.numeric.tolerances import COMPUTED, FINEST_RUN
+from eomgen.simulation.singular import Flow, ended_where_singular, march_across
+from eomgen.symbolic.expression.derivative import depends_on
+from eomgen.symbolic.expression.node import Node, Scalar, State
+from eomgen.symbolic.numeric.evaluation import FLOAT, evaluate
+from eomgen.symbolic.numeric.isolation import nodes_between, transform
+from eomgen.symbolic.numeric.tolerances import COMPUTED, DEGENERATE, FAIR_RUN, FINE_RUN, FINEST_RUN, ROUNDING, SOLVED
 from eomgen.symbolic.print.text import to_text
+from eomgen.symbolic.solve.solving import roots
 
 LOOK_PHASES = 1000  # from one look at how fast they follow one another to the next
 MOST_PHASES = 100_000  # that may be left to the end: about half an hour of work
@@ -215,3 +225,227 @@ def _standstill(phase: PhaseModel, here: PhaseStart, failure: str) -> PhaseRun:
     x = phase.state(here.values)
     message = f"Stopped at t = {here.t:.6g} s: {failure}."
     return PhaseRun(here, phase, Run(np.array([here.t]), x[None, :], here.t, x, "contact", message, 0, 0), None, None)
+
+
+# -------- dense motion ----------------------------------------------------------------------------------------
+# A phase as it was run -> its states at any instant: polynomials between the integrator's steps, of the same steps.
+
+
+DEGREE = 9  # that of the integrator's own polynomials between its steps, and two more
+MOST_HALVINGS = 6
+CUT = ("interrupted", "out of patience")
+
+
+@dataclass(frozen=True)
+class DenseMotion:
+    """The states of one phase at any instant of it.
+
+    Args:
+        edges: the pieces, ascending: the integrator's steps.
+        states: at the nodes of each piece, pieces x nodes x states.
+    """
+
+    edges: np.ndarray
+    states: np.ndarray
+
+    def at(self, t: np.ndarray) -> np.ndarray:
+        """n x states, by the barycentric formula sum w_k x_k/(s - s_k) / sum w_k/(s - s_k)."""
+        if len(self.states) == 0:
+            raise RunFailed("the phase is one instant", mend="a longer run")
+        k = np.clip(np.searchsorted(self.edges, t, side="right") - 1, 0, len(self.states) - 1)
+        a, b = self.edges[k], self.edges[k + 1]
+        nodes = -np.cos(np.pi * np.arange(DEGREE + 1) / DEGREE)
+        weights = (-1.0) ** np.arange(DEGREE + 1)
+        weights[[0, -1]] /= 2
+        apart = ((2 * t - a - b) / (b - a))[:, None] - nodes
+        exact = np.abs(apart) < ROUNDING
+        shares = weights / np.where(exact, 1.0, apart)
+        shares = np.where(exact.any(axis=1)[:, None], exact, shares)
+        found: np.ndarray = np.einsum("nk,nkx->nx", shares, self.states[k]) / shares.sum(axis=1)[:, None]
+        return found
+
+
+def dense_motion(phase_run: PhaseRun, plan: Plan) -> DenseMotion:
+    """The states of a phase between its steps.
+
+    It is followed once more with other instants, which change no step; where polynomials of so low a degree are not
+    what lies between two steps (few of many steps are kept), at more of them.
+
+    Args:
+        plan: by which it was run.
+    Raises:
+        RunFailed: the run was cut before its end.
+    """
+    run, here = phase_run.run, phase_run.here
+    if run.status in CUT:
+        raise RunFailed(f"the run was cut: {run.message}", mend="a longer --patience, or a shorter run")
+    kept = np.concatenate([part for track in run.tracks for part in track.t])
+    edges = np.unique(np.clip(np.concatenate([[here.t, run.end], kept, *run.carried]), here.t, run.end))
+    edges = edges[np.append(True, np.diff(edges) > ROUNDING * max(1.0, run.end - here.t))]
+    edges[-1] = run.end
+    for _ in range(MOST_HALVINGS + 1):
+        found = _through(phase_run, plan, edges)
+        last = np.abs(np.einsum("kn,mnx->mkx", transform(DEGREE)[-2:], found.states)).max(axis=1)
+        size = np.abs(found.states).max(axis=(0, 1), initial=0.0)
+        rough = (last > 10 * (plan.how.rtol * size + plan.how.atol)).any(axis=1)
+        if not rough.any():
+            break
+        edges = np.sort(np.concatenate([edges, (edges[:-1] + edges[1:])[rough] / 2]))
+    return found
+
+
+def _through(phase_run: PhaseRun, plan: Plan, edges: np.ndarray) -> DenseMotion:
+    run, here = phase_run.run, phase_run.here
+    nodes = nodes_between(edges, DEGREE)
+    times = np.unique(nodes)
+    again = advance(phase_run.phase, here, replace(plan, instants=times[times < run.end]))
+    if again.end != run.end:
+        raise RunFailed(
+            f"followed once more the phase ends at t = {again.end:.12g} s, not at {run.end:.12g} s",
+            mend="smaller tolerances: rtol, atol",
+        )
+    t, x = np.append(again.t[again.t < run.end], run.end), np.vstack([again.x[again.t < run.end], run.last])
+    return DenseMotion(edges, x[np.searchsorted(t, nodes)])
+
+
+# -------- first time ------------------------------------------------------------------------------------------
+# System, condition, start -> the state at which the condition first holds after the start, in numbers.
+#
+# By the motion in time; from an unstable rest or a dead centre along the configurations (`rest_departure`).
+
+
+LONGEST = 1e9  # s, of a search
+FINE = Stepping(rtol=FINE_RUN, atol=FINE_RUN, most_steps=100_000)
+SEARCH = replace(FINE, most_steps=4000)
+FAIR = replace(SEARCH, rtol=FAIR_RUN, atol=FAIR_RUN)  # where the finer one does not come across a singular position
+
+
+@dataclass(frozen=True)
+class FirstTime:
+    """A motion in one phase, and what is sought on it.
+
+    Args:
+        equations, accelerations: the equations of motion.
+        condition: of q, u, t and parameters; it vanishes at the instant.
+        exact: q and u at the start as scalars of the parameters, {} where they have no closed form.
+        start: t, q and u at the start.
+        values: of the parameters.
+    """
+
+    equations: EquationsOfMotion
+    accelerations: tuple[Scalar, ...]
+    condition: Scalar
+    exact: State
+    start: State
+    values: State
+
+    def located(self) -> tuple[State, str]:
+        """(t, q and u at the instant, how they were found); t is nan where it is not known.
+
+        Raises:
+            RunFailed: the condition is not met.
+        """
+        if not depends_on(self.condition, (*self.equations.symbols.q, *self.equations.symbols.u)):
+            return self._at_time(), "integration in time"
+        if self._departure.is_needed:
+            return self._departure.first(self.condition), "energy theorem"
+        run = self._met()
+        self._refuse_undetermined(run)
+        return self._state(run), "integration in time"
+
+    @property
+    def t0(self) -> float:
+        return float(self.start.get(self.equations.symbols.t, 0.0))
+
+    @cached_property
+    def _phase(self) -> PhaseModel:
+        p = np.array([self.values[node] for node in self.equations.symbols.parameters.values()])
+        return one_phase(self.equations.system, self.equations, p)
+
+    @cached_property
+    def _here(self) -> PhaseStart:
+        symbols = self.equations.symbols
+        begun = {node.name: float(self.start[node]) for node in (*symbols.q, *symbols.u)}
+        return PhaseStart(self.t0, self._phase.with_rates(self.t0, begun), Configuration())
+
+    @cached_property
+    def _departure(self) -> RestDeparture:
+        equations = (self.equations, self.accelerations)
+        return RestDeparture(*equations, self.exact, self.start, self.values, self._phase, dict(self._here.values))
+
+    def _state(self, run: Run) -> State:
+        symbols, values = self.equations.symbols, self._phase.values(run.end, run.last)
+        return {symbols.t: run.end} | {node: values[node.name] for node in (*symbols.q, *symbols.u)}
+
+    def _at_time(self) -> State:
+        """The state at a time that is given by itself.
+
+        Raises:
+            RunFailed: the motion does not go on until then.
+        """
+        end = self._given_time()
+        if end <= self.t0:
+            return {**self.start, self.equations.symbols.t: end}
+        run = advance(self._phase, self._here, Plan(end, FINE))
+        if run.status != "finished" or not np.all(np.isfinite(run.last)):
+            raise RunFailed(
+                f"the motion ends before the instant: {run.message[0].lower()}{run.message[1:]}",
+                mend="ask for an earlier one",
+            )
+        return self._state(run)
+
+    def _met(self) -> Run:
+        """The motion up to where the condition first holds.
+
+        Raises:
+            RunFailed: it is not met.
+        """
+        for how in (SEARCH, FAIR):
+            run = advance(self._phase, self._here, Plan(self.t0 + LONGEST, how, None, lambda phase: self.condition))
+            if run.status != "singular":
+                break
+        if run.crossing is None:
+            raise RunFailed(
+                f"the condition is not met as far as the motion was followed: {run.message}",
+                mend="ask for what the motion reaches",
+            )
+        return run
+
+    def _refuse_undetermined(self, run: Run) -> None:
+        """Refuse an instant at which the rates of dependent coordinates are 0/0.
+
+        Raises:
+            RunFailed: they are named.
+        """
+        for block in singular_blocks(self.equations.system.elimination, self.equations.system.scope):
+            t, x = np.array([self.t0, run.end]), np.vstack([self._phase.state(self._here.values), run.last])
+            before, there = self._phase.functions.evaluated(t, x, (block.determinant,))[:, 0]
+            if abs(there) < DEGENERATE * abs(before):
+                raise RunFailed(
+                    f"{block} at that instant ({PLACE})",
+                    mend="leave out `dependent`: then their rates belong to the state",
+                )
+
+    def _given_time(self) -> float:
+        """The first t, from the start on, at which a condition on t alone holds."""
+        t = self.equations.symbols.t
+        values = [float(evaluate((root,), self.values, FLOAT)[0]) for root in roots(self.condition, t)]
+        later = [value for value in values if value >= self.t0 - SOLVED]
+        if later:
+            return min(later)
+        if values:
+            raise DerivationError(f"the instant t = {max(values):g} s is before the start", mend="ask for a later one")
+        function = compiled(program_of((self.condition,), self.equations.symbols), "numpy")
+        x = np.array([self.start[node] for node in (*self.equations.symbols.q, *self.equations.symbols.u)])
+        events = Events(
+            lambda t, _: function.many(t, np.tile(x, (len(t), 1)), self._phase.p), np.full(1, COMPUTED), (0,)
+        )
+        run = march(lambda t, _: np.ones(1), (self.t0, LONGEST), np.zeros(1), how=SEARCH, events=events)
+        if run.crossing is None:
+            raise RunFailed("the condition on the time is never met", mend="ask for an instant after the start")
+        return run.end
+
+
+def values_of(parameters: Mapping[str, Node], known: Mapping[str, Any]) -> State:
+    """The parameters that have values, by node."""
+    return {node: float(known[name]) for name, node in parameters.items() if name in known}

@@ -9,11 +9,11 @@ import numpy as np
 
 from eomgen.codegen.program import bordered, program_of, right_hand_side
 from eomgen.codegen.rhs import RightHandSide, compiled, compiled_together
-from eomgen.mechanics.equations.articulated import with_accelerations
-from eomgen.mechanics.equations.equations_of_motion import EquationsOfMotion
-from eomgen.mechanics.equations.wellposed import refuse_massless
+from eomgen.mechanics.dynamics.accelerations import with_accelerations
+from eomgen.mechanics.dynamics.system import EquationsOfMotion
+from eomgen.mechanics.dynamics.wellposed import refuse_massless
 from eomgen.records import dataclass
-from eomgen.symbolic.expression.graph import Scalar
+from eomgen.symbolic.expression.node import Scalar
 
 
 @dataclass(frozen=True)

@@ -1,4 +1,7 @@
-"""Model, configuration of its contacts -> PhaseModel: the equations of one phase, as functions of numbers."""
+"""Model, configuration of its contacts -> PhaseModel: the equations of one phase, as functions of arrays.
+
+Model, configuration of its contacts -> PhaseModel: the equations of one phase, as functions of numbers.
+"""
 
 from __future__ import annotations
 
@@ -9,30 +12,33 @@ from typing import Any
 
 import numpy as np
 
-from eomgen.codegen.rhs import RightHandSide
+from eomgen.codegen.program import bordered, kinematic_rates, program_of
+from eomgen.codegen.rhs import RightHandSide, compiled
 from eomgen.errors import UsageError
-from eomgen.mechanics.balance.friction import equations_of_motion
-from eomgen.mechanics.constraints.edges import edges_of
-from eomgen.mechanics.equations.equations_of_motion import EquationsOfMotion
-from eomgen.mechanics.equations.no_value import Valueless, overlarge, valueless
-from eomgen.mechanics.equations.system import System
-from eomgen.mechanics.equations.wellposed import is_conservative, why_not_conservative
-from eomgen.mechanics.initial_state.initial_state import Start, start_of_motion
+from eomgen.mechanics.constraints.rows import edges_of
+from eomgen.mechanics.dynamics.system import EquationsOfMotion, System
+from eomgen.mechanics.dynamics.wellposed import Valueless, is_conservative, overlarge, valueless, why_not_conservative
+from eomgen.mechanics.free_bodies.friction import equations_of_motion
 from eomgen.mechanics.reactions.reactions import Reactions
+from eomgen.mechanics.start.state import Start, start_of_motion
 from eomgen.model.constraints.row import Edge
 from eomgen.model.contacts import Contact
 from eomgen.records import dataclass
-from eomgen.simulation.configuration import Configuration
-from eomgen.simulation.constraint_drift import EnergyLevel, Projection, projection_of
-from eomgen.simulation.constraint_rank import Nearness, Undetermined, nearness_of, undetermined_of
-from eomgen.simulation.contact_events import ContactEvents, EventFunction
-from eomgen.simulation.contact_signals import ContactSignals
+from eomgen.simulation.constraint_drift import (
+    EnergyLevel,
+    Nearness,
+    Projection,
+    Undetermined,
+    nearness_of,
+    projection_of,
+    undetermined_of,
+)
+from eomgen.simulation.contacts import Configuration, ContactEvents, ContactSignals, EventFunction
 from eomgen.simulation.phase_functions import PhaseFunctions
-from eomgen.simulation.slopes import ExactSlope, slope_of
 from eomgen.simulation.solvers import StateRate
-from eomgen.symbolic.expression.derivative import depends_on
-from eomgen.symbolic.expression.graph import Node
-from eomgen.symbolic.numeric.tolerances import COMPUTED
+from eomgen.symbolic.expression.derivative import depends_on, jacobian
+from eomgen.symbolic.expression.node import Node
+from eomgen.symbolic.numeric.tolerances import COMPUTED, LEAST_CHANGE
 
 Fed = Callable[[np.ndarray, float, np.ndarray], np.ndarray]
 """(p, t, x) -> p at a state"""
@@ -298,3 +304,65 @@ def smallest_speed(values: Values) -> float:
 def slack_name(tie: str) -> str:
     """What the integrated slack of a string is called among the values of a state."""
     return f"{tie} slack"
+
+
+# -------- slopes ----------------------------------------------------------------------------------------------
+# Equations of motion -> d(x')/dx, exactly: what implicit integrators ask for.
+#
+# x' = (N u + nu, a), with a and lam from  M a - J^T lam = forcing,  J a = -gamma. The derivative of that solution
+# comes from the same matrix, nothing is inverted in symbols:
+#
+#     [[M, -J^T], [J, 0]] [da; dlam] = - d(M a - J^T lam - forcing, J a + gamma) at fixed a, lam
+
+
+LONG = 60_000  # operations from which on differences are cheaper than the derivative
+SHORT = 400  # operations up to which a function is not worth a compiler
+
+
+def slope_of(equations: EquationsOfMotion, p: np.ndarray, target: str | None = None) -> ExactSlope | None:
+    """(t, x) -> d(x')/dx; None where the derivative is so long that differences are cheaper.
+
+    Args:
+        p: the parameters' values.
+        target: in which language a long function is run.
+    """
+    states = equations.symbols.q + equations.symbols.u
+    n, k = len(equations.M), len(equations.J)
+    parts = (
+        jacobian(kinematic_rates(equations), states),
+        jacobian([x for rows in equations.residual for x in rows], states),
+        equations.M,
+        equations.J,
+    )
+    entries = tuple(x for rows in parts for row in rows for x in row)
+    program = program_of(
+        entries, equations.system.symbols, inputs=equations.system.inputs, solve=bordered(equations) if n else None
+    )
+    if program.count.total > LONG:
+        return None
+    return ExactSlope(compiled(program, target if program.count.total > SHORT else "numpy"), p, n, k)
+
+
+@dataclass(frozen=True)
+class ExactSlope:
+    """(t, x) -> d(x')/dx.
+
+    Args:
+        function: the derivatives of q' and of M a - J^T lam - forcing, J a + gamma, at fixed a and lam; M, J.
+        p: the parameters' values.
+        n, k: speeds and rows of ties.
+    """
+
+    function: RightHandSide
+    p: np.ndarray
+    n: int
+    k: int
+
+    def __call__(self, t: float, x: np.ndarray) -> np.ndarray:
+        n, k, m = self.n, self.k, len(x)
+        ends = np.cumsum([(m - n) * m, (n + k) * m, n * n])
+        rates, residual, M, J = np.split(np.asarray(self.function(t, x, self.p)), ends)
+        M, J = M.reshape(n, n), J.reshape(k, n)
+        matrix = np.block([[M, -J.T], [J, np.zeros((k, k))]])
+        solved = np.linalg.lstsq(matrix, -residual.reshape(n + k, m), rcond=LEAST_CHANGE)[0]
+        return np.vstack([rates.reshape(-1, m), solved[:n]])

@@ -1,4 +1,6 @@
-"""One phase of a motion as it was run; where a run is to end, within a phase and where phases change.
+"""One phase of a motion as it was run, its states at any instant, and all phases in one table.
+
+One phase of a motion as it was run; where a run is to end, within a phase and where phases change.
 
 Within a phase the integrator finds the instant. That a phase ends, or another begins, in a state in which the condition
 holds is seen here: what slides comes to rest and sticks, what lands loses its speed.
@@ -7,26 +9,33 @@ holds is seen here: what slides comes to rest and sticks, what lands loses its s
 from __future__ import annotations
 
 import dataclasses
-from collections.abc import Callable, Iterable, Iterator
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from dataclasses import replace
-from functools import cached_property
+from functools import cache, cached_property
+from itertools import accumulate
+from typing import Any
 
 import numpy as np
 
-from eomgen.errors import ExpressionError, ModelError, UsageError
-from eomgen.mechanics.equations.system import System
-from eomgen.mechanics.instant.outputs import Quantities
-from eomgen.model.fields import WrittenEquation
+from eomgen.errors import DerivationError, ExpressionError, ModelError, UsageError
+from eomgen.mechanics.dynamics.system import System
+from eomgen.mechanics.instant.quantities import Quantities
+from eomgen.model.fields import Table, WrittenEquation
 from eomgen.model.parts import Model, Output
 from eomgen.model.replaced import equation_typed
-from eomgen.model.table import Table
-from eomgen.records import dataclass
-from eomgen.simulation.contact_events import EventFunction
+from eomgen.records import dataclass, with_fields
+from eomgen.simulation.columns import OutputColumns
+from eomgen.simulation.contacts import EventFunction, changed
+from eomgen.simulation.integrate import drift_of
 from eomgen.simulation.integrator import Run, measured
 from eomgen.simulation.phase_change import PhaseStart
 from eomgen.simulation.phase_model import PhaseModel, Values
-from eomgen.symbolic.expression.expressions import parse
-from eomgen.symbolic.expression.graph import Scalar
+from eomgen.simulation.phase_models import PhaseModels
+from eomgen.simulation.reaction_columns import ReactionColumns, begun
+from eomgen.simulation.result import Kept, OnDemand, Phase, Trajectory
+from eomgen.symbolic.expression.formula import Expression
+from eomgen.symbolic.expression.node import Scalar
+from eomgen.symbolic.expression.text import parse
 from eomgen.symbolic.numeric.tolerances import COMPUTED
 
 SystemCondition = Callable[[System], Scalar]
@@ -143,3 +152,204 @@ def _only_begun(phase_run: PhaseRun) -> PhaseRun:
 def _by_condition(phase_run: PhaseRun) -> PhaseRun:
     message = f"Stopped by an event at t = {phase_run.run.end:.6g} s."
     return replace(phase_run, run=replace(phase_run.run, status="event", message=message), bound=None)
+
+
+# -------- joined ----------------------------------------------------------------------------------------------
+# The phases of a motion as they were run -> Trajectory: all in one table, reactions too.
+
+
+def joined(models: PhaseModels, runs: Sequence[PhaseRun]) -> Trajectory:
+    """The motion through all phases, with the beginning and the end of each; a coordinate that one lacks is 0 in it."""
+    coordinates, speeds = _union(runs)
+    tables = [_table(phase_run, (*coordinates, *speeds)) for phase_run in runs]
+    ends = [0, *accumulate(len(phase_run.run.t) for phase_run in runs)]
+    return Trajectory(
+        t=np.concatenate([phase_run.run.t for phase_run in runs]),
+        x=np.concatenate(tables),
+        coordinates=coordinates,
+        speeds=speeds,
+        energies=lambda: np.concatenate([sum(s.phase.energies(s.run.t, s.run.x)) for s in runs]),
+        measure=lambda: Kept(_drift(runs), *_open(runs)),
+        phases=tuple(
+            Phase(s.here.t, s.run.end, phase_text(models, s), (first, last), s.phase, s.tracked)
+            for s, first, last in zip(runs, ends[:-1], ends[1:], strict=True)
+        ),
+        ended=runs[-1].run.status,
+        words=runs[-1].run.message,
+        steps=sum(phase_run.run.steps for phase_run in runs),
+        evaluations=sum(phase_run.run.evaluations for phase_run in runs),
+        carried=tuple(span for phase_run in runs for span in phase_run.run.carried),
+    )
+
+
+def _table(phase_run: PhaseRun, names: tuple[str, ...]) -> np.ndarray:
+    """States of a phase over the names of all, n x names."""
+    phase, t, x = phase_run.phase, phase_run.run.t, phase_run.run.x
+    if names == (*phase.coordinates, *phase.speeds) and not phase.loose:
+        return x
+    found = phase.columns(t, x)
+    none = np.zeros(len(t))
+    return np.array([found.get(name, none) for name in names]).reshape(-1, len(t)).T
+
+
+def _union(runs: Sequence[PhaseRun]) -> tuple[tuple[str, ...], tuple[str, ...]]:
+    """Coordinates and speeds of all phases, each in the order in which it comes."""
+    coordinates = dict.fromkeys(name for phase_run in runs for name in phase_run.phase.coordinates)
+    speeds = dict.fromkeys(name for phase_run in runs for name in phase_run.phase.shown)
+    return tuple(coordinates), tuple(speeds)
+
+
+def _drift(runs: Sequence[PhaseRun]) -> float | None:
+    """The largest of the phases in which energy should stay."""
+    return max((drift_of(*s.phase.energies(*s.measured)) for s in runs if s.phase.conservative), default=None)
+
+
+def _open(runs: Sequence[PhaseRun]) -> tuple[float | None, float | None]:
+    """The largest |phi| and |J u + sigma| of the ties that hold; None where none closes."""
+    found = [s.phase.projection.open(*s.measured) for s in runs if s.phase.projection is not None]
+    if not found:
+        return None, None
+    gap, gap_rate = np.max(np.concatenate(found), axis=0, initial=0.0)
+    holds = any(s.phase.projection is not None and s.phase.projection.speeds for s in runs)
+    return float(gap), float(gap_rate) if holds else None
+
+
+def with_reactions(full: Trajectory, runs: Sequence[PhaseRun]) -> Trajectory:
+    """The trajectory with its reactions as columns; what has none, and why, in its remark.
+
+    In each phase they are those of the phase's own equations; a contact that is open has the reaction 0. Where nothing
+    but joints holds the bodies each has a value at every state: nothing is missing, and they wait to be read.
+    """
+    try:
+        made = [_reaction_columns(s.phase) for s in runs]
+    except DerivationError as error:
+        return replace(full, told=f"No reactions: {error.what}.")
+    t, rows = full.t, [phase.rows for phase in full.phases]
+
+    @cache
+    def columns() -> dict[str, np.ndarray]:
+        found: dict[str, np.ndarray] = {}
+        for s, own, where in zip(runs, made, rows, strict=True):
+            for name, column in _of_phase(s, own):
+                found.setdefault(name, np.zeros(len(t)))[slice(*where)] = column
+        return found
+
+    always = tuple(dict.fromkeys(name for own in made for name in own.indeterminate))
+    told = f"Statically indeterminate: {_few(always)}." if always else ""
+    names = tuple(dict.fromkeys(name for own in made for name in own.names))
+    waits = all(s.phase.projection is None and not s.phase.equations.system.ties.rows for s in runs)
+    reactions = OnDemand(names, columns) if waits else columns()
+    return replace(full, reactions=reactions, units=_units(made), told=told, gaps=lambda: _gaps(t, columns(), always))
+
+
+def _of_phase(s: PhaseRun, columns: ReactionColumns) -> Iterator[tuple[str, np.ndarray]]:
+    """(name, column) of every reaction in a phase."""
+    model, t = s.phase, s.run.t
+    x = begun(t, model.functions.inner(s.run.x), model.functions.rhs.at(model.p), model.slowest)
+    return zip(columns.names, columns.along(t, x, model.parameters_along(t, s.run.x)).T, strict=True)
+
+
+def _reaction_columns(phase: PhaseModel) -> ReactionColumns:
+    """Those of a phase, made once for all values of the parameters."""
+    if "reactions" not in phase.known:
+        phase.known["reactions"] = ReactionColumns(phase.reactions, phase.functions.rhs)
+    found: ReactionColumns = phase.known["reactions"]
+    return found
+
+
+def with_outputs(full: Trajectory, runs: Sequence[PhaseRun], formulas: Mapping[str, Expression]) -> Trajectory:
+    """The trajectory with formulas as columns, in SI; what has none, and why, in its remark."""
+    if not formulas:
+        return full
+    made = {id(s.phase): OutputColumns(s.phase, formulas) for s in runs}
+    found = {name: np.full(len(full.t), np.nan) for name in formulas}
+    for s, phase in zip(runs, full.phases, strict=True):
+        for name, column in made[id(s.phase)].along(s.run.t, s.run.x).items():
+            found[name][slice(*phase.rows)] = column
+    refused = {name: why for columns in made.values() for name, why in columns.refused.items()}
+    nowhere = {name for name in refused if all(name in columns.refused for columns in made.values())}
+    told = [
+        f"{'No column' if name in nowhere else 'In some phases no value'} of '{name}': {why}."
+        for name, why in refused.items()
+    ]
+    given = {name: column for name, column in found.items() if name not in nowhere}
+    return replace(full, outputs=given, told=" ".join(filter(None, (full.told, *told))))
+
+
+def thinned(full: Trajectory, instants: np.ndarray | None, **more: Any) -> Trajectory:
+    """The motion with one row an instant; one that ended early keeps its last row.
+
+    Args:
+        instants: no others have a row; None: those at which phases change have one too.
+        more: what is replaced in the trajectory.
+
+    Where one phase ends and another begins the row is the state after; both are in the phases, `last` and `first`.
+    """
+    if not len(full.t):
+        return replace(full, **more)
+    kept = np.ones(len(full.t), dtype=bool)
+    kept[:-1] = full.t[1:] > full.t[:-1]
+    if instants is not None and not np.array_equal(full.t, instants):
+        kept &= np.isin(full.t, instants)
+        kept[-1] |= full.ended != "finished"
+    all_kept = bool(kept.all())
+    before = range(len(kept) + 1) if all_kept else [0, *np.cumsum(kept).tolist()]
+    columns = cache(full.columns)
+
+    def of(phase: Phase) -> Phase:
+        begin, end = phase.rows
+
+        def edges() -> tuple[dict[str, float], dict[str, float]]:
+            first, last = ({n: float(c[i]) for n, c in columns().items()} for i in (begin, end - 1))
+            return first, last
+
+        found: Phase = with_fields(phase, rows=(before[begin], before[end]), edges=edges if end > begin else None)
+        return found
+
+    more["phases"] = tuple(map(of, full.phases))
+    if all_kept:
+        whole: Trajectory = with_fields(full, **more)
+        return whole
+    reactions, outputs = (_at_rows(table, kept) for table in (full.reactions, full.outputs))
+    energies = None if full.energies is None else lambda: full["energy"][kept]
+    more |= {"t": full.t[kept], "x": full.x[kept], "energies": energies, "reactions": reactions, "outputs": outputs}
+    return replace(full, **more)
+
+
+def _at_rows(table: Mapping[str, np.ndarray], kept: np.ndarray) -> Mapping[str, np.ndarray]:
+    """The columns at these rows; what waits to be read goes on waiting."""
+
+    def found() -> dict[str, np.ndarray]:
+        return {name: column[kept] for name, column in table.items()}
+
+    return OnDemand(tuple(table), found) if isinstance(table, OnDemand) else found()
+
+
+def phase_text(models: PhaseModels, phase_run: PhaseRun) -> str:
+    """What ended a phase, and when."""
+    after = phase_run.after
+    if phase_run.bound is None or after is None:
+        return phase_run.run.message
+    when = f"at t = {after.t:.6g} s"
+    if after.failure:
+        return f"{after.failure} {when}"
+    phrases = changed(models.model, phase_run.here.configuration, after.configuration)
+    return f"{', '.join(phrases) or 'the contacts change and return'} {when}" + after.impact * ", without rebound"
+
+
+def _units(columns: Iterable[ReactionColumns]) -> dict[str, str]:
+    return {named.name: named.unit for each in columns for named in each.asked}
+
+
+def _gaps(t: np.ndarray, found: Mapping[str, np.ndarray], always: tuple[str, ...]) -> str:
+    """What is nan though not always, and since when."""
+    at_times = {name: np.isnan(column) for name, column in found.items() if name not in always}
+    singular = [name for name, gone in at_times.items() if gone.any()]
+    if not singular:
+        return ""
+    first = t[int(np.any([at_times[name] for name in singular], axis=0).argmax())]
+    return f"No single value in singular positions, first at t = {first:.6g} s: {_few(singular)}."
+
+
+def _few(names: Sequence[str]) -> str:
+    return ", ".join(names) if len(names) <= 6 else f"{', '.join(names[:5])} and {len(names) - 5} more"

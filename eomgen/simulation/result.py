@@ -14,7 +14,7 @@ import numpy as np
 
 from eomgen import files
 from eomgen.errors import UsageError
-from eomgen.model.own_units import OUTPUT
+from eomgen.model.units import OUTPUT
 from eomgen.records import Pickled, dataclass
 from eomgen.symbolic.expression.units import Unit
 from eomgen.symbolic.numeric.tolerances import SOLVED

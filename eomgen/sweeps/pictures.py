@@ -9,7 +9,7 @@ import numpy as np
 
 from eomgen.documents.figures import Picture
 from eomgen.errors import RunFailed, UsageError
-from eomgen.sweeps.plan import SweepPlan
+from eomgen.sweeps.design import SweepPlan
 
 MOST_LINES = 12  # in one panel
 MOST_PANELS = 9

@@ -1,4 +1,6 @@
-"""Chunks of runs -> their rows, in this process, in a pool of processes here, or by any executor with `submit`.
+"""Chunks of runs -> their rows, in any process.
+
+Chunks of runs -> their rows, in this process, in a pool of processes here, or by any executor with `submit`.
 
 The distribution is the executor's: what is asked of one is `submit(function, *arguments)`, and of its futures
 `result()` and `add_done_callback`, or else `done()`. A chunk whose worker dies is given out again, at last run by run.
@@ -7,19 +9,38 @@ The distribution is the executor's: what is asked of one is `submit(function, *a
 from __future__ import annotations
 
 import contextlib
+import json
+import math
 import os
 import queue
+import sqlite3
+import sys
 import threading
 import time
 from collections import deque
-from collections.abc import Callable, Iterable, Iterator
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from concurrent.futures import BrokenExecutor, ProcessPoolExecutor
-from dataclasses import field
+from contextlib import contextmanager, suppress
+from dataclasses import field, replace
+from functools import cached_property, lru_cache
+from pathlib import Path
 from typing import Any
 
-from eomgen.errors import RunFailed
+from eomgen.errors import EomgenError, RunFailed, UsageError, WriteFailed
+from eomgen.mechanics.instant.quantities import asks_of
+from eomgen.model.fields import AtRest, Table
+from eomgen.model.outputs.base import SMALL_MOTIONS
+from eomgen.model.parts import Model, Output
+from eomgen.model.replaced import with_values
+from eomgen.pipeline import simulator
+from eomgen.questions.answers import solve
+from eomgen.questions.of_a_run import asked_of
+from eomgen.questions.simulator import Simulator
 from eomgen.records import dataclass
-from eomgen.sweeps.kernel import FAILED, Payload, SampleRow, rows_of_runs
+from eomgen.sensitivities.sensitivity import slope_in_si
+from eomgen.simulation.result import Trajectory
+from eomgen.sweeps.design import FIXED, SweepPlan, plan_of
+from eomgen.symbolic.numeric.work import PatienceEnded
 
 A_CHUNK = 0.5  # s of work in one: long beside what giving it out costs, short beside what a kill loses
 MOST_IN_ONE = 2000  # runs
@@ -208,3 +229,344 @@ def _after_death(pool: Pool, out: _Out, chunk: Chunk, seeds: Callable[[int], int
         out.waiting.extend(((first, middle), (middle, last)))
     else:
         yield [(first, seeds(first), FAILED, f"the process that ran it died {TRIES} times")]
+
+
+# -------- kernel ----------------------------------------------------------------------------------------------
+# SweepPlan, numbers of runs -> their rows. It runs in any process, and knows nothing of the other runs.
+
+
+FAILED = "failed"
+WITHOUT_MOTION = "computed"
+CUT: dict[str, type[BaseException]] = {"interrupted": KeyboardInterrupt, "out of patience": PatienceEnded}
+SampleRow = tuple[Any, ...]
+"""run, seed, status, message, what was set, what was asked; None where it has no value"""
+
+
+@dataclass(frozen=True)
+class SweepKernel:
+    """The runs of a plan, one after the other; derived and compiled once.
+
+    Args:
+        plan: of them.
+    """
+
+    plan: SweepPlan
+
+    def rows(self, first: int, last: int) -> list[SampleRow]:
+        """The rows of the runs from `first` up to `last`."""
+        seeds, values = self.plan.runs.runs(first, last)
+        found = []
+        for run, seed, set_ in zip(range(first, last), seeds, values.tolist(), strict=True):
+            status, message, asked = self.asked(dict(zip(self.plan.runs.names, set_, strict=True)))
+            found.append((run, seed, status, message, *set_, *asked))
+        return found
+
+    def asked(self, set_: Mapping[str, float]) -> tuple[str, str, list[float | None]]:
+        """(status, message, what is asked) of a run; what goes wrong is its message."""
+        told: dict[str, float | None] = dict.fromkeys(self.plan.asked)
+        status, messages = WITHOUT_MOTION, list[str]()
+        for part in (self._in_motion_told, self._without_motion, self._slopes_told):
+            try:
+                status = part(set_, told, messages) or status
+            except (EomgenError, ArithmeticError, ValueError) as error:
+                status, messages = FAILED, [*messages, _sentence(error)]
+        return status, "; ".join(messages), [finite(x) for x in told.values()]
+
+    def _in_motion_told(self, set_: Mapping[str, float], told: dict[str, float | None], messages: list[str]) -> str:
+        """What is asked of the motion; how that ended."""
+        if not self._in_motion:
+            return ""
+        run = self.motion(set_)
+        if run.status in CUT:  # no row: the same command makes it then
+            raise CUT[run.status]
+        if not run.ok:
+            messages.append(run.message)
+            return run.status
+        for text, output in self._in_motion.items():
+            found = run.ask(output)
+            told[text] = found.value if isinstance(found.value, float) else None
+            messages += [f"{text}: {found.message}"] if found.message else []
+        return run.status
+
+    def motion(self, set_: Mapping[str, float], samples: int = 2, columns: Sequence[str] = ()) -> Trajectory:
+        """One run from these values [SI]."""
+        parameters, start = self._parted(set_)
+        return self._simulator(self.plan.how.time, parameters, start, samples, columns)
+
+    def valued(self, set_: Mapping[str, float]) -> Model:
+        """The model at these values [SI]."""
+        parameters, start = self._parted(set_)
+        return with_values(self.plan.model, parameters, start).model
+
+    def _parted(self, set_: Mapping[str, float]) -> tuple[dict[str, float], dict[str, float]]:
+        names = self.plan.model.parameters
+        parameters = {name: x for name, x in set_.items() if name in names}
+        return parameters, {name: x for name, x in set_.items() if name not in names}
+
+    def _without_motion(self, set_: Mapping[str, float], told: dict[str, float | None], messages: list[str]) -> str:
+        """What is asked at rest, by the energy theorem, of small motions: as `solve` answers it."""
+        if not self._solved:
+            return ""
+        asked = list(self._solved)
+        outputs = {f"asked{k}": replace(self._solved[text], unit=None) for k, text in enumerate(asked)}
+        answers = dict(zip(asked, solve(replace(self.valued(set_), outputs=Table(outputs))).values(), strict=True))
+        for text, answer in answers.items():
+            told[text] = answer.value
+            messages += [f"{text}: {answer.message}"] if answer.value is None else []
+        return ""
+
+    def _slopes_told(self, set_: Mapping[str, float], told: dict[str, float | None], messages: list[str]) -> str:
+        """The derivatives that are asked, by the equations themselves."""
+        if not self.plan.slopes:
+            return ""
+        model = self.valued(set_)
+        for text, pair in self.plan.slopes.items():
+            found, message = slope_in_si(model, *pair, self.plan.how.time)
+            told[text] = found
+            messages += [f"{text}: {message}"] if message else []
+        return ""
+
+    @cached_property
+    def _simulator(self) -> Simulator:
+        how = self.plan.how
+        model = replace(self.plan.model, outputs=Table({}))
+        return simulator(model, rtol=how.rtol, atol=how.atol, method=how.method)
+
+    @cached_property
+    def _outputs(self) -> dict[str, Output]:
+        return {text: asked_of(self.plan.model, text) for text in self.plan.asked if text not in self.plan.slopes}
+
+    @cached_property
+    def _in_motion(self) -> dict[str, Output]:
+        return {text: output for text, output in self._outputs.items() if not is_without_motion(output)}
+
+    @cached_property
+    def _solved(self) -> dict[str, Output]:
+        return {text: output for text, output in self._outputs.items() if is_without_motion(output)}
+
+
+def is_without_motion(output: Output) -> bool:
+    """True if `solve` answers it: at rest, from another start, of the linearized system."""
+    return isinstance(output.at, AtRest) or output.from_ is not None or asks_of(output.value, SMALL_MOTIONS)
+
+
+def _sentence(error: Exception) -> str:
+    if isinstance(error, EomgenError):
+        return f"{error.what}; {error.mend}" if error.mend else error.what
+    return f"{type(error).__name__}: {error}"
+
+
+def finite(x: float | None) -> float | None:
+    """A number; None where it has no value."""
+    return x if x is not None and math.isfinite(x) else None
+
+
+# -- in any process ------------------------------------------------------------------------------------------
+
+Payload = tuple[str, Any]
+"""(the plan as JSON, the model that was made in Python or None): what another process needs"""
+
+
+def payload_of(plan: SweepPlan) -> Payload:
+    """What another process needs to run a part of a plan."""
+    return json.dumps(plan.as_dict(), sort_keys=True), plan.made
+
+
+def rows_of_runs(payload: Payload, first: int, last: int) -> list[SampleRow]:
+    """The rows of some runs, in this process."""
+    return _kernel(*payload).rows(first, last)
+
+
+def value_of_run(payload: Payload, set_: Mapping[str, float], text: str) -> float | None:
+    """What one asked expression is worth at some values [SI]."""
+    kernel = _kernel(*payload)
+    _, _, asked = kernel.asked(set_)
+    return finite(asked[kernel.plan.asked.index(text)])
+
+
+@lru_cache(maxsize=2)
+def _kernel(told: str, made: Any) -> SweepKernel:
+    return SweepKernel(plan_of(json.loads(told), made))
+
+
+# -------- progress --------------------------------------------------------------------------------------------
+# How far a sweep is, on a terminal: rate and time left by tqdm, where it is installed.
+
+
+@contextmanager
+def progress_of(runs: int, done: int) -> Iterator[Callable[[int], object]]:
+    """What is told of each chunk: how many runs it adds."""
+    if sys.stderr is None or not sys.stderr.isatty():
+        yield lambda more: None
+        return
+    try:
+        from tqdm import tqdm
+    except ImportError:
+        yield lambda more: None
+        return
+    with tqdm(total=runs, initial=done, unit=" runs", file=sys.stderr) as bar:
+        yield bar.update
+
+
+# -------- ledger ----------------------------------------------------------------------------------------------
+# The ledger of a sweep: a row for each run that is done, once and for ever, in a file that sqlite reads.
+#
+# One process writes it, by transactions: whoever is killed at whatever instant leaves whole rows behind.
+
+
+AT_ONCE = 10_000  # rows that are read at once
+
+
+@dataclass(frozen=True)
+class SweepLedger:
+    """The rows that are done.
+
+    Args:
+        connection: to the file, or to memory.
+        plan: whose runs they are.
+    """
+
+    connection: sqlite3.Connection
+    plan: SweepPlan
+
+    def __getstate__(self) -> dict[str, Any]:
+        """Its rows; out of a pickle comes a ledger in memory."""
+        return {"connection": self.connection.serialize(), "plan": self.plan}
+
+    def __setstate__(self, state: dict[str, Any]) -> None:
+        connection = sqlite3.connect(":memory:")
+        connection.deserialize(state["connection"])
+        self.__dict__.update(state | {"connection": connection})
+
+    def add(self, rows: Sequence[SampleRow]) -> int:
+        """How many of them are new; a run that is there stays as it is."""
+        marks = ", ".join("?" * len(self.plan.columns))
+        before = self.connection.total_changes
+        with self.connection:
+            self.connection.executemany(f"INSERT OR IGNORE INTO runs VALUES ({marks})", map(_stored, rows))
+        return self.connection.total_changes - before
+
+    def missing(self, first: int, last: int) -> list[tuple[int, int]]:
+        """The stretches of runs from `first` up to `last` that are not done."""
+        done = {
+            run for (run,) in self.connection.execute("SELECT run FROM runs WHERE run >= ? AND run < ?", (first, last))
+        }
+        if not done:
+            return [(first, last)]
+        found: list[tuple[int, int]] = []
+        for run in range(first, last):
+            if run in done:
+                continue
+            if found and found[-1][1] == run:
+                found[-1] = (found[-1][0], run + 1)
+            else:
+                found.append((run, run + 1))
+        return found
+
+    @property
+    def count(self) -> int:
+        """How many runs are done."""
+        return int(self.connection.execute("SELECT COUNT(*) FROM runs").fetchone()[0])
+
+    def statuses(self) -> dict[str, int]:
+        """How many ended in which way."""
+        return dict(self.connection.execute("SELECT status, COUNT(*) FROM runs GROUP BY status ORDER BY status"))
+
+    def messages(self, few: int) -> list[tuple[int, str, str]]:
+        """(run, status, message) of the first with a message."""
+        asked = "SELECT run, status, message FROM runs WHERE message <> '' ORDER BY run LIMIT ?"
+        return list(self.connection.execute(asked, (few,)))
+
+    def summary(self, column: int) -> tuple[int, float | None, float | None, float | None]:
+        """(how many have a value, the least, the mean, the largest) of a column."""
+        name = _quoted(_distinct(self.plan.columns)[column])
+        asked = f"SELECT COUNT({name}), MIN({name}), AVG({name}), MAX({name}) FROM runs"
+        found: tuple[int, float | None, float | None, float | None] = self.connection.execute(asked).fetchone()
+        return found
+
+    def row(self, run: int) -> SampleRow | None:
+        """One of them; None while it is not done."""
+        found: SampleRow | None = self.connection.execute("SELECT * FROM runs WHERE run = ?", (run,)).fetchone()
+        return found
+
+    def rows(self) -> Iterator[SampleRow]:
+        """All, by their numbers."""
+        reader = self.connection.cursor()
+        reader.arraysize = AT_ONCE
+        reader.execute("SELECT * FROM runs ORDER BY run")
+        while some := reader.fetchmany():
+            yield from some
+
+    def add_critical(self, rows: Iterable[SampleRow]) -> None:
+        """Critical values: (number, what stays, the name, its value, what is left, message)."""
+        with self.connection:
+            self.connection.executemany("INSERT OR IGNORE INTO critical VALUES (?, ?, ?, ?, ?, ?)", rows)
+
+    def critical(self) -> list[SampleRow]:
+        """The critical values that were found."""
+        return list(self.connection.execute("SELECT * FROM critical ORDER BY number"))
+
+    def settle(self) -> None:
+        """All that is done stands in the one file; what is beside it while rows are added is gone."""
+        with suppress(sqlite3.OperationalError):  # somebody else reads it: whoever is the last does it
+            self.connection.execute("PRAGMA journal_mode=DELETE")
+
+    def close(self) -> None:
+        """No more rows."""
+        self.connection.close()
+
+
+def _stored(row: SampleRow) -> SampleRow:
+    return tuple(None if isinstance(x, float) and math.isnan(x) else x for x in row)
+
+
+def ledger_at(path: Path | None, plan: SweepPlan) -> SweepLedger:
+    """The ledger in a file, begun where there is none; None: in memory.
+
+    Raises:
+        UsageError: it is of another plan, or no ledger.
+        WriteFailed: it cannot be written.
+    """
+    try:
+        connection = sqlite3.connect(":memory:" if path is None else path, timeout=60)
+        connection.execute("PRAGMA journal_mode=WAL")
+        connection.execute("PRAGMA synchronous=NORMAL")
+        names = _distinct(plan.columns)
+        kinds = ["INTEGER PRIMARY KEY", "INTEGER", "TEXT", "TEXT", *["REAL"] * (len(names) - len(FIXED))]
+        columns = ", ".join(f"{_quoted(name)} {kind}" for name, kind in zip(names, kinds, strict=True))
+        with connection:
+            connection.execute("CREATE TABLE IF NOT EXISTS plan (hash TEXT PRIMARY KEY)")
+            connection.execute(f"CREATE TABLE IF NOT EXISTS runs ({columns})")
+            connection.execute(
+                "CREATE TABLE IF NOT EXISTS critical (number INTEGER PRIMARY KEY, at TEXT, name TEXT, value REAL, "
+                "left REAL, message TEXT)"
+            )
+            connection.execute(
+                "INSERT OR IGNORE INTO plan SELECT ? WHERE NOT EXISTS (SELECT 1 FROM plan)", (plan.hash,)
+            )
+        (found,) = connection.execute("SELECT hash FROM plan").fetchone()
+    except sqlite3.OperationalError as error:
+        raise WriteFailed(
+            f"the ledger '{path}' cannot be written: {error}", mend="name a folder that can be written to"
+        ) from error
+    except sqlite3.DatabaseError as error:
+        raise UsageError(f"'{path}' is no ledger of a sweep: {error}", mend="begin in another folder") from error
+    if found != plan.hash:
+        connection.close()
+        raise UsageError(f"'{path}' is the ledger of another plan", mend="give -o another folder")
+    return SweepLedger(connection, plan)
+
+
+def _distinct(names: Sequence[str]) -> list[str]:
+    """For sqlite, which takes M for m: the second of two alike gets a number."""
+    found: list[str] = []
+    for name in names:
+        shown, k = name, 2
+        while shown.lower() in {other.lower() for other in found}:
+            shown, k = f"{name} #{k}", k + 1
+        found.append(shown)
+    return found
+
+
+def _quoted(name: str) -> str:
+    return '"' + name.replace('"', '""') + '"'

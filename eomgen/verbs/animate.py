@@ -11,44 +11,45 @@ import numpy as np
 
 from eomgen import files, pipeline
 from eomgen.documents.document import Document, plain_document
-from eomgen.documents.motion_frames import (
+from eomgen.documents.moving_picture import (
     FINE,
     PERIOD,
     Movie,
+    Progress,
     frame_times,
+    gif,
     mode_movies,
     movie_of,
+    mp4,
+    on_stderr,
     refuse_rates,
+    strip,
     virtual_movie,
 )
-from eomgen.documents.moving_picture import Progress, gif, mp4, on_stderr, strip
 from eomgen.documents.statements import prose
-from eomgen.documents.statics.work_steps import virtual_work_step
+from eomgen.documents.statics.steps import virtual_work_step
 from eomgen.equations import Equations
 from eomgen.errors import UsageError
-from eomgen.mechanics.equations.system import system_of
-from eomgen.mechanics.equilibria.static_equations import has_freedoms, with_drives_held
-from eomgen.mechanics.formulations.massless_nodes import with_nodes_balanced
-from eomgen.mechanics.statics.rest_contacts import modes_at_rest
-from eomgen.mechanics.statics.two_ways import released_in
-from eomgen.mechanics.structures.loose_motion import refuse_loose
-from eomgen.mechanics.structures.structure import structure_of
+from eomgen.mechanics.dynamics.formulations import with_nodes_balanced
+from eomgen.mechanics.dynamics.system import system_of
+from eomgen.mechanics.equilibrium.equations import has_freedoms, with_drives_held
+from eomgen.mechanics.rigidity.structure import refuse_loose, structure_of
+from eomgen.mechanics.statics.contacts import modes_at_rest
+from eomgen.mechanics.statics.virtual_work import released_in
 from eomgen.model.parts import Model
 from eomgen.model.reader import ModelOrPath, model_at
 from eomgen.model.replaced import Values
-from eomgen.page.player_data import PlayedRun, PlayerOptions
-from eomgen.page.player_page import player_page_of
-from eomgen.page.player_read_back import player_read_back
+from eomgen.page.player import PlayedRun, PlayerOptions, player_page_of, player_read_back
 from eomgen.proof.check import Check
 from eomgen.proof.pictures_told import pictures_told, states_shown
 from eomgen.questions.run import PAGE_TIME, page_stepping, page_time
 from eomgen.questions.run import run as simulated
 from eomgen.records import dataclass
-from eomgen.scene.told import picture_told
+from eomgen.scene.phase_frames import picture_told
 from eomgen.scene.virtual import VirtualDisplacement
 from eomgen.simulation.integrator import Stepping
 from eomgen.simulation.result import Trajectory
-from eomgen.symbolic.expression.typed import Typed
+from eomgen.symbolic.expression.units import Typed
 from eomgen.symbolic.numeric.tolerances import COMPUTED
 from eomgen.verbs.outcome import with_start_told
 
@@ -233,7 +234,7 @@ def virtual_displacement(
 
 
 def _displacement_page(found: VirtualDisplacement) -> str:
-    from eomgen.page.released import PlayedDisplacements
+    from eomgen.page.player import PlayedDisplacements
 
     return player_page_of(PlayedDisplacements((found,)))
 

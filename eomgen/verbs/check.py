@@ -8,12 +8,12 @@ from typing import Any
 from eomgen.documents.document import Document, plain_document
 from eomgen.documents.statements import Lines
 from eomgen.errors import Problem
-from eomgen.mechanics.constraints.freedom import Freedom
-from eomgen.mechanics.formulations.massless_nodes import told_of_nodes, with_nodes_balanced
-from eomgen.mechanics.structures.structure import Structure
+from eomgen.mechanics.constraints.rank import Freedom
+from eomgen.mechanics.dynamics.formulations import told_of_nodes, with_nodes_balanced
+from eomgen.mechanics.rigidity.structure import Structure
 from eomgen.model.dimensions import inferred_units
 from eomgen.model.parts import Model, Truss
-from eomgen.model.warnings import warnings_of
+from eomgen.model.unbuilt import warnings_of
 from eomgen.proof.freedoms import counted_otherwise, lines_otherwise, standing_otherwise
 from eomgen.symbolic.print.text import to_text
 from eomgen.verbs.checked import Checked, LoopStart, checked_model

@@ -7,24 +7,22 @@ from dataclasses import field, replace
 from functools import cached_property
 
 from eomgen.errors import DerivationError, MissingValues, ModelError, Problem
-from eomgen.mechanics.bodies.contact_modes import ContactModes
-from eomgen.mechanics.bodies.kinematics import motion_of
-from eomgen.mechanics.bodies.scope import scope_of
-from eomgen.mechanics.bodies.system_scene import SystemScene
-from eomgen.mechanics.constraints.freedom import Freedom, freedom_of
-from eomgen.mechanics.equations.system import system_of
-from eomgen.mechanics.equations.wellposed import massless_motions
-from eomgen.mechanics.formulations import recursive
-from eomgen.mechanics.initial_state.assembly_modes import Branches, branches_of_loops
-from eomgen.mechanics.initial_state.initial_state import Start, start_of_motion
+from eomgen.mechanics.constraints.rank import Freedom, freedom_of
+from eomgen.mechanics.dynamics.formulations import assembled_by_recursion
+from eomgen.mechanics.dynamics.system import system_of
+from eomgen.mechanics.dynamics.wellposed import massless_motions
 from eomgen.mechanics.instant.velocity_analysis import mobility_of
-from eomgen.mechanics.statics.contacts_at_start import contacts_at_start
-from eomgen.mechanics.statics.rest_contacts import modes_at_rest
-from eomgen.mechanics.structures.structure import Structure, structure_of
+from eomgen.mechanics.kinematics.motion import motion_of
+from eomgen.mechanics.kinematics.scene import ContactModes, SystemScene
+from eomgen.mechanics.kinematics.symbols import scope_of
+from eomgen.mechanics.rigidity.structure import Structure, structure_of
+from eomgen.mechanics.start.assembly_modes import Branches, branches_of_loops
+from eomgen.mechanics.start.state import Start, start_of_motion
+from eomgen.mechanics.statics.contacts import contacts_at_start, modes_at_rest
 from eomgen.model.arithmetic import value_of
 from eomgen.model.catalog import Catalog
+from eomgen.model.fields import Table
 from eomgen.model.parts import Model
-from eomgen.model.table import Table
 from eomgen.model.unbuilt import unbuilt
 from eomgen.model.values import exact_parameters
 from eomgen.records import dataclass
@@ -176,7 +174,7 @@ def _misplaced(model: Model) -> Iterator[Problem]:
 def _idle(model: Model, modes: ContactModes) -> tuple[Problem, ...]:
     """Coordinates that move no mass, or several that move none together."""
     try:
-        return massless_motions(recursive.assembled_by_recursion(system_of(model, modes)))
+        return massless_motions(assembled_by_recursion(system_of(model, modes)))
     except (DerivationError, ModelError):  # verbs that need equations of motion tell it
         return ()
 

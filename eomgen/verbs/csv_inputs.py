@@ -11,11 +11,11 @@ from typing import Any
 
 from eomgen.errors import ModelError, UsageError
 from eomgen.files import read
+from eomgen.model.fields import Table
 from eomgen.model.part import altered
 from eomgen.model.parts import Coordinate, Input, Model
 from eomgen.model.samples import samples
-from eomgen.model.table import Table
-from eomgen.symbolic.expression.expressions import Expression
+from eomgen.symbolic.expression.formula import Expression
 from eomgen.verbs.assignments import assignments, nearest_name
 
 EXAMPLE = "--follow theta=run.csv"

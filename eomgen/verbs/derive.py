@@ -10,11 +10,11 @@ from eomgen.documents.proven import proven
 from eomgen.documents.statements import Grid, Step
 from eomgen.equations import Equations
 from eomgen.errors import DerivationError
-from eomgen.mechanics.balance.balance import balance_of
-from eomgen.mechanics.balance.named_reactions import NamedReaction, named_reactions
-from eomgen.model.own_units import units_of_model
+from eomgen.mechanics.free_bodies.balance import balance_of
+from eomgen.mechanics.free_bodies.named_reactions import NamedReaction, named_reactions
 from eomgen.model.parts import Model
 from eomgen.model.reader import load
+from eomgen.model.units import units_of_model
 from eomgen.verbs.outcome import with_ties_closed
 
 HEADS = {"names": "name", "equations": "equation of motion along", "reactions": "reaction", "outputs": "output"}

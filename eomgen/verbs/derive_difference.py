@@ -13,7 +13,7 @@ from eomgen.documents.equation_steps import sides_of
 from eomgen.documents.proven import proven
 from eomgen.documents.statements import Formula, Grid, Statement, Step, prose
 from eomgen.equations import Equations
-from eomgen.mechanics.equations.equations_of_motion import EquationsOfMotion
+from eomgen.mechanics.dynamics.system import EquationsOfMotion
 from eomgen.model.parts import Model
 from eomgen.model.values import exact_parameters
 from eomgen.proof.check import Certificate
@@ -21,8 +21,9 @@ from eomgen.records import dataclass
 from eomgen.symbolic.exact.book_form import book_form
 from eomgen.symbolic.exact.equality import equal_at_random_states
 from eomgen.symbolic.expression.derivative import symbols_of
-from eomgen.symbolic.expression.graph import Graph, Scalar
-from eomgen.symbolic.numeric.transplant import transplanted
+from eomgen.symbolic.expression.graph import Graph
+from eomgen.symbolic.expression.node import Scalar
+from eomgen.symbolic.numeric.evaluation import transplanted
 from eomgen.symbolic.numeric.work import Work
 from eomgen.symbolic.print.text import to_text
 

@@ -11,7 +11,7 @@ from eomgen.documents.statements import Lines
 from eomgen.errors import UsageError
 from eomgen.exported import urdf_of
 from eomgen.model.parts import Model
-from eomgen.proof.imported_urdf import imported_otherwise, unsaid_otherwise
+from eomgen.proof.imported import imported_otherwise, unsaid_otherwise
 
 
 def refuse_strange_endings(output: str) -> None:

@@ -4,11 +4,10 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
-from eomgen.mechanics.constraints.freedom import Freedom, RowName
-from eomgen.mechanics.constraints.integrability import VelocityRow
-from eomgen.mechanics.initial_state.assembly_modes import AssemblyMode, Branches
-from eomgen.model.own_units import in_own_unit
+from eomgen.mechanics.constraints.rank import Freedom, RowName, VelocityRow
+from eomgen.mechanics.start.assembly_modes import AssemblyMode, Branches
 from eomgen.model.parts import Model
+from eomgen.model.units import in_own_unit
 from eomgen.symbolic.print.text import to_text
 from eomgen.verbs.outcome import listed
 

@@ -10,9 +10,8 @@ from eomgen import files
 from eomgen.documents.document import Document, lines_document
 from eomgen.errors import UsageError
 from eomgen.pipeline import derive
+from eomgen.proof.imported import imported_otherwise, sdf_otherwise, without_units
 from eomgen.proof.imported_mjcf import mjcf_otherwise
-from eomgen.proof.imported_sdf import sdf_otherwise
-from eomgen.proof.imported_urdf import imported_otherwise, without_units
 from eomgen.robots.importing import ImportedRobot, first_element, imported
 
 MOST_COMPARED = 20  # coordinates of a robot whose forces are derived to be compared

@@ -27,15 +27,15 @@ import numpy
 from eomgen import kept
 from eomgen.errors import EomgenError
 from eomgen.files import beside
-from eomgen.mechanics.balance.friction import equations_of_motion
-from eomgen.mechanics.bodies.contact_modes import ContactModes
-from eomgen.mechanics.equations.system import system_of
+from eomgen.mechanics.dynamics.system import system_of
+from eomgen.mechanics.free_bodies.friction import equations_of_motion
+from eomgen.mechanics.kinematics.scene import ContactModes
 from eomgen.model.contacts import contacts_of
 from eomgen.model.parts import Model
 from eomgen.records import dataclass
 from eomgen.symbolic.expression.derivative import symbols_of
-from eomgen.symbolic.expression.functions import inner
-from eomgen.symbolic.expression.graph import Scalar
+from eomgen.symbolic.expression.formula import inner
+from eomgen.symbolic.expression.node import Scalar
 from eomgen.symbolic.numeric.evaluation import FLOAT, evaluate
 
 SUFFIX = ".json"
@@ -147,6 +147,6 @@ def _modes(model: Model) -> ContactModes | None:
     """How the contacts are at the start, where there are any."""
     if not contacts_of(model):
         return None
-    from eomgen.mechanics.statics.contacts_at_start import contacts_at_start
+    from eomgen.mechanics.statics.contacts import contacts_at_start
 
     return contacts_at_start(model).modes

@@ -10,9 +10,9 @@ from eomgen.documents.document import Document
 from eomgen.documents.proven import proven
 from eomgen.documents.result import Result
 from eomgen.errors import DerivationError, ModelError, OpenTies, Problem
-from eomgen.mechanics.equations.system import System, system_of
-from eomgen.mechanics.initial_state.initial_state import Start, start_of_motion
-from eomgen.mechanics.statics.contacts_at_start import contacts_at_start
+from eomgen.mechanics.dynamics.system import System, system_of
+from eomgen.mechanics.start.state import Start, start_of_motion
+from eomgen.mechanics.statics.contacts import contacts_at_start
 from eomgen.model.parts import Model
 
 if TYPE_CHECKING:

@@ -12,7 +12,7 @@ from eomgen.documents.statements import Lines
 from eomgen.errors import UsageError
 from eomgen.model.parts import Model
 from eomgen.page.play import played, slider_ranges
-from eomgen.page.player_data import PlayerOptions
+from eomgen.page.player import PlayerOptions
 from eomgen.verbs.outcome import with_start_told
 
 

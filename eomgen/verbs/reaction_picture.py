@@ -5,14 +5,13 @@ from __future__ import annotations
 import math
 
 from eomgen import pipeline
-from eomgen.documents.figures import Picture
-from eomgen.documents.run_pictures import run_picture
-from eomgen.mechanics.equations.system import System
-from eomgen.mechanics.initial_state.numeric_value import known_exactly
+from eomgen.documents.figures import Picture, run_picture
+from eomgen.mechanics.dynamics.system import System
+from eomgen.mechanics.start.exact import known_exactly
 from eomgen.model.parts import Model
 from eomgen.questions.run import run_of_a_page
 from eomgen.symbolic.expression.derivative import symbols_of
-from eomgen.symbolic.expression.graph import is_zero
+from eomgen.symbolic.expression.node import is_zero
 from eomgen.symbolic.numeric.sure_numbers import number_of
 
 SAMPLES = 721  # of a cycle

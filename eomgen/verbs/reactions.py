@@ -17,26 +17,23 @@ from eomgen.codegen.rhs import parameter_vector
 from eomgen.documents.document import Document, plain_document
 from eomgen.documents.markdown import listing_markdown
 from eomgen.documents.proven import proven
-from eomgen.documents.quantity import Quantity
-from eomgen.documents.reaction_names import said
-from eomgen.documents.reaction_payload import null_space, reaction_formulas, sums_of_open
-from eomgen.documents.statements import Found, Lines, Listing, Statement, prose
+from eomgen.documents.reaction_values import null_space, reaction_formulas, said, sums_of_open
+from eomgen.documents.statements import Found, Lines, Listing, Quantity, Statement, prose
 from eomgen.documents.statics.result import why_not_at_rest
 from eomgen.equations import Equations
 from eomgen.errors import DerivationError, ExpressionError, MissingValues, ModelError, UsageError
-from eomgen.mechanics.balance.balance import balance_of
-from eomgen.mechanics.balance.named_reactions import NamedReaction, named_reactions
-from eomgen.mechanics.equations.jumps import refuse_jump
-from eomgen.mechanics.equations.system import System, system_of
-from eomgen.mechanics.formulations.massless_nodes import with_nodes_balanced
-from eomgen.mechanics.initial_state.numeric_value import known_exactly
-from eomgen.mechanics.statics.contacts_at_start import resting_contacts
-from eomgen.model.fields import AtRest, WrittenEquation
+from eomgen.mechanics.dynamics.formulations import with_nodes_balanced
+from eomgen.mechanics.dynamics.pieces import refuse_jump
+from eomgen.mechanics.dynamics.system import System, system_of
+from eomgen.mechanics.free_bodies.balance import balance_of
+from eomgen.mechanics.free_bodies.named_reactions import NamedReaction, named_reactions
+from eomgen.mechanics.start.exact import known_exactly
+from eomgen.mechanics.statics.contacts import resting_contacts
+from eomgen.model.fields import AtRest, Table, WrittenEquation
 from eomgen.model.outputs import FUNCTIONS
 from eomgen.model.parts import Model, Output
 from eomgen.model.reader import ModelOrPath, model_at
 from eomgen.model.replaced import Values, equation_typed, with_values
-from eomgen.model.table import Table
 from eomgen.model.unknowns import in_loads
 from eomgen.proof.at_a_state import NumericState
 from eomgen.proof.check import Certificate, Check
@@ -44,8 +41,8 @@ from eomgen.proof.reaction_texts import reaction_numbers, reaction_texts
 from eomgen.questions import answers
 from eomgen.simulation.reaction_columns import ReactionColumns
 from eomgen.symbolic.exact.book_form import book_form
-from eomgen.symbolic.expression.expressions import parse
 from eomgen.symbolic.expression.rational import Fraction
+from eomgen.symbolic.expression.text import parse
 from eomgen.symbolic.numeric.tolerances import ROUNDING
 from eomgen.symbolic.numeric.work import doing
 from eomgen.symbolic.print.text import to_text

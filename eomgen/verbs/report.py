@@ -11,7 +11,7 @@ from pathlib import Path
 from typing import Any
 
 from eomgen import files, pipeline
-from eomgen.codegen.names import identifier
+from eomgen.codegen.program import identifier
 from eomgen.documents.document import Document, document_of, plain_document
 from eomgen.documents.inertia.result import inertia
 from eomgen.documents.latex import with_listings_typeset
@@ -24,21 +24,24 @@ from eomgen.documents.statics.result import Statics, statics
 from eomgen.equations import Equations
 from eomgen.errors import DerivationError, MissingValues, RunFailed, ToolMissing, UsageError
 from eomgen.generated import Generated
-from eomgen.mechanics.formulations.massless_nodes import with_nodes_balanced
-from eomgen.model.own_units import units_of
+from eomgen.mechanics.dynamics.formulations import with_nodes_balanced
 from eomgen.model.parts import Model
 from eomgen.model.reader import ModelOrPath, bytes_at, loads, model_at
 from eomgen.model.replaced import Values
+from eomgen.model.units import units_of
 from eomgen.page.contents import PLAYER, SECTIONS, Attachment, Report, ReportFigure, ReportSection, joint_proof
-from eomgen.page.curves import motion_drawings
-from eomgen.page.figure import figure_of, rest_figure
+from eomgen.page.figure import figure_of, motion_drawings, rest_figure
 from eomgen.page.formats import FORMATS, FilesByName, written_as
 from eomgen.page.markup import Html, element, in_a_row
-from eomgen.page.player_data import PlayedRun, PlayerOptions
-from eomgen.page.player_page import Playable, player_parts_of
-from eomgen.page.player_read_back import player_read_back
+from eomgen.page.player import (
+    Playable,
+    PlayedDisplacements,
+    PlayedRun,
+    PlayerOptions,
+    player_parts_of,
+    player_read_back,
+)
 from eomgen.page.read_back import report_read_back
-from eomgen.page.released import PlayedDisplacements
 from eomgen.proof.check import Certificate, Check
 from eomgen.proof.pictures_told import pictures_told, states_shown
 from eomgen.questions import answers
@@ -46,10 +49,10 @@ from eomgen.questions.run import PAGE_TIME, run_of_a_page
 from eomgen.questions.velocities import kinematics
 from eomgen.records import dataclass
 from eomgen.scene.making import scene_of
-from eomgen.scene.told import picture_told
+from eomgen.scene.phase_frames import picture_told
 from eomgen.scene.virtual import VirtualDisplacement
 from eomgen.simulation.result import Trajectory
-from eomgen.symbolic.expression.typed import Typed, seconds
+from eomgen.symbolic.expression.units import Typed, seconds
 from eomgen.symbolic.numeric.work import doing
 from eomgen.verbs.assignments import nearest_name
 from eomgen.verbs.outcome import with_start_told

@@ -12,8 +12,7 @@ from typing import Any
 import numpy as np
 
 from eomgen import pipeline
-from eomgen.codegen.accelerations import closing_accelerations
-from eomgen.codegen.rhs import parameter_vector
+from eomgen.codegen.rhs import closing_accelerations, parameter_vector
 from eomgen.documents.document import Document, plain_document
 from eomgen.documents.proven import proven
 from eomgen.documents.statements import Grid, Statement, prose
@@ -21,16 +20,16 @@ from eomgen.documents.text import cell_text
 from eomgen.equations import Equations
 from eomgen.errors import UsageError
 from eomgen.files import is_stream
-from eomgen.mechanics.constraints.edges import limits_passed
+from eomgen.mechanics.constraints.rows import limits_passed
 from eomgen.model.fields import WrittenEquation
-from eomgen.model.own_units import units_of
 from eomgen.model.parts import Model
 from eomgen.model.samples import left_tables
+from eomgen.model.units import units_of
 from eomgen.proof.run_told import ToldRun, run_told
 from eomgen.questions.run import run as simulated
-from eomgen.simulation.accuracy import Accuracy
 from eomgen.simulation.integrator import Stepping
 from eomgen.simulation.result import Trajectory
+from eomgen.simulation.solvers import Accuracy
 from eomgen.symbolic.expression.units import Unit
 
 MOST_TOLD = 20  # phases in the text
@@ -66,7 +65,7 @@ def simulate_document(
     if output:
         _write_run(run, output, units_of(model, run.columns()) if units else None)
     if plot:
-        from eomgen.documents.run_pictures import run_picture
+        from eomgen.documents.figures import run_picture
 
         run_picture(run, view, title=model.name, units=units_of(model, run.columns())).save(plot)
     assembled = f"The start was {run.assembled}." if run.assembled else ""

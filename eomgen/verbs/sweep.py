@@ -13,9 +13,9 @@ from eomgen.documents.document import Document, plain_document
 from eomgen.documents.proven import proven
 from eomgen.documents.statements import Grid, prose
 from eomgen.errors import EomgenError, RunFailed, UsageError
+from eomgen.model.fields import Table
 from eomgen.model.parts import Model, Output
-from eomgen.model.ranges import range_of
-from eomgen.model.table import Table
+from eomgen.model.replaced import range_of
 from eomgen.pipeline import simulate
 from eomgen.proof.check import Certificate, Check, Tally, differing
 from eomgen.proof.drawn_values import drawn_otherwise, told_of_all
@@ -25,10 +25,9 @@ from eomgen.questions.run import answered_otherwise
 from eomgen.records import dataclass
 from eomgen.sensitivities.sensitivity import checks_of_slope, slope_in_si
 from eomgen.simulation.result import Trajectory
-from eomgen.sweeps.design import spread_of
-from eomgen.sweeps.kernel import FAILED, WITHOUT_MOTION, SweepKernel, is_without_motion
-from eomgen.sweeps.plan import Stepped, SweepPlan
+from eomgen.sweeps.design import Stepped, SweepPlan, spread_of
 from eomgen.sweeps.sweep import CRITICAL, LEDGER, PARQUET, PLAN, TABLE, Sweep, planned, sweep_at, swept
+from eomgen.sweeps.workers import FAILED, WITHOUT_MOTION, SweepKernel, is_without_motion
 from eomgen.symbolic.numeric.evaluation import NoValue
 from eomgen.verbs.assignments import assignments, typed
 

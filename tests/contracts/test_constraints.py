@@ -8,12 +8,12 @@ from each import each
 from moving import State, at, equal, solved, state_of, written
 
 import eomgen
-from eomgen.mechanics.bodies.loads import body_wrench
-from eomgen.mechanics.constraints.ties import Row
-from eomgen.mechanics.equations.system import System
+from eomgen.mechanics.constraints.rows import Row
+from eomgen.mechanics.dynamics.system import System
+from eomgen.mechanics.kinematics.loads import body_wrench
 from eomgen.model.constraints import ALL
 from eomgen.symbolic.expression.derivative import gradient, tangent
-from eomgen.symbolic.expression.graph import Scalar
+from eomgen.symbolic.expression.node import Scalar
 from eomgen.symbolic.expression.spatial import ZERO, apply, cross, plus
 from eomgen.symbolic.numeric.evaluation import fifty_digits
 

@@ -12,19 +12,27 @@ from moving import at, equal, state_of, written
 
 import eomgen
 from eomgen.errors import NotYet
-from eomgen.mechanics.bodies.armature import armature_mass
-from eomgen.mechanics.bodies.loads import Loads, body_wrench, in_ground_axes, joint_wrenches
-from eomgen.mechanics.bodies.system_scene import SystemScene
-from eomgen.mechanics.equations.system import System
-from eomgen.mechanics.equations.work import effort_row, force_row, from_potential, generalized_forces, load_row, summed
-from eomgen.mechanics.formulations import projection, recursive
+from eomgen.mechanics.dynamics import formulations as projection
+from eomgen.mechanics.dynamics import formulations as recursive
+from eomgen.mechanics.dynamics.system import (
+    System,
+    effort_row,
+    force_row,
+    from_potential,
+    generalized_forces,
+    load_row,
+    summed,
+)
+from eomgen.mechanics.kinematics.inertia import armature_mass
+from eomgen.mechanics.kinematics.loads import Loads, body_wrench, in_ground_axes, joint_wrenches
+from eomgen.mechanics.kinematics.scene import SystemScene
 from eomgen.model.forces import ALL
 from eomgen.model.forces.load import Couple, PointForce, UniformField
-from eomgen.proof.declared_work import acting_otherwise, working_otherwise
+from eomgen.proof.declared_loads import acting_otherwise, working_otherwise
 from eomgen.symbolic.expression.derivative import gradient
-from eomgen.symbolic.expression.expressions import parse
-from eomgen.symbolic.expression.graph import Scalar
+from eomgen.symbolic.expression.node import Scalar
 from eomgen.symbolic.expression.spatial import ZERO, Vector, apply, cross, dot, minus, plus
+from eomgen.symbolic.expression.text import parse
 from eomgen.symbolic.numeric.evaluation import fifty_digits
 
 PLANE, SPACE = "plane", "space"

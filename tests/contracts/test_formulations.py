@@ -15,16 +15,16 @@ from random_systems import random_model
 from slow_run import usual_models
 
 import eomgen
-from eomgen.mechanics.bodies.inertia import armature_energy
-from eomgen.mechanics.bodies.tree import branches_of
-from eomgen.mechanics.equations import articulated
-from eomgen.mechanics.equations.accelerations import accelerations_at
-from eomgen.mechanics.equations.equations_of_motion import EquationsOfMotion
-from eomgen.mechanics.equations.system import System, system_of
-from eomgen.mechanics.formulations import ALL, Formulation, recursive
+from eomgen.mechanics.dynamics import accelerations as articulated
+from eomgen.mechanics.dynamics import formulations as recursive
+from eomgen.mechanics.dynamics.accelerations import accelerations_at
+from eomgen.mechanics.dynamics.formulations import ALL, Formulation
+from eomgen.mechanics.dynamics.system import EquationsOfMotion, System, system_of
+from eomgen.mechanics.kinematics.inertia import armature_energy
+from eomgen.mechanics.kinematics.tree import branches_of
 from eomgen.model.unbuilt import unbuilt
 from eomgen.symbolic.expression.derivative import depends_on_any
-from eomgen.symbolic.expression.factors import same_number
+from eomgen.symbolic.expression.graph import same_number
 from eomgen.symbolic.numeric.evaluation import NoValue
 
 pytestmark = [pytest.mark.slow, pytest.mark.by_model]

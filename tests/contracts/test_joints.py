@@ -11,11 +11,11 @@ from moving import at, equal, rate, state_of, written
 
 import eomgen
 from eomgen.errors import NotYet
-from eomgen.mechanics.bodies.kinematics import BodyLink, spin_between
-from eomgen.mechanics.equations.system import System, system_of
+from eomgen.mechanics.dynamics.system import System, system_of
+from eomgen.mechanics.kinematics.motion import BodyLink, spin_between
 from eomgen.model.joints import ALL
-from eomgen.model.joints.orientation import SEQUENCES
-from eomgen.symbolic.expression.functions import cos, sin
+from eomgen.model.joints.ball import SEQUENCES
+from eomgen.symbolic.expression.formula import cos, sin
 from eomgen.symbolic.expression.spatial import apply, matrix_of, rotation, transposed
 
 SEAT = 'at = [0.1, 0.2, 0.3], turned = { axis = [1, 1, 0], angle = "pi/3" }'

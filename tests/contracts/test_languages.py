@@ -99,12 +99,12 @@ def test_every_language_runs_a_program_that_is_cut_into_parts(target, name, monk
     """Functions of at most 12 operations, that leave what others read in an array: the same vectors."""
     if target == "numba" and name != "closed loops" and not ALL:
         pytest.skip("it compiles for ten seconds: of the slow run")
-    monkeypatch.setattr("eomgen.codegen.layout.LENGTH", 12)
+    monkeypatch.setattr("eomgen.codegen.lowering.LENGTH", 12)
 
     def cut(program, language, *more):
         return lowered(program, replace(language, longest=1), *more)
 
-    monkeypatch.setattr("eomgen.codegen.targets.form.lowered", cut)
+    monkeypatch.setattr("eomgen.codegen.targets.base.lowered", cut)
     program = PROGRAMS[name]()
     assert name != "closed loops" or "part1(" in target_named(target).text(program, "eomgen", RHS)
     function = compiled(program, target)

@@ -15,15 +15,16 @@ from each import each
 import eomgen
 from eomgen.documents.linearize.result import linearize
 from eomgen.errors import DerivationError
-from eomgen.mechanics.equations.system import system_of
-from eomgen.mechanics.formulations import recursive
-from eomgen.mechanics.instant.outputs import Quantities
-from eomgen.mechanics.statics.contacts_at_start import contacts_at_start
-from eomgen.model.outputs import ALL, FUNCTIONS, velocity
+from eomgen.mechanics.dynamics import formulations as recursive
+from eomgen.mechanics.dynamics.system import system_of
+from eomgen.mechanics.instant.quantities import Quantities
+from eomgen.mechanics.statics.contacts import contacts_at_start
+from eomgen.model.outputs import ALL, FUNCTIONS
+from eomgen.model.outputs import points as velocity
 from eomgen.model.outputs.base import BALANCE, OF_A_RUN, SMALL_MOTIONS
 from eomgen.proof.at_a_state import NumericState
-from eomgen.proof.second_definitions import second_definition
-from eomgen.symbolic.expression.expressions import parse
+from eomgen.proof.instant import second_definition
+from eomgen.symbolic.expression.text import parse
 from eomgen.symbolic.expression.units import Unit, parse_unit
 from eomgen.symbolic.numeric.evaluation import NoValue
 from eomgen.symbolic.numeric.tolerances import CARRIED

@@ -22,14 +22,12 @@ from tools import marked, tool
 import eomgen
 from eomgen import files
 from eomgen.codegen import build
-from eomgen.codegen.files import texts_of
 from eomgen.codegen.lowered import Language
-from eomgen.codegen.names import RESERVED
-from eomgen.codegen.program import program_of
+from eomgen.codegen.program import RESERVED, program_of
 from eomgen.codegen.rhs import target_named
 from eomgen.codegen.targets import ALL, cpp, fortran, wasm
 from eomgen.codegen.targets.base import Description
-from eomgen.codegen.vectors import vectors
+from eomgen.codegen.vectors import texts_of, vectors
 
 pytestmark = pytest.mark.slow
 

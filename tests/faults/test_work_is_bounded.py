@@ -15,20 +15,21 @@ from click.testing import CliRunner
 import eomgen
 from eomgen.cli import main
 from eomgen.errors import EomgenError
-from eomgen.mechanics.bodies import places
 from eomgen.mechanics.constraints import closure
-from eomgen.mechanics.equations.system import system_of
-from eomgen.mechanics.initial_state.exact_start import ExactStart
+from eomgen.mechanics.dynamics.system import system_of
+from eomgen.mechanics.kinematics import places
+from eomgen.mechanics.start.exact import ExactStart
 from eomgen.questions import answers
 from eomgen.questions.run import run
+from eomgen.simulation import integrator as pace
 from eomgen.simulation import motion as simulation_motion
-from eomgen.simulation import pace
 from eomgen.simulation.integrator import Stepping, march
 from eomgen.symbolic.exact.expansion import expanded
-from eomgen.symbolic.expression.graph import Graph, Node
+from eomgen.symbolic.expression.graph import Graph
+from eomgen.symbolic.expression.node import Node
 from eomgen.symbolic.numeric import work
 from eomgen.symbolic.numeric.evaluation import FLOAT, evaluate
-from eomgen.symbolic.numeric.newton import Newton
+from eomgen.symbolic.numeric.roots import Newton
 from eomgen.symbolic.numeric.work import (
     OutOfPatience,
     PatienceEnded,
@@ -38,7 +39,7 @@ from eomgen.symbolic.numeric.work import (
     patience,
 )
 from eomgen.symbolic.print.text import text_size
-from eomgen.symbolic.solve.linear_systems import LinearSystem, general_solution
+from eomgen.symbolic.solve.linear import LinearSystem, general_solution
 
 MODELS = Path(__file__).parents[2] / "models"
 HEAD = """

@@ -16,16 +16,18 @@ from slow_run import usual, usual_models
 from eomgen import solve
 from eomgen.documents.derivation import derivation_of
 from eomgen.documents.document import Document
-from eomgen.mechanics.equations.system import System
+from eomgen.equations import Equations
+from eomgen.mechanics.dynamics.formulations import METHODS
+from eomgen.mechanics.dynamics.system import System
 from eomgen.model.parts import Model
 from eomgen.model.reader import load, loads
 from eomgen.model.unbuilt import unbuilt
-from eomgen.pipeline import METHODS, Equations, derive
+from eomgen.pipeline import derive
 from eomgen.questions.answers import Answers
 from eomgen.symbolic.expression.derivative import substituted
-from eomgen.symbolic.expression.expressions import Call, Reference, parse
-from eomgen.symbolic.expression.functions import over
-from eomgen.symbolic.expression.graph import Node, Scalar
+from eomgen.symbolic.expression.formula import Call, Reference, over
+from eomgen.symbolic.expression.node import Node, Scalar
+from eomgen.symbolic.expression.text import parse
 
 MODELS = Path(__file__).parent.parent.parent / "models"
 PATHS = sorted([*MODELS.glob("*.toml"), *MODELS.glob("seeds/*.toml")])

@@ -24,7 +24,7 @@ needs_fork = pytest.mark.skipif(not hasattr(os, "fork"), reason="faults are made
 needs_sh = pytest.mark.skipif(os.name != "posix", reason="compilers that are shell scripts, modes of files")
 LONGEST = 60  # seconds of one process
 USED = [f"eomgen.verbs.{each.name}" for each in pkgutil.iter_modules(eomgen.verbs.__path__)]
-USED += ["eomgen.documents.plots", "eomgen.documents.latex"]
+USED += ["eomgen.documents.figures", "eomgen.documents.latex"]
 USED += ["matplotlib.backends.backend_agg", "scipy.integrate", "eomgen.documents.statics.result"]  # slow to import
 
 

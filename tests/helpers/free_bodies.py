@@ -16,7 +16,7 @@ from typing import Any
 
 import numpy as np
 
-from eomgen.symbolic.expression.expressions import parse
+from eomgen.symbolic.expression.text import parse
 
 Z = np.array([0.0, 0.0, 1.0])
 Rates = dict[str, float]

@@ -16,9 +16,9 @@ from cpu_limit import TooLong, cpu_limit
 from mpmath.ctx_mp import MPContext
 
 from eomgen.errors import ExpressionError
-from eomgen.symbolic.expression.expressions import LONGEST, parse
-from eomgen.symbolic.expression.functions import NAMES
+from eomgen.symbolic.expression.formula import NAMES
 from eomgen.symbolic.expression.graph import Graph
+from eomgen.symbolic.expression.text import LONGEST, parse
 from eomgen.symbolic.numeric.evaluation import NoValue, evaluate, fifty_digits
 from eomgen.symbolic.print.text import to_text
 

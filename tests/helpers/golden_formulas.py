@@ -20,15 +20,15 @@ from derivations import PATHS, answers, equations
 import eomgen
 from eomgen import Equations, Output
 from eomgen.documents.latex import setter_of, side_latex, with_listings_typeset
-from eomgen.documents.latex_math import Setter
-from eomgen.documents.latex_names import Notation
+from eomgen.documents.latex_math import Notation, Setter
 from eomgen.documents.statements import Formula, Side
 from eomgen.documents.text import side_text
 from eomgen.questions.answers import Answers
 from eomgen.symbolic.exact.equality import equal_at_random_states
 from eomgen.symbolic.expression.derivative import derivative, substituted
-from eomgen.symbolic.expression.expressions import parse
-from eomgen.symbolic.expression.graph import Graph, Node, Scalar, is_zero
+from eomgen.symbolic.expression.graph import Graph
+from eomgen.symbolic.expression.node import Node, Scalar, is_zero
+from eomgen.symbolic.expression.text import parse
 from eomgen.symbolic.print.length import length_of_latex
 
 ROOT = Path(__file__).parents[2]

@@ -24,7 +24,7 @@ from sympy import Rational, Symbol, cos, diff, expand, pi, sin, sstr
 
 import eomgen
 from eomgen.errors import EomgenError
-from eomgen.mechanics.instant.outputs import Quantities
+from eomgen.mechanics.instant.quantities import Quantities
 from eomgen.symbolic.print.sympy_form import to_sympy
 
 MODELS = Path(__file__).parent.parent.parent / "models"

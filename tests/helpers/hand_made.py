@@ -6,10 +6,11 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 from fractions import Fraction
 
-from eomgen.mechanics.equations.equations_of_motion import EquationsOfMotion
-from eomgen.symbolic.expression.functions import cos, sin
-from eomgen.symbolic.expression.graph import Graph, Scalar
-from eomgen.symbolic.expression.symbols import Symbols
+from eomgen.mechanics.dynamics.system import EquationsOfMotion
+from eomgen.symbolic.expression.formula import cos, sin
+from eomgen.symbolic.expression.graph import Graph
+from eomgen.symbolic.expression.node import Scalar
+from eomgen.symbolic.expression.traversal import Symbols
 
 
 def symbols(coordinates: str, parameters: str = "", inputs: str = "", ties: int = 0) -> Symbols:

@@ -17,14 +17,12 @@ from __future__ import annotations
 
 import numpy as np
 
-from eomgen.mechanics.bodies.armature import armature_bias, armature_mass
-from eomgen.mechanics.bodies.inertia import mass_properties
-from eomgen.mechanics.bodies.kinematics import BodyLink
-from eomgen.mechanics.bodies.loads import body_wrench, weights
-from eomgen.mechanics.equations.body_numbers import BodyNumbers
-from eomgen.mechanics.equations.system import System
-from eomgen.mechanics.equations.work import joint_forces, placeless_forces
-from eomgen.mechanics.formulations.lagrange import free_rates
+from eomgen.mechanics.dynamics.formulations import free_rates
+from eomgen.mechanics.dynamics.system import System, joint_forces, placeless_forces
+from eomgen.mechanics.kinematics.inertia import armature_bias, armature_mass, mass_properties
+from eomgen.mechanics.kinematics.loads import body_wrench, weights
+from eomgen.mechanics.kinematics.motion import BodyLink
+from eomgen.mechanics.reactions.equilibrium import BodyNumbers
 from eomgen.symbolic.expression.derivative import gradient
 from eomgen.symbolic.expression.node import State
 from eomgen.symbolic.expression.spatial import ZERO, Vector, plus, times

@@ -9,11 +9,11 @@ from typing import Any
 import numpy as np
 
 import eomgen
-from eomgen.mechanics.equations.system import System, system_of
-from eomgen.mechanics.formulations import recursive
+from eomgen.mechanics.dynamics import formulations as recursive
+from eomgen.mechanics.dynamics.system import System, system_of
 from eomgen.proof.states import real_state
 from eomgen.symbolic.exact.equality import equal_at_random_states
-from eomgen.symbolic.expression.graph import Node, Scalar
+from eomgen.symbolic.expression.node import Node, Scalar
 from eomgen.symbolic.numeric.evaluation import evaluate, fifty_digits
 
 State = dict[Node, Any]

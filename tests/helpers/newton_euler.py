@@ -12,7 +12,7 @@ from pathlib import Path
 
 import numpy as np
 
-from eomgen.symbolic.expression.expressions import parse
+from eomgen.symbolic.expression.text import parse
 
 
 @dataclass(frozen=True)

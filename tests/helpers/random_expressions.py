@@ -7,7 +7,8 @@ from fractions import Fraction
 
 from hypothesis import strategies as st
 
-from eomgen.symbolic.expression.graph import Graph, Node, Scalar
+from eomgen.symbolic.expression.graph import Graph
+from eomgen.symbolic.expression.node import Node, Scalar
 
 NAMES = ("x", "y", "theta", "x'")
 POINT = {"x": 0.73, "y": 1.31, "theta": 0.42, "x'": -0.57}

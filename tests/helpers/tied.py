@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 from moving import State, at, rate, solved, written
 
-from eomgen.mechanics.equations.system import System
+from eomgen.mechanics.dynamics.system import System
 
 m, g, R, l = 2.0, 10.0, 0.5, 0.7  # the parameters of every model here
 GIVEN = {"m": m, "g": g, "R": R, "l": l}

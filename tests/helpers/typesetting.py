@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import re
 
-from eomgen.page.mathml import mathml
-from eomgen.page.typst_math import UnknownCommand, typst_math
+from eomgen.page.markup import mathml
+from eomgen.page.paper import UnknownCommand, typst_math
 
 
 def rows_of_latex(tex: str) -> int:

@@ -14,22 +14,25 @@ import eomgen
 from eomgen.certificate import certify
 from eomgen.equations import Equations
 from eomgen.errors import DerivationError
-from eomgen.mechanics import formulations
-from eomgen.mechanics.balance import balance, components, friction
-from eomgen.mechanics.balance import unit_wrenches as effects
-from eomgen.mechanics.balance.balance import Balance, BodyEquation
-from eomgen.mechanics.bodies import contact_modes as contacts
-from eomgen.mechanics.bodies import inertia, kinematics, recursion, tree
-from eomgen.mechanics.constraints import ties
-from eomgen.mechanics.equations.accelerations import accelerations_at
-from eomgen.mechanics.equations.equations_of_motion import EquationsOfMotion
+from eomgen.mechanics.constraints import rows as ties
+from eomgen.mechanics.dynamics import formulations
+from eomgen.mechanics.dynamics.accelerations import accelerations_at
+from eomgen.mechanics.dynamics.system import EquationsOfMotion
+from eomgen.mechanics.free_bodies import balance, friction
+from eomgen.mechanics.free_bodies import wrenches as components
+from eomgen.mechanics.free_bodies import wrenches as effects
+from eomgen.mechanics.free_bodies.balance import Balance, BodyEquation
+from eomgen.mechanics.kinematics import inertia, tree
+from eomgen.mechanics.kinematics import motion as kinematics
+from eomgen.mechanics.kinematics import scene as contacts
+from eomgen.mechanics.kinematics import tree as recursion
 from eomgen.mechanics.reactions import reactions
 from eomgen.mechanics.reactions.equilibrium import imbalance
-from eomgen.model.forces.gravity import Gravity
-from eomgen.model.forces.reach import Reach
+from eomgen.model.forces.elements import Reach
+from eomgen.model.forces.weights import Gravity
 from eomgen.proof.printed import Printed
 from eomgen.proof.states import closed_state
-from eomgen.symbolic.expression.graph import Scalar, linear_terms
+from eomgen.symbolic.expression.node import Scalar, linear_terms
 from eomgen.symbolic.expression.spatial import times
 from eomgen.symbolic.numeric.evaluation import fifty_digits
 

@@ -18,8 +18,8 @@ from oracle_of_chapters_11_13_21 import ORACLES
 from other_units import grown
 
 import eomgen
-from eomgen.symbolic.expression.expressions import as_expression, parse
 from eomgen.symbolic.expression.graph import Graph
+from eomgen.symbolic.expression.text import as_expression, parse
 from eomgen.symbolic.numeric.evaluation import evaluate, fifty_digits
 
 pytestmark = [pytest.mark.slow, pytest.mark.by_model]

@@ -20,8 +20,8 @@ from slow_run import usual
 
 import eomgen
 from eomgen.model.values import numeric_parameters, start_values
-from eomgen.symbolic.expression.expressions import as_expression, parse
 from eomgen.symbolic.expression.graph import Graph
+from eomgen.symbolic.expression.text import as_expression, parse
 from eomgen.symbolic.numeric.evaluation import evaluate, fifty_digits
 
 pytestmark = [pytest.mark.slow, pytest.mark.by_model]

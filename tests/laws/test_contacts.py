@@ -12,13 +12,12 @@ from scipy.integrate import solve_ivp
 import eomgen
 from eomgen.codegen.rhs import parameter_vector
 from eomgen.errors import DerivationError
-from eomgen.mechanics.constraints.freedom import freedoms
+from eomgen.mechanics.constraints.rank import freedoms
 from eomgen.simulation.integrator import Stepping
-from eomgen.simulation.joined import phase_text
 from eomgen.simulation.motion import Plan, through
 from eomgen.simulation.phase_change import at_start
 from eomgen.simulation.phase_models import PhaseModels
-from eomgen.simulation.phase_run import PhaseRun
+from eomgen.simulation.phase_run import PhaseRun, phase_text
 from eomgen.simulation.result import Trajectory
 
 pytestmark = pytest.mark.slow

@@ -12,13 +12,13 @@ import pytest
 import eomgen
 from eomgen.codegen.rhs import RightHandSide
 from eomgen.errors import OpenTies
-from eomgen.mechanics.balance.friction import equations_of_motion
-from eomgen.mechanics.bodies.contact_modes import ContactMode
-from eomgen.mechanics.equations.system import system_of
-from eomgen.mechanics.initial_state import open_ties
-from eomgen.mechanics.initial_state.initial_state import start_of_motion
+from eomgen.mechanics.dynamics.system import system_of
+from eomgen.mechanics.free_bodies.friction import equations_of_motion
+from eomgen.mechanics.kinematics.scene import ContactMode
+from eomgen.mechanics.start import state as open_ties
+from eomgen.mechanics.start.state import start_of_motion
 from eomgen.model.contacts import contacts_of
-from eomgen.proof.friction_laws import leaving_at_start
+from eomgen.proof.contact_phases import leaving_at_start
 from eomgen.simulation.phase_models import PhaseModels
 from eomgen.verbs.reactions import reactions_document
 

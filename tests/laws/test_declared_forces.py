@@ -8,15 +8,21 @@ from random import Random
 import pytest
 
 import eomgen
-from eomgen.mechanics.balance import components, named_reactions
-from eomgen.mechanics.bodies import contact_modes
-from eomgen.mechanics.statics import contacts_at_start
+from eomgen.mechanics.free_bodies import named_reactions
+from eomgen.mechanics.free_bodies import wrenches as components
+from eomgen.mechanics.kinematics import scene as contact_modes
+from eomgen.mechanics.statics import contacts as contacts_at_start
 from eomgen.model import joints
-from eomgen.model.forces import couple, distributed, force, generalized, kinetic, potential
+from eomgen.model.forces import applied as couple
+from eomgen.model.forces import applied as force
+from eomgen.model.forces import applied as generalized
+from eomgen.model.forces import energies as kinetic
+from eomgen.model.forces import energies as potential
+from eomgen.model.forces import weights as distributed
 from eomgen.model.forces.load import Couple, GeneralizedForce, PointForce
 from eomgen.model.joints.base import Effort
 from eomgen.proof.check import Certificate
-from eomgen.proof.declared_work import acting_otherwise, working_otherwise
+from eomgen.proof.declared_loads import acting_otherwise, working_otherwise
 from eomgen.proof.states import real_state
 from eomgen.symbolic.expression import splines
 from eomgen.symbolic.expression.spatial import times

@@ -18,7 +18,7 @@ import eomgen
 from eomgen import certificate
 from eomgen.errors import DerivationError, UsageError
 from eomgen.mechanics.constraints import elimination
-from eomgen.mechanics.equations.system import free_system_of, system_of
+from eomgen.mechanics.dynamics.system import free_system_of, system_of
 from eomgen.proof import identities
 from eomgen.symbolic.exact.equality import equal_at_random_states
 from eomgen.symbolic.solve import cramer

@@ -14,9 +14,9 @@ import eomgen
 from eomgen.documents import rendered
 from eomgen.documents.json_form import as_dict
 from eomgen.errors import DerivationError, UsageError
-from eomgen.mechanics.equations.system import system_of
-from eomgen.mechanics.equilibria.loads_at_rest import holding_of
-from eomgen.mechanics.equilibria.search import Equilibria, Equilibrium, all_equilibria
+from eomgen.mechanics.dynamics.system import system_of
+from eomgen.mechanics.equilibrium.reactions import holding_of
+from eomgen.mechanics.equilibrium.search import Equilibria, Equilibrium, all_equilibria
 from eomgen.model.parts import Model
 from eomgen.symbolic.print.text import to_text
 from eomgen.verbs.reactions import reactions_document

@@ -8,7 +8,7 @@ from typing import Any
 import pytest
 
 import eomgen
-from eomgen.mechanics.balance.friction import has_friction
+from eomgen.mechanics.free_bodies.friction import has_friction
 from eomgen.model import constraints, forces, joints
 from eomgen.model.part import Part, slots_of
 from eomgen.proof import identities

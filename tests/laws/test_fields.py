@@ -15,9 +15,10 @@ from mpmath import mp, mpf
 
 import eomgen
 from eomgen.errors import DerivationError
-from eomgen.mechanics.equations.system import system_of
-from eomgen.mechanics.fields.centrodes import all_centrodes
-from eomgen.mechanics.fields.field import (
+from eomgen.mechanics.dynamics.system import system_of
+from eomgen.mechanics.instant.kinematic_state import body_motions, composition_of
+from eomgen.mechanics.instant.motion_kind import Kinds, all_centrodes
+from eomgen.mechanics.kinematics.motion import (
     VelocityField,
     acceleration_pole,
     field_of,
@@ -25,17 +26,14 @@ from eomgen.mechanics.fields.field import (
     least_speed,
     rotation_center,
 )
-from eomgen.mechanics.fields.motion_kind import Kinds
-from eomgen.mechanics.fields.relative_motion import composition_of
-from eomgen.mechanics.instant.body_motion import body_motions
-from eomgen.model.outputs.path import curvature_radius
+from eomgen.model.outputs.points import curvature_radius
 from eomgen.questions import answers
 from eomgen.questions.in_phase import PhaseEquations, phase_equations_of
 from eomgen.questions.motion_from_start import MotionFromStart
 from eomgen.symbolic.exact.equality import equal_at_random_states
-from eomgen.symbolic.expression.expressions import parse
-from eomgen.symbolic.expression.graph import Node
+from eomgen.symbolic.expression.node import Node
 from eomgen.symbolic.expression.spatial import Vector, cross, dot, minus, plus
+from eomgen.symbolic.expression.text import parse
 from eomgen.symbolic.numeric.evaluation import FLOAT, evaluate, fifty_digits
 from eomgen.symbolic.print.text import to_text
 

@@ -10,9 +10,9 @@ import pytest
 from scipy.optimize import fsolve
 
 import eomgen
-from eomgen.mechanics.balance.friction import equations_of_motion
-from eomgen.mechanics.equations.system import free_system_of
-from eomgen.mechanics.initial_state.values_at_rest import values_of_parameters
+from eomgen.mechanics.dynamics.system import free_system_of
+from eomgen.mechanics.free_bodies.friction import equations_of_motion
+from eomgen.mechanics.start.exact import values_of_parameters
 from eomgen.symbolic.numeric.evaluation import FLOAT, evaluate
 from eomgen.symbolic.solve.cramer import LARGEST_BLOCK
 

@@ -11,8 +11,8 @@ import pytest
 from slow_run import usual
 
 import eomgen
-from eomgen.mechanics.initial_state.assembly_modes import branches_of_loops
-from eomgen.mechanics.initial_state.initial_state import start_of_motion
+from eomgen.mechanics.start.assembly_modes import branches_of_loops
+from eomgen.mechanics.start.state import start_of_motion
 from eomgen.model.parts import Model
 from eomgen.simulation.constraint_drift import projection_of
 from eomgen.simulation.integrate import integrate

@@ -11,12 +11,12 @@ import pytest
 from known_answers import MODELS
 
 import eomgen
-from eomgen.mechanics.equations.system import system_of
-from eomgen.mechanics.equilibria.static_equations import static_equations
-from eomgen.mechanics.small_motions.first_order import FirstOrder, first_order_of
+from eomgen.mechanics.dynamics.system import system_of
+from eomgen.mechanics.equilibrium.equations import static_equations
+from eomgen.mechanics.linearization.first_order import FirstOrder, first_order_of
+from eomgen.mechanics.rigidity import velocity_plan as blocks
+from eomgen.mechanics.rigidity.structure import structure_of
 from eomgen.mechanics.statics.virtual_work import asked_reactions, by_virtual_work
-from eomgen.mechanics.structures import blocks
-from eomgen.mechanics.structures.structure import structure_of
 from eomgen.symbolic.exact.equality import real_values
 from eomgen.symbolic.exact.normal_form import simple_constants
 from eomgen.symbolic.expression.derivative import substituted

@@ -7,7 +7,7 @@ import pytest
 
 import eomgen
 from eomgen.errors import ModelError
-from eomgen.mechanics.equations.wellposed import massless_motions
+from eomgen.mechanics.dynamics.wellposed import massless_motions
 
 HEAD = 'eomgen = 1\nname = "unseen"\nspace = "space"\n'
 ANGLES = '[coordinates]\na = "pi/2"\nb = 0\nc = 0\n', 'orientation = "xyz", angles = ["a", "b", "c"]'

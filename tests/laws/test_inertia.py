@@ -11,9 +11,8 @@ from scipy.integrate import dblquad
 
 import eomgen
 from eomgen.documents.json_form import as_dict
-from eomgen.mechanics.equations.system import System, system_of
-from eomgen.mechanics.masses.inertia_about import angular_momentum, in_ground, tensor_about
-from eomgen.mechanics.masses.principal import numbers_in, principal_of
+from eomgen.mechanics.dynamics.system import System, system_of
+from eomgen.mechanics.mass_properties import angular_momentum, in_ground, numbers_in, principal_of, tensor_about
 from eomgen.symbolic.numeric.evaluation import FLOAT, evaluate
 
 pytestmark = pytest.mark.slow

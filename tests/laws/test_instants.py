@@ -14,21 +14,20 @@ import eomgen
 from eomgen.codegen.program import right_hand_side
 from eomgen.codegen.rhs import compiled
 from eomgen.errors import RunFailed
-from eomgen.mechanics.bodies.places import Located, places_of
-from eomgen.mechanics.equations.articulated import with_accelerations
-from eomgen.mechanics.first_integrals.closed_instant import position_equations
-from eomgen.mechanics.first_integrals.integrals import energy_integral
-from eomgen.mechanics.initial_state.exact_start import declared_start
-from eomgen.mechanics.initial_state.initial_state import start_state
+from eomgen.mechanics.dynamics.accelerations import with_accelerations
+from eomgen.mechanics.integrals.first_integrals import energy_integral
+from eomgen.mechanics.integrals.laws import position_equations
+from eomgen.mechanics.kinematics.places import Located, places_of
+from eomgen.mechanics.start.exact import declared_start
+from eomgen.mechanics.start.state import start_state
 from eomgen.model.values import numeric_parameters
-from eomgen.questions.at_instant import StateAtInstant
-from eomgen.questions.first_instant import reached
+from eomgen.questions.at_instant import StateAtInstant, reached
 from eomgen.questions.in_phase import PhaseEquations, phase_equations_of
 from eomgen.simulation.event_location import Events
 from eomgen.simulation.integrator import Run, Stepping, march
 from eomgen.symbolic.exact.equality import equal_at_random_states
 from eomgen.symbolic.expression.derivative import substituted
-from eomgen.symbolic.expression.expressions import parse
+from eomgen.symbolic.expression.text import parse
 from eomgen.symbolic.numeric.evaluation import FLOAT, evaluate
 
 pytestmark = pytest.mark.slow

@@ -12,16 +12,16 @@ from scipy.integrate import solve_ivp
 import eomgen
 from eomgen.codegen.program import right_hand_side
 from eomgen.codegen.rhs import compiled
-from eomgen.mechanics.equations.articulated import with_accelerations
-from eomgen.mechanics.first_integrals import integrals
-from eomgen.mechanics.first_integrals.integrals import energy_integral, momentum_integrals
-from eomgen.mechanics.first_integrals.laws import laws_of_motion
-from eomgen.mechanics.first_integrals.speeds import rates_of
+from eomgen.mechanics.dynamics.accelerations import with_accelerations
+from eomgen.mechanics.integrals import first_integrals as integrals
+from eomgen.mechanics.integrals.first_integrals import energy_integral, momentum_integrals
+from eomgen.mechanics.integrals.laws import laws_of_motion
+from eomgen.mechanics.integrals.speeds import rates_of
 from eomgen.model.values import numeric_parameters, start_values
 from eomgen.questions.in_phase import PhaseEquations, phase_equations_of
 from eomgen.symbolic.exact.equality import equal_at_random_states
 from eomgen.symbolic.expression.derivative import depends_on, substituted
-from eomgen.symbolic.expression.expressions import parse
+from eomgen.symbolic.expression.text import parse
 from eomgen.symbolic.numeric.evaluation import FLOAT, evaluate
 
 pytestmark = pytest.mark.slow

@@ -21,9 +21,9 @@ from eomgen.codegen.program import program_of
 from eomgen.codegen.rhs import compiled
 from eomgen.codegen.vectors import vectors
 from eomgen.errors import DerivationError, UsageError
-from eomgen.mechanics.formulations import projection
+from eomgen.mechanics.dynamics import formulations as projection
+from eomgen.model.fields import Table
 from eomgen.model.part import altered
-from eomgen.model.table import Table
 
 pytestmark = pytest.mark.slow
 

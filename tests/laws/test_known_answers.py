@@ -18,7 +18,7 @@ from newton_euler import inverse_dynamics, read_arm
 
 import eomgen
 from eomgen.symbolic.exact.equality import equal_at_random_states
-from eomgen.symbolic.expression.expressions import parse
+from eomgen.symbolic.expression.text import parse
 from eomgen.symbolic.numeric.evaluation import FLOAT, evaluate
 
 pytestmark = pytest.mark.slow

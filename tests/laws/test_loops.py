@@ -13,8 +13,8 @@ from scipy.integrate import solve_ivp
 from slow_run import usual
 
 import eomgen
-from eomgen.mechanics.initial_state.assembly_modes import branches_of_loops
-from eomgen.mechanics.initial_state.initial_state import start_of_motion
+from eomgen.mechanics.start.assembly_modes import branches_of_loops
+from eomgen.mechanics.start.state import start_of_motion
 
 pytestmark = [pytest.mark.slow, pytest.mark.filterwarnings("ignore:.*Statically indeterminate:RuntimeWarning")]
 MODELS = Path(__file__).parents[2] / "models"

@@ -15,9 +15,9 @@ from scipy.integrate import solve_ivp
 
 import eomgen
 from eomgen.errors import EomgenError
-from eomgen.mechanics.equations.system import system_of
-from eomgen.mechanics.initial_state.assembly_modes import branches_of_loops
-from eomgen.mechanics.initial_state.initial_state import start_of_motion
+from eomgen.mechanics.dynamics.system import system_of
+from eomgen.mechanics.start.assembly_modes import branches_of_loops
+from eomgen.mechanics.start.state import start_of_motion
 
 pytestmark = [
     pytest.mark.slow,

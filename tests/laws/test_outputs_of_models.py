@@ -18,8 +18,8 @@ from slow_run import usual_models
 
 import eomgen
 from eomgen.model.values import numeric_parameters
-from eomgen.symbolic.expression.expressions import parse
 from eomgen.symbolic.expression.graph import Graph
+from eomgen.symbolic.expression.text import parse
 from eomgen.symbolic.numeric.evaluation import evaluate, fifty_digits
 
 pytestmark = [pytest.mark.slow, pytest.mark.by_model]

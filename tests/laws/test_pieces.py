@@ -10,11 +10,11 @@ import eomgen
 from eomgen.documents.text import render
 from eomgen.errors import UsageError
 from eomgen.mechanics.constraints.closure import norms_of
-from eomgen.mechanics.equations import pieces, wellposed
-from eomgen.mechanics.equations.wellposed import is_conservative, where_conservative
-from eomgen.mechanics.first_integrals.integrals import energy_integral, momentum_integrals
-from eomgen.mechanics.first_integrals.laws import laws_of_motion
-from eomgen.mechanics.initial_state.exact_start import declared_start
+from eomgen.mechanics.dynamics import pieces, wellposed
+from eomgen.mechanics.dynamics.wellposed import is_conservative, where_conservative
+from eomgen.mechanics.integrals.first_integrals import energy_integral, momentum_integrals
+from eomgen.mechanics.integrals.laws import laws_of_motion
+from eomgen.mechanics.start.exact import declared_start
 from eomgen.proof.trials import Trials
 from eomgen.questions.in_phase import phase_equations_of
 from eomgen.symbolic.numeric.evaluation import evaluate, fifty_digits

@@ -13,7 +13,7 @@ from slider_crank import SLIDER_CRANK
 
 import eomgen
 from eomgen.cli import main
-from eomgen.model.forces import distributed
+from eomgen.model.forces import weights as distributed
 from eomgen.questions import answers
 from eomgen.questions.at_instant import StateAtInstant
 from eomgen.questions.proof_of_answers import _by_coincidence
@@ -135,7 +135,7 @@ def test_a_place_that_is_no_rest_is_seen(monkeypatch):
 
 def test_a_velocity_that_is_another_component_is_seen(monkeypatch):
     """vx read as vy by the solver and by its proof alike: it is not the rate of x."""
-    from eomgen.mechanics.instant.outputs import Quantities
+    from eomgen.mechanics.instant.quantities import Quantities
 
     value = Quantities.value
 

@@ -8,15 +8,15 @@ from pathlib import Path
 import pytest
 
 import eomgen
-from eomgen.mechanics.bodies import inertia, loads
-from eomgen.model.constraints import rolling, support
-from eomgen.model.constraints.round_bodies import Nearest, RollingBall, Wheel
-from eomgen.model.forces import reach, straight
-from eomgen.model.forces.damper import Damper
-from eomgen.model.forces.spring import Spring
-from eomgen.model.forces.torsion_damper import TorsionDamper
-from eomgen.model.forces.torsion_spring import TorsionSpring
-from eomgen.model.joints import orientation
+from eomgen.mechanics.kinematics import inertia, loads
+from eomgen.model.constraints import held as support
+from eomgen.model.constraints import rolling
+from eomgen.model.constraints.rolling import Nearest, RollingBall, Wheel
+from eomgen.model.forces import elements as reach
+from eomgen.model.forces import elements as straight
+from eomgen.model.forces.elements import Damper, Spring
+from eomgen.model.forces.torsion import TorsionDamper, TorsionSpring
+from eomgen.model.joints import ball as orientation
 from eomgen.proof.check import Certificate
 from eomgen.symbolic.expression.spatial import times
 

@@ -10,11 +10,11 @@ from slow_run import usual
 
 import eomgen
 from eomgen.documents.statics.result import statics
-from eomgen.mechanics.equilibria.static_equations import StaticEquations
+from eomgen.mechanics.equilibrium.equations import StaticEquations
+from eomgen.mechanics.rigidity import velocity_plan as blocks
 from eomgen.mechanics.statics.section_forces import Extreme, SectionForces, SectionPiece
-from eomgen.mechanics.structures import blocks
 from eomgen.proof.check import Certificate
-from eomgen.symbolic.expression.functions import over
+from eomgen.symbolic.expression.formula import over
 
 pytestmark = pytest.mark.slow
 

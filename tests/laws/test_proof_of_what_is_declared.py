@@ -8,16 +8,15 @@ from fractions import Fraction
 import pytest
 
 import eomgen
-from eomgen.model.constraints import gear, plane
+from eomgen.model.constraints import driven as gear
+from eomgen.model.constraints import plane
 from eomgen.model.constraints.link import Link
 from eomgen.model.constraints.strand import Stop
 from eomgen.model.constraints.string import String
-from eomgen.model.joints.cylindrical import Cylindrical
+from eomgen.model.joints.one_axis import Cylindrical, Screw
 from eomgen.model.joints.path import Path, PathPiece
-from eomgen.model.joints.screw import Screw
 from eomgen.questions import answers
-from eomgen.questions.motion_from_start import MotionFromStart
-from eomgen.questions.proof_of_phases import wrong_way
+from eomgen.questions.motion_from_start import MotionFromStart, wrong_way
 
 pytestmark = pytest.mark.slow
 

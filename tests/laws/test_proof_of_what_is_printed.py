@@ -10,9 +10,9 @@ import eomgen
 from eomgen.documents import reaction_values
 from eomgen.documents.reading import Reader
 from eomgen.documents.statements import Omitted
-from eomgen.mechanics.first_integrals import constants_of_motion
+from eomgen.mechanics.integrals import first_integrals as constants_of_motion
 from eomgen.symbolic.expression.derivative import substituted
-from eomgen.symbolic.expression.functions import function
+from eomgen.symbolic.expression.formula import function
 from eomgen.symbolic.expression.traversal import order
 from eomgen.verbs.derive import derive_document
 
@@ -76,7 +76,7 @@ def test_a_printed_integral_that_does_not_stay_is_seen(monkeypatch):
         found = own(equations)
         return None if found is None else (found[0] - equations.T, *found[1:])
 
-    monkeypatch.setattr("eomgen.mechanics.first_integrals.integrals.jacobi", jacobi)
+    monkeypatch.setattr("eomgen.mechanics.integrals.first_integrals.jacobi", jacobi)
     assert statuses("bead_on_turning_hoop")[CONSTANT] == "fails"
 
 

@@ -10,8 +10,9 @@ from known_answers import MODELS
 
 import eomgen
 from eomgen.documents.json_form import as_dict
-from eomgen.mechanics.fields import relative_motion
-from eomgen.mechanics.instant import body_motion, kinematic_state, mechanism
+from eomgen.mechanics.instant import kinematic_state, mechanism
+from eomgen.mechanics.instant import kinematic_state as body_motion
+from eomgen.mechanics.instant import kinematic_state as relative_motion
 from eomgen.questions import velocities
 from eomgen.symbolic.expression.spatial import times
 from eomgen.verbs.kinematics import kinematics_asked as verb

@@ -12,10 +12,11 @@ from known_answers import MODELS
 
 import eomgen
 from eomgen.cli import main
-from eomgen.documents.inertia import result, rows, steps
+from eomgen.documents.inertia import result, steps
+from eomgen.documents.inertia import steps as rows
 from eomgen.documents.inertia.result import inertia as verb
 from eomgen.documents.json_form import as_dict
-from eomgen.mechanics.bodies import composition
+from eomgen.mechanics.kinematics import motion as composition
 from eomgen.model.shapes import MassProperties, Rod, Sector
 from eomgen.proof.masses import FILLED
 from eomgen.verbs.outcome import shown

@@ -12,8 +12,8 @@ from known_answers import MODELS
 
 import eomgen
 from eomgen.cli import main
-from eomgen.mechanics.small_motions import linearization, reduction
-from eomgen.mechanics.small_motions.modes import Modes
+from eomgen.mechanics.linearization import linearization, reduction
+from eomgen.mechanics.linearization.modes import Modes
 from eomgen.proof.small_motions import small_motion_checks
 
 PENDULUM = MODELS / "double_pendulum.toml"

@@ -11,8 +11,9 @@ from known_answers import MODELS
 import eomgen
 from eomgen.documents.json_form import as_dict
 from eomgen.documents.statics.result import statics as verb
-from eomgen.mechanics.equilibria import search
-from eomgen.mechanics.statics import influence, section_forces, two_ways
+from eomgen.mechanics.equilibrium import search
+from eomgen.mechanics.statics import influence, section_forces
+from eomgen.mechanics.statics import virtual_work as two_ways
 from eomgen.verbs.outcome import shown
 
 BEAM = MODELS / "gerber_beam.toml"

@@ -13,11 +13,11 @@ from random_systems import Writer
 from slow_run import usual
 
 import eomgen
-from eomgen.mechanics.balance.balance_solution import Indeterminate
-from eomgen.mechanics.equations.system import System, system_of
-from eomgen.mechanics.reactions.drive import drive
+from eomgen.mechanics.dynamics.system import System, system_of
+from eomgen.mechanics.free_bodies.solution import Indeterminate
+from eomgen.mechanics.reactions.inverse import drive
 from eomgen.mechanics.reactions.reactions import reactions_of
-from eomgen.symbolic.expression.graph import Scalar
+from eomgen.symbolic.expression.node import Scalar
 from eomgen.symbolic.numeric.evaluation import FLOAT, evaluate
 
 pytestmark = pytest.mark.slow

@@ -13,7 +13,7 @@ import numpy as np
 import pytest
 
 import eomgen
-from eomgen.mechanics.equations.system import system_of
+from eomgen.mechanics.dynamics.system import system_of
 from eomgen.mechanics.reactions.reactions import reactions_of
 from eomgen.mechanics.statics.section_forces import KINDS, SectionForces, section_forces
 from eomgen.symbolic.expression.derivative import derivative, symbols_of

@@ -12,7 +12,7 @@ import eomgen
 from eomgen.codegen import vectors
 from eomgen.codegen.targets.fmu import description
 from eomgen.generated import generate
-from eomgen.proof.shipped_fmu import fmu_told
+from eomgen.proof.emitted_code import fmu_told
 
 PENDULUM = """
 eomgen = 1

@@ -9,7 +9,7 @@ import pytest
 
 import eomgen
 from eomgen.mechanics.constraints.assembly import begun_places
-from eomgen.mechanics.initial_state.initial_state import start_of_motion
+from eomgen.mechanics.start.state import start_of_motion
 from eomgen.symbolic.numeric.evaluation import FLOAT, evaluate
 
 TIED = """

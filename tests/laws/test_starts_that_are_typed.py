@@ -12,7 +12,7 @@ from slow_run import usual
 
 import eomgen
 from eomgen.cli import main
-from eomgen.page.player_data import PlayedRun, PlayerOptions
+from eomgen.page.player import PlayedRun, PlayerOptions
 
 pytestmark = pytest.mark.slow
 

@@ -7,7 +7,7 @@ from dataclasses import replace
 import pytest
 
 import eomgen
-from eomgen.mechanics.balance import friction
+from eomgen.mechanics.free_bodies import friction
 from eomgen.model.joints.path import Stretch
 from eomgen.proof.check import Certificate
 from eomgen.proof.trials import NOWHERE, Trials

@@ -11,11 +11,16 @@ from random_structures import RandomStructure, determinate
 
 import eomgen
 from eomgen.errors import DerivationError
-from eomgen.mechanics.equations.system import system_of
-from eomgen.mechanics.statics.two_ways import StaticReactions, static_reactions_of
-from eomgen.mechanics.statics.virtual_work import asked_reactions, by_virtual_work, loads_at_rest
-from eomgen.mechanics.structures.blocks import blocks_of
-from eomgen.mechanics.structures.structure import structure_of
+from eomgen.mechanics.dynamics.system import system_of
+from eomgen.mechanics.rigidity.structure import structure_of
+from eomgen.mechanics.rigidity.velocity_plan import blocks_of
+from eomgen.mechanics.statics.virtual_work import (
+    StaticReactions,
+    asked_reactions,
+    by_virtual_work,
+    loads_at_rest,
+    static_reactions_of,
+)
 from eomgen.symbolic.numeric.evaluation import FLOAT, evaluate
 from eomgen.symbolic.print.text import to_text
 

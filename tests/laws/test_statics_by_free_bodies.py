@@ -21,7 +21,7 @@ from float_statics import Numbers, Structure
 
 import eomgen
 from eomgen.model.values import numeric_parameters
-from eomgen.symbolic.expression.expressions import as_expression
+from eomgen.symbolic.expression.text import as_expression
 
 pytestmark = pytest.mark.slow
 

@@ -13,8 +13,8 @@ from moving import at, moved, state_of
 from tied import AXLE, FREE, GIVEN, R, accelerations, block, disc, frozen_velocity, g, m, particle, system_with, tie
 
 import eomgen
-from eomgen.mechanics.equations.system import System
-from eomgen.symbolic.expression.graph import Scalar
+from eomgen.mechanics.dynamics.system import System
+from eomgen.symbolic.expression.node import Scalar
 from eomgen.symbolic.numeric.evaluation import evaluate, fifty_digits
 
 

@@ -10,8 +10,8 @@ from mpmath import mp
 from scipy.integrate import solve_ivp
 
 import eomgen
-from eomgen.mechanics.equations.system import system_of
-from eomgen.mechanics.initial_state.assembly_modes import branches_of_loops
+from eomgen.mechanics.dynamics.system import system_of
+from eomgen.mechanics.start.assembly_modes import branches_of_loops
 
 pytestmark = pytest.mark.slow
 

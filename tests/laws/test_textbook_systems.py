@@ -11,7 +11,7 @@ from slow_run import usual
 from textbook import SYSTEMS
 
 import eomgen
-from eomgen.symbolic.expression.expressions import parse
+from eomgen.symbolic.expression.text import parse
 from eomgen.symbolic.numeric.evaluation import FLOAT, evaluate
 
 pytestmark = pytest.mark.slow

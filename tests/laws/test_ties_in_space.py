@@ -16,10 +16,10 @@ from moving import solved, written
 
 import eomgen
 from eomgen.errors import EomgenError, ModelError
-from eomgen.mechanics.bodies.scope import primitive
-from eomgen.mechanics.constraints.freedom import freedom_of
+from eomgen.mechanics.constraints.rank import freedom_of
+from eomgen.mechanics.kinematics.symbols import primitive
 from eomgen.symbolic.expression.derivative import gradient
-from eomgen.symbolic.expression.functions import function
+from eomgen.symbolic.expression.formula import function
 from eomgen.symbolic.expression.graph import Graph
 from eomgen.symbolic.numeric.evaluation import FLOAT, evaluate
 
@@ -629,7 +629,7 @@ def test_an_integral_is_given_with_the_constant_of_the_start(tmp_path):
 
     found = check_document(model_of(rates("x' - R*theta'"), "plane")).entries()
     (row,) = found["velocity_rows"]
-    expression = eomgen.symbolic.expression.expressions.parse(row["integral"])
+    expression = eomgen.symbolic.expression.text.parse(row["integral"])
     for x, theta, R in ((0.1, 0.4, 0.3), (1.7, 0.4 + 1.6 / 0.5, 0.5)):
         assert expression.evaluate({"x": x, "theta": theta, "R": R}) == pytest.approx(0, abs=1e-12)
     assert abs(expression.evaluate({"x": 1, "theta": 0, "R": 1})) > 0.1

@@ -7,8 +7,8 @@ from typing import Any
 import pytest
 
 import eomgen
-from eomgen.mechanics.small_motions import conditions
-from eomgen.proof.linear_entries import linear_entries
+from eomgen.mechanics.linearization import polynomial as conditions
+from eomgen.proof.small_motions_told import linear_entries
 
 TURNING = """
 eomgen = 1
@@ -74,7 +74,7 @@ def test_a_condition_that_is_missing_is_seen_at_other_parameters(monkeypatch):
 
 def test_a_frequency_of_another_number_is_contradicted(monkeypatch):
     """frequency(k) is the k-th Im of the eigenvalues of A."""
-    from eomgen.mechanics.small_motions.modes import Modes
+    from eomgen.mechanics.linearization.modes import Modes
 
     text = TURNING
     for gone in (" - c*x' + n*y' + h*y", " - c*y' - n*x' - h*x", ", c = 0.5, n = 1, h = 0.3"):

@@ -12,9 +12,8 @@ from scipy.spatial.transform import Rotation
 
 import eomgen
 from eomgen.documents import rendered
-from eomgen.mechanics.first_integrals.constants_of_motion import momenta_of_the_whole, stay_constant
-from eomgen.mechanics.first_integrals.integrals import energy_integral
-from eomgen.mechanics.small_motions.linearization import small_motions_of
+from eomgen.mechanics.integrals.first_integrals import energy_integral, momenta_of_the_whole, stay_constant
+from eomgen.mechanics.linearization.linearization import small_motions_of
 
 pytestmark = pytest.mark.slow
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 import pytest
 
 import eomgen
-from eomgen.mechanics.equations.system import system_of
+from eomgen.mechanics.dynamics.system import system_of
 from eomgen.mechanics.reactions.reactions import reactions_of
 
 LEVER = """

@@ -14,12 +14,22 @@ from eomgen.codegen.build import library, of_this_machine
 from eomgen.codegen.lowered import CHANGED, INDICES, INT, PLACES, READ, REAL, ROOM, Language, one_line
 from eomgen.codegen.lowering import Lowered
 from eomgen.codegen.program import Program
-from eomgen.codegen.targets.base import RHS, Emitted, FileContent, Functions, Role
+from eomgen.codegen.targets.base import (
+    FUNCTIONS,
+    QUOTED,
+    RHS,
+    SUFFIXED,
+    Emitted,
+    FileContent,
+    FileForm,
+    Functions,
+    Role,
+    SingleWords,
+    by_cases,
+    header,
+)
 from eomgen.codegen.targets.c_loading import functions_of
-from eomgen.codegen.targets.cases import by_cases
-from eomgen.codegen.targets.form import FileForm, header
-from eomgen.codegen.targets.in_single import FUNCTIONS, QUOTED, SUFFIXED, SingleWords
-from eomgen.codegen.targets.library_call import compiled_target
+from eomgen.codegen.targets.loading import compiled_target
 
 
 def comment(text: str) -> str:

@@ -4,10 +4,9 @@ from __future__ import annotations
 
 from dataclasses import replace
 
-from eomgen.codegen.targets import branch_free
-from eomgen.codegen.targets.cases import by_cases
+from eomgen.codegen.targets.base import by_cases
 from eomgen.codegen.targets.numpy import PYTHON
-from eomgen.codegen.targets.python_files import python_form, python_target
+from eomgen.codegen.targets.python_files import SOLVERS, python_form, python_target
 
 UNARY = "sin cos asin acos atan sinh cosh tanh exp log sqrt".split()
 _ARRAYS = """
@@ -50,7 +49,7 @@ CASADI = replace(
         "max": "def max(a, b):\n    return ca.if_else(a > b, a, ca.if_else(a <= b, b, a + b))\n\n",
         "select": "def select(given, a, b):\n"
         '    return ca.if_else(given == 0, b, ca.if_else(ca.logic_or(given > 0, given < 0), a, float("nan")))\n\n',
-        **branch_free.SOLVERS,
+        **SOLVERS,
         "through_samples": """
 def through_samples(t, n, closed, steps, depth, bounds, degree, v):
     found = 0

@@ -12,13 +12,11 @@ from eomgen.codegen.build import Compiler
 from eomgen.codegen.expressions import ATOM, PRODUCT, SUM, RankedText, ranked_number
 from eomgen.codegen.lowered import INDICES, INT, READ
 from eomgen.codegen.lowering import Lowered
+from eomgen.codegen.targets.base import QUOTED, SUFFIXED, SingleWords, by_cases, in_quotes
 from eomgen.codegen.targets.c import CONSTANTS, ENTRY, SELF_TEST, C
 from eomgen.codegen.targets.c import FORM as C_FORM
-from eomgen.codegen.targets.cases import by_cases
-from eomgen.codegen.targets.form import in_quotes
-from eomgen.codegen.targets.in_single import QUOTED, SUFFIXED, SingleWords
-from eomgen.codegen.targets.library_call import compiled_target
-from eomgen.symbolic.expression.graph import Number
+from eomgen.codegen.targets.loading import compiled_target
+from eomgen.symbolic.expression.numbers import Number
 
 
 def _number(a: Number) -> RankedText:

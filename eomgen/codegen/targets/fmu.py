@@ -23,9 +23,8 @@ from typing import Any
 from eomgen.codegen.build import C as COMPILER
 from eomgen.codegen.build import Compiler, library
 from eomgen.codegen.program import Assign, Program
-from eomgen.codegen.targets.base import OUTPUTS, RHS, Called, Description, Emitted, FileContent, Role, Target
+from eomgen.codegen.targets.base import OUTPUTS, RHS, Called, Description, Emitted, FileContent, Role, Target, header
 from eomgen.codegen.targets.c import CONSTANTS, apart, c_functions, c_text
-from eomgen.codegen.targets.form import header
 from eomgen.errors import RunFailed, ToolMissing
 from eomgen.symbolic.numeric.isolation import JUMPS
 from eomgen.symbolic.numeric.tolerances import BEST, RUN

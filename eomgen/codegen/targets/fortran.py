@@ -14,11 +14,9 @@ from eomgen.codegen.build import Compiler
 from eomgen.codegen.expressions import ATOM, PRODUCT, SUM, RankedText, ranked_number
 from eomgen.codegen.lowered import CHANGED, GIVEN, INDICES, INT, PLACES, READ, REAL, ROOM, Language, Table
 from eomgen.codegen.lowering import Lowered
-from eomgen.codegen.targets.cases import by_cases
-from eomgen.codegen.targets.form import CHECK, FileForm
-from eomgen.codegen.targets.in_single import SingleWords
-from eomgen.codegen.targets.library_call import compiled_target
-from eomgen.symbolic.expression.graph import Number
+from eomgen.codegen.targets.base import CHECK, FileForm, SingleWords, by_cases
+from eomgen.codegen.targets.loading import compiled_target
+from eomgen.symbolic.expression.numbers import Number
 
 WIDTH = 120  # of a line; the standard has 132
 LONGEST_LIST = 500  # values in a statement, which has at most 255 lines

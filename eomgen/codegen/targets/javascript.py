@@ -9,7 +9,7 @@ from dataclasses import replace
 
 from eomgen.codegen.lowered import CHANGED, INDICES, INT, PLACES, READ, ROOM, Language
 from eomgen.codegen.program import Program
-from eomgen.codegen.targets.cases import by_cases
+from eomgen.codegen.targets.base import by_cases
 from eomgen.codegen.targets.node import node_form, node_target
 
 _OUT = "function {name}({arguments}, {out} = new Float64Array({size})) {{"

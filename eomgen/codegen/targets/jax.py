@@ -4,11 +4,9 @@ from __future__ import annotations
 
 from dataclasses import replace
 
-from eomgen.codegen.targets import branch_free
-from eomgen.codegen.targets.cases import by_cases
-from eomgen.codegen.targets.in_single import SingleWords
+from eomgen.codegen.targets.base import SingleWords, by_cases
 from eomgen.codegen.targets.numpy import PYTHON
-from eomgen.codegen.targets.python_files import python_form, python_target
+from eomgen.codegen.targets.python_files import SOLVERS, python_form, python_target
 
 UNARY = {
     **{op: f"jnp.{op}" for op in "sin cos sinh cosh tanh exp log abs sign".split()},
@@ -49,7 +47,7 @@ JAX = replace(
             words={"nan": "jnp.nan"},
             only=("less", "less_equal", "select"),
         ),
-        **branch_free.SOLVERS,
+        **SOLVERS,
         "through_samples": """
 def through_samples(t, n, closed, steps, depth, bounds, degree, v):
     bounds, v = jnp.array(bounds), jnp.array(v).reshape(degree + 2, n + 1)

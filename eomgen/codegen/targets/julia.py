@@ -8,9 +8,7 @@ from __future__ import annotations
 
 from eomgen.codegen.lowered import CHANGED, INDICES, INT, PLACES, READ, ROOM, Language
 from eomgen.codegen.program import Program
-from eomgen.codegen.targets.base import Functions, Target
-from eomgen.codegen.targets.cases import by_cases
-from eomgen.codegen.targets.form import FileForm, in_quotes
+from eomgen.codegen.targets.base import FileForm, Functions, Target, by_cases, in_quotes
 from eomgen.errors import ToolMissing
 
 NOT_RUN = "Not run where it was made: no Julia was there."

@@ -13,10 +13,20 @@ from pathlib import Path
 
 from eomgen.codegen.lowered import CHANGED, INDICES, INT, PLACES, READ, ROOM, Language
 from eomgen.codegen.program import Program
-from eomgen.codegen.targets.base import Called, FileContent, Functions, Many, Role, Target, called_by, functions_by
-from eomgen.codegen.targets.beside import many_beside
-from eomgen.codegen.targets.cases import by_cases
-from eomgen.codegen.targets.form import CHECK, FileForm
+from eomgen.codegen.targets.base import (
+    CHECK,
+    Called,
+    FileContent,
+    FileForm,
+    Functions,
+    Many,
+    Role,
+    Target,
+    by_cases,
+    called_by,
+    functions_by,
+)
+from eomgen.codegen.targets.loading import many_beside
 from eomgen.errors import ToolMissing
 
 

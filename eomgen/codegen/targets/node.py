@@ -18,6 +18,7 @@ from eomgen.codegen.targets.base import (
     Called,
     Emitted,
     FileContent,
+    FileForm,
     Functions,
     Many,
     Role,
@@ -26,8 +27,7 @@ from eomgen.codegen.targets.base import (
     called_by,
     functions_by,
 )
-from eomgen.codegen.targets.beside import doubles, many_beside
-from eomgen.codegen.targets.form import FileForm
+from eomgen.codegen.targets.loading import doubles, many_beside
 from eomgen.errors import ToolMissing
 
 _TEST = """\

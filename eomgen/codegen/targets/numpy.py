@@ -10,8 +10,7 @@ from typing import Any
 from eomgen.codegen.lowered import CHANGED, INDICES, INT, PLACES, READ, ROOM, Language
 from eomgen.codegen.lowering import Lowered
 from eomgen.codegen.program import Program
-from eomgen.codegen.targets.base import Called, FileContent, Functions, Role, Target
-from eomgen.codegen.targets.cases import by_cases
+from eomgen.codegen.targets.base import Called, FileContent, Functions, Role, Target, by_cases
 from eomgen.codegen.targets.python_files import called_each, executed, python_form
 
 PYTHON = Language(

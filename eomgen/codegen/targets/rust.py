@@ -9,11 +9,8 @@ from collections.abc import Sequence
 
 from eomgen.codegen.build import Compiler
 from eomgen.codegen.lowered import CHANGED, INDICES, INT, PLACES, READ, REAL, ROOM, Language
-from eomgen.codegen.targets.base import Emitted, FileContent
-from eomgen.codegen.targets.cases import by_cases
-from eomgen.codegen.targets.form import FileForm, in_quotes
-from eomgen.codegen.targets.in_single import QUOTED, SingleWords
-from eomgen.codegen.targets.library_call import compiled_target
+from eomgen.codegen.targets.base import QUOTED, Emitted, FileContent, FileForm, SingleWords, by_cases, in_quotes
+from eomgen.codegen.targets.loading import compiled_target
 
 UNARY = "sin cos asin acos atan sinh cosh tanh exp log sqrt".split()
 RUST = Language(

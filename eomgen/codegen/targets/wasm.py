@@ -15,10 +15,9 @@ from typing import Any
 from eomgen.codegen.build import Compiler, binary
 from eomgen.codegen.lowering import Lowered
 from eomgen.codegen.program import Program
-from eomgen.codegen.targets.base import FileContent, Role
+from eomgen.codegen.targets.base import QUOTED, FileContent, Role, SingleWords
 from eomgen.codegen.targets.c import FORM as C_FORM
 from eomgen.codegen.targets.c import SINGLE, C
-from eomgen.codegen.targets.in_single import QUOTED, SingleWords
 from eomgen.codegen.targets.node import node_form, node_target
 
 FLAGS = ("--target=wasm32-wasi", "-mexec-model=reactor", "-std=c99", "-s")

@@ -10,22 +10,28 @@ from typing import Any
 from eomgen.certificate import certify
 from eomgen.documents.document import Document, document_of
 from eomgen.documents.figures import Picture
-from eomgen.documents.kinematics.field_steps import field_payload, field_steps, kinds_step, particles_of
-from eomgen.documents.kinematics.mechanism_steps import cell, how_found, in_numbers, mechanism_steps
-from eomgen.documents.kinematics.relative_steps import relative_payload, relative_steps
-from eomgen.documents.quantity import Quantity
+from eomgen.documents.kinematics.steps import (
+    cell,
+    field_payload,
+    field_steps,
+    how_found,
+    in_numbers,
+    kinds_step,
+    mechanism_steps,
+    particles_of,
+    relative_payload,
+    relative_steps,
+)
+from eomgen.documents.motion_steps import data_step
 from eomgen.documents.result import Result
-from eomgen.documents.setting_steps import data_step
-from eomgen.documents.statements import Cell, Law, Piece, Prose, Step
-from eomgen.mechanics.fields.centrodes import all_centrodes
-from eomgen.mechanics.fields.motion_kind import Kinds
-from eomgen.mechanics.instant.body_motion import body_motions
-from eomgen.mechanics.instant.kinematic_state import KinematicState
+from eomgen.documents.statements import Cell, Law, Piece, Prose, Quantity, Step
+from eomgen.mechanics.instant.kinematic_state import KinematicState, body_motions
 from eomgen.mechanics.instant.mechanism import RotationCenter
+from eomgen.mechanics.instant.motion_kind import Kinds, all_centrodes
 from eomgen.proof.check import Certificate
 from eomgen.proof.instant import instant_checks
 from eomgen.records import dataclass
-from eomgen.symbolic.expression.graph import Node, Scalar
+from eomgen.symbolic.expression.node import Node, Scalar
 from eomgen.symbolic.expression.spatial import Vector
 from eomgen.symbolic.print.text import readable_text, text_size
 
@@ -116,7 +122,7 @@ class Kinematics(Result):
             RunFailed: it is in space.
             MissingValues: parameters without a value.
         """
-        from eomgen.documents.kinematics.mechanism_plot import mechanism_picture
+        from eomgen.documents.kinematics.plots import mechanism_picture
 
         return mechanism_picture(self.state, () if self.kinds is None else all_centrodes(self.kinds))
 

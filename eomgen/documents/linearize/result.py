@@ -1,9 +1,12 @@
-"""Model -> Linearization: its small motions as a user gets them: step by step, for machines, drawn."""
+"""Model -> Linearization: its small motions as a user gets them.
+
+Model -> Linearization: its small motions as a user gets them: step by step, for machines, drawn.
+"""
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Sequence
-from dataclasses import replace
+from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import field, replace
 from functools import cached_property
 from typing import Any
 
@@ -12,41 +15,41 @@ import numpy as np
 from eomgen.certificate import certify
 from eomgen.documents.document import Document, document_of
 from eomgen.documents.figures import Picture, mathtext
-from eomgen.documents.latex_names import notation_of
-from eomgen.documents.linearize.printed_modes import printed_modes
-from eomgen.documents.linearize.state_space import LETTERS, StateSpace, state_space_of
-from eomgen.documents.linearize.steps import linearization_steps
-from eomgen.documents.quantity import Quantity
+from eomgen.documents.latex_math import notation_of
+from eomgen.documents.linearize.steps import linearization_steps, printed_modes
+from eomgen.documents.motion_steps import assumption_steps, data_step
 from eomgen.documents.result import Result
-from eomgen.documents.setting_steps import assumption_steps, data_step
-from eomgen.errors import DerivationError, UsageError
-from eomgen.mechanics.equations.system import system_of
-from eomgen.mechanics.formulations.massless_nodes import told_of_nodes, with_nodes_balanced
-from eomgen.mechanics.initial_state.numeric_value import known_exactly
-from eomgen.mechanics.small_motions.family import Family
-from eomgen.mechanics.small_motions.field import Entries
-from eomgen.mechanics.small_motions.linearization import SmallMotions, small_motions_of
-from eomgen.mechanics.small_motions.modes import Frequency, Modes
-from eomgen.mechanics.small_motions.polynomial import Polynomial
-from eomgen.mechanics.small_motions.reduction import LinearEquations
-from eomgen.mechanics.small_motions.spectrum import Mode, Spectrum
-from eomgen.mechanics.small_motions.state_space import StateMatrices, exact_state_space, with_outputs
-from eomgen.mechanics.statics.contacts_at_start import contacts_at_start
+from eomgen.documents.statements import Quantity
+from eomgen.errors import DerivationError, ToolMissing, UsageError
+from eomgen.mechanics.dynamics.formulations import told_of_nodes, with_nodes_balanced
+from eomgen.mechanics.dynamics.system import system_of
+from eomgen.mechanics.linearization.first_order import Entries
+from eomgen.mechanics.linearization.linearization import SmallMotions, small_motions_of
+from eomgen.mechanics.linearization.modes import Frequency, Mode, Modes, Spectrum
+from eomgen.mechanics.linearization.polynomial import Polynomial
+from eomgen.mechanics.linearization.reduction import LinearEquations
+from eomgen.mechanics.linearization.reference import Family
+from eomgen.mechanics.linearization.transfer import StateMatrices, exact_state_space, with_outputs
+from eomgen.mechanics.start.exact import known_exactly
+from eomgen.mechanics.statics.contacts import contacts_at_start
 from eomgen.model.outputs.base import names_of
 from eomgen.model.parts import Model
-from eomgen.model.ranges import Range, range_of
 from eomgen.model.reader import ModelOrPath, model_at
-from eomgen.model.replaced import Values
+from eomgen.model.replaced import Range, Values, range_of
 from eomgen.model.values import exact_parameters
 from eomgen.proof.check import Certificate, Check
-from eomgen.proof.drawn_panels import DrawnPanel
-from eomgen.proof.linear_entries import linear_entries
+from eomgen.proof.reports_read import DrawnPanel
 from eomgen.proof.small_motions import small_motion_checks
-from eomgen.proof.small_motions_drawn import modes_drawn, responses_drawn, roots_drawn
-from eomgen.proof.small_motions_told import small_motions_told
+from eomgen.proof.small_motions_told import (
+    linear_entries,
+    modes_drawn,
+    responses_drawn,
+    roots_drawn,
+    small_motions_told,
+)
 from eomgen.records import dataclass
-from eomgen.symbolic.expression.expressions import Call, Expression
-from eomgen.symbolic.expression.graph import Scalar
+from eomgen.symbolic.expression.formula import Call, Expression
+from eomgen.symbolic.expression.node import Scalar
 from eomgen.symbolic.expression.rational import Fraction
 from eomgen.symbolic.numeric.sure_numbers import numbers_of
 from eomgen.symbolic.numeric.work import doing
@@ -277,8 +280,7 @@ class Linearization(Result):
         Raises:
             RunFailed: parameters have no values; there are no inputs; the equations are only known in numbers.
         """
-        from eomgen.documents.linearize.picture import modes_picture
-        from eomgen.documents.linearize.response_pictures import bode_picture, locus_picture
+        from eomgen.documents.linearize.pictures import bode_picture, locus_picture, modes_picture
 
         if self.over is not None:
             return locus_picture(self.small, self.over)
@@ -469,3 +471,113 @@ def linearize(
     contacts = contacts_at_start(model)
     modes = Modes(small_motions_of(system_of(model, contacts.modes), about, wanted))
     return Linearization(model, modes, assumptions=(*told_of_nodes(model), *contacts.assumptions))
+
+
+# -------- state space -----------------------------------------------------------------------------------------
+# Small motions -> StateSpace: x' = A x + B w, y = C_y x + D_y w as arrays, and in sympy where they are exact.
+
+
+LETTERS = ("A", "B", "C_y", "D_y")
+
+
+@dataclass(frozen=True)
+class StateSpace:
+    """x' = A x + B w, y = C_y x + D_y w.
+
+    Args:
+        states, inputs, outputs: names of x, w and y.
+        exact: {"A": A, "B": B, "C_y": C_y, "D_y": D_y} as sympy matrices of the parameters; {} where only numbers are
+            known.
+    """
+
+    states: tuple[str, ...]
+    inputs: tuple[str, ...]
+    outputs: tuple[str, ...]
+    numbers: StateMatrices | None = field(repr=False)
+    exact: Mapping[str, Any] = field(repr=False)
+
+    @property
+    def A(self) -> np.ndarray:
+        return self._array("A", len(self.states))
+
+    @property
+    def B(self) -> np.ndarray:
+        return self._array("B", len(self.inputs))
+
+    @property
+    def C_y(self) -> np.ndarray:
+        return self._array("C_y", len(self.states))
+
+    @property
+    def D_y(self) -> np.ndarray:
+        return self._array("D_y", len(self.inputs))
+
+    def __iter__(self) -> Any:
+        """A, B, C_y, D_y: scipy.signal.StateSpace(*small.state_space())."""
+        return iter([self.A, self.B, self.C_y, self.D_y])
+
+    def to_scipy(self) -> Any:
+        """scipy.signal.lti: bode, step, impulse, poles.
+
+        Raises:
+            DerivationError: parameters have no values; there is no input.
+        """
+        from scipy.signal import lti
+
+        self._refuse_without_inputs()
+        return lti(*self)
+
+    def to_control(self) -> Any:
+        """control.StateSpace of the package python-control, its states, inputs and outputs by their names.
+
+        Raises:
+            DerivationError: parameters have no values; there is no input.
+            ToolMissing: the package is not there.
+        """
+        self._refuse_without_inputs()
+        try:
+            import control
+        except ImportError:
+            raise ToolMissing("python-control is not installed", mend="pip install control") from None
+        # its names have no dots; a rate's prime stays
+        names = {"states": self.states, "inputs": self.inputs, "outputs": self.outputs}
+        return control.ss(*self, **{key: [name.replace(".", "_") for name in each] for key, each in names.items()})
+
+    def _refuse_without_inputs(self) -> None:
+        if not self.inputs:
+            raise DerivationError("a system without inputs has no transfer functions", "inputs", "declare an input")
+
+    def _array(self, letter: str, columns: int) -> np.ndarray:
+        """
+        Raises:
+            DerivationError: parameters have no values.
+        """
+        if self.numbers is None:
+            raise DerivationError(
+                "numbers of small motions need values of all parameters",
+                "parameters",
+                mend="give every parameter a value in [parameters]",
+            )
+        rows = getattr(self.numbers, letter)
+        return np.array(rows, dtype=float).reshape(len(rows), columns)
+
+
+def state_space_of(exact: StateMatrices | None, numbers: StateMatrices | None) -> StateSpace:
+    """What is known of it: one of them at least."""
+    found = exact or numbers
+    assert found is not None
+    return StateSpace(found.states, found.inputs, found.outputs, numbers, {} if exact is None else _in_sympy(exact))
+
+
+def _in_sympy(found: StateMatrices) -> dict[str, Any]:
+    import sympy
+
+    from eomgen.symbolic.print.sympy_form import to_sympy
+
+    columns = {"A": len(found.states), "B": len(found.inputs), "C_y": len(found.states), "D_y": len(found.inputs)}
+    return {
+        letter: sympy.ImmutableDenseMatrix(
+            len(rows := getattr(found, letter)), n, list(to_sympy([x for row in rows for x in row]))
+        )
+        for letter, n in columns.items()
+    }

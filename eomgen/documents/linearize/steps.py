@@ -1,14 +1,19 @@
-"""Modes -> the steps of a linearization: the reference, the equations to first order, modes, stability."""
+"""The steps of a linearization.
+
+Modes -> the steps of a linearization: the reference, the equations to first order, modes, stability.
+"""
 
 from __future__ import annotations
 
+import math
 import re
-from collections.abc import Sequence
+from collections.abc import Iterator, Mapping, Sequence
+from typing import Any
 
 import numpy as np
 
-from eomgen.documents.linearize.reference_step import reference_step
-from eomgen.documents.setting_steps import listed_symbols
+from eomgen.documents.document import Document
+from eomgen.documents.motion_steps import listed_symbols
 from eomgen.documents.statements import (
     Cell,
     Formula,
@@ -23,18 +28,20 @@ from eomgen.documents.statements import (
     prose,
 )
 from eomgen.documents.statements import Entry as Place
+from eomgen.documents.text import cell_text
 from eomgen.errors import DerivationError
-from eomgen.mechanics.initial_state.numeric_value import known_exactly
-from eomgen.mechanics.small_motions.field import Entries, MatrixEntry
-from eomgen.mechanics.small_motions.forms import floats
-from eomgen.mechanics.small_motions.modes import MOST_WRITTEN, Frequency, Modes
-from eomgen.mechanics.small_motions.polynomial import Polynomial, laplace_variable
-from eomgen.mechanics.small_motions.reduction import LinearEquations
-from eomgen.mechanics.small_motions.spectrum import Mode
-from eomgen.mechanics.small_motions.state_space import exact_state_space, with_outputs
-from eomgen.mechanics.small_motions.transfer import TransferFunction
-from eomgen.symbolic.expression.functions import over
-from eomgen.symbolic.expression.graph import Node, Scalar, is_zero
+from eomgen.mechanics.linearization.first_order import Entries, MatrixEntry
+from eomgen.mechanics.linearization.modes import MOST_WRITTEN, Frequency, Mode, Modes
+from eomgen.mechanics.linearization.polynomial import Polynomial, laplace_variable
+from eomgen.mechanics.linearization.reduction import LinearEquations, floats
+from eomgen.mechanics.linearization.reference import EQUILIBRIUM, STEADY, Family, ReferenceMotion
+from eomgen.mechanics.linearization.transfer import TransferFunction, exact_state_space, with_outputs
+from eomgen.mechanics.start.exact import known_exactly
+from eomgen.proof.small_motions_told import PrintedModes
+from eomgen.symbolic.expression.derivative import depends_on, symbols_of
+from eomgen.symbolic.expression.formula import over
+from eomgen.symbolic.expression.node import Node, Scalar, is_zero
+from eomgen.symbolic.numeric.evaluation import FLOAT, evaluate
 from eomgen.symbolic.numeric.sure_numbers import numbers_of
 from eomgen.symbolic.numeric.tolerances import COMPUTED, SOLVED
 from eomgen.symbolic.print.text import text_size, to_text
@@ -413,3 +420,148 @@ def _quotient(modes: Modes, f: TransferFunction) -> Side:
         return 0
     above, below = (_in_numbers(np.array(p.coefficients[::-1], dtype=float)) for p in (f.above, f.below))
     return Law(f"({above.text})/({below.text})", rf"\frac{{{above.latex}}}{{{below.latex}}}")
+
+
+# -------- printed modes ---------------------------------------------------------------------------------------
+# The steps of a linearization -> what is printed of its matrices, modes and conditions, in numbers.
+
+
+def printed_modes(derivation: Document) -> PrintedModes:
+    """Formulas at the values of the parameters; where one has none, nan."""
+    statements = [s for step in derivation.steps for s in step.statements]
+    named = list(_named(statements))
+    values = {name: _parameter_number(x) for name, x in derivation.parameters.items() if x is not None}
+    matrices: dict[str, Any] = {}
+    for name, side in named:
+        if isinstance(side, Matrix):
+            rows = [[_worth(x, values) for x in row] for row in side.rows]
+            if not any(math.isnan(x) for row in rows for x in row):
+                matrices[name] = rows  # of the two that are called B that of the states, the last
+    grids = {cell_text(s.head[0]): s for s in statements if isinstance(s, Grid)}
+    modes, shapes = grids.get("mode"), grids.get("shape")
+    return PrintedModes(
+        matrices,
+        []
+        if modes is None
+        else [dict(zip(map(cell_text, modes.head), map(cell_text, r), strict=True)) for r in modes.rows],
+        {} if shapes is None else {cell_text(q): list(map(cell_text, cells)) for q, *cells in shapes.rows},
+        [_worth(side, values) for name, side in named if name.startswith("h_")],
+    )
+
+
+def _named(statements: list[Any]) -> Iterator[tuple[str, Side]]:
+    """(M, what it is) of formulas that begin with a letter."""
+    for statement in statements:
+        if isinstance(statement, Formula) and isinstance(statement.sides[0], Law) and len(statement.sides) == 2:
+            yield statement.sides[0].text, statement.sides[1]
+
+
+def _parameter_number(value: Any) -> float:
+    """The value of a parameter: an angle in degrees is an expression of pi."""
+    return float(evaluate((value,), {}, FLOAT)[0] if isinstance(value, Node) else value)
+
+
+def _worth(side: Any, values: Mapping[str, float]) -> float:
+    if isinstance(side, Law):
+        try:
+            return float(side.text)
+        except ValueError:
+            return math.nan
+    if not isinstance(side, Node):
+        return float(side)
+    symbols = symbols_of((side,))
+    if any(x.name not in values for x in symbols):
+        return math.nan
+    return float(evaluate((side,), {x: values[x.name] for x in symbols}, FLOAT)[0])
+
+
+# -------- reference step --------------------------------------------------------------------------------------
+# Modes -> the step that says about what the equations are linearized: place of rest or steady motion.
+
+
+LONG_CONDITION = 400  # characters of a condition or formula of a family
+SHORT = 90  # characters of a formula in a table
+NOTHING_DEPENDS = "nothing depends on them, and they have no speed of their own"
+
+
+def reference_step(modes: Modes) -> Step:
+    """The state, how it was found, and the family that a steady motion belongs to."""
+    small, reference = modes.small, modes.small.reference
+    symbols = reference.system.symbols
+    shown = symbols.q if reference.about == EQUILIBRIUM else (*symbols.q, *symbols.u)
+    rows: list[tuple[Cell, ...]] = []
+    for x in shown:
+        exact: Cell = reference.exact.get(x, "")
+        value, beside = float(reference.numbers[x]), reference.beside or {}
+        from_start = (_digits(beside[x]), _digits(value - beside[x])) if x in beside and reference.valued else ("", "")
+        rows.append((x, exact, _digits(value) if reference.valued else "", *from_start))
+    head = ("quantity", "exact", "value", "start", "away from it")
+    statements: list[Statement] = [prose(_words(reference)), narrow_grid(head, rows)]
+    if reference.family is not None:
+        statements += _family(modes, reference.family)
+    if reference.place is not None and reference.place.statics.held:
+        statements.append(prose(f"What the model drives is held there: {', '.join(reference.place.statics.held)}."))
+    if small.left_out:
+        one = len(small.left_out) == 1
+        why = "nothing depends on it, and it has no speed of its own" if one else NOTHING_DEPENDS
+        statements.append(prose("Left out: ", *listed_symbols(small.left_out), f"; {why}."))
+    return Step("reference", "Reference", tuple(statements))
+
+
+def _words(reference: ReferenceMotion) -> str:
+    if reference.beside is not None:
+        return f"The start is accelerated. {_near(reference)} near it, about which this is:"
+    if reference.about == STEADY:
+        return "The steady motion nearest to the start:"
+    if reference.about != EQUILIBRIUM:
+        return "The steady motion from the start:"
+    if reference.moving:
+        return "The place of rest beside what moves steadily, nearest to the start:"
+    return "The place of rest nearest to the start:"
+
+
+def _near(reference: ReferenceMotion) -> str:
+    return "The steady motion" if reference.about == STEADY else "The place of rest"
+
+
+def _family(modes: Modes, family: Family) -> list[Statement]:
+    """Its conditions, what follows from what is held, and all motions with the same values held."""
+    found: list[Statement] = []
+    if family.conditions and max(map(text_size, family.conditions)) <= LONG_CONDITION:
+        words = "it rests where" if _at_rest(modes) else "a motion is steady where"
+        zeros = [piece for x in family.zeros for piece in (x, " = 0, ")]
+        found.append(Prose(("With ", *zeros, words) if zeros else (words.capitalize(),)))
+        found += [Formula((condition, 0)) for condition in family.conditions]
+    formulas = {x: value for x, value in family.formulas.items() if text_size(value) <= LONG_CONDITION}
+    formulas = {x: value for x, value in formulas.items() if depends_on(value, family.held)}
+    if formulas:
+        found.append(prose("As a function of ", *listed_symbols(family.held), ":"))
+        found += [Formula((x, value)) for x, value in formulas.items()]
+    if len(family.others) > 1 and modes.small.reference.valued:
+        found += _others(modes, family)
+    return found
+
+
+def _others(modes: Modes, family: Family) -> list[Statement]:
+    """A row for each of them: values, closed forms, stability."""
+    kind = "places of rest" if _at_rest(modes) else "steady motions"
+    words = f"All {kind}" if family.complete else f"{kind.capitalize()} that were found"
+    where = f" ({family.where})" if family.where else ""
+    held = (" with the same ", *listed_symbols((*family.zeros, *family.held))) if family.zeros or family.held else ()
+    head: list[Cell] = []
+    rows: list[list[Cell]] = [[] for _ in family.others]
+    for x in family.following:
+        head += [x, "exact"]
+        for row, at, closed in zip(rows, family.others, family.closed, strict=True):
+            short = x in closed and text_size(closed[x]) <= SHORT
+            row += [_digits(at[x]), closed[x] if short else ""]
+    table = [(*row, stability) for row, stability in zip(rows, modes.beside, strict=True)]
+    return [prose(words, *held, f"{where}:"), narrow_grid((*head, "stability"), table)]
+
+
+def _at_rest(modes: Modes) -> bool:
+    return modes.small.reference.about == EQUILIBRIUM
+
+
+def _digits(x: float) -> str:
+    return f"{x:.9g}"

@@ -8,8 +8,8 @@ from typing import TYPE_CHECKING, Any
 
 from eomgen.documents.document import Document
 from eomgen.documents.figures import Picture
-from eomgen.documents.quantity import Quantity
 from eomgen.documents.result import Result
+from eomgen.documents.statements import Quantity
 from eomgen.documents.statics.section_steps import (
     Sections,
     influence_payload,
@@ -19,31 +19,27 @@ from eomgen.documents.statics.section_steps import (
     sections_of,
     told_sections,
 )
-from eomgen.documents.statics.steps import contacts_step, statics_derivation, sum_name
-from eomgen.documents.statics.work_steps import told_work
+from eomgen.documents.statics.steps import contacts_step, statics_derivation, sum_name, told_work
 from eomgen.errors import UsageError
-from eomgen.mechanics.equations.system import System, system_of
-from eomgen.mechanics.equilibria.static_equations import has_freedoms, with_drives_held
-from eomgen.mechanics.initial_state.numeric_value import known_exactly, shown_numbers
+from eomgen.mechanics.dynamics.system import System, system_of
+from eomgen.mechanics.equilibrium.equations import has_freedoms, with_drives_held
+from eomgen.mechanics.rigidity.velocity_plan import RigidBlock, VelocityPlan, blocks_of
+from eomgen.mechanics.start.exact import known_exactly, shown_numbers
+from eomgen.mechanics.statics.contacts import RestCondition, conditions_of, modes_at_rest
 from eomgen.mechanics.statics.influence import InfluenceLine, influence_line
-from eomgen.mechanics.statics.rest_contacts import RestCondition, conditions_of, modes_at_rest
-from eomgen.mechanics.statics.two_ways import StaticReaction, StaticReactions, static_reactions_of
-from eomgen.mechanics.statics.virtual_work import WorkEquation
-from eomgen.mechanics.structures.blocks import RigidBlock, blocks_of
-from eomgen.mechanics.structures.velocity_plan import VelocityPlan
+from eomgen.mechanics.statics.virtual_work import StaticReaction, StaticReactions, WorkEquation, static_reactions_of
 from eomgen.model.contacts import contacts_of
 from eomgen.model.parts import Model
 from eomgen.model.reader import ModelOrPath, model_at
 from eomgen.model.replaced import Values
 from eomgen.model.values import exact_parameters
 from eomgen.proof.check import Certificate, Check
-from eomgen.proof.drawn_panels import DrawnPanel
 from eomgen.proof.parameters import other_data
-from eomgen.proof.sections_told import sections_told
+from eomgen.proof.reports_read import DrawnPanel
+from eomgen.proof.sections_told import ToldWork, sections_told, works_told
 from eomgen.proof.structure import diagrams_drawn, state_of, structure_checks
-from eomgen.proof.works_told import ToldWork, works_told
 from eomgen.records import dataclass
-from eomgen.symbolic.expression.graph import Scalar
+from eomgen.symbolic.expression.node import Scalar
 from eomgen.symbolic.numeric.tolerances import COMPUTED
 from eomgen.symbolic.numeric.work import doing
 from eomgen.symbolic.print.text import to_text
@@ -51,7 +47,7 @@ from eomgen.symbolic.print.text import to_text
 MOST_TOLD = 8  # reactions whose virtual work is read again
 
 if TYPE_CHECKING:
-    from eomgen.documents.statics.equilibrium_result import Resting
+    from eomgen.documents.statics.equilibrium import Resting
 
 
 @dataclass(frozen=True)
@@ -206,7 +202,7 @@ class Statics(Result):
         Raises:
             RunFailed: it is in space.
         """
-        from eomgen.documents.statics.picture import statics_picture
+        from eomgen.documents.statics.pictures import statics_picture
 
         return statics_picture(self.found, self.sections, self.influence)
 
@@ -272,7 +268,7 @@ def statics(
     model = model_at(model, parameters, start)
     system = system_of(model, modes_at_rest(model))
     if has_freedoms(system):
-        from eomgen.documents.statics.equilibrium_result import resting_places
+        from eomgen.documents.statics.equilibrium import resting_places
 
         _refuse_for_resting(reaction=reaction, influence=influence)
         return resting_places(model, system)

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from typing import Any
 
-from eomgen.documents.latex_names import letter_law
+from eomgen.documents.latex_math import letter_law
 from eomgen.documents.statements import Formula, Grid, Law, Name, Side, Statement, Step, prose
 from eomgen.documents.text import cell_text
 from eomgen.errors import DerivationError
@@ -15,7 +15,7 @@ from eomgen.mechanics.statics.section_forces import KINDS, SectionForces, Sectio
 from eomgen.model.trusses import is_node
 from eomgen.proof.sections_told import ToldSections
 from eomgen.records import dataclass
-from eomgen.symbolic.expression.graph import Node, Scalar
+from eomgen.symbolic.expression.node import Node, Scalar
 from eomgen.symbolic.print.text import to_text
 
 LETTERS = dict(zip(KINDS, ("N", "V", "M"), strict=True))

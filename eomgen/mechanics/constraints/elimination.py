@@ -16,14 +16,13 @@ from typing import Any
 import numpy as np
 
 from eomgen.errors import DerivationError, MissingValues
-from eomgen.mechanics.bodies.scope import Scope, with_speeds_named
-from eomgen.mechanics.bodies.simplify import shorter
 from eomgen.mechanics.constraints.closure import generic_state, rows_where_closed, scattered_state
-from eomgen.mechanics.constraints.ties import Ties, holds_identically
+from eomgen.mechanics.constraints.rows import Ties, holds_identically
+from eomgen.mechanics.kinematics.symbols import Scope, shorter, with_speeds_named
 from eomgen.records import dataclass
 from eomgen.symbolic.expression.derivative import depends_on, substituted
-from eomgen.symbolic.expression.functions import inner
-from eomgen.symbolic.expression.graph import Node, Scalar, is_zero
+from eomgen.symbolic.expression.formula import inner
+from eomgen.symbolic.expression.node import Node, Scalar, is_zero
 from eomgen.symbolic.expression.traversal import operations, order
 from eomgen.symbolic.numeric.dense import divisor, independent, rank
 from eomgen.symbolic.numeric.evaluation import NoValue

@@ -1,4 +1,6 @@
-"""System, velocities -> Mechanism: centres of rotation of every body and of every pair in the plane.
+"""System, velocities -> Mechanism: centres of rotation of every body and of every pair.
+
+System, velocities -> Mechanism: centres of rotation of every body and of every pair in the plane.
 
 Every body has the homogeneous centre c = (-v_0y : v_0x : w) of its velocity field (`centers`); a pair has
 c_ij = c_j - c_i. Bodies that move as one are one block; those at rest belong to the ground's.
@@ -6,20 +8,25 @@ c_ij = c_j - c_i. Bodies that move as one are one block; those at rest belong to
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable, Iterator, Mapping
 from functools import cached_property
 from itertools import combinations
 
-from eomgen.mechanics.equations.system import System
-from eomgen.mechanics.fields.centers import Homogeneous, homogeneous_center
-from eomgen.mechanics.fields.field import field_of
-from eomgen.mechanics.initial_state.numeric_value import Worth
+from eomgen.mechanics.constraints.rank import is_particle
+from eomgen.mechanics.constraints.rows import holds_identically
+from eomgen.mechanics.dynamics.system import System
+from eomgen.mechanics.free_bodies.wrenches import Axes, Component, components_of
+from eomgen.mechanics.instant.motion_kind import Homogeneous, homogeneous_center
+from eomgen.mechanics.kinematics.motion import field_of
+from eomgen.mechanics.start.exact import Worth
+from eomgen.model.part import leaves_of
 from eomgen.model.trusses import is_node
 from eomgen.records import dataclass
 from eomgen.symbolic.exact.normal_form import Legibly
-from eomgen.symbolic.expression.functions import over
-from eomgen.symbolic.expression.graph import Node, Scalar
-from eomgen.symbolic.expression.spatial import ZERO, minus
+from eomgen.symbolic.expression.derivative import substituted
+from eomgen.symbolic.expression.formula import over
+from eomgen.symbolic.expression.node import Node, Scalar, is_zero
+from eomgen.symbolic.expression.spatial import ZERO, Vector, cross, minus, plus, vector_of
 from eomgen.symbolic.numeric.work import Work
 
 FIXED = "0"
@@ -121,3 +128,179 @@ class Mechanism:
     @cached_property
     def _simple(self) -> Legibly:
         return Legibly(Work.ANSWER, self.system.scope.positive)
+
+
+# -------- construction ----------------------------------------------------------------------------------------
+# Mechanism -> Found: how a drawing finds its centres of rotation, one after the other, as two lines that meet.
+#
+# A tie between two bodies that pushes along a line lets them turn about points of that line only: the power of a
+# force (f_x, f_y) with moment tau about the origin is l . c with l = (-f_y : f_x : tau), so the centre c is on l. A
+# pure couple is the line at infinity. And of three bodies the three centres are on one line (Aronhold, Kennedy). All
+# is projective: lines may meet at infinity.
+
+
+PointPair = tuple[str, str]
+POINT = "point"
+"""The kind of line of a body that is a point, and does not turn."""
+
+
+@dataclass(frozen=True)
+class LineOf:
+    """A line on which a centre is.
+
+    Args:
+        line: homogeneous.
+        owner: the tie or joint that makes it, "" where it joins two centres.
+        kind: of the component: "x", "y", "n", "tension", "couple", ...
+        through: the two centres that it joins.
+    """
+
+    line: Vector
+    owner: str = ""
+    kind: str = ""
+    through: tuple[PointPair, PointPair] | None = None
+
+
+@dataclass(frozen=True)
+class FoundPoint:
+    """A centre that two lines give, or two others that are at one place.
+
+    Args:
+        pair: of blocks.
+        point: where it is, (x, y, 1) or (dx, dy, 0).
+        lines: the two that meet there; () where it coincides with others.
+        agrees: it is the one of the velocities.
+        same: the two centres at this place, which the pair has with one and the same third body.
+    """
+
+    pair: PointPair
+    point: Vector
+    lines: tuple[LineOf, ...]
+    agrees: bool
+    same: tuple[PointPair, ...] = ()
+
+    @property
+    def hinge(self) -> str:
+        """The one tie or joint that holds the point; "" where two lines of different origin meet."""
+        owners = {line.owner for line in self.lines}
+        plain = all(line.kind != "couple" for line in self.lines)
+        return owners.pop() if len(owners) == 1 and plain and self.lines[0].owner else ""
+
+
+def constructed(mechanism: Mechanism) -> tuple[FoundPoint, ...]:
+    """The centres that lines give, each from those before it; those that need the velocities are left out."""
+    return tuple(_Search(mechanism).run())
+
+
+@dataclass(frozen=True)
+class _Search:
+    """The search; points that are found are looked up in numbers first."""
+
+    mechanism: Mechanism
+
+    def run(self) -> Iterator[FoundPoint]:
+        known: dict[PointPair, Vector] = {}
+        fresh = True
+        while fresh:
+            fresh = False
+            for pair in self.mechanism.centers:
+                if pair in known:
+                    continue
+                found = self._meeting(pair, known)
+                if found is not None:
+                    known[pair] = found.point
+                    fresh = True
+                    yield found
+
+    def _meeting(self, pair: PointPair, known: dict[PointPair, Vector]) -> FoundPoint | None:
+        """The first two different lines on which the centre of a pair is, or two centres that coincide."""
+        field = self.mechanism.centers[pair].point
+        for first_pair, second_pair in self._with_a_third(pair, known):
+            if self.mechanism.is_zero(cross(known[first_pair], known[second_pair])):
+                point = known[first_pair]
+                return FoundPoint(
+                    pair, point, (), self.mechanism.is_zero(cross(point, field)), (first_pair, second_pair)
+                )
+        lines = [*self.own_lines.get(pair, ()), *self._in_line(pair, known)]
+        for first, second in combinations(lines, 2):
+            point = cross(first.line, second.line)
+            if not self.mechanism.is_zero(point):
+                point = self.mechanism.normal(point)
+                return FoundPoint(pair, point, (first, second), self.mechanism.is_zero(cross(point, field)))
+        return None
+
+    def _in_line(self, pair: PointPair, known: dict[PointPair, Vector]) -> Iterator[LineOf]:
+        """The lines through the centres that the two have with a third body."""
+        for first, second in self._with_a_third(pair, known):
+            line = cross(known[first], known[second])
+            if not self.mechanism.is_zero(line):
+                yield LineOf(line, through=(first, second))
+
+    def _with_a_third(self, pair: PointPair, known: dict[PointPair, Vector]) -> Iterator[tuple[PointPair, PointPair]]:
+        """The centres that both have with a third body, where they are known."""
+        for k in self.mechanism.blocks:
+            if k not in pair:
+                first, second = self._ordered(pair[0], k), self._ordered(pair[1], k)
+                if first in known and second in known:
+                    yield first, second
+
+    def _ordered(self, i: str, j: str) -> PointPair:
+        order = list(self.mechanism.blocks)
+        return (i, j) if order.index(i) < order.index(j) else (j, i)
+
+    @cached_property
+    def own_lines(self) -> dict[PointPair, list[LineOf]]:
+        """The lines along which ties and joints push two blocks."""
+        found: dict[PointPair, list[LineOf]] = {}
+        axes = Axes(self.mechanism.system.motion)
+        for component in components_of(self.mechanism.system, axes):
+            if component.kind == "drive" or self._wanders(component):
+                continue
+            pair, line = self._line(axes, component)
+            if pair is not None:
+                found.setdefault(pair, []).append(LineOf(line, component.owner, component.label))
+        for name in self.mechanism.moved:
+            if self._is_point(name):
+                found.setdefault(("0", name), []).append(LineOf((0, 0, 1), name, POINT))
+        return found
+
+    def _wanders(self, component: Component) -> bool:
+        """Whether the seat of a joint, or a point that a tie names, moves in its body as the model says, or a tie has
+        rates beside those of the bodies.
+
+        There no point of the body is held, and the line of the push says nothing of velocities.
+        """
+        motion = self.mechanism.system.motion
+        if component.kind == "joint":
+            link = motion.link(component.owner)
+            return motion.moves((*link.before.p, *link.point))
+        rows = [row for row in self.mechanism.system.ties.rows if row.tie == component.owner]
+        if any(row.number == component.number and not holds_identically(row.direct) for row in rows):
+            return True
+        tie = motion.scope.model.constraints[component.owner]
+        points = (leaf.value for leaf in leaves_of(tie, ()) if getattr(leaf.rule, "of", "") == "point")
+        return any(motion.moves(motion.place(point)[1]) for point in points)
+
+    def _is_point(self, block: str) -> bool:
+        """Whether it is a point mass, whatever its velocity: as a body it translates."""
+        link = self.mechanism.system.motion.link(block)
+        return is_particle(self.mechanism.system.motion, link) and all(is_zero(x) for x in link.twist.w)
+
+    def _line(self, axes: Axes, component: Component) -> tuple[PointPair | None, Vector]:
+        """The two blocks on which it pushes with opposite wrenches, and the line; None where there are no such two."""
+        wrenches: dict[str, Vector] = {}
+        for effect in component.effects:
+            motion = axes.motion
+            place = plus(motion.position((motion.links[effect.link].name, axes.masses[effect.link].com)), effect.arm)
+            moment = plus(effect.couple, cross(place, effect.force))[2]
+            block = self.mechanism.block_of(motion.links[effect.link].name)
+            wrench = (-effect.force[1], effect.force[0], moment)
+            wrenches[block] = plus(wrenches[block], wrench) if block in wrenches else wrench
+        here = {block: vector_of(substituted(w, self.mechanism.moving)) for block, w in wrenches.items()}
+        pushed = [block for block, w in here.items() if not self.mechanism.is_zero(w) and block != "0"]
+        if not pushed or any(block not in self.mechanism.blocks for block in pushed):
+            return None, (0, 0, 0)
+        if len(pushed) == 1:
+            return ("0", pushed[0]), here[pushed[0]]
+        opposite = len(pushed) == 2 and self.mechanism.is_zero(plus(here[pushed[0]], here[pushed[1]]))
+        return (self._ordered(pushed[0], pushed[1]) if opposite else None), here[pushed[0]]

@@ -7,18 +7,29 @@ plane; x, y, z and three turns about its own successive axes in space. Then the 
 
 from typing import Annotated, Any, ClassVar
 
-from eomgen.model.joints.base import Column, Effort, Joint, Scalars, X, Y, Z, angular, linear
-from eomgen.model.joints.moves import Move, SlideAlong, TurnAbout
-from eomgen.model.joints.orientation import rotation_by, turning_columns
+from eomgen.model.fields import Table
+from eomgen.model.joints.ball import rotation_by, turning_columns
+from eomgen.model.joints.base import (
+    Column,
+    Effort,
+    Joint,
+    Move,
+    Scalars,
+    SlideAlong,
+    TurnAbout,
+    X,
+    Y,
+    Z,
+    angular,
+    linear,
+)
 from eomgen.model.joints.placed import Placed
 from eomgen.model.kinds import Coordinates, ValueOf
 from eomgen.model.part import PartRule, altered, part_of_values
 from eomgen.model.parts import Body, Coordinate, Model
-from eomgen.model.table import Table
 from eomgen.model.trusses import in_parts
 from eomgen.records import dataclass
-from eomgen.symbolic.expression.expressions import Expression
-from eomgen.symbolic.expression.functions import cos, sin
+from eomgen.symbolic.expression.formula import Expression, cos, sin
 from eomgen.symbolic.expression.spatial import Matrix, Pose, apply, plus, product, rotation, transposed, vector_of
 
 SMALL = "xyz"  # the sequence of the three turns

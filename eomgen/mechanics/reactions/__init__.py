@@ -1,0 +1,1 @@
+"""Reactions, the forces that given motions take, and whether bodies are in equilibrium at a state."""

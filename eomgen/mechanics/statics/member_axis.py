@@ -13,14 +13,15 @@ from itertools import pairwise
 from typing import Any
 
 from eomgen.errors import DerivationError
-from eomgen.mechanics.bodies.kinematics import Motion
-from eomgen.mechanics.initial_state.values_at_rest import values_of_parameters
+from eomgen.mechanics.kinematics.motion import Motion
+from eomgen.mechanics.start.exact import values_of_parameters
 from eomgen.records import dataclass
 from eomgen.symbolic.exact.normal_form import readable, readable_all, simplest
 from eomgen.symbolic.exact.signs import sign_of_terms
 from eomgen.symbolic.expression.derivative import substituted, symbols_of
-from eomgen.symbolic.expression.functions import over, sqrt
-from eomgen.symbolic.expression.graph import Graph, Node, Scalar, is_zero
+from eomgen.symbolic.expression.formula import over, sqrt
+from eomgen.symbolic.expression.graph import Graph
+from eomgen.symbolic.expression.node import Node, Scalar, is_zero
 from eomgen.symbolic.expression.spatial import ZERO, Vector, cross, dot, minus, plus, times, vector_of
 from eomgen.symbolic.numeric.evaluation import evaluate, fifty_digits
 from eomgen.symbolic.numeric.tolerances import CERTAIN_AT_50

@@ -1,12 +1,23 @@
-"""Bodies and joints: where mass comes from, what a joint needs, and that the bodies hang in a tree."""
+"""Bodies, joints and masses: where mass comes from, which numbers a body can have, and that bodies hang in a tree.
 
-from collections.abc import Iterator
+Bodies and joints: where mass comes from, what a joint needs, and that the bodies hang in a tree.
+"""
+
+import math
+from collections.abc import Iterator, Mapping
 from typing import Any
 
+from eomgen.errors import ExpressionError
+from eomgen.model.arithmetic import AnyNumber, in_order, value_of
 from eomgen.model.catalog import Catalog
-from eomgen.model.composite import sources
-from eomgen.model.findings import Finding
+from eomgen.model.composite import Composite, about, composite_of, sources
+from eomgen.model.fields import Leaf, VectorRule
+from eomgen.model.findings import Finding, shown, whereabouts
+from eomgen.model.part import leaves_of
 from eomgen.model.positions import DocumentPath
+from eomgen.symbolic.expression.formula import Expression
+from eomgen.symbolic.expression.spatial import cross, vector_of
+from eomgen.symbolic.numeric.tolerances import SOLVED
 
 MEASURES = {1: "mass by length", 2: "mass by area", 3: "mass by volume"}
 
@@ -119,3 +130,240 @@ def _rings(catalog: Catalog) -> Iterator[Finding]:
             what = what if len(ring) == 1 else f"bodies hang on one another in a ring: {told}"
             yield Finding(("bodies", ring[0], "joint", "on"), what, "one of them must hang on the ground")
         done.update(trail)
+
+
+# -------- made ------------------------------------------------------------------------------------------------
+# Shapes and bodies made of parts, wherever all their numbers are known: that such a body exists.
+
+
+def made(catalog: Catalog, values: Mapping[str, AnyNumber]) -> Iterator[Finding]:
+    """Shapes that cannot be, parts that weigh more than the whole, holes larger than what they are cut out of."""
+    for name, body in catalog.table("bodies").items():
+        if body is None or ("bodies", name) in catalog.broken or not _signed_right(body, values):
+            continue  # told already
+        path: DocumentPath = ("bodies", name)
+        shapes = [((*path, "shape"), f"the shape of body '{name}'", body.shape)] if body.shape is not None else []
+        shapes += [
+            ((*path, "parts", k), f"part {k + 1} of body '{name}'", piece.shape)
+            for k, piece in enumerate(body.parts or ())
+        ]
+        wrong = [_impossible(where, what, shape, values) for where, what, shape in shapes]
+        yield from filter(None, wrong)
+        if body.parts is not None and not any(wrong) and _complete(body) and all(map(_placed, body.parts)):
+            yield from _whole((*path, "parts"), name, body, values)
+
+
+def _impossible(path: DocumentPath, what: str, shape: Any, values: Mapping[str, AnyNumber]) -> Finding | None:
+    if not _known(shape, values):
+        return None
+    try:
+        why = shape.impossible(lambda e: float(e.evaluate(values)))
+    except ExpressionError:  # told where the expression stands
+        return None
+    return Finding(path, f"{what} ({shape.kind}) cannot be: {why}") if why else None
+
+
+def _signed_right(body: Any, values: Mapping[str, AnyNumber]) -> bool:
+    """Whether every mass, length and radius of a body that is known has its sign."""
+    signed = [leaf for leaf in leaves_of(body, ()) if getattr(leaf.rule, "sign", "")]
+    known = [(leaf.rule.sign, value_of(leaf.value, values)) for leaf in signed if isinstance(leaf.value, Expression)]
+    return all(x is None or x > 0 or (x == 0 and sign == "nonnegative") for sign, x in known)
+
+
+def _known(part: Any, values: Mapping[str, AnyNumber]) -> bool:
+    """Whether every expression in a part has names with values only."""
+    leaves = (leaf.value for leaf in leaves_of(part, ()))
+    return all(e.names <= values.keys() for e in leaves if isinstance(e, Expression))
+
+
+def _complete(body: Any) -> bool:
+    """Whether the masses of all parts follow (else it is told where masses are checked)."""
+    sharing = [piece for piece in body.parts if piece.shape.mass is None]
+    return not sharing or (body.mass is not None and len({piece.shape.dimension for piece in sharing}) == 1)
+
+
+def _placed(piece: Any) -> bool:
+    """Whether no vector of a piece has more components than space (told where references are checked)."""
+    vectors = [leaf.value for leaf in leaves_of(piece, ()) if isinstance(leaf.rule, VectorRule)]
+    return all(len(components) <= 3 for components in vectors)
+
+
+def _whole(path: DocumentPath, name: str, body: Any, values: Mapping[str, AnyNumber]) -> Iterator[Finding]:
+    """Of a composite body all of whose numbers are known."""
+    expressions = [body.mass] if body.mass is not None else []
+    if not all(_known(piece, values) for piece in body.parts) or any(e.names - values.keys() for e in expressions):
+        return
+
+    def value(expression: Expression) -> float:
+        return float(expression.evaluate(values))
+
+    try:
+        measures = [_signed(piece, value) for piece in body.parts if piece.shape.mass is None]
+        cut = body.mass is not None and any(measure > 0 for measure in measures)
+        if cut and sum(measures) <= SOLVED * max(map(abs, measures)):
+            yield Finding(path, f"the holes of body '{name}' are as large as its parts, or larger", key=True)
+            return
+        composite = composite_of(body.parts, body.mass, value)
+    except (ExpressionError, ZeroDivisionError):
+        return
+    yield from _masses(path, name, body, composite)
+
+
+def _signed(piece: Any, value: Any) -> Any:
+    return (-1 if piece.hole else 1) * piece.shape.measure(value)
+
+
+def _masses(path: DocumentPath, name: str, body: Any, composite: Composite) -> Iterator[Finding]:
+    total = sum(placed.sign * placed.mass.m for placed in composite.pieces)
+    largest = max(placed.mass.m for placed in composite.pieces)
+    negative = [k for k, placed in enumerate(composite.pieces) if placed.mass.m < 0]
+    if negative:
+        given = sum(p.sign * p.mass.m for p in composite.pieces if p.piece.shape.mass is not None)
+        what = f"the parts of body '{name}' with a mass of their own weigh {float(given):g} kg, its 'mass' is "
+        what += f"{float(composite.whole.m):g} kg: that leaves no mass for the others"
+        yield Finding(path, what, "'mass' is that of the net whole", key=True)
+    elif abs(total - composite.whole.m) > SOLVED * (largest or 1):
+        what = f"the parts of body '{name}' weigh {float(total):g} kg, its 'mass' is {float(composite.whole.m):g} kg"
+        yield Finding(path, what, "leave out 'mass', or the mass of a part", key=True)
+    elif total < -SOLVED * largest or (abs(total) <= SOLVED * largest and largest > 0):
+        weight = "negative" if total < -SOLVED * largest else "zero"
+        what = f"the mass of body '{name}' is {weight}: its holes take away {_of_holes(composite):g} kg"
+        yield Finding(path, what, "a hole cannot weigh more than what it is cut out of", key=True)
+    else:
+        yield from _inertia(path, name, composite)
+
+
+def _of_holes(composite: Composite) -> float:
+    return _float(sum(placed.mass.m for placed in composite.pieces if placed.sign < 0))
+
+
+def _float(x: Any) -> float:
+    return float(x)
+
+
+def _inertia(path: DocumentPath, name: str, composite: Composite) -> Iterator[Finding]:
+    I = composite.whole.I
+    moments = [_float(x) for x in (I[0][0], I[1][1], I[2][2], I[0][1], I[1][2], I[2][0])]
+    size = max(abs(_float(x)) for p in composite.pieces for row in about(p.mass, composite.whole.com) for x in row)
+    if not possible(moments, size):
+        told = ", ".join(f"{x:g}" for x in moments)
+        what = f"no body has the inertia of '{name}': [{told}] breaks the triangle inequality"
+        yield Finding(
+            path, what, "a hole lies inside the other parts, and is no heavier than what it is cut out of", key=True
+        )
+
+
+# -------- triangle --------------------------------------------------------------------------------------------
+# Whether a body can have an inertia: the triangle inequality, in any axes.
+
+
+def possible(moments: list[float], size: float = 0.0) -> bool:
+    """J = tr(I)/2 - I has no negative eigenvalue (its principal minors are not negative).
+
+    Args:
+        moments: xx, yy, zz and then, where there are any, xy, yz, zx.
+        size: of what they were added up from, where that is larger than they are.
+    """
+    size = max(size, *map(abs, moments)) or 1.0
+    xx, yy, zz, xy, yz, zx = (x / size for x in (*moments, 0.0, 0.0, 0.0)[:6])
+    half = (xx + yy + zz) / 2
+    a, b, c = half - xx, half - yy, half - zz
+    determinant = a * (b * c - yz * yz) - xy * (xy * c + yz * zx) - zx * (xy * yz + b * zx)
+    second = (a * b - xy * xy, b * c - yz * yz, c * a - zx * zx)
+    return min(a, b, c, *second, determinant) >= -SOLVED
+
+
+# -------- numbers ---------------------------------------------------------------------------------------------
+# Numbers: a mass, length, radius or inertia has its sign; an inertia obeys the triangle inequality.
+
+
+def numbers(catalog: Catalog) -> Iterator[Finding]:
+    """Wherever an expression is worth a number (by literals and parameters with values), that number is possible."""
+    values: dict[str, AnyNumber] = {"pi": math.pi}
+    for name in in_order({n: p.value if p else None for n, p in catalog.table("parameters").items()})[0]:
+        yield from _parameter(catalog, name, values)
+    for leaf, expression in catalog.expressions:
+        yield from _worth(leaf, expression, values)
+        sign = getattr(leaf.rule, "sign", "")
+        if sign:
+            yield from _sign(leaf, expression, value_of(expression, values))
+    yield from _directions(catalog, values)
+    yield from _crossing(catalog, values)
+    yield from _positive(catalog, values)
+    yield from _inertias(catalog, values)
+    yield from made(catalog, values)
+
+
+def _parameter(catalog: Catalog, name: str, values: dict[str, AnyNumber]) -> Iterator[Finding]:
+    """Adds the value of a parameter to the values, or tells why it has none."""
+    part = catalog.table("parameters")[name]
+    if part is None or part.value is None or not part.value.names <= values.keys():
+        return
+    try:
+        values[name] = part.value.evaluate(values)
+    except ExpressionError as error:
+        path, what = ("parameters", name, "value"), f"parameter '{name}': {error.what}"
+        yield Finding(path, what, error.mend, error.column, error.length)
+
+
+def _worth(leaf: Leaf, expression: Expression, values: dict[str, AnyNumber]) -> Iterator[Finding]:
+    """An expression of parameters that has no value, such as asin(2); a parameter's own is told above."""
+    elsewhere = leaf.path[0] == "parameters" or leaf.value is not expression or expression.calls
+    if elsewhere or not expression.names <= values.keys():
+        return
+    try:
+        expression.evaluate(values)
+    except ExpressionError as error:
+        yield Finding(leaf.path, f"{whereabouts(leaf.path)}: {error.what}", error.mend, error.column, error.length)
+
+
+def _sign(leaf: Leaf, expression: Expression, number: Any) -> Iterator[Finding]:
+    if number is None or number > 0 or (number == 0 and leaf.rule.sign == "nonnegative"):
+        return
+    what = "negative" if number < 0 else "zero"
+    key = next((str(k) for k in reversed(leaf.path) if isinstance(k, str)), "")
+    told = shown(expression.text) if expression.literal is None else expression.text
+    worth = f"{told} = {float(number):g}" if expression.literal is None else told
+    where = whereabouts(leaf.path[:-1] if len(leaf.path) > 2 else leaf.path)
+    yield Finding(leaf.path, f"'{key}' in {where} is {what}: {worth}")
+
+
+def _directions(catalog: Catalog, values: dict[str, AnyNumber]) -> Iterator[Finding]:
+    """A direction that its parameters make zero (one of literal zeros is told where vectors are checked)."""
+    for leaf in catalog.leaves:
+        if not getattr(leaf.rule, "nonzero", False) or isinstance(leaf.value, str):
+            continue
+        named = any(component.literal is None for component in leaf.value)
+        if named and all(value_of(component, values) == 0 for component in leaf.value):
+            yield Finding(leaf.path, f"{whereabouts(leaf.path)}: a direction cannot be zero", "give a direction")
+
+
+def _crossing(catalog: Catalog, values: dict[str, AnyNumber]) -> Iterator[Finding]:
+    """The two axes of a universal joint that its numbers make parallel: it then turns about one axis alone."""
+    for name, body in catalog.table("bodies").items():
+        axes = getattr(getattr(body, "joint", None), "axes", None)
+        if axes is None or len(axes) != 2 or any(len(axis) != 3 for axis in axes):
+            continue
+        a, b = (list[Any](value_of(component, values) for component in axis) for axis in axes)
+        if None not in (*a, *b) and any(a) and any(b) and not any(cross(vector_of(a), vector_of(b))):
+            what = f"the two axes of the universal joint of body '{name}' are parallel"
+            yield Finding(("bodies", name, "joint", "axes"), what, "give axes that cross, or a revolute joint")
+
+
+def _positive(catalog: Catalog, values: dict[str, AnyNumber]) -> Iterator[Finding]:
+    for name, part in catalog.table("parameters").items():
+        if part is not None and part.positive and name in values and values[name] <= 0:
+            what = f"parameter '{name}' is declared positive but is {float(values[name]):g}"
+            yield Finding(("parameters", name, "value"), what)
+
+
+def _inertias(catalog: Catalog, values: dict[str, AnyNumber]) -> Iterator[Finding]:
+    for name, body in catalog.table("bodies").items():
+        if body is None or body.inertia is None:
+            continue
+        path: DocumentPath = ("bodies", name, "inertia")
+        moments = [value_of(e, values) for e in body.inertia]
+        negative = [k for k, x in enumerate(moments[:3]) if x is not None and x < 0]
+        for k in negative:
+            what = f"a moment of inertia of body '{name}' is negative: {body.inertia[k].text}"
+            yield Finding(path if len(moments) == 1 else (*path, k), what)

@@ -1,16 +1,106 @@
-"""Equation: a tie written as an expression."""
+"""An equation between coordinates, points and bodies.
+
+Equation: a tie written as an expression.
+"""
 
 from collections.abc import Mapping
 from typing import ClassVar
 
+from eomgen.errors import ModelError
 from eomgen.model.constraints.base import Constraint
-from eomgen.model.constraints.measured import Measured
+from eomgen.model.constraints.plane import Touch, angle_of, opposite
 from eomgen.model.constraints.row import TieRow
-from eomgen.model.forces.load import LoadContext, Push
+from eomgen.model.forces.load import BodyPoint, Couple, LoadContext, Push
 from eomgen.model.kinds import Gap, VelocityLaw
 from eomgen.records import dataclass
-from eomgen.symbolic.expression.expressions import Call
-from eomgen.symbolic.expression.spatial import AnyScalar
+from eomgen.symbolic.expression.formula import Call, Reference
+from eomgen.symbolic.expression.spatial import IDENTITY, ZERO, AnyScalar, Vector, apply, dot, minus, times
+
+# -------- measured --------------------------------------------------------------------------------------------
+# Functions of points and bodies in an equation: what each is worth, and what pushes along it.
+#
+# x(P), x(P, B)         e . p_P,  e . (p_P - p_B):  a force along e on P, its opposite at the same place on B
+# angle(A), angle(A, B)    a couple about z on A, its opposite on B vx(P, B), omega_x(A, B)  the same pushes; e is an
+# axis of the ground, or of the body B from which it is seen
+
+
+GROUND = "ground"
+
+
+@dataclass(frozen=True)
+class Measured:
+    """One function of the motion in an equation.
+
+    Args:
+        call: as it was written.
+    """
+
+    scene: LoadContext
+    call: Call
+
+    @property
+    def is_velocity(self) -> bool:
+        return self.call.name.startswith(("v", "omega"))
+
+    @property
+    def value(self) -> AnyScalar:
+        """Of a place or an angle."""
+        if self.call.name == "angle":
+            return angle_of(self.scene, self._body) - angle_of(self.scene, self._frame)
+        return dot(self._axis, self._arm)
+
+    def pushed(self, k: AnyScalar) -> tuple[Push, ...]:
+        """Forces and couples whose power is k times the rate of a place or angle, or k times the velocity."""
+        push = times(k, self._axis)
+        if self._turns:
+            pairs = ((self._body, push), (self._frame, times(-1, push)))
+            return tuple(Couple(body, couple) for body, couple in pairs if body is not None)
+        if self._frame is None:
+            return Touch(self._place).pushed(push)
+        return opposite(Touch(self._place), Touch((self._frame, ZERO), self._arm), push)
+
+    @property
+    def _turns(self) -> bool:
+        return self.call.name.startswith(("angle", "omega"))
+
+    @property
+    def _axis(self) -> Vector:
+        """x, y or z of the ground or of the body from which it is seen; in the plane a body turns about z."""
+        k = "xyz".find(self.call.name[-1])
+        if k < 0 and not self.scene.plane:
+            raise ModelError(
+                f"'{self.call}': a body has no single angle in space",
+                self.scene.where,
+                "write omega_x, omega_y or omega_z, or the coordinate of its joint",
+            )
+        e = IDENTITY[k]
+        return e if self._frame is None else apply(self.scene.orientation(self._frame), e)
+
+    @property
+    def _arm(self) -> Vector:
+        """From the origin of the body from which it is seen to the point."""
+        position = self.scene.position(self._place)
+        return position if self._frame is None else minus(position, self.scene.position((self._frame, ZERO)))
+
+    @property
+    def _place(self) -> BodyPoint:
+        return self.scene.place(self._named(0))
+
+    @property
+    def _body(self) -> str | None:
+        return None if self._named(0) == GROUND else self._named(0)
+
+    @property
+    def _frame(self) -> str | None:
+        return None if len(self.call.args) < 2 or self._named(1) == GROUND else self._named(1)
+
+    def _named(self, k: int) -> str:
+        argument = self.call.args[k]
+        assert isinstance(argument, Reference), "checked when the model was read"
+        return argument.name
+
+
+# -------- equation --------------------------------------------------------------------------------------------
 
 
 @dataclass(frozen=True, kw_only=True)

@@ -1,17 +1,24 @@
-"""Link: a massless rod or wire of constant length."""
+"""Links and two-force members of a truss.
 
-from typing import ClassVar
+Link: a massless rod or wire of constant length.
+"""
+
+from collections.abc import Mapping
+from dataclasses import replace
+from typing import Annotated, ClassVar
 
 from eomgen.errors import ModelError
-from eomgen.model.constraints.base import Constraint
-from eomgen.model.constraints.meeting import Thread
+from eomgen.model.constraints.base import Constraint, Thread
 from eomgen.model.constraints.row import TieRow
+from eomgen.model.fields import ListRule, NameRule
 from eomgen.model.forces.load import LoadContext, PointForce
-from eomgen.model.kinds import Flag, Length, TwoPoints
+from eomgen.model.kinds import Flag, Length, Text, TwoPoints
 from eomgen.records import dataclass
-from eomgen.symbolic.expression.functions import over, sqrt
+from eomgen.symbolic.expression.formula import Call, Reference, over, sqrt
+from eomgen.symbolic.expression.node import Node
 from eomgen.symbolic.expression.rational import Fraction
 from eomgen.symbolic.expression.spatial import AnyScalar, Vector, dot, minus, times, vector_of
+from eomgen.symbolic.expression.traversal import order
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -65,3 +72,77 @@ class Link(Constraint):
                 "give its 'length', or use a pin",
             )
         return sqrt(square)
+
+
+# -------- members ---------------------------------------------------------------------------------------------
+# Members: the two-force bars of a truss. A model holds them once its trusses are taken apart; no file names them.
+
+
+def ends_asked(call: Call) -> tuple[str, str] | None:
+    """The two nodes of tension(T, n1-n2) or tension(T, n1, n2); None where it names no two."""
+    _, *rest = call.args
+    texts = [a.name if isinstance(a, Reference) else a.text for a in rest]
+    ends = [end.strip() for text in texts for end in text.split("-")]
+    return (ends[0], ends[1]) if len(ends) == 2 else None
+
+
+@dataclass(frozen=True, kw_only=True)
+class Members(Constraint):
+    """Massless bars between the nodes of one truss, each keeps its length; tension positive.
+
+    Args:
+        truss: its name.
+        members: "n1-n2", in the order of the rows.
+    """
+
+    kind: ClassVar[str] = "truss"
+    table: ClassVar[str] = "trusses"
+    truss: Text
+    members: Annotated[tuple[str, ...], ListRule(NameRule("member"))]
+
+    def ends(self, member: str) -> tuple[str, str]:
+        """The points that a member joins."""
+        first, second = member.split("-")
+        return f"{self.truss}.{first}", f"{self.truss}.{second}"
+
+    def stays(self, component: str) -> bool:
+        return True
+
+    def rows(self, scene: LoadContext) -> tuple[TieRow, ...]:
+        """Of each member the row of a link."""
+        return tuple(self._row(scene, member) for member in self.members)
+
+    def _row(self, scene: LoadContext, member: str) -> TieRow:
+        ends = self.ends(member)
+        first, second = (scene.position(scene.place(point)) for point in ends)
+        r = minus(second, first)
+        if all(scene.vanishes(x) or scene.worth(x) == 0 for x in r):
+            raise ModelError(
+                f"member '{member}' of truss '{self.truss}' has no length",
+                scene.where,
+                "its two nodes are at one place: move one of them, or make them one",
+            )
+        (row,) = Link(points=ends).rows(scene)
+        if scene.moves(r):
+            return replace(row, part=member)
+        x, y, z = _direction(scene, r)
+        pulls = (PointForce(scene.place(ends[0]), (x, y, z)), PointForce(scene.place(ends[1]), times(-1, (x, y, z))))
+        return replace(row, part=member, pushes=pulls)
+
+
+def trusses_of(constraints: Mapping[str, Constraint]) -> dict[str, Members]:
+    """The trusses of a model in parts, by name."""
+    return {name: tie for name, tie in constraints.items() if isinstance(tie, Members)}
+
+
+def _direction(scene: LoadContext, r: Vector) -> tuple[AnyScalar, ...]:
+    """r over its length: in plain numbers and roots of them where all components are multiples of one parameter."""
+    (square,) = scene.readable((dot(r, r),))
+    (length,) = scene.readable((sqrt(square),))
+    direction = tuple(over(x, length) for x in r)
+    return direction if _has_root_of_sum(length) else scene.readable(direction)
+
+
+def _has_root_of_sum(x: AnyScalar) -> bool:
+    """Whether a root of something else than a number stands in a length."""
+    return type(x) is Node and any(y.op == "sqrt" and type(y.args[0]) is Node for y in order((x,)))

@@ -13,7 +13,7 @@ from eomgen.model.joints.base import across, unit
 from eomgen.model.kinds import AxesName, Points, SpaceDirection
 from eomgen.model.positions import DocumentPath
 from eomgen.records import dataclass
-from eomgen.symbolic.expression.graph import Scalar
+from eomgen.symbolic.expression.node import Scalar
 from eomgen.symbolic.expression.spatial import IDENTITY, Vector, apply, cross, dot, matrix_of, minus, times, transposed
 
 

@@ -1,34 +1,394 @@
-"""Rolling: a round body on a line, a circle or another body; in space on a plane, a ball or a pipe."""
+"""Rolling of round bodies on lines, planes, balls and pipes.
+
+Rolling: a round body on a line, a circle or another body; in space on a plane, a ball or a pipe.
+"""
 
 from collections.abc import Iterator
 from typing import Annotated, Any, ClassVar
 
 from eomgen.errors import ModelError
 from eomgen.model.catalog import Catalog, findings_of_one, is_round, not_in_the_plane
-from eomgen.model.constraints.base import Constraint
-from eomgen.model.constraints.meeting import FlatSurface, Meeting, RoundSurface, TouchingRound
-from eomgen.model.constraints.plane import Touch, opposite
-from eomgen.model.constraints.round_bodies import Egg, RollingBall, Round, Wheel
-from eomgen.model.constraints.row import Edge, TieRow
-from eomgen.model.constraints.tracks import (
-    Circle,
-    Curved,
-    Track,
-    TrackContact,
-    curved,
-    normal_of,
-    on_curved,
-    on_level,
-    wheel_on_ball,
-)
+from eomgen.model.constraints.base import Constraint, FlatSurface, Meeting, RoundSurface, TouchingRound
+from eomgen.model.constraints.plane import Touch, opposite, right
+from eomgen.model.constraints.row import Edge, TieRow, direction_of
 from eomgen.model.findings import Finding
-from eomgen.model.forces.load import LoadContext
-from eomgen.model.friction import FrictionLaw
-from eomgen.model.kinds import BodyName, Flag, Length, OwnPlace, Radius, Size, SpaceDirection
-from eomgen.model.part import PartRule
+from eomgen.model.forces.load import BodyPoint, LoadContext
+from eomgen.model.joints.base import unit
+from eomgen.model.kinds import (
+    BodyName,
+    Direction,
+    Flag,
+    FrictionLaw,
+    GroundPlace,
+    Length,
+    OwnPlace,
+    Radius,
+    Size,
+    SpaceDirection,
+)
+from eomgen.model.part import Part, PartRule
 from eomgen.model.positions import DocumentPath
 from eomgen.records import dataclass
-from eomgen.symbolic.expression.spatial import AnyScalar, dot, minus
+from eomgen.symbolic.exact.normal_form import readable
+from eomgen.symbolic.expression.formula import Expression, cos, over, sin, sqrt
+from eomgen.symbolic.expression.node import Node
+from eomgen.symbolic.expression.rational import Fraction
+from eomgen.symbolic.expression.spatial import (
+    ZERO,
+    AnyScalar,
+    Vector,
+    apply,
+    cross,
+    dot,
+    minus,
+    plus,
+    times,
+    transposed,
+    vector_of,
+)
+from eomgen.symbolic.numeric.tolerances import DEGENERATE
+from eomgen.symbolic.numeric.work import Work
+from eomgen.symbolic.print.text import text_size
+
+# -------- round bodies ----------------------------------------------------------------------------------------
+# Round bodies in space: where each of them comes nearest to a plane.
+#
+# The place nearest to a plane is the one farthest against its normal n. From the centre it is `reach` away, and the
+# centre then is `height` = - n . reach above the plane:
+#
+#     ball         reach = - R n                                 height = R
+#     wheel        reach = - R (n - (n.a) a) / rho - r n         height = R rho + r,   rho = |n x a|
+#     ellipsoid    reach = - A n / h                             height = h = sqrt(n . A n)
+#
+# with a wheel's axis a and the radius r of its tyre (0: a thin disc), A = R_B diag(a^2, b^2, c^2) R_B^T. As the place
+# is an extreme one, it may wander in the body, and the gap's rate is still n . v of the material points in contact.
+
+
+LONGEST = 400  # characters of a cosine that is multiplied out
+
+
+@dataclass(frozen=True)
+class Nearest:
+    """The place of a round body that is nearest to a plane.
+
+    Args:
+        reach: from the body's centre to it, ground axes [m].
+        height: of the centre above the plane through it [m].
+    """
+
+    reach: Vector
+    height: AnyScalar
+
+
+@dataclass(frozen=True)
+class RollingBall:
+    """A ball of radius R."""
+
+    R: AnyScalar
+
+    def nearest(self, scene: LoadContext, n: Vector) -> Nearest:
+        """R below the centre."""
+        return Nearest(times(-self.R, n), self.R)
+
+
+@dataclass(frozen=True)
+class Wheel:
+    """A thin disc of radius R about `axis` (body axes), or the centre line of a tyre of radius `tube`."""
+
+    body: str
+    axis: Vector
+    R: AnyScalar
+    tube: AnyScalar
+
+    def nearest(self, scene: LoadContext, n: Vector) -> Nearest:
+        """The lowest place of the rim.
+
+        Raises:
+            ModelError: the wheel lies flat at the start, where the whole rim touches.
+        """
+        a, rho = self._axle(scene), self.tilt(scene, n)
+        if abs(_worth(scene, rho)) < DEGENERATE:
+            raise ModelError(
+                f"'{self.body}' lies flat at the start: its whole rim touches",
+                scene.where,
+                "start it upright or leaning; an axis along the normal has no lowest point",
+            )
+        down = times(over(-self.R, rho), cross(a, cross(n, a)))
+        return Nearest(minus(down, times(self.tube, n)), self.R * rho + self.tube)
+
+    def nearest_to_ball(self, scene: LoadContext, out: Vector, side: int) -> Vector:
+        """From the wheel's centre to the place of its centre line nearest to a ball's centre; from inside the farthest.
+
+        -+ R h / |h|,  h = d - (d . a) a,  d from the ball's centre to the wheel's.
+
+        Raises:
+            ModelError: its axis points to the ball's centre at the start, where the whole rim touches.
+        """
+        h, size = self._across(scene, out), self.distance(scene, out)
+        if abs(_worth(scene, size)) < DEGENERATE * abs(_worth(scene, self.R)):
+            raise ModelError(
+                f"the axis of '{self.body}' points to the ball's centre: its whole rim touches",
+                scene.where,
+                "start it leaning",
+            )
+        return times(over(-side * self.R, size), h)
+
+    def distance(self, scene: LoadContext, out: Vector) -> AnyScalar:
+        """|h|, of a ball's centre from the wheel's axis [m]; 0 where the whole rim touches."""
+        h = self._across(scene, out)
+        return sqrt(_short(dot(h, h)))
+
+    def _across(self, scene: LoadContext, out: Vector) -> Vector:
+        a = self._axle(scene)
+        return minus(out, times(dot(out, a), a))
+
+    def tilt(self, scene: LoadContext, n: Vector) -> AnyScalar:
+        """rho = |n x a|, the sine of the angle between its axis and n; 0 where it lies flat."""
+        a = self._axle(scene)
+        k = cross(n, a)
+        wave = _other_wave(scene, _short(dot(n, a)))
+        return sqrt(dot(k, k)) if wave is None else wave
+
+    def _axle(self, scene: LoadContext) -> Vector:
+        return apply(scene.orientation(self.body), unit(self.axis))
+
+
+@dataclass(frozen=True)
+class Egg:
+    """An ellipsoid with its semiaxes along the body's axes."""
+
+    body: str
+    semiaxes: Vector
+
+    def nearest(self, scene: LoadContext, n: Vector) -> Nearest:
+        """The place of the surface at which n is its inner normal."""
+        R = scene.orientation(self.body)
+        n_B = apply(transposed(R), n)
+        x, y, z = (s * s * k for s, k in zip(self.semiaxes, n_B, strict=True))
+        h = sqrt(dot(n_B, (x, y, z)))
+        return Nearest(apply(R, times(over(-1, h), (x, y, z))), h)
+
+
+Round = RollingBall | Wheel | Egg
+
+
+def laid_in(scene: LoadContext, n: Vector) -> tuple[Vector, Vector]:
+    """Two directions in the plane across the unit vector n: x laid into the plane (y where n is along x), and n x it.
+
+    So (t, s) is (x, y) on a level floor, and t points down a slope about y.
+    """
+    x, y, z = n
+    if _plain(y) and _plain(z):
+        t: Vector = (0, 1, 0)
+    elif _plain(y):
+        t = times(_sense(scene, z), (z, 0, -x))
+    elif _plain(z):
+        t = times(_sense(scene, y), (y, -x, 0))
+    else:
+        root = complement(scene, x)
+        t = (root, -over(x * y, root), -over(x * z, root)) if not _plain(x) else (1, 0, 0)
+    return t, cross(n, t)
+
+
+def turned_over(scene: LoadContext, n: Vector) -> tuple[Vector, Vector]:
+    """Two directions across a unit vector n that moves: those that come along when e turns into n the shortest way.
+
+    t_i = e_i - (n . e_i) (n + e) / (1 + n . e), e the axis of the ground nearest to n at the start. Opposite to e,
+    and only there, they are not determined.
+    """
+    k, sense = _nearest_axis(scene, n)
+    axes: tuple[Vector, ...] = ((1, 0, 0), (0, 1, 0), (0, 0, 1))
+    e = times(sense, axes[k])
+    first = axes[(k + 1) % 3]
+    middle = plus(n, e)
+    share = over(1, 1 + dot(n, e))
+    t, s = (minus(d, times(dot(n, d) * share, middle)) for d in (first, cross(e, first)))
+    return t, s
+
+
+def _nearest_axis(scene: LoadContext, n: Vector) -> tuple[int, int]:
+    """(which axis, +1 or -1); z where nobody knows."""
+    sizes = [_worth(scene, x, unknown=0.0) for x in n]
+    k = max((2, 1, 0), key=lambda i: abs(sizes[i]))
+    return k, -1 if sizes[k] < 0 else 1
+
+
+def complement(scene: LoadContext, x: AnyScalar) -> AnyScalar:
+    """sqrt(1 - x^2)."""
+    x = _short(x)
+    wave = _other_wave(scene, x)
+    return sqrt(1 - x * x) if wave is None else wave
+
+
+def _short(x: AnyScalar) -> AnyScalar:
+    """x multiplied out, where it is no long sum: a cosine that is written by those of two angles."""
+    return readable(x, Work.PART) if type(x) is Node and text_size(x) <= LONGEST else x
+
+
+def _other_wave(scene: LoadContext, x: AnyScalar) -> AnyScalar | None:
+    """sqrt(1 - x^2) of a sine or a cosine: the cosine or sine, in the sense that it has at the start; else None."""
+    if type(x) is Node and x.op == "neg":
+        return _other_wave(scene, x.args[0])
+    if type(x) is not Node or x.op not in ("sin", "cos"):
+        return None
+    found: AnyScalar = cos(x.args[0]) if x.op == "sin" else sin(x.args[0])
+    return -found if _sense(scene, found) < 0 else found
+
+
+def _sense(scene: LoadContext, x: AnyScalar) -> int:
+    return -1 if _worth(scene, x) < 0 else 1
+
+
+def _worth(scene: LoadContext, x: AnyScalar, unknown: float = 1.0) -> float:
+    """What x is at the start with the model's values."""
+    found = scene.worth(x)
+    return unknown if found is None else found
+
+
+def _plain(x: AnyScalar) -> bool:
+    return type(x) is int and x == 0
+
+
+# -------- tracks ----------------------------------------------------------------------------------------------
+# What a round body rolls on: a plane (in the plane a line), a ball or pipe (in the plane a circle).
+
+
+@dataclass(frozen=True, kw_only=True)
+class Track(Part):
+    """A line or a plane: through `at`, `normal` towards the rolling body; in the axes of `on`."""
+
+    title: ClassVar[str] = "a line or plane"
+    at: GroundPlace
+    normal: Direction
+
+
+@dataclass(frozen=True, kw_only=True)
+class Circle(Part):
+    """A circle about `at`, in space a ball or with `axis` a pipe, in the axes of `on`; rolled on outside or inside."""
+
+    title: ClassVar[str] = "a circle"
+    at: GroundPlace
+    radius: Length
+    inside: Flag = False
+    axis: SpaceDirection | None = None
+
+
+@dataclass(frozen=True)
+class TrackContact:
+    """A round body against its track.
+
+    Args:
+        n: from the track towards the body, of unit length where they touch.
+        gap: between them [m].
+        reach: from the body's centre to the contact, ground axes [m].
+        anchor: a place of the track that does not move in its body.
+        arm: from the anchor to the contact, ground axes [m].
+        tangents: one direction along the contact, in space two.
+    """
+
+    n: Vector
+    gap: AnyScalar
+    reach: Vector
+    anchor: BodyPoint
+    arm: Vector
+    tangents: tuple[Vector, ...]
+
+
+@dataclass(frozen=True)
+class Curved:
+    """A ball, a pipe about `axis` (ground axes), or in the plane a circle, about `anchor`.
+
+    Args:
+        r: its radius [m].
+        side: 1: it is rolled on outside, -1: inside.
+    """
+
+    anchor: BodyPoint
+    r: AnyScalar
+    side: int = 1
+    axis: Vector | None = None
+
+
+def on_level(scene: LoadContext, on: str | None, track: Track, center: Vector, body: Round) -> TrackContact:
+    """gap = n . (c - at) - height, n and `at` fixed in the track's body."""
+    own = direction_of(scene, scene.vector(track.normal))
+    tangents = (right(own),) if scene.plane else laid_in(scene, own)
+    n, *along = (_carried(scene, on, e) for e in (own, *tangents))
+    anchor = anchor_of(scene, on, track.at)
+    out, near = minus(center, scene.position(anchor)), body.nearest(scene, n)
+    return TrackContact(n, dot(n, out) - near.height, near.reach, anchor, plus(out, near.reach), tuple(along))
+
+
+def normal_of(scene: LoadContext, on: str | None, track: Track) -> Vector:
+    """Its unit normal in ground axes."""
+    return _carried(scene, on, direction_of(scene, scene.vector(track.normal)))
+
+
+def _carried(scene: LoadContext, on: str | None, e: Vector) -> Vector:
+    """A direction of the ground, or of the body `on`, in ground axes."""
+    return e if on is None else apply(scene.orientation(on), e)
+
+
+def on_curved(scene: LoadContext, track: Curved, center: Vector, ball: RollingBall) -> TrackContact:
+    """gap = (d . d - D^2) / 2D, n = d / D, d from the circle's centre (the pipe's axis) to the ball's.
+
+    d and D = r + R where they touch; inside, D = r - R and both signs turn. No root stands in it: to first order the
+    gap is the distance.
+    """
+    D = _apart(scene, track, ball.R)
+    out = minus(center, scene.position(track.anchor))
+    along = ZERO if track.axis is None else times(dot(track.axis, out), track.axis)
+    d = out if track.axis is None else minus(out, along)
+    n = vector_of(track.side * over(x, D) for x in d)
+    arm = plus(along, times(track.side * track.r, n))
+    return TrackContact(n, _gap(track, d, D), times(-ball.R, n), track.anchor, arm, _around(scene, track, n))
+
+
+def wheel_on_ball(scene: LoadContext, track: Curved, center: Vector, wheel: Wheel) -> TrackContact:
+    """A wheel on a ball, or in it: a ball of the tyre's radius at the place of its centre line that comes nearest."""
+    D, out = _apart(scene, track, wheel.tube), minus(center, scene.position(track.anchor))
+    rim = wheel.nearest_to_ball(scene, out, track.side)
+    d = plus(out, rim)
+    n = vector_of(track.side * over(x, D) for x in d)
+    reach = minus(rim, times(wheel.tube, n))
+    return TrackContact(n, _gap(track, d, D), reach, track.anchor, plus(out, reach), _around(scene, track, n))
+
+
+def _gap(track: Curved, d: Vector, D: AnyScalar) -> AnyScalar:
+    return Fraction(1, 2) * track.side * (over(dot(d, d), D) - D)
+
+
+def _apart(scene: LoadContext, track: Curved, R: AnyScalar) -> AnyScalar:
+    """How far the centre of a ball is from that of its track where they touch [m]."""
+    inside = track.side < 0
+    D = track.r - R if inside else track.r + R
+    if inside and (scene.vanishes(D) or (scene.worth(D) or 1) < 0):
+        raise ModelError(
+            "the body is as large as the circle in which it should roll", scene.where, "give the circle a larger radius"
+        )
+    return D
+
+
+def _around(scene: LoadContext, track: Curved, n: Vector) -> tuple[Vector, ...]:
+    """Directions across n: of a pipe its axis k and n x k."""
+    if scene.plane:
+        return (right(n),)
+    return turned_over(scene, n) if track.axis is None else (track.axis, cross(n, track.axis))
+
+
+def curved(scene: LoadContext, on: str | None, circle: Circle) -> Curved:
+    """The circle of a model as it stands."""
+    axis = None if circle.axis is None else _carried(scene, on, unit(scene.vector(circle.axis)))
+    return Curved(anchor_of(scene, on, circle.at), scene.value(circle.radius), -1 if circle.inside else 1, axis)
+
+
+def anchor_of(scene: LoadContext, on: str | None, at: tuple[Expression, ...] | str) -> BodyPoint:
+    """A place of the track: of the ground, or in the axes of the body `on`."""
+    return (None, scene.ground_place(at)) if on is None else (on, scene.vector(at))
+
+
+# -------- rolling ---------------------------------------------------------------------------------------------
+
 
 TrackField = Annotated[Track, PartRule(Track)]
 CircleField = Annotated[Circle, PartRule(Circle)]

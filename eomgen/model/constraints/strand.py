@@ -11,7 +11,7 @@ from eomgen.model.constraints.row import TieRow, normals_of
 from eomgen.model.forces.load import BodyPoint, Couple, LoadContext, PointForce, Push
 from eomgen.model.joints.base import Z
 from eomgen.records import dataclass
-from eomgen.symbolic.expression.functions import over, sqrt
+from eomgen.symbolic.expression.formula import over, sqrt
 from eomgen.symbolic.expression.spatial import AnyScalar, Vector, cross, dot, minus, plus, times
 from eomgen.symbolic.numeric.tolerances import COMPUTED
 

@@ -5,12 +5,10 @@ from itertools import pairwise
 from typing import Annotated, ClassVar
 
 from eomgen.model.catalog import Catalog, findings_of_one, is_round, owner_of
-from eomgen.model.constraints.base import Constraint
-from eomgen.model.constraints.meeting import Thread
+from eomgen.model.constraints.base import Constraint, Thread
 from eomgen.model.constraints.row import Edge, TieRow, direction_of
 from eomgen.model.constraints.strand import Stop, Strand, common_tangent, rope_row, side_rows, strand_along
-from eomgen.model.containers import EitherRule, ListRule
-from eomgen.model.fields import NameRule, TextRule, VectorRule
+from eomgen.model.fields import EitherRule, ListRule, NameRule, TextRule, VectorRule
 from eomgen.model.findings import Finding
 from eomgen.model.forces.load import LoadContext
 from eomgen.model.joints.base import Z, unit
@@ -18,7 +16,7 @@ from eomgen.model.kinds import BodyName, Flag, GroundPlace, Radius, SpaceDirecti
 from eomgen.model.part import Part, PartRule
 from eomgen.model.positions import DocumentPath
 from eomgen.records import dataclass
-from eomgen.symbolic.expression.expressions import Expression
+from eomgen.symbolic.expression.formula import Expression
 from eomgen.symbolic.expression.spatial import Vector, apply
 from eomgen.symbolic.numeric.tolerances import COMPUTED
 

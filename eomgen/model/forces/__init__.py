@@ -1,18 +1,11 @@
 """Forces: the seam of what is applied. Adding one is one file and one name here."""
 
+from eomgen.model.forces.applied import CoupleForce, Generalized, PointForce
 from eomgen.model.forces.base import Force
-from eomgen.model.forces.between import Between
-from eomgen.model.forces.couple import CoupleForce
-from eomgen.model.forces.damper import Damper
-from eomgen.model.forces.distributed import Distributed
-from eomgen.model.forces.force import PointForce
-from eomgen.model.forces.generalized import Generalized
-from eomgen.model.forces.gravity import Gravity
-from eomgen.model.forces.kinetic import Kinetic
-from eomgen.model.forces.potential import Potential
-from eomgen.model.forces.spring import Spring
-from eomgen.model.forces.torsion_damper import TorsionDamper
-from eomgen.model.forces.torsion_spring import TorsionSpring
+from eomgen.model.forces.elements import Between, Damper, Spring
+from eomgen.model.forces.energies import Kinetic, Potential
+from eomgen.model.forces.torsion import TorsionDamper, TorsionSpring
+from eomgen.model.forces.weights import Distributed, Gravity
 
 ALL = (
     Gravity,

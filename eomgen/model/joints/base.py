@@ -1,4 +1,6 @@
-"""What every joint gives: its variables s, the pose X(s), the subspace S and its complement W, over any scalar.
+"""What every joint is: its moves, its pose X(s), its subspace S and the complement.
+
+What every joint gives: its variables s, the pose X(s), the subspace S and its complement W, over any scalar.
 
 The joint sits at a point of the parent (`on`, `at`), in axes that may be turned by a fixed rotation (`turned`), and at
 a point of the child (`point`). Everything here is from the (turned) parent's joint frame to the child's joint frame.
@@ -10,18 +12,87 @@ from typing import Annotated, Any, ClassVar
 
 from eomgen.errors import NotYet
 from eomgen.model.catalog import Catalog
-from eomgen.model.containers import ListRule
+from eomgen.model.fields import ListRule
 from eomgen.model.findings import Finding
-from eomgen.model.joints.moves import Move, PushAlong
-from eomgen.model.kinds import ConstantAngle, MovingGroundPlace, OwnPointName, SeatName, SpaceDirection, ValueOf
+from eomgen.model.kinds import (
+    ConstantAngle,
+    MovingGroundPlace,
+    OwnPointName,
+    ReactionSymbolsField,
+    SeatName,
+    SpaceDirection,
+    ValueOf,
+)
 from eomgen.model.part import Part, PartRule
 from eomgen.model.positions import DocumentPath
 from eomgen.model.shapes.forms import Form
-from eomgen.model.symbols import ReactionSymbolsField
 from eomgen.records import dataclass
-from eomgen.symbolic.expression.expressions import Expression
-from eomgen.symbolic.expression.functions import cos, over, sin, sqrt
+from eomgen.symbolic.expression.formula import Expression, cos, over, sin, sqrt
 from eomgen.symbolic.expression.spatial import IDENTITY, Matrix, Pose, Vector, cross, dot, product, rotation, vector_of
+
+# -------- moves -----------------------------------------------------------------------------------------------
+# What a joint does, as it is declared: moves one after another, each in the axes that those before left.
+#
+# Fields and names alone, no formulas. Proofs look at them.
+
+
+@dataclass(frozen=True)
+class SlideAlong:
+    """A way [m] along an axis that need not have unit length."""
+
+    axis: Any
+    way: Any
+
+
+@dataclass(frozen=True)
+class TurnAbout:
+    """A turn by an angle [rad] about an axis that need not have unit length; None: z."""
+
+    axis: Any
+    angle: Any
+
+
+@dataclass(frozen=True)
+class QuaternionTurn:
+    """A turn by a quaternion of norm 1, scalar first."""
+
+    quaternion: Any
+
+
+@dataclass(frozen=True)
+class WayAlongPieces:
+    """A way along lines and arcs, end to end, the first and the last of which go on; the axes do not turn.
+
+    Args:
+        way: from the beginning of the first piece [m].
+        heading: of the first piece, from x [rad].
+    """
+
+    way: Any
+    heading: Any
+    pieces: Any
+
+
+Move = SlideAlong | TurnAbout | QuaternionTurn | WayAlongPieces
+
+
+@dataclass(frozen=True)
+class PushAlong:
+    """What acts along a way or an angle that a joint makes, on the child and opposite on the parent; None: nothing.
+
+    push - stiffness (way - rest) - damping way', and armature way'^2 / 2 of kinetic energy.
+    """
+
+    way: Any
+    push: Any = None
+    stiffness: Any = None
+    damping: Any = None
+    rest: Any = None
+    armature: Any = None
+
+
+# -------- base ------------------------------------------------------------------------------------------------
+
 
 Scalars = tuple[Any, ...]
 Column = tuple[Any, Any, Any, Any, Any, Any]

@@ -1,4 +1,7 @@
-"""Free: nothing holds the child."""
+"""Joints that hold nothing, everything, or a body in a plane.
+
+Free: nothing holds the child.
+"""
 
 from collections.abc import Iterator
 from typing import Annotated, Any, ClassVar
@@ -6,9 +9,7 @@ from typing import Annotated, Any, ClassVar
 from eomgen.model.catalog import Catalog
 from eomgen.model.fields import CONFIGURATION, FormulaRule, VectorRule
 from eomgen.model.findings import Finding
-from eomgen.model.joints.base import Column, Effort, Joint, Scalars, X, Y, Z, linear
-from eomgen.model.joints.moves import Move, SlideAlong, TurnAbout
-from eomgen.model.joints.orientation import (
+from eomgen.model.joints.ball import (
     Angles,
     Omega,
     QuaternionNames,
@@ -19,12 +20,28 @@ from eomgen.model.joints.orientation import (
     turning_findings,
     turning_moves,
 )
-from eomgen.model.joints.planar import PLANE_COMPLEMENT, in_plane, plane_subspace
-from eomgen.model.kinds import Angle, Displacement, ValueOf
+from eomgen.model.joints.base import (
+    Column,
+    Effort,
+    Joint,
+    Move,
+    Scalars,
+    SlideAlong,
+    TurnAbout,
+    X,
+    Y,
+    Z,
+    angular,
+    linear,
+    unit,
+    vector,
+)
+from eomgen.model.kinds import Angle, ConstantAngle, Displacement, SpaceDirection, ValueOf
 from eomgen.model.positions import DocumentPath
 from eomgen.records import dataclass
-from eomgen.symbolic.expression.expressions import Expression, as_expression
-from eomgen.symbolic.expression.spatial import IDENTITY, Matrix, Pose, apply, transposed, vector_of
+from eomgen.symbolic.expression.formula import Expression, cos, sin
+from eomgen.symbolic.expression.spatial import IDENTITY, Matrix, Pose, apply, rotation, transposed, vector_of
+from eomgen.symbolic.expression.text import as_expression
 
 Position = Annotated[tuple[Expression, ...], VectorRule(FormulaRule("m", "", CONFIGURATION), length=3)]
 
@@ -116,3 +133,103 @@ def _is_point(path: DocumentPath, catalog: Catalog) -> bool:
     if body is None or body.inertia is not None or body.parts:
         return False
     return body.shape is None or body.shape.kind == "particle"
+
+
+# -------- fixed -----------------------------------------------------------------------------------------------
+# Fixed: the child does not move against its parent.
+
+
+@dataclass(frozen=True, kw_only=True)
+class Fixed(Joint):
+    """Welded on: f = 0, W = 1.
+
+    Args:
+        angle: at which it is welded, constant [rad].
+        axis: about which; None: z.
+    """
+
+    kind: ClassVar[str] = "fixed"
+    angle: ConstantAngle | None = None
+    axis: SpaceDirection | None = None
+
+    def turns(self) -> tuple[Expression, ...]:
+        return ()
+
+    def moves(self) -> tuple[Move, ...]:
+        return (TurnAbout(self.axis, self.angle),)
+
+    def variables(self, space: str) -> tuple[Expression, ...]:
+        return ()
+
+    def turn(self, s: Scalars, value: ValueOf) -> Any:
+        return 0 if self.angle is None else value(self.angle)
+
+    def pose(self, s: Scalars, value: ValueOf) -> Pose:
+        angle = self.turn(s, value)
+        return Pose(rotation(unit(vector(self.axis, value, Z)), cos(angle), sin(angle)))
+
+    def subspace(self, s: Scalars, value: ValueOf) -> tuple[Column, ...]:
+        return ()
+
+    def complement(self, s: Scalars, value: ValueOf) -> tuple[Column, ...]:
+        return (*map(angular, (X, Y, Z)), *map(linear, (X, Y, Z)))
+
+
+# -------- planar ----------------------------------------------------------------------------------------------
+# Planar: the child moves in a plane of its parent.
+
+
+@dataclass(frozen=True, kw_only=True)
+class Planar(Joint):
+    """Motion in the x-y plane of the turned axes: s = (x, y, angle), X = ((x, y, 0), Rot(z, angle)).
+
+    S = (0, R^T e_x), (0, R^T e_y), (e_z, 0); W: the torques about x and y, and the force along z.
+
+    Args:
+        x, y: of `point` in the turned axes [m].
+        angle: of the child against the parent [rad].
+    """
+
+    kind: ClassVar[str] = "planar"
+    x: Displacement
+    y: Displacement
+    angle: Angle
+
+    def turns(self) -> tuple[Expression, ...]:
+        return (self.angle,)
+
+    def moves(self) -> tuple[Move, ...]:
+        return (SlideAlong(X, self.x), SlideAlong(Y, self.y), TurnAbout(None, self.angle))
+
+    def variables(self, space: str) -> tuple[Expression, ...]:
+        return (self.x, self.y, self.angle)
+
+    def turn(self, s: Scalars, value: ValueOf) -> Any:
+        return s[2]
+
+    def pose(self, s: Scalars, value: ValueOf) -> Pose:
+        return in_plane(s)
+
+    def subspace(self, s: Scalars, value: ValueOf) -> tuple[Column, ...]:
+        return plane_subspace(s)
+
+    def complement(self, s: Scalars, value: ValueOf) -> tuple[Column, ...]:
+        return PLANE_COMPLEMENT
+
+    def efforts(self) -> tuple[Effort | None, ...]:
+        return (None, None, None)
+
+
+PLANE_COMPLEMENT = (angular(X), angular(Y), linear(Z))
+
+
+def in_plane(s: Scalars) -> Pose:
+    """The pose at s = (x, y, angle)."""
+    x, y, angle = s
+    return Pose(rotation(Z, cos(angle), sin(angle)), (x, y, 0))
+
+
+def plane_subspace(s: Scalars) -> tuple[Column, ...]:
+    """The columns of S of (x, y, angle), in the turned axes."""
+    R_CP = transposed(in_plane(s).R)
+    return (linear(apply(R_CP, X)), linear(apply(R_CP, Y)), angular(Z))

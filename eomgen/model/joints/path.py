@@ -4,18 +4,28 @@ from collections.abc import Callable, Iterator, Sequence
 from typing import Annotated, Any, ClassVar
 
 from eomgen.model.catalog import Catalog
-from eomgen.model.containers import ListRule
+from eomgen.model.fields import ListRule
 from eomgen.model.findings import Finding
-from eomgen.model.friction import FrictionLaw
-from eomgen.model.joints.base import Column, Effort, Joint, Scalars, X, Y, Z, angular, linear
-from eomgen.model.joints.moves import Move, SlideAlong, WayAlongPieces
-from eomgen.model.kinds import ConstantAngle, Displacement, Length, MovingPlace, Text, Turn, ValueOf
+from eomgen.model.joints.base import (
+    Column,
+    Effort,
+    Joint,
+    Move,
+    Scalars,
+    SlideAlong,
+    WayAlongPieces,
+    X,
+    Y,
+    Z,
+    angular,
+    linear,
+)
+from eomgen.model.kinds import ConstantAngle, Displacement, FrictionLaw, Length, MovingPlace, Text, Turn, ValueOf
 from eomgen.model.part import Part, PartRule, part_of_values, slots_of
 from eomgen.model.positions import DocumentPath as FilePath
 from eomgen.model.shapes.forms import ArcForm, Form, LineForm
 from eomgen.records import dataclass
-from eomgen.symbolic.expression.expressions import Expression
-from eomgen.symbolic.expression.functions import cos, function, over, selected, sin
+from eomgen.symbolic.expression.formula import Expression, cos, function, over, selected, sin
 from eomgen.symbolic.expression.spatial import Pose, Vector, apply, plus
 
 

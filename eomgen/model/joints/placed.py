@@ -5,9 +5,7 @@ from typing import Any, ClassVar
 
 from eomgen.model.catalog import Catalog
 from eomgen.model.findings import Finding
-from eomgen.model.joints.base import Column, Effort, Joint, Scalars, X, Y, Z, angular, linear, unit, vector
-from eomgen.model.joints.moves import Move, SlideAlong, TurnAbout
-from eomgen.model.joints.orientation import (
+from eomgen.model.joints.ball import (
     Angles,
     Omega,
     QuaternionNames,
@@ -17,12 +15,28 @@ from eomgen.model.joints.orientation import (
     turning_findings,
     turning_moves,
 )
+from eomgen.model.joints.base import (
+    Column,
+    Effort,
+    Joint,
+    Move,
+    Scalars,
+    SlideAlong,
+    TurnAbout,
+    X,
+    Y,
+    Z,
+    angular,
+    linear,
+    unit,
+    vector,
+)
 from eomgen.model.kinds import Angle, SpaceDirection, ValueOf
 from eomgen.model.positions import DocumentPath
 from eomgen.records import dataclass
-from eomgen.symbolic.expression.expressions import Expression, as_expression
-from eomgen.symbolic.expression.functions import cos, sin
+from eomgen.symbolic.expression.formula import Expression, cos, sin
 from eomgen.symbolic.expression.spatial import Matrix, Pose, apply, rotation, transposed
+from eomgen.symbolic.expression.text import as_expression
 
 
 @dataclass(frozen=True, kw_only=True)

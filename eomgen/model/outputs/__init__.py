@@ -1,34 +1,51 @@
 """Output functions: the seam of what outputs may ask. Adding one is one file and one name here."""
 
-from eomgen.model.outputs import of_a_run, relative_motion, section_forces, small_motions
-from eomgen.model.outputs.acceleration import ACCELERATION, MAGNITUDE_OF_ACCELERATION
-from eomgen.model.outputs.along_coordinates import GENERALIZED_FORCE, MOMENTUM
-from eomgen.model.outputs.angular_momentum import ANGULAR_MOMENTUM
 from eomgen.model.outputs.base import OutputFunction
-from eomgen.model.outputs.centers import ACCELERATION_POLE, ROTATION_CENTER
-from eomgen.model.outputs.efforts import COUPLE, DRIVE, MULTIPLIER, PULL
-from eomgen.model.outputs.energies import KINETIC_ENERGY, POTENTIAL_ENERGY, POWER
-from eomgen.model.outputs.least_speed import LEAST_SPEED
-from eomgen.model.outputs.mass_of import MASS_OF
-from eomgen.model.outputs.moments_of_inertia import (
+from eomgen.model.outputs.energies import GENERALIZED_FORCE, KINETIC_ENERGY, MOMENTUM, POTENTIAL_ENERGY, POWER
+from eomgen.model.outputs.forces import (
+    CONTACT_REACTION,
+    COUPLE,
+    DRIVE,
+    MULTIPLIER,
+    ONE_REACTION_COUPLE,
+    PULL,
+    REACTION_COUPLE,
+    REACTION_FORCE,
+    SECTION_FORCES,
+    TENSION,
+)
+from eomgen.model.outputs.masses import (
+    ANGULAR_MOMENTUM,
     INERTIA_AXIS,
     INERTIA_PLANE,
     INERTIA_POINT,
     INERTIA_PRODUCT,
     INERTIA_TENSOR,
+    MASS_OF,
     PRINCIPAL_MOMENT,
 )
-from eomgen.model.outputs.path import CURVATURE_RADIUS, NORMAL_ACCELERATION, TANGENTIAL_ACCELERATION
-from eomgen.model.outputs.position import POSITION
-from eomgen.model.outputs.reactions import (
-    CONTACT_REACTION,
-    ONE_REACTION_COUPLE,
-    REACTION_COUPLE,
-    REACTION_FORCE,
+from eomgen.model.outputs.points import (
+    ACCELERATION,
+    CURVATURE_RADIUS,
+    MAGNITUDE_OF_ACCELERATION,
+    NORMAL_ACCELERATION,
+    POSITION,
+    SPEED,
+    TANGENTIAL_ACCELERATION,
+    VELOCITY,
 )
-from eomgen.model.outputs.tension import TENSION
-from eomgen.model.outputs.turning import ANGLE, ANGULAR_ACCELERATION, ANGULAR_VELOCITY, EPSILON, OMEGA
-from eomgen.model.outputs.velocity import SPEED, VELOCITY
+from eomgen.model.outputs.runs import ALONG_A_RUN, ENTRIES, FREQUENCY
+from eomgen.model.outputs.turning import (
+    ACCELERATION_POLE,
+    ANGLE,
+    ANGULAR_ACCELERATION,
+    ANGULAR_VELOCITY,
+    EPSILON,
+    LEAST_SPEED,
+    OMEGA,
+    PARTS_OF_MOTION,
+    ROTATION_CENTER,
+)
 
 ALL: tuple[OutputFunction, ...] = (
     POSITION,
@@ -39,7 +56,7 @@ ALL: tuple[OutputFunction, ...] = (
     TANGENTIAL_ACCELERATION,
     NORMAL_ACCELERATION,
     CURVATURE_RADIUS,
-    *relative_motion.PARTS_OF_MOTION,
+    *PARTS_OF_MOTION,
     LEAST_SPEED,
     ROTATION_CENTER,
     ACCELERATION_POLE,
@@ -62,7 +79,7 @@ ALL: tuple[OutputFunction, ...] = (
     DRIVE,
     PULL,
     COUPLE,
-    *section_forces.SECTION_FORCES,
+    *SECTION_FORCES,
     MASS_OF,
     INERTIA_POINT,
     INERTIA_AXIS,
@@ -71,9 +88,9 @@ ALL: tuple[OutputFunction, ...] = (
     INERTIA_TENSOR,
     PRINCIPAL_MOMENT,
     ANGULAR_MOMENTUM,
-    *small_motions.ENTRIES,
-    small_motions.FREQUENCY,
-    *of_a_run.ALONG_A_RUN,
+    *ENTRIES,
+    FREQUENCY,
+    *ALONG_A_RUN,
 )
 FUNCTIONS = {name: function for function in ALL for name in function.names}
 """The functions of the motion, by name."""

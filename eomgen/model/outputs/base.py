@@ -1,19 +1,187 @@
-"""What an output function says of itself: its names, arguments, unit, its value, and a second way to it."""
+"""What an output function says of itself, and what it may ask of a system.
+
+What an output function says of itself: its names, arguments, unit, its value, and a second way to it.
+"""
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator
-from typing import Any
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from typing import Any, Protocol
 
 from eomgen.errors import DerivationError
 from eomgen.model.catalog import Catalog
 from eomgen.model.fields import Leaf
 from eomgen.model.findings import Finding
-from eomgen.model.outputs.context import OutputContext, Trial
+from eomgen.model.shapes import MassProperties
 from eomgen.records import dataclass
-from eomgen.symbolic.expression.expressions import Call, Expression, Reference, parse
-from eomgen.symbolic.expression.spatial import AnyScalar
+from eomgen.symbolic.expression.formula import Call, Expression, Reference
+from eomgen.symbolic.expression.spatial import AnyScalar, Matrix, Numbers, Vector
+from eomgen.symbolic.expression.text import parse
 from eomgen.symbolic.expression.units import Unit, parse_unit
+
+# -------- context ---------------------------------------------------------------------------------------------
+# What an output function may ask: of a system over the graph, and of the same system in numbers by a second way.
+
+
+GROUND = "ground"
+
+
+class Reactions(Protocol):
+    """The balance of every body, solved."""
+
+    def component(self, what: str, k: int, owner: str, side: str = "", frame: str = "") -> AnyScalar: ...
+    def normal(self, owner: str) -> AnyScalar: ...
+    def friction(self, owner: str, along: str = "t") -> AnyScalar: ...
+    def member(self, truss: str, first: str, second: str) -> AnyScalar: ...
+    def tension(self, owner: str, strand: int = 1) -> AnyScalar: ...
+    def multiplier(self, owner: str) -> AnyScalar: ...
+    def labels(self, owner: str) -> list[str]: ...
+
+
+class Section(Protocol):
+    """The section forces along one body."""
+
+    def value(self, kind: str, x: AnyScalar, side: str = "") -> AnyScalar: ...
+
+
+class PartsOfMotion(Protocol):
+    """The motion of a point against a moving body, in its parts, ground axes."""
+
+    @property
+    def transport_velocity(self) -> Vector: ...
+    @property
+    def transport_acceleration(self) -> Vector: ...
+    @property
+    def coriolis(self) -> Vector: ...
+    @property
+    def euler(self) -> Vector: ...
+    @property
+    def centripetal(self) -> Vector: ...
+
+
+class OutputContext(Protocol):
+    """A system: its scalars are functions of q, u, a, t, lam and the parameters; vectors are in ground axes.
+
+    Velocities come from places by `rate`, accelerations from velocities by `acceleration`; `placed` puts in the state,
+    where one is given, `here` makes that readable too. What follows are laws that others need too, and that therefore
+    stand in mechanics.
+    """
+
+    @property
+    def is_plane(self) -> bool: ...
+    @property
+    def bodies(self) -> tuple[str, ...]: ...
+    @property
+    def names(self) -> Mapping[str, AnyScalar]: ...
+    def position(self, point: str) -> Vector: ...
+    def body_of(self, point: str) -> str: ...
+    def origin(self, body: str) -> Vector: ...
+    def axes(self, body: str) -> Matrix: ...
+    def angle(self, body: str) -> AnyScalar: ...
+    def spin(self, body: str) -> Vector: ...
+    def rate(self, place: Vector) -> Vector: ...
+    def acceleration(self, velocity: Vector) -> Vector: ...
+    def placed(self, *vectors: Vector) -> tuple[Vector, ...]: ...
+    def here(self, *vectors: Vector) -> tuple[Vector, ...]: ...
+
+    def parts_of_motion(self, point: str, body: str) -> PartsOfMotion: ...
+    def rotation_center(self, body: str, other: str) -> Vector: ...
+    def acceleration_pole(self, body: str) -> Vector: ...
+    def least_speed(self, body: str, start: Vector, end: Vector) -> AnyScalar: ...
+
+    def mass(self, body: str) -> MassProperties: ...
+    def mass_of_part(self, body: str, number: int) -> AnyScalar: ...
+    def parts(self, body: str) -> int | None: ...
+    def without_inertia(self, bodies: Sequence[str]) -> tuple[str, ...]: ...
+    def known_about_z(self, bodies: Sequence[str]) -> tuple[str, ...]: ...
+    def tensor(self, point: Vector, bodies: Sequence[str]) -> Matrix: ...
+    def principal_moments(self, tensor: Matrix) -> tuple[AnyScalar, ...]: ...
+    def angular_momentum(self, point: Vector, bodies: Sequence[str]) -> Vector: ...
+    def kinetic_energy(self, body: str | None = None) -> AnyScalar: ...
+    def potential_energy(self, name: str | None = None) -> AnyScalar: ...
+    def power(self, name: str | None = None) -> AnyScalar: ...
+    def effort(self, force: str) -> AnyScalar: ...
+    def generalized_force(self, coordinate: str) -> AnyScalar: ...
+    def momentum(self, coordinate: str) -> AnyScalar: ...
+
+    @property
+    def reactions(self) -> Reactions: ...
+    def is_truss(self, name: str) -> bool: ...
+    def multiplier(self, tie: str) -> AnyScalar: ...
+    def drive(self, coordinate: str) -> AnyScalar: ...
+    def section(self, body: str) -> Section: ...
+
+
+class Trial(Protocol):
+    """The system at a state, in numbers of 50 digits: what a second definition is written in.
+
+    It knows poses and masses; how these change it finds by central differences along the motion, and by nothing else.
+    """
+
+    @property
+    def scene(self) -> OutputContext: ...
+    @property
+    def step(self) -> Any:
+        """How long a moment is [s]."""
+
+    def along(self, scalars: Sequence[AnyScalar]) -> tuple[list[Any], list[Any], list[Any]]:
+        """What functions of q and t are worth, and their first and second rates."""
+
+    def around(self, place: Vector) -> tuple[Numbers, Numbers, Numbers]:
+        """A place a moment before, now, and a moment later."""
+
+    def particles(self, body: str, *, still: bool = False) -> list[tuple[Any, Numbers, Numbers]]:
+        """(m, r, v) of particles that have together the body's mass, mass centre and inertia, v by differences.
+
+        Args:
+            still: rotors in its joint do not count.
+        Raises:
+            NoValue: they count, and there are some.
+        """
+
+    def given_energy(self) -> Any:
+        """The kinetic energies that the model gives by expressions, the rates in them by differences."""
+
+    def worked(self, body: str | None = None) -> Any:
+        """Power of everything applied, or of what is applied to one body: forces and couples on differences of poses.
+
+        Raises:
+            NoValue: something acts at no place.
+        """
+
+    def acting(self, force: str) -> Any:
+        """k (l - l_0) + c l' + f(l, l') of what is declared between two points, the same of an angle between bodies."""
+
+    def demanded(self, coordinate: str) -> Any:
+        """What the free bodies, each by Newton and Euler, ask for along a driven coordinate when nothing drives it.
+
+        Raises:
+            NoValue: a tie drives it; there is friction.
+        """
+
+    def held(self, tie: str) -> Any:
+        """The multiplier of a tie of one row with which all ties hold the free bodies, each by Newton and Euler.
+
+        Raises:
+            NoValue: it shares its force with others; there is friction.
+        """
+
+    def faster(self, speed: str, by: float) -> Trial:
+        """The same with one speed larger.
+
+        Raises:
+            NoValue: it is no speed of the system.
+        """
+
+    def root(self, x: Any) -> Any:
+        """Of a number."""
+
+    def eigenvalues(self, rows: Sequence[Sequence[Any]]) -> list[Any]:
+        """Of a symmetric matrix, ascending."""
+
+
+# -------- base ------------------------------------------------------------------------------------------------
+
 
 AXES = {"x": 0, "y": 1, "z": 2}
 SIDES = ("before", "after")

@@ -1,4 +1,6 @@
-"""angle, omega, epsilon: how a body is turned and turns, against the ground or another body.
+"""How bodies turn, about which points, and motions of points on moving bodies.
+
+angle, omega, epsilon: how a body is turned and turns, against the ground or another body.
 
 By the second way from the rotation alone: with R from the body's axes to those of `frame`, omega~ = R' R^T and
 epsilon~ = R'' R^T + R' R'^T, R' and R'' by differences.
@@ -6,18 +8,38 @@ epsilon~ = R'' R^T + R' R'^T, R' and R'' by differences.
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from functools import partial
 from typing import Any
 
 from eomgen.errors import DerivationError
-from eomgen.model.outputs.base import OutputFunction, names_of
-from eomgen.model.outputs.context import GROUND, OutputContext, Trial
-from eomgen.model.outputs.seen import axes_at, components, length
-from eomgen.symbolic.expression.expressions import Call
-from eomgen.symbolic.expression.functions import sqrt
+from eomgen.model.outputs.base import (
+    GROUND,
+    OutputContext,
+    OutputFunction,
+    PartsOfMotion,
+    SecondOf,
+    Trial,
+    component,
+    names_of,
+)
+from eomgen.model.outputs.points import (
+    SeenVector,
+    VectorOf,
+    axes_at,
+    components,
+    differences,
+    length,
+    magnitude,
+    seen_from,
+    turned,
+)
+from eomgen.symbolic.expression.formula import Call, sqrt
 from eomgen.symbolic.expression.spatial import (
     IDENTITY,
+    ZERO,
     AnyScalar,
+    Matrix,
     Numbers,
     Vector,
     added,
@@ -25,8 +47,11 @@ from eomgen.symbolic.expression.spatial import (
     dot,
     matrix_of,
     minus,
+    plus,
     product,
+    times,
     transposed,
+    vector_of,
 )
 
 BODY = ("body", "body")
@@ -104,3 +129,226 @@ OMEGA = _one("omega", "rad/s", "angular velocity; in space its magnitude", 1)
 ANGULAR_VELOCITY = _components("omega_*", "rad/s", 1)
 EPSILON = _one("epsilon", "rad/s^2", "angular acceleration; in space its magnitude", 2)
 ANGULAR_ACCELERATION = _components("epsilon_*", "rad/s^2", 2)
+
+
+# -------- centers ---------------------------------------------------------------------------------------------
+# rotation_center, acceleration_pole: the points of a body that have no velocity, or no acceleration, in the plane.
+#
+# By the second way from three points A, B, C of the body, not on a line: their velocities, or accelerations, are
+# linear in the place, and c = A + x (B - A) + y (C - A) is where they vanish.
+
+
+CORNERS: tuple[Vector, ...] = (ZERO, (1, 0, 0), (0, 1, 0))  # of a triangle in the body [m]
+
+
+def _in_plane(scene: OutputContext, what: str, body: str) -> None:
+    if not scene.is_plane:
+        raise DerivationError(
+            f"{what}({body}): it is asked of plane motion", mend="ask for omega and v of a point in space"
+        )
+
+
+def _center(scene: OutputContext, body: str, other: str = GROUND) -> Vector:
+    _in_plane(scene, "rotation_center", body)
+    return scene.rotation_center(body, other)
+
+
+def _pole(scene: OutputContext, body: str) -> Vector:
+    _in_plane(scene, "acceleration_pole", body)
+    return scene.acceleration_pole(body)
+
+
+def _still_point(trial: Trial, order: int, body: str, other: str = GROUND) -> Numbers:
+    """Where the rate of a place in the other body's frame vanishes, ground axes."""
+    scene = trial.scene
+    places: list[Any] = []
+    rates: list[Any] = []
+    for corner in CORNERS:
+        place = plus(scene.origin(body), apply(scene.axes(body), corner))
+        seen = apply(transposed(scene.axes(other)), minus(place, scene.origin(other)))
+        places.append(vector_of(trial.along(place)[0]))
+        rates.append(apply(axes_at(trial, other), vector_of(trial.along(seen)[order])))
+    a: Any
+    b: Any
+    c: Any
+    a, b, c = rates[0], minus(rates[1], rates[0]), minus(rates[2], rates[0])
+    area = b[0] * c[1] - b[1] * c[0]
+    x, y = (a[1] * c[0] - a[0] * c[1]) / area, (a[0] * b[1] - a[1] * b[0]) / area
+    first, second = (minus(corner, places[0]) for corner in places[1:])
+    return plus(places[0], plus(times(x, first), times(y, second)))
+
+
+def _center_by_poses(order: int) -> SecondOf:
+    return lambda trial, call: _still_point(trial, order, *names_of(call))[component(call)]
+
+
+ROTATION_CENTER = OutputFunction(
+    names=("rotation_center_x", "rotation_center_y"),
+    kinds=("body", "body"),
+    least=1,
+    unit="m",
+    gives="in the plane, the point about which a body turns, against the ground or another body",
+    value=lambda scene, call: _center(scene, *names_of(call))[component(call)],
+    second=_center_by_poses(1),
+    moves=True,
+)
+ACCELERATION_POLE = OutputFunction(
+    names=("acceleration_pole_x", "acceleration_pole_y"),
+    kinds=("body",),
+    least=1,
+    unit="m",
+    gives="the point of the body that has no acceleration, in the plane",
+    value=lambda scene, call: _pole(scene, *names_of(call))[component(call)],
+    second=_center_by_poses(2),
+    moves=True,
+)
+
+
+# -------- least speed -----------------------------------------------------------------------------------------
+# least_speed: of the points between two points of one body.
+#
+# By the second way the velocities of both ends are differences of their places; between them v = v_A + s (v_B - v_A)
+# is shortest at s = -v_A.(v_B - v_A)/|v_B - v_A|^2, or at an end.
+
+
+def _least_speed(scene: OutputContext, start: str, end: str) -> AnyScalar:
+    body, other = scene.body_of(start), scene.body_of(end)
+    if body != other:
+        what = f"least_speed({start}, {end}): '{start}' and '{end}' are points of two bodies"
+        raise DerivationError(what, mend="name two points of one body")
+    return scene.least_speed(body, *scene.here(scene.position(start), scene.position(end)))
+
+
+def _least_by_places(trial: Trial, start: str, end: str) -> Any:
+    first = differences(trial, start, order=1)
+    change = minus(differences(trial, end, order=1), first)
+    square: Any = dot(change, change)
+    s: Any = min(1, max(0, -dot(first, change) / square)) if square else 0
+    return length(trial, plus(first, times(s, change)))
+
+
+LEAST_SPEED = OutputFunction(
+    names=("least_speed",),
+    kinds=("point", "point"),
+    least=2,
+    unit="m/s",
+    gives="of the points between two points of one body",
+    value=lambda scene, call: _least_speed(scene, *names_of(call)),
+    second=lambda trial, call: _least_by_places(trial, *names_of(call)),
+    moves=True,
+)
+
+
+# -------- relative motion -------------------------------------------------------------------------------------
+# The motion of a point on a moving body in its parts: transport, Coriolis, and what the transport consists of.
+#
+#     v_t = v_O + omega x r,   a_t = a_O + epsilon x r + omega x (omega x r),   a_C = 2 omega x v_r
+#
+# By the second way nothing turns but R: a point that stays in the body at r' = R^T r goes from p + R r' to p(t + h) +
+# R(t + h) r', hence v_t and a_t; W = R' R^T gives W W r and (R'' R^T - W W) r; what is left of a is 2 W v_r.
+
+
+PartOf = Callable[[PartsOfMotion], Vector]
+SeenPart = Callable[[Trial, str, str], Numbers]
+
+
+def _carried(order: int) -> SeenPart:
+    """Velocity (order 1) or acceleration (2) of the point of the body that the point passes."""
+
+    def found(trial: Trial, point: str, body: str) -> Numbers:
+        held = vector_of(trial.along(seen_from(trial.scene, point, body))[0])
+        origin = trial.along(trial.scene.origin(body))[order]
+        return plus(vector_of(origin), apply(axes_at(trial, body, order), held))
+
+    return found
+
+
+def _turning(trial: Trial, point: str, body: str) -> tuple[Numbers, Matrix]:
+    """(r from the body's origin, W = R' R^T)."""
+    R = axes_at(trial, body)
+    held = vector_of(trial.along(seen_from(trial.scene, point, body))[0])
+    return apply(R, held), product(axes_at(trial, body, 1), transposed(R))
+
+
+def _centripetal(trial: Trial, point: str, body: str) -> Numbers:
+    r, W = _turning(trial, point, body)
+    return apply(W, apply(W, r))
+
+
+def _euler(trial: Trial, point: str, body: str) -> Numbers:
+    r, _ = _turning(trial, point, body)
+    whole = product(axes_at(trial, body, 2), transposed(axes_at(trial, body)))
+    return minus(apply(whole, r), _centripetal(trial, point, body))
+
+
+def _coriolis(trial: Trial, point: str, body: str) -> Numbers:
+    """a - a_t - a_r"""
+    relative = apply(axes_at(trial, body), differences(trial, point, body, order=2))
+    return minus(minus(differences(trial, point, order=2), _carried(2)(trial, point, body)), relative)
+
+
+def _of(part: PartOf) -> VectorOf:
+    """The part, ground axes or those of a body."""
+
+    def law(scene: OutputContext, point: str, body: str, axes: str = "") -> Vector:
+        return turned(scene, part(scene.parts_of_motion(point, body)), GROUND, axes)
+
+    return law
+
+
+def _seen(part: SeenPart) -> SeenVector:
+    def second(trial: Trial, point: str, body: str, axes: str = "") -> Numbers:
+        found = part(trial, point, body)
+        return apply(transposed(axes_at(trial, axes)), found) if axes else found
+
+    return second
+
+
+def _both(
+    star: str, size: str, unit: str, gives: str, part: PartOf, seen: SeenPart
+) -> tuple[OutputFunction, OutputFunction]:
+    """The components of a part of the motion, and its magnitude."""
+    law, second = _of(part), _seen(seen)
+    return (
+        components(star, unit, gives, law, second, least=2),
+        magnitude(size, unit, "its magnitude", law, second, least=2),
+    )
+
+
+PARTS_OF_MOTION = (
+    *_both(
+        "transport_v*",
+        "transport_speed",
+        "m/s",
+        "[motion on a moving body](#motion-on-a-moving-body): velocity of the point of the body that is passed; in the "
+        "axes of the second",
+        lambda parts: parts.transport_velocity,
+        _carried(1),
+    ),
+    *_both(
+        "transport_a*",
+        "transport_acceleration",
+        "m/s^2",
+        "its acceleration",
+        lambda parts: parts.transport_acceleration,
+        _carried(2),
+    ),
+    *_both("coriolis_a*", "coriolis_acceleration", "m/s^2", "2 omega x v_r", lambda parts: parts.coriolis, _coriolis),
+    *_both(
+        "euler_a*",
+        "euler_acceleration",
+        "m/s^2",
+        "epsilon x r, a part of the transport acceleration",
+        lambda parts: parts.euler,
+        _euler,
+    ),
+    *_both(
+        "centripetal_a*",
+        "centripetal_acceleration",
+        "m/s^2",
+        "omega x (omega x r), the other part that is due to the turning",
+        lambda parts: parts.centripetal,
+        _centripetal,
+    ),
+)
+"""What a point would have if it stayed in the body, and what is added by its moving there."""

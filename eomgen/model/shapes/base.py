@@ -9,8 +9,8 @@ from eomgen.model.kinds import Mass, ValueOf
 from eomgen.model.part import Part
 from eomgen.model.shapes.forms import Form
 from eomgen.records import dataclass
-from eomgen.symbolic.expression.expressions import parse
 from eomgen.symbolic.expression.spatial import ZERO, Matrix, Vector, matrix_of
+from eomgen.symbolic.expression.text import parse
 from eomgen.symbolic.numeric.tolerances import SOLVED
 
 Cell = Callable[[Sequence[Any]], Vector]

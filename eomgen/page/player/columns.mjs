@@ -1,4 +1,4 @@
-// Columns of numbers as eomgen/page/columns.py packs them.
+// Columns of numbers as eomgen/page/packing.py packs them.
 
 const HOLES = { nan: NaN, inf: Infinity, "-inf": -Infinity };
 

@@ -14,25 +14,20 @@ from __future__ import annotations
 from collections.abc import Collection
 from typing import Any
 
-from eomgen.symbolic.exact.by_parameters import by_parameters
-from eomgen.symbolic.exact.collected_sums import LARGEST_RATIO, MOST_NESTED, CollectedSums
 from eomgen.symbolic.exact.expansion import Expansion, expanded
 from eomgen.symbolic.exact.normal_form import in_whole_numbers, quotients
-from eomgen.symbolic.exact.quotient import in_half_angles, reduced
-from eomgen.symbolic.exact.sum_parts import SumParts
+from eomgen.symbolic.exact.quotient import by_parameters, in_half_angles, reduced
+from eomgen.symbolic.exact.sums import LARGEST_RATIO, MOST_NESTED, CollectedSums, SumParts
 from eomgen.symbolic.exact.terms import Terms, TooLarge, common_number
 from eomgen.symbolic.exact.writing import Writer
 from eomgen.symbolic.expression.derivative import substituted, symbols_of
-from eomgen.symbolic.expression.exact_numbers import tidy
-from eomgen.symbolic.expression.graph import Node, Number, Scalar
-from eomgen.symbolic.expression.node import holds_op
+from eomgen.symbolic.expression.node import Node, Scalar, holds_op
+from eomgen.symbolic.expression.numbers import Number, tidy
 from eomgen.symbolic.expression.rational import Fraction
 from eomgen.symbolic.expression.traversal import order
 from eomgen.symbolic.numeric.work import Work
-from eomgen.symbolic.print.decimals import decimal_of
-from eomgen.symbolic.print.layout import rebuilt_as_written
+from eomgen.symbolic.print.layout import decimal_of, has_nested_quotient, rebuilt_as_written
 from eomgen.symbolic.print.length import length_of
-from eomgen.symbolic.print.printed import has_nested_quotient
 from eomgen.symbolic.print.text import text_size, to_text
 
 LONGEST = 3000  # characters of a quotient that is written anew

@@ -15,7 +15,8 @@ from typing import Any
 
 from eomgen.errors import DerivationError
 from eomgen.records import dataclass
-from eomgen.symbolic.expression.graph import Node, Number, Scalar, linear_terms
+from eomgen.symbolic.expression.node import Node, Scalar, linear_terms
+from eomgen.symbolic.expression.numbers import Number
 from eomgen.symbolic.expression.rational import Fraction
 from eomgen.symbolic.expression.traversal import order, united
 from eomgen.symbolic.numeric.evaluation import (

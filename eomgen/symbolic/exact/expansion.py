@@ -9,15 +9,17 @@ from __future__ import annotations
 from collections.abc import Collection, Iterable
 
 from eomgen.errors import DerivationError
-from eomgen.symbolic.exact.atoms import RADIAN, Atoms, Opaque
-from eomgen.symbolic.exact.factoring import square_root
+from eomgen.symbolic.exact.polynomials import square_root
 from eomgen.symbolic.exact.spheres import reduced_on
 from eomgen.symbolic.exact.terms import (
     HALF,
     ONE,
+    RADIAN,
     AngleSum,
+    Atoms,
     Key,
     Monomial,
+    Opaque,
     Terms,
     TooLarge,
     accumulate,
@@ -30,9 +32,8 @@ from eomgen.symbolic.exact.terms import (
     terms_times,
     wave,
 )
-from eomgen.symbolic.expression.exact_numbers import tidy
-from eomgen.symbolic.expression.graph import Node, Number, Scalar
-from eomgen.symbolic.expression.node import Owner
+from eomgen.symbolic.expression.node import Node, Owner, Scalar
+from eomgen.symbolic.expression.numbers import Number, tidy
 from eomgen.symbolic.expression.rational import Fraction
 from eomgen.symbolic.expression.traversal import order, united
 from eomgen.symbolic.numeric.evaluation import NoValue, evaluate, fifty_digits

@@ -15,19 +15,16 @@ from eomgen.errors import DerivationError
 from eomgen.records import dataclass
 from eomgen.symbolic.exact.equality import equal_at_random_states
 from eomgen.symbolic.exact.expansion import Expansion, expanded
-from eomgen.symbolic.exact.quotient import reduced
-from eomgen.symbolic.exact.radicals import one_root
+from eomgen.symbolic.exact.quotient import one_root, reduced
 from eomgen.symbolic.exact.terms import ONE, Key, Terms, TooLarge, common_monomial, terms_scaled
 from eomgen.symbolic.exact.writing import Writer, is_rate
 from eomgen.symbolic.expression.derivative import depends_on, substituted, tangent
-from eomgen.symbolic.expression.exact_numbers import tidy
-from eomgen.symbolic.expression.graph import Node, Number, Scalar
-from eomgen.symbolic.expression.node import Owner
+from eomgen.symbolic.expression.node import Node, Owner, Scalar
+from eomgen.symbolic.expression.numbers import Number, tidy
 from eomgen.symbolic.expression.spatial import Vector, vector_of
 from eomgen.symbolic.expression.traversal import order, united
 from eomgen.symbolic.numeric.work import Work
-from eomgen.symbolic.print.layout import rebuilt_as_written
-from eomgen.symbolic.print.printed import has_nested_quotient
+from eomgen.symbolic.print.layout import has_nested_quotient, rebuilt_as_written
 from eomgen.symbolic.print.text import text_size
 
 __all__ = [

@@ -1,14 +1,32 @@
-"""A sum of terms with divisors -> numerator and denominator without a common factor."""
+"""Sums of terms with divisors and square roots, without common factors.
+
+A sum of terms with divisors -> numerator and denominator without a common factor.
+"""
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Callable, Iterable, Sequence
+from itertools import chain
 from math import gcd
 
+from eomgen.records import dataclass
 from eomgen.symbolic.exact.expansion import Expansion
 from eomgen.symbolic.exact.polynomials import Polynomials
-from eomgen.symbolic.exact.terms import HALF, Key, Terms, TooLarge, common_monomial, constant
-from eomgen.symbolic.expression.exact_numbers import tidy
+from eomgen.symbolic.exact.rational_polynomial import RationalPolynomial
+from eomgen.symbolic.exact.terms import (
+    HALF,
+    Key,
+    Monomial,
+    Terms,
+    TooLarge,
+    common_monomial,
+    constant,
+    inverse,
+    monomial_product,
+)
+from eomgen.symbolic.expression.node import Scalar
+from eomgen.symbolic.expression.numbers import Number, tidy
+from eomgen.symbolic.expression.rational import Fraction
 
 MOST_TERMS = 40  # of a sum that is looked at for powers
 LARGEST_PRODUCT = 20_000  # terms of the numerator times terms of the denominator, for a common divisor to be sought
@@ -135,3 +153,192 @@ def powers_in(expansion: Expansion, terms: Terms) -> list[tuple[Terms, int]]:
     if all(e == 1 for _, e in parts):
         return [(terms, 1)]
     return [(constant(number), 1), *((ring.terms(part), e) for part, e in parts)]
+
+
+# -------- radicals --------------------------------------------------------------------------------------------
+# A quotient times square roots -> the same with one root: what is square outside, all else under it.
+#
+#     above/below sqrt(f1) sqrt(f2) ... = above'/below' |a/b| sqrt(n/d)
+#
+# Wherever the left side has a value both sides have the same one. By factors p of n/d: p^2 leaves the root as |p|, as
+# p where its sign is known; sqrt(p)/p is 1/sqrt(p) where p > 0, and an f of which the root is taken is positive
+# itself.
+
+
+LARGEST_DEGREE = 24
+MOST_TERMS_UNDER_A_ROOT = 60  # of what is factored
+
+Quotients = Sequence[tuple[Terms, Terms]]  # (numerator, denominator)
+
+
+@dataclass(frozen=True)
+class Radical:
+    """above/below |bare_above/bare_below| sqrt(number * product of under_above / product of under_below)"""
+
+    above: Terms
+    below: Terms
+    bare_above: Terms
+    bare_below: Terms
+    number: Number
+    under_above: tuple[Terms, ...]
+    under_below: tuple[Terms, ...]
+
+
+def one_root(expansion: Expansion, above: Terms, below: Terms, roots: Sequence[Terms]) -> Radical | None:
+    """above/below times the square roots of all `roots`, as one root; None where that takes too much work.
+
+    The work is bounded by the size of what is factored, and does not count as the expansion's.
+    """
+    spent = expansion.work
+    try:
+        fractions = [fraction_of(expansion, f) for f in roots]
+        ring = Polynomials([above, below, *(part for pair in fractions for part in pair)], expansion.product)
+        return _Roots(expansion, ring, above, below, fractions).joined()
+    except TooLarge:
+        return None
+    finally:
+        expansion.work = spent
+
+
+class _Roots:
+    """The polynomials of above/below and the factors of the product under the roots."""
+
+    def __init__(
+        self, expansion: Expansion, ring: Polynomials, above: Terms, below: Terms, fractions: Quotients
+    ) -> None:
+        self.expansion, self.ring = expansion, ring
+        self.above, self.below = self._element(above), self._element(below)
+        self.number = Fraction(1)
+        self.powers: dict[RationalPolynomial, int] = {}
+        self.positive: set[RationalPolynomial] = set()
+        for pair in fractions:
+            found = [self._factors(terms) for terms in pair]
+            for (number, factors), other, sign in zip(found, reversed(pair), (1, -1), strict=True):
+                self.number *= number**sign
+                for p, e in factors:
+                    self.powers[p] = self.powers.get(p, 0) + sign * e
+                if number > 0 and expansion.all_positive(other):
+                    self.positive |= self._sure(factors)
+
+    def _element(self, terms: Terms) -> RationalPolynomial:
+        return self.ring.of_one_degree(self.ring.of(terms))
+
+    def _factors(self, terms: Terms) -> tuple[Number, list[tuple[RationalPolynomial, int]]]:
+        """The number, and the irreducible factors with their powers, positive where all their terms have one sign."""
+        element = self._element(terms)
+        if len(element.terms) > MOST_TERMS_UNDER_A_ROOT or element.degree > LARGEST_DEGREE:
+            raise TooLarge(f"a polynomial of more than {MOST_TERMS_UNDER_A_ROOT} terms or degree {LARGEST_DEGREE}")
+        (number, parts), factors = element.factors(), []
+        for p, e in parts:
+            turned = self._is_positive(-p)
+            factors.append((-p if turned else p, e))
+            number = number * (-1) ** e if turned else number
+        return number, factors
+
+    def _sure(self, factors: list[tuple[RationalPolynomial, int]]) -> set[RationalPolynomial]:
+        """The one factor with a sign of its own, positive where the product is."""
+        unsure = {p for p, e in factors if e % 2 and not self._is_positive(p)}
+        return unsure if len(unsure) == 1 else set()
+
+    def _is_positive(self, p: RationalPolynomial) -> bool:
+        return self.expansion.all_positive(self.ring.terms(p))
+
+    def joined(self) -> Radical:
+        one = RationalPolynomial.number(1, self.ring.generators)
+        bare, under = [one, one], list[list[RationalPolynomial]]([[], []])
+        for p, m in self.powers.items():
+            sure = p in self.positive or self._is_positive(p)
+            side, outside = int(m < 0), abs(m) // 2
+            if not sure:
+                bare[side] *= p**outside
+            elif side:
+                self.below *= p**outside
+            else:
+                self.above *= p**outside
+            if m % 2:
+                under[self._moved(p, side) if sure else side].append(p)
+        self.above, self.below = self.ring.without_common_divisor(self.above, self.below)
+        above, below, bare_above, bare_below = map(self.ring.terms, (self.above, self.below, *bare))
+        numerators, denominators = (tuple(map(self.ring.terms, parts)) for parts in under)
+        return Radical(above, below, bare_above, bare_below, tidy(self.number), numerators, denominators)
+
+    def _moved(self, p: RationalPolynomial, side: int) -> int:
+        """The side of the line under the root on which p > 0 stands: sqrt(p)/p = 1/sqrt(p), p/sqrt(p) = sqrt(p)."""
+        quotient = (self.above if side else self.below).over(p)
+        if quotient is None:
+            return side
+        if side:
+            self.above = quotient
+        else:
+            self.below = quotient
+        return 1 - side
+
+
+# -------- by parameters ---------------------------------------------------------------------------------------
+# Terms -> the same sum as quotients of their own, one for each parameter that it is linear in.
+#
+#     (I_s + m*r^2/4 + I_c*r^2/(4*(r + p)^2))*theta''
+#
+# An inertia that is reduced to another shaft reads so, and not over the product of all denominators.
+
+
+MOST_GROUPS = 8  # parameters that a sum is collected by
+
+
+def by_parameters(
+    expansion: Expansion,
+    terms: Terms,
+    written: Callable[[Terms], Scalar],
+    added: Callable[[Sequence[Scalar]], Scalar],
+) -> Scalar | None:
+    """What moves and is common * sum of parameter * quotient; None where fewer than two parameters part the terms.
+
+    Args:
+        terms: a sum with denominators.
+        written: a sum as one quotient without common factors.
+        added: a sum of terms in this order.
+    """
+    linear = _linear(expansion, terms)
+    moving = tuple((atom, e) for atom, e in common_monomial(terms) if not _is_still(expansion, atom))
+    inverted, factor = inverse(moving)
+    groups: dict[Monomial, Terms] = {}
+    for (monomial, wave), c in terms.items():
+        key = tuple(item for item in monomial if item[0] in linear)
+        rest, number = monomial_product(monomial, inverted)
+        groups.setdefault(key, {})[rest, wave] = c * number * factor
+    if not 1 < len(groups) <= MOST_GROUPS:
+        return None
+    graph = expansion.graph
+    total = added([written(groups[key]) for key in sorted(groups, key=expansion.atoms.place)])
+    for atom, e in moving:
+        total = graph.mul(total, graph.pow(expansion.atoms.nodes[atom], e))
+    return total
+
+
+def _linear(expansion: Expansion, terms: Terms) -> set[int]:
+    """The parameters that stand in some terms with the power 1, and nowhere else."""
+    powers: dict[int, set[int]] = {}
+    for atom, e in chain.from_iterable(monomial for monomial, _ in terms):
+        powers.setdefault(atom, set()).add(e)
+    inside = {other for atom in powers for other in _atoms_in(expansion, atom)}
+    return {
+        atom
+        for atom, found in powers.items()
+        if found == {1} and atom not in inside and _is_still(expansion, atom) and _is_symbol(expansion, atom)
+    }
+
+
+def _atoms_in(expansion: Expansion, atom: int) -> set[int]:
+    """Those of a denominator or a root."""
+    opaque = expansion.atoms.opaque.get(atom)
+    sums = () if opaque is None else opaque.arguments
+    return {other for terms in sums for monomial, _ in terms for other, _ in monomial}
+
+
+def _is_symbol(expansion: Expansion, atom: int) -> bool:
+    node = expansion.atoms.nodes.get(atom)
+    return node is not None and node.op == "symbol"
+
+
+def _is_still(expansion: Expansion, atom: int) -> bool:
+    return atom >= 0 and atom in expansion.atoms.nodes and expansion.graph.is_constant(expansion.atoms.nodes[atom])

@@ -15,8 +15,7 @@ from typing import Any
 
 from eomgen.records import dataclass
 from eomgen.symbolic.exact.terms import TooLarge, common_number
-from eomgen.symbolic.expression.exact_numbers import tidy
-from eomgen.symbolic.expression.graph import Number
+from eomgen.symbolic.expression.numbers import Number, tidy
 from eomgen.symbolic.expression.rational import Fraction
 
 LARGEST_IMAGE = 10_000_000  # product of the degrees up to which sympy finds a common divisor in a second or two

@@ -25,9 +25,8 @@ from eomgen.symbolic.exact.terms import (
 )
 from eomgen.symbolic.exact.writing import Writer, is_rate
 from eomgen.symbolic.expression.derivative import substituted
-from eomgen.symbolic.expression.exact_numbers import tidy
-from eomgen.symbolic.expression.graph import Node, Number, Scalar
-from eomgen.symbolic.expression.node import ROOT_OF_SUM, SUMS, holds_op
+from eomgen.symbolic.expression.node import ROOT_OF_SUM, SUMS, Node, Scalar, holds_op
+from eomgen.symbolic.expression.numbers import Number, tidy
 from eomgen.symbolic.expression.rational import Fraction
 from eomgen.symbolic.expression.traversal import order
 from eomgen.symbolic.print.layout import factors, terms

@@ -6,7 +6,7 @@ from collections.abc import Collection
 
 from eomgen.symbolic.exact.expansion import expanded
 from eomgen.symbolic.exact.terms import TooLarge
-from eomgen.symbolic.expression.graph import Node, Scalar
+from eomgen.symbolic.expression.node import Node, Scalar
 from eomgen.symbolic.expression.traversal import order
 from eomgen.symbolic.numeric.work import Work
 

@@ -13,8 +13,7 @@ from math import comb
 
 from eomgen.symbolic.exact.rational_polynomial import Exponents, PowerSum
 from eomgen.symbolic.exact.terms import Key, Terms
-from eomgen.symbolic.expression.exact_numbers import tidy
-from eomgen.symbolic.expression.graph import Number
+from eomgen.symbolic.expression.numbers import Number, tidy
 
 SphereSymbols = tuple[int, ...]  # the symbols, by index
 

@@ -7,8 +7,8 @@ sin(atan2(3, 4)) = 3/5.
 
 from __future__ import annotations
 
-from eomgen.symbolic.expression.exact_numbers import Number, tidy
 from eomgen.symbolic.expression.node import Node, Owner, Scalar, linear_terms
+from eomgen.symbolic.expression.numbers import Number, tidy
 from eomgen.symbolic.expression.rational import Fraction
 
 _AFTER_QUARTERS = {  # name -> what it is after 0, 1, 2, 3 quarter turns

@@ -9,8 +9,8 @@ from __future__ import annotations
 from collections.abc import Callable, Collection, Container, Iterable, Mapping, Sequence
 from typing import Any
 
-from eomgen.symbolic.expression.graph import Graph, Node, Scalar
-from eomgen.symbolic.expression.node import argument
+from eomgen.symbolic.expression.graph import Graph
+from eomgen.symbolic.expression.node import Node, Scalar, argument
 from eomgen.symbolic.expression.splines import number_of_sampled, sampled_of
 from eomgen.symbolic.expression.traversal import order
 

@@ -17,7 +17,7 @@ from eomgen.errors import ExpressionError
 from eomgen.records import dataclass
 from eomgen.symbolic.expression.formula import Call, Expression
 from eomgen.symbolic.expression.rational import EXACT, Fraction
-from eomgen.symbolic.expression.tokens import token_at
+from eomgen.symbolic.expression.text import token_at
 from eomgen.symbolic.expression.units import Unit
 
 BASE = ("kg", "m", "s")
@@ -361,7 +361,7 @@ class Walk:
 
     def _mend(self, needed: Dimension, place: Place) -> str:
         """The same term with one power, or one rate, changed, where that fits and no other such change does."""
-        from eomgen.symbolic.expression.expressions import parse
+        from eomgen.symbolic.expression.text import parse
 
         try:
             variants = list(_variants(place.text, self.moves))

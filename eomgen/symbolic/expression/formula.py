@@ -1,4 +1,6 @@
-"""A parsed text as a value: Expression, and the Call and Reference that outputs are made of.
+"""A parsed text as a value, and the operations and functions of the grammar over any scalar.
+
+A parsed text as a value: Expression, and the Call and Reference that outputs are made of.
 
 The tree is held in postfix order, so that a sum of a thousand terms is evaluated by a loop and two
 texts with the same tree are equal. Where in the text each piece stands is kept beside it, for carets.
@@ -7,16 +9,185 @@ texts with the same tree are equal. Where in the text each piece stands is kept 
 from __future__ import annotations
 
 import difflib
-from collections.abc import Callable, Iterable, Mapping
+import math
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import field
-from typing import Any, TypeVar
+from math import isqrt
+from typing import Any, TypeVar, overload
 
 from eomgen.errors import DerivationError, ExpressionError
 from eomgen.records import dataclass
-from eomgen.symbolic.expression import scalar_operations
-from eomgen.symbolic.expression.rational import Fraction
-from eomgen.symbolic.expression.scalar_operations import AnyScalar
-from eomgen.symbolic.expression.splines import Sampled
+from eomgen.symbolic.expression.graph import CONSTANTS
+from eomgen.symbolic.expression.node import Node, Scalar, is_zero
+from eomgen.symbolic.expression.numbers import Number
+from eomgen.symbolic.expression.rational import EXACT, Fraction, known_to_sympy
+from eomgen.symbolic.expression.splines import Sampled, number_of_sampled
+
+# -------- scalar operations -----------------------------------------------------------------------------------
+# The operations of the model file's grammar over any scalar, exact where their operands are.
+#
+# An exact number with an exact number gives an exact number; a function of exact numbers is taken in the arithmetic
+# of `pi`, the one constant that every set of values must hold: a node of the graph, a sympy expression or a float.
+# What has no value (1/0, sqrt(-1), a power beyond all size) raises `Undefined`.
+
+
+AnyScalar = Any
+LARGEST_MAGNITUDE = 1000  # in bits: an exact number still fits a double
+MOST_BITS = 5_000  # of a numerator or denominator: 9^9^9 is refused, not computed
+
+
+class Undefined(ArithmeticError):
+    """The operation has no value at these operands, said in words."""
+
+
+def is_exact(a: AnyScalar) -> bool:
+    """True for whole numbers and fractions."""
+    return isinstance(a, EXACT)
+
+
+def bounded(a: AnyScalar) -> AnyScalar:
+    """a itself; a fraction that is whole as an int; an exact number beyond all size raises Undefined."""
+    if type(a) is int:
+        if a.bit_length() > LARGEST_MAGNITUDE:
+            raise Undefined("the number is too large")
+    elif type(a) is Fraction:
+        upper, lower = a.numerator.bit_length(), a.denominator.bit_length()
+        if upper - lower > LARGEST_MAGNITUDE or max(upper, lower) > MOST_BITS:
+            raise Undefined("the number is too large")
+        if a.denominator == 1:
+            return a.numerator
+    return a
+
+
+def add(a: AnyScalar, b: AnyScalar) -> AnyScalar:
+    return bounded(a + b)
+
+
+def subtract(a: AnyScalar, b: AnyScalar) -> AnyScalar:
+    return bounded(a - b)
+
+
+def multiply(a: AnyScalar, b: AnyScalar) -> AnyScalar:
+    return bounded(a * b)
+
+
+def divide(a: AnyScalar, b: AnyScalar) -> AnyScalar:
+    if type(b) is not Node and b == 0:
+        raise Undefined("division by zero")
+    return bounded(over(a, b))
+
+
+def power_value(a: AnyScalar, b: AnyScalar, pi: AnyScalar = None) -> AnyScalar:
+    """a ^ b; of exact numbers it is exact where it can be (4^(1/2) = 2)."""
+    if is_exact(b) and b.denominator == 1:
+        return _whole_power(a, b.numerator)
+    if is_exact(a):
+        if type(b) is Fraction:
+            return _root(a, b, pi)
+        if type(b) is Node:
+            return b.graph.pow(a, b)
+        if not isinstance(b, float):  # Fraction ** sympy number would be a float
+            a = a + (b - b)
+    value = a**b
+    if isinstance(value, complex):
+        raise Undefined("a broken power of a negative number")
+    return value
+
+
+def _whole_power(a: AnyScalar, n: int) -> AnyScalar:
+    if n < 0:
+        return divide(1, _whole_power(a, -n))
+    if is_exact(a) and a in (-1, 0, 1):
+        return a**n
+    bits = max(a.numerator.bit_length(), a.denominator.bit_length()) if is_exact(a) else 2
+    if (bits - 1) * n > MOST_BITS or n > MOST_BITS:
+        raise Undefined("the power is too large")
+    return bounded(a**n)
+
+
+def _root(a: int | Fraction, b: Fraction, pi: AnyScalar) -> AnyScalar:
+    """a ^ (m/n) of an exact number, in the arithmetic of pi."""
+    if a == 0 and b < 0:
+        raise Undefined(f"division by zero in 0^({b})")
+    if a < 0:
+        raise Undefined("a broken power of a negative number")
+    if type(pi) is Node:
+        return pi.graph.pow(a, b)
+    if b.denominator == 2:
+        return _whole_power(function_value("sqrt", (a,), pi), b.numerator)
+    if pi is None or isinstance(pi, float):
+        try:
+            return float(a) ** float(b)
+        except OverflowError:
+            raise Undefined("the number is too large") from None
+    return (a + (pi - pi)) ** b
+
+
+@overload
+def through_samples(sampled: Sampled, t: Node, pi: Any = None) -> Scalar: ...
+@overload
+def through_samples(sampled: Sampled, t: Any, pi: Any = None) -> Any: ...
+def through_samples(sampled: Sampled, t: AnyScalar, pi: AnyScalar = None) -> AnyScalar:
+    """The value at t of a function through samples; in the graph it stays one operation."""
+    if type(t) is Node:
+        return t.graph.call("sampled", t, number_of_sampled(sampled))
+    if is_exact(t):
+        value = sampled.spline.at(Fraction(t))
+        return bounded(value) if sampled.pi_power == 0 else value * (math.pi if pi is None else pi) ** sampled.pi_power
+    if isinstance(t, float):
+        return sampled.at(t, float, math.pi)
+    return sampled.chosen(t, selected, pi)
+
+
+def function_value(name: str, args: tuple[AnyScalar, ...], pi: AnyScalar = None) -> AnyScalar:
+    """An elementary function at its arguments; min and max take two or more."""
+    if name in ("min", "max"):
+        value = args[0]
+        for other in args[1:]:
+            value = _function(name, (value, other), pi)
+        return value
+    return _function(name, args, pi)
+
+
+def _function(name: str, args: tuple[AnyScalar, ...], pi: AnyScalar) -> AnyScalar:
+    if not all(is_exact(a) for a in args):
+        if all(is_exact(a) or isinstance(a, float) for a in args):
+            return function(name, *(float(a) for a in args))
+        return function(name, *args)
+    exact = _exact_value(name, args)
+    if exact is not None:
+        return exact
+    if type(pi) is Node:
+        return pi.graph.call(name, *args)
+    if pi is None or isinstance(pi, float):
+        return function(name, *(float(a) for a in args))
+    zero = pi - pi
+    return function(name, *(a + zero for a in args))
+
+
+def _exact_value(name: str, args: tuple[Number, ...]) -> Number | None:
+    """The function's value where it is an exact number for every arithmetic, else None."""
+    a = args[0]
+    if name == "abs":
+        return -a if a < 0 else a
+    if name == "sign":
+        return (a > 0) - (a < 0)
+    if name in ("min", "max"):
+        return min(args) if name == "min" else max(args)
+    if name == "sqrt":
+        if a < 0:
+            raise Undefined(f"sqrt({a}) is not a real number")
+        root = Fraction(isqrt(a.numerator), isqrt(a.denominator))
+        return bounded(root) if root * root == a else None
+    if a == 0 and name in ("sin", "tan", "asin", "atan", "sinh", "tanh"):
+        return 0
+    if a == 0 and name in ("cos", "cosh", "exp"):
+        return 1
+    return 0 if a == 1 and name in ("log", "acos") else None
+
+
+# -------- formula ---------------------------------------------------------------------------------------------
+
 
 Value = TypeVar("Value")
 Instruction = tuple[str, Any]
@@ -157,7 +328,7 @@ class Expression:
     def _operate(self, stack: list[AnyScalar], kind: str, what: Any, pi: AnyScalar, position: int) -> None:
         try:
             apply_operation(stack, kind, what, pi)
-        except (scalar_operations.Undefined, DerivationError) as error:
+        except (Undefined, DerivationError) as error:
             raise ExpressionError(str(error), self.columns[position]) from error
         except (ZeroDivisionError, OverflowError, ValueError) as error:
             shown = what[0] if kind == "function" else kind
@@ -257,10 +428,10 @@ def _enclosed(a: Expression, sign: str, last: bool = False) -> str:
 
 
 _BINARY = {
-    "+": scalar_operations.add,
-    "-": scalar_operations.subtract,
-    "*": scalar_operations.multiply,
-    "/": scalar_operations.divide,
+    "+": add,
+    "-": subtract,
+    "*": multiply,
+    "/": divide,
 }
 
 
@@ -273,14 +444,14 @@ def apply_operation(stack: list[AnyScalar], kind: str, what: Any, pi: AnyScalar)
     elif kind == "under":
         del stack[-1 - len(what) : -1]
     elif kind == "sampled":
-        stack[-1] = scalar_operations.through_samples(what, stack[-1], pi)
+        stack[-1] = through_samples(what, stack[-1], pi)
     elif kind == "function":
         name, count = what
         args = tuple(stack[-count:])
-        stack[-count:] = [scalar_operations.function_value(name, args, pi)]
+        stack[-count:] = [function_value(name, args, pi)]
     else:
         b = stack.pop()
-        stack[-1] = scalar_operations.power_value(stack[-1], b, pi) if kind == "^" else _BINARY[kind](stack[-1], b)
+        stack[-1] = power_value(stack[-1], b, pi) if kind == "^" else _BINARY[kind](stack[-1], b)
 
 
 def unknown(kind: str, name: str, known: Iterable[str], column: int) -> ExpressionError:
@@ -288,3 +459,143 @@ def unknown(kind: str, name: str, known: Iterable[str], column: int) -> Expressi
     near = difflib.get_close_matches(name, list(known), n=1)
     mend = f"did you mean '{near[0]}'?" if near else ""
     return ExpressionError(f"unknown {kind} '{name}'", column, mend, len(name))
+
+
+# -------- functions -------------------------------------------------------------------------------------------
+# The elementary functions over any scalar: float, exact number, graph node, sympy expression.
+#
+# The laws of mechanics call these and never `math` or `sympy`, so one text of a law serves all scalars.
+
+
+NAMES = {
+    "sin": 1,
+    "cos": 1,
+    "tan": 1,
+    "asin": 1,
+    "acos": 1,
+    "atan": 1,
+    "atan2": 2,
+    "sinh": 1,
+    "cosh": 1,
+    "tanh": 1,
+    "sqrt": 1,
+    "exp": 1,
+    "log": 1,
+    "abs": 1,
+    "sign": 1,
+    "min": 2,
+    "max": 2,
+}
+"""The functions of the model file's grammar and how many arguments each takes (min and max: two or more)."""
+
+
+@overload
+def function(name: str, *args: Scalar) -> Scalar: ...
+@overload
+def function(name: str, *args: Any) -> Any: ...
+def function(name: str, *args: Any) -> Any:
+    """The function of the table NAMES at its arguments, in the arithmetic of the arguments.
+
+    At exact numbers it stays exact: sqrt(4) is 2, sqrt(2) a node of the graph CONSTANTS.
+    """
+    for a in args:
+        if type(a) is Node:
+            return a.graph.call(name, *args)
+    if all(isinstance(a, EXACT) for a in args):
+        return CONSTANTS.call(name, *args)
+    if all(isinstance(a, (float, *EXACT)) for a in args):
+        return _at_floats(name, *map(float, args))
+    own = getattr(type(args[0]), f"scalar_{name}", None)
+    if own is not None:
+        return own(*args)
+    return _sympy_function(name, *args)
+
+
+def _at_floats(name: str, *args: float) -> float:
+    if name in ("min", "max"):
+        return min(args) if name == "min" else max(args)
+    if name == "abs":
+        return abs(args[0])
+    if name == "sign":
+        return float((args[0] > 0) - (args[0] < 0))
+    return float(getattr(math, name)(*args))
+
+
+def _sympy_function(name: str, *args: Any) -> Any:
+    import sympy
+
+    known_to_sympy()
+
+    names = {"abs": "Abs", "min": "Min", "max": "Max"}
+    return getattr(sympy, names.get(name, name))(*(sympy.sympify(a, strict=True) for a in args))
+
+
+@overload
+def sin(a: Scalar) -> Scalar: ...
+@overload
+def sin(a: Any) -> Any: ...
+def sin(a: Any) -> Any:
+    return 0 if type(a) is int and a == 0 else function("sin", a)
+
+
+@overload
+def cos(a: Scalar) -> Scalar: ...
+@overload
+def cos(a: Any) -> Any: ...
+def cos(a: Any) -> Any:
+    return 1 if type(a) is int and a == 0 else function("cos", a)
+
+
+@overload
+def sqrt(a: Scalar) -> Scalar: ...
+@overload
+def sqrt(a: Any) -> Any: ...
+def sqrt(a: Any) -> Any:
+    return function("sqrt", a)
+
+
+@overload
+def over(a: Scalar, b: Scalar) -> Scalar: ...
+@overload
+def over(a: Any, b: Any) -> Any: ...
+def over(a: Any, b: Any) -> Any:
+    """a / b, exact when both are exact (Python's int / int would be a float)."""
+    if isinstance(a, int) and isinstance(b, int):
+        quotient = Fraction(a, b)
+        return quotient.numerator if quotient.denominator == 1 else quotient
+    return a / b
+
+
+@overload
+def inner(a: Iterable[Scalar], b: Iterable[Scalar]) -> Scalar: ...
+@overload
+def inner(a: Iterable[Any], b: Iterable[Any]) -> Any: ...
+def inner(a: Iterable[Any], b: Iterable[Any]) -> Any:
+    """The sum of a_k b_k; what is multiplied by 0 is not looked at."""
+    return sum((x * y for x, y in zip(a, b, strict=True) if not is_zero(x) and not is_zero(y)), start=0)
+
+
+def combined(factors: Iterable[Any], rows: Iterable[Sequence[Any]]) -> tuple[Any, ...]:
+    """The sum of f_k row_k; what is multiplied by 0 is not looked at. At least one row."""
+    total: list[Any] = []
+    for factor, row in zip(factors, rows, strict=True):
+        total = total or [0] * len(row)
+        if not is_zero(factor):
+            for i, x in enumerate(row):
+                if not is_zero(x):
+                    total[i] = total[i] + factor * x
+    return tuple(total)
+
+
+def selected(a: Any, bound: Any, if_below: Any, if_above: Any) -> Any:
+    """if_below where a <= bound, else if_above: a piecewise law over any scalar."""
+    for x in (a, bound):
+        if type(x) is Node:
+            return x.graph.select(x.graph.call("less_equal", a, bound), if_below, if_above)
+    if all(isinstance(x, (float, *EXACT)) for x in (a, bound)):
+        return if_below if a <= bound else if_above
+    import sympy
+
+    known_to_sympy()
+
+    return sympy.Piecewise((if_below, a <= bound), (if_above, True))

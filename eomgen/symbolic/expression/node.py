@@ -6,7 +6,7 @@ from collections.abc import Sequence
 from heapq import heappop, heappush
 from typing import Any, Protocol, final
 
-from eomgen.symbolic.expression.exact_numbers import Number, tidy
+from eomgen.symbolic.expression.numbers import Number, tidy
 
 
 class Owner(Protocol):

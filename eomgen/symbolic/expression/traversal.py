@@ -1,4 +1,6 @@
-"""Expressions -> their nodes, arguments before results; and how many operations that is.
+"""Expressions -> their nodes, arguments before results, and the names of a model as symbols of one graph.
+
+Expressions -> their nodes, arguments before results; and how many operations that is.
 
 The loops run in the order of `Node.index`, never by recursion: a chain of 50 links is thousands of nodes deep.
 """
@@ -6,12 +8,13 @@ The loops run in the order of `Node.index`, never by recursion: a chain of 50 li
 from __future__ import annotations
 
 from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import field
 from operator import attrgetter
 from typing import Any
 
 from eomgen.records import dataclass
-from eomgen.symbolic.expression.graph import CONSTANTS, Node, Scalar
-from eomgen.symbolic.expression.node import Owner, op_bits
+from eomgen.symbolic.expression.graph import CONSTANTS, Graph
+from eomgen.symbolic.expression.node import Node, Owner, Scalar, op_bits
 from eomgen.symbolic.expression.rational import Fraction
 
 FREE = frozenset(("symbol", "pi", "neg"))
@@ -90,3 +93,36 @@ def operations(outputs: Iterable[Scalar], parameters: Iterable[Node] = ()) -> Co
         if x.op not in FREE:
             counts[of] += 1
     return Count(total=counts[moving], hoisted=counts[fixed])
+
+
+# -------- symbols ---------------------------------------------------------------------------------------------
+# Names of a model -> plain symbols of one graph.
+#
+# q, u and a are symbols, not functions of time: the dot is a rule for printing and a total derivative for deriving.
+
+
+@dataclass(frozen=True)
+class Symbols:
+    """The symbols of one derivation.
+
+    Args:
+        graph: the graph that owns them.
+        t: time [s].
+        parameters: every parameter by name, in the model's order.
+        inputs: every named input by name, in the model's order.
+        q: generalized coordinates, nq, named `theta`.
+        u: generalized speeds, nu, named `theta'` where u is a rate, else by the speed's name.
+        a: accelerations u', nu, named `theta''` or `w1'`.
+        lam: multipliers of the closing rows, k, named `lam(tie, row)`, row from 1.
+        unknowns: numbers that are asked, by name, in the model's order.
+    """
+
+    graph: Graph
+    t: Node
+    parameters: dict[str, Node]
+    inputs: dict[str, Node]
+    q: tuple[Node, ...]
+    u: tuple[Node, ...]
+    a: tuple[Node, ...]
+    lam: tuple[Node, ...] = ()
+    unknowns: dict[str, Node] = field(default_factory=dict)

@@ -14,8 +14,7 @@ from typing import Any
 
 from eomgen.records import dataclass
 from eomgen.symbolic.expression.derivative import gradient, substituted, symbols_of
-from eomgen.symbolic.expression.graph import Node, Scalar, linear_terms
-from eomgen.symbolic.expression.node import State, holds_op
+from eomgen.symbolic.expression.node import Node, Scalar, State, holds_op, linear_terms
 from eomgen.symbolic.expression.rational import Fraction
 from eomgen.symbolic.expression.splines import Sampled, sampled_of
 from eomgen.symbolic.expression.traversal import order

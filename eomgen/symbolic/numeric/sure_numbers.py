@@ -12,9 +12,9 @@ from math import isfinite, nan
 from typing import Any
 
 from eomgen.symbolic.expression.derivative import symbols_of
-from eomgen.symbolic.expression.graph import Node, Scalar
+from eomgen.symbolic.expression.node import Node, Scalar
 from eomgen.symbolic.expression.rational import Fraction
-from eomgen.symbolic.numeric.balls import Ball, balls
+from eomgen.symbolic.numeric.arithmetic import Ball, balls
 from eomgen.symbolic.numeric.evaluation import evaluate
 from eomgen.symbolic.numeric.tolerances import ROUNDING
 

@@ -1,4 +1,6 @@
-"""Node -> the terms of its sum and the factors of its products, in the order in which a textbook writes them.
+"""Node -> its terms and factors in the order in which a textbook prints them.
+
+Node -> the terms of its sum and the factors of its products, in the order in which a textbook writes them.
 
 Sums and products are flattened by multiplicity, each node opened once: an
 expression whose tree is exponentially large costs what its graph costs.
@@ -6,18 +8,20 @@ expression whose tree is exponentially large costs what its graph costs.
 
 from __future__ import annotations
 
+import math
 from collections.abc import Container
+from functools import lru_cache
 from heapq import heappop, heappush
+from math import gcd
 from typing import Any
 
+from eomgen.errors import DerivationError
 from eomgen.records import dataclass
-from eomgen.symbolic.expression.exact_numbers import tidy
-from eomgen.symbolic.expression.graph import Node, Number, Scalar
-from eomgen.symbolic.expression.node import SUMS
+from eomgen.symbolic.expression.node import SUMS, Node, Scalar, holds_op
+from eomgen.symbolic.expression.numbers import Number, tidy
 from eomgen.symbolic.expression.rational import Fraction
 from eomgen.symbolic.expression.traversal import order
 from eomgen.symbolic.numeric.evaluation import FLOAT, evaluate
-from eomgen.symbolic.print.decimals import decimal_of
 
 SHORT_SUM = 40  # nodes of a sum that is looked through for what moves
 
@@ -309,3 +313,221 @@ def _rank_of(base: Node) -> Rank:
         return 1 if still else 2, inside, "sum", rest, base.index
     kind = 0 if base.op == "pi" or (base.op == "sqrt" and type(base.args[0]) is not Node) else 3
     return kind, inside, base.op, rest, base.index
+
+
+# -------- printed ---------------------------------------------------------------------------------------------
+# Node -> the products of its sum with the signs and roots of a textbook. Text and LaTeX print from here.
+
+
+TRIGONOMETRIC = frozenset("sin cos tan sinh cosh tanh".split())
+_OTHER = {"sin": "cos", "cos": "sin"}
+
+
+def summands(x: Scalar, named: Container[Node] = ()) -> list[Product]:
+    """x as a sum of products for print, in the order of `terms`.
+
+    k*(1 - l/r) rather than -k*(l/r - 1), sqrt(14*l/3) rather than 1/3*sqrt(42*l), tan(x) rather than sin(x)/cos(x),
+    and k*(b - a) rather than -k*(a - b) where that is all.
+    """
+    found = terms(x, named)
+    alone = len(found) == 1
+    known: dict[Any, tuple[Product, bool]] = {} if named or type(x) is not Node else x.graph.found(summands)
+    for term in found:
+        if (term, alone) not in known:
+            product = product_of(term, named)
+            known[term, alone] = _for_people(product, named, alone=alone), product.coefficient > 0
+    products = [known[term, alone] for term in found]
+    first = next((i for i, (_, plus) in enumerate(products) if plus), 0)
+    return plus_first([product for product, _ in (products[first], *products[:first], *products[first + 1 :])])
+
+
+def _for_people(product: Product, named: Container[Node], *, alone: bool) -> Product:
+    return _with_shorter_roots(_with_plus(_with_tangents(product, named), named, alone=alone), named)
+
+
+def _with_tangents(product: Product, named: Container[Node]) -> Product:
+    """sin(a)/cos(a) as tan(a), cos(a)^2/sin(a) as cos(a)/tan(a); sin(a)/cos(a)^2 as it is."""
+    for below, n in product.denominator:
+        if (other := _OTHER.get(below.op)) is None or below in named:
+            continue
+        for above, m in product.numerator:
+            if above.op == other and above.args[0] is below.args[0] and m >= n and above not in named:
+                tangent = (_for_print(above, above.args, "tan"), n)
+                rest = [(above, m - n)] if m > n else []
+                top, bottom = (rest, [tangent]) if other == "cos" else ([*rest, tangent], [])
+                product = Product(
+                    product.coefficient,
+                    _replaced(product.numerator, above, top),
+                    _replaced(product.denominator, below, bottom),
+                )
+    return product
+
+
+def _replaced(factors: tuple[Factor, ...], base: Node, by: list[Factor]) -> tuple[Factor, ...]:
+    return tuple(f for factor in factors for f in (by if factor[0] is base else [factor]))
+
+
+def _with_plus(product: Product, named: Container[Node], *, alone: bool) -> Product:
+    """-k/(a - b) as k/(b - a), and where it stands alone -k (a - b) as k (b - a); else as it is."""
+    if product.coefficient > 0:
+        return product
+    above, below = (_with_turned_difference(factors, named) for factors in (product.numerator, product.denominator))
+    if alone and above is not None:
+        return Product(-product.coefficient, above, product.denominator)
+    return product if below is None else Product(-product.coefficient, product.numerator, below)
+
+
+def _with_turned_difference(factors: tuple[Factor, ...], named: Container[Node]) -> tuple[Factor, ...] | None:
+    """The factors with the sign of one difference changed; None where none of them is one."""
+    for i, (base, exponent) in enumerate(factors):
+        if exponent % 2 and base.op == "sub" and base not in named:
+            return (*factors[:i], (_for_print(base, base.args[::-1]), exponent), *factors[i + 1 :])
+    return None
+
+
+def is_bare_argument(op: str, x: Scalar) -> bool:
+    """Whether x stands behind the function without parentheses: sin x, and of an angle cos 2 x and sin omega t."""
+    if type(x) is not Node:
+        return False
+    if is_base(x) or op not in TRIGONOMETRIC:
+        return x.op in ("symbol", "pi")
+    alone, *others = products_of(x)
+    bases = [factor for factor in (*alone.numerator, *alone.denominator)]
+    return not others and alone.coefficient > 0 and all(base.op in ("symbol", "pi") and e == 1 for base, e in bases)
+
+
+def _with_shorter_roots(product: Product, named: Container[Node]) -> Product:
+    """What the number below the line and the number under a root share goes under the root.
+
+    k/(g d) sqrt(g n x) = k/d sqrt(n x/g)
+    """
+    c = product.coefficient
+    above = list(product.numerator)
+    for i, (base, exponent) in enumerate(above):
+        inside = _number_under(base)
+        share = gcd(inside, c.denominator)
+        if exponent == 1 and share > 1 and base not in named and decimal_of(c) is None:
+            rest = base.graph.mul(Fraction(inside, share * share), base.args[0].args[1])
+            above[i] = (_for_print(base, (rest,)), 1)
+            c = tidy(Fraction(c) * share)
+    return Product(c, tuple(above), product.denominator)
+
+
+def _for_print(base: Node, args: tuple[Scalar, ...], op: str | None = None) -> Node:
+    """An operation as the graph would not hold it; the graph does not learn of it."""
+    return Node(base.graph, op or base.op, args, base.index)
+
+
+def _number_under(base: Node) -> int:
+    """The whole number c of sqrt(c x); 1 where there is none."""
+    inside = base.args[0] if base.op == "sqrt" else None
+    if type(inside) is Node and inside.op == "mul" and type(inside.args[0]) is int:
+        return inside.args[0]
+    return 1
+
+
+def has_nested_quotient(x: Scalar) -> bool:
+    """True where a sum in a quotient has quotients itself, (a + b/c)/d, functions not looked into."""
+    if not holds_op(x, "div") or not any(_is_of_sums(node) for node in order((x,))):
+        return False
+    stack: list[tuple[Scalar, bool]] = [(x, False)]
+    seen = set()
+    while stack:
+        entry = stack.pop()
+        node, within = entry
+        if not isinstance(node, Node) or is_base(node) or entry in seen:
+            continue
+        seen.add(entry)
+        for product in summands(node):
+            broken = product.coefficient.denominator > 1 and decimal_of(product.coefficient) is None
+            if within and (product.denominator or broken):
+                return True
+            sums = [base for base, _ in (*product.numerator, *product.denominator) if base.op in SUMS]
+            stack += [(base, within or bool(product.denominator)) for base in sums]
+    return False
+
+
+def _is_of_sums(x: Node) -> bool:
+    """Whether x is a product, quotient or power of which a part is a sum."""
+    return x.op in ("mul", "div", "pow") and any(type(a) is Node and a.op in SUMS for a in x.args)
+
+
+# -------- decimals --------------------------------------------------------------------------------------------
+# Exact numbers -> how they are written: 27/2 as a fraction, 0.0825 as the decimal that it is exactly.
+
+
+MOST_DIGITS = 8  # of a decimal that may be longer than its fraction
+LONGEST_FRACTION = 100  # the smallest denominator of a fraction that reads worse than its decimal
+MUCH_LONGER = 2  # characters by which a decimal may be longer than its fraction
+MOST_PRINTED = 4000  # digits of a whole number: Python prints 4300
+BITS = math.log2(10)  # of a digit
+KEPT = 1000  # numbers whose decimals are kept
+SMALLEST = -4  # power of ten below which a decimal is written with its exponent: 8.464e-7
+
+
+def number_text(c: Number) -> str:
+    """c as text that is read back as c: 4, -27/2, 0.0825, 8.464e-7.
+
+    Raises:
+        DerivationError: it has more digits than can be printed.
+    """
+    if _is_long(c):
+        raise DerivationError(
+            f"a number of {number_length(c)} digits came up, which is too long to print",
+            mend="scale the parameters: other units, or numbers nearer to 1",
+        )
+    decimal = decimal_of(c)
+    if decimal is None:
+        return str(c)
+    digits, power = decimal
+    return f"{digits}e{power}" if power else digits
+
+
+def number_length(c: Number) -> int:
+    """How long the text of c is; of a very long one nearly."""
+    return int((c.numerator.bit_length() + c.denominator.bit_length()) / BITS) if _is_long(c) else len(number_text(c))
+
+
+def _is_long(c: Number) -> bool:
+    return max(c.numerator.bit_length(), c.denominator.bit_length()) > BITS * MOST_PRINTED
+
+
+@lru_cache(maxsize=KEPT)
+def decimal_of(c: Number) -> tuple[str, int] | None:
+    """(digits, power of ten) with c = digits * 10^power exactly; None where a fraction or a whole number reads better.
+
+    33/400 is 0.0825 and 1/25 is 0.04; 1/12, 27/2, 3/80 and 1/128 stay fractions. One of many digits, as a file of
+    another program has it, is the decimal that it was where that is shorter.
+    """
+    if _is_long(c) or (c.denominator < LONGEST_FRACTION and c.denominator % 25):
+        return None
+    places = _places(c.denominator)
+    digits = "" if places is None else str(abs(c.numerator) * 10**places // c.denominator)
+    if places is None:
+        return None
+    text, power = _placed(digits, places)
+    longer = MUCH_LONGER if len(digits) <= MOST_DIGITS else -1
+    if len(text) + (len(f"e{power}") if power else 0) > len(str(abs(c))) + longer:
+        return None
+    return ("-" if c < 0 else "") + text, power
+
+
+def _places(denominator: int) -> int | None:
+    """How many places after the point 1/denominator has; None where they never end."""
+    powers = []
+    for prime in (2, 5):
+        count = 0
+        while denominator % prime == 0:
+            denominator //= prime
+            count += 1
+        powers.append(count)
+    return max(powers) if denominator == 1 else None
+
+
+def _placed(digits: str, places: int) -> tuple[str, int]:
+    """The digits with their point: at its place, or after the first digit and with a power of ten."""
+    power = len(digits) - 1 - places
+    if power < SMALLEST:
+        return digits[0] + (f".{digits[1:]}" if digits[1:] else ""), power
+    digits = digits.rjust(places + 1, "0")
+    return f"{digits[:-places]}.{digits[-places:]}", 0

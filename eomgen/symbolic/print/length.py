@@ -10,13 +10,22 @@ import re
 from collections.abc import Mapping, Sequence
 from functools import lru_cache
 
-from eomgen.symbolic.expression.graph import Node, Number, Scalar
+from eomgen.symbolic.expression.node import Node, Scalar
+from eomgen.symbolic.expression.numbers import Number
 from eomgen.symbolic.expression.rational import Fraction
 from eomgen.symbolic.expression.splines import sampled_of
-from eomgen.symbolic.print.decimals import decimal_of
-from eomgen.symbolic.print.layout import Factor, Product, is_base, is_part_of_letter, is_part_of_turn
-from eomgen.symbolic.print.printed import TRIGONOMETRIC, is_bare_argument, summands
-from eomgen.symbolic.print.symbols import index_latex, symbol_of
+from eomgen.symbolic.print.layout import (
+    TRIGONOMETRIC,
+    Factor,
+    Product,
+    decimal_of,
+    is_bare_argument,
+    is_base,
+    is_part_of_letter,
+    is_part_of_turn,
+    summands,
+)
+from eomgen.symbolic.print.names import index_latex, symbol_of
 
 ATOM, TALL, SUM = range(3)  # a symbol or number; what needs parentheses under an exponent; a sum or a product
 Marks = tuple[int, int]  # how many, and how they hang together

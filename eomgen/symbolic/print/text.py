@@ -7,12 +7,21 @@ from __future__ import annotations
 
 from collections.abc import Container, Iterable, Mapping, Sequence
 
-from eomgen.symbolic.expression.graph import Node, Scalar
+from eomgen.symbolic.expression.node import Node, Scalar
 from eomgen.symbolic.expression.splines import sampled_of
 from eomgen.symbolic.expression.traversal import order
-from eomgen.symbolic.print.decimals import decimal_of, number_length, number_text
-from eomgen.symbolic.print.layout import Factor, Product, is_base, is_part_of_turn, is_time
-from eomgen.symbolic.print.printed import TRIGONOMETRIC, summands
+from eomgen.symbolic.print.layout import (
+    TRIGONOMETRIC,
+    Factor,
+    Product,
+    decimal_of,
+    is_base,
+    is_part_of_turn,
+    is_time,
+    number_length,
+    number_text,
+    summands,
+)
 
 ATOM, POWER, LOOSE = range(3)  # how a text hangs together: theta', x^(1/3), a*b or a + b
 Printed = dict[Node, tuple[str, int]]

@@ -13,9 +13,8 @@ from collections.abc import Callable, Iterable, Mapping, Sequence
 
 from eomgen.errors import DerivationError
 from eomgen.records import dataclass
-from eomgen.symbolic.expression.functions import inner, over
-from eomgen.symbolic.expression.graph import Node, Scalar, is_zero
-from eomgen.symbolic.expression.node import SparseRow
+from eomgen.symbolic.expression.formula import inner, over
+from eomgen.symbolic.expression.node import Node, Scalar, SparseRow, is_zero
 
 Minors = dict[tuple[tuple[int, ...], tuple[int, ...]], Scalar]
 LARGEST_BLOCK = 10  # unknowns in one determinant; its minors are 2^n

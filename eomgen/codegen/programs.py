@@ -1,0 +1,384 @@
+"""Programs beside the right-hand side: outputs, inverse dynamics, matrices, reactions."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from contextlib import suppress
+from dataclasses import field, replace
+from functools import cached_property
+from typing import Any
+
+import numpy as np
+
+from eomgen.codegen.program import Program, Solve, bordered, is_short, kinematic_rates, program_in_motion, program_of
+from eomgen.codegen.rhs import GivenMotion, RightHandSide, compiled, parameter_vector
+from eomgen.errors import DerivationError, ExpressionError, MissingValues
+from eomgen.mechanics.dynamics.explicit_accelerations import by_determinants, by_factors, regular_rows
+from eomgen.mechanics.dynamics.system import EquationsOfMotion, System
+from eomgen.mechanics.free_bodies.named_reactions import named_reactions
+from eomgen.mechanics.free_bodies.solution import Indeterminate
+from eomgen.mechanics.instant.quantities import Quantities, asks_of
+from eomgen.mechanics.reactions.inverse import FEW, Inverse, by_independent
+from eomgen.mechanics.reactions.reactions import Reactions
+from eomgen.model.outputs.base import OF_A_RUN, SMALL_MOTIONS
+from eomgen.model.parts import Output
+from eomgen.records import dataclass
+from eomgen.symbolic.expression.derivative import depends_on, jacobian, substituted
+from eomgen.symbolic.expression.node import Node, Scalar, ScalarRow, ScalarRows, is_zero
+from eomgen.symbolic.solve import cramer
+from eomgen.symbolic.solve.factorization import factor_solution
+
+# -------- asked outputs ---------------------------------------------------------------------------------------
+# System -> what its model asks in [outputs] as functions of the state, for emitted code.
+
+
+@dataclass(frozen=True)
+class AskedOutputs:
+    """Outputs in q, u, a, t, parameters and inputs [SI], and why the others are none.
+
+    Args:
+        values: by name.
+        left: name -> why it is no function of the state.
+    """
+
+    values: dict[str, Scalar] = field(default_factory=dict)
+    left: dict[str, str] = field(default_factory=dict)
+
+
+def outputs_of_state(system: System) -> AskedOutputs:
+    """The outputs of the model."""
+    found, quantities, symbols = AskedOutputs(), Quantities(system), system.symbols
+    unknown = (*symbols.lam, *symbols.unknowns.values())
+    for name, output in system.scope.model.outputs.items():
+        why = _of_an_instant(output)
+        if not why:
+            try:
+                scalar = quantities.of(output.value)
+                why = "it holds a multiplier or an unknown load" if depends_on(scalar, unknown) else ""
+            except (DerivationError, ExpressionError, MissingValues) as error:
+                why = error.what
+        if why:
+            found.left[name] = why
+        else:
+            found.values[name] = scalar
+    return found
+
+
+def _of_an_instant(output: Output) -> str:
+    """Why an output is no function of the state, "" where it may be one."""
+    if output.at is not None or output.from_ is not None or output.side is not None or output.event is not None:
+        return "it is asked at an instant"
+    if asks_of(output.value, SMALL_MOTIONS):
+        return "it is of the linearized system"
+    return "it is of a whole run" if asks_of(output.value, OF_A_RUN) else ""
+
+
+# -------- inverse ---------------------------------------------------------------------------------------------
+# Inverse -> Program: the forces and torques that accelerations take, as a function of (t, x, a, p, inputs).
+
+
+@dataclass(frozen=True)
+class InverseFunction:
+    """`inverse(t, x, a, p, inputs=())` -> tau, in the order of `names`; x = (q, u), a the accelerations.
+
+    Args:
+        names: the actuators.
+        function: the program in memory.
+    """
+
+    names: tuple[str, ...]
+    function: RightHandSide
+
+    def __call__(self, t: float, x: Any, a: Any, p: Any, inputs: Sequence[float] = ()) -> np.ndarray:
+        """At one state [N, N m]."""
+        return self.function(t, [*x, *a], p, inputs)
+
+    def many(self, t: Any, x: Any, a: Any, p: Any, inputs: Any = ()) -> np.ndarray:
+        """At n states at once: t n or one number, x n x states, a n x speeds -> n x names."""
+        return self.function.many(t, np.hstack([x, a]), p, inputs)
+
+
+@dataclass(frozen=True)
+class InverseDynamics:
+    """What moves a system with given accelerations: A tau + J^T lam = M a + c - Q.
+
+    Args:
+        graph: the same as graph scalars.
+    """
+
+    graph: Inverse
+
+    def __repr__(self) -> str:
+        return f"<inverse dynamics: {', '.join(self.names)}>"
+
+    @property
+    def names(self) -> tuple[str, ...]:
+        """The actuators, in the order of tau."""
+        return self.graph.names
+
+    @property
+    def inputs(self) -> tuple[str, ...]:
+        """The inputs that are arguments: those that are no actuators."""
+        return tuple(self.graph.inputs)
+
+    @cached_property
+    def tau(self) -> dict[str, Any]:
+        """{actuator: its force or torque} as sympy expressions in q, u, a, t, parameters and inputs.
+
+        Raises:
+            DerivationError: too many ties hang together for formulas, or they share their forces.
+        """
+        from eomgen.symbolic.print.sympy_form import to_sympy
+
+        return dict(zip(self.names, to_sympy(self.graph.explicit()), strict=True))
+
+    @cached_property
+    def program(self) -> Program:
+        """tau as a straight-line program: the recursion, and where ties close one solve."""
+        symbols = self.graph.system.symbols
+        own = {name: node for name, node in symbols.inputs.items() if name in self.graph.inputs}
+        return program_of(
+            self.graph.tau,
+            replace(symbols, inputs=own),
+            inputs=self.graph.inputs,
+            solve=_least(self.graph),
+            accelerations=symbols.a,
+        )
+
+    def function(self, target: str | None = None) -> InverseFunction:
+        """`inverse(t, x, a, p, inputs=())`; the target as of `Equations.rhs`."""
+        return InverseFunction(self.names, compiled(self.program, target))
+
+    def along(
+        self, t: Any, motion: Mapping[str, Any], parameters: Mapping[str, float] | None = None
+    ) -> dict[str, np.ndarray]:
+        """{actuator: what it has to give at each instant} of a given motion, n each [N, N m].
+
+        Args:
+            t: the instants, n, ascending.
+            motion: of every coordinate that moves freely: an expression of t and the parameters, `eomgen.samples(...)`,
+                or its values at the instants, through which a cubic spline goes.
+            parameters: values that replace the model's [SI].
+        Raises:
+            UsageError: a coordinate without a motion, an unknown name; the motion opens the ties.
+        """
+        times = np.atleast_1d(np.asarray(t, dtype=float))
+        p = parameter_vector(self.graph.system.scope.model, parameters)
+        given = GivenMotion(self.graph.system, times, motion, p)
+        tau = self.function("numpy").many(times, given.x, given.a, p)
+        return dict(zip(self.names, tau.T, strict=True))
+
+
+def _least(found: Inverse) -> Solve | None:
+    """The least z of  rows z = right: of ties that follow from others each carries its share.
+
+    z - rows^T mu = 0,   rows z = right
+    """
+    if not found.unknowns:
+        return None
+    n, graph = len(found.unknowns), found.system.symbols.graph
+    one = tuple(tuple(int(i == j) for j in range(n)) for i in range(n))
+    mu = tuple(graph.symbol(f"mu({k + 1})") for k in range(len(found.rows)))
+    return Solve(one, found.rows, (*(0 for _ in range(n)), *found.right), (*found.unknowns, *mu))
+
+
+# -------- matrices --------------------------------------------------------------------------------------------
+# Equations of motion -> Programs of their matrices, and of the slopes of the right-hand side.
+
+
+Blocks = Mapping[str, ScalarRows]
+"""Matrices by name, one after the other, each row after row."""
+
+
+def matrices_of(equations: EquationsOfMotion) -> dict[str, ScalarRows]:
+    """M and forcing of M a = forcing + J^T lam, and where ties close J and gamma of J a + gamma = 0; by name."""
+    blocks: dict[str, ScalarRows] = {"M": equations.M, "forcing": tuple((x,) for x in equations.forcing)}
+    if equations.J:
+        blocks |= {"J": equations.J, "gamma": tuple((x,) for x in equations.gamma)}
+    return blocks
+
+
+@dataclass(frozen=True)
+class RateSlopes:
+    """Of the right-hand side.
+
+    Args:
+        blocks: A = d x'/d x and, where there are inputs, B = d x'/d inputs.
+        motion: the system behind a and lam; None where a is written out.
+        solves: the systems behind their slopes, one for each column that is not zero.
+    """
+
+    blocks: Blocks
+    motion: Solve | None = None
+    solves: tuple[Solve, ...] = ()
+
+
+def slopes_of(equations: EquationsOfMotion) -> RateSlopes:
+    """The slopes of x' = (N u + nu, a) in x and inputs.
+
+    From the matrix of the motion itself, factored once, with its pivots where ties close:
+
+        [[M, -J^T], [J, 0]] [da; dlam] = -d(M a - J^T lam - forcing, J a + gamma) at fixed a, lam
+
+    Where no ties close and it takes fewer operations, those of the accelerations written out.
+
+    Raises:
+        DerivationError: the mass matrix is singular whatever the state.
+    """
+    if equations.J and not equations.friction:
+        return _solved(equations)
+    a = equations.accelerations or factor_solution(equations.M, equations.forcing)
+    rates = (*kinematic_rates(equations), *a)
+    found = [RateSlopes({name: jacobian(rates, x) for name, x in _columns(equations).items()})]
+    if not equations.friction:
+        found.append(_written_out(equations, a) if is_short(equations) else _solved(equations))
+    return min(found, key=lambda s: program_of_blocks(s.blocks, equations, s.motion, s.solves).count.total)
+
+
+def _written_out(equations: EquationsOfMotion, a: ScalarRow) -> RateSlopes:
+    """M da = -d(M a - forcing) by one factorization, that of all columns."""
+    rates, (left, _) = kinematic_rates(equations), equations.residual
+    known, blocks = dict(zip(equations.symbols.a, a, strict=True)), {}
+    for name, states in _columns(equations).items():
+        changes = zip(*jacobian(left, states), strict=True)
+        slopes = [factor_solution(equations.M, [-y for y in substituted(column, known)]) for column in changes]
+        blocks[name] = (*jacobian(rates, states), *zip(*slopes, strict=True))
+    return RateSlopes(blocks)
+
+
+def _columns(equations: EquationsOfMotion) -> dict[str, tuple[Node, ...]]:
+    """What A and B are slopes in."""
+    symbols = equations.symbols
+    columns: dict[str, tuple[Node, ...]] = {"A": (*symbols.q, *symbols.u)}
+    return columns | ({"B": tuple(symbols.inputs.values())} if symbols.inputs else {})
+
+
+def _solved(equations: EquationsOfMotion) -> RateSlopes:
+    """By the `Solve` of the motion, and one of its right sides for each column that is not zero."""
+    symbols, rates, motion = equations.symbols, kinematic_rates(equations), bordered(equations)
+    left = dict(zip((*symbols.a, *symbols.lam), (x for rows in equations.residual for x in rows), strict=True))
+    solves: dict[Node, Solve] = {}
+    blocks: dict[str, ScalarRows] = {}
+    for name, states in _columns(equations).items():
+        changes = jacobian([left[y] for y in motion.unknowns], states)
+        solves |= {
+            x: _change(motion, x, column)
+            for x, column in zip(states, zip(*changes, strict=True), strict=True)
+            if not all(map(is_zero, column))
+        }
+        moved = {x: dict(zip(motion.unknowns, solves[x].unknowns, strict=True)) for x in states if x in solves}
+        below = (tuple(moved[x][a] if x in moved else 0 for x in states) for a in symbols.a)
+        blocks[name] = (*jacobian(rates, states), *below)
+    return RateSlopes(blocks, motion, tuple(solves.values()))
+
+
+def _change(motion: Solve, x: Node, change: ScalarRow) -> Solve:
+    """The system behind d(a, lam)/dx, by what x changes in that behind (a, lam)."""
+    unknowns = tuple(x.graph.symbol(f"{y.name} by {x.name}") for y in motion.unknowns)
+    return replace(motion, right=tuple(-y for y in change), unknowns=unknowns)
+
+
+def program_of_blocks(
+    blocks: Blocks, equations: EquationsOfMotion, solve: Solve | None = None, further: Sequence[Solve] = ()
+) -> Program:
+    """The entries as one program; the systems behind them as of `program_of`."""
+    return program_of(entries_of(blocks), equations.symbols, inputs=equations.inputs, solve=solve, further=further)
+
+
+def entries_of(blocks: Blocks) -> tuple[Scalar, ...]:
+    return tuple(x for rows in blocks.values() for row in rows for x in row)
+
+
+# -------- reactions -------------------------------------------------------------------------------------------
+# Reactions, equations of motion -> Program: every reaction that has a single value, along the motion.
+
+
+@dataclass(frozen=True)
+class ReactionFunction:
+    """`reactions(t, x, p, inputs=())` -> the reactions of the motion through a state, in the order of `names`.
+
+    Args:
+        names: as outputs ask for them.
+        function: the program in memory.
+    """
+
+    names: tuple[str, ...]
+    function: RightHandSide
+
+    def __call__(self, t: float, x: Any, p: Any, inputs: Sequence[float] = ()) -> np.ndarray:
+        """At one state [N, N m]."""
+        return self.function(t, x, p, inputs)
+
+    def many(self, t: Any, x: Any, p: Any, inputs: Any = ()) -> np.ndarray:
+        """At n states at once: n x names."""
+        return self.function.many(t, x, p, inputs)
+
+
+def determinate(reactions: Reactions) -> dict[str, Scalar]:
+    """{name as an output asks for it: value in q, u and the accelerations}; what has no single value is left out."""
+    found: dict[str, Scalar] = {}
+    for named in named_reactions(reactions.balance):
+        try:
+            found[named.name] = reactions.combined(named.combination, named.name) + named.given
+        except Indeterminate:
+            continue
+    return found
+
+
+def reactions_program(values: Mapping[str, Scalar], equations: EquationsOfMotion) -> tuple[tuple[str, ...], Program]:
+    """(names, the program of their values), the accelerations from the same equations as in the right-hand side.
+
+    Args:
+        values: as of `determinate`.
+    """
+    return tuple(values), program_in_motion(tuple(values.values()), equations)
+
+
+# -------- solved equations ------------------------------------------------------------------------------------
+# Equations of motion -> accelerations and multipliers as expressions of q, u and t.
+#
+# Where the equations are few by determinants, where freedoms are few over the independent accelerations, else by
+# factors.
+
+
+def accelerations_and_multipliers(equations: EquationsOfMotion) -> dict[Node, Scalar]:
+    """a and lam of M a = forcing + J^T lam, J a + gamma = 0, as expressions; redundant rows are left out, their lam 0.
+
+    Raises:
+        DerivationError: the mass matrix is singular whatever the state.
+    """
+    symbols = equations.system.symbols
+    if equations.friction and equations.accelerations is not None:
+        found = dict(zip(symbols.a, equations.accelerations, strict=True))
+        return found | _multipliers(equations, found)
+    if not equations.J:
+        return dict(zip(symbols.a, factor_solution(equations.M, equations.forcing), strict=True))
+    kept = regular_rows(equations.system)
+    if len(symbols.a) + len(kept) <= cramer.LARGEST_BLOCK:
+        return by_determinants(equations, kept)
+    if len(symbols.a) - len(kept) <= FEW:
+        with suppress(DerivationError):
+            return by_independent(equations, kept)
+    return _by_factors(equations, kept)
+
+
+def _by_factors(equations: EquationsOfMotion, kept: Sequence[int]) -> dict[Node, Scalar]:
+    symbols = equations.symbols
+    ((a, lam),) = by_factors(equations, kept)
+    multipliers = {symbols.lam[i]: value for i, value in zip(kept, lam, strict=True)}
+    return dict(zip(symbols.a, a, strict=True)) | {x: multipliers.get(x, 0) for x in symbols.lam}
+
+
+def _multipliers(equations: EquationsOfMotion, a: Mapping[Node, Scalar]) -> dict[Node, Scalar]:
+    """lam of J^T lam = M a - forcing with the accelerations known."""
+    system = equations.system
+    if not equations.J:
+        return {}
+    kept = regular_rows(system)
+    n = len(equations.M)
+    if n + len(kept) <= cramer.LARGEST_BLOCK:  # what divides by a pivot of J has no value where that vanishes
+        found = by_determinants(equations, kept)
+        return {x: found[x] for x in system.symbols.lam}
+    ((_, lam),) = by_factors(equations, kept)
+    found = {system.symbols.lam[m]: value for m, value in zip(kept, lam, strict=True)}
+    return {x: found.get(x, 0) for x in system.symbols.lam}

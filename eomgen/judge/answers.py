@@ -1,0 +1,199 @@
+"""Both sides as the solver of outputs answers them -> Verdict: instants, rest, small motions, structures.
+
+Sides are equal exactly, or in numbers at several sets of values of the parameters. A side that is a number alone speaks
+of the values of the file, and is right if it is rounded rightly.
+"""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Sequence
+from contextlib import suppress
+from dataclasses import replace
+from itertools import chain
+
+from eomgen.errors import DerivationError, EomgenError, ExpressionError
+from eomgen.judge.balances import Balances, asks_reactions
+from eomgen.judge.case import Case
+from eomgen.judge.comparison import Comparison, excess
+from eomgen.judge.decision import is_zero_everywhere
+from eomgen.judge.diagnosis import BELIEVED, PLAINEST
+from eomgen.judge.implied import Instant, implied_by, simplest_explanation
+from eomgen.judge.mends import Authored, Mends
+from eomgen.judge.reading import FREQUENCY, HandEquation
+from eomgen.judge.terms import LONG
+from eomgen.judge.verdict import RIGHT, UNDECIDED, WRONG, Cause, Verdict, causes_of
+from eomgen.model.replaced import with_values
+from eomgen.model.values import exact_parameters
+from eomgen.questions.answers import Answer
+from eomgen.symbolic.expression.formula import Expression
+from eomgen.symbolic.expression.node import Node, Scalar, is_zero
+from eomgen.symbolic.expression.text import parse
+from eomgen.symbolic.numeric.tolerances import COMPUTED
+from eomgen.symbolic.print.text import to_text
+
+SURE = PLAINEST + 0.5  # the cost of a mistake in a balance up to which nothing else is looked at
+
+
+def asked(case: Case, written: HandEquation, kind: str, at: Instant) -> Verdict:
+    """The verdict on an equation about an instant, rest, small motions or a structure."""
+    if unknown := case.unknown_names(written):
+        return of_unknown(case, written, kind, unknown)
+    if kind == "frequency" and FREQUENCY.match(written.left.text):
+        return _of_letter(case, written, at)
+    return _answered(case, written, kind, at)
+
+
+def _of_letter(case: Case, written: HandEquation, at: Instant) -> Verdict:
+    """Of a frequency by its letter: motions of the whole, whose frequency is 0, are not counted by everybody."""
+    ((_, call), *_) = written.left.code
+    number, whole = int(call.args[0].text), _motions_of_the_whole(case, written, at)
+    if not whole:
+        return _answered(case, written, "frequency", at)
+    told = "the motions of the whole, whose frequency is 0, not counted"
+    ways = [("", written), (told, _with_frequency(written, number + whole))]
+    verdicts = []
+    for up_to, each in ways if number > whole else reversed(ways):
+        verdicts.append(found := _answered(case, each, "frequency", at))
+        if found:
+            return replace(found, up_to=" and ".join(filter(None, (up_to, found.up_to))))
+    return verdicts[0]
+
+
+def _motions_of_the_whole(case: Case, written: HandEquation, at: Instant) -> int:
+    """How many frequencies are 0."""
+    for whole in range(len(case.system.symbols.u)):
+        each = _with_frequency(written, whole + 1)
+        (value, _) = case.sides(replace(each, right=each.left), at)
+        exact = case.exact(value)
+        if value.value != 0 if exact is None else not is_zero(exact):
+            return whole
+    return 0
+
+
+def _with_frequency(written: HandEquation, number: int) -> HandEquation:
+    """The same of another frequency."""
+    (kind, call), *rest = written.left.code
+    numbered = (kind, replace(call, args=(Expression.number(number),)))
+    return replace(written, left=Expression(written.left.text, (numbered, *rest), written.left.columns))
+
+
+def _answered(case: Case, written: HandEquation, kind: str, at: Instant) -> Verdict:
+    """The verdict by what the solver of outputs answers."""
+    try:
+        left, right = case.sides(written, at)
+    except (ExpressionError, DerivationError) as error:
+        clash, sides = case.clash(written), _one_by_one(case, written, at)
+        if sides is not None:
+            return _wrong(case, written, kind, at, *sides)
+        if clash:
+            return Verdict(written.given, kind, WRONG, causes=(Cause("unit", error.what, quantity="the dimensions"),))
+        raise
+    open_ = next((each for each in (left, right) if not each.answered), None)
+    if open_ is not None:
+        return Verdict(written.given, kind, UNDECIDED, reason=open_.message or "it has no value")
+    exact = [case.exact(each) for each in (left, right)]
+    if exact[0] is not None and exact[1] is not None and is_zero_everywhere(case.system, exact[0] - exact[1]).holds:
+        return Verdict(written.given, kind, RIGHT)
+    if left.value is not None and right.value is not None:
+        apart, rounded = abs(left.value - right.value), _rounding(written)
+        if rounded is not None and apart <= rounded:
+            return Verdict(written.given, kind, RIGHT, f"the rounding of {written.right.text}")
+        if apart <= COMPUTED * max(abs(left.value), abs(right.value), COMPUTED):
+            if not written.right.names - {"pi"} and not written.right.calls:
+                return Verdict(written.given, kind, RIGHT, "the values of the file")
+            return _by_numbers(case, written, kind, at)
+    return _wrong(case, written, kind, at, left, right)
+
+
+def of_unknown(case: Case, written: HandEquation, kind: str, unknown: Sequence[str]) -> Verdict:
+    """The verdict where names mean nothing: it is undecided."""
+    names = ", ".join(f"'{name}'" for name in unknown)
+    known = ", ".join(name for name in case.system.scope.names if "'" not in name and name not in ("t", "pi"))
+    reason = f"unknown {'name' if len(unknown) == 1 else 'names'} {names}; the model has {known}"
+    return Verdict(written.given, kind, UNDECIDED, reason=reason, unknown=tuple(unknown))
+
+
+def _one_by_one(case: Case, written: HandEquation, at: Instant) -> tuple[Answer, Answer] | None:
+    """The answer on the left, and on the right a formula of parameters that has no value; None: it is none."""
+    if written.right.calls or not written.right.names <= {*case.model.parameters, "pi"}:
+        return None
+    with suppress(EomgenError):
+        left = case.sides(replace(written, right=written.left), at)[0]
+        return left, Answer(unit=left.unit, exact=to_text(case.value(written.right)))
+    return None
+
+
+def _by_numbers(case: Case, written: HandEquation, kind: str, at: Instant) -> Verdict:
+    """Whether sides that are equal in numbers are so with other values of the parameters, too."""
+    tried = 0
+    parts = case.model.parameters  # those that are formulas of others follow them
+    own = {name: x for name, x in exact_parameters(case.model).items() if name in parts and not parts[name].formula}
+    for shares in ((1.07, 0.95, 1.02), (0.94, 1.05, 0.99)):
+        values = {n: float(x) * shares[k % 3] * (1 + k / 300) for k, (n, x) in enumerate(own.items())}
+        try:
+            left, right = Case(with_values(case.model, values).model, case.at_rest).sides(written, at)
+        except EomgenError:
+            continue
+        if left.value is None or right.value is None:
+            continue
+        if abs(left.value - right.value) > COMPUTED * max(abs(left.value), abs(right.value), COMPUTED):
+            text = "it holds with the values of the file alone, and not with others"
+            return Verdict(written.given, kind, WRONG, causes=(Cause("other", text, quantity="the value"),))
+        tried += 1
+    if not tried:
+        return Verdict(written.given, kind, UNDECIDED, reason="in numbers the sides are equal; no exact form says so")
+    return Verdict(written.given, kind, RIGHT, f"numbers, at {tried + 1} sets of values of the parameters")
+
+
+def _wrong(case: Case, written: HandEquation, kind: str, at: Instant, left: Answer, right: Answer) -> Verdict:
+    """Both sides have values, and these differ: by what the author put into the equations, or in the answer itself."""
+    difference = f"{left.value - right.value:.6g}" if left.value is not None and right.value is not None else ""
+    causes: tuple[Cause, ...] = ()
+    true = case.exact(left)
+    mends = [] if true is None or len(written.left.code) != 1 else [Mends(Authored(case, written, kind, true=true))]
+    place = _place(case, written, at) if kind == "statics" or asks_reactions(written) else None
+    balances = (
+        ()
+        if place is None
+        else tuple(Balances(case, written, finely, place) for finely in (False, True)[: 1 if place else 2])
+    )
+    implied = chain(balances[:1], implied_by(case, written, kind, at, left, right), balances[1:])
+    target, found = simplest_explanation(implied, mends, at_once=SURE if balances else BELIEVED)
+    clash = case.clash(written)
+    if found and not (clash and len(found[0].shares) > 1):
+        causes = causes_of(case, found, moving=False, rooted=isinstance(target, Comparison) and target.squared)
+    elif clash:
+        causes = (Cause("unit", clash, quantity="the dimensions"),)
+    true, author = (case.exact(each) for each in (left, right))
+    if true is not None and author is not None:
+        difference = excess(case, true - author) or difference
+    it_is = ""
+    if left.exact is not None and len(left.exact) <= LONG and len(written.left.code) == 1:
+        it_is = f"it is {written.left.text} = {left.exact}"
+    if not causes:
+        causes = (Cause("other", f"the left side minus the right side is {difference} there", quantity="the value"),)
+    if it_is:
+        causes = (*causes[:-1], replace(causes[-1], text=f"{causes[-1].text}; {it_is}"))
+    return Verdict(written.given, kind, WRONG, difference=difference, causes=causes)
+
+
+def _place(case: Case, written: HandEquation, at: Instant) -> dict[Node, Scalar] | None:
+    """Coordinates, speeds, accelerations at an instant; {} without them; None where they have no closed form."""
+    found = dict[Node, Scalar]()
+    for x in (*case.system.symbols.q, *case.system.symbols.u):
+        with suppress(EomgenError):
+            name = parse(x.name)
+            value = case.exact(case.sides(replace(written, left=name, right=name), at)[0])
+            found |= {} if value is None else {x: value}
+        if x not in found:
+            return None
+    with suppress(EomgenError):
+        return dict(case.phase.complete(found)) if found else {}
+    return None
+
+
+def _rounding(written: HandEquation) -> float | None:
+    """Half of the last digit of a side that is a decimal number; None where none is."""
+    found = re.fullmatch(r"\s*[-+]?\d+\.(\d+)\s*", written.right.text)
+    return None if found is None else 0.5000001 * 10.0 ** -len(found[1])

@@ -1,0 +1,328 @@
+"""Contributions -> what people make of them by mistake: each a change of the equations that can be named.
+
+A whole contribution (a body's rotation, a weight, a spring) with a wrong factor, several together, or terms of its
+derivatives; derived from a wrong place (`wrong_points`); with something else in the place of a name, an angle or a
+speed (`substitutions`); with one place of it changed, before it is derived (`edits`) or in its terms (`wrong_terms`).
+What an equation differs by is then sought among them (`diagnosis`): the lists hold no equation, only what may go wrong.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from contextlib import suppress
+from dataclasses import field, replace
+from functools import cached_property
+from itertools import chain, combinations
+
+from eomgen.errors import DerivationError
+from eomgen.judge.contributions import Contribution, Contributions, changes_of_places, substitutions_in
+from eomgen.judge.diagnosis import PIECES, PLAIN, SHARED, SHORTER, Corruption
+from eomgen.judge.terms import terms_of
+from eomgen.judge.wrong_terms import Term, WrongTerms
+from eomgen.mechanics.kinematics.inertia import HALF, body_energies, mass_properties
+from eomgen.mechanics.kinematics.motion import Motion, parent_of, velocity_of
+from eomgen.model.forces.load import BodyPoint
+from eomgen.records import dataclass
+from eomgen.symbolic.expression.derivative import (
+    depends_on,
+    depends_on_any,
+    gradient,
+    jacobian,
+    substituted,
+    symbols_of,
+)
+from eomgen.symbolic.expression.formula import over
+from eomgen.symbolic.expression.node import Node, Scalar, ScalarRow, is_zero
+from eomgen.symbolic.expression.spatial import Vector, dot, minus
+
+MOST = 3000  # corruptions of one equation
+MOST_SPEEDS = 12  # of a model whose products of speeds are looked at one by one
+GROUPS = ("all rotations", "the whole potential energy", "all that is applied")  # whose members are told
+MOST_TOLD = 3  # members of a group that are told
+WAYS = ((2, "twice"), (HALF, "half"), (4, "four times"), (HALF * HALF, "a quarter"))  # how far something moves
+MOST_NODES = 100_000  # of expressions that are made for them
+
+
+@dataclass(frozen=True)
+class Corruptions:
+    """What may be wrong in equations, energies or forces of a system.
+
+    Args:
+        parts: the contributions.
+        what: "motion": the equations of motion; "T", "V", "energy": T + V; "Q": the generalized forces.
+        of: only of these bodies or forces; () of all.
+        start: q and u there: of an energy what it has changed by since.
+    """
+
+    parts: Contributions
+    what: str
+    of: tuple[str, ...] = ()
+    start: Mapping[Node, Scalar] = field(default_factory=dict)
+
+    def rows(self, part: Contribution) -> ScalarRow:
+        """What a contribution adds to what is asked."""
+        operator = self.parts.operator
+        if self.what == "T":
+            return (operator.energy(part.T),)
+        if self.what == "V":
+            return (part.V,)
+        if self.what == "energy":
+            energy = operator.energy(part.T) + part.V
+            return (energy - substituted((energy,), self.start)[0] if self.start else energy,)
+        if self.what == "Q":
+            return tuple(-x for x in operator.rows(replace(part, T=0)))
+        return operator.rows(part)
+
+    @cached_property
+    def all(self) -> tuple[Corruption, ...]:
+        """All of them that change something, the most believable first."""
+        found: list[Corruption] = []
+        graph = self.parts.system.scope.graph
+        most = len(graph) + MOST_NODES
+        for each in self._sought():
+            if not all(map(is_zero, each.rows)):
+                found.append(each)
+            if len(found) >= MOST or len(graph) > most:
+                break
+        return tuple(sorted(found, key=lambda each: each.rank))
+
+    @cached_property
+    def whole(self) -> tuple[Contribution, ...]:
+        """The contributions that matter here."""
+        known = (part for part in self.parts.elementary if self.what != "V" or part.kind != "constant")
+        mine = (part for part in known if not self.of or {part.body, part.force} & {*self.of})
+        return tuple(part for part in mine if not all(map(is_zero, self.rows(part))))
+
+    def _sought(self) -> Iterator[Corruption]:
+        alike: dict[tuple[str, ScalarRow], list[Contribution]] = {}
+        for part in self.whole:
+            alike.setdefault((part.kind, self.parts.edits.written(self.rows(part))), []).append(part)
+        for members in alike.values():
+            for part in members:  # of several that do the same all are rather wrong than one
+                rank, squares = 2 * SHORTER if len(members) > 1 else PLAIN, not is_zero(part.T)
+                yield Corruption(part.name, "factor", self.rows(part), rank, part.body, part.force, squares=squares)
+            if len(members) > 1:
+                name, squares = " and ".join(part.name for part in members), not is_zero(members[0].T)
+                yield Corruption(name, "factor", self._sum(members), SHORTER, squares=squares)
+        yield from self._about_axes()
+        yield from self._ways()
+        yield from self._together()
+        if self.what == "motion":
+            yield from self._pieces()
+        if self.what in ("motion", "T", "energy"):
+            yield from self._products()
+        for change in chain(changes_of_places(self.parts, self.whole), substitutions_in(self.parts, self.whole)):
+            if self.what == "T" and is_zero(change.part.T):
+                continue
+            rows = self.rows(change.part)
+            yield Corruption(
+                change.name, change.kind, rows, change.rank, change.part.body, change.part.force, False, change.text
+            )
+        for part in self.whole if self.what != "energy" else ():
+            yield from self._wrong_terms(part).in_rows(self.rows(part))
+        for part in self.whole:
+            yield from self._edited(part)
+
+    # -- a formula with a mistake in it --------------------------------------------------------------
+
+    @cached_property
+    def terms(self) -> frozenset[Term]:
+        """(row, term) of every contribution, multiplied out."""
+        if self.what == "energy":
+            return frozenset()  # what it has changed by since the start is no sum of terms changed one by one
+        positive = frozenset(self.parts.edits.positive)
+        return frozenset(
+            (k, term)
+            for part in self.whole
+            for k, row in enumerate(self.rows(part))
+            for term in terms_of(row, positive)
+        )
+
+    def _wrong_terms(self, part: Contribution) -> WrongTerms:
+        symbols = self.parts.system.symbols
+        parameters, rates = tuple(symbols.parameters.values()), (*symbols.u, *symbols.a)
+        return WrongTerms(self.parts.edits, parameters, rates, part.name, part.body, part.force)
+
+    def _edited(self, part: Contribution) -> Iterator[Corruption]:
+        """A contribution with one place of its energy or its forces changed, carried through the derivation."""
+        edits = self.parts.edits
+        forms: list[tuple[ScalarRow, Callable[[ScalarRow], Contribution]]] = [
+            ((part.T,), lambda x: replace(part, T=x[0], V=0, Q=(), row=None)),
+            ((part.V,), lambda x: replace(part, T=0, V=x[0], Q=(), row=None)),
+            (part.Q, lambda x: replace(part, T=0, V=0, Q=x, row=None)),
+            (part.row or (), lambda x: replace(part, row=x)),
+        ]
+        for formulas, changed in forms:
+            for each in edits.of(formulas):
+                by = tuple(x - y for x, y in zip(each.to, formulas, strict=True))
+                text = f"in {part.name} {each.text}"
+                with suppress(DerivationError):  # it has no value at the start
+                    rows = self.rows(changed(by))
+                    yield Corruption(part.name, each.kind, rows, each.rank, part.body, part.force, False, text)
+
+    def _ways(self) -> Iterator[Corruption]:
+        """Bodies that move on one way together, twice or half as far: T by the square, what acts on them once."""
+        motion, groups = self.parts.operator.base.motion, dict[Vector, list[str]]()
+        for link in motion.links:
+            v = velocity_of(motion, (link.name, mass_properties(motion.scope, link.name).com))
+            steady = not depends_on_any(
+                [x for row in jacobian(v, motion.scope.symbols.u) for x in row], motion.scope.symbols.q
+            )
+            if steady and not all(map(is_zero, v)):
+                groups.setdefault(v, []).append(link.name)
+        for bodies in groups.values():
+            straight = [part for part in self.whole if part.body in bodies and part.kind in ("translation", "weight")]
+            turning = [part for part in self.whole if part.body in bodies and part.kind == "rotation"]
+            for mine in (straight, [*straight, *turning]) if turning else (straight,):
+                yield from self._far(bodies, mine)
+
+    def _far(self, bodies: Sequence[str], mine: Sequence[Contribution]) -> Iterator[Corruption]:
+        """Bodies that move twice or half as far, in all that is given of them, and in one kind of it."""
+        kinds = [part.kind for part in mine]
+        rotate = " and turn" if "rotation" in kinds else ""
+        for factor, how in WAYS if {"translation", "weight"} <= {*kinds} else ():
+            parts = [replace(part, T=(factor * factor - 1) * part.T, V=(factor - 1) * part.V) for part in mine]
+            text = f"{' and '.join(bodies)} would move{rotate} {how} as far as meant, in the velocity and in the height"
+            rows = self._sum(parts)
+            yield Corruption(f"how far {bodies[0]} moves", "factor", rows, SHARED, bodies[0], open=False, text=text)
+        for kind in ("translation", "weight") if not rotate else ():
+            some = [part for part in mine if part.kind == kind]
+            if len(some) > 1:
+                name, squares = " and ".join(part.name for part in some), kind == "translation"
+                yield Corruption(name, "factor", self._sum(some), SHARED, squares=squares)
+
+    def _about_axes(self) -> Iterator[Corruption]:
+        """The rotations of bodies in space about their principal axes, those with equal moments together."""
+        motion, mine = (
+            self.parts.operator.base.motion,
+            {part.body: part for part in self.whole if part.kind == "rotation"},
+        )
+        for energy in body_energies(motion) if mine and motion.scope.model.space == "space" else ():
+            I = mass_properties(motion.scope, energy.body).I
+            moments = [I[k][k] for k in range(3)]
+            if energy.body not in mine or any(not is_zero(I[i][j]) for i in range(3) for j in range(i)):
+                continue
+            for moment in dict.fromkeys(moments):
+                axes = [k for k in range(3) if moments[k] == moment]
+                T = HALF * moment * sum((energy.spin[k] * energy.spin[k] for k in axes), start=0)
+                if len(axes) < 3 and not is_zero(T):
+                    told = " and ".join("xyz"[k] for k in axes)
+                    name = f"the rotation of {energy.body} about its {told}"
+                    row = self.rows(replace(mine[energy.body], T=T))
+                    yield Corruption(name, "factor", row, SHARED, energy.body, squares=True)
+
+    # -- contributions together --------------------------------------------------------------------
+
+    def _together(self) -> Iterator[Corruption]:
+        groups: dict[tuple[str, str, str], list[Contribution]] = {}
+        for part in self.whole:
+            kinetic = not is_zero(part.T)
+            if kinetic:
+                groups.setdefault((f"the kinetic energy of {part.body}", part.body, ""), []).append(part)
+                groups.setdefault(("the whole kinetic energy", "", ""), []).append(part)
+            elif part.force:
+                groups.setdefault((f"the force {part.force}", "", part.force), []).append(part)
+            if not kinetic and not is_zero(part.V):
+                groups.setdefault(("the whole potential energy", "", ""), []).append(part)
+            if not kinetic:
+                groups.setdefault(("all that is applied", "", ""), []).append(part)
+            if part.kind == "rotation":
+                groups.setdefault(("all rotations", "", ""), []).append(part)
+            if part.body:
+                groups.setdefault((f"all that belongs to {part.body}", part.body, ""), []).append(part)
+        seen: set[tuple[str, ...]] = set()
+        for (name, body, force), members in groups.items():
+            key = tuple(part.name for part in members)
+            if len(members) > 1 and key not in seen:
+                seen.add(key)
+                whose = ", ".join(part.body if part.kind == "rotation" else part.name for part in members)
+                told = f"{name} ({whose})" if name in GROUPS and len(members) <= MOST_TOLD else name
+                squares = all(not is_zero(part.T) for part in members)
+                rows = self._sum(members)
+                yield Corruption(told, "factor", rows, SHARED, body, force, squares=squares)
+                yield from self._weights_for_masses(name, members, rows)
+
+    def _weights_for_masses(self, name: str, members: Sequence[Contribution], rows: ScalarRow) -> Iterator[Corruption]:
+        """m g where m is meant in all that is moved, m where m g is meant in all weights."""
+        moving = all(not is_zero(part.T) for part in members)
+        falling = [x for x in self.parts.edits.also if str(self.parts.dimensions.get(x.name)) == "m/s^2"]
+        for g in falling if moving or all(part.kind == "weight" for part in members) else ():
+            by = tuple((row * g if moving else over(row, g)) - row for row in rows)
+            text = f"weights stand for masses: a factor {g.name} is too many"
+            text = text if moving else f"masses stand for weights: a factor {g.name} is missing"
+            yield Corruption(name, "factor", by, SHARED, open=False, text=f"in {name} {text}")
+
+    def _sum(self, members: Sequence[Contribution]) -> ScalarRow:
+        rows = [self.rows(part) for part in members]
+        return tuple(sum(column, start=0) for column in zip(*rows, strict=True))
+
+    # -- terms of the derivatives --------------------------------------------------------------------
+
+    @cached_property
+    def _kinetic(self) -> tuple[Contribution, ...]:
+        return tuple(part for part in self.whole if not is_zero(part.T))
+
+    def _pieces(self) -> Iterator[Corruption]:
+        """Accelerations, products of speeds and dT/dq of every kinetic energy."""
+        operator, u, a = self.parts.operator, self.parts.system.symbols.u, self.parts.system.symbols.a
+        sums = [(part, part.T) for part in self._kinetic]
+        if len(sums) > 1:
+            whole = Contribution("the whole kinetic energy", T=sum((part.T for part in self._kinetic), start=0))
+            sums.append((whole, whole.T))
+        for part, T in sums:
+            accelerated, carried, held = operator.inertia(T)
+            of = part.name.removeprefix("the ")
+            moving = [x + y for x, y in zip(carried, held, strict=True)]
+            slopes = [gradient(value, a) for value in accelerated]
+            for k, x in enumerate(a):
+                row = tuple(each[k] * x for each in slopes)
+                name = f"the term with {x.name} of the {of}"
+                yield Corruption(name, "factor", row, PIECES, part.body, squares=True)
+            first = [gradient(value, u) for value in moving] if len(u) <= MOST_SPEEDS else []
+            for i, j in [*combinations(range(len(u)), 2), *((k, k) for k in range(len(u)))] if first else ():
+                row = tuple(gradient(row[i], (u[j],))[0] * u[i] * u[j] * (1 if i != j else HALF) for row in first)
+                name = f"{u[i].name}*{u[j].name}" if i != j else f"{u[i].name}^2"
+                kind = "coriolis" if i != j else "factor"
+                title = f"the Coriolis term with {name}" if i != j else f"the term with {name}"
+                yield Corruption(f"{title} of the {of}", kind, row, PIECES, part.body)
+            mixed = len(u) > 1 and any(depends_on(x, (v,)) for row in first for x, v in zip(row, u, strict=True))
+            kind = "coriolis" if mixed else "factor"
+            yield Corruption(f"-dT/dq of the {of}", "factor", held, PIECES + SHORTER, part.body)
+            name = f"what d/dt dT/dq' of the {of} holds beside accelerations"
+            yield Corruption(name, kind, carried, PIECES + SHORTER, part.body)
+            yield Corruption(f"all products of speeds in the {of}", kind, tuple(moving), PIECES + SHORTER, part.body)
+
+    def _products(self) -> Iterator[Corruption]:
+        """In a kinetic energy the product of two speeds: what is lost where only their squares are added."""
+        for part in self._kinetic:
+            held = symbols_of((part.T,))
+            moving = [u for u in self.parts.operator.base.symbols.u if u in held]
+            for u, w in combinations(moving, 2) if len(moving) <= MOST_SPEEDS else ():
+                mixed = gradient(gradient(part.T, (u,))[0], (w,))[0] * u * w
+                name = f"the product {u.name}*{w.name} in the square of the velocity of {part.body}"
+                row = self.rows(replace(part, T=mixed, V=0, Q=(), row=None))
+                yield Corruption(name, "factor", row, SHARED, part.body)
+            if part.kind == "translation" and part.body in self.parts.operator.base.motion.index:
+                yield from self._relative(part)
+
+    def _relative(self, part: Contribution) -> Iterator[Corruption]:
+        """The product of the velocity of a point and of that beside it: m v_P . (v_C - v_P)."""
+        motion = self.parts.operator.base.motion
+        mass = mass_properties(motion.scope, part.body)
+        v, seen = velocity_of(motion, (part.body, mass.com)), list[Vector]()
+        above = parent_of(motion.scope.model, part.body)
+        places = [(part.body, r) for r in motion.points[part.body].values()]
+        places += [(above, r) for r in motion.points[above].values()] if above is not None else []
+        for place in places:
+            w = velocity_of(motion, place)
+            product = mass.m * dot(w, minus(v, w))
+            if w not in seen and not is_zero(product):
+                seen.append(w)
+                name = f"the product of the velocities of {_named(motion, place)} and of {part.body} relative to it"
+                row = self.rows(replace(part, T=product, V=0, Q=(), row=None))
+                yield Corruption(name, "factor", row, SHARED, part.body)
+
+
+def _named(motion: Motion, place: BodyPoint) -> str:
+    """The name of a point of a body."""
+    return next(f"{place[0]}.{name}" for name, r in motion.points[place[0] or ""].items() if r == place[1])

@@ -1,0 +1,576 @@
+"""Model -> Freedom: the degrees of freedom by rank; what rows of velocities really are."""
+
+from __future__ import annotations
+
+from collections.abc import Container, Sequence
+from itertools import combinations_with_replacement
+from typing import Any
+
+import numpy as np
+
+from eomgen.errors import DerivationError, MissingValues, NotYet
+from eomgen.mechanics.constraints.closure import generic_state, rows_where_closed
+from eomgen.mechanics.constraints.elimination import dependent_coordinates, elimination_of
+from eomgen.mechanics.constraints.rows import Row, Ties, holds_identically, ties_of
+from eomgen.mechanics.kinematics.motion import GROUND, BodyLink, Motion, motion_of
+from eomgen.mechanics.kinematics.scene import ContactModes, SystemScene
+from eomgen.mechanics.kinematics.symbols import primitive, scope_of
+from eomgen.model.reader import ModelOrPath, model_at
+from eomgen.model.replaced import Values
+from eomgen.model.unbuilt import unbuilt_ties
+from eomgen.records import dataclass
+from eomgen.symbolic.exact.normal_form import simplest
+from eomgen.symbolic.expression.derivative import depends_on, gradient, jacobian, tangent
+from eomgen.symbolic.expression.formula import over
+from eomgen.symbolic.expression.node import Node, Scalar, State, is_zero
+from eomgen.symbolic.expression.spatial import Vector
+from eomgen.symbolic.numeric.dense import closed_entries, independent_rows
+from eomgen.symbolic.numeric.evaluation import NoValue, evaluate, fifty_digits, floats_of
+from eomgen.symbolic.numeric.tolerances import CERTAIN_AT_50, RANK, RANK_NEARBY, SHARE
+from eomgen.symbolic.numeric.work import Work
+from eomgen.symbolic.print.text import text_size
+from eomgen.symbolic.solve.linear import LinearSystem, Pivots, general_solution
+
+# -------- freedom ---------------------------------------------------------------------------------------------
+# Model -> Freedom: the degrees of freedom by rank, beside the count by formula; redundant ties by name.
+#
+# By rank:     f = nu - rank J  at a generic configuration in which the ties hold; of a quaternion's four rates its
+# norm
+#              takes one.
+# By formula:  f = 3 Nb + 2 Np - sum of the components of joints, ties and given motions
+#              (in space 6 Nb + 3 Np); it counts redundant components too, and then says too little.
+
+
+LONGER = 1e3  # times the length of another row: of another kind, as force and couple at a mechanism of micrometres
+TwistColumns = tuple[tuple[Vector, Vector], ...]
+RowName = tuple[str, int]  # of a tie, from 1
+
+
+@dataclass(frozen=True)
+class Redundant:
+    """A row that holds what others hold already.
+
+    Args:
+        tie, number: the row, from 1.
+        others: the other ties from which it follows.
+        by_joints: whether joints alone hold it, and no tie.
+    """
+
+    tie: str
+    number: int
+    others: tuple[str, ...]
+    by_joints: bool = False
+
+
+@dataclass(frozen=True)
+class Freedom:
+    """Degrees of freedom of a model.
+
+    Args:
+        by_rank: nu - rank J, None where it was not counted.
+        by_formula: 3 Nb + 2 Np - the components, None where it was not counted.
+        formula: the same as text.
+        redundant: closing rows that follow from those declared before them; then rows that only react, and hold what
+            joints or other ties hold already.
+        identical_rows: what the coordinates satisfy by themselves: it only carries a reaction.
+        closing_rows: the others.
+        not_counted: why not, or "".
+        integrability: what the rows of velocities alone are, None where there are none; freedoms in position may be
+            more than those in velocity.
+    """
+
+    by_rank: int | None = None
+    by_formula: int | None = None
+    formula: str = ""
+    redundant: tuple[Redundant, ...] = ()
+    identical_rows: tuple[RowName, ...] = ()
+    closing_rows: tuple[RowName, ...] = ()
+    not_counted: str = ""
+    integrability: Integrability | None = None
+
+    @property
+    def identical(self) -> tuple[str, ...]:
+        """The ties with rows that only carry a reaction."""
+        return tuple(dict.fromkeys(tie for tie, _ in self.identical_rows))
+
+    @property
+    def closing(self) -> tuple[str, ...]:
+        """The ties with rows that close."""
+        return tuple(dict.fromkeys(tie for tie, _ in self.closing_rows))
+
+
+def freedom_of(
+    model: ModelOrPath,
+    modes: ContactModes | None = None,
+    *,
+    parameters: Values | None = None,
+    start: Values | None = None,
+) -> Freedom:
+    """The degrees of freedom of a model, where its kinds are built; ties that move dependent coordinates close.
+
+    Args:
+        modes: how contacts are that can end; what is not named is closed.
+        parameters, start: values that replace the model's, each as `model_at` takes it.
+    Raises:
+        DerivationError: a tie that cannot hold; a dependent coordinate that no tie determines.
+    """
+    model = model_at(model, parameters, start)
+    waiting = dict.fromkeys(kind for _, kind in unbuilt_ties(model))
+    if waiting:
+        return Freedom(not_counted=", ".join(waiting))
+    try:
+        ties = ties_of(motion_of(scope_of(model)), modes=modes)
+    except NotYet as error:
+        return Freedom(not_counted=error.what)
+    if dependent_coordinates(ties.motion.scope):
+        elimination_of(ties)
+    count, formula = counted(ties)
+    identical = tuple((row.tie, row.number) for row in ties.rows if row.identical)
+    closing = tuple((row.tie, row.number) for row in ties.closing)
+    try:
+        state = generic_state(ties)
+        redundant, integrability = redundant_rows(ties, state), integrability_of(ties)
+        shared = rows_held_twice(ties, redundant, state)
+    except (DerivationError, MissingValues) as error:
+        return Freedom(None, count, formula, (), identical, closing, error.what)
+    scope = ties.motion.scope
+    speeds = len(scope.symbols.u) - len(scope.quaternions)
+    by_rank = speeds - len(ties.closing) + len(redundant)
+    return Freedom(by_rank, count, formula, (*redundant, *shared), identical, closing, integrability=integrability)
+
+
+# -- by formula ------------------------------------------------------------------------------------
+
+
+def counted(ties: Ties) -> tuple[int, str]:
+    """3 Nb + 2 Np - sum of components (in space 6 Nb + 3 Np), as a number and as text."""
+    motion = ties.motion
+    of_body, of_particle = (3, 2) if motion.scope.model.space == "plane" else (6, 3)
+    particles = [link for link in motion.links if is_particle(motion, link)]
+    bodies = [link for link in motion.links if link not in particles]
+    free = [(of_body, len(bodies), "bodies"), (of_particle, len(particles), "particles")]
+    joints = sum(_components(ties, link, of_body, link.S) for link in bodies)
+    joints += sum(_components(ties, link, of_particle, _sliding(link.S)) for link in particles)
+    driven = sum(coordinate.driven for coordinate in motion.scope.model.coordinates.values())
+    taken = [(joints, "joints"), (len(ties.rows), "ties"), (driven, "given motions")]
+    total = sum(each * many for each, many, _ in free) - sum(value for value, _ in taken)
+    text = " + ".join(f"{each}*{many} ({what})" for each, many, what in free if many)
+    return total, text + "".join(f" - {value} ({what})" for value, what in taken if value)
+
+
+def is_particle(motion: Motion, link: BodyLink) -> bool:
+    """A point mass that its joint does not turn."""
+    shape = motion.scope.model.bodies[link.name].shape
+    turns = any(not is_zero(x) for w, _ in _ways(motion, link) for x in w)
+    return shape is not None and shape.is_point and (is_placed(link) or not turns)
+
+
+def _components(ties: Ties, link: BodyLink, free: int, columns: TwistColumns) -> int:
+    """How many components of motion the joint takes; what is placed, or has no joint, keeps all.
+
+    A variable that is a constant (`angle = 0`) is one more, unless a tie that this satisfies is counted for it.
+    """
+    if is_placed(link):
+        return 0
+    constant = sum(column not in _ways(ties.motion, link) for column in columns)
+    satisfied = sum(row.identical and link.name in dict(row.wrenches) for row in ties.rows)
+    return free - len(columns) + max(0, constant - satisfied)
+
+
+def _ways(motion: Motion, link: BodyLink) -> TwistColumns:
+    """The columns of S along which the joint moves."""
+    if len(link.S) != len(link.s):  # of a quaternion
+        return link.S
+    return tuple(column for column, s in zip(link.S, link.s, strict=True) if motion.moves((s,)))
+
+
+def _sliding(columns: TwistColumns) -> TwistColumns:
+    """Those that turn nothing."""
+    return tuple((w, v) for w, v in columns if all(is_zero(x) for x in w))
+
+
+# -- by rank ---------------------------------------------------------------------------------------
+
+
+def freedoms(ties: Ties, state: State | None = None) -> int:
+    """nu - rank J; the state and the errors are those of `redundant_rows`."""
+    scope = ties.motion.scope
+    turning = sum(f"{four[0].name}'" in {u.name for u in scope.symbols.u} for four in scope.quaternions)
+    return len(scope.symbols.u) - turning - rank_of_ties(ties, state)
+
+
+def rank_of_ties(ties: Ties, state: State | None = None) -> int:
+    """rank J, how many closing rows are independent; the state and the errors are those of `redundant_rows`."""
+    return len(ties.closing) - len(redundant_rows(ties, state))
+
+
+def redundant_rows(ties: Ties, state: State | None = None) -> tuple[Redundant, ...]:
+    """The closing rows that follow from those before them, at a generic configuration in which the ties hold.
+
+    Args:
+        state: such a configuration, where one is known already.
+    Raises:
+        MissingValues: the ties cannot be closed without values for the parameters.
+        DerivationError: they do not close near the start.
+    """
+    closing = ties.closing
+    if not closing:
+        return ()
+    J = rows_where_closed(ties, state or generic_state(ties))
+    kept = independent_rows(J, RANK_NEARBY)
+    return tuple(
+        Redundant(row.tie, row.number, _others(row.tie, J[i], [(closing[k].tie, J[k]) for k in kept if k < i]))
+        for i, row in enumerate(closing)
+        if i not in kept
+    )
+
+
+def rows_alike(ties: Ties) -> tuple[int, ...]:
+    """Of each closing row a number that it has together with those with which it shares what it holds.
+
+    Which of them is the one that follows may change along a motion: d cos q = 0 and d sin q = 0 hold d in turns. Rows
+    are of one kind where their lengths are, at a generic state, within LONGER of one another.
+    """
+    own = tuple(range(len(ties.closing)))
+    if len(own) < 2:
+        return own
+    try:
+        J = rows_where_closed(ties, generic_state(ties))
+    except (DerivationError, MissingValues, NoValue):
+        return own
+    kept, lengths, found = independent_rows(J, RANK_NEARBY), np.linalg.norm(J, axis=1), list(own)
+    for i in own:
+        if i in kept or not lengths[i]:
+            continue
+        shares = np.linalg.lstsq(J[kept].T, J[i], rcond=None)[0] * lengths[kept] / lengths[i]
+        near = (lengths[kept] < LONGER * lengths[i]) & (LONGER * lengths[kept] > lengths[i])
+        sharing = {found[k] for k, share, one in zip(kept, shares, near, strict=True) if one and abs(share) > SHARE}
+        found = [min(sharing | {i}) if number in sharing | {i} else number for number in found]
+    return tuple(found)
+
+
+def rows_held_twice(ties: Ties, redundant: Sequence[Redundant], state: State) -> tuple[Redundant, ...]:
+    """The rows that the coordinates satisfy and that joints, closing rows or such rows before them hold already.
+
+    W^T xi of such a row depends on those of the others in all ways that the joints leave the bodies: where it carries
+    a reaction, they share it.
+
+    Args:
+        redundant: closing rows that follow from others.
+        state: a generic configuration in which the ties hold.
+    """
+    dropped = {(row.tie, row.number) for row in redundant}
+    closing = [row for row in ties.closing if row.wrenches and (row.tie, row.number) not in dropped]
+    reacting = [row for row in ties.rows if row.identical and row.wrenches and is_zero(row.direct)]
+    if not reacting:
+        return ()
+    rows = [*closing, *reacting]
+    touched = {body for row in reacting for body, _ in row.wrenches}
+    lines = closed_entries(powers_of_rows(ties.motion, rows, state, touched))
+    kept = independent_rows(lines, RANK_NEARBY)
+    found = []
+    for i in range(len(closing), len(rows)):
+        if i not in kept:
+            before = [(rows[k].tie, lines[k]) for k in kept if k < i]
+            alone = not np.any(lines[i])
+            found.append(
+                Redundant(rows[i].tie, rows[i].number, () if alone else _others(rows[i].tie, lines[i], before), alone)
+            )
+    return tuple(found)
+
+
+def _others(tie: str, line: np.ndarray, kept: list[tuple[str, np.ndarray]]) -> tuple[str, ...]:
+    """The ties that make up a redundant row."""
+    if not kept:
+        return ()
+    shares = np.linalg.lstsq(np.array([row for _, row in kept]).T, line, rcond=None)[0]
+    names = (name for (name, _), share in zip(kept, shares, strict=True) if abs(share) > SHARE)
+    return tuple(name for name in dict.fromkeys(names) if name != tie)
+
+
+# -------- ways of bodies --------------------------------------------------------------------------------------
+# Motion, a state -> the twists of every body for each way in which the joints alone let it move, in numbers.
+#
+#     xi_i = Ad(parent -> i) xi_parent + S_i w_i,   w_i free;   of a body that is placed, all six of xi_i free
+#
+# Coordinates that move several joints together, and ties, are left out of it: a row of a tie whose wrenches do no
+# work on any of these ways is held by joints alone.
+
+
+def powers_of_rows(motion: Motion, rows: Sequence[Row], state: State, loose: Container[str]) -> np.ndarray:
+    """The power of a unit of each row on each way, rows x ways.
+
+    Args:
+        loose: bodies whose joints are counted with the variables that are constants in them.
+    """
+    B = _twists(motion, state, loose)
+    found = np.zeros((len(rows), B.shape[2]))
+    for i, row in enumerate(rows):
+        for body, W in row.wrenches:
+            found[i] += _numbers((*W.tau, *W.f), state) @ B[motion.index[body]]
+    return found
+
+
+def _twists(motion: Motion, state: State, loose: Container[str]) -> np.ndarray:
+    """Bodies x 6 x ways: (w, v) of each body's origin, body axes."""
+    own = [_own_ways(motion, link, state, loose) for link in motion.links]
+    total, first = sum(columns.shape[1] for columns in own), 0
+    B = np.zeros((len(own), 6, total))
+    for i, (link, columns) in enumerate(zip(motion.links, own, strict=True)):
+        if link.parent != GROUND:
+            B[i] = _carried(link, state) @ B[link.parent]
+        B[i, :, first : first + columns.shape[1]] += columns
+        first += columns.shape[1]
+    return B
+
+
+def _own_ways(motion: Motion, link: BodyLink, state: State, loose: Container[str]) -> np.ndarray:
+    if is_placed(link):
+        return np.eye(6) if motion.scope.model.space == "space" else np.eye(6)[:, 2:5]
+    driven = [q for q in motion.scope.symbols.q if motion.scope.model.coordinates[q.name].driven]
+    free = [q for q in motion.scope.symbols.q if q not in driven]
+    moving = len(link.S) != len(link.s) or None
+    kept = [
+        column
+        for k, column in enumerate(link.S)
+        if moving or depends_on(link.s[k], free) or (link.name in loose and not motion.moves((link.s[k],)))
+    ]
+    S = _numbers([x for w, v in kept for x in (*w, *v)], state).reshape(-1, 6).T
+    return _shifted(-_numbers(link.point, state)) @ S if kept else np.zeros((6, 0))
+
+
+def is_placed(link: BodyLink) -> bool:
+    """Whether it stands where it is said to, and no joint holds it there."""
+    return link.joint is None or not link.joint.carries_reaction
+
+
+def _carried(link: BodyLink, state: State) -> np.ndarray:
+    """From the parent's twist to the child's that moves with it, at the child's origin."""
+    R = _numbers([x for row in link.local.R for x in row], state).reshape(3, 3).T
+    turned = np.block([[R, np.zeros((3, 3))], [np.zeros((3, 3)), R]])
+    found: np.ndarray = _shifted(-_numbers(link.point, state)) @ turned @ _shifted(_numbers(link.local.p, state))
+    return found
+
+
+def _shifted(r: np.ndarray) -> np.ndarray:
+    """(w, v) -> (w, v + w x r)"""
+    x, y, z = r
+    return np.block([[np.eye(3), np.zeros((3, 3))], [np.array([[0, z, -y], [-z, 0, x], [y, -x, 0]]), np.eye(3)]])
+
+
+def _numbers(scalars: Sequence[Scalar], state: State) -> np.ndarray:
+    return np.array(floats_of(evaluate(tuple(scalars), state, fifty_digits())))
+
+
+# -------- integrability ---------------------------------------------------------------------------------------
+# Ties -> what the rows of velocities alone really are: holonomic or not, and how many freedoms there are in position.
+#
+# Over y = (q, t) a row J q' + sigma = 0 is a form w = J dq + sigma dt; rows with a gap, the norms of quaternions and
+# driven coordinates are others, each of them integrable. By Frobenius a row can be integrated together with these
+# where
+#
+#     dw(X, Y) = X^T (dw_b/dy_a - dw_a/dy_b) Y = 0   for all X, Y that all of them allow.
+#
+# What velocities reach is spanned by the fields X and their Lie brackets [X, Y] = (dY/dy) X - (dX/dy) Y, taken until
+# nothing new comes: its dimension, less one for t, counts the freedoms in position (Rashevskii, Chow). Source: Bloch,
+# Nonholonomic Mechanics and Control, 2nd ed., sections 2.2 and 4.1.
+
+
+LONGEST = 400  # characters of a form that is integrated in closed form
+
+DifferentialForm = tuple[Scalar, ...]
+
+
+@dataclass(frozen=True)
+class VelocityRow:
+    """A row of velocities alone.
+
+    Args:
+        tie, number: the row, from 1.
+        integrable: it says the same as a gap.
+        integral: phi(q, t), 0 at the start, that it keeps at zero, where it was found in closed form; else None.
+    """
+
+    tie: str
+    number: int
+    integrable: bool
+    integral: Scalar | None = None
+
+
+@dataclass(frozen=True)
+class Integrability:
+    """What the rows of velocities alone are.
+
+    Args:
+        rows: each of them.
+        positions: the freedoms in position; those in velocity are fewer where rows are not integrable.
+    """
+
+    rows: tuple[VelocityRow, ...]
+    positions: int
+
+
+@dataclass(frozen=True)
+class _Forms:
+    """The rows as forms over y = (q, t).
+
+    Args:
+        y: the coordinates, then t.
+        held: of the rows that are integrable by what they are.
+        moving: (row, form) of those of velocities alone.
+        state: a generic one in which the ties hold.
+    """
+
+    ties: Ties
+    y: tuple[Node, ...]
+    held: tuple[DifferentialForm, ...]
+    moving: tuple[tuple[Row, DifferentialForm], ...]
+    state: State
+
+    def values(self, scalars: Sequence[Scalar]) -> list[Any]:
+        return evaluate(scalars, self.state, fifty_digits())
+
+    def numbers(self, scalars: Sequence[Scalar]) -> np.ndarray:
+        return np.array([float(x) for x in self.values(scalars)])
+
+    def allowed(self, forms: Sequence[DifferentialForm]) -> np.ndarray:
+        """A basis of what these forms and the held ones allow, one in each column."""
+        rows = [self.numbers(form) for form in (*self.held, *forms)]
+        A = np.array([row / (np.linalg.norm(row) or 1) for row in rows])
+        _, sizes, V = np.linalg.svd(A)
+        return V[int(np.sum(sizes > RANK)) :].T
+
+    def closes(self, form: DifferentialForm, allowed: np.ndarray) -> bool:
+        """dw(X, Y) = 0 of all that is allowed."""
+        n = len(self.y)
+        slopes = self.numbers([x for row in jacobian(form, self.y) for x in row]).reshape(n, n)
+        turning = slopes.T - slopes  # entry (a, b): dw_b/dy_a - dw_a/dy_b
+        size = max(1.0, float(np.abs(turning).max(initial=0)))
+        return bool(np.abs(allowed.T @ turning @ allowed).max(initial=0) < RANK * size)
+
+
+def integrability_of(ties: Ties) -> Integrability | None:
+    """What the closing rows of velocities alone are; None where there are none.
+
+    Args:
+        ties: over the rates, before any elimination.
+    Raises:
+        MissingValues, DerivationError: the ties do not close near the start.
+    """
+    moving = tuple(row for row in ties.closing if row.gap is None)
+    if not moving:
+        return None
+    forms = _forms_of(ties, generic_state(ties))
+    together = forms.allowed([form for _, form in forms.moving])
+    complete = all(forms.closes(form, together) for _, form in forms.moving)
+    rows = [_judged(forms, row, form, complete) for row, form in forms.moving]
+    reached = together.shape[1] if complete else _reached(forms)
+    return Integrability(tuple(rows), reached - 1)
+
+
+def _judged(forms: _Forms, row: Row, form: DifferentialForm, complete: bool) -> VelocityRow:
+    alone = forms.closes(form, forms.allowed([form]))
+    return VelocityRow(row.tie, row.number, alone or complete, integral_of(forms.ties, form) if alone else None)
+
+
+def _forms_of(ties: Ties, state: State) -> _Forms:
+    scope = ties.motion.scope
+    q, t = scope.symbols.q, scope.symbols.t
+    free = [k for k, x in enumerate(q) if not scope.model.coordinates[x.name].driven]
+
+    def form(entries: dict[int, Scalar], at_rest: Scalar) -> DifferentialForm:
+        return (*(entries.get(k, 0) for k in range(len(q))), at_rest)
+
+    rows = [
+        (row, form(dict(zip(free, J, strict=True)), sigma))
+        for row, J, sigma in zip(ties.closing, ties.J, ties.sigma, strict=True)
+    ]
+    driven = [form({k: 1}, -nu) for k, nu in enumerate(scope.nu) if k not in free]
+    norms = [form({q.index(e): e for e in four}, 0) for four in scope.quaternions]
+    held = (*(w for row, w in rows if row.gap is not None), *driven, *norms)
+    return _Forms(ties, (*q, t), held, tuple((row, w) for row, w in rows if row.gap is None), state)
+
+
+# -- what is reached -------------------------------------------------------------------------------
+
+
+def _reached(forms: _Forms) -> int:
+    """The dimension that the allowed fields and their brackets span."""
+    first = _fields(forms)
+    found = [(X, forms.numbers(X)) for X in first]
+    most, newest = len(forms.y) - _rank([forms.numbers(w) for w in forms.held]), first
+    while newest and len(found) < most:
+        brackets = [_bracket(forms.y, X, Y) for X in first for Y in newest]
+        newest = []
+        for field in brackets:
+            value = forms.numbers(field)
+            if np.linalg.norm(value) > CERTAIN_AT_50 and _rank([*(v for _, v in found), value]) > len(found):
+                found.append((field, value))
+                newest.append(field)
+    return len(found)
+
+
+def _fields(forms: _Forms) -> list[DifferentialForm]:
+    """Fields that span what all rows allow, as functions of y."""
+    n = len(forms.y)
+    rows = [{k: x for k, x in enumerate(w) if not is_zero(x)} for w in (*forms.held, *(w for _, w in forms.moving))]
+    solution = general_solution(LinearSystem(rows, [0] * len(rows), n, forms.values), Pivots(last=(n - 1,)))
+    return [
+        tuple(1 if k == f else -solution.shares[k].get(f, 0) if k in solution.shares else 0 for k in range(n))
+        for f in solution.free
+    ]
+
+
+def _bracket(y: Sequence[Node], X: DifferentialForm, Y: DifferentialForm) -> DifferentialForm:
+    """[X, Y] = (dY/dy) X - (dX/dy) Y"""
+    along_X, along_Y = tangent(Y, dict(zip(y, X, strict=True))), tangent(X, dict(zip(y, Y, strict=True)))
+    return tuple(a - b for a, b in zip(along_X, along_Y, strict=True))
+
+
+def _rank(rows: Sequence[np.ndarray]) -> int:
+    scaled = [row / (np.linalg.norm(row) or 1) for row in rows]
+    return int(np.linalg.matrix_rank(np.array(scaled), tol=RANK)) if scaled else 0
+
+
+# -- in closed form --------------------------------------------------------------------------------
+
+
+def integral_of(ties: Ties, form: DifferentialForm) -> Scalar | None:
+    """phi(q, t), 0 at the start, with dphi = k w for a factor k among 1, 1/w_i and 1/(w_i w_j); None: none found."""
+    scope = ties.motion.scope
+    y = (*scope.symbols.q, scope.symbols.t)
+    positive = scope.positive
+    entries = [simplest(x, Work.FORMULA, positive) for x in form]
+    if sum(text_size(x) for x in entries) > LONGEST:
+        return None
+    for factor in _factors(entries, y):
+        try:
+            found = _potential([simplest(x * factor, Work.FORMULA, positive) for x in entries], y)
+        except (DerivationError, NoValue, ZeroDivisionError):  # no closed form
+            found = None
+        if found is not None:
+            return simplest(found - SystemScene(ties.motion).start(found), Work.FORMULA, positive)
+    return None
+
+
+def _factors(entries: Sequence[Scalar], y: Sequence[Node]) -> list[Scalar]:
+    """1, and what is no constant of the others: a constant times an integral is one."""
+    own = [x for x in entries if depends_on(x, y)]
+    return [1, *(over(1, x) for x in own), *(over(1, a * b) for a, b in combinations_with_replacement(own, 2))]
+
+
+def _potential(form: Sequence[Scalar], y: Sequence[Node]) -> Scalar | None:
+    """phi with dphi/dy_k = w_k, one variable after the other; None where the form is not exact, or none is found."""
+    slopes = jacobian(form, y)
+    if any(not holds_identically(slopes[a][b] - slopes[b][a]) for a in range(len(y)) for b in range(a)):
+        return None
+    phi: Scalar = 0
+    for k, w in enumerate(form):
+        rest = w - (gradient(phi, y)[k] if type(phi) is Node else 0)
+        if is_zero(rest) or holds_identically(rest):
+            continue
+        gained = primitive(simplest(rest, Work.FORMULA), y[k])
+        if gained is None:
+            return None
+        phi = phi + gained
+    return phi if all(holds_identically(a - b) for a, b in zip(gradient(phi, y), form, strict=True)) else None

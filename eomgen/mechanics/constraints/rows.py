@@ -1,0 +1,431 @@
+"""Motion -> Ties: the rows of the constraints."""
+
+from __future__ import annotations
+
+from collections.abc import Container, Iterator, Mapping, Sequence
+from dataclasses import replace
+from functools import cached_property
+from random import Random
+from typing import Any
+
+import numpy as np
+
+from eomgen.errors import DerivationError, ModelError, NotYet, Problem
+from eomgen.mechanics.kinematics.loads import body_wrench, in_ground_axes
+from eomgen.mechanics.kinematics.motion import GROUND, BodyLink, Motion, motion_of, slide_of
+from eomgen.mechanics.kinematics.scene import (
+    CLOSED,
+    ContactMode,
+    ContactModes,
+    SystemScene,
+    friction_factor,
+    rows_in_mode,
+    start_values,
+)
+from eomgen.mechanics.kinematics.symbols import scope_of, shorter_row
+from eomgen.model.constraints.row import Edge, TieRow
+from eomgen.model.forces.load import PointForce, Push
+from eomgen.model.parts import Model
+from eomgen.model.unbuilt import unbuilt_ties
+from eomgen.model.values import exact_parameters
+from eomgen.records import RECALLED, dataclass
+from eomgen.symbolic.exact.equality import Equality, equal_at_random_states, equal_at_real_states, equal_in_field
+from eomgen.symbolic.expression.derivative import depends_on, jacobian, substituted
+from eomgen.symbolic.expression.formula import over, sqrt
+from eomgen.symbolic.expression.node import Node, Scalar, is_zero
+from eomgen.symbolic.expression.rational import Fraction
+from eomgen.symbolic.expression.spatial import Wrench, apply, dot, times
+from eomgen.symbolic.numeric.evaluation import FLOAT, PRIME_FIELD, evaluate, fifty_digits
+from eomgen.symbolic.numeric.tolerances import AT_AN_EDGE, SOLVED
+from eomgen.symbolic.print.text import text_size, to_text
+
+# -------- ties ------------------------------------------------------------------------------------------------
+# Motion -> Ties: the rows of the constraints.
+#
+# A row holds a wrench on each body that it touches; the motion that it forbids is the dual:
+#
+#     W^T xi + s_t = 0,   J = W^T B,   sigma = W^T beta + s_t,   J u + sigma = 0,   J a + gamma = 0
+#
+# A row without bodies (`equation`) gives dphi/dq, or its row in the rates, directly.
+
+
+Wrenches = tuple[tuple[str, Wrench], ...]
+LONG = 60  # characters of a gap that is not printed
+STILL = Fraction(1, 10**8)  # a sliding velocity that is none [m/s]
+
+
+@dataclass(frozen=True)
+class Row:
+    """One scalar row of a tie.
+
+    Args:
+        tie, number: its name and place in the tie, from 1.
+        wrenches: (body, W) for a unit lam, body axes, at the body's origin; empty for an equation. Seen from a body
+            that carries all that is held, that body takes what makes their sum 0, which it is where the tie holds.
+        direct: s_t, the part that no twist sees: the slide of points in their bodies; of an equation all of it.
+        velocity: W^T xi + s_t as a function of q, u, t: zero when the tie holds.
+        gap: phi(q, t), or None where only the velocity row is given.
+        status: "identical": the coordinates satisfy the row by themselves; "eliminated": it determines a dependent
+            coordinate; both only carry a reaction. "closing": it restricts the speeds, by a multiplier.
+        component: "x", "y", "z", "n", "t", "couple", "tension", or "".
+        pushes: the forces and couples behind `wrenches`, as the tie gave them.
+        tangent: of a contact that has friction, the forces and couples for a unit of friction along it.
+        sliding: the sliding velocity dual to it [m/s]; on a surface, with Coulomb's friction, its magnitude.
+        friction: None, or the friction of a unit of lam along `tangent`, for instance -mu sign(v).
+        eliminates: the dependent coordinate that an "eliminated" row determines, or "".
+        part: what of the tie it belongs to, by name: the member of a truss; "" elsewhere.
+        cross_tangent, across: of a contact on a surface the second direction in which it can slide, and that velocity.
+        shares: of `friction` along both, v/|v| of Coulomb's, v of viscous friction; () where there is one direction.
+        round: of a bilateral contact on a line: its friction is for a unit of |N|, of which this row's
+            multiplier is one component and those of the rows before are the others.
+        carrier: the body in whose axes the row is written, which carries all that it holds; None: the ground.
+    """
+
+    tie: str
+    number: int
+    wrenches: tuple[tuple[str, Wrench], ...]
+    direct: Scalar
+    velocity: Scalar
+    gap: Scalar | None
+    status: str
+    component: str = ""
+    pushes: tuple[Push, ...] = ()
+    tangent: tuple[Push, ...] = ()
+    sliding: Scalar = 0
+    friction: Scalar | None = None
+    eliminates: str = ""
+    part: str = ""
+    cross_tangent: tuple[Push, ...] = ()
+    across: Scalar | None = None
+    shares: tuple[Scalar, ...] = ()
+    round: bool = False
+    carrier: str | None = None
+
+    @property
+    def identical(self) -> bool:
+        return self.status == "identical"
+
+    @property
+    def label(self) -> str:
+        return f"lam({self.tie}, {self.number})"
+
+
+@dataclass(frozen=True)
+class Ties:
+    """All rows of all ties, and the matrices of those that close."""
+
+    motion: Motion
+    rows: tuple[Row, ...]
+
+    def __getstate__(self) -> dict[str, Any]:
+        """Without what was found of them."""
+        return {name: value for name, value in self.__dict__.items() if name != RECALLED}
+
+    @property
+    def closing(self) -> tuple[Row, ...]:
+        return tuple(row for row in self.rows if row.status == "closing")
+
+    @cached_property
+    def J(self) -> tuple[tuple[Scalar, ...], ...]:
+        """J u + sigma = 0: one row for each closing row."""
+        velocities = tuple(row.velocity for row in self.closing)
+        return jacobian(velocities, self.motion.scope.symbols.u) if velocities else ()
+
+    @cached_property
+    def sigma(self) -> tuple[Scalar, ...]:
+        still = {u: 0 for u in self.motion.scope.symbols.u}
+        return substituted(tuple(row.velocity for row in self.closing), still)
+
+    @cached_property
+    def gamma(self) -> tuple[Scalar, ...]:
+        """J a + gamma = 0: the total derivative of the velocity row at a = 0."""
+        return self.motion.scope.time_derivative(tuple(row.velocity for row in self.closing))
+
+    @property
+    def phi(self) -> tuple[Scalar | None, ...]:
+        return tuple(row.gap for row in self.closing)
+
+
+def ties_of(
+    motion: Motion, used: Mapping[tuple[str, int], str] | None = None, modes: ContactModes | None = None
+) -> Ties:
+    """The rows of every constraint of the model.
+
+    Args:
+        used: {(tie, number): coordinate} of the rows through which dependent coordinates were eliminated.
+        modes: how contacts are that can end, slide or stick.
+    Raises:
+        NotYet: a kind whose rows this version does not build.
+    """
+    for where, what in unbuilt_ties(motion.scope.model):
+        raise NotYet(
+            f"the rows of '{what}' are not built yet",
+            where,
+            mend="declare it by constraints that are: see eomgen schema",
+        )
+    rows = []
+    for name, constraint in motion.scope.model.constraints.items():
+        scene = SystemScene(motion, f"{constraint.table}.{name}")
+        mode = (modes or {}).get(name, CLOSED)
+        for number, tie_row in enumerate(rows_in_mode(constraint, constraint.rows(scene), mode), start=1):
+            label = (name, number)
+            row = _row(motion, name, number, tie_row, used=label in (used or {}))
+            row = replace(row, eliminates=(used or {}).get(label, ""))
+            rows.append(_with_friction(scene, constraint, row, mode))
+    stuck = [link for link in motion.links if link.name in (modes or {}) and (modes or {})[link.name].sense == 0]
+    rows += [_row(motion, link.name, 1, _held_on_path(motion, link), used=False) for link in stuck]
+    return Ties(motion, tuple(rows))
+
+
+def rows_of_tie(motion: Motion, name: str) -> tuple[Row, ...]:
+    """The rows that a tie has while it is closed, whether it is so or not: how far an open contact is open."""
+    constraint = motion.scope.model.constraints[name]
+    rows = constraint.rows(SystemScene(motion, f"constraints.{name}"))
+    return tuple(_row(motion, name, number, row, used=False) for number, row in enumerate(rows, start=1))
+
+
+def _held_on_path(motion: Motion, link: BodyLink) -> TieRow:
+    """The row that keeps a body on a path where it is while it sticks: no velocity along the path."""
+    _, v = link.S[0]
+    along = apply(link.pose.R, v)
+    parent = None if link.parent == GROUND else motion.links[link.parent].name
+    pushes = (PointForce((link.name, link.point), along), PointForce((parent, link.local.p), times(-1, along)))
+    return TieRow(pushes, None, component="t", material=True)
+
+
+def _dragged(name: str) -> DerivationError:
+    """That what is driven slides a contact which was to stick."""
+    what = f"'{name}' cannot stick: what is driven slides it, and nothing that is free moves it"
+    mend = "at rest its friction and the drive share one force: leave the friction out, or ask `solve`, where it slides"
+    return DerivationError(what, f"constraints.{name}", mend)
+
+
+def _row(motion: Motion, name: str, number: int, row: TieRow, *, used: bool) -> Row:
+    seen, pushes = (motion, row.pushes) if row.carrier is None else (motion.seen_from(row.carrier), row.carried)
+    wrenches = _wrenches(seen, pushes)
+    if row.pushes:
+        direct = 0 if row.material else _slide(seen, pushes)
+        direct = direct if row.rate is None else direct + row.rate
+    elif row.rate is not None:
+        direct = _linear(motion, name, row.rate)
+    else:
+        assert row.gap is not None, "a row without pushes and rate is the rate of its gap"
+        direct = motion.scope.time_derivative((row.gap,))[0]
+    velocity = _power(seen, wrenches, direct)
+    if row.carrier is not None:
+        wrenches = _in_balance(seen, row.carrier, wrenches)
+    if row.pushes and row.rate is not None:
+        _linear(motion, name, velocity)
+    if row.pushes and motion.scope.model.space == "space":
+        velocity = shorter_row(velocity)
+    sliding = _dual(motion, row, row.tangent) if row.tangent else 0
+    across = _dual(motion, row, row.cross_tangent) if row.cross_tangent else None
+    status = "eliminated" if used else _status(motion, velocity, row.gap)
+    if status == "closing" and not depends_on(velocity, motion.scope.symbols.u):
+        if row.gap is None and row.rate is None:
+            raise _dragged(name)
+        what, mend = "nothing that is free moves it", "put its points where they meet, or give the bodies more freedom"
+        off = "" if row.gap is None or text_size(row.gap) > LONG else f" (it is {to_text(row.gap)} off)"
+        raise DerivationError(f"row {number} of '{name}' cannot hold: {what}{off}", f"constraints.{name}", mend)
+    return Row(
+        name,
+        number,
+        wrenches,
+        direct,
+        velocity,
+        row.gap,
+        status,
+        row.component,
+        row.pushes,
+        row.tangent,
+        sliding,
+        part=row.part,
+        across=across,
+        cross_tangent=row.cross_tangent,
+        round=row.round,
+        carrier=row.carrier,
+    )
+
+
+def _dual(motion: Motion, row: TieRow, pushes: tuple[Push, ...]) -> Scalar:
+    """The velocity that is dual to pushes of a row."""
+    return _power(motion, _wrenches(motion, pushes), 0 if row.material else _slide(motion, pushes))
+
+
+def _with_friction(scene: SystemScene, constraint: Any, row: Row, mode: ContactMode) -> Row:
+    """The row with its friction, where it has any."""
+    law = getattr(constraint, "friction", None)
+    if law is None or not row.tangent:
+        return row
+    if row.across is not None:
+        if law.coulomb is not None and mode.sense == 0:
+            return row
+        row = _on_surface(row, viscous=law.coulomb is None, still=mode.sense is not None)
+        return replace(row, friction=-mode.push * scene.value(law.viscous if law.coulomb is None else law.coulomb))
+    return replace(row, friction=friction_factor(law, scene.value, row.sliding, mode))
+
+
+def _on_surface(row: Row, *, viscous: bool, still: bool) -> Row:
+    """A contact on a surface that slides with v = (v_1, v_2) along its tangents, its friction along v / |v|.
+
+    Of viscous friction, which is along v itself, the unit is v, and v . v / 2 has the derivatives dual to it. In a
+    phase that may begin at rest, where v has no direction, |v| is sqrt(v . v + STILL^2).
+    """
+    assert row.across is not None, "asked of a contact on a surface"
+    pair = (row.sliding, row.across)
+    square = pair[0] * pair[0] + pair[1] * pair[1]
+    speed = sqrt(square + STILL * STILL if still else square)
+    shares = pair if viscous else tuple(over(v, speed) for v in pair)
+    return replace(row, shares=shares, sliding=Fraction(1, 2) * square if viscous else speed)
+
+
+def _status(motion: Motion, velocity: Scalar, gap: Scalar | None) -> str:
+    holds = _holds(motion, velocity) and (gap is None or _holds(motion, gap) or _is_met(motion, gap))
+    return "identical" if holds else "closing"
+
+
+def _holds(motion: Motion, scalar: Scalar) -> bool:
+    """Whether the scalar is zero whatever the motion; where roots and sizes choose a branch, on that of the start.
+
+    L - |L - x| - x is zero wherever x < L, as at the start, and not for all x and L.
+    """
+    if type(scalar) is int:
+        return scalar == 0
+    verdict = equal_at_random_states([(scalar, 0)])
+    if verdict.equal or verdict.arithmetic == PRIME_FIELD.name:
+        return verdict.equal
+    here = equal_at_real_states([(scalar, 0)], states=0, given=[[state] for state in _around_start(motion)])
+    return here.equal and here.states > 0
+
+
+def _around_start(motion: Motion) -> Iterator[dict[Node, Any]]:
+    """States beside the start, at parameters beside the model's; none where a value is missing."""
+    scope, rng, digits = motion.scope, Random(5), fifty_digits()
+    known = exact_parameters(scope.model)
+    symbols = scope.symbols
+    if known.keys() < symbols.parameters.keys():
+        return
+    for _ in range(3):
+        state = {p: digits.number(Fraction(known[name]) * (1 + _aside(rng))) for name, p in symbols.parameters.items()}
+        starts = tuple(start_values(scope).values())
+        state |= {
+            q: x + digits.number(_aside(rng)) for q, x in zip(symbols.q, evaluate(starts, state, digits), strict=True)
+        }
+        state |= {x: digits.number(_aside(rng)) for x in (*symbols.u, *symbols.a, *symbols.inputs.values(), symbols.t)}
+        yield state | dict(zip(scope.laws, evaluate(tuple(scope.laws.values()), state, digits), strict=True))
+
+
+def _aside(rng: Random) -> Fraction:
+    return Fraction(rng.randint(-1000, 1000), 100_000)
+
+
+def _is_met(motion: Motion, gap: Scalar) -> bool:
+    """Whether bodies that all stand still meet at the model's own values: 0.2 and r with r = 0.2."""
+    worth = None if motion.scope.symbols.u else SystemScene(motion).worth(gap)
+    return worth is not None and abs(worth) < SOLVED
+
+
+def _wrenches(motion: Motion, pushes: tuple[Push, ...]) -> tuple[tuple[str, Wrench], ...]:
+    return tuple(found for push in pushes if (found := body_wrench(motion, push)) is not None)
+
+
+def _in_balance(seen: Motion, carrier: str, wrenches: Wrenches) -> Wrenches:
+    """The wrenches, with that on the carrier which makes their sum 0: no work as they move with it."""
+    found = [(body, W) for body, W in wrenches if body != carrier]
+    total = Wrench()
+    for body, W in found:
+        pose = seen.link(body).pose
+        total = total.plus(W.turned(pose.R).moved(pose.p))
+    return (*found, (carrier, Wrench(times(-1, total.tau), times(-1, total.f))))
+
+
+def _power(motion: Motion, wrenches: tuple[tuple[str, Wrench], ...], direct: Scalar) -> Scalar:
+    return sum((motion.link(b).twist.power(W) for b, W in wrenches), start=direct)
+
+
+def _slide(motion: Motion, pushes: tuple[Push, ...]) -> Scalar:
+    """What points that move in their bodies add to the power of the pushes."""
+    return sum((slide_power(motion, push) for push in pushes if isinstance(push, PointForce)), start=0)
+
+
+def _linear(motion: Motion, name: str, rate: Scalar) -> Scalar:
+    """The row of an equation in the rates, which must be linear in them: J u + sigma = 0."""
+    speeds = motion.scope.symbols.u
+    if speeds and any(depends_on(entry, speeds) for row in jacobian((rate,), speeds) for entry in row):
+        raise ModelError(
+            f"the rate of '{name}' is not linear in the rates",
+            f"constraints.{name}.rate",
+            "write it as a sum of rates, each times a function of the coordinates",
+        )
+    return rate
+
+
+def slide_power(motion: Motion, push: PointForce) -> Scalar:
+    """Power of a push on a point that moves in its body: F . R r'."""
+    return dot(in_ground_axes(motion, push.force, push.axes), slide_of(motion, push.place))
+
+
+def holds_identically(scalar: Scalar) -> bool:
+    """Whether the scalar is zero at all values of its symbols (exactly, at random states)."""
+    return hold_identically((scalar,))[0]
+
+
+def hold_identically(scalars: Sequence[Scalar]) -> list[bool]:
+    """Of each whether it is zero at all values of its symbols; what they share is evaluated once."""
+    groups = [[(x, 0)] for x in scalars if type(x) is Node]
+    verdicts = iter(equal_in_field(groups) if groups else ())
+    return [_settled(x, next(verdicts)) if type(x) is Node else is_zero(x) for x in scalars]
+
+
+def _settled(x: Scalar, verdict: Equality | None) -> bool:
+    return (equal_at_real_states([(x, 0)]) if verdict is None else verdict).equal
+
+
+# -------- edges -----------------------------------------------------------------------------------------------
+# Motion -> Edges: where a tie no longer says at which place it holds its bodies (a wheel that lies flat).
+#
+# Beyond its limits a tie goes on as it was, though what it stands for does not: a run that passes them is told of it.
+
+
+LOOKED = 200  # rows of a run at which limits are looked at
+
+
+def edges_of(motion: Motion, open: Container[str] = ()) -> tuple[Edge, ...]:
+    """Of all ties of the model but those that are open."""
+    ties = [(name, tie) for name, tie in motion.scope.model.constraints.items() if name not in open]
+    return tuple(edge for name, tie in ties for edge in tie.edges(SystemScene(motion, f"{tie.table}.{name}")))
+
+
+def left_of(edges: tuple[Edge, ...]) -> tuple[Scalar, ...]:
+    """What is left until a motion ends at each of them."""
+    return tuple(edge.vanishes - Fraction(AT_AN_EDGE) for edge in edges)
+
+
+def limits_passed(model: Model, t: np.ndarray, q: np.ndarray) -> tuple[Problem, ...]:
+    """The limits of ties beyond which a run goes, with the first instant that is seen, of LOOKED rows.
+
+    Args:
+        t, q: instants, n; coordinates in the model's order, n x nq.
+    """
+    if not len(t) or not any(tie.thread() for tie in model.constraints.values()):
+        return ()
+    motion, found = motion_of(scope_of(model)), []
+    symbols, known = motion.scope.symbols, exact_parameters(model)
+    p = {node: float(known[name]) for name, node in symbols.parameters.items() if name in known}
+    looked = np.unique(np.linspace(0, len(t) - 1, LOOKED).round().astype(int))
+    for name, tie in model.constraints.items():
+        for limit in tie.limits(SystemScene(motion, f"{tie.table}.{name}")):
+            for k in looked:
+                state = p | {symbols.t: float(t[k])} | dict(zip(symbols.q, map(float, q[k]), strict=True))
+                if evaluate((limit.vanishes,), state, FLOAT)[0] < 0:
+                    what = (
+                        f"{limit.words} at t = {t[k]:.4g} s: from there on it is led straight on, which it would not be"
+                    )
+                    found.append(Problem(f"{tie.table}.{name}", what, mend="end the run before"))
+                    break
+    return tuple(found)
+
+
+def stopped_at(edge: Edge, t: float) -> str:
+    """Why a motion ends there."""
+    return f"Stopped at t = {t:.6g} s: {edge.words}, and how it goes on is not determined."

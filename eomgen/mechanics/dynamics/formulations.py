@@ -1,0 +1,400 @@
+"""Ways to the equations of motion: Lagrange, Newton-Euler projected, recursive."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+from dataclasses import replace
+
+from eomgen.errors import DerivationError, ModelError
+from eomgen.mechanics.dynamics.system import (
+    EquationsOfMotion,
+    System,
+    assembled,
+    free_system_of,
+    generalized_forces,
+    joint_forces,
+    per_speed,
+    placeless_forces,
+)
+from eomgen.mechanics.kinematics.inertia import armature_bias, armature_mass, kinetic_energy, mass_properties
+from eomgen.mechanics.kinematics.loads import Loads, body_wrench, joint_wrenches, weights
+from eomgen.mechanics.kinematics.motion import Motion
+from eomgen.mechanics.kinematics.tree import Branch, applied_wrenches, bias_forces, branches_of, composite_mass_matrix
+from eomgen.model.constraints.equation import NodeBalance
+from eomgen.model.fields import Table
+from eomgen.model.parts import Body, Coordinate, Model
+from eomgen.records import dataclass, recalled
+from eomgen.symbolic.expression.derivative import (
+    depends_on,
+    derivative,
+    gradient,
+    jacobian,
+    pullback,
+    substituted,
+    tangent,
+)
+from eomgen.symbolic.expression.formula import inner
+from eomgen.symbolic.expression.node import Node, Scalar, ScalarRow, is_zero
+from eomgen.symbolic.expression.spatial import ZERO, SpatialInertia, Twist, Wrench, cross, plus, times, vector_of
+from eomgen.symbolic.expression.text import parse
+from eomgen.symbolic.print.text import text_size, to_text
+
+# -------- lagrange --------------------------------------------------------------------------------------------
+# Lagrange's equations of the second kind, by derivatives of the energies.
+#
+#     d/dt dT/du_k - dT/dq_k = Q_k,   M = d2T/du du,   c = (d/dt dT/du at a = 0) - dT/dq
+#
+# Where coordinates were eliminated, u_free = N u + nu, the equations of the free system are reduced:
+#
+#     M_r = N^T M N,   c_r = N^T (c + M (N' u + nu')),   Q_r = N^T Q
+
+
+def assembled_by_energies(system: System) -> EquationsOfMotion:
+    """The equations of motion from the energies; closing rows by multipliers."""
+    if system.free is not None:
+        return _reduced(system, system.free)
+    T = kinetic_energy(system.motion)
+    M, c = inertia_by_energies(system.motion, T)
+    return assembled(system, M=M, c=c, Q=generalized_forces(system.loads), T=T)
+
+
+def _reduced(system: System, free: System) -> EquationsOfMotion:
+    """The free system's M, c and Q along the motions that are left, its speeds in terms of the independent ones."""
+    whole = assembled_by_energies(free)
+    rates = free_rates(system, free)
+    known = dict(zip(free.scope.symbols.u, rates, strict=True))
+    N = jacobian(rates, system.scope.symbols.u)
+    bias = system.scope.time_derivative(rates)
+    n, entries = len(whole.M), [x for row in whole.M for x in row]
+    (T, *rest) = substituted((whole.T, *whole.c, *whole.Q, *entries), known)  # at once: they share nearly everything
+    c, Q, M = rest[:n], rest[n : 2 * n], [rest[k : k + n] for k in range(2 * n, len(rest), n)]
+    carried = [inertia + inner(row, bias) for inertia, row in zip(c, M, strict=True)]
+    columns = tuple(zip(*N, strict=True))
+    columned = [[inner(row, column) for row in M] for column in columns]
+    return assembled(
+        system,
+        M=tuple(tuple(inner(column, momentum) for momentum in columned) for column in columns),
+        c=tuple(inner(column, carried) for column in columns),
+        Q=tuple(inner(column, Q) for column in columns),
+        T=T,
+    )
+
+
+def energies_along(system: System) -> tuple[ScalarRow, ScalarRow, ScalarRow]:
+    """(M a, c, Q) by derivatives of the energies along one motion: O(n), no entry of M is formed."""
+    if system.free is None:
+        return _along(system, system.symbols.a)
+    u, free = system.scope.symbols.u, system.free
+    rates = free_rates(system, free)
+    bias = system.scope.time_derivative(rates)
+    rows = (*_along(free, tangent(rates, dict(zip(u, system.symbols.a, strict=True)))), _along(free, bias)[0])
+    known = dict(zip(free.scope.symbols.u, rates, strict=True))
+    found = substituted([x for row in rows for x in row], known)
+    Ma, c, Q, carried = (found[k : k + len(rates)] for k in range(0, len(found), len(rates) or 1))
+    inertia = tuple(x + y for x, y in zip(c, carried, strict=True))
+    return pullback(rates, Ma, u), pullback(rates, inertia, u), pullback(rates, Q, u)
+
+
+def _along(system: System, a: ScalarRow) -> tuple[ScalarRow, ScalarRow, ScalarRow]:
+    """The same for given accelerations of a system whose speeds are rates."""
+    scope, u = system.scope, system.scope.symbols.u
+    T = kinetic_energy(system.motion)
+    momenta = gradient(T, u)
+    held = per_speed(system.motion, gradient(T, scope.symbols.q))
+    c = tuple(p - k for p, k in zip(scope.time_derivative(momenta), held, strict=True))
+    return tangent(momenta, dict(zip(u, a, strict=True))), c, generalized_forces(system.loads)
+
+
+def free_rates(system: System, free: System) -> ScalarRow:
+    """The speeds of the free system by those that are left: N u + nu without the driven coordinates."""
+    rates = {q.name: rate for q, rate in zip(system.scope.symbols.q, system.scope.rates, strict=True)}
+    return tuple(rates[u.name[:-1]] for u in free.scope.symbols.u)
+
+
+def inertia_by_energies(motion: Motion, T: Scalar) -> tuple[tuple[ScalarRow, ...], ScalarRow]:
+    """(M, c) by derivatives of the kinetic energy."""
+    scope = motion.scope
+    momenta = gradient(T, scope.symbols.u)
+    M = jacobian(momenta, scope.symbols.u)
+    held = per_speed(motion, gradient(T, scope.symbols.q))
+    c = tuple(p - k for p, k in zip(scope.time_derivative(momenta), held, strict=True))
+    return M, c
+
+
+# -------- projection ------------------------------------------------------------------------------------------
+# Newton-Euler of every body, projected on the motions that the joints allow.
+#
+# M = sum B^T I B,   c = sum B^T (I alpha + xi x* (I xi)),   Q = sum B^T W
+
+
+def assembled_by_wrenches(system: System) -> EquationsOfMotion:
+    """The equations of motion from wrenches and twists; closing rows by multipliers."""
+    M, c = inertia_by_twists(system.motion)
+    return assembled(system, M=M, c=c, Q=force_side(system.loads), T=kinetic_energy(system.motion))
+
+
+def wrenches_along(system: System) -> tuple[ScalarRow, ScalarRow, ScalarRow]:
+    """(M a, c, Q) by the wrenches of one motion, B^T applied in one sweep: O(n), no entry of M is formed."""
+    motion, a = system.motion, system.symbols.a
+    u = motion.scope.symbols.u
+    twists = tuple(x for link in motion.links for x in (*link.twist.w, *link.twist.v))
+    pushed = tangent(twists, dict(zip(u, a, strict=True)))
+    inertia, bias = [], []
+    for i, link in enumerate(motion.links):
+        mass = mass_properties(motion.scope, link.name)
+        body = SpatialInertia.about_center(mass.m, mass.com, mass.I)
+        inertia.append(body.momentum(_twist(pushed[6 * i : 6 * i + 6])))
+        bias.append(_bias(body, link.twist, _twist(motion.alpha[i])))
+    Ma = list(_projected(twists, inertia, u))
+    for i, j, value in armature_mass(motion):
+        Ma[i] = Ma[i] + value * a[j]
+    rotors = armature_bias(motion, len(u))
+    c = tuple(x + y for x, y in zip(_projected(twists, bias, u), rotors, strict=True))
+    applied = applied_to_bodies(system.loads)
+    none = Wrench(ZERO, ZERO)
+    Q = _projected(twists, [applied.get(link.name, none) for link in motion.links], u)
+    return tuple(Ma), c, tuple(x + y for x, y in zip(Q, placeless_forces(system.loads), strict=True))
+
+
+def _projected(twists: ScalarRow, wrenches: Iterable[Wrench], u: Sequence[Node]) -> ScalarRow:
+    """sum B^T W"""
+    return pullback(twists, [x for wrench in wrenches for x in (*wrench.tau, *wrench.f)], u)
+
+
+def inertia_by_twists(motion: Motion) -> tuple[tuple[ScalarRow, ...], ScalarRow]:
+    """(M, c) from the twists of the bodies."""
+    size = len(motion.scope.symbols.u)
+    M: list[list[Scalar]] = [[0] * size for _ in range(size)]
+    c: list[Scalar] = [0] * size
+    for i, link in enumerate(motion.links):
+        mass = mass_properties(motion.scope, link.name)
+        inertia = SpatialInertia.about_center(mass.m, mass.com, mass.I)
+        columns = [column for column in zip(*motion.B[i], strict=True)]
+        touched = [k for k, column in enumerate(columns) if not all(is_zero(x) for x in column)]
+        bias = _bias(inertia, link.twist, _twist(motion.alpha[i]))
+        for k in touched:
+            c[k] = c[k] + _twist(columns[k]).power(bias)
+            momentum = inertia.momentum(_twist(columns[k]))
+            for j in touched:
+                if j >= k:
+                    M[k][j] = M[k][j] + _twist(columns[j]).power(momentum)
+    for k in range(size):
+        for j in range(k):
+            M[k][j] = M[j][k]
+    return _with_armatures(motion, M, c)
+
+
+def _bias(inertia: SpatialInertia, xi: Twist, alpha: Twist) -> Wrench:
+    """I alpha + xi x* (I xi): the wrench that the motion takes at a = 0, body axes, at the origin."""
+    momentum = inertia.momentum(xi)
+    turning = Wrench(plus(cross(xi.w, momentum.tau), cross(xi.v, momentum.f)), cross(xi.w, momentum.f))
+    return inertia.momentum(alpha).plus(turning)
+
+
+def _twist(entries: Sequence[Scalar]) -> Twist:
+    return Twist(vector_of(entries[:3]), vector_of(entries[3:]))
+
+
+def _with_armatures(motion: Motion, M: list[list[Scalar]], c: list[Scalar]) -> tuple[tuple[ScalarRow, ...], ScalarRow]:
+    for i, j, value in armature_mass(motion):
+        M[i][j] = M[i][j] + value
+    added = armature_bias(motion, len(c))
+    return tuple(tuple(row) for row in M), tuple(a + b for a, b in zip(c, added, strict=True))
+
+
+def force_side(loads: Loads) -> ScalarRow:
+    """Q = sum B^T W of every wrench, and what acts at no place."""
+    motion = loads.motion
+    Q = list(placeless_forces(loads))
+    for body, wrench in applied_to_bodies(loads).items():
+        rows = motion.B[motion.index[body]]
+        for k in range(len(Q)):
+            Q[k] = Q[k] + _twist([row[k] for row in rows]).power(wrench)
+    return tuple(Q)
+
+
+def applied_to_bodies(loads: Loads) -> dict[str, Wrench]:
+    """What is applied to each body, efforts of joints included: at its origin, in its axes."""
+    motion = loads.motion
+    wrenches = [body_wrench(motion, load) for load in (*loads.placed, *weights(loads))]
+    wrenches += [pair for effort in loads.efforts for pair in joint_wrenches(motion, effort)]
+    total: dict[str, Wrench] = {}
+    for found in wrenches:
+        if found is not None:
+            body, wrench = found
+            total[body] = total[body].plus(wrench) if body in total else wrench
+    return total
+
+
+# -------- recursive -------------------------------------------------------------------------------------------
+# The recursive forms: bias forces body by body, mass matrix by composite bodies. For trees.
+
+
+def assembled_by_recursion(system: System) -> EquationsOfMotion:
+    """The equations of motion by recursion over the tree; closing rows by multipliers."""
+    motion = system.motion
+    branches = branches_of(motion)
+    return assembled(
+        system,
+        M=mass(motion, branches),
+        c=inertia_terms(motion, branches),
+        Q=generalized_forces(system.loads),
+        T=kinetic_energy(motion),
+        forcing=forcing(system.loads, branches),
+    )
+
+
+def inertia_terms(motion: Motion, branches: tuple[Branch, ...]) -> ScalarRow:
+    """c: what inertia takes at a = 0, armatures included."""
+    size = len(motion.scope.symbols.u)
+    bias = bias_forces(branches, size, base_acceleration=ZERO, applied={})
+    return tuple(a + b for a, b in zip(bias, armature_bias(motion, size), strict=True))
+
+
+def forcing(loads: Loads, branches: tuple[Branch, ...]) -> ScalarRow:
+    """Q - c in one sweep, weight as an upward acceleration of the ground."""
+    motion = loads.motion
+    size = len(motion.scope.symbols.u)
+    bias = bias_forces(
+        branches,
+        size,
+        base_acceleration=times(-1, loads.fields),
+        applied=applied_wrenches(loads, branches),
+    )
+    direct = [a + b for a, b in zip(joint_forces(loads), placeless_forces(loads), strict=True)]
+    armature = armature_bias(motion, size)
+    return tuple(q - b - r for q, b, r in zip(direct, bias, armature, strict=True))
+
+
+def mass(motion: Motion, branches: tuple[Branch, ...]) -> tuple[ScalarRow, ...]:
+    """M by composite bodies, armatures included."""
+    M = composite_mass_matrix(branches, len(motion.scope.symbols.u))
+    for i, j, value in armature_mass(motion):
+        M[i][j] = M[i][j] + value
+    return tuple(tuple(row) for row in M)
+
+
+# -------- formulations ----------------------------------------------------------------------------------------
+# Formulations: the seam of ways to the equations of motion, and which of them a method of derivation goes.
+
+
+Along = Callable[[System], tuple[ScalarRow, ScalarRow, ScalarRow]]
+
+
+@dataclass(frozen=True)
+class Formulation:
+    """One way to the equations of motion.
+
+    Args:
+        name: as tests say it.
+        title: what a certificate says.
+        assemble: System -> the equations, every entry of M.
+        along: System -> (M a, c, Q) along one motion, for any accelerations: O(n), no entry of M is formed; None where
+            that is the residual of inverse dynamics.
+    """
+
+    name: str
+    title: str
+    assemble: Callable[[System], EquationsOfMotion]
+    along: Along | None = None
+
+
+LAGRANGE = Formulation("lagrange", "Lagrange's equations", assembled_by_energies, along=energies_along)
+PROJECTION = Formulation("projection", "projection of Newton-Euler", assembled_by_wrenches, along=wrenches_along)
+RECURSION = Formulation("recursive", "recursion over the tree", assembled_by_recursion)
+
+ALL = (LAGRANGE, PROJECTION, RECURSION)
+
+METHODS = {"lagrange": LAGRANGE, "projection": PROJECTION, "kinetostatic": PROJECTION}
+"""By which way a method of derivation goes; the reactions of a kineto-static one do no work and drop out of it."""
+
+
+def derived_by(method: str, system: System) -> EquationsOfMotion:
+    """The equations by the way of a method, friction left out.
+
+    Speeds that are no rates have no equation of Lagrange's: there the balances are projected (Kane's way).
+    """
+    way = PROJECTION if system.scope.model.speeds else METHODS[method]
+    return way.assemble(system)
+
+
+# -------- massless nodes --------------------------------------------------------------------------------------
+# Model -> Model: a node that moves no mass follows from the balance of what pushes it.
+#
+#     0 = Q_k(q, q', t)        of a free coordinate k with M_kj = 0 for all j, in place of M_k a + c_k = Q_k
+#
+# Between springs it is a tie of places, beside a damper one of rates: the node's rate is that of a first-order state.
+# The multiplier of such a tie is 0, as nothing else is left along the coordinate; all others keep their equations.
+
+
+PREFIX = "balance_of_"  # of a tie, before its coordinate
+LONGEST = 2_000  # characters of a balance that stands as an equation
+
+
+def with_nodes_balanced(model: Model) -> Model:
+    """The model with the balance of every massless node as a tie, from which its coordinate follows; the same where
+    there is none, or where what pushes one is no spring or damper."""
+    return recalled(model, with_nodes_balanced, lambda: _balanced(model))
+
+
+def told_of_nodes(model: Model) -> tuple[str, ...]:
+    """What such a model assumes, in words."""
+    ties = [name for name, tie in model.constraints.items() if isinstance(tie, NodeBalance)]
+    follows = "moves no mass: it follows from the balance of what pushes it"
+    return tuple(f"{name.removeprefix(PREFIX)} {follows} ({name})" for name in ties)
+
+
+def _balanced(model: Model) -> Model:
+    free = [name for name, q in model.coordinates.items() if not (q.driven or q.dependent)]
+    if not free or model.speeds or model.unknowns or not any(map(_is_lean, model.bodies.values())):
+        return model
+    try:
+        equations = assembled_by_recursion(free_system_of(model))
+        found = dict(_balances(equations, free))
+        if not found:
+            return model
+        ties = {PREFIX + name: tie for name, tie in found.items()}
+        moved = {name: _following(model.coordinates[name], tie) for name, tie in found.items()}
+        return replace(
+            model,
+            coordinates=Table({**model.coordinates, **moved}),
+            constraints=Table({**model.constraints, **ties}),
+        )
+    except (ModelError, DerivationError):  # whoever needs accelerations says what is missing
+        return model
+
+
+def _is_lean(body: Body) -> bool:
+    """Whether a body may have no mass."""
+    masses = [body.mass, getattr(body.shape, "mass", None)]
+    given = [x for x in masses if x is not None]
+    return not body.parts and (not given or any(x.literal == 0 for x in given))
+
+
+def _following(coordinate: Coordinate, tie: NodeBalance) -> Coordinate:
+    """The coordinate that follows: of a tie of places its start is a guess."""
+    if tie.gap is None:
+        return replace(coordinate, dependent=True)
+    near = coordinate.start if coordinate.near is None else coordinate.near
+    return replace(coordinate, dependent=True, start=None, speed=None, near=near)
+
+
+def _balances(equations: EquationsOfMotion, free: list[str]) -> Iterator[tuple[str, NodeBalance]]:
+    """(coordinate, 0 = Q_k) of those that move no mass, that no tie holds, and that springs or dampers push."""
+    symbols = equations.symbols
+    q_of: Mapping[str, Node] = {f"{q.name}'": q for q in symbols.q}
+    massless = [k for k, row in enumerate(equations.M) if all(is_zero(x) for x in row)]
+    for k in massless:
+        u, force = symbols.u[k], equations.forcing[k]
+        q, held = q_of.get(u.name), any(not is_zero(row[k]) for row in equations.J)
+        if q is None or q.name not in free or held or text_size(force) > LONGEST:
+            continue
+        rates = depends_on(force, symbols.u)
+        if rates and _is_linear(force, symbols.u) and not is_zero(derivative(force, u)):
+            yield q.name, NodeBalance(rate=parse(to_text(force), longest=LONGEST + 1))
+        elif not rates and depends_on(force, (q,)):
+            yield q.name, NodeBalance(gap=parse(to_text(force), longest=LONGEST + 1))
+
+
+def _is_linear(force: Scalar, u: tuple[Node, ...]) -> bool:
+    return not any(depends_on(derivative(force, x), u) for x in u)

@@ -1,0 +1,298 @@
+"""Equations of motion -> what can be said of energy and mass before anything moves, and where they have no value."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator, Mapping
+from dataclasses import fields, is_dataclass
+from typing import Any
+
+import numpy as np
+
+from eomgen.errors import DerivationError, MissingValues, ModelError, Problem
+from eomgen.mechanics.constraints.closure import generic_state, of_50_digits, scattered_state
+from eomgen.mechanics.dynamics.pieces import EVERYWHERE, NOWHERE, Extent, where_continuous, where_holds
+from eomgen.mechanics.dynamics.system import EquationsOfMotion, System, from_potential
+from eomgen.mechanics.kinematics.inertia import mass_properties
+from eomgen.mechanics.kinematics.motion import BodyLink
+from eomgen.records import dataclass
+from eomgen.symbolic.exact.equality import equal_at_random_states
+from eomgen.symbolic.expression.derivative import depends_on, symbols_of
+from eomgen.symbolic.expression.node import Node, Scalar, State, is_zero
+from eomgen.symbolic.expression.rational import Fraction
+from eomgen.symbolic.expression.traversal import order
+from eomgen.symbolic.numeric.dense import of_one_length
+from eomgen.symbolic.numeric.evaluation import FLOAT, NoValue, evaluate, fifty_digits
+from eomgen.symbolic.numeric.tolerances import LARGEST_SQUARED, RANK, SHARE, SOLVED, SQUARED_AT_50, SUMMED
+from eomgen.symbolic.print.text import text_size, to_text
+
+# -------- wellposed -------------------------------------------------------------------------------------------
+# Equations of motion -> what can be said of its energy and its mass before anything moves.
+
+
+LONG = 120  # characters of a balance that is told
+
+
+def is_conservative(equations: EquationsOfMotion) -> bool:
+    """Whether T + V stays in every motion: nothing moves by itself, and Q is -N^T dV/dq alone, in every piece."""
+    return where_conservative(equations).everywhere
+
+
+def where_conservative(equations: EquationsOfMotion) -> Extent:
+    """In which pieces of min, max, abs, sign, cases and samples T + V stays."""
+    t = equations.symbols.t
+    by_itself = (*equations.nu, *equations.sigma)
+    if any(not is_zero(x) for x in by_itself) or depends_on(equations.V, (t,)) or depends_on(equations.T, (t,)):
+        return NOWHERE
+    elastic = from_potential(equations.system.motion, equations.V)
+    if not elastic:
+        return EVERYWHERE
+    n = len(elastic)
+    return where_continuous(equations, equations.V) & where_holds(
+        equations,
+        (*equations.Q, *elastic),
+        lambda x: equal_at_random_states(zip(x[:n], x[n:], strict=True)).equal,
+    )
+
+
+def why_not_conservative(equations: EquationsOfMotion) -> str:
+    """What keeps T + V from staying, in words; "" where it stays."""
+    held = where_conservative(equations)
+    if held.everywhere:
+        return ""
+    if held:
+        return f"T + V stays constant only while {held.text}"
+    model, loads = equations.system.scope.model, equations.system.loads
+    carried = [f"'{name}' moves by itself" for name, part in model.coordinates.items() if part.driven]
+    pushed = [f"'{each.name}' has no potential" for each in loads.applied if each.potential is None and each.loads]
+    turned = [f"something drives or brakes the joint of '{e.body}'" for e in loads.efforts if not is_zero(e.drive)]
+    rubbed = ["contacts rub"] if equations.friction else []
+    rows = zip(equations.system.ties.closing, equations.sigma, strict=True)
+    moving = [f"'{row.tie}' moves by itself" for row, sigma in rows if not is_zero(sigma)]
+    found = tuple(dict.fromkeys((*carried, *pushed, *turned, *rubbed, *moving)))
+    return ", ".join(found) or "something drives, brakes or carries the model"
+
+
+def refuse_massless(equations: EquationsOfMotion) -> None:
+    """A free coordinate that moves no mass has no acceleration, nor have several that can move together without any.
+
+    Raises:
+        ModelError: naming every such coordinate, or the body that can turn idly.
+    """
+    if problems := massless_motions(equations):
+        raise ModelError(problems)
+
+
+def massless_motions(equations: EquationsOfMotion) -> tuple[Problem, ...]:
+    """The motions that move no mass; () where every acceleration is determined."""
+    held = [any(not is_zero(row[k]) for row in equations.J) for k in range(len(equations.M))]
+    moves_nothing = [k for k in range(len(held)) if is_zero(equations.M[k][k]) and not held[k]]
+    return tuple(_massless(equations, k) for k in moves_nothing) or _idle(equations)
+
+
+def _massless(equations: EquationsOfMotion, k: int) -> Problem:
+    speed = equations.symbols.u[k].name
+    q = speed.rstrip("'")
+    if q == speed:
+        return Problem(
+            f"speeds.{q}",
+            f"the speed '{q}' moves no mass, so it has no derivative",
+            mend="give the bodies that it moves a mass",
+        )
+    return Problem(
+        f"coordinates.{q}",
+        f"the free coordinate '{q}' moves no mass, so it has no acceleration",
+        mend="give the bodies that it moves a mass, or drive the coordinate by `motion`"
+        + _by_its_balance(equations, k),
+    )
+
+
+def _by_its_balance(equations: EquationsOfMotion, k: int) -> str:
+    """How a node between springs, or springs and dampers, follows from its own balance; "" where nothing pushes it."""
+    force, u = equations.forcing[k], equations.symbols.u[k]
+    q = next((q for q in equations.symbols.q if f"{q.name}'" == u.name), None)
+    if q is None or is_zero(force) or text_size(force) > LONG or not depends_on(force, (q, u)):
+        return ""
+    field = "rate" if depends_on(force, equations.symbols.u) else "gap"
+    tie = f'kind = "equation", {field} = "{to_text(force)}"'
+    return f"; where springs and dampers alone push it, mark it `dependent` and give its balance: {{ {tie} }}"
+
+
+# -- motions that move no mass -----------------------------------------------------------------------
+
+
+def _idle(equations: EquationsOfMotion) -> tuple[Problem, ...]:
+    """A motion that the ties allow and that moves no mass, M u = 0 and J u = 0, at a generic state."""
+    system = equations.system
+    if not equations.M or _is_full(system):
+        return ()
+    try:
+        if _has_energy(equations, scattered_state(system.ties)):
+            return ()
+        state = generic_state(system.ties)
+        u = _without_energy(equations, state)
+        return () if u is None else (_idle_problem(system, u, state),)
+    except (MissingValues, DerivationError, NoValue):
+        return ()  # whoever needs accelerations says what is missing
+
+
+def _is_full(system: System) -> bool:
+    """Whether every body has inertia in all directions, and every speed is that of one joint: M is regular."""
+    rates = [rate for link in system.motion.links for rate in link.s_rate]
+    own = len(rates) == len(set(rates)) and set(rates) == set(system.symbols.u)
+    return own and not any(_is_lean(system, link) for link in system.motion.links)
+
+
+def _is_lean(system: System, link: BodyLink) -> bool:
+    """Whether a body has motions without kinetic energy, as far as zeros on the diagonal of its inertia tell."""
+    mass = mass_properties(system.scope, link.name)
+    axes = (2,) if system.scope.model.space == "plane" else range(3)
+    return is_zero(mass.m) or any(is_zero(mass.I[k][k]) for k in axes)
+
+
+def _has_energy(equations: EquationsOfMotion, state: State) -> bool:
+    """Whether all motions have, those that the ties forbid too: M is regular."""
+    values = {node: float(x) for node, x in state.items()}
+    M = np.array(evaluate([x for row in equations.M for x in row], values, FLOAT)).reshape(len(equations.M), -1)
+    sizes = np.diag(M)
+    if not np.all(np.isfinite(M)) or not np.all(sizes > SOLVED * max(sizes)):
+        return False
+    return bool(np.linalg.eigvalsh(M / np.outer(np.sqrt(sizes), np.sqrt(sizes)))[0] > RANK)
+
+
+def _without_energy(equations: EquationsOfMotion, state: State) -> dict[Node, float] | None:
+    """Speeds with M u = 0 and J u = 0, the largest 1; None where there are none."""
+    u = equations.symbols.u
+    entries = evaluate([x for row in (*equations.M, *equations.J) for x in row], state, fifty_digits())
+    rows = np.array(entries, dtype=object).reshape(-1, len(u))
+    sizes = np.diag(rows[: len(u)])
+    counts = sizes > SQUARED_AT_50 * max(sizes)
+    scale = np.array([1 / x**0.5 if counted else 1 for x, counted in zip(sizes, counts, strict=True)])
+    rows = rows * scale  # in numbers of any size: M of a length of 1e300 m is no double
+    rows[: len(u)] *= scale[:, None]
+    longest = np.array([max(map(abs, row)) or 1 for row in rows])
+    rows[len(u) :] /= longest[len(u) :, None]
+    rows = rows.astype(float)
+    _, values, directions = np.linalg.svd(np.vstack([rows[: len(u)], of_one_length(rows[len(u) :])]))
+    if values[-1] > SUMMED * values[0]:
+        return None
+    least = scale.astype(float) * directions[-1]
+    return dict(zip(u, least / np.max(np.abs(least)), strict=True))
+
+
+def _idle_problem(system: System, u: Mapping[Node, float], state: State) -> Problem:
+    """Which body turns idly, or which coordinates move nothing."""
+    moving = [node.name.rstrip("'") for node, x in u.items() if abs(x) > SHARE]
+    names = ", ".join(f"'{name}'" for name in moving)
+    for link in system.motion.links:
+        if max(abs(w) for w in _spin(link, u, state)) > SHARE:
+            what = f"body '{link.name}' can turn about an axis about which it has no inertia"
+            mend = "give it an inertia there (a cylinder, not a rod), or a joint that does not turn it so: 'universal'"
+            return Problem(f"bodies.{link.name}", f"{what}: nothing determines the accelerations of {names}", mend=mend)
+    what = f"the free coordinates {names} can move together without moving a mass"
+    mend = "give the bodies that they move a mass, or leave out what moves nothing of its own"
+    return Problem("coordinates", f"{what}: nothing determines their accelerations", mend=mend)
+
+
+def _spin(link: BodyLink, u: Mapping[Node, float], state: State) -> list[float]:
+    """The part of a body's angular velocity that is linear in u, at these speeds."""
+    ways = [state | {node: of_50_digits(k * x) for node, x in u.items()} for k in (1, 0)]
+    with_u, without = (evaluate(link.twist.w, way, fifty_digits()) for way in ways)
+    return [float(x - y) for x, y in zip(with_u, without, strict=True)]
+
+
+# -------- no value --------------------------------------------------------------------------------------------
+# System, a state in which its equations have no value -> what has none there: a force, a joint, a tie, an input.
+
+
+REASONS = {
+    "div": "divides by zero",
+    "sqrt": "takes the root of a negative number",
+    "log": "takes the logarithm of what is not positive",
+    "pow": "takes a power that is no number",
+}
+
+
+@dataclass(frozen=True)
+class Valueless:
+    """What has no value in a state.
+
+    Args:
+        where: its path in the model.
+        what: "force 'pull' is 0/0 at x = 0".
+    """
+
+    where: str
+    what: str
+
+
+def valueless(system: System, values: Mapping[Node, float]) -> Valueless | None:
+    """The first part of a system that has no finite value in a state; None where each has one.
+
+    Args:
+        values: of t, q, u and the parameters.
+    """
+    for where, name, part in _parts(system):
+        for scalar in _scalars(part):
+            reason = reason_without_value(scalar, values)
+            if reason:
+                return Valueless(where, f"{name} {reason}")
+    return None
+
+
+def overlarge(system: System, values: Mapping[Node, float]) -> Valueless | None:
+    """The largest part of a system in a state, where that is too large to be calculated with; None where none is."""
+    sizes = [(_size(part, values), where, name) for where, name, part in _parts(system)]
+    size, where, name = max(sizes, default=(0.0, "", ""))
+    if not LARGEST_SQUARED < size < math.inf:
+        return None
+    what = f"{name} is of the size {size:.3g} there, beyond what doubles can follow; give it a smaller value"
+    return Valueless(where, what)
+
+
+def _size(part: Any, values: Mapping[Node, float]) -> float:
+    """The largest number in it, in SI; 0 where the state does not say it."""
+    scalars = tuple(x for x in _scalars(part) if all(symbol in values for symbol in symbols_of((x,))))
+    return max((abs(x) for x in evaluate(scalars, values, FLOAT) if not math.isnan(x)), default=0.0)
+
+
+def _parts(system: System) -> Iterator[tuple[str, str, Any]]:
+    for name, value in system.inputs.items():
+        yield f"inputs.{name}", f"input '{name}'", value
+    for force in system.loads.applied:
+        yield f"forces.{force.name}", f"force '{force.name}'", force.loads
+    for effort in system.loads.efforts:
+        yield f"bodies.{effort.body}.joint", f"the joint of body '{effort.body}'", effort.effort
+    for row in system.ties.rows:
+        yield f"constraints.{row.tie}", f"constraint '{row.tie}'", (row.gap, row.velocity, row.wrenches)
+        yield f"constraints.{row.tie}", f"the friction of '{row.tie}'", (row.friction, row.shares)
+
+
+def _scalars(part: Any) -> Iterator[Scalar]:
+    """The formulas in a load or a row."""
+    if type(part) in (Node, int, Fraction):
+        yield part
+    elif isinstance(part, (tuple, list)):
+        for each in part:
+            yield from _scalars(each)
+    elif is_dataclass(part):
+        for field in fields(part):
+            yield from _scalars(getattr(part, field.name))
+
+
+def reason_without_value(scalar: Scalar, values: Mapping[Node, float]) -> str:
+    """Why it has no finite value, and where; "" where it has one, or holds what is not known in a state."""
+    symbols = symbols_of((scalar,))
+    if not all(symbol in values for symbol in symbols):
+        return ""
+    nodes = order((scalar,))
+    known = dict(zip(nodes, evaluate(nodes, values, FLOAT), strict=True))
+    culprit = next((node for node in nodes if not math.isfinite(known[node])), None)
+    if culprit is None or culprit in values:  # a state that is no number is nobody's here
+        return ""
+    operands = [known[a] if type(a) is Node else float(a) for a in culprit.args]
+    reason = REASONS.get(culprit.op, "has no finite value")
+    reason = "is 0/0" if culprit.op == "div" and not any(operands) else reason
+    held = symbols_of((culprit,))
+    state = [symbol for symbol in held if not symbol.graph.is_constant(symbol)] or held
+    return f"{reason} at {', '.join(f'{symbol.name} = {values[symbol]:.6g}' for symbol in state)}" if state else reason

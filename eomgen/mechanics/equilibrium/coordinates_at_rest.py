@@ -1,0 +1,107 @@
+"""Static equations -> the coordinates that may be chosen where velocity ties let a system rest in many places.
+
+A knife edge or a wheel holds velocities and no positions: where Q + J^T lam = 0, phi = 0 hold at one place they hold
+beside it too. With A the derivatives of these equations by (lam, q), the coordinates whose columns of A follow from the
+columns before them may be anything near: they stay where they start, and the others follow.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from functools import cached_property
+from typing import Any
+
+import numpy as np
+
+from eomgen.mechanics.constraints.closure import is_guess
+from eomgen.mechanics.equilibrium.equations import StaticEquations
+from eomgen.mechanics.equilibrium.places import place_near
+from eomgen.records import dataclass
+from eomgen.symbolic.expression.derivative import jacobian
+from eomgen.symbolic.expression.node import Node
+from eomgen.symbolic.numeric import dense
+from eomgen.symbolic.numeric.dense import rank
+from eomgen.symbolic.numeric.tolerances import RANK, SAME_PLACE, SUMMED
+from eomgen.symbolic.solve.solving import vanishes
+
+ASIDE = 0.01  # by which a place of rest beside the first is sought
+
+
+@dataclass(frozen=True)
+class Chosen:
+    """What may be chosen.
+
+    Args:
+        coordinates: those that may be anything near where they start.
+        smooth: whether places of rest beside one another have the same freedom: they make up one family.
+        indifferent: coordinates that no equation holds.
+    """
+
+    coordinates: tuple[Node, ...] = ()
+    smooth: bool = True
+    indifferent: tuple[Node, ...] = ()
+
+
+def holds_velocities(statics: StaticEquations, values: Mapping[Node, Any], guess: np.ndarray) -> bool:
+    """Whether a tie holds velocities without a relation between positions: d phi/dq has less rank than J."""
+    aside = guess + ASIDE * np.random.default_rng(3).uniform(1, 2, len(guess))
+    floats = {node: float(x) for node, x in values.items()}
+    relations = jacobian(statics.phi, statics.q) if statics.phi else ()
+    held = rank(statics.slopes(relations, aside, floats)) if relations else 0
+    return held < rank(statics.slopes(statics.J, aside, floats))
+
+
+def unheld(statics: StaticEquations) -> tuple[Node, ...]:
+    """The coordinates that stand in the equations, of which none depends on them all the same: sin^2 + cos^2."""
+    slopes = zip(*jacobian(statics.equations, statics.q), strict=True) if statics.equations else iter(())
+    return tuple(q for q, column in zip(statics.q, slopes, strict=False) if all(map(vanishes, column)))
+
+
+def chosen_coordinates(statics: StaticEquations, values: Mapping[Node, Any], guess: np.ndarray) -> Chosen:
+    """The coordinates that may be chosen near the place of rest that is reached from a guess.
+
+    Args:
+        values: of the parameters, with 50 digits.
+        guess: of the coordinates.
+    """
+    here = place_near(statics, values, guess)
+    return Chosen() if here is None else _Near(statics, values, guess, here).chosen()
+
+
+@dataclass(frozen=True)
+class _Near:
+    statics: StaticEquations
+    values: Mapping[Node, Any]
+    guess: np.ndarray
+    here: np.ndarray
+
+    def chosen(self) -> Chosen:
+        beside = place_near(self.statics, self.values, self._shifted)
+        loose = [self._loose(z) for z in (self.here, self.here if beside is None else beside)]
+        return Chosen(tuple(loose[1]), len(loose[0]) == len(loose[1]))
+
+    @cached_property
+    def _shifted(self) -> np.ndarray:
+        """A place near the family's tangent."""
+        n = len(self.statics.q)
+        free = [self.statics.q.index(q) for q in self._loose(self.here)]
+        moved = self.here[:n].copy()
+        moved[free] += ASIDE * np.random.default_rng(4).uniform(1, 2, len(free))
+        return moved
+
+    def _loose(self, place: np.ndarray) -> list[Node]:
+        """The coordinates whose columns of A follow from those of the multipliers and of other coordinates."""
+        floats = {node: float(x) for node, x in self.values.items()}
+        floats |= dict(zip(self.statics.unknowns, map(float, place), strict=True))
+        slopes = jacobian(self.statics.equations, self.statics.unknowns)
+        A = self.statics.slopes(slopes, place[: len(self.statics.q)], floats)
+        A = dense.balanced(dense.without_noise(A, SUMMED, axis=1))[0]
+        n = len(self.statics.q)
+        order = [*range(n, A.shape[1]), *sorted(range(n), key=self._place_in_order)]
+        kept = {order[i] for i in dense.independent_rows(A.T[order], RANK)}
+        return [q for k, q in enumerate(self.statics.q) if k not in kept]
+
+    def _place_in_order(self, k: int) -> tuple[bool, bool, int]:
+        """First what does not rest where it starts, then what nobody gave."""
+        still = abs(self.here[k] - self.guess[k]) <= SAME_PLACE * (1 + abs(self.guess[k]))
+        return bool(still), not is_guess(self.statics.system.scope.model, self.statics.q[k].name), -k

@@ -1,0 +1,401 @@
+"""System -> Static equations: what vanishes where the system is at rest, and stays so."""
+
+from __future__ import annotations
+
+from collections.abc import Collection, Mapping, Sequence
+from dataclasses import replace
+from functools import cached_property
+from random import Random
+from typing import Any
+
+import numpy as np
+
+from eomgen.errors import DerivationError
+from eomgen.mechanics.constraints.elimination import dependent_coordinates
+from eomgen.mechanics.constraints.rank import freedoms
+from eomgen.mechanics.constraints.rows import ties_of
+from eomgen.mechanics.dynamics.system import (
+    System,
+    acting,
+    generalized_forces,
+    powered_forces,
+    reduced_system,
+    system_of,
+)
+from eomgen.mechanics.kinematics.loads import loads_of
+from eomgen.mechanics.kinematics.motion import motion_of
+from eomgen.mechanics.kinematics.scene import start_values
+from eomgen.mechanics.kinematics.symbols import Scope
+from eomgen.model.contacts import rough_contacts
+from eomgen.model.fields import Table
+from eomgen.model.part import altered
+from eomgen.model.values import exact_parameters, quaternions_of
+from eomgen.records import dataclass
+from eomgen.symbolic.exact.normal_form import readable_all, simplest
+from eomgen.symbolic.expression.derivative import depends_on, depends_on_any, substituted, symbols_of
+from eomgen.symbolic.expression.node import Node, Scalar, ScalarRow, State, is_zero
+from eomgen.symbolic.expression.rational import Fraction
+from eomgen.symbolic.expression.text import as_expression
+from eomgen.symbolic.expression.traversal import order
+from eomgen.symbolic.numeric.evaluation import FLOAT, NoValue, evaluate, fifty_digits
+from eomgen.symbolic.numeric.tolerances import ZERO_AT_50
+from eomgen.symbolic.numeric.work import Work
+from eomgen.symbolic.print.text import to_text
+from eomgen.symbolic.solve.solving import vanishes
+
+# -------- static equations ------------------------------------------------------------------------------------
+# System -> Static equations: what vanishes where the system is at rest, and stays so.
+#
+#     Q + J^T lam = 0,   phi = 0,   sigma = 0        at u = 0, t = 0, driven coordinates held where they start
+#
+# over all coordinates that are not driven, dependent ones among them. sigma is what a velocity row J u + sigma = 0
+# asks for at rest: of z' = r - x that x = r. Relations between positions that a velocity row gives by itself (a wheel
+# that rolls) are taken from the start. The norm of a quaternion, e . e = 1, is one more tie.
+
+
+MOST_TERMS = 1000  # of all forces together, when they are written out: they share their parts as they come
+
+
+@dataclass(frozen=True)
+class StaticEquations:
+    """The balance of a system at rest.
+
+    Args:
+        system: of the model, its drives held.
+        held: the driven coordinates that the model moves, and that stand still here.
+        q: the coordinates sought.
+        given: what stands in place of speeds, time, inputs and driven coordinates.
+        Q: generalized force along each of q, and `unbalanced` the part of it that has no potential.
+        J: of each closing row its coefficients, lam its multiplier.
+        phi: relations between the coordinates.
+        sigma: what velocity rows leave where no speed is: a tie that runs on at any place has none at which it rests.
+        norms: how many of the rows of J, the last ones, are those of the norms of quaternions.
+        beside: what balances along coordinates that need not be sought, as no equation depends on them.
+        nowhere: (coordinate, force along it) of the forces that the values of the parameters make vanish everywhere.
+    """
+
+    system: System
+    held: tuple[str, ...]
+    q: tuple[Node, ...]
+    given: Mapping[Node, Scalar]
+    Q: ScalarRow
+    unbalanced: ScalarRow
+    J: tuple[ScalarRow, ...]
+    lam: tuple[Node, ...]
+    phi: ScalarRow
+    sigma: ScalarRow = ()
+    norms: int = 0
+    beside: ScalarRow = ()
+    nowhere: tuple[tuple[Node, Scalar], ...] = ()
+
+    @cached_property
+    def forces(self) -> ScalarRow:
+        """Q + J^T lam."""
+        return tuple(
+            sum((row[k] * lam for row, lam in zip(self.J, self.lam, strict=True)), start=force)
+            for k, force in enumerate(self.Q)
+        )
+
+    @property
+    def equations(self) -> ScalarRow:
+        """All that vanishes."""
+        return (*self.forces, *self.beside, *self.phi, *self.sigma)
+
+    @property
+    def unknowns(self) -> tuple[Node, ...]:
+        return (*self.q, *self.lam)
+
+    @property
+    def indifferent(self) -> tuple[Node, ...]:
+        """Coordinates that no equation holds: any place of theirs will do."""
+        held = frozenset(symbols_of(self.equations))
+        return tuple(q for q in self.q if q not in held)
+
+    @property
+    def loaded(self) -> tuple[Node, ...]:
+        """The unknowns of the model that stand in the forces."""
+        held = frozenset(symbols_of(self.Q))
+        return tuple(x for x in self.system.symbols.unknowns.values() if x in held)
+
+    def at_the_values(self) -> StaticEquations:
+        """The same where a force is 0 that vanishes everywhere for the model's values of the parameters."""
+        scope = self.system.scope
+        known = {scope.symbols.parameters[name]: x for name, x in exact_parameters(scope.model).items()}
+        values = {node: Fraction(x) for node, x in known.items() if isinstance(x, Fraction | int)}
+        sought = [k for k, force in enumerate(self.Q) if not is_zero(force) and depends_on(force, values)]
+        digits, rng = fifty_digits(), Random(5)
+        there = {x: digits.number(Fraction(rng.randint(50, 99), 97)) for x in symbols_of(self.Q)}
+        try:  # what has a value at one place does not vanish everywhere
+            at = evaluate(self.Q, there | {x: digits.number(v) for x, v in values.items()}, digits)
+        except (NoValue, ZeroDivisionError):
+            at = [0] * len(self.Q)
+        sought = [k for k in sought if abs(at[k]) <= ZERO_AT_50]
+        empty = [k for k in sought if is_zero(simplest(substituted((self.Q[k],), values)[0], Work.VALUE))]
+        Q = tuple(0 if k in empty else force for k, force in enumerate(self.Q))
+        return replace(self, Q=Q, nowhere=tuple((self.q[k], self.Q[k]) for k in empty)) if empty else self
+
+    def without(self, dropped: Collection[Node]) -> StaticEquations:
+        """The same over the other coordinates, which alone stand in the equations.
+
+        Raises:
+            DerivationError: a force along one of those dropped, which nothing balances.
+        """
+        beside = []
+        for q, force in zip(self.q, self.forces, strict=True):
+            if q in dropped and not is_zero(force) and not vanishes(force):
+                if not depends_on(force, self.unknowns):
+                    raise DerivationError(
+                        f"nothing balances the force along '{q.name}': it is at rest nowhere",
+                        f"coordinates.{q.name}",
+                        "hold it by a spring or a tie, or take away what pushes it",
+                    )
+                beside.append(force)
+        kept = [k for k, q in enumerate(self.q) if q not in dropped]
+
+        def of(row: tuple[Any, ...]) -> tuple[Any, ...]:
+            return tuple(row[k] for k in kept)
+
+        return replace(
+            self,
+            q=of(self.q),
+            Q=of(self.Q),
+            unbalanced=of(self.unbalanced),
+            J=tuple(map(of, self.J)),
+            beside=(*self.beside, *beside),
+        )
+
+    def holding(self, at: State) -> StaticEquations:
+        """The same over the other coordinates, those named held at a place; the forces along them balance too."""
+        kept = [k for k, q in enumerate(self.q) if q not in at]
+        beside = [force for q, force in zip(self.q, self.forces, strict=True) if q in at]
+        Q, unbalanced, phi, sigma, others = (
+            substituted(x, at) for x in (self.Q, self.unbalanced, self.phi, self.sigma, self.beside)
+        )
+        rows = [substituted(row, at) for row in self.J]
+        more = tuple(x for x in substituted(tuple(beside), at) if not is_zero(x))
+        return replace(
+            self,
+            q=tuple(self.q[k] for k in kept),
+            Q=tuple(Q[k] for k in kept),
+            unbalanced=tuple(unbalanced[k] for k in kept),
+            phi=phi,
+            sigma=sigma,
+            beside=(*others, *more),
+            J=tuple(tuple(row[k] for k in kept) for row in rows),
+        )
+
+    def measured(self, unit: State) -> StaticEquations:
+        """The same where each of these coordinates stands for itself over its unit."""
+        at = {q: q * x for q, x in unit.items()}
+        Q, unbalanced, phi, sigma, beside = (
+            substituted(x, at) for x in (self.Q, self.unbalanced, self.phi, self.sigma, self.beside)
+        )
+        rows = tuple(substituted(row, at) for row in self.J)
+        return replace(self, Q=Q, unbalanced=unbalanced, phi=phi, sigma=sigma, beside=beside, J=rows)
+
+    def slopes(self, rows: Sequence[ScalarRow], q: np.ndarray, values: Mapping[Node, float]) -> np.ndarray:
+        """Entries as numbers at a place."""
+        state = {**values, **dict(zip(self.q, map(float, q), strict=True))}
+        flat = [x for row in rows for x in row]
+        return np.array(evaluate(flat, state, FLOAT), dtype=float).reshape(len(rows), -1 if rows else len(self.q))
+
+
+def static_equations(system: System) -> StaticEquations:
+    """The equations of the system at rest, its drives held.
+
+    Raises:
+        DerivationError: dry friction, by which rest is possible in many places; a drive that turns steadily; a tie that
+            runs on wherever the system is.
+    """
+    _refuse_dry_friction(system)
+    system, held = with_drives_held(system)
+    free = system.free or system
+    scope = free.scope
+    driven = [q for q in scope.symbols.q if scope.model.coordinates[q.name].driven]
+    q = tuple(x for x in scope.symbols.q if x not in driven)
+    given = _given(free, driven)
+    rows = [readable_all(substituted(row, given), Work.FORMULA) for row in free.ties.J]
+    standing = standing_system(free)  # a damper at a seat that moves by an explicit time does not pull at rest
+    loads = (standing.free or standing).loads
+    forces = generalized_forces(loads)
+    _refuse_signs_of_rates(forces, free)
+    Q = _at_rest(forces, given, free)
+    unbalanced = substituted(powered_forces(loads), given)
+    phi = _relations(system, given, q)
+    sigma = _left_at_rest(free, given, q)
+    Q, unbalanced, phi, sigma = (
+        readable_all(x, Work.FORMULA, most=MOST_TERMS) if x else () for x in (Q, unbalanced, phi, sigma)
+    )
+    lam = free.symbols.lam
+    kept = [i for i, row in enumerate(rows) if not all(map(is_zero, row))]
+    statics = StaticEquations(
+        system,
+        held,
+        q,
+        given,
+        Q,
+        unbalanced,
+        tuple(rows[i] for i in kept),
+        tuple(lam[i] for i in kept),
+        tuple(x for x in phi if not is_zero(x)),
+        tuple(x for x in sigma if not is_zero(x)),
+    )
+    return with_norms(statics)
+
+
+def with_norms(statics: StaticEquations) -> StaticEquations:
+    """The equations with a tie for the norm of each quaternion that something holds: Q + 2 e lam = 0, e . e = 1."""
+    scope, indifferent = statics.system.scope, statics.indifferent
+    turning = [
+        (four, part)
+        for four, part in zip(scope.quaternions, quaternions_of(scope.model), strict=True)
+        if not all(e in indifferent for e in four)
+    ]
+    rows = tuple(tuple(2 * q if q in four else 0 for q in statics.q) for four, _ in turning)
+    lam = tuple(scope.graph.symbol(f"lam(norm of {part.body}, 1)") for _, part in turning)
+    phi = tuple(sum((e * e for e in four), start=-1) for four, _ in turning)
+    return replace(statics, J=(*statics.J, *rows), lam=(*statics.lam, *lam), phi=(*statics.phi, *phi), norms=len(rows))
+
+
+def _given(free: System, driven: Sequence[Node]) -> dict[Node, Scalar]:
+    """At rest, at t = 0."""
+    return free.standing(start_values(free.scope, driven))
+
+
+def _relations(system: System, given: Mapping[Node, Scalar], q: Sequence[Node]) -> ScalarRow:
+    """What the ties say of positions; constants that only the start fixes are taken from it."""
+    from eomgen.mechanics.integrals.laws import position_equations
+
+    found = substituted(tuple(position_equations(system, start_values(system.scope))), given)
+    return tuple(x for x in found if depends_on(x, q))
+
+
+def _left_at_rest(free: System, given: Mapping[Node, Scalar], q: Sequence[Node]) -> ScalarRow:
+    """sigma of the rows of velocities at rest; a row of positions keeps time as it is at the start.
+
+    Raises:
+        DerivationError: a row that no place satisfies at rest.
+    """
+    rows = [row for row in free.ties.closing if row.gap is None]
+    left = substituted(tuple(row.velocity for row in rows), given)
+    for row, x in zip(rows, left, strict=True):
+        if not depends_on(x, q) and not is_zero(x) and not vanishes(x):
+            what = f"'{row.tie}' runs on wherever the system is, and nothing is at rest beside it"
+            raise DerivationError(what, f"constraints.{row.tie}", "seek a steady motion: linearize --about steady")
+    return tuple(x for x in left if depends_on(x, q))
+
+
+# -- what is held ------------------------------------------------------------------------------------
+
+
+def has_freedoms(system: System) -> bool:
+    """Whether anything is free to find its rest: a coordinate that no tie, drive or unknown load holds."""
+    unknowns = system.symbols.unknowns.values()
+    forces = generalized_forces(system.loads)
+    return freedoms(system.ties) > 0 and not depends_on_any(forces, unknowns)
+
+
+def with_drives_held(system: System) -> tuple[System, tuple[str, ...]]:
+    """(the system with its driven coordinates at rest where they start, the names of those that the model moves)."""
+    scope = system.scope
+    bias = dict(zip((q.name for q in scope.symbols.q), scope.nu, strict=True))
+    starts = {q.name: x for q, x in start_values(scope).items()}
+    table = dict(scope.model.coordinates)
+    moved = [name for name, part in table.items() if part.driven and not vanishes(bias[name])]
+    if not moved:
+        return system, ()
+    free = any(not part.driven for part in table.values())
+    for name in moved:
+        if free and not depends_on(bias[name], (scope.symbols.t,)):
+            what = f"'{name}' moves on at a constant rate, and nothing is at rest beside it"
+            raise DerivationError(what, f"coordinates.{name}", "hold it by a `motion` that does not change")
+        place = as_expression(to_text(starts[name]))
+        table[name] = altered(table[name], motion=place, rate=None, acceleration=None, start=None, speed=None)
+    model = altered(scope.model, coordinates=Table(table))
+    return system_of(model, system.modes), tuple(moved)
+
+
+def _refuse_dry_friction(system: System) -> None:
+    """Coulomb's friction holds a system at rest in a range of places.
+
+    Raises:
+        DerivationError: the contact is named.
+    """
+    rough = rough_contacts(system.scope.model)
+    if rough:
+        what = f"'{rough[0].name}' has friction: it rests in a range of places, not in single ones"
+        raise DerivationError(
+            what, rough[0].declared_at, "leave the friction out, or ask at an instant which force it takes"
+        )
+
+
+def _at_rest(forces: ScalarRow, given: State, free: System) -> ScalarRow:
+    """Forces with all speeds 0.
+
+    Raises:
+        DerivationError: one divides by a speed: it is named.
+    """
+    try:
+        return substituted(forces, given)
+    except DerivationError as error:
+
+        def has_none(row: ScalarRow) -> bool:
+            try:
+                substituted(row, given)
+            except DerivationError:
+                return True
+            return False
+
+        what = f"{acting(free.loads, has_none) or 'a force'} has no value where nothing moves: {error.what}"
+        mend = "write it so that it has one at rest: w/sqrt(w^2 + eps^2) in place of w/abs(w)"
+        raise DerivationError(what, mend=mend) from error
+
+
+def _refuse_signs_of_rates(Q: ScalarRow, free: System) -> None:
+    """Dry friction that is written as a force: -c*sign(x')."""
+    u = free.symbols.u
+    for node in order(Q):
+        if node.op == "sign" and any(depends_on(a, u) for a in node.args):
+            raise DerivationError(
+                "a force jumps with the sign of a rate: at rest it may have any value in between",
+                mend="leave it out where rest is sought",
+            )
+
+
+# -------- standing --------------------------------------------------------------------------------------------
+# System -> the same as it stands at rest: over its rates alone, and its explicit times held at 0.
+#
+# At rest all rates are 0. A declared speed w = Y q' + y(q, t) is then y, and need not stay: where y is not 0, rest is
+# said of the rates. A surface or a seat that moves by an explicit time stands where it is at t = 0, as the forces do.
+
+
+def over_rates(system: System) -> System:
+    """The system over its rates, where a declared speed is not 0 at rest; else as it is."""
+    scope = system.scope
+    given = (scope.model.coordinates[q.name].driven for q in scope.symbols.q)
+    moving = any(not is_zero(x) and not driven for x, driven in zip(scope.nu, given, strict=True))
+    if system.free is None or not scope.combines or not moving:
+        return system
+    return _made_of(system.free, system.free.scope)
+
+
+def standing_system(system: System) -> System:
+    """`over_rates`, what moves by an explicit time held where it is at t = 0."""
+    system = over_rates(system)
+    free = system.free or system
+    scope, t = free.scope, (free.scope.symbols.t,)
+    places = [x for link in free.motion.links for x in (*link.pose.p, *(y for row in link.pose.R for y in row))]
+    given = (scope.model.coordinates[q.name].driven for q in scope.symbols.q)
+    biases = [x for x, driven in zip(scope.nu, given, strict=True) if not driven]
+    if not depends_on_any((*places, *biases, *(row.velocity for row in free.ties.rows)), t):
+        return system
+    names = {name: substituted((x,), {t[0]: 0})[0] if type(x) is Node else x for name, x in scope.names.items()}
+    return _made_of(free, replace(scope, names=names))
+
+
+def _made_of(free: System, scope: Scope) -> System:
+    """The system of another scope over the rates, dependent coordinates eliminated."""
+    scope = replace(scope, model=altered(scope.model, speeds=Table({})))
+    motion = motion_of(scope)
+    made = System(motion, loads_of(motion, free.loads.begun), ties_of(motion, modes=free.modes), free.modes)
+    return reduced_system(made) if dependent_coordinates(scope) else made

@@ -1,0 +1,179 @@
+"""An equilibrium -> every reaction there, and the unknown loads that hold it."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from random import Random
+
+from eomgen.errors import DerivationError
+from eomgen.mechanics.dynamics.system import System
+from eomgen.mechanics.equilibrium.equations import StaticEquations, standing_system, static_equations
+from eomgen.mechanics.equilibrium.search import Equilibrium
+from eomgen.mechanics.free_bodies.named_reactions import NamedReaction, named_reactions
+from eomgen.mechanics.free_bodies.solution import Indeterminate
+from eomgen.mechanics.reactions.reactions import Reactions, reactions_of
+from eomgen.mechanics.start.exact import values_of_parameters, values_where_at_rest
+from eomgen.records import dataclass
+from eomgen.symbolic.exact.normal_form import readable_all, simplest
+from eomgen.symbolic.expression.derivative import depends_on, jacobian, substituted
+from eomgen.symbolic.expression.node import Node, Scalar, is_zero
+from eomgen.symbolic.expression.rational import Fraction
+from eomgen.symbolic.numeric.evaluation import digits_at
+from eomgen.symbolic.numeric.work import Work
+from eomgen.symbolic.solve.linear import LinearSystem, Solution, general_solution
+from eomgen.symbolic.solve.solving import vanishes
+
+# -------- resting reactions -----------------------------------------------------------------------------------
+# A place of rest -> every reaction there, by the balance of the bodies.
+
+
+@dataclass(frozen=True)
+class RestingReaction:
+    """One reaction at a place of rest.
+
+    Args:
+        named: what it is.
+        value: a scalar of the parameters, None where it is statically indeterminate.
+    """
+
+    named: NamedReaction
+    value: Scalar | None
+
+
+def system_at_rest(place: Equilibrium) -> System:
+    """The system as it stands there: at rest declared speeds do not matter, nor whether they determine the rates."""
+    system = place.statics.system
+    return standing_system(system if system.free is None or system.elimination is not None else system.free)
+
+
+def state_at_rest(place: Equilibrium) -> dict[Node, Scalar]:
+    """Everything that moves, at rest there: exact, or the exact numbers that its floats are."""
+    system = system_at_rest(place)
+    symbols = system.symbols
+    still: dict[Node, Scalar] = {symbols.t: 0, **dict.fromkeys((*symbols.u, *symbols.a), 0)}
+    inputs = {x: place.statics.given[x] for x in symbols.inputs.values()}
+    at = place.exact if place.is_exact else {q: Fraction(place.numbers[q]) for q in symbols.q}
+    return {**still, **inputs, **{q: at[q] for q in symbols.q}}
+
+
+def reactions_at(place: Equilibrium) -> tuple[Reactions, tuple[RestingReaction, ...]]:
+    """Every reaction of joints and ties.
+
+    Raises:
+        DerivationError: a force acts at no place, so that reactions do not follow.
+    """
+    system, state = system_at_rest(place), state_at_rest(place)
+    reactions = reactions_of(system, state, work=Work.ANSWER if place.is_exact else Work.PART)
+    positive = system.scope.positive
+    found = []
+    for named in named_reactions(reactions.balance):
+        *factors, given = substituted((*named.combination.values(), named.given), state)
+        try:
+            sum_ = reactions.combined(dict(zip(named.combination, factors, strict=True)), named.name)
+            value = sum_ + given
+            found.append(RestingReaction(named, simplest(value, Work.VALUE, positive) if place.is_exact else value))
+        except Indeterminate:
+            found.append(RestingReaction(named, None))
+    return reactions, tuple(found)
+
+
+ReactionsOrWhy = tuple[Reactions | None, tuple[RestingReaction, ...], str]
+
+
+def reactions_or_why(place: Equilibrium) -> ReactionsOrWhy:
+    """(reactions, each of them, why there are none)."""
+    try:
+        return *reactions_at(place), ""
+    except DerivationError as error:
+        return None, (), f"{error.what}; {error.mend}" if error.mend else error.what
+
+
+# -------- loads at rest ---------------------------------------------------------------------------------------
+# System at the start, with unknowns in its loads -> the unknowns that hold it there, by virtual work.
+#
+# Q_k + (J^T lam)_k = 0        linear in the unknowns and the multipliers
+
+
+@dataclass(frozen=True)
+class Holding:
+    """What holds a system where it starts.
+
+    Args:
+        statics: the equations of rest.
+        place: every coordinate at the start, exact.
+        unknowns: the value of each unknown of the loads.
+        lam: the multipliers of closing ties that have a single value.
+    """
+
+    statics: StaticEquations
+    place: Mapping[Node, Scalar]
+    unknowns: Mapping[Node, Scalar]
+    lam: Mapping[Node, Scalar]
+
+
+def holding_of(system: System) -> Holding:
+    """The unknowns of the loads for which the system is at rest where it starts.
+
+    Raises:
+        DerivationError: no unknown of the loads does work; they are not determined, or cannot hold it; the start has no
+            closed form.
+    """
+    statics = static_equations(system)
+    if not statics.loaded:
+        raise DerivationError(
+            "no unknown load does work when the system moves: none can hold it",
+            mend="write one of [unknowns] into a force on what moves",
+        )
+    state = values_where_at_rest(statics.system)
+    place = {q: state[q] for q in statics.system.symbols.q}
+    solution = _solved(statics, place)
+    _refuse_undetermined(statics, solution)
+    positive = statics.system.scope.positive
+    found = {
+        node: simplest(solution.constants[j], Work.VALUE, positive)
+        for j, node in enumerate((*statics.loaded, *statics.lam))
+        if solution.determined(j)
+    }
+    return Holding(
+        statics, place, {p: found[p] for p in statics.loaded}, {lam: found[lam] for lam in statics.lam if lam in found}
+    )
+
+
+def _solved(statics: StaticEquations, place: Mapping[Node, Scalar]) -> Solution:
+    """The balance along every coordinate, for the unknowns and the multipliers."""
+    sought = (*statics.loaded, *statics.lam)
+    slopes = jacobian(statics.forces, sought)
+    for row in slopes:
+        for p, slope in zip(sought, row, strict=True):
+            if depends_on(slope, statics.loaded):
+                raise DerivationError(
+                    f"the balance is not linear in the unknown '{p.name}'",
+                    f"unknowns.{p.name}",
+                    "let it stand alone, times what is known",
+                )
+    right = [-x for x in substituted(substituted(statics.forces, dict.fromkeys(sought, 0)), place)]
+    flat = iter(readable_all(substituted([x for row in slopes for x in row], place), Work.VALUE))
+    rows = [{j: next(flat) for j in range(len(sought))} for _ in slopes]
+    readable_right = readable_all(right, Work.VALUE)
+    own, shaken = (
+        general_solution(LinearSystem(rows, readable_right, len(sought), digits_at(values)))
+        for values in (values_of_parameters(statics.system.scope, Random(3), shaken=each) for each in (False, True))
+    )
+    return shaken if len(shaken.free) == len(own.free) else own  # m1 - m2 is 0 at m1 = m2 alone
+
+
+def _refuse_undetermined(statics: StaticEquations, solution: Solution) -> None:
+    open_ = [p.name for j, p in enumerate(statics.loaded) if not solution.determined(j)]
+    if open_:
+        raise DerivationError(
+            f"rest does not determine '{open_[0]}': there are more unknowns than freedoms",
+            f"unknowns.{open_[0]}",
+            "give a value to some of them",
+        )
+    if not all(is_zero(x) or vanishes(x) for x in solution.left):
+        names = ", ".join(f"'{p.name}'" for p in statics.loaded)
+        freedoms = ", ".join(u.name.removesuffix("'") for u in statics.system.symbols.u)
+        raise DerivationError(
+            f"{names} alone cannot hold the system where it starts: something moves on",
+            mend=f"the freedoms are {freedoms}; let an unknown act on each",
+        )

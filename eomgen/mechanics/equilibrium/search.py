@@ -1,0 +1,638 @@
+"""System -> its equilibria: every place at which all forces balance."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping, Sequence
+from dataclasses import replace
+from functools import cached_property
+from random import Random
+from typing import Any
+
+import numpy as np
+
+from eomgen.errors import DerivationError, MissingValues
+from eomgen.mechanics.constraints.closure import generic_state
+from eomgen.mechanics.constraints.rows import Ties
+from eomgen.mechanics.dynamics.system import System
+from eomgen.mechanics.equilibrium.coordinates_at_rest import Chosen, chosen_coordinates, holds_velocities, unheld
+from eomgen.mechanics.equilibrium.equations import StaticEquations, static_equations
+from eomgen.mechanics.equilibrium.places import ANYWHERE, ClosedForms, Guess, Places, places_of_rest
+from eomgen.mechanics.equilibrium.stability import Stability, stability_of
+from eomgen.mechanics.free_bodies.solution import Indeterminate
+from eomgen.mechanics.kinematics.motion import Lock, Motion, locks_of
+from eomgen.mechanics.kinematics.places import Located
+from eomgen.mechanics.kinematics.scene import CLOSED, start_values
+from eomgen.mechanics.reactions.reactions import reactions_of
+from eomgen.mechanics.start.exact import known_exactly, shown_numbers, values_of_parameters
+from eomgen.model.contacts import contacts_of
+from eomgen.model.values import exact_parameters
+from eomgen.records import dataclass
+from eomgen.symbolic.expression.derivative import depends_on_any, jacobian, symbols_of
+from eomgen.symbolic.expression.node import Node, Scalar, ScalarRows, State
+from eomgen.symbolic.expression.rational import Fraction
+from eomgen.symbolic.numeric.dense import rank
+from eomgen.symbolic.numeric.evaluation import FLOAT, NoValue, evaluate
+from eomgen.symbolic.numeric.tolerances import (
+    ASIDE_STEP,
+    CARRIED,
+    COMPUTED,
+    DEGENERATE,
+    SAME_PLACE,
+    TINIEST,
+    ZERO_AT_50,
+)
+
+# -------- search ----------------------------------------------------------------------------------------------
+# System -> where it is at rest: every place at which all forces balance, exact where it can be, and how it keeps it.
+#
+# In numbers first: equations without jumps in at most three coordinates have all their roots isolated, linear ones
+# have a single solution; of others those are found that many guesses lead to, and it is said that there may be more.
+# Then in closed form, taken where it agrees with the numbers and the equations hold exactly.
+
+
+@dataclass(frozen=True)
+class Equilibrium:
+    """One place of rest.
+
+    Args:
+        statics: the equations that hold there.
+        exact: coordinates, and multipliers of closing ties, as scalars of the parameters; those that are known so.
+        numbers: all of them as numbers; {} without values of all parameters.
+        stability: whether it stays there when it is disturbed.
+        curve: of places of rest, of which it is one; None where it is alone.
+    """
+
+    statics: StaticEquations
+    exact: State
+    numbers: Mapping[Node, float]
+    stability: Stability
+    curve: Curve | None = None
+
+    @property
+    def is_exact(self) -> bool:
+        """Whether every coordinate is known in closed form."""
+        return all(q in self.exact for q in self.statics.system.symbols.q)
+
+    @cached_property
+    def pulling(self) -> tuple[str, ...]:
+        """The one-sided ties that would have to pull there; () where that is not known."""
+        system = self.statics.system
+        state: dict[Node, Scalar] = {system.symbols.t: 0, **dict.fromkeys((*system.symbols.u, *system.symbols.a), 0)}
+        state |= self.exact if self.is_exact else {q: Fraction(self.numbers[q]) for q in system.symbols.q}
+        values = {node: float(x) for node, x in values_of_parameters(system.scope, None).items()}
+        return pulling_contacts(system, state, values)
+
+    def refuse_pulling(self) -> None:
+        """Refuse a place that a one-sided contact would have to hold.
+
+        Raises:
+            DerivationError: one pulls.
+        """
+        if pulls := self.pulling:
+            raise DerivationError(
+                f"'{pulls[0]}' would have to pull where the other forces balance",
+                f"constraints.{pulls[0]}",
+                "without it the system rests elsewhere",
+            )
+
+
+@dataclass(frozen=True)
+class Equilibria:
+    """The places of rest of a system.
+
+    Args:
+        statics: the equations.
+        found: each place.
+        complete: whether there are no others, where `where` says.
+        where: in which range they were sought, in words.
+        indifferent: coordinates that no force holds anywhere: they stay where they start.
+        chosen: coordinates that velocity ties let it rest at any value of, near the start: they stay there.
+    """
+
+    statics: StaticEquations
+    found: tuple[Equilibrium, ...]
+    complete: bool
+    where: str
+    indifferent: tuple[Node, ...]
+    chosen: tuple[Node, ...] = ()
+
+    def nearest(self, guess: Mapping[str, float] | None = None) -> Equilibrium:
+        """The place of rest that is reached from a guess (None: from the start).
+
+        Raises:
+            DerivationError: there is none.
+        """
+        if not self.found:
+            raise nowhere(self.complete, self.statics.system.ties)
+        return self.found[0]
+
+
+NO_PLACE = "no place was found at which all forces balance"
+MOST_NAMED = 4  # coordinates
+
+
+def nowhere(complete: bool, ties: Ties) -> DerivationError:
+    """That there is no place of rest, that none was found, or that ties do not close anywhere near."""
+    try:
+        generic_state(ties)
+    except DerivationError as error:
+        return error
+    except MissingValues:  # whether they close cannot be told without values
+        pass
+    free = [q.name for q in ties.motion.scope.symbols.q if not ties.motion.scope.model.coordinates[q.name].driven]
+    along = "".join(f" along '{name}'" for name in free) if len(free) == 1 else ""
+    along = f" (of {', '.join(map(repr, free[:MOST_NAMED]))})" if free[1:] else along
+    what = f"{NO_PLACE}{along}{': there is none' if complete else ''}"
+    mend = "hold by a spring or a tie what nothing balances, or say by `near` where it rests"
+    return DerivationError(what, "coordinates", mend)
+
+
+def all_equilibria(system: System, guess: Mapping[str, float] | None = None) -> Equilibria:
+    """Every place of rest that is found, and whether there are others; the nearest to the guess first.
+
+    Args:
+        guess: values of coordinates in place of `near` and `start`.
+    Raises:
+        UsageError: a name in the guess that is no coordinate.
+        DerivationError: the forces hold an unknown; dry friction; a drive that turns steadily.
+    """
+    return equilibria_of(static_equations(system), guess)
+
+
+def equilibria_of(statics: StaticEquations, guess: Mapping[str, float] | None = None) -> Equilibria:
+    """Every place at which static equations hold; see `all_equilibria`.
+
+    Raises:
+        UsageError: a name in the guess that is no coordinate.
+        DerivationError: the forces hold an unknown.
+    """
+    return _search(statics, guess).equilibria()
+
+
+def nearest_equilibrium(statics: StaticEquations, guess: Mapping[str, float] | None = None) -> Equilibrium:
+    """The place at which static equations hold that is nearest to a guess (None: to the start).
+
+    Raises:
+        UsageError: a name in the guess that is no coordinate.
+        DerivationError: there is none; the forces hold an unknown.
+    """
+    return _search(statics, guess).nearest()
+
+
+def _search(statics: StaticEquations, guess: Mapping[str, float] | None) -> _Search:
+    if statics.loaded:
+        what = f"the forces hold the unknown '{statics.loaded[0].name}': it is what holds the system where it starts"
+        raise DerivationError(what, f"unknowns.{statics.loaded[0].name}", "give it a value to seek places of rest")
+    return _Search(statics.at_the_values(), dict(guess or {}))
+
+
+@dataclass(frozen=True)
+class _Search:
+    """Places of rest that are sought.
+
+    Args:
+        whole: the equations.
+        guess: where, by name.
+    """
+
+    whole: StaticEquations
+    guess: Mapping[str, float]
+
+    @property
+    def system(self) -> System:
+        return self.whole.system
+
+    @cached_property
+    def statics(self) -> StaticEquations:
+        """Without the coordinates that no equation holds, and those that may be chosen."""
+        found, open_ = self._held_by_forces, self._chosen.coordinates
+        return found.holding({q: self._fixed[q] for q in open_}) if open_ else found
+
+    @cached_property
+    def _held_by_forces(self) -> StaticEquations:
+        """Without the coordinates that no equation holds."""
+        found, scope = self.whole.without(self.whole.indifferent), self.system.scope
+        idle = unheld(found) if self._slides else ()
+        return found.holding(start_values(scope, idle)) if idle else found
+
+    @property
+    def _indifferent(self) -> tuple[Node, ...]:
+        return tuple(q for q in self.whole.q if q not in self._held_by_forces.q)
+
+    @cached_property
+    def _chosen(self) -> Chosen:
+        statics = self._held_by_forces
+        if not self._slides:
+            return Chosen()
+        return replace(
+            chosen_coordinates(statics, self.values, self._guess.of(statics.q)), indifferent=self._indifferent
+        )
+
+    @cached_property
+    def _slides(self) -> bool:
+        """Whether velocity ties leave it free to go where none of its coordinates says."""
+        return bool(self.whole.J) and holds_velocities(self.whole, self.values, self._guess.of(self.whole.q))
+
+    @cached_property
+    def valued(self) -> bool:
+        """Whether all parameters that matter have values."""
+        known = exact_parameters(self.system.scope.model)
+        needed = [x for name, x in self.system.symbols.parameters.items() if name not in known]
+        return not depends_on_any((*self.whole.equations, *self._fixed.values()), needed)
+
+    @cached_property
+    def values(self) -> dict[Node, Any]:
+        """Of the parameters, 50 digits; of those without one, a value to try."""
+        return values_of_parameters(self.system.scope, Random(3))
+
+    @cached_property
+    def floats(self) -> dict[Node, float]:
+        return {node: float(x) for node, x in self.values.items()}
+
+    @cached_property
+    def _fixed(self) -> dict[Node, Scalar]:
+        """Driven coordinates, those that nothing holds and those chosen, where they start; these at their guess."""
+        scope, free = self.system.scope, {*self._held_by_forces.q} - {*self._chosen.coordinates}
+        fixed = start_values(scope, (q for q in scope.symbols.q if q not in free))
+        return fixed | {q: self._guess.exact(q) for q in self._chosen.coordinates}
+
+    @cached_property
+    def _guess(self) -> Guess:
+        return Guess(self.system, self.values, self.guess)
+
+    @cached_property
+    def _places(self) -> Places:
+        """Where the forces balance, the nearest to the guess first."""
+        first = self._guess.of(self.statics.q)
+        places = places_of_rest(self.statics, self.values, first)
+        found = [z for z in places.found if is_balanced_in_locked(self.whole, self._at(z))]
+        return replace(places, found=tuple(nearest_first(self.statics, found, first)))
+
+    def _at(self, z: np.ndarray) -> dict[Node, float]:
+        """Values of everything at a place."""
+        fixed = dict(zip(self._fixed, evaluate(tuple(self._fixed.values()), self.floats, FLOAT), strict=True))
+        return {**self.floats, **fixed, **dict(zip(self.statics.unknowns, map(float, z), strict=True))}
+
+    @cached_property
+    def _forms(self) -> ClosedForms:
+        return ClosedForms(self.statics, self.values, self._places.turning)
+
+    def nearest(self) -> Equilibrium:
+        """The place nearest to the guess, alone.
+
+        Raises:
+            DerivationError: there is none.
+        """
+        each = (self._equilibrium(z, self._forms) for z in self._places.found)
+        found = next((place for place in each if place is not None), None)
+        if found is None:
+            raise nowhere(self._places.complete, self.system.ties)
+        return found
+
+    def equilibria(self) -> Equilibria:
+        places = self._places
+        places = replace(places, found=tuple(each_once(self.statics, places.found, self.floats)))
+        curves = along_curves(self.statics, places.found, self.floats, places.turning)
+        places = replace(places, found=tuple(z for z, _ in curves))
+        pairs = [(self._equilibrium(z, self._forms), curve) for z, curve in curves]
+        found = [replace(each, curve=curve) for each, curve in pairs if each is not None]
+        complete = places.complete and (self.valued or len(found) == len(places.found))
+        certain = self.valued or places.where == ANYWHERE
+        where = places.where if certain else f"{places.where}, for values like those tried for the parameters"
+        return Equilibria(
+            self._held_by_forces, tuple(found), complete, where, self._indifferent, self._chosen.coordinates
+        )
+
+    def _equilibrium(self, z: np.ndarray, forms: ClosedForms) -> Equilibrium | None:
+        """The place, exact where it can be; None where only trial values of the parameters lead to it."""
+        numbers = {**self.floats, **dict(zip(self.statics.unknowns, map(float, z), strict=True))}
+        located = Located(numbers, self.system.scope.positive)
+        held = forms.at(located)
+        if not self.valued and held is None:
+            return None
+        exact = {**self._fixed, **({} if held is None else held.state)}
+        fixed = {q: located.value(x) for q, x in self._fixed.items()}
+        stability = stability_of(
+            self.whole if self._slides else self.statics,
+            {**exact, **({} if held is None else held.particular)},
+            {**fixed, **numbers},
+            self.values if self.valued else None,
+            self._chosen if self._slides else None,
+        )
+        own = fixed | self._determined(z)
+        if self.valued:  # what is known in closed form has all its digits
+            known = [q for q in own if q in exact]
+            sure = shown_numbers([exact[q] for q in known], known_exactly(self.system.scope))
+            own |= {q: x for q, x in zip(known, sure, strict=True) if x is not None and math.isfinite(x)}
+        return Equilibrium(self.statics, exact, own if self.valued else {}, stability)
+
+    def _determined(self, z: np.ndarray) -> dict[Node, float]:
+        """Coordinates, and the multipliers that have a single value."""
+        statics, whole, n, at = self.statics, self.whole, len(self.statics.q), self._at(z)
+        J = whole.slopes(whole.J, np.array([at[q] for q in whole.q]), self.floats)
+        single = [rank(np.delete(J, i, axis=0)) < rank(J) for i in range(len(J))]
+        kept = dict(zip(statics.q, z[:n], strict=True))
+        kept |= {lam: x for lam, x, one in zip(statics.lam, z[n:], single, strict=True) if one}
+        return {node: 0.0 if abs(x) < ZERO_AT_50 else float(x) for node, x in kept.items()}
+
+
+# -------- locked ----------------------------------------------------------------------------------------------
+# A place where three angles lock -> whether the body is in balance there, about the axis that they have lost too.
+#
+# Where two of the axes are one, the forces along the three angles vanish although a moment about a third direction
+# may be left: their balance says nothing of it. Beside that place the angles turn the body about that direction n as
+# well,
+#
+#     tau . n = f . dq,   dq = D^-1 W^-1 n     at q + d,   d -> 0
+#
+# W: the axes of the angles, D: the angles' derivatives by the coordinates, f: what is to vanish along these.
+
+
+LEFT = 1e-3  # of the largest force nearby: a moment that is left
+
+
+def is_balanced_in_locked(statics: StaticEquations, place: State) -> bool:
+    """Whether no moment is left where angles lock; True where none do.
+
+    Args:
+        statics: of all coordinates.
+        place: of these, of the multipliers and the parameters.
+    """
+    motion = (statics.system.free or statics.system).motion
+    given = [(node, x) for node, x in statics.given.items() if node not in place]
+    state = dict(place) | dict(zip((node for node, _ in given), _numbers([x for _, x in given], place), strict=True))
+    return all(
+        _is_free(statics, motion, lock, state)
+        for lock in locks_of(motion)
+        if abs(_numbers([lock.determinant], state)[0]) < DEGENERATE
+    )
+
+
+def _is_free(statics: StaticEquations, motion: Motion, lock: Lock, state: dict[Node, float]) -> bool:
+    """Whether no moment is left about the axis that a body's angles have lost."""
+    link = motion.link(lock.body)
+    axes = [x for w, _ in link.S[-3:] for x in w]
+    slopes = [x for row in jacobian(link.s[-3:], statics.q) for x in row]
+    lost = np.linalg.svd(_numbers(axes, state).reshape(3, 3).T)[0][:, 2]
+    rng = np.random.default_rng(1)
+    left, largest = np.inf, 0.0
+    for _ in range(3):
+        aside = rng.uniform(0.5, 1, len(statics.q))
+        beside = _shifted(statics, state, ASIDE_STEP * aside)
+        W, D = _numbers(axes, beside).reshape(3, 3).T, _numbers(slopes, beside).reshape(3, -1)
+        if np.linalg.matrix_rank(D) < 3:  # the angles are not free each: it cannot turn about n
+            return True
+        dq = np.linalg.pinv(D) @ np.linalg.solve(W, lost)
+        left = min(left, abs(_numbers(statics.forces, beside) @ dq))
+        largest = max(largest, np.max(np.abs(_numbers(statics.forces, _shifted(statics, state, aside)))))
+    return bool(left <= LEFT * largest)
+
+
+def _shifted(statics: StaticEquations, state: dict[Node, float], by: np.ndarray) -> dict[Node, float]:
+    return state | {q: state[q] + d for q, d in zip(statics.q, by.tolist(), strict=True)}
+
+
+def _numbers(scalars: Any, state: State) -> np.ndarray:
+    return np.array([float(x) for x in evaluate(tuple(scalars), state, FLOAT)])
+
+
+# -------- one sided -------------------------------------------------------------------------------------------
+# A place of rest -> the contacts that would have to pull there: it is no place of rest.
+
+
+def pulling_contacts(system: System, state: Mapping[Node, Scalar], values: Mapping[Node, float]) -> tuple[str, ...]:
+    """The one-sided ties whose reaction is negative at a state.
+
+    Args:
+        state: exact scalars of everything that moves.
+        values: of the parameters.
+    """
+    names = [
+        contact.name
+        for contact in contacts_of(system.scope.model)
+        if contact.unilateral and system.modes.get(contact.name, CLOSED).closed
+    ]
+    if not names:
+        return ()
+    try:
+        reactions = reactions_of(system, state)
+    except DerivationError:  # what acts at no place has no reactions
+        return ()
+    found = []
+    for j, component in enumerate(reactions.components):
+        if component.owner in names and component.label in ("n", "tension"):
+            try:
+                value = reactions.value(j)
+            except Indeterminate:
+                continue
+            known = all(x in values for x in symbols_of((value,)))
+            if known and evaluate((value,), values, FLOAT)[0] < -COMPUTED:
+                found.append(component.owner)
+    return tuple(dict.fromkeys(found))
+
+
+# -------- families --------------------------------------------------------------------------------------------
+# Places of rest -> each once: e and -e are one orientation, and of a body that may turn freely one place is enough.
+#
+# Where the second variation K vanishes in some direction, places of rest can make up a whole family: a body on a ball
+# joint hangs at any angle about the vertical, a sleigh stands at any angle. Two places of one family have the same V
+# and the same spectrum of K. Of a family that is a curve the way along it is gone, in both directions:
+#
+#     F(z) = 0,   F'(z) t = 0:   z + h t, back onto F = 0 by the shortest way
+
+
+@dataclass(frozen=True)
+class Curve:
+    """Places of rest that make up a curve.
+
+    Args:
+        points: coordinates and multipliers along it, a row a place, the one that was found first among them.
+        closed: whether it comes back to where it began, or goes on by whole turns.
+    """
+
+    points: np.ndarray
+    closed: bool
+
+    def holds(self, q: np.ndarray, turning: Sequence[bool]) -> bool:
+        """Whether a place lies on it, as near as its own points lie together."""
+        away = np.abs(self.points[:, : len(q)] - q)
+        away = np.where(turning, np.minimum(away % math.tau, math.tau - away % math.tau), away)
+        return bool(np.min(np.max(away, axis=1)) <= STRIDE)
+
+
+def nearest_first(statics: StaticEquations, found: Sequence[np.ndarray], guess: np.ndarray) -> list[np.ndarray]:
+    """The places with that of e and -e which is nearer to the guess, of every quaternion; the nearest first."""
+    if not statics.norms:
+        return list(found)
+    turned = (_turned(statics, z, guess) for z in found)
+    return sorted(turned, key=lambda z: float(np.sum((z[: len(guess)] - guess) ** 2)))
+
+
+def each_once(statics: StaticEquations, found: Sequence[np.ndarray], floats: Mapping[Node, float]) -> list[np.ndarray]:
+    """The places, the first of those that are one, or one family.
+
+    Args:
+        found: coordinates and multipliers of each, the nearest to the guess first.
+        floats: of the parameters.
+    """
+    if not statics.q or (not statics.norms and not statics.beside):
+        return list(found)
+    slopes = jacobian(statics.forces, statics.q)
+    kept: list[tuple[np.ndarray, np.ndarray]] = []
+    for z in found:
+        values = {**floats, **dict(zip(statics.unknowns, map(float, z), strict=True))}
+        marks = _marks(statics, slopes, z, values)
+        if not any(_is_one(statics, (z, marks), other) for other in kept):
+            kept.append((z, marks))
+    return [z for z, _ in kept]
+
+
+def along_curves(
+    statics: StaticEquations, found: Sequence[np.ndarray], floats: Mapping[Node, float], turning: frozenset[Node]
+) -> list[tuple[np.ndarray, Curve | None]]:
+    """The places, the first of each curve of them alone, with that.
+
+    Args:
+        found: coordinates and multipliers of each, the nearest to the guess first.
+        floats: of the parameters.
+        turning: coordinates for which a whole turn changes nothing.
+    """
+    if len(found) < 2 or statics.norms or statics.beside or not statics.q:
+        return [(z, None) for z in found]
+    way = _Way(statics, floats, tuple(q in turning for q in statics.q))
+    kept: list[tuple[np.ndarray, Curve | None]] = []
+    n = len(statics.q)
+    for z in found:
+        if not any(curve is not None and curve.holds(z[:n], way.turning) for _, curve in kept):
+            kept.append((z, way.curve(z) if len(kept) < MOST_CURVES else None))
+    return kept
+
+
+STRIDE = 0.1  # of a way along a curve, in radians or metres
+STRIDES = 150  # in one direction
+MOST_CURVES = 12  # places of which it is tried whether they lie on one
+CORRECTIONS = 6  # back onto it
+
+
+@dataclass(frozen=True)
+class _Way:
+    """Along curves of places of rest."""
+
+    statics: StaticEquations
+    floats: Mapping[Node, float]
+    turning: tuple[bool, ...]
+
+    @cached_property
+    def _slopes(self) -> ScalarRows:
+        return jacobian(self.statics.equations, self.statics.unknowns)
+
+    def _at(self, z: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+        """(F, F') of a place."""
+        values = {**self.floats, **dict(zip(self.statics.unknowns, map(float, z), strict=True))}
+        equations = self.statics.equations
+        flat = np.array(evaluate([*equations, *(x for row in self._slopes for x in row)], values, FLOAT), dtype=float)
+        return flat[: len(equations)], flat[len(equations) :].reshape(len(equations), -1)
+
+    def _along(self, z: np.ndarray) -> np.ndarray | None:
+        """t, its part of the coordinates 1 long; None where there is not one such direction."""
+        _, slopes = self._at(z)
+        slopes = slopes / np.maximum(np.max(np.abs(slopes), axis=1, keepdims=True), TINIEST)
+        _, sizes, axes = np.linalg.svd(slopes)
+        rank = int(np.sum(sizes > CARRIED * max(sizes, default=0.0)))
+        null = axes[rank:, : len(self.statics.q)]
+        _, moved, mixed = np.linalg.svd(null.T) if len(null) else (None, np.zeros(0), None)
+        if mixed is None or int(np.sum(moved > CARRIED)) != 1:
+            return None
+        t = mixed[0] @ axes[rank:]
+        return np.asarray(t / np.linalg.norm(t[: len(self.statics.q)]))
+
+    def _onto(self, z: np.ndarray, t: np.ndarray) -> np.ndarray | None:
+        """The place of rest that is reached across t; None where there is none."""
+        start, n = z, len(self.statics.q)
+        unit = np.where(np.arange(len(z)) < n, 1.0, np.maximum(np.abs(z), 1.0))  # multipliers change as they are large
+        for _ in range(CORRECTIONS):
+            F, slopes = self._at(z)
+            size = np.maximum(np.max(np.abs(slopes), axis=1), TINIEST)
+            if np.all(np.abs(F) <= SAME_PLACE * CARRIED * size):
+                return z if np.linalg.norm((z - start)[:n]) < STRIDE / 2 else None
+            rows = np.vstack([slopes / size[:, None], np.append(t[:n], np.zeros(len(z) - n))]) * unit
+            if not np.all(np.isfinite(rows)):
+                return None
+            z = z - unit * np.linalg.lstsq(rows, np.append(F / size, 0.0), rcond=CARRIED)[0]
+        return None
+
+    def curve(self, z: np.ndarray) -> Curve | None:
+        """The curve on which a place lies; None where it is alone, or one of more than a curve."""
+        try:
+            first = self._along(z)
+            if first is None:
+                return None
+            ways, closed = [], False
+            for sign in (1, -1):
+                points, closed = ([], closed) if closed else self._gone(z, sign * first)
+                ways.append(points)
+        except (NoValue, ZeroDivisionError, np.linalg.LinAlgError):
+            return None
+        if not any(ways):
+            return None
+        return Curve(np.array([*reversed(ways[1]), z, *ways[0]]), closed)
+
+    def _gone(self, z: np.ndarray, t: np.ndarray) -> tuple[list[np.ndarray], bool]:
+        """(places along the curve in one direction, whether it comes back to the first)."""
+        n, begun, points = len(self.statics.q), z, []
+        for k in range(STRIDES):
+            steps = (self._onto(z + step * t, t) for step in (STRIDE, STRIDE / 4))
+            there = next((x for x in steps if x is not None), None)
+            if there is None:
+                break
+            points.append(there)
+            new = self._along(there)
+            if new is None:
+                break
+            z, t = there, new if new[:n] @ t[:n] > 0 else -new
+            away = np.abs((z - begun)[:n])
+            away = np.where(self.turning, np.minimum(away % math.tau, math.tau - away % math.tau), away)
+            if k > 2 and np.max(away) < STRIDE:
+                return points, True
+        return points, False
+
+
+def _turned(statics: StaticEquations, z: np.ndarray, guess: np.ndarray) -> np.ndarray:
+    """The place with that of e and -e which is nearer to the guess, of every quaternion."""
+    z = z.copy()
+    for four in statics.system.scope.quaternions:
+        places = [statics.q.index(e) for e in four if e in statics.q]
+        if places and float(z[places] @ guess[places]) < 0:
+            z[places] = -z[places]
+        z[places] = np.where(abs(z[places]) < ZERO_AT_50, 0.0, z[places])
+    return z
+
+
+def _marks(statics: StaticEquations, slopes: ScalarRows, z: np.ndarray, values: Mapping[Node, float]) -> np.ndarray:
+    """V, and the eigenvalues of K along the ties, by size."""
+    n = len(statics.q)
+    J = statics.slopes(statics.J, z[:n], values)
+    H = -np.array(evaluate([x for row in slopes for x in row], values, FLOAT), dtype=float).reshape(n, n)
+    _, sizes, axes = np.linalg.svd(J)
+    Z = axes[int(np.sum(sizes > CARRIED * sizes[0])) :].T
+    symbols = statics.system.symbols
+    given = {**{x: 0.0 for x in (*symbols.q, *symbols.u)}, symbols.t: 0.0}
+    (V,) = evaluate((statics.system.loads.potential_energy,), {**_given(statics, values), **given, **values}, FLOAT)
+    spectrum = np.linalg.eigvals(Z.T @ H @ Z)
+    return np.array([V, *sorted(spectrum.real)], dtype=float)
+
+
+def _given(statics: StaticEquations, values: Mapping[Node, float]) -> dict[Node, float]:
+    found = evaluate(tuple(statics.given.values()), values, FLOAT)
+    return dict(zip(statics.given, map(float, found), strict=True))
+
+
+def _is_one(statics: StaticEquations, one: tuple[np.ndarray, np.ndarray], other: tuple[np.ndarray, np.ndarray]) -> bool:
+    """Whether two places are the same, or of one family."""
+    (z, marks), (y, others) = one, other
+    if np.all(abs(z - y)[: len(statics.q)] <= SAME_PLACE):
+        return True
+    size = TINIEST + np.max(abs(np.concatenate([marks, others])))
+    flat = np.min(abs(marks[1:]), initial=np.inf) <= CARRIED * size
+    return bool(flat and np.all(abs(marks - others) <= SAME_PLACE * size))

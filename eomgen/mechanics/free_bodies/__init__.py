@@ -1,0 +1,1 @@
+"""Bodies cut free: their wrenches, their own equations, friction, and reactions by name."""

@@ -1,0 +1,441 @@
+"""Equations of motion -> the same with friction, the contacts' own reactions solved together with them."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import replace
+from functools import cached_property
+from typing import Any
+
+from eomgen.errors import DerivationError
+from eomgen.mechanics.constraints.rows import holds_identically
+from eomgen.mechanics.dynamics.explicit_accelerations import bordered_rows, by_factors, regular_rows
+from eomgen.mechanics.dynamics.formulations import assembled_by_recursion
+from eomgen.mechanics.dynamics.system import EquationsOfMotion, System
+from eomgen.mechanics.dynamics.wellposed import refuse_massless
+from eomgen.mechanics.free_bodies.balance import Balance, balance_of
+from eomgen.mechanics.free_bodies.solution import (
+    combined_reaction,
+    friction_as_load,
+    solution_of_balance,
+    values_at_a_state,
+)
+from eomgen.mechanics.free_bodies.wrenches import Component, joint_friction, normals_of_round, sliding_friction
+from eomgen.records import dataclass
+from eomgen.symbolic.expression.derivative import gradient, substituted
+from eomgen.symbolic.expression.formula import function, inner, over, selected, sqrt
+from eomgen.symbolic.expression.node import Node, Scalar, ScalarRow, is_zero
+from eomgen.symbolic.expression.rational import Fraction
+from eomgen.symbolic.numeric.tolerances import ZERO_AT_50
+from eomgen.symbolic.solve import cramer
+from eomgen.symbolic.solve.cramer import components
+from eomgen.symbolic.solve.linear import LinearSystem, Solution, ValuesAt, unique_solution
+
+# -------- friction --------------------------------------------------------------------------------------------
+# Equations of motion -> the same with friction: the contacts' own reactions solved together with the accelerations.
+#
+#     M a + c = Q + J^T lam + sum f_r |N_r|,   J a + gamma = 0,   f_r = factor_r dv_r/du
+#
+# N_r of a closing row is its multiplier; of a row or joint that only reacts it follows from the balance of the bodies
+# across what the coordinates allow, friction a load of it: N_r = n_r + m_r a + sum k_rs N_s. A bilateral contact on a
+# line has |N_r| = sqrt(N_1^2 + N_2^2), in which the equations are not linear (see `round_contacts`). What comes out
+# is friction as a generalized force of q, u and t.
+
+
+@dataclass(frozen=True)
+class FrictionContact:
+    """A contact with friction.
+
+    Args:
+        name: the tie, or the body on a path.
+        component: index of its normal reaction among the components of the reactions; of a
+            bilateral contact that of its friction.
+        along: generalized force for a unit of friction, dv/du.
+        factor: the friction along the contact's tangent for a unit of N, or of |N|, for instance -mu sign(v).
+        normals: of a bilateral contact the indices of its normal reactions.
+    """
+
+    name: str
+    component: int
+    along: ScalarRow
+    factor: Scalar
+    normals: tuple[int, ...] = ()
+
+    @property
+    def force(self) -> ScalarRow:
+        """Generalized force for a unit of N, or of |N|."""
+        return tuple(self.factor * d for d in self.along)
+
+
+def equations_of_motion(system: System) -> EquationsOfMotion:
+    """The equations of motion of a system in their shortest form, friction in Q and forcing.
+
+    Raises:
+        DerivationError: as `with_friction`.
+    """
+    return with_friction(assembled_by_recursion(system))
+
+
+def with_friction(equations: EquationsOfMotion) -> EquationsOfMotion:
+    """The equations of motion, friction in Q and forcing, and the accelerations explicit; the same without friction.
+
+    Raises:
+        DerivationError: the normal reaction of a contact with friction is indeterminate.
+    """
+    if not has_friction(equations.system):
+        return equations
+    solved = _WithFriction(equations)
+    a, forces = solved.accelerations, solved.normals
+    friction = tuple(
+        sum((contact.force[k] * N for contact, N in zip(solved.found, forces, strict=True)), start=0)
+        for k in range(len(equations.M))
+    )
+    return replace(
+        equations,
+        Q=tuple(x + f for x, f in zip(equations.Q, friction, strict=True)),
+        forcing=tuple(x + f for x, f in zip(equations.forcing, friction, strict=True)),
+        friction=friction,
+        accelerations=a,
+    )
+
+
+def push_sizes(system: System) -> dict[str, Scalar]:
+    """|N| of every bilateral contact with friction, as a function of q, u and t; {} where there is none.
+
+    Raises:
+        DerivationError: as `with_friction`.
+    """
+    if not round_symbols(system):
+        return {}
+    solved = _WithFriction(assembled_by_recursion(system))
+    pairs = zip(solved.found, solved.normals, strict=True)
+    return {contact.name: N for contact, N in pairs if contact.normals}
+
+
+def with_rest(system: System, scalars: Sequence[Scalar]) -> ScalarRow:
+    """Scalars in which Coulomb's friction on surfaces, v/|v|, is 0 where v is: as sign(v) of friction along a line."""
+    rows = [row for row in system.ties.rows if row.shares and row.friction is not None]
+    speeds = [row.sliding for row in rows if type(row.sliding) is Node and row.sliding.op == "sqrt"]
+    return substituted(tuple(scalars), {v: function("max", v, LEAST) for v in speeds}) if speeds else tuple(scalars)
+
+
+def has_friction(system: System) -> bool:
+    """Whether any contact has friction."""
+    return bool(frictions(system))
+
+
+def frictions(system: System) -> list[tuple[str, Scalar, Scalar]]:
+    """(contact, the friction of a unit of N, the sliding velocity) of every contact with friction."""
+    found = [(row.tie, row.friction, row.sliding) for row in system.ties.rows]
+    for link in system.motion.links:
+        found.append((link.name, joint_friction(system, link), link.s_rate[0] if link.s_rate else 0))
+    return [(name, factor, sliding) for name, factor, sliding in found if factor is not None]
+
+
+def friction_contacts(system: System, components: Sequence[Component]) -> list[FrictionContact]:
+    """Every contact with friction, in the order of the components."""
+    u = system.symbols.u
+    found = []
+    for j, component in enumerate(components):
+        if not component.frictional:
+            continue
+        factor, sliding = sliding_friction(system, component)
+        normals = () if component.bilateral_friction is None else normals_of_round(components, component)
+        found.append(FrictionContact(component.owner, j, gradient(sliding, u), factor, normals))
+    return found
+
+
+def round_symbols(system: System) -> dict[str, Node]:
+    """A symbol for |N| of every bilateral contact with friction, by its name."""
+    on_lines = [row.tie for row in system.ties.rows if row.round and row.friction is not None]
+    if system.scope.model.space == "space":
+        on_lines += [link.name for link in system.motion.links if joint_friction(system, link) is not None]
+    return {name: system.scope.graph.symbol(f"|N|({name})") for name in on_lines}
+
+
+@dataclass(frozen=True)
+class _WithFriction:
+    """The equations of motion with friction; first with |N| of bilateral contacts left open."""
+
+    equations: EquationsOfMotion
+
+    @property
+    def accelerations(self) -> ScalarRow:
+        """a as a function of q, u and t."""
+        return substituted(self._values[: len(self.equations.M)], self._sizes)
+
+    @property
+    def normals(self) -> ScalarRow:
+        """N of every contact with friction, or |N|."""
+        single = iter(substituted(self._values[len(self._values) - len(self._single) :], self._sizes))
+        return tuple(
+            self._sizes[self._symbols[contact.name]] if contact.normals else next(single) for contact in self.found
+        )
+
+    @cached_property
+    def found(self) -> list[FrictionContact]:
+        return friction_contacts(self.equations.system, self._balance.components)
+
+    @property
+    def _single(self) -> list[FrictionContact]:
+        return [contact for contact in self.found if not contact.normals]
+
+    @cached_property
+    def _symbols(self) -> dict[str, Node]:
+        return round_symbols(self.equations.system)
+
+    @cached_property
+    def _normals(self) -> dict[int, Node]:
+        """A symbol for N of every contact with friction that has one, by its component."""
+        graph = self.equations.system.scope.graph
+        return {each.component: graph.symbol(f"N({each.name}, {each.component})") for each in self._single}
+
+    @cached_property
+    def _balance(self) -> Balance:
+        return balance_of(self.equations.system, self._symbols)
+
+    @cached_property
+    def _solution(self) -> Solution:
+        """Friction is a load in it: a row along the motion, in which alone it stands, would only say M a again."""
+        return solution_of_balance(friction_as_load(self._balance, self._normals), {})
+
+    @cached_property
+    def _sizes(self) -> dict[Node, Scalar]:
+        """|N| of bilateral contacts, by its symbol."""
+        known = dict(zip(self.equations.symbols.a, self._values, strict=False)) | dict(
+            zip(self._normals.values(), self._values[len(self._values) - len(self._single) :], strict=True)
+        )
+        pairs = {
+            self._symbols[contact.name]: tuple(self._component(contact.name, j, known) for j in contact.normals)
+            for contact in self.found
+            if contact.normals
+        }
+        entries = [N for pair in pairs.values() for N in pair]
+        values = values_at_a_state(self.equations.system, substituted(entries, dict.fromkeys(pairs, 0)))
+        return sizes(pairs, values)
+
+    def _component(self, name: str, j: int, known: dict[Node, Scalar]) -> Scalar:
+        """A normal reaction, linear in |N| of all."""
+        m = self._multiplier(j, name)
+        if m is not None:
+            return self._values[len(self.equations.M) + m]
+        return substituted((self._by_balance(j),), known)[0]
+
+    def _multiplier(self, j: int, name: str) -> int | None:
+        return _multiplier(self.equations.system, self._balance.components[j], name, self._kept)
+
+    @cached_property
+    def _kept(self) -> list[int]:
+        return regular_rows(self.equations.system)
+
+    @cached_property
+    def _values(self) -> ScalarRow:
+        """a, lam of the rows that do not follow from others, N of every contact with friction that has one.
+
+        Raises:
+            DerivationError: the normal reaction of a contact is indeterminate.
+            ModelError: a free coordinate moves no mass.
+        """
+        if len(self.equations.M) + len(self._kept) + len(self._single) > cramer.LARGEST_BLOCK:
+            return self._by_factors()
+        try:
+            return tuple(_solved(self.equations.system, *self._bordered()))
+        except DerivationError:
+            refuse_massless(self.equations)
+            raise
+
+    def _bordered(self) -> tuple[list[dict[int, Scalar]], list[Scalar]]:
+        """(rows, right side) for a, lam and N at once."""
+        rows, right = bordered_rows(self._loaded, self._kept)
+        n, first = len(self.equations.M), len(right)
+        for k, contact in enumerate(self._single):
+            multiplier = self._multiplier(contact.component, contact.name)
+            normal = first + k if multiplier is None else n + multiplier
+            for row, force in zip(rows[:n], contact.force, strict=True):
+                row[normal] = row.get(normal, 0) - force
+            known, value = self._normal(contact, first)
+            rows.append(known | {first + k: 1 + known.get(first + k, 0)})
+            right.append(value)
+        return rows, right
+
+    def _by_factors(self) -> ScalarRow:
+        """The same of many unknowns: a and lam for each N by the factors of M and J M^-1 J^T, then N alone."""
+        try:
+            parts = by_factors(self._loaded, self._kept, [contact.force for contact in self._single])
+        except DerivationError:
+            refuse_massless(self.equations)
+            raise
+        columns = [[*a, *lam] for a, lam in parts]
+        first, rows, right = len(columns[0]), [], []
+        for k, contact in enumerate(self._single):
+            known, value = self._normal(contact, first)
+            share = [sum((x * column[j] for j, x in known.items() if j < first), start=0) for column in columns]
+            row = {i: share[1 + i] + known.get(first + i, 0) + int(i == k) for i in range(len(self._single))}
+            rows.append({i: x for i, x in row.items() if not is_zero(x)})
+            right.append(value - share[0])
+        N = _solved(self.equations.system, rows, right) if rows else []
+        moved = [sum((column[j] * f for column, f in zip(columns[1:], N, strict=True)), start=0) for j in range(first)]
+        return (*(x + d for x, d in zip(columns[0], moved, strict=True)), *N)
+
+    @property
+    def _loaded(self) -> EquationsOfMotion:
+        """The equations with the friction of bilateral contacts, |N| left open, in the forcing."""
+        forcing = self.equations.forcing
+        for contact in self.found:
+            if contact.normals:
+                size = self._symbols[contact.name]
+                forcing = tuple(b + force * size for b, force in zip(forcing, contact.force, strict=True))
+        return replace(self.equations, forcing=forcing)
+
+    def _normal(self, contact: FrictionContact, first: int) -> tuple[dict[int, Scalar], Scalar]:
+        """What N is besides itself, a row over a, lam and N: its multiplier, or by the balance."""
+        multiplier = self._multiplier(contact.component, contact.name)
+        if multiplier is None:
+            return self._linear(contact.component, first)
+        return {len(self.equations.M) + multiplier: -1}, 0
+
+    def _by_balance(self, j: int) -> Scalar:
+        """Component j, linear in the accelerations."""
+        return combined_reaction(self._balance, self._solution, {j: 1}, self._balance.components[j].name)
+
+    def _linear(self, j: int, first: int) -> tuple[dict[int, Scalar], Scalar]:
+        """(-m, -k; n) of N_j = n + m a + k N: coefficients of the unknowns, N from `first` on, and the right side."""
+        names = (*self.equations.symbols.a, *self._normals.values())
+        places = (*range(len(self.equations.symbols.a)), *range(first, first + len(self._normals)))
+        value = self._by_balance(j)
+        slopes = gradient(value, names)
+        known = {place: -slope for place, slope in zip(places, slopes, strict=True)}
+        return known, substituted((value,), dict.fromkeys(names, 0))[0]
+
+
+def _multiplier(system: System, component: Component, name: str, kept: Sequence[int]) -> int | None:
+    """Which of the kept rows has the normal reaction for its multiplier; None where it follows from the balance.
+
+    Raises:
+        DerivationError: its row follows from others, so that it is indeterminate.
+    """
+    closing, label = system.ties.closing, (component.owner, component.number)
+    rows = [i for i, row in enumerate(closing) if component.kind == "tie" and (row.tie, row.number) == label]
+    if not rows:
+        return None
+    if rows[0] not in kept:
+        raise DerivationError(
+            f"the normal reaction of '{name}', which has friction, is indeterminate",
+            mend="take a redundant constraint away, or its friction",
+        )
+    return kept.index(rows[0])
+
+
+def _solved(system: System, rows: list[dict[int, Scalar]], right: list[Scalar]) -> list[Scalar]:
+    """The unknowns: by determinants where they are few, else by elimination."""
+    entries = [x for row in rows for x in row.values()]
+    equations = LinearSystem(rows, right, len(right), values_at_a_state(system, entries))
+    return list(unique_solution(equations, vanishes=holds_identically))
+
+
+# -------- round contacts --------------------------------------------------------------------------------------
+# Normal reactions linear in the frictions -> |N| of contacts that hold on all sides of a line in space.
+#
+#     N_r = n_r + sum over s of G_rs P_s,   P_r = |N_r| = sqrt(N_r1^2 + N_r2^2)
+#
+# A contact that no other one feeds back on has a quadratic equation, with one positive root as long as |G_rr| < 1,
+# beyond which rigid bodies may jam: P = (n.g + sqrt(1 - g^2) sqrt(n^2 + (n.g)^2/(1 - g^2)))/(1 - g^2), without a
+# value there. Contacts that press one another are solved together by Newton's steps, as many as leave rounding alone;
+# what they do not reach has no value.
+
+
+STEPS = 6  # of Newton's method; each doubles the number of right digits
+REACHED = Fraction(1, 10**9)  # of all |N|, by which one may be off; what converges is off by rounding
+LEAST = Fraction(1, 10**30)  # an N below it is none [N]
+
+EqualPushes = tuple[Scalar, ...]
+
+
+@dataclass(frozen=True)
+class _Pressed:
+    """Contacts that press one another: N_r = n_r + sum G_rs P_s."""
+
+    n: tuple[EqualPushes, ...]
+    G: tuple[tuple[EqualPushes, ...], ...]
+
+    def normals(self, P: Sequence[Scalar]) -> list[EqualPushes]:
+        return [_carried(n, zip(row, P, strict=True)) for n, row in zip(self.n, self.G, strict=True)]
+
+
+def sizes(pairs: Mapping[Node, EqualPushes], values: ValuesAt) -> dict[Node, Scalar]:
+    """The value of each |N|, by its symbol.
+
+    Args:
+        pairs: (N_1, N_2) of each contact, linear in the symbols of all.
+        values: of scalars at one generic state, in an arithmetic of many digits.
+    """
+    symbols = tuple(pairs)
+    n = [substituted(pair, dict.fromkeys(symbols, 0)) for pair in pairs.values()]
+    G = _slopes(pairs, symbols, values)
+    needs = [[s for s, g in enumerate(row) if not all(map(is_zero, g))] for row in G]
+    found: dict[int, Scalar] = {}
+    for group in components(needs):
+        given = tuple(_carried(n[r], ((G[r][s], P) for s, P in found.items())) for r in group)
+        pressed = _Pressed(given, tuple(tuple(G[r][s] for s in group) for r in group))
+        found |= zip(group, _together(pressed), strict=True)
+    return {symbol: found[r] for r, symbol in enumerate(symbols)}
+
+
+def _slopes(pairs: Mapping[Node, EqualPushes], symbols: tuple[Node, ...], values: ValuesAt) -> list[list[EqualPushes]]:
+    """G_rs, what vanishes at a generic state left out."""
+    rows = [[gradient(N, symbols) for N in pair] for pair in pairs.values()]
+    flat = [abs(x) for x in values([g for row in rows for slopes in row for g in slopes])]
+    least, worth = ZERO_AT_50 * max(flat, default=0), iter(flat)
+    kept = [[[g if next(worth) > least else 0 for g in slopes] for slopes in row] for row in rows]
+    return [list(zip(*row, strict=True)) for row in kept]
+
+
+def _carried(n: EqualPushes, shares: Any) -> EqualPushes:
+    """n + sum g P"""
+    for g, P in shares:
+        n = tuple(x if is_zero(y) else x + y * P for x, y in zip(n, g, strict=True))
+    return n
+
+
+def _alone(n: EqualPushes, g: EqualPushes) -> Scalar:
+    """P = |n + g P|; no value where |g| >= 1."""
+    square, along, rest = inner(n, n), inner(n, g), 1 - inner(g, g)
+    if is_zero(along):
+        return sqrt(over(square, rest))
+    return over(along + sqrt(rest) * sqrt(square + over(along * along, rest)), rest)
+
+
+def _together(pressed: _Pressed) -> list[Scalar]:
+    """P_r = |n_r + sum G_rs P_s|, by Newton's method from the roots of each alone."""
+    each = range(len(pressed.n))
+    P = [_alone(pressed.n[r], pressed.G[r][r]) for r in each]
+    if len(P) == 1:
+        return P
+    for _ in range(STEPS):
+        N = pressed.normals(P)
+        length = [sqrt(inner(x, x)) for x in N]
+        safe = [function("max", x, LEAST) for x in length]
+        rows = [[int(r == s) - over(inner(N[r], pressed.G[r][s]), safe[r]) for s in each] for r in each]
+        step = _solved_near_unit(rows, [x - p for x, p in zip(length, P, strict=True)])
+        P = [p + d for p, d in zip(P, step, strict=True)]
+    return _reached(pressed, P)
+
+
+def _solved_near_unit(rows: Sequence[Sequence[Scalar]], right: Sequence[Scalar]) -> list[Scalar]:
+    """Of rows near those of the unit matrix: elimination in their order."""
+    if not rows:
+        return []
+    (first, *_), *_ = rows
+    shares = [over(row[0], first) for row in rows[1:]]
+    below = [
+        [x - k * y for x, y in zip(row[1:], rows[0][1:], strict=True)] for k, row in zip(shares, rows[1:], strict=True)
+    ]
+    others = _solved_near_unit(below, [b - k * right[0] for k, b in zip(shares, right[1:], strict=True)])
+    return [over(right[0] - inner(rows[0][1:], others), first), *others]
+
+
+def _reached(pressed: _Pressed, P: Sequence[Scalar]) -> list[Scalar]:
+    """The values where they are |N|; elsewhere they are divided by 0, and there are none."""
+    allowed = REACHED * sum((function("abs", p) for p in P), start=LEAST)
+    off = [function("abs", p - sqrt(inner(N, N))) for p, N in zip(P, pressed.normals(P), strict=True)]
+    return [over(p, selected(x, allowed, 1, 0)) for p, x in zip(P, off, strict=True)]

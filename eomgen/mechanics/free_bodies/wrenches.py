@@ -1,0 +1,622 @@
+"""System -> Components: every scalar reaction, and what a unit of it does to the bodies."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from functools import cached_property
+
+import numpy as np
+
+from eomgen.errors import DerivationError
+from eomgen.mechanics.constraints.closure import generic_state
+from eomgen.mechanics.constraints.rank import is_placed
+from eomgen.mechanics.constraints.rows import Row
+from eomgen.mechanics.dynamics.system import System
+from eomgen.mechanics.kinematics.inertia import mass_properties
+from eomgen.mechanics.kinematics.loads import JointEffort, in_ground_axes
+from eomgen.mechanics.kinematics.motion import GROUND, BodyLink, Motion
+from eomgen.mechanics.kinematics.scene import CLOSED, friction_factor
+from eomgen.model.driven import driven_coordinates
+from eomgen.model.forces.load import Couple, PointForce
+from eomgen.model.shapes import MassProperties
+from eomgen.records import dataclass
+from eomgen.symbolic.expression.derivative import depends_on, derivative
+from eomgen.symbolic.expression.formula import over
+from eomgen.symbolic.expression.node import Node, Scalar, SparseRow, State, is_zero
+from eomgen.symbolic.expression.spatial import (
+    IDENTITY,
+    ZERO,
+    Matrix,
+    Vector,
+    apply,
+    cross,
+    dot,
+    in_turned_axes,
+    minus,
+    plus,
+    times,
+    transposed,
+    vector_of,
+)
+from eomgen.symbolic.numeric.dense import rank
+from eomgen.symbolic.numeric.evaluation import evaluate, fifty_digits, floats_of
+from eomgen.symbolic.numeric.tolerances import RANK_NEARBY
+
+# -------- unit wrenches ---------------------------------------------------------------------------------------
+# Motion -> Effects: what forces, couples, joints and ties do to each body, in the axes of its equations.
+#
+# The axes are the ground's in the plane, the body's own in space.
+
+
+PLANE_ROWS, SPACE_ROWS = (0, 1, 5), (0, 1, 2, 3, 4, 5)  # of (force, moment) about the mass centre
+
+
+@dataclass(frozen=True)
+class Effect:
+    """What a unit of a reaction does to one body: force and couple at a place, in the axes of the body's equations.
+
+    Args:
+        link: index of the body.
+        force, couple: on it.
+        arm: from its mass centre to the place [m].
+        place: the same place in body axes [m]; None of a couple that acts on the body as a whole.
+        beyond: how far from there it really acts, body axes; of a couple, of the force whose moment it is.
+    """
+
+    link: int
+    force: Vector
+    couple: Vector
+    arm: Vector
+    place: Vector | None = None
+    beyond: Vector | None = None
+
+    @cached_property
+    def six(self) -> tuple[Scalar, ...]:
+        """Force, and moment about the mass centre."""
+        return (*self.force, *plus(self.couple, cross(self.arm, self.force)))
+
+    def times(self, k: Scalar) -> Effect:
+        """k units of it."""
+        return Effect(self.link, times(k, self.force), times(k, self.couple), self.arm, self.place, self.beyond)
+
+
+@dataclass(frozen=True)
+class Axes:
+    """The axes of each body's equations: the ground's in the plane, the body's own in space."""
+
+    motion: Motion
+
+    @property
+    def plane(self) -> bool:
+        return self.motion.scope.model.space == "plane"
+
+    @property
+    def rows(self) -> tuple[int, ...]:
+        return PLANE_ROWS if self.plane else SPACE_ROWS
+
+    def of_body(self, link: BodyLink) -> Matrix:
+        """From body axes to those of the equations."""
+        return link.pose.R if self.plane else IDENTITY
+
+    def of_ground(self, link: BodyLink, vector: Vector) -> Vector:
+        """A vector of ground axes."""
+        return vector if self.plane else apply(transposed(link.pose.R), vector)
+
+    @cached_property
+    def masses(self) -> tuple[MassProperties, ...]:
+        return tuple(mass_properties(self.motion.scope, link.name) for link in self.motion.links)
+
+    def arm(self, i: int, place: Vector) -> Vector:
+        """From the mass centre to a place given in body axes."""
+        link = self.motion.links[i]
+        return in_turned_axes(self.of_body(link), minus(place, self.masses[i].com))
+
+
+def effects_at_joint(axes: Axes, link: BodyLink, force: Vector, couple: Vector) -> list[Effect]:
+    """Force and couple (child's axes) at a joint, on the child and opposite on the parent."""
+    i = axes.motion.index[link.name]
+    R = axes.of_body(link)
+    effects = [Effect(i, in_turned_axes(R, force), in_turned_axes(R, couple), axes.arm(i, link.point), link.point)]
+    if link.parent != GROUND:
+        to_parent = R if axes.plane else link.local.R
+        f, n = times(-1, in_turned_axes(to_parent, force)), times(-1, in_turned_axes(to_parent, couple))
+        effects.append(Effect(link.parent, f, n, axes.arm(link.parent, link.local.p), link.local.p))
+    return effects
+
+
+def joint_effects(system: System) -> list[Effect]:
+    """What drives, springs, dampers and rotors of all joints do, on both bodies of each."""
+    return [effect for link in system.motion.links for effect in efforts_of(system, link.name)]
+
+
+def efforts_of(system: System, body: str) -> list[Effect]:
+    """What drive, spring, damper and rotor of a body's joint do, on the body first; a tie has none."""
+    if body not in system.motion.index:
+        return []
+    axes = Axes(system.motion)
+    effects = [e for effort in system.loads.efforts if effort.body == body for e in _effort_effects(axes, effort)]
+    link = axes.motion.link(body)
+    for k, armature in _armatures(axes.motion, link):
+        rate = axes.motion.scope.with_accelerations((link.s_rate[k],))[0]
+        effects += effects_at_joint(axes, link, *scaled_axes(axes, body, k, -armature * rate))
+    return effects
+
+
+def _effort_effects(axes: Axes, effort: JointEffort) -> list[Effect]:
+    link = axes.motion.link(effort.body)
+    return effects_at_joint(axes, link, *scaled_axes(axes, effort.body, effort.variable, effort.effort))
+
+
+def _armatures(motion: Motion, link: BodyLink) -> list[tuple[int, Scalar]]:
+    efforts = () if link.joint is None else link.joint.efforts()
+    return [(k, motion.scope.value(e.armature)) for k, e in enumerate(efforts) if e is not None and e.armature]
+
+
+def scaled_axes(axes: Axes, body: str, variable: int, magnitude: Scalar) -> tuple[Vector, Vector]:
+    """(force, couple) along a joint's variable that do the work magnitude * s', child's axes, and none on its others.
+
+    They lie in the span of the joint's axes: d_k . S_j = 1 of j = k, else 0.
+    """
+    w, v = axes.motion.link(body).S[variable]
+    turning = not all(is_zero(x) for x in w)
+    others = [
+        column[0 if turning else 1]
+        for j, column in enumerate(axes.motion.link(body).S)
+        if j != variable and turning != all(is_zero(x) for x in column[0])
+    ]
+    push = _without_work(magnitude, w if turning else v, others)
+    return (ZERO, push) if turning else (push, ZERO)
+
+
+def _without_work(magnitude: Scalar, n: Vector, others: Sequence[Vector]) -> Vector:
+    """The vector d in the span of n and the others with d . n = magnitude that is normal to the others."""
+    if all(is_zero(dot(n, other)) for other in others):
+        return times(_over(magnitude, dot(n, n)), n)
+    if len(others) == 1:
+        (other,) = others
+        d = minus(times(dot(other, other), n), times(dot(n, other), other))
+    else:
+        d = cross(others[0], others[1])
+    return times(_over(magnitude, dot(n, d)), d)
+
+
+def _over(magnitude: Scalar, square: Scalar) -> Scalar:
+    return magnitude if type(square) is int and square == 1 else over(magnitude, square)
+
+
+def effects_of_load(axes: Axes, load: PointForce | Couple) -> tuple[Effect, ...]:
+    """A load on its body; none on the ground."""
+    body = load.body if isinstance(load, Couple) else load.place[0]
+    if body is None:
+        return ()
+    i = axes.motion.index[body]
+    link = axes.motion.links[i]
+    given = load.couple if isinstance(load, Couple) else load.force
+    vector = (
+        given
+        if load.axes == body and not axes.plane
+        else axes.of_ground(link, in_ground_axes(axes.motion, given, load.axes))
+    )
+    beyond = None if load.beyond is None else apply(transposed(link.pose.R), load.beyond)
+    if isinstance(load, Couple):
+        return (Effect(i, ZERO, vector, ZERO, None if load.place is None else load.place[1], beyond),)
+    return (Effect(i, vector, ZERO, axes.arm(i, load.place[1]), load.place[1], beyond),)
+
+
+# -------- components ------------------------------------------------------------------------------------------
+# System -> Components: every scalar reaction of joints and ties, and what a unit of it does to the bodies.
+
+
+EACH_AXIS: tuple[Vector, Vector, Vector] = ((1, 0, 0), (0, 1, 0), (0, 0, 1))
+
+
+@dataclass(frozen=True)
+class FrictionShare:
+    """Friction of a contact along one direction.
+
+    Args:
+        label: "t" or, of a contact on a surface, "s".
+        factor: what it is for a unit of the normal reaction.
+        effects: of a unit of it.
+    """
+
+    label: str
+    factor: Scalar
+    effects: tuple[Effect, ...]
+
+
+@dataclass(frozen=True)
+class Component:
+    """One scalar reaction.
+
+    Args:
+        owner: the tie, or the body whose joint it is.
+        kind: "tie", "joint", or "drive": what moves a driven coordinate at a joint.
+        label: "x", "y", "z", "n", "t", "couple", "couple x", "wrench 1", "tension", "drive"; "" of a row of no place.
+        number: its row in the tie, or its place among the joint's components, from 1.
+        effects: of a unit of it, on the child or the first-named body first.
+        friction: along each direction in which its contact slides.
+        side: the body on which it is the force of a hinge of several, the coordinate of a drive, the member of a
+            truss, or "".
+        bilateral_friction: of the friction of a bilateral contact, which is a component of its own: its factor for a
+            unit of |N| = sqrt(N_1^2 + N_2^2); None of all else.
+    """
+
+    owner: str
+    kind: str
+    label: str
+    number: int
+    effects: tuple[Effect, ...]
+    friction: tuple[FrictionShare, ...] = ()
+    side: str = ""
+    bilateral_friction: Scalar | None = None
+
+    @cached_property
+    def friction_effects(self) -> tuple[Effect, ...]:
+        """Its friction for a unit of it, on the same bodies."""
+        return tuple(effect.times(along.factor) for along in self.friction for effect in along.effects)
+
+    @property
+    def frictional(self) -> bool:
+        """Whether it is friction, or there is friction by it."""
+        return bool(self.friction) or self.bilateral_friction is not None
+
+    @property
+    def is_wrench(self) -> bool:
+        """Whether it is a force and a couple together: one of a screw, or of what is placed."""
+        return self.label.startswith("wrench")
+
+    @property
+    def name(self) -> str:
+        """As an output asks for it: reaction_x(B), tension(rope, 2)."""
+        if self.label == "tension":
+            which = self.side or (self.number if self.number > 1 else "")
+            return f"tension({self.owner}, {which})" if which else f"tension({self.owner})"
+        if self.label == "drive":
+            return f"drive({self.side or self.owner})"
+        owner = f"{self.owner}.{self.side}" if self.side else self.owner
+        return f"reaction_{self.label.replace(' ', '_')}({owner})"
+
+
+def components_of(system: System, axes: Axes) -> tuple[Component, ...]:
+    """All of them: those of the joints, what drives given motions, those of the ties."""
+    return (*_joint_components(system, axes), *_tie_components(system, axes))
+
+
+# -- of joints -------------------------------------------------------------------------------------
+
+
+def _joint_components(system: System, axes: Axes) -> list[Component]:
+    found = []
+    driven = _driven_variables(axes.motion)
+    for link in axes.motion.links:
+        joint = link.joint
+        if joint is None or not joint.carries_reaction:
+            continue
+        pushes = _basis(axes, link, system)
+        factor = joint_friction(system, link)
+        along = () if factor is None else tuple(effects_at_joint(axes, link, *scaled_axes(axes, link.name, 0, 1)))
+        for number, (label, force, couple) in enumerate(pushes, start=1):
+            effects = tuple(effects_at_joint(axes, link, force, couple))
+            friction = (FrictionShare("t", factor, along),) if label == "n" and factor is not None else ()
+            found.append(Component(link.name, "joint", label, number, effects, friction))
+        if factor is not None and not axes.plane:
+            found.append(Component(link.name, "joint", "t", len(pushes) + 1, along, bilateral_friction=factor))
+        for k in range(len(link.s)):
+            if (driver := driven.get((link.name, k))) is not None:
+                effects = tuple(effects_at_joint(axes, link, *scaled_axes(axes, link.name, k, 1)))
+                found.append(Component(link.name, "drive", "drive", k + 1, effects, (), driver))
+    return found
+
+
+def _driven_variables(motion: Motion) -> dict[tuple[str, int], str]:
+    """{(body, number of its joint's variable): coordinate} where somebody drives a given motion ("": time alone).
+
+    They follow it alone. Where there is none, and what follows holds a free coordinate of no other joint, nothing has
+    to push: the equation of that coordinate says so.
+
+    Raises:
+        DerivationError: that coordinate moves other joints too, so that the drive has no one place.
+    """
+    symbols, given = motion.scope.symbols, driven_coordinates(motion.scope.model)
+    free = [q for q in symbols.q if q.name not in given]
+    joints = [link for link in motion.links if link.joint is not None and link.joint.carries_reaction]
+    found: dict[tuple[str, int], str] = {}
+    for driver in (*(q for q in symbols.q if q.name in given), symbols.t):
+        moved = [(link.name, k, s) for link in joints for k, s in enumerate(link.s) if depends_on(s, (driver,))]
+        alone = [(name, k) for name, k, s in moved if not depends_on(s, free)]
+        found |= dict.fromkeys(alone, "" if driver is symbols.t else driver.name)
+        if not alone:
+            _refuse_spread(joints, [s for _, _, s in moved], free, driver)
+    return found
+
+
+def _refuse_spread(joints: Sequence[BodyLink], follow: Sequence[Scalar], free: Sequence[Node], driver: Node) -> None:
+    """Refuse what follows a driver and a free coordinate that moves other joints too."""
+    for q in free:
+        moved = [link.name for link in joints for s in link.s if depends_on(s, (q,))]
+        if len(moved) > 1 and any(depends_on(s, (q,)) for s in follow):
+            which = " and ".join(f"'{name}'" for name in moved)
+            raise DerivationError(
+                f"what drives '{driver.name}' has no one place: with '{q.name}' it moves the "
+                f"joints of {which}, and reactions do not follow",
+                f"bodies.{moved[0]}.joint",
+                f"let one joint follow '{driver.name}' alone",
+            )
+
+
+def _basis(axes: Axes, link: BodyLink, system: System) -> list[tuple[str, Vector, Vector]]:
+    """(label, force, couple) of each reaction of a joint, child's axes: the complement of its freedom."""
+    columns = link.joint.complement(link.s, axes.motion.scope.value)
+    forces = [vector_of(c[3:]) for c in columns if _vanishes(c[:3])]
+    couples = [vector_of(c[:3]) for c in columns if _vanishes(c[3:])]
+    if axes.plane:
+        forces = [f for f in forces if not _vanishes(f[:2])]
+        found = [("couple", ZERO, c) for c in couples if not is_zero(c[2])]
+        return [*_forces(axes, link, forces, 2), *([] if is_idle(axes, link, system) else found)]
+    mixed = [c for c in columns if not _vanishes(c[:3]) and not _vanishes(c[3:])]
+    names = [f"couple {axis}" for axis in "xyz"] if len(couples) == 3 else _numbered("couple", len(couples))
+    held = [(name, ZERO, c) for name, c in zip(names, EACH_AXIS if len(couples) == 3 else couples, strict=True)]
+    wrenches = [(f"wrench {k}", vector_of(c[3:]), vector_of(c[:3])) for k, c in enumerate(mixed, start=1)]
+    return [*_forces(axes, link, forces, 3), *held, *wrenches]
+
+
+def _vanishes(entries: Sequence[Scalar]) -> bool:
+    return all(is_zero(x) for x in entries)
+
+
+def _numbered(name: str, count: int) -> list[str]:
+    return [name] if count == 1 else [f"{name} {k}" for k in range(1, count + 1)]
+
+
+def _forces(axes: Axes, link: BodyLink, forces: list[Vector], most: int) -> list[tuple[str, Vector, Vector]]:
+    """The forces of a joint: along the equations' axes where it can carry any, else normal to its motion."""
+    if len(forces) == most:
+        R_CE = transposed(axes.of_body(link))
+        return [("xyz"[k], in_turned_axes(R_CE, EACH_AXIS[k]), ZERO) for k in range(most)]
+    return [(label, f, ZERO) for label, f in _normals(axes, link, forces)]
+
+
+def is_idle(axes: Axes, link: BodyLink, system: System) -> bool:
+    """Whether nothing can turn the body against its joint: a particle with all that acts on it at its mass."""
+    motion = axes.motion
+    shape = motion.scope.model.bodies[link.name].shape
+    carries = any(other.parent == motion.index[link.name] for other in motion.links)
+    if shape is None or not shape.is_point or carries or link.point != ZERO:
+        return False
+    loads = (*system.loads.placed, *(push for row in system.ties.rows for push in (*row.pushes, *row.tangent)))
+    mine = [load for load in loads if link.name == (load.body if isinstance(load, Couple) else load.place[0])]
+    return all(is_zero(effect.six[5]) for load in mine for effect in effects_of_load(axes, load))
+
+
+def _normals(axes: Axes, link: BodyLink, forces: list[Vector]) -> list[tuple[str, Vector]]:
+    """The forces that a guide can carry; in the plane the one along the left normal of its motion."""
+    sliding = [v for w, v in link.S if all(is_zero(x) for x in w)]
+    if axes.plane and len(forces) == 1 and len(sliding) == 1:
+        v = sliding[0]
+        return [("n", (-v[1], v[0], 0))]
+    return list(zip(_numbered("n", len(forces)), forces, strict=True))
+
+
+def joint_friction(system: System, link: BodyLink) -> Scalar | None:
+    """The friction of a path along it for a unit of its normal reaction; None without friction, and elsewhere."""
+    pieces = getattr(link.joint, "pieces", ())
+    value, mode = system.scope.value, system.modes.get(link.name, CLOSED)
+    factors = [friction_factor(piece.friction, value, link.s_rate[0], mode) for piece in pieces]
+    if all(factor is None for factor in factors):
+        return None
+    friction: Scalar = link.joint.of_its_piece(
+        link.s[0], value, [0 if factor is None else factor for factor in factors]
+    )
+    return friction
+
+
+def sliding_friction(system: System, component: Component) -> tuple[Scalar, Scalar]:
+    """Of a component with friction: (its friction along the contact for a unit of it, the sliding velocity)."""
+    if component.kind == "joint":
+        link = system.motion.link(component.owner)
+        factor, sliding = joint_friction(system, link), link.s_rate[0]
+    else:
+        number = component.number - 1 if component.bilateral_friction is not None else component.number
+        row = next(r for r in system.ties.rows if (r.tie, r.number) == (component.owner, number))
+        factor, sliding = row.friction, row.sliding
+    assert factor is not None, "what has an effect of friction has its factor"
+    return factor, sliding
+
+
+# -- of ties ---------------------------------------------------------------------------------------
+
+
+def _tie_components(system: System, axes: Axes) -> list[Component]:
+    found = []
+    for row in system.ties.rows:
+        effects = _tie_effects(axes, row)
+        if not effects:
+            continue
+        found.append(_of_tie(system, row, effects, () if row.round else _friction(axes, row)))
+        if row.round and row.friction is not None:
+            along = tuple(e for push in row.tangent for e in effects_of_load(axes, push))
+            found.append(Component(row.tie, "tie", "t", row.number + 1, along, bilateral_friction=row.friction))
+    return found
+
+
+def seen_by_carriers(system: System) -> dict[int, tuple[str, Component]]:
+    """{component: (the body that carries both bodies of its hinge, the same along that body's axes)}, in space."""
+    motion = system.motion
+    if motion.scope.model.space == "plane":
+        return {}
+    seen: dict[tuple[str, int], tuple[str, Component]] = {}
+    for row in system.ties.rows:
+        if row.carrier is not None and row.component in ("x", "y", "z"):
+            effects = _tie_effects(Axes(motion.seen_from(row.carrier)), row)
+            seen[row.tie, row.number] = (row.carrier, _of_tie(system, row, effects, ()))
+    rows = [(c.owner, c.number) if c.kind == "tie" else ("", 0) for c in components_of(system, Axes(motion))]
+    return {j: seen[row] for j, row in enumerate(rows) if row in seen}
+
+
+def _tie_effects(axes: Axes, row: Row) -> tuple[Effect, ...]:
+    return tuple(e for push in row.pushes for e in effects_of_load(axes, push))
+
+
+def normals_of_round(components: Sequence[Component], friction: Component) -> tuple[int, ...]:
+    """Of the friction of a bilateral contact: which components its normal force has."""
+    mine = (friction.kind, friction.owner)
+    return tuple(j for j, c in enumerate(components) if (c.kind, c.owner) == mine and c.label.startswith("n "))
+
+
+def _friction(axes: Axes, row: Row) -> tuple[FrictionShare, ...]:
+    """The friction of a row along its tangent, on a surface along both."""
+    if row.friction is None:
+        return ()
+    ways = zip("ts", row.shares or (1,), (row.tangent, row.cross_tangent), strict=False)
+    return tuple(
+        FrictionShare(label, row.friction * share, tuple(e for push in pushes for e in effects_of_load(axes, push)))
+        for label, share, pushes in ways
+    )
+
+
+def _of_tie(system: System, row: Row, effects: tuple[Effect, ...], friction: tuple[FrictionShare, ...]) -> Component:
+    """The component; of a hinge of several bodies, the force on the one that the row adds.
+
+    Where the first-named point is the ground's, it is the force on the body.
+    """
+    first = row.pushes[0]
+    held = row.component in ("x", "y", "z")
+    from_ground = isinstance(first, PointForce) and first.place[0] is None
+    points = getattr(system.scope.model.constraints.get(row.tie), "points", None) or ()
+    if held and (len(points) > 2 or from_ground):
+        side = system.motion.links[effects[-1].link].name if len(points) > 2 else ""
+        opposite = tuple(e.times(-1) for e in effects)
+        return Component(row.tie, "tie", row.component, row.number, opposite, (), side)
+    return Component(row.tie, "tie", row.component, row.number, effects, friction, row.part)
+
+
+# -------- placements ------------------------------------------------------------------------------------------
+# System, what else reacts -> Components: the wrenches that hold bodies which are placed by given motions.
+#
+# What is `placed` is geometry: where its places hold free coordinates alone, ties that are named hold it. Where they
+# move with time, something moves it as given. That is a wrench which does no work along any free coordinate q,
+#
+#     w = sum c_k d_k,   d_k the wrench that does work on the variable s_k alone,   sum c_k ds_k/dq = 0
+#
+# and of these only those are unknown that no other reaction can make up for. A body of which all variables are given,
+# and that nothing else holds, takes any force and any couple: its reaction in its place. What hangs on it then reacts
+# as on a base that moves.
+
+
+WayWithSlopes = tuple[SparseRow, list[Scalar]]  # a way, and its slopes along the free coordinates
+
+
+def placements_of(system: System, axes: Axes, others: Sequence[Component]) -> tuple[Component, ...]:
+    """Those of every body that is placed by a given motion.
+
+    Args:
+        others: the reactions of all joints and ties.
+    Raises:
+        MissingValues, DerivationError: the ties do not close near the start.
+    """
+    given = {link.name: ways for link in axes.motion.links if (ways := _free_of_work(system, link))}
+    if not given:
+        return ()
+    numbers = _Numbers(axes, generic_state(system.ties))
+    held = numbers.columns([(*c.effects, *c.friction_effects) for c in others])
+    found: list[Component] = []
+    for name, ways in given.items():
+        found += _of_body(system, axes.motion.link(name), ways, numbers, held)
+    return tuple(found)
+
+
+def _free_of_work(system: System, link: BodyLink) -> list[SparseRow]:
+    """The {k: c_k} that do no work along any free coordinate, of a body that is placed and that time moves; else none.
+
+    They are eliminated by slopes that are numbers: what other slopes would say of a variable is left out.
+    """
+    if link.joint is None or not is_placed(link):
+        return []
+    driven, symbols = driven_coordinates(system.scope.model), system.symbols
+    clocks = (symbols.t, *(q for q in symbols.q if q.name in driven))
+    if not any(depends_on(s, clocks) for s in link.s):
+        return []
+    free = [q for q in symbols.q if q.name not in driven]
+    left: list[WayWithSlopes] = [({k: 1}, [derivative(s, q) for q in free]) for k, s in enumerate(link.s)]
+    for j in range(len(free)):
+        pivot = next((row for row in left if type(row[1][j]) is not Node and row[1][j] != 0), None)
+        if pivot is not None:
+            left = [_less(row, over(row[1][j], pivot[1][j]), pivot) for row in left if row is not pivot]
+    return [way for way, slopes in left if all(is_zero(x) for x in slopes)]
+
+
+def _less(row: WayWithSlopes, factor: Scalar, other: WayWithSlopes) -> WayWithSlopes:
+    """A row less so many times the other."""
+    if is_zero(factor):
+        return row
+    way = dict(row[0])
+    for k, x in other[0].items():
+        way[k] = way.get(k, 0) - factor * x
+    return way, [x - factor * y for x, y in zip(row[1], other[1], strict=True)]
+
+
+@dataclass(frozen=True)
+class _Numbers:
+    """What forces and couples do to the bodies at a state: rows of the balance."""
+
+    axes: Axes
+    state: State
+
+    def columns(self, effects: Sequence[Sequence[Effect]]) -> np.ndarray:
+        """Force, and moment about the mass centre, on every body, of each of these, rows x columns."""
+        rows, several = self.axes.rows, [(j, e) for j, each in enumerate(effects) for e in each]
+        flat = tuple(e.six[d] for _, e in several for d in rows)
+        values = iter(floats_of(evaluate(flat, self.state, fifty_digits())))
+        found = np.zeros((len(rows) * len(self.axes.motion.links), len(effects)))
+        for j, e in several:
+            for n in range(len(rows)):
+                found[len(rows) * e.link + n, j] += next(values)
+        return found
+
+    def more(self, held: np.ndarray, effects: Sequence[Sequence[Effect]]) -> int:
+        """By how much these raise the rank of what holds the bodies."""
+        return _rank(np.hstack([held, self.columns(effects)])) - _rank(held)
+
+
+def _rank(columns: np.ndarray) -> int:
+    return rank(columns, smallest=RANK_NEARBY)
+
+
+def _of_body(
+    system: System, link: BodyLink, ways: Sequence[SparseRow], numbers: _Numbers, held: np.ndarray
+) -> Iterator[Component]:
+    axes = numbers.axes
+    if len(ways) == len(link.s):
+        wrench = list(_any_wrench(system, axes, link))
+        effects = [effects_at_joint(axes, link, force, couple) for _, force, couple in wrench]
+        if numbers.more(held, effects) == len(wrench):
+            yield from _components(link, [label for label, _, _ in wrench], effects)
+            return
+    needed = [effects for effects in (_along(axes, link, way) for way in ways) if numbers.more(held, [effects])]
+    yield from _components(link, [f"wrench {k}" for k in range(1, len(needed) + 1)], needed)
+
+
+def _along(axes: Axes, link: BodyLink, way: SparseRow) -> list[Effect]:
+    """Of the wrench sum c_k d_k."""
+    force, couple = ZERO, ZERO
+    for k, c in way.items():
+        f, n = scaled_axes(axes, link.name, k, c)
+        force, couple = plus(force, f), plus(couple, n)
+    return effects_at_joint(axes, link, force, couple)
+
+
+def _components(link: BodyLink, labels: Sequence[str], effects: Sequence[Sequence[Effect]]) -> Iterator[Component]:
+    for number, (label, own) in enumerate(zip(labels, effects, strict=True), start=1):
+        yield Component(link.name, "joint", label, number, tuple(own))
+
+
+def _any_wrench(system: System, axes: Axes, link: BodyLink) -> Iterator[tuple[str, Vector, Vector]]:
+    """(label, force, couple) along the axes of the body's equations, child's axes."""
+    R_CE = transposed(axes.of_body(link))
+    for k in range(2 if axes.plane else 3):
+        yield "xyz"[k], in_turned_axes(R_CE, EACH_AXIS[k]), ZERO
+    if not axes.plane:
+        yield from ((f"couple {axis}", ZERO, e) for axis, e in zip("xyz", EACH_AXIS, strict=True))
+    elif not is_idle(axes, link, system):
+        yield "couple", ZERO, EACH_AXIS[2]

@@ -1,0 +1,423 @@
+"""Equations of motion -> first integrals: what is conserved along every motion."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import replace
+from random import Random
+from typing import Any
+
+from eomgen.errors import DerivationError
+from eomgen.mechanics.constraints.closure import of_50_digits, on_unit_spheres, scattered_state
+from eomgen.mechanics.constraints.rows import hold_identically
+from eomgen.mechanics.dynamics.pieces import EVERYWHERE, NOWHERE, Extent, division_of
+from eomgen.mechanics.dynamics.system import EquationsOfMotion, System
+from eomgen.mechanics.dynamics.wellposed import where_conservative
+from eomgen.mechanics.kinematics.inertia import mass_properties
+from eomgen.mechanics.kinematics.motion import GROUND, velocity_of
+from eomgen.mechanics.kinematics.symbols import integral_from_zero
+from eomgen.mechanics.mass_properties import angular_momentum, shapeless
+from eomgen.model.forces.load import Couple, GeneralizedForce, Load, PointForce
+from eomgen.records import dataclass
+from eomgen.symbolic.exact.equality import equal_at_random_states, exact_state, real_values
+from eomgen.symbolic.exact.normal_form import readable
+from eomgen.symbolic.expression.derivative import depends_on, gradient
+from eomgen.symbolic.expression.formula import inner, over
+from eomgen.symbolic.expression.node import Node, Scalar, holds_op, is_zero
+from eomgen.symbolic.expression.spatial import (
+    ZERO,
+    Vector,
+    apply,
+    cross,
+    dot,
+    minus,
+    plus,
+    times,
+    transposed,
+    vector_of,
+)
+from eomgen.symbolic.numeric import dense
+from eomgen.symbolic.numeric.arithmetic import follows
+from eomgen.symbolic.numeric.evaluation import PRIME_FIELD, NoMeaning, NoValue, evaluate, fifty_digits
+from eomgen.symbolic.numeric.pieces import PIECEWISE, Choices, as_chosen
+from eomgen.symbolic.numeric.tolerances import ZERO_AT_50
+from eomgen.symbolic.numeric.work import Work
+from eomgen.symbolic.print.text import text_size
+
+# -------- integrals -------------------------------------------------------------------------------------------
+# Equations of motion -> first integrals: what stays constant along every motion.
+#
+# T + V = const,      p_k - integral of Q_k dt = const where dp_k/dt = Q_k(t),  p_k = dT/du_k u . dT/du - T + V =
+# const    (Jacobi's, where what moves by itself does so at a steady rate)
+#
+# Each is decided in every piece of what is made of min, max, abs, sign, cases and samples; what stays in the piece of
+# the start alone, as the energy above an elastic floor, says so long as what it does.
+
+
+@dataclass(frozen=True)
+class Integral:
+    """A function of the motion that stays constant.
+
+    Args:
+        name: "energy", "jacobi" or "momentum(x)".
+        expression: the function, of q, u, t and parameters.
+        coordinate: whose momentum it is, "" of the energy.
+        held: in which pieces.
+    """
+
+    name: str
+    expression: Scalar
+    coordinate: str = ""
+    held: Extent = EVERYWHERE
+
+
+def energy_integral(equations: EquationsOfMotion) -> tuple[Integral, ...]:
+    """(T + V - W,) where it stays constant, W the work of constant forces that have no potential; else ().
+
+    Where something moves by itself, Jacobi's integral if that stays. One that stays in every piece goes before one that
+    stays in that of the start.
+    """
+    if not equations.M:
+        return ()
+    within: list[Integral] = []
+    for V in (equations.V, equations.V - work_of_constant_forces(equations.system)):
+        held = where_conservative(replace(equations, V=V))
+        if held.everywhere:
+            return (Integral("energy", equations.T + V),)
+        if held:
+            within.append(Integral("energy", equations.T + V, held=held))
+    found = jacobi(equations)
+    if found is not None:
+        integral = Integral("jacobi", found[0], held=found[1])
+        if integral.held.everywhere:
+            return (integral,)
+        within.append(integral)
+    return tuple(within[:1])
+
+
+def where_momenta_hold(equations: EquationsOfMotion) -> Extent:
+    """Where all momenta that stay constant do: what follows from them holds there."""
+    held = EVERYWHERE
+    for each in momentum_integrals(equations):
+        if not depends_on(each.expression, (equations.symbols.t,)):
+            held = held & each.held
+    return held
+
+
+def work_of_constant_forces(system: System) -> Scalar:
+    """W(q): F . r of constant forces on points, C times the angle of constant couples in the plane, Q_k q_k."""
+    loads = system.loads
+    work: Scalar = 0
+    for force in loads.applied:
+        for load in () if force.potential is not None else force.loads:
+            work = work + _work(system, load)
+    for effort in loads.efforts:
+        if _is_constant(system, effort.drive):
+            work = work + effort.drive * system.motion.link(effort.body).s[effort.variable]
+    return work
+
+
+def _work(system: System, load: Load) -> Scalar:
+    """The work of one load where it is constant, else 0."""
+    motion = system.motion
+    if isinstance(load, PointForce) and load.axes is None and _is_constant(system, *load.force):
+        return dot(load.force, motion.position(load.place))
+    if isinstance(load, Couple) and _is_constant(system, *load.couple):
+        angle = motion.link(load.body).angle
+        return 0 if angle is None else load.couple[2] * angle
+    if isinstance(load, GeneralizedForce) and _is_constant(system, load.value):
+        return load.value * next(q for q in system.symbols.q if q.name == load.coordinate)
+    return 0
+
+
+def _is_constant(system: System, *scalars: Scalar) -> bool:
+    symbols = system.symbols
+    moving = (symbols.t, *symbols.q, *symbols.u, *symbols.inputs.values())
+    return not any(depends_on(x, moving) for x in scalars)
+
+
+def momentum_integrals(equations: EquationsOfMotion) -> tuple[Integral, ...]:
+    """p_k - integral of dp_k/dt of every speed for which dp_k/dt is a function of time; a constant force is one."""
+    symbols, scope = equations.symbols, equations.system.scope
+    momenta = gradient(equations.T, symbols.u)
+    drifts = scope.time_derivative(momenta)  # dp/dt = M a + drift, and M a = forcing + J^T lam
+    others, found = (*symbols.q, *symbols.u, *symbols.inputs.values()), []
+    free = [k for k in range(len(symbols.u)) if all(hold_identically([row[k] for row in equations.J]))]
+    rates = [drifts[k] + equations.forcing[k] for k in free]
+    for k, (rate, held) in zip(free, _of_time_alone(equations, rates, others), strict=True):
+        u, p = symbols.u[k], momenta[k]
+        if rate is None:
+            continue
+        try:
+            gained = integral_from_zero(rate, symbols.t, "") if type(rate) is Node else rate * symbols.t
+        except DerivationError:  # no closed form
+            continue
+        name = u.name.removesuffix("'")
+        found.append(Integral(f"momentum({name})", p - gained, name, held))
+    return tuple(found)
+
+
+def _of_time_alone(
+    equations: EquationsOfMotion, rates: Sequence[Scalar], others: Sequence[Node]
+) -> list[tuple[Scalar | None, Extent]]:
+    """Each rate where it depends on none of the others, else None; in which pieces."""
+    whole = [None if holds_op(rate, *PIECEWISE) and depends_on(rate, others) else rate for rate in rates]
+    smooth = iter(_alone_at_all(equations.system, [rate for rate in whole if rate is not None], others))
+    return [
+        _in_pieces(equations, rate, others) if same is None else (next(smooth), EVERYWHERE)
+        for rate, same in zip(rates, whole, strict=True)
+    ]
+
+
+def _in_pieces(equations: EquationsOfMotion, rate: Scalar, others: Sequence[Node]) -> tuple[Scalar | None, Extent]:
+    """A rate that has pieces as it is in that of the start, where it depends on none of the others there."""
+    division = division_of(equations, (rate,))
+    if division is None:
+        return _alone_at_all(equations.system, (rate,), others)[0], EVERYWHERE
+    if division.start is None:
+        return None, NOWHERE
+
+    def alone(piece: Choices) -> Scalar | None:
+        return _alone_at_all(equations.system, as_chosen((rate,), division.nodes, piece), others)[0]
+
+    try:
+        begun = alone(division.start)
+    except DerivationError:  # a division by zero
+        return None, NOWHERE
+    if begun is None:
+        return None, NOWHERE
+
+    def stays(piece: Choices) -> bool:
+        other = alone(piece)
+        return other is not None and equal_at_random_states([(other, begun)]).equal
+
+    held = division.where(stays)
+    return (begun, held) if held else (None, NOWHERE)
+
+
+def _alone_at_all(system: System, rates: Sequence[Scalar], others: Sequence[Node]) -> list[Scalar | None]:
+    """Each rate where it depends on none of the others, else None; what is seen to change needs no exact look."""
+    changes = _seen_to_change(system, rates, others)
+    left = [rate for rate, seen in zip(rates, changes, strict=True) if not seen]
+    looked_at = iter(zip(left, hold_identically(left), strict=True))
+    return [None if seen else _alone(*next(looked_at), others) for seen in changes]
+
+
+def _alone(rate: Scalar, vanishes: bool, others: Sequence[Node]) -> Scalar | None:
+    return rate if not depends_on(rate, others) else 0 if vanishes else _read_of_time(rate, others)
+
+
+def _seen_to_change(system: System, rates: Sequence[Scalar], others: Sequence[Node]) -> list[bool]:
+    """Of each rate whether it is another one, by 50 digits, where the others are and t is not."""
+    state, rng = scattered_state(system.ties), Random(2)
+    moved = state | {x: state[x] + of_50_digits(rng.uniform(0.1, 0.4)) for x in others}
+    moved |= on_unit_spheres(system.scope.quaternions, moved)
+    try:
+        here, there = (evaluate(rates, each, fifty_digits()) for each in (state, moved))
+    except NoValue:
+        return [False] * len(rates)
+    size = max((abs(x) for x in (*here, *there)), default=0)
+    return [abs(x - y) > ZERO_AT_50 * max(1, size) for x, y in zip(here, there, strict=True)]
+
+
+def _read_of_time(rate: Scalar, others: Sequence[Node]) -> Scalar | None:
+    """The rate multiplied out, where it depends on none of the others then."""
+    rate = readable(rate, Work.FORMULA)
+    return None if depends_on(rate, others) else rate
+
+
+# -------- constants of motion ---------------------------------------------------------------------------------
+# Equations of motion -> whether a function of the motion stays constant; momenta of the whole that do.
+#
+#     df/dt = g.a + r = 0  for all a with  M a = forcing        g = df/du,  r what is left at a = 0
+#
+# that is, the row (g, -r) follows from the rows (M, forcing): decided exactly, at random states of a prime field, or
+# with 50 digits where roots have no meaning there; in every piece of what is made of min, max, abs, sign, cases and
+# samples.
+
+
+STATES = 2
+MOST_SPEEDS = 24  # of a system whose momenta are looked at
+ORIGIN = (0, 0, 0)
+
+
+@dataclass(frozen=True)
+class Constant:
+    """A momentum of the whole system that stays constant, or the square of one.
+
+    Args:
+        letter: "P" momentum, "L" angular momentum.
+        axis: "x", "y", "z" of the ground; "" the square of all three.
+        about: "" of P; of L "the mass centre", or the place on the ground.
+        expression: the function.
+    """
+
+    letter: str
+    axis: str
+    about: str
+    expression: Scalar
+
+
+def stay_constant(equations: EquationsOfMotion, functions: Sequence[Scalar]) -> tuple[bool, ...]:
+    """Of each function of q, u and t whether it stays constant along every motion, in every piece.
+
+    Where ties close or there is friction none is said to be, nor where the prime field cannot tell.
+    """
+    return tuple(held.everywhere for held in where_constant(equations, functions))
+
+
+def where_constant(equations: EquationsOfMotion, functions: Sequence[Scalar]) -> tuple[Extent, ...]:
+    """Of each function of q, u and t in which pieces it stays constant."""
+    if equations.J or equations.friction or not equations.M:
+        return (NOWHERE,) * len(functions)
+    try:
+        drifts = equations.system.scope.time_derivative(tuple(functions))
+    except DerivationError:  # an input, which a caller may replace
+        return (NOWHERE,) * len(functions)
+    slopes = [gradient(f, equations.symbols.u) for f in functions]
+    rows = [[*row, force] for row, force in zip(equations.M, equations.forcing, strict=True)]
+    asked = [[*slope, -drift] for slope, drift in zip(slopes, drifts, strict=True)]
+    flat = [x for row in (*rows, *asked) for x in row]
+    division = division_of(equations, flat)
+    if division is None:
+        return tuple(EVERYWHERE if yes else NOWHERE for yes in _following(rows, asked))
+    known: dict[Choices, tuple[bool, ...]] = {}
+
+    def found(piece: Choices) -> tuple[bool, ...]:
+        if piece not in known:
+            values = iter(as_chosen(flat, division.nodes, piece))
+            table = [[next(values) for _ in row] for row in (*rows, *asked)]
+            known[piece] = _following(table[: len(rows)], table[len(rows) :])
+        return known[piece]
+
+    return tuple(division.where(lambda piece, k=k: found(piece)[k]) for k in range(len(functions)))  # type: ignore[misc]
+
+
+def _following(rows: Sequence[Sequence[Scalar]], asked: Sequence[Sequence[Scalar]]) -> tuple[bool, ...]:
+    """Of each row asked whether it follows from the rows, at random states: exact ones, or else of 50 digits."""
+    flat = [x for row in (*rows, *asked) for x in row]
+    for follow, values_of in ((follows, _exact_values), (dense.follows_in_digits, _real_values)):
+        rng, found = Random(5), [True] * len(asked)
+        try:
+            for _ in range(STATES):
+                values = iter(values_of(flat, rng))
+                table = [[next(values) for _ in row] for row in (*rows, *asked)]
+                known, others = table[: len(rows)], table[len(rows) :]
+                found = [yes and follow(known, row) for yes, row in zip(found, others, strict=True)]
+            return tuple(found)
+        except (NoMeaning, NoValue, ValueError, DerivationError):
+            continue
+    return (False,) * len(asked)
+
+
+def _exact_values(flat: Sequence[Scalar], rng: Random) -> list[Any]:
+    return evaluate(flat, exact_state(flat, rng).values, PRIME_FIELD)
+
+
+def _real_values(flat: Sequence[Scalar], rng: Random) -> list[Any]:
+    return real_values(flat, rng, fifty_digits())
+
+
+def jacobi(equations: EquationsOfMotion) -> tuple[Scalar, Extent] | None:
+    """(u . dT/du - T + V, in which pieces it stays constant): drives at a steady rate take energy in and out."""
+    symbols = equations.symbols
+    if depends_on(equations.V, (symbols.t,)) or all(is_zero(x) for x in equations.nu):
+        return None
+    found = inner(symbols.u, gradient(equations.T, symbols.u)) - equations.T + equations.V
+    (held,) = where_constant(equations, (found,))
+    return (found, held) if held else None
+
+
+def momenta_of_the_whole(equations: EquationsOfMotion, known: Sequence[Scalar]) -> tuple[Constant, ...]:
+    """Components of momentum and angular momentum that stay constant and are not among those known.
+
+    Angular momenta about the point about which most of them stay, of such points the one about which least is new.
+    """
+    system = equations.system
+    bodies = [link.name for link in system.motion.links if _has_inertia(system, link.name)]
+    many = len(equations.M) > MOST_SPEEDS
+    in_space = system.scope.model.space == "space"
+    if not bodies or many or (in_space and shapeless(system.motion, bodies)):
+        return ()
+    heavy = [body for body in bodies if not is_zero(mass_properties(system.scope, body).m)]
+    P = _momentum(system, heavy)
+    constant = stay_constant(equations, P) if heavy else (False,) * 3
+    places = ({"the mass centre": _mass_center(system, heavy)} if heavy else {}) | _seats(system)
+    moments = [_constant_moments(equations, bodies, about, point) for about, point in places.items()]
+    found = [Constant("P", axis, "", x) for axis, x, yes in zip("xyz", P, constant, strict=True) if yes]
+    most = max(map(len, moments))
+    new = [_new(each, known) for each in moments if len(each) == most]
+    return (*_new(found, known), *min(new, key=lambda each: (len(each), sum(text_size(x.expression) for x in each))))
+
+
+def _constant_moments(equations: EquationsOfMotion, bodies: Sequence[str], about: str, point: Vector) -> list[Constant]:
+    """The components of the angular momentum about a point that stay, and in space the square of one body's."""
+    system = equations.system
+    in_space = system.scope.model.space == "space"
+    axes = "xyz" if in_space else "z"
+    L = angular_momentum(system.motion, point, bodies)[-len(axes) :]
+    constant = stay_constant(equations, L)
+    found = [Constant("L", axis, about, x) for axis, x, yes in zip(axes, L, constant, strict=True) if yes]
+    if in_space and all(constant) and len(bodies) == 1:
+        found.append(Constant("L", "", about, _square(system, point, bodies[0])))
+    return found
+
+
+def _has_inertia(system: System, body: str) -> bool:
+    mass = mass_properties(system.scope, body)
+    return not is_zero(mass.m) or not all(is_zero(x) for row in mass.I for x in row)
+
+
+def _new(found: Sequence[Constant], known: Sequence[Scalar]) -> tuple[Constant, ...]:
+    """Those that are no numbers, and neither one of those known nor its opposite."""
+    kept: list[Constant] = []
+    for each in found:
+        x = each.expression
+        others = [*known, *(other.expression for other in kept)]
+        if not _vanishes(x) and not any(_vanishes(x - y) or _vanishes(x + y) for y in others):
+            kept.append(each)
+    return tuple(kept)
+
+
+def _vanishes(x: Scalar) -> bool:
+    return equal_at_random_states([(x, 0)]).equal
+
+
+def _momentum(system: System, bodies: Sequence[str]) -> Vector:
+    """sum m v_C, ground axes."""
+    total: Vector = ZERO
+    for body in bodies:
+        mass = mass_properties(system.scope, body)
+        total = plus(total, times(mass.m, velocity_of(system.motion, (body, mass.com))))
+    return total
+
+
+def _mass_center(system: System, bodies: Sequence[str]) -> Vector:
+    """sum m r_C / sum m"""
+    whole: Scalar = 0
+    total: Vector = ZERO
+    for body in bodies:
+        mass = mass_properties(system.scope, body)
+        whole, total = whole + mass.m, plus(total, times(mass.m, system.motion.position((body, mass.com))))
+    return vector_of(over(x, whole) for x in total)
+
+
+def _seats(system: System) -> dict[str, Vector]:
+    """Where bodies are joined to the ground, at places that stay; the ground's origin where there are none."""
+    symbols = system.symbols
+    found: dict[str, Vector] = {}
+    for link in system.motion.links:
+        on_ground = link.parent == GROUND
+        if on_ground and not any(depends_on(x, (symbols.t, *symbols.q)) for x in link.before.p):
+            zero = all(is_zero(x) for x in link.before.p)
+            found.setdefault("the origin" if zero else f"the joint of {link.name}", link.before.p)
+    return found or {"the origin": ORIGIN}
+
+
+def _square(system: System, point: Vector, body: str) -> Scalar:
+    """L.L of one body, in its own axes."""
+    link, mass = system.motion.link(body), mass_properties(system.scope, body)
+    arm = minus(mass.com, apply(transposed(link.pose.R), minus(point, link.pose.p)))
+    v = plus(link.twist.v, cross(link.twist.w, mass.com))
+    own = plus(apply(mass.I, link.twist.w), times(mass.m, cross(arm, v)))
+    return dot(own, own)

@@ -1,0 +1,556 @@
+"""Scope -> Motion: where every body is and how it moves, over the scalars of the graph."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import replace
+from functools import cached_property
+from typing import Any
+
+from eomgen.errors import DerivationError, NotYet
+from eomgen.mechanics.kinematics.symbols import Scope, shorter
+from eomgen.model.composite import Composite, PlacedPiece, composite_of
+from eomgen.model.joints.base import Z, oriented
+from eomgen.model.shapes import MassProperties
+from eomgen.records import dataclass
+from eomgen.symbolic.exact.normal_form import readable_all
+from eomgen.symbolic.expression.derivative import depends_on, jacobian, substituted, symbols_of
+from eomgen.symbolic.expression.formula import cos, function, over, sin, sqrt
+from eomgen.symbolic.expression.node import Node, Scalar, collected
+from eomgen.symbolic.expression.rational import Fraction
+from eomgen.symbolic.expression.spatial import (
+    ZERO,
+    Matrix,
+    Pose,
+    Twist,
+    Vector,
+    apply,
+    cross,
+    dot,
+    matrix_of,
+    minus,
+    plus,
+    product,
+    rotation,
+    times,
+    transposed,
+    vector_of,
+)
+from eomgen.symbolic.numeric.work import Work
+from eomgen.symbolic.solve.solving import vanishes
+
+# -------- kinematics ------------------------------------------------------------------------------------------
+# Scope -> Motion: where every body is and how it moves, over the scalars of the graph.
+#
+# Bodies hang in a tree. The joint of body i gives its variables s(q, t), the pose X(s) of the child's joint frame and
+# the subspace S, so that the twist of the child at its own origin, in its own axes, is
+#
+#     xi_i = Ad(parent -> i) xi_parent + S s',      s' = D u + d.
+#
+# Two descriptions of velocity are kept apart on purpose: the twists of this recursion, and the time derivatives of
+# the poses. The certificate compares them.
+
+
+GROUND = -1
+
+
+@dataclass(frozen=True)
+class BodyLink:
+    """One body in the tree.
+
+    Args:
+        name: the body's name.
+        parent: index of the parent link, GROUND for the ground.
+        joint: the model's joint (None: the ground's frame).
+        before: where the joint sits in the parent's frame (`at`, `turned`).
+        point: where the joint sits in this body, body axes, 3 [m].
+        s, s_rate: the joint's variables and s' = D u + d; of a quaternion the angular velocity in place of its rates.
+        relative: the joint's pose at s.
+        S: columns of the subspace, each (w, v), at the joint point, child's axes.
+        pose: of the body's frame in the ground.
+        angle: against the ground's axes (plane only) [rad].
+        twist: at the body's origin, body axes.
+    """
+
+    name: str
+    parent: int
+    joint: Any
+    before: Pose
+    point: Vector
+    s: tuple[Scalar, ...]
+    s_rate: tuple[Scalar, ...]
+    relative: Pose
+    S: tuple[tuple[Vector, Vector], ...]
+    pose: Pose
+    angle: Scalar | None
+    twist: Twist
+
+    @property
+    def local(self) -> Pose:
+        """Where the joint leaves the child's axes and the joint point, in the parent."""
+        return self.before.then(self.relative)
+
+
+@dataclass(frozen=True)
+class Motion:
+    """Poses and twists of all bodies, parents before children."""
+
+    scope: Scope
+    links: tuple[BodyLink, ...]
+
+    @cached_property
+    def index(self) -> dict[str, int]:
+        """The place of each body in `links`."""
+        return {link.name: i for i, link in enumerate(self.links)}
+
+    def link(self, body: str) -> BodyLink:
+        return self.links[self.index[body]]
+
+    @cached_property
+    def decided(self) -> dict[Node, None]:
+        """The scalars whose numbers at the start have decided what loads and ties are (`SystemScene.worth`)."""
+        return {}
+
+    @cached_property
+    def points(self) -> dict[str, dict[str, Vector]]:
+        """Points of each body, body axes [m]."""
+        return {link.name: body_points(self.scope, link.name) for link in self.links}
+
+    def carrier_of(self, first: str | None, second: str | None) -> str | None:
+        """The nearest body that carries both, itself among those that carry it; None: only the ground does."""
+        carriers = self._carriers(second)
+        return next((body for body in self._carriers(first) if body in carriers), None)
+
+    def _carriers(self, body: str | None) -> list[str]:
+        """The body, and those it hangs on, the nearest first."""
+        found: list[str] = []
+        place = GROUND if body is None else self.index[body]
+        while place != GROUND:
+            found.append(self.links[place].name)
+            place = self.links[place].parent
+        return found
+
+    def seen_from(self, body: str) -> Motion:
+        """Poses and twists of what a body carries, against that body; others stay as the ground sees them."""
+        if body not in self._seen:
+            self._seen[body] = _seen_from(self, self.index[body])
+        return self._seen[body]
+
+    @cached_property
+    def _seen(self) -> dict[str, Motion]:
+        return {}
+
+    def moves(self, scalars: tuple[Scalar, ...]) -> bool:
+        """Whether any of the scalars depends on coordinates or time."""
+        moving = {*self.scope.symbols.q, self.scope.symbols.t}
+        return any(symbol in moving for symbol in symbols_of(scalars))
+
+    def place(self, point: str) -> tuple[str | None, Vector]:
+        """(body, position in its axes) of a named point; (None, position) for a point of the ground."""
+        body, name = self.scope.model.resolve_point(point)
+        if body is None:
+            return None, self.scope.vector(self.scope.model.points[name])
+        return body, self.points[body][name]
+
+    def position(self, place: tuple[str | None, Vector]) -> Vector:
+        """The place seen from the ground, 3 [m]."""
+        body, r = place
+        return r if body is None else self.link(body).pose.point(r)
+
+    @cached_property
+    def B(self) -> tuple[tuple[tuple[Scalar, ...], ...], ...]:
+        """Of each body the 6 rows of xi = B u + beta (angular first, body origin, body axes)."""
+        twists = [x for link in self.links for x in (*link.twist.w, *link.twist.v)]
+        rows = jacobian(tuple(twists), self.scope.symbols.u)
+        return tuple(tuple(rows[6 * i : 6 * i + 6]) for i in range(len(self.links)))
+
+    @cached_property
+    def alpha(self) -> tuple[tuple[Scalar, ...], ...]:
+        """Of each body the 6 entries of xi' = B a + alpha."""
+        twists = [x for link in self.links for x in (*link.twist.w, *link.twist.v)]
+        rates = self.scope.time_derivative(tuple(twists))
+        return tuple(tuple(rates[6 * i : 6 * i + 6]) for i in range(len(self.links)))
+
+
+def motion_of(scope: Scope) -> Motion:
+    """Poses and twists of every body of the model.
+
+    Raises:
+        DerivationError: a joint whose place depends on an input.
+        NotYet: a joint kind that this version does not derive.
+    """
+    links: list[BodyLink] = []
+    index: dict[str, int] = {}
+    for name in parents_first(scope.model):
+        link = _link(scope, name, links, index)
+        index[name] = len(links)
+        links.append(link)
+    return Motion(scope, tuple(links))
+
+
+def parents_first(model: Any) -> list[str]:
+    """The bodies, every one after the one it hangs on, else in the model's order."""
+    done: dict[str, None] = {}
+    waiting = list(model.bodies)
+    while waiting:
+        ready = [name for name in waiting if parent_of(model, name) in (None, *done)]
+        if not ready:
+            raise DerivationError(
+                f"bodies hang on one another in a ring: {', '.join(waiting)}",
+                mend="hang one of them on the ground, and close the loop by a constraint",
+            )
+        for name in ready:
+            done[name] = None
+        waiting = [name for name in waiting if name not in done]
+    return list(done)
+
+
+def parent_of(model: Any, body: str) -> str | None:
+    """The body on which this one hangs (None: the ground)."""
+    joint = model.bodies[body].joint
+    return None if joint is None else joint.parent
+
+
+def body_points(scope: Scope, body: str) -> dict[str, Vector]:
+    """Points of one body: its own, its shape's, `origin`, and `center` where it has mass; body axes [m]."""
+    part = scope.model.bodies[body]
+    points: dict[str, Vector] = {"origin": ZERO}
+    if part.parts is not None:
+        points["center"] = made_of(scope, body).whole.com
+    elif part.center is not None or part.mass is not None:
+        points["center"] = scope.vector(part.center)
+    if part.shape is not None:
+        points |= part.shape.points(scope.value)
+    points |= {name: scope.vector(place) for name, place in part.points.items()}
+    return points
+
+
+def _link(scope: Scope, name: str, links: list[BodyLink], index: dict[str, int]) -> BodyLink:
+    joint = scope.model.bodies[name].joint
+    if joint is not None and not joint.works_in(scope.model.space):
+        raise NotYet(
+            f"the joint '{joint.kind}' is not derived yet",
+            f"bodies.{name}.joint",
+            mend="declare it by joints that are: see eomgen schema",
+        )
+    plane = scope.model.space == "plane"
+    if joint is None:
+        return BodyLink(name, GROUND, None, Pose(), ZERO, (), (), Pose(), (), Pose(), 0 if plane else None, Twist())
+    parent_name = parent_of(scope.model, name)
+    parent = GROUND if parent_name is None else index[parent_name]
+    above = None if parent == GROUND else links[parent]
+    before = Pose(oriented(joint.turned, scope.value), _seat(scope, joint))
+    point = ZERO if joint.point is None else body_points(scope, name)[joint.point]
+    s = tuple(scope.value(e) for e in joint.variables(scope.model.space))
+    s_rate = (*scope.time_derivative(s[: -4 if joint.spins else None]), *(scope.names[w] for w in joint.spins))
+    relative = joint.pose(s, scope.value)
+    S = tuple((tuple(column[:3]), tuple(column[3:])) for column in joint.subspace(s, scope.value))
+    local = before.then(relative)
+    angle = None
+    if plane:
+        turned = _turned_angle(scope, joint) + joint.turn(s, scope.value)
+        angle = collected((above.angle if above else 0) + turned)
+    pose = _pose(above, local, angle, point)
+    twist = _twist(scope, above, before, local, s_rate, S, point)
+    return BodyLink(name, parent, joint, before, point, s, s_rate, relative, S, pose, angle, twist)
+
+
+def _seen_from(motion: Motion, carrier: int) -> Motion:
+    """The motion with a body in the place of the ground, of all that hangs on it."""
+    links, scope = list(motion.links), motion.scope
+    turned = links[carrier].angle
+    links[carrier] = replace(links[carrier], pose=Pose(), angle=None if turned is None else 0, twist=Twist())
+    carried = {carrier}
+    for i, link in enumerate(motion.links):
+        if link.parent not in carried:
+            continue
+        carried.add(i)
+        above = links[link.parent]
+        angle = None if link.angle is None or turned is None else collected(link.angle - turned)
+        twist = _twist(scope, above, link.before, link.local, link.s_rate, link.S, link.point)
+        links[i] = replace(link, pose=_pose(above, link.local, angle, link.point), angle=angle, twist=twist)
+    return Motion(scope, tuple(links))
+
+
+def _pose(above: BodyLink | None, local: Pose, angle: Scalar | None, point: Vector) -> Pose:
+    """The child's frame in the ground; in the plane its rotation is that by its whole angle."""
+    joint = (above.pose if above else Pose()).then(local)
+    R = joint.R if angle is None else rotation(Z, cos(angle), sin(angle))
+    return Pose(R, minus(joint.p, apply(R, point)))
+
+
+def _twist(
+    scope: Scope,
+    above: BodyLink | None,
+    before: Pose,
+    local: Pose,
+    s_rate: tuple[Scalar, ...],
+    S: tuple[tuple[Vector, Vector], ...],
+    point: Vector,
+) -> Twist:
+    """Twist of the child at its origin, child's axes; a seat that moves by itself adds its rate."""
+    R_CP = transposed(local.R)
+    carried = (above.twist if above else Twist()).at(local.p)
+    seat_rate = scope.rate_of(before.p)
+    at_joint = Twist(apply(R_CP, carried.w), apply(R_CP, plus(carried.v, seat_rate)))
+    for rate, (w, v) in zip(s_rate, S, strict=True):
+        at_joint = at_joint.plus(Twist(times(rate, w), times(rate, v)))
+    moved = at_joint.at(times(-1, point))
+    drift = scope.rate_of(point)  # a joint that slides along its own body
+    twist = Twist(moved.w, minus(moved.v, drift))
+    return shortened_twist(twist) if scope.combines else twist
+
+
+def shortened_twist(twist: Twist) -> Twist:
+    """A twist in its shorter form: declared speeds often are its components, once the rates are put in."""
+    return Twist(vector_of(map(shorter, twist.w)), vector_of(map(shorter, twist.v)))
+
+
+def _turned_angle(scope: Scope, joint: Any) -> Scalar:
+    """In the plane: the angle of the fixed rotations before the joint, all of them about z."""
+    return sum((scope.value(turn.angle) for turn in joint.turned or ()), start=0)
+
+
+def _seat(scope: Scope, joint: Any) -> Vector:
+    """Where the joint sits, parent's axes: `at`, or the parent's point named by `on`."""
+    on = joint.on
+    if on is not None and "." in on:
+        body, point = on.split(".", 1)
+        return body_points(scope, body)[point]
+    return ground_place(scope, joint.at) if joint.seated else ZERO
+
+
+def ground_place(scope: Scope, at: Any) -> Vector:
+    """A place on the ground: coordinates, or the name of a ground point [m]."""
+    return scope.vector(scope.model.points[at] if isinstance(at, str) else at)
+
+
+def spin_between(R: Matrix, R_rate: Matrix) -> Vector:
+    """Angular velocity in body axes from a rotation and its time derivative: w~ = R^T R'."""
+    W = product(transposed(R), R_rate)
+    return (W[2][1], W[0][2], W[1][0])
+
+
+def velocity_of(motion: Motion, place: tuple[str | None, Vector]) -> Vector:
+    """Velocity of a place of a body in ground axes, from the twist: R (v + w x r + r') [m/s]."""
+    body, r = place
+    if body is None:
+        return ZERO
+    link = motion.link(body)
+    carried = apply(link.pose.R, plus(link.twist.v, cross(link.twist.w, r)))
+    return plus(carried, slide_of(motion, place)) if motion.moves(r) else carried
+
+
+def slide_of(motion: Motion, place: tuple[str | None, Vector]) -> Vector:
+    """Velocity of a place against its own body, ground axes: R r', 0 where it is fixed in the body [m/s]."""
+    body, r = place
+    if body is None or not motion.moves(r):
+        return ZERO
+    return apply(motion.link(body).pose.R, motion.scope.rate_of(r))
+
+
+# -------- gimbal ----------------------------------------------------------------------------------------------
+# Motion -> Locks: where three angles do not say how a body turns (gimbal lock).
+#
+# The columns of S of three angles have the determinant sin(b) (zxz and its like) or cos(b) (xyz and its like), b the
+# second angle. Where it vanishes two of the axes are one, and the rates of the angles are not determined.
+
+
+@dataclass(frozen=True)
+class Lock:
+    """Where the angles of one body are locked: the determinant of their axes is zero."""
+
+    body: str
+    determinant: Scalar
+
+    def __str__(self) -> str:
+        return f"the three angles of '{self.body}' do not determine how it turns"
+
+
+def locks_of(motion: Motion) -> tuple[Lock, ...]:
+    """Of each body that turns by three angles, one of them at least free to change, where they lock."""
+    found = []
+    for link in motion.links:
+        sequence = getattr(link.joint, "orientation", None)
+        if sequence is None or sequence == "quaternion":
+            continue
+        angles = link.s[-3:]
+        if any(depends_on(rate, motion.scope.symbols.u) for rate in link.s_rate[-3:]):
+            found.append(Lock(link.name, sin(angles[1]) if sequence[0] == sequence[2] else cos(angles[1])))
+    return tuple(found)
+
+
+# -------- composition -----------------------------------------------------------------------------------------
+# Scope -> Composite: the mass properties of a body made of parts, short.
+
+
+def made_of(scope: Scope, body: str) -> Composite:
+    """The pieces of a body and the whole of them, each formula in readable form; made once for a scope."""
+    if body not in scope.composites:
+        scope.composites[body] = _put_together(scope, body)
+    return scope.composites[body]
+
+
+def _put_together(scope: Scope, body: str) -> Composite:
+    part = scope.model.bodies[body]
+    composite = composite_of(part.parts or (), part.mass, scope.value)
+    everything = [composite.whole, *(placed.mass for placed in composite.pieces)]
+    flat = readable_all([x for mass in everything for x in _flat(mass)], Work.VALUE, scope.positive)
+    whole, *masses = (_unflat(flat[k : k + 13]) for k in range(0, len(flat), 13))
+    pieces = tuple(PlacedPiece(p.piece, mass) for p, mass in zip(composite.pieces, masses, strict=True))
+    return Composite(pieces, whole)
+
+
+def _flat(mass: MassProperties) -> list[Scalar]:
+    return [mass.m, *mass.com, *(x for row in mass.I for x in row)]
+
+
+def _unflat(entries: Sequence[Scalar]) -> MassProperties:
+    m, *others = entries
+    return MassProperties(m, vector_of(others[:3]), matrix_of((others[3:6], others[6:9], others[9:12])))
+
+
+# -------- field -----------------------------------------------------------------------------------------------
+# Motion -> Field: velocities and accelerations of all points of one rigid body, ground axes.
+#
+#     v_P = v_O + omega x r,      a_P = a_O + epsilon x r + omega x (omega x r),      r from O to P
+#
+# O is the origin of the body's frame. Accelerations hold the symbols a and are linear in them.
+
+
+UP: Vector = (0, 0, 1)
+
+
+@dataclass(frozen=True)
+class VelocityField:
+    """The motion of one rigid body at a state, ground axes.
+
+    Args:
+        p, v, a: place, velocity and acceleration of its origin, 3.
+        w, e: angular velocity and acceleration, 3.
+    """
+
+    p: Vector = ZERO
+    v: Vector = ZERO
+    a: Vector = ZERO
+    w: Vector = ZERO
+    e: Vector = ZERO
+
+    def velocity(self, place: Vector) -> Vector:
+        """v = v_O + omega x r of the point of the body that is now at the place [m/s]."""
+        return plus(self.v, cross(self.w, minus(place, self.p)))
+
+    def acceleration(self, place: Vector) -> Vector:
+        """a = a_O + epsilon x r + omega x (omega x r) of the point of the body that is now at the place [m/s^2]."""
+        return plus(self.a, plus(self.angular(place), self.centripetal(place)))
+
+    def angular(self, place: Vector) -> Vector:
+        """epsilon x r [m/s^2]"""
+        return cross(self.e, minus(place, self.p))
+
+    def centripetal(self, place: Vector) -> Vector:
+        """omega x (omega x r) [m/s^2]"""
+        return cross(self.w, cross(self.w, minus(place, self.p)))
+
+    def at(self, state: Mapping[Node, Scalar]) -> VelocityField:
+        """The field with the state's values put in."""
+        if not state:
+            return self
+        vectors = (self.p, self.v, self.a, self.w, self.e)
+        flat = iter(substituted([x for vector in vectors for x in vector], state))
+        return VelocityField(*(vector_of(next(flat) for _ in range(3)) for _ in vectors))
+
+    def against(self, other: VelocityField) -> VelocityField:
+        """The field of velocities that another body sees, in ground axes: v - v_other, omega - omega_other."""
+        return replace(self, v=minus(self.v, other.velocity(self.p)), w=minus(self.w, other.w))
+
+
+def field_of(motion: Motion, body: str) -> VelocityField:
+    """The field of a body of the model; of the ground it is zero."""
+    if body not in motion.index:
+        return VelocityField()
+    link, scope = motion.link(body), motion.scope
+    v = scope.rate_of(link.pose.p)
+    w = link.twist.w if link.angle is not None else apply(link.pose.R, link.twist.w)
+    rates = scope.with_accelerations((*v, *w))
+    return VelocityField(link.pose.p, v, vector_of(rates[:3]), w, vector_of(rates[3:]))
+
+
+# -- points and lines of a field -------------------------------------------------------------------
+
+
+def rotation_center(field: VelocityField) -> Vector:
+    """In the plane: the point of the body at rest, p_O + omega x v_O / omega^2.
+
+    Raises:
+        DerivationError: omega = 0 for good; what was left to say is that it translates or rests.
+    """
+    if vanishes(field.w[2]):
+        state = "rests" if all(vanishes(x) for x in field.v) else "translates"
+        raise DerivationError(
+            f"the body {state}: it has no centre of rotation at a finite place", mend="ask while the body turns"
+        )
+    return plus(field.p, times(over(1, field.w[2]), cross(UP, field.v)))
+
+
+def acceleration_pole(field: VelocityField) -> Vector:
+    """In the plane: the point without acceleration, p_O + (omega^2 a_O + epsilon x a_O)/(omega^4 + epsilon^2).
+
+    Raises:
+        DerivationError: omega = epsilon = 0: all points have the same acceleration.
+    """
+    w, e = field.w[2], field.e[2]
+    if vanishes(w) and vanishes(e):
+        raise DerivationError(
+            "omega = epsilon = 0: all points of the body have the same acceleration, it has no pole",
+            mend="ask while the body turns",
+        )
+    arm = plus(times(w * w, field.a), cross(field.e, field.a))
+    return plus(field.p, times(over(1, w * w * w * w + e * e), arm))
+
+
+def axis_point(field: VelocityField) -> Vector:
+    """In space: the point of the screw axis nearest to the origin of the body, p_O + omega x v_O / omega.omega."""
+    return plus(field.p, times(over(1, dot(field.w, field.w)), cross(field.w, field.v)))
+
+
+def least_speed(field: VelocityField, start: Vector, end: Vector, short: Callable[[Scalar], Scalar]) -> Scalar:
+    """The least speed of the points between two points of the body.
+
+    Along the segment only the component of v along h = omega x (end - start) changes, linearly from a to b:
+        v^2 = v_0^2 + max(0, min(a, b), min(-a, -b))^2
+    with v_0 the part of v across h. In the plane h is across the segment, and v_0 is the component along it: nothing
+    is divided by omega.
+
+    Args:
+        start, end: the places of the two points.
+        short: puts a scalar into readable form.
+    Raises:
+        DerivationError: they are the same.
+    """
+    along = minus(end, start)
+    if all(vanishes(x) for x in along):
+        raise DerivationError(
+            "the two points are the same: they have no segment between them", mend="name two points that are apart"
+        )
+    v_start, v_end = field.velocity(start), field.velocity(end)
+    planar = vanishes(field.w[0]) and vanishes(field.w[1]) and vanishes(along[2]) and vanishes(field.v[2])
+    h = cross(UP, along) if planar else cross(field.w, along)
+    if all(vanishes(x) for x in h):
+        return sqrt(dot(v_start, v_start))
+    square, a, b = short(dot(h, h)), short(dot(v_start, h)), short(dot(v_end, h))
+    rest = short(dot(v_start, v_start) - over(a * a, square))
+    if vanishes(a) or vanishes(b):
+        return sqrt(rest)
+    either = (function("max", 0, function("min", x, y)) for x, y in ((a, b), (-a, -b)))
+    nearest = short(function("max", *either))
+    return sqrt(rest + over(nearest * nearest, square))
+
+
+def inflection_center(field: VelocityField) -> Vector:
+    """The centre of the circle through the centre of rotation on which the points are whose path is straight there.
+
+    In the plane, with r from the centre of rotation, whose acceleration is a_P:  r^2 = r . a_P / omega^2.
+    """
+    pole = rotation_center(field)
+    return plus(pole, times(over(Fraction(1, 2), field.w[2] * field.w[2]), field.acceleration(pole)))

@@ -1,0 +1,317 @@
+"""Motion -> SystemScene: what force laws and constraints ask of a system, in which mode of its contacts."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable, Mapping, Sequence
+from dataclasses import field
+from typing import Any
+
+from eomgen.errors import DerivationError, ExpressionError, ModelError
+from eomgen.mechanics.kinematics.inertia import mass_properties
+from eomgen.mechanics.kinematics.motion import GROUND, Motion, ground_place
+from eomgen.mechanics.kinematics.symbols import Scope, parameters_of_zero, primitive
+from eomgen.model.constraints.row import TieRow
+from eomgen.model.forces.load import BodyPoint
+from eomgen.model.kinds import Resistance
+from eomgen.model.part import altered
+from eomgen.model.parts import Coordinate
+from eomgen.model.values import exact_parameters, no_orientation, quaternions_of
+from eomgen.records import dataclass
+from eomgen.symbolic.exact.equality import equal_at_random_states
+from eomgen.symbolic.exact.normal_form import readable_all
+from eomgen.symbolic.expression.derivative import depends_on, gradient, substituted, symbols_of
+from eomgen.symbolic.expression.formula import Call, Expression, function, over, sqrt
+from eomgen.symbolic.expression.node import Node, Scalar, is_zero
+from eomgen.symbolic.expression.rational import Fraction
+from eomgen.symbolic.expression.spatial import Matrix, Vector
+from eomgen.symbolic.expression.text import as_expression
+from eomgen.symbolic.numeric.evaluation import FLOAT, evaluate
+from eomgen.symbolic.numeric.work import Work
+from eomgen.symbolic.print.text import to_text
+
+# -------- system scene ----------------------------------------------------------------------------------------
+# Motion -> SystemScene: what force laws and ties ask of a system; where coordinates start.
+
+
+@dataclass(frozen=True)
+class SystemScene:
+    """What the force laws and the ties ask of a system in motion.
+
+    Args:
+        where: the part that asks, for messages.
+        begun: where coordinates start that do not start where they are declared to.
+    """
+
+    motion: Motion
+    where: str = ""
+    begun: Mapping[Node, Scalar] = field(default_factory=dict)
+
+    def value(self, expression: Expression) -> Scalar:
+        return self.motion.scope.value(expression)
+
+    def value_at(self, expression: Expression, also: dict[str, Scalar]) -> Scalar:
+        """An expression in which further names stand for given scalars (they win over the model's)."""
+        return expression.evaluate({**self.motion.scope.names, **also})
+
+    def primitive(self, expression: Expression, name: str, at: Scalar) -> Scalar | None:
+        """The integral of an expression over one name, at a value of it.
+
+        None where it holds anything but that name and parameters, or has no closed form.
+        """
+        scope = self.motion.scope
+        if any(other != name and other not in (*scope.symbols.parameters, "pi") for other in expression.names):
+            return None
+        variable = scope.graph.symbol(f"({name})")  # no name of a model has parentheses
+        F = primitive(self.value_at(expression, {name: variable}), variable, parameters_of_zero(scope.model))
+        return None if F is None else substituted((F,), {variable: at})[0]
+
+    def vector(self, expressions: tuple[Expression, ...] | None) -> Vector:
+        return self.motion.scope.vector(expressions)
+
+    def ground_place(self, at: Sequence[Expression] | str) -> Vector:
+        return ground_place(self.motion.scope, at)
+
+    @property
+    def plane(self) -> bool:
+        return self.motion.scope.model.space == "plane"
+
+    def place(self, point: str) -> BodyPoint:
+        body, r = self.motion.place(point)
+        return (body, r)
+
+    def position(self, place: BodyPoint) -> Vector:
+        return self.motion.position(place)
+
+    def velocity(self, place: BodyPoint) -> Vector:
+        """d/dt of the position [m/s]."""
+        return self.motion.scope.rate_of(self.position(place))
+
+    def orientation(self, body: str) -> Matrix:
+        """R of the body in the ground."""
+        return self.motion.link(body).pose.R
+
+    def carrier_of(self, first: str | None, second: str | None) -> str | None:
+        """The nearest body that carries both, itself among those that carry it; None: only the ground does."""
+        return self.motion.carrier_of(first, second)
+
+    def seen_from(self, body: str | None) -> SystemScene:
+        """The same as a body sees it that carries what is asked for: its axes stand for the ground's."""
+        return self if body is None else SystemScene(self.motion.seen_from(body), self.where, self.begun)
+
+    def angle(self, body: str) -> Scalar:
+        angle = self.motion.link(body).angle
+        if angle is None:
+            raise DerivationError(
+                f"body '{body}' has no single angle in space",
+                f"bodies.{body}",
+                "put the spring or damper into the joint",
+            )
+        return angle
+
+    def angle_rate(self, body: str) -> Scalar:
+        return self.motion.scope.time_derivative((self.angle(body),))[0]
+
+    def slopes(self, law: Expression, values: Mapping[Call, Scalar | None]) -> tuple[Scalar, tuple[Scalar, ...]]:
+        """(value, derivatives by the functions of the motion in it) of a law; None: it is linear in that, taken as 0.
+
+        Raises:
+            ModelError: it is not linear there.
+        """
+        value, symbols = self._open(law, values)
+        slopes = gradient(value, tuple(symbols.values()))
+        linear = [k for k, at in enumerate(values.values()) if at is None]
+        if any(depends_on(slopes[k], [tuple(symbols.values())[j]]) for k in linear for j in linear):
+            raise ModelError(
+                f"'{law.text}' is not linear in the velocities",
+                self.where,
+                "write it as a sum of velocities, each times a function of the configuration",
+            )
+        at = {symbol: 0 if (x := values[call]) is None else x for call, symbol in symbols.items()}
+        found = substituted((value, *slopes), at)
+        return found[0], found[1:]
+
+    def held_rate(self, law: Expression, values: Mapping[Call, Scalar]) -> Scalar:
+        """d/dt of a law while the functions of the motion in it stay as they are."""
+        value, symbols = self._open(law, values)
+        rate = self.motion.scope.time_derivative((value,))
+        return substituted(rate, {symbol: values[call] for call, symbol in symbols.items()})[0]
+
+    def _open(self, law: Expression, calls: Iterable[Call]) -> tuple[Scalar, dict[Call, Node]]:
+        """A law over symbols for the functions in it."""
+        scope = self.motion.scope
+        symbols = {call: scope.graph.symbol(f"({call})") for call in calls}
+        return law.evaluate(scope.names, symbols.__getitem__), symbols
+
+    def turn_of_joint(self, body: str) -> tuple[Scalar, Vector, str | None]:
+        """(angle, unit axis in the body's axes, parent) of the joint that turns a body about one axis."""
+        link = self.motion.link(body)
+        turning = [(s, w) for s, (w, _) in zip(link.s, link.S, strict=False) if not all(map(is_zero, w))]
+        if len(turning) != 1:
+            raise DerivationError(
+                f"the joint of body '{body}' has no single angle",
+                self.where,
+                "hang it on a revolute, cylindrical or screw joint",
+            )
+        parent = None if link.parent == GROUND else self.motion.links[link.parent].name
+        return *turning[0], parent
+
+    def masses(self, bodies: tuple[str, ...] | None) -> tuple[tuple[BodyPoint, Scalar], ...]:
+        """(mass centre, mass) of the named bodies, or of all, that have mass."""
+        names = [link.name for link in self.motion.links] if bodies is None else bodies
+        rows = []
+        for name in names:
+            body = mass_properties(self.motion.scope, name)
+            if not is_zero(body.m):
+                rows.append(((name, body.com), body.m))
+        return tuple(rows)
+
+    def start(self, scalar: Scalar) -> Scalar:
+        """The scalar where the coordinates start and t = 0."""
+        scope = self.motion.scope
+        at = {**with_unit_quaternions(scope, start_values(scope)), **self.begun}
+        return substituted((scalar,), {**at, scope.symbols.t: 0})[0]
+
+    def own_place(self, body: str, point: str | None) -> BodyPoint:
+        """A body's own point; None: its origin."""
+        return (body, self.motion.points[body][(point or "origin").rpartition(".")[2]])
+
+    def line(self, body: str) -> tuple[BodyPoint, BodyPoint]:
+        """The two points of a body's line."""
+        line = self.motion.scope.model.bodies[body].line
+        assert line is not None, "checked when the model was read"
+        return self.own_place(body, line[0]), self.own_place(body, line[1])
+
+    def radius(self, body: str) -> Scalar:
+        """Of the body's round shape [m]."""
+        shape: Any = self.motion.scope.model.bodies[body].shape
+        return self.value(shape.radius)
+
+    def shape(self, body: str) -> Any:
+        """The body's shape, as the model declares it; None where it has none."""
+        return self.motion.scope.model.bodies[body].shape
+
+    def moves(self, scalars: tuple[Scalar, ...]) -> bool:
+        return self.motion.moves(scalars)
+
+    def vanishes(self, scalar: Scalar) -> bool:
+        """Whether the scalar is zero whatever the values of its symbols."""
+        return scalar == 0 if type(scalar) is not Node else equal_at_random_states([(scalar, 0)]).equal
+
+    def readable(self, scalars: tuple[Scalar, ...]) -> tuple[Scalar, ...]:
+        """The scalars multiplied out, roots of squares of positive parameters taken."""
+        return readable_all(scalars, Work.ENTRY, self.motion.scope.positive)
+
+    def worth(self, scalar: Scalar) -> float | None:
+        """The number that the scalar is at the start with the model's values (None: some are missing)."""
+        scope = self.motion.scope
+        if type(scalar) is Node:
+            self.motion.decided[scalar] = None
+        known = exact_parameters(scope.model)
+        values = {node: known[name] for name, node in scope.symbols.parameters.items() if name in known}
+        at_start = self.start(scalar)
+        if not set(symbols_of((at_start,))) <= values.keys():
+            return None
+        return float(evaluate((at_start,), {node: float(x) for node, x in values.items()}, FLOAT)[0])
+
+
+def start_values(scope: Scope, among: Iterable[Node] | None = None) -> dict[Node, Scalar]:
+    """Where coordinates start, as expressions of the parameters; None: all of them."""
+    return {q: start_value(scope, q) for q in (scope.symbols.q if among is None else among)}
+
+
+def start_value(scope: Scope, q: Node) -> Scalar:
+    """Where a coordinate starts, as an expression of the parameters."""
+    coordinate = scope.model.coordinates[q.name]
+    if coordinate.motion is not None:
+        return substituted((scope.value(coordinate.motion),), {scope.symbols.t: 0})[0]
+    return scope.value(coordinate.near if coordinate.start is None else coordinate.start)
+
+
+def let_go(scope: Scope, name: str) -> Coordinate:
+    """A driven coordinate without what drives it: one like others, which starts where it is driven from."""
+    part = scope.model.coordinates[name]
+    (q,) = (x for x in scope.symbols.q if x.name == name)
+    start = part.start if part.motion is None else _written(scope, start_value(scope, q))
+    return altered(part, motion=None, rate=None, acceleration=None, start=start)
+
+
+def _written(scope: Scope, scalar: Scalar) -> Expression:
+    """A scalar of the parameters as a formula; as a number where it is one of samples, which have no formula."""
+    try:
+        return as_expression(to_text(scalar))
+    except ExpressionError:
+        known = exact_parameters(scope.model)
+        values = {node: float(known[name]) for name, node in scope.symbols.parameters.items() if name in known}
+        return as_expression(Fraction(evaluate((scalar,), values, FLOAT)[0]))
+
+
+def with_unit_quaternions(scope: Scope, start: dict[Node, Scalar]) -> dict[Node, Scalar]:
+    """Start values with every quaternion over its norm.
+
+    Raises:
+        ModelError: one is 0.
+    """
+    found = dict(start)
+    for four, part in zip(scope.quaternions, quaternions_of(scope.model), strict=True):
+        norm = sqrt(sum((start[e] * start[e] for e in four), start=0))
+        if is_zero(norm):
+            raise no_orientation(part.body)
+        found |= {e: over(start[e], norm) for e in four}
+    return found
+
+
+# -------- contact modes ---------------------------------------------------------------------------------------
+# Contacts: ties and paths that can end, slide or stick. A mode says how each of them is in one phase of the motion.
+#
+# Coulomb:  friction = -mu |N| sign(v) along the contact, N the contact's own reaction, v its sliding velocity;
+# viscous:  -c |N| v.  While a contact sticks, its sliding velocity is held at 0 by a row of its own.
+
+
+@dataclass(frozen=True)
+class ContactMode:
+    """How one contact is.
+
+    Args:
+        closed: False: the contact is open, the string slack.
+        sense: of the sliding, +1 or -1 along the contact's tangent; 0: it sticks; None: the law, with sign(v) in it.
+        push: the sign of N, for contacts that hold both ways.
+    """
+
+    closed: bool = True
+    sense: int | None = None
+    push: int = 1
+
+
+ContactModes = Mapping[str, ContactMode]
+"""By the name of the tie, or of the body on a path. What is not named is closed and slides by the law."""
+
+CLOSED = ContactMode()
+
+
+def rows_in_mode(constraint: Any, rows: tuple[TieRow, ...], mode: ContactMode) -> tuple[TieRow, ...]:
+    """The rows that a tie has in a mode: none while it is open, one more while it sticks (on a surface two)."""
+    if not mode.closed:
+        return ()
+    law = getattr(constraint, "friction", None)
+    if law is None or mode.sense != 0 or law.coulomb is None:
+        return rows
+    with_friction = [row for row in rows if row.tangent]
+    pairs = (
+        (name, row, push) for row in with_friction for name, push in (("t", row.tangent), ("s", row.cross_tangent))
+    )
+    held = (TieRow(push, None, component=name, material=row.material) for name, row, push in pairs if push)
+    return (*rows, *held)
+
+
+def friction_factor(
+    law: Resistance | None, value: Callable[[Any], Scalar], sliding: Scalar, mode: ContactMode
+) -> Scalar | None:
+    """The friction of a unit of N along the tangent; None without friction, or while it sticks."""
+    if law is None:
+        return None
+    if law.coulomb is None:
+        return -mode.push * value(law.viscous) * sliding
+    if mode.sense == 0:
+        return None
+    sense = function("sign", sliding) if mode.sense is None else mode.sense
+    return -mode.push * value(law.coulomb) * sense

@@ -1,0 +1,536 @@
+"""Model -> Scope: the symbols of one derivation, and what every name of an expression stands for."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Container, Mapping, Sequence
+from contextlib import suppress
+from dataclasses import field, replace
+from functools import cached_property
+from math import isfinite
+
+from eomgen.errors import DerivationError, EomgenError, ModelError
+from eomgen.model.composite import Composite
+from eomgen.model.joints.ball import rate_matrix_of, spin_of_quaternion
+from eomgen.model.part import leaves_of
+from eomgen.model.parts import Coordinate, Model
+from eomgen.model.trusses import in_parts
+from eomgen.model.values import exact_parameters, quaternions_of, start_values
+from eomgen.records import dataclass
+from eomgen.symbolic.exact.normal_form import cancelled, readable
+from eomgen.symbolic.expression.derivative import depends_on, derivative, jacobian, substituted, symbols_of, tangent
+from eomgen.symbolic.expression.formula import Expression, combined, function, inner, over, through_samples
+from eomgen.symbolic.expression.graph import Graph
+from eomgen.symbolic.expression.node import Node, Scalar, holds_op, is_zero
+from eomgen.symbolic.expression.rational import Fraction
+from eomgen.symbolic.expression.spatial import Vector, vector_of
+from eomgen.symbolic.expression.splines import Sampled
+from eomgen.symbolic.expression.traversal import Symbols, operations, order
+from eomgen.symbolic.numeric.work import Work
+from eomgen.symbolic.print.length import length_of
+from eomgen.symbolic.print.text import text_size
+from eomgen.symbolic.solve import cramer
+
+# -------- scope -----------------------------------------------------------------------------------------------
+# Model -> Scope: the symbols of one derivation, and what every name of an expression stands for.
+#
+# q' = N u + nu. A free coordinate has its rate for a speed (a unit row of N); a driven one is a zero row of N and its
+# given rate in nu; a dependent one has the row that the ties give, and is free until then. Declared speeds take the
+# place of rates last of all (`declared_speeds`); until then their names mean what they are in the rates.
+
+
+LONGEST_LAW = 3  # marks of a constant rate or acceleration that is put in where it stands: 2 n
+
+
+@dataclass(frozen=True)
+class Scope:
+    """The symbols of a model and its kinematic equations.
+
+    Args:
+        model: the model, its trusses taken apart.
+        symbols: its symbols.
+        N, nu: q' = N u + nu; N has nq rows of nu entries.
+        names: what each name of an expression stands for: parameters, unknowns, q, u, `theta'`, `theta''`, inputs,
+            t, pi.
+        quaternions: four coordinates each, whose squares add up to 1.
+        laws: {psi': law, psi'': law} of driven coordinates whose rates and accelerations are names, for print.
+    """
+
+    model: Model
+    symbols: Symbols
+    N: tuple[tuple[Scalar, ...], ...]
+    nu: tuple[Scalar, ...]
+    names: dict[str, Scalar]
+    quaternions: tuple[tuple[Node, ...], ...] = ()
+    laws: Mapping[Node, Scalar] = field(default_factory=dict)
+
+    @property
+    def graph(self) -> Graph:
+        return self.symbols.graph
+
+    @cached_property
+    def positive(self) -> frozenset[Node]:
+        """The parameters whose value is positive, that the model calls `positive`, or that are a mass or a length.
+
+        Roots may be taken of their squares.
+        """
+        values, sizes = exact_parameters(self.model), _sizes(self.model)
+        return frozenset(
+            node
+            for name, node in self.symbols.parameters.items()
+            if self.model.parameters[name].positive or (values[name] > 0 if name in values else name in sizes)
+        )
+
+    @cached_property
+    def combines(self) -> bool:
+        """Whether some of its speeds are combinations of rates."""
+        return any(self.model.speeds[u.name].rate is not None for u in self.symbols.u if u.name in self.model.speeds)
+
+    @cached_property
+    def rates(self) -> tuple[Scalar, ...]:
+        """q' = N u + nu, nq."""
+        return tuple(
+            sum((n * u for n, u in zip(row, self.symbols.u, strict=True) if not _zero(n)), start=bias)
+            for row, bias in zip(self.N, self.nu, strict=True)
+        )
+
+    @cached_property
+    def flow(self) -> dict[Node, Scalar]:
+        """The seeds of d/dt at a = 0: q -> q', t -> 1, psi' -> psi'' of what has a law."""
+        derivatives = {x: tangent((law,), {self.symbols.t: 1})[0] for x, law in self.laws.items()}
+        derivatives = {x: self.names.get(f"{x.name}'", rate) for x, rate in derivatives.items()}
+        return {self.symbols.t: 1, **dict(zip(self.symbols.q, self.rates, strict=True)), **derivatives}
+
+    @cached_property
+    def given_kinetic(self) -> tuple[tuple[Node, ...], Scalar]:
+        """(w, T): the kinetic energies that the model gives, in names w of the rates of all coordinates."""
+        w = tuple(self.graph.symbol(f"({q.name}')") for q in self.symbols.q)  # no name of a model has parentheses
+        names = self.names | {f"{q.name}'": x for q, x in zip(self.symbols.q, w, strict=True)}
+        names |= _speeds_by_rates(self.model, names)
+        given = [force.kinetic for force in self.model.forces.values() if force.kinetic is not None]
+        return w, sum((energy.evaluate(names) for energy in given), start=0)
+
+    @cached_property
+    def composites(self) -> dict[str, Composite]:
+        """Bodies made of parts that were put together already, by name (`made_of` fills it)."""
+        return {}
+
+    def value(self, expression: Expression | None) -> Scalar:
+        """An expression of the model in the symbols (absent: 0)."""
+        return 0 if expression is None else expression.evaluate(self.names)
+
+    def vector(self, expressions: tuple[Expression, ...] | None) -> Vector:
+        """A vector of the model, 3, with z = 0 in the plane (absent: 0)."""
+        values = [self.value(e) for e in expressions or ()]
+        return vector_of(values + [0] * (3 - len(values)))
+
+    def time_derivative(self, outputs: tuple[Scalar, ...]) -> tuple[Scalar, ...]:
+        """d/dt of functions of q, u and t where a = 0: the part that stays when nothing accelerates."""
+        inputs = tuple(self.symbols.inputs.values())
+        if inputs and any(depends_on(x, inputs) for x in outputs):
+            raise DerivationError(
+                "an input stands where a time derivative is needed, and a caller may replace it by anything",
+                mend="let inputs act in forces and torques only; drive a coordinate by `motion`",
+            )
+        return tangent(outputs, self.flow)
+
+    def rate_of(self, vector: Vector) -> Vector:
+        """d/dt of a vector, 3, where a = 0."""
+        return vector_of(self.time_derivative(vector))
+
+    def with_accelerations(self, outputs: tuple[Scalar, ...]) -> tuple[Scalar, ...]:
+        """d/dt of functions of q, u and t, the accelerations included: linear in a."""
+        flow = {**self.flow, **dict(zip(self.symbols.u, self.symbols.a, strict=True))}
+        return tangent(outputs, flow)
+
+
+def scope_of(model: Model, *, with_laws: bool = False) -> Scope:
+    """The symbols of a model, its kinematic equations, and the meaning of its names.
+
+    Every rate is a speed of its own here, of dependent coordinates and of those of a quaternion too.
+
+    Args:
+        with_laws: rates and accelerations of driven coordinates are names, psi' and psi'', where they are long.
+    Raises:
+        DerivationError: a given acceleration whose integral has no closed form.
+    """
+    model = in_parts(model)
+    zero = parameters_of_zero(model)
+    graph = Graph()
+    t = graph.symbol("t")
+    parameters = {name: graph.constant(name) for name in model.parameters}
+    q = tuple(graph.symbol(name) for name in model.coordinates)
+    free = [name for name, c in model.coordinates.items() if not c.driven]
+    u = tuple(graph.symbol(name + "'") for name in free)
+    a = tuple(graph.symbol(name + "''") for name in free)
+    inputs = {name: graph.symbol(name) for name in model.inputs}
+    unknowns = {name: graph.symbol(name) for name in model.unknowns}
+    symbols = Symbols(graph, t, parameters, inputs, q, u, a, unknowns=unknowns)
+    names: dict[str, Scalar] = {**parameters, **unknowns, **inputs, "t": t, "pi": graph.pi}
+    names |= {name: symbol for name, symbol in zip(model.coordinates, q, strict=True)}
+    N: list[tuple[Scalar, ...]] = []
+    nu: list[Scalar] = []
+    laws: dict[Node, Scalar] = {}
+    speed = dict(zip(free, range(len(free)), strict=True))
+    for name, coordinate in model.coordinates.items():
+        if name in speed:
+            names[name + "'"], names[name + "''"] = u[speed[name]], a[speed[name]]
+            N.append(tuple(int(k == speed[name]) for k in range(len(free))))
+            nu.append(0)
+        else:
+            rate = driven_rate(coordinate, names, t, f"coordinates.{name}", zero)
+            given = {name + "'": rate, name + "''": tangent((rate,), {t: 1})[0]}
+            long = {graph.symbol(each): law for each, law in given.items() if with_laws and _is_long(law, t)}
+            laws |= long
+            names |= {**given, **{x.name: x for x in long}}
+            N.append((0,) * len(free))
+            nu.append(names[name + "'"])
+    quaternions = tuple(tuple(graph.symbol(e) for e in each.coordinates) for each in quaternions_of(model))
+    for four in quaternions:
+        graph.hold_on_sphere(four)
+    graph.hold_near(_own_numbers(model, symbols))
+    return with_speeds_named(Scope(model, symbols, tuple(N), tuple(nu), names, quaternions, laws))
+
+
+def _own_numbers(model: Model, symbols: Symbols) -> dict[Node, float]:
+    """Parameters, coordinates and rates at the start, as far as the file says them in numbers."""
+    known = exact_parameters(model)
+    found = {node: float(known[name]) for name, node in symbols.parameters.items() if name in known}
+    with suppress(EomgenError, OverflowError):
+        q, rates = start_values(model)
+        found |= {node: q[node.name] for node in symbols.q if node.name in q}
+        found |= {node: rates[node.name] for node in symbols.u if node.name in rates}
+    return {node: value for node, value in found.items() if isfinite(value)}
+
+
+def with_speeds_named(scope: Scope) -> Scope:
+    """The scope in which declared speeds, and their derivatives, stand for what they are in its own speeds."""
+    names = scope.names
+    found = _speeds_by_rates(scope.model, names)
+    rates = scope.with_accelerations(tuple(found.values()))
+    found |= {f"{name}'": rate for name, rate in zip(found, rates, strict=True)}
+    return replace(scope, names={**names, **found})
+
+
+def _speeds_by_rates(model: Model, names: Mapping[str, Scalar]) -> dict[str, Scalar]:
+    """Declared speeds as they are declared, in what the names of rates stand for."""
+    found = {name: part.rate.evaluate(names) for name, part in model.speeds.items() if part.rate is not None}
+    for each in quaternions_of(model):
+        e, rates = (tuple(names[name + prime] for name in each.coordinates) for prime in ("", "'"))
+        found |= dict(zip(each.speeds, spin_of_quaternion(e, rates), strict=True))
+    return found
+
+
+def _is_long(law: Scalar, t: Node) -> bool:
+    """Whether a given rate or acceleration reads better by a name: a function of t, or a long constant; no samples."""
+    if type(law) is not Node or law.op == "sampled":
+        return False
+    return depends_on(law, (t,)) or length_of(law) > LONGEST_LAW
+
+
+def driven_rate(coordinate: Coordinate, names: dict[str, Scalar], t: Node, where: str, zero: Container[str]) -> Scalar:
+    """The rate of a driven coordinate: f' for `motion`, f for `rate`, speed + integral of f for `acceleration`."""
+    name = where.rpartition(".")[2]
+    if coordinate.motion is not None:
+        return tangent((coordinate.motion.named(name).evaluate(names),), {t: 1})[0]
+    if coordinate.rate is not None:
+        return coordinate.rate.named(f"{name}'").evaluate(names)
+    assert coordinate.acceleration is not None
+    start = 0 if coordinate.speed is None else coordinate.speed.evaluate(names)
+    if (sampled := coordinate.acceleration.sampled) is not None:
+        return _speed_by_samples(sampled.named(f"{name}''"), start, t)
+    return start + integral_from_zero(coordinate.acceleration.evaluate(names), t, where, zero)
+
+
+def _speed_by_samples(acceleration: Sampled, start: Scalar, t: Node) -> Scalar:
+    """start + the integral of samples from 0 to t: one function, where the start is as plain a number as they are."""
+    change = acceleration.integral()
+    if type(start) is not Node and not change.pi_power:
+        return through_samples(change.raised(Fraction(start)), t)
+    return start + through_samples(change.named(f"integral({acceleration.name})"), t)
+
+
+def integral_from_zero(f: Scalar, t: Node, where: str, zero: Container[str] | None = None) -> Scalar:
+    """The integral of f from 0 to t in closed form; zero: as of `primitive`.
+
+    Raises:
+        DerivationError: none was found.
+    """
+    F = primitive(f, t, zero)
+    if F is None:
+        raise DerivationError(
+            "the given acceleration has no integral in closed form",
+            where,
+            "give the coordinate's `motion` or `rate` instead",
+        )
+    return F - substituted((F,), {t: 0})[0]
+
+
+def parameters_of_zero(model: Model) -> frozenset[str]:
+    """The parameters whose value is 0."""
+    return frozenset(name for name, value in exact_parameters(model).items() if value == 0)
+
+
+LONGEST_INTEGRAND = 300  # operations: rules are sought for every part of it, and for products of parts
+
+
+LONGEST_ROOTED = 16  # operations, where sines stand under a root: most have no closed form, which takes seconds to see
+
+
+def primitive(f: Scalar, x: Node, zero: Container[str] | None = None) -> Scalar | None:
+    """A function of x whose derivative is f, or None where no closed form was found.
+
+    Args:
+        zero: the parameters that are 0. Where none of them stands in it, a form that holds at k = 0 alone, as of
+            exp(k x)/k, is left out; None: it is always part of it.
+    """
+    if not depends_on(f, (x,)):
+        return f * x
+    if len(order((f,))) > (LONGEST_ROOTED if _has_rooted_sines(f, x) else LONGEST_INTEGRAND):
+        return None
+    from sympy import Eq, Integral, Ne, false, true
+    from sympy.integrals.manualintegrate import manualintegrate
+
+    from eomgen.symbolic.print.sympy_form import scalar_from_sympy, to_sympy
+
+    expression, variable = to_sympy((f, x))
+    found = manualintegrate(expression, variable)
+    if found.has(Integral):
+        return None
+    if zero is not None and not any(symbol.name in zero for symbol in found.free_symbols):
+        found = found.subs({**dict.fromkeys(found.atoms(Eq), false), **dict.fromkeys(found.atoms(Ne), true)})
+    lookup = {symbol.name: symbol for symbol in symbols_of((f, x))}
+    try:
+        return scalar_from_sympy(found, lookup)
+    except DerivationError:  # a function that the graph does not have
+        return None
+
+
+def _has_rooted_sines(f: Scalar, x: Node) -> bool:
+    """Whether sines or cosines of x stand under a root: integrals of such are elliptic but for a few."""
+    under = [a for node in order((f,)) if node.op == "sqrt" for a in node.args if holds_op(a, "sin", "cos")]
+    return any(depends_on(node, (x,)) for node in order(under) if node.op in ("sin", "cos"))
+
+
+BENT = ("max", "min", "abs", "sign")
+
+
+def primitive_over_bends(f: Scalar, x: Node) -> Scalar | None:
+    """`primitive`, of functions with bends too, continuous over these; None where no closed form was found.
+
+    f = rest + sum of c times what has a bend, its arguments linear in x, c without x. The integral of max(0, d) is
+    max(0, d)^2/(2 d'), of min(0, d) the same with min, of |d| it is d |d|/(2 d'), of sign(d) it is |d|/d'.
+    """
+    total: Scalar = 0
+    while type(f) is Node and (bent := [n for n in order((f,)) if n.op in BENT and depends_on(n, (x,))]):
+        node = bent[-1]  # what holds others comes after them
+        name = f.graph.symbol("(what has a bend)")
+        (named,) = substituted((f,), {node: name})
+        factor, own = derivative(named, name), _of_one_bend(node, x)
+        if own is None or depends_on(factor, (x, name)):
+            return None
+        (f,) = substituted((named,), {name: 0})
+        total = total + factor * own
+    rest = 0 if _zero(f) else primitive(f, x)
+    return None if rest is None else total + rest
+
+
+def _of_one_bend(node: Node, x: Node) -> Scalar | None:
+    """The integral of max, min, abs or sign of what is linear in x; None of anything else."""
+    a: Scalar
+    b: Scalar
+    a, b = node.args if len(node.args) == 2 else (node.args[0], 0)
+    if not depends_on(a, (x,)):
+        a, b = b, a
+    d = a - b
+    slope = derivative(d, x)
+    if _zero(slope) or depends_on(slope, (x,)) or any(depends_on(derivative(y, x), (x,)) for y in (a, b)):
+        return None
+    if node.op == "sign":
+        return over(function("abs", d), slope)
+    if node.op == "abs":
+        return over(d * function("abs", d), 2 * slope)
+    above = function(node.op, 0, d)  # max(a, b) = b + max(0, a - b), and min the same
+    return Fraction(1, 2) * derivative(b, x) * x * x + substituted((b,), {x: 0})[0] * x + over(above * above, 2 * slope)
+
+
+def _zero(a: Scalar) -> bool:
+    return type(a) is int and a == 0
+
+
+def _sizes(model: Model) -> frozenset[str]:
+    """The names that stand alone where a negative number is an error: masses, lengths and radii of bodies."""
+    leaves = (leaf for body in model.bodies.values() for leaf in leaves_of(body, ()))
+    signed = (leaf.value for leaf in leaves if getattr(leaf.rule, "sign", "") and isinstance(leaf.value, Expression))
+    return frozenset(value.text for value in signed if len(value.code) == 1 and value.literal is None)
+
+
+# -------- simplify --------------------------------------------------------------------------------------------
+# Scalar -> the same in a shorter form: what is divided by what dependent rates or declared speeds bring in.
+
+
+LONGEST_ROW = 2000  # characters of a velocity row that is multiplied out
+LONGEST = 600  # characters of a scalar that is made readable
+MOST = 9  # symbols in it
+
+
+def shorter(x: Scalar) -> Scalar:
+    """x as one quotient without common factors, where that takes fewer operations and x is not long."""
+    if type(x) is not Node or text_size(x) > LONGEST or len(symbols_of((x,))) > MOST:
+        return x
+    short = cancelled(x, Work.ENTRY)
+    return short if operations((short,)).total <= operations((x,)).total else x
+
+
+def shorter_row(x: Scalar) -> Scalar:
+    """A velocity multiplied out, where that halves its operations: cos^2 + sin^2 of a spin that no contact sees."""
+    if type(x) is not Node or text_size(x) > LONGEST_ROW or len(symbols_of((x,))) > 2 * MOST:
+        return x
+    short = readable(x, Work.ENTRY)
+    return short if 2 * operations((short,)).total <= operations((x,)).total else x
+
+
+# -------- declared speeds -------------------------------------------------------------------------------------
+# Scope -> Scope: generalized speeds that are not rates, w = Y(q, t) q' + y, in the place of the rates.
+#
+#     q' = N u + nu of the rates that are left,  w = Y u + y   ->   u = Y^-1 (w - y),   q' = (N Y^-1) w + (nu - N Y^-1
+#         y)
+#
+# A coordinate whose rate stands in no declared speed keeps it for a speed. The four rates of a quaternion follow from
+# the angular velocity, e' = 1/2 e o (0, w), without any inverse. The speeds are the rates that are kept, in the order
+# of the coordinates, then the declared ones in the order of the model.
+
+
+SpeedRows = dict[Node, tuple[tuple[Scalar, ...], Scalar]]  # u = row . w + bias, of each rate u
+
+
+@dataclass(frozen=True)
+class Solved:
+    """Rates that declared speeds determine together; where the determinant vanishes they are not determined."""
+
+    rates: tuple[str, ...]
+    determinant: Scalar
+
+    def __str__(self) -> str:
+        return f"the declared speeds do not determine {', '.join(self.rates)}"
+
+
+def with_declared_speeds(
+    scope: Scope, *, vanishes: Callable[[Scalar], bool], shorter: Callable[[Scalar], Scalar]
+) -> tuple[Scope, tuple[Solved, ...]]:
+    """The scope over the declared speeds, and what must stay regular.
+
+    Args:
+        scope: over the rates, dependent coordinates eliminated.
+        vanishes: whether a scalar is zero at all states.
+        shorter: puts a coefficient of N into a shorter form.
+    Raises:
+        ModelError: not one speed for each freedom; a speed that is not linear in the rates; speeds that depend on one
+            another.
+    """
+    u, graph = scope.symbols.u, scope.graph
+    declared = tuple(name for name, part in scope.model.speeds.items() if part.rate is not None)
+    turning = {node.name + "'" for four in scope.quaternions for node in four}
+    formulas = tuple(scope.names[name] for name in declared)
+    _refuse_turning(declared, formulas, [x for x in u if x.name in turning])
+    standing = set(symbols_of(formulas))
+    replaced = [x for x in u if x.name not in turning and x in standing]
+    _refuse_count(scope, declared, replaced)
+    kept = tuple(x for x in u if x.name not in turning and x not in replaced)
+    speeds = (*kept, *map(graph.symbol, scope.model.speeds))
+    rates = (*(graph.symbol(f"{x.name}'") for x in kept), *(graph.symbol(f"{name}'") for name in scope.model.speeds))
+    place = {x.name: k for k, x in enumerate(speeds)}
+    rows: SpeedRows = {x: (_unit(place[x.name], len(speeds)), 0) for x in kept}
+    solved, blocks = _rates_solved(scope, declared, replaced, place, vanishes, shorter)
+    rows |= solved
+    rows |= _quaternion_rates(scope, place)
+    symbols = replace(scope.symbols, u=speeds, a=rates)
+    return _over(scope, replace(scope, symbols=symbols), u, rows), blocks
+
+
+def _unit(k: int, size: int) -> tuple[int, ...]:
+    return tuple(int(j == k) for j in range(size))
+
+
+# -- the rates ---------------------------------------------------------------------------------------
+
+
+def _rates_solved(
+    scope: Scope,
+    declared: Sequence[str],
+    replaced: Sequence[Node],
+    place: dict[str, int],
+    vanishes: Callable[[Scalar], bool],
+    shorter: Callable[[Scalar], Scalar],
+) -> tuple[SpeedRows, tuple[Solved, ...]]:
+    """u = Y^-1 (w - y) of the rates that stand in declared speeds, by determinants."""
+    formulas = tuple(scope.names[name] for name in declared)
+    Y = jacobian(formulas, replaced)
+    y = substituted(formulas, dict.fromkeys(replaced, 0))
+    for name, row in zip(declared, Y, strict=True):
+        if any(depends_on(x, replaced) for x in row):
+            what = f"speed '{name}' is not linear in the rates"
+            raise ModelError(what, f"speeds.{name}.rate", "give a combination of rates")
+    system = [{j: x for j, x in enumerate(row) if not is_zero(x)} for row in Y]
+    right = [[*_unit(place[name], len(place)), -bias] for name, bias in zip(declared, y, strict=True)]
+    try:
+        X, blocks = cramer.solution_by_minors(system, right, vanishes=vanishes, shorter=shorter)
+        singular = any(vanishes(cramer.determinant(block.matrix)) for block in blocks)
+    except (DerivationError, ZeroDivisionError, StopIteration):
+        singular = True
+    if singular:
+        names = ", ".join(x.name for x in replaced)
+        what = f"the declared speeds do not determine the rates {names}: they depend on one another"
+        raise ModelError(what, "speeds", "declare independent combinations of the rates")
+    found = tuple(
+        Solved(tuple(replaced[j].name for j in block.unknowns), cramer.determinant(block.matrix)) for block in blocks
+    )
+    return {x: (tuple(row[:-1]), row[-1]) for x, row in zip(replaced, X, strict=True)}, found
+
+
+def _quaternion_rates(scope: Scope, place: dict[str, int]) -> SpeedRows:
+    """e' = 1/2 e o (0, w), one row for each of its rates."""
+    rows: SpeedRows = {}
+    for four, each in zip(scope.quaternions, quaternions_of(scope.model), strict=True):
+        for e, factors in zip(four, rate_matrix_of(four), strict=True):
+            row: list[Scalar] = [0] * len(place)
+            for name, factor in zip(each.speeds, factors, strict=True):
+                row[place[name]] = factor
+            rows[scope.graph.symbol(f"{e.name}'")] = (tuple(row), 0)
+    return rows
+
+
+def _over(old: Scope, new: Scope, u: Sequence[Node], rows: SpeedRows) -> Scope:
+    """q' = N u + nu with u = rows . w + bias put in, and the meaning of every name."""
+    N = tuple(combined(row, [rows[x][0] for x in u]) for row in old.N)
+    nu = tuple(bias + inner(row, [rows[x][1] for x in u]) for row, bias in zip(old.N, old.nu, strict=True))
+    new = replace(new, N=N, nu=nu)
+    rates = {f"{q.name}'": rate for q, rate in zip(new.symbols.q, new.rates, strict=True)}
+    second = new.with_accelerations(tuple(rates.values()))
+    names = {**old.names, **rates, **{f"{name}'": x for name, x in zip(rates, second, strict=True)}}
+    return replace(new, names=names | {x.name: x for x in (*new.symbols.u, *new.symbols.a)})
+
+
+# -- what cannot be ----------------------------------------------------------------------------------
+
+
+def _refuse_turning(declared: Sequence[str], formulas: Sequence[Scalar], turning: Sequence[Node]) -> None:
+    for name, formula in zip(declared, formulas, strict=True):
+        if depends_on(formula, turning):
+            what = f"the rate of a quaternion stands in the speed '{name}'"
+            raise ModelError(what, f"speeds.{name}.rate", "the speeds of the joint's `omega` stand for these rates")
+
+
+def _refuse_count(scope: Scope, declared: Sequence[str], replaced: Sequence[Node]) -> None:
+    if len(declared) == len(replaced):
+        return
+    rates = f"{len(replaced)} rate{'s' * (len(replaced) != 1)}"
+    what = f"{len(declared)} speed{' is' if len(declared) == 1 else 's are'} declared for {rates}"
+    named = ", ".join(x.name for x in replaced) or "none"
+    if len(declared) < len(replaced):
+        mend = (
+            "declare one speed for each rate that stands in them, or leave out those that keep their rate; "
+            "a coordinate that ties determine may be `dependent`"
+        )
+    else:
+        mend = "one for each freedom: leave out what follows from the others"
+    raise ModelError(f"{what} ({named})", "speeds", mend)

@@ -1,0 +1,606 @@
+"""System -> Linearization: the equations of small motions, exact where they can be, and in numbers."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from dataclasses import replace
+from functools import cache, cached_property
+from random import Random
+from typing import Any
+
+import numpy as np
+
+from eomgen.errors import DerivationError, EomgenError, MissingValues, NotYet
+from eomgen.mechanics.constraints.assembly import fork_at
+from eomgen.mechanics.constraints.elimination import refuse_undetermined
+from eomgen.mechanics.dynamics.system import System, acting
+from eomgen.mechanics.dynamics.wellposed import valueless
+from eomgen.mechanics.equilibrium.equations import standing_system
+from eomgen.mechanics.equilibrium.stability import states_beside
+from eomgen.mechanics.free_bodies.friction import frictions
+from eomgen.mechanics.kinematics.places import Located, places_of
+from eomgen.mechanics.linearization.first_order import (
+    Choice,
+    Exact,
+    FirstOrder,
+    NumberField,
+    Numbers,
+    choice_of,
+    first_order_of,
+)
+from eomgen.mechanics.linearization.reduction import (
+    LinearEquations,
+    Reducing,
+    carrying,
+    dependent_speeds,
+    equations_without_rounding,
+    floats,
+    is_second_order,
+    over_coordinates,
+    over_turns,
+    restricted,
+    seen_beside_own,
+    spinning,
+    turned_on,
+    unsettled,
+)
+from eomgen.mechanics.linearization.reference import (
+    EQUILIBRIUM,
+    START,
+    STEADY,
+    ReferenceMotion,
+    at_the_start,
+    in_closed_form,
+    place_of_rest,
+    relative_rest,
+)
+from eomgen.mechanics.linearization.steady import family_of, steady_start
+from eomgen.model.unknowns import refuse_motion
+from eomgen.model.values import exact_parameters
+from eomgen.records import dataclass
+from eomgen.symbolic.expression.derivative import depends_on_any, substituted
+from eomgen.symbolic.expression.node import Node, ScalarRow
+from eomgen.symbolic.expression.traversal import operations, order
+from eomgen.symbolic.numeric import dense
+from eomgen.symbolic.numeric.evaluation import NoValue, fifty_digits
+from eomgen.symbolic.numeric.tolerances import COMPUTED, REGULAR, SQUARED_SINE
+
+# -------- linearization ---------------------------------------------------------------------------------------
+# System -> Linearization: the equations of small motions, exact where they can be, and in numbers.
+
+
+MOST_EXACT = 16  # speeds of equations that are written exactly
+MOST_OPERATIONS = 40_000  # of the derivatives before the reference is put in, of what is written exactly
+NEARBY = 0.5  # of a radian, metre, or of the start's own value: farther away the start means another place
+MOST_FOLLOWING = 8  # dependent coordinates or speeds that are taken out exactly
+
+
+@dataclass(frozen=True)
+class SmallMotions:
+    """The equations of small motions about a reference.
+
+    Args:
+        reference: the place of rest or the steady motion.
+        numbers: the equations in floats; where parameters have no values, at values to try.
+        exact: the same as scalars of the parameters; None where the reference is not known so, or it is too much work.
+        whole: those in floats of every coordinate and speed, of which `numbers` are a part.
+        left_out: coordinates on which nothing depends, and which have no speed of their own.
+        first: the equations of motion from which they come.
+        choice: what stays independent in them.
+        kept: the coordinates that carry the motion, by their places among the independent ones.
+        wanted: the names of those that are asked; () for all.
+    """
+
+    reference: ReferenceMotion
+    numbers: LinearEquations
+    exact: LinearEquations | None
+    whole: LinearEquations
+    left_out: tuple[Node, ...]
+    first: FirstOrder
+    choice: Choice
+    kept: tuple[int, ...]
+    wanted: tuple[str, ...]
+
+    def __repr__(self) -> str:
+        return f"<small motions of {self.reference.system.scope.model.name!r}>"
+
+    def over(self, field: NumberField) -> LinearEquations:
+        """The same equations with entries of another kind."""
+        whole = over_coordinates(field, reduced_equations(self.first, self.choice, self.reference, field), self.kept)
+        decided = over_coordinates(Numbers(self.reference.numbers), self.whole, self.kept)
+        return restricted(field, whole, self.wanted, decided)
+
+    @property
+    def is_second_order(self) -> bool:
+        """Whether they are M q'' + C q' + K q = B w."""
+        return is_second_order(self.numbers)
+
+    @property
+    def forced(self) -> bool:
+        """Whether forces change with t about a place of rest: they are taken as they are at t = 0."""
+        equations = self.first.equations
+        rows = (*equations.forcing, *equations.gamma, *equations.sigma)
+        return self.reference.at_rest and depends_on_any(rows, (self.first.system.symbols.t,))
+
+    @cached_property
+    def state_matrix(self) -> np.ndarray:
+        """A of x' = A x + B w, x = (q_i, u_i)."""
+        return state_matrix_of(self.numbers)
+
+    @cached_property
+    def input_matrix(self) -> np.ndarray:
+        """B of x' = A x + B w."""
+        e = self.numbers
+        n, w = len(e.coordinates), len(e.inputs)
+        below = np.linalg.solve(floats(e.M), np.array(e.B, dtype=float).reshape(len(e.speeds), w))
+        return np.vstack([np.zeros((n, w)), below])
+
+
+def state_matrix_of(e: LinearEquations) -> np.ndarray:
+    """A of x' = A x, x = (q_i, u_i)."""
+    M, C, K = (floats(x) for x in (e.M, e.C, e.K))
+    return np.block([[floats(e.F), floats(e.E)], [-np.linalg.solve(M, K), -np.linalg.solve(M, C)]])
+
+
+def small_motions_of(
+    system: System, about: str, wanted: Sequence[str] = (), guess: Mapping[str, float] | None = None
+) -> SmallMotions:
+    """The equations of small motions of a system.
+
+    Args:
+        about: "equilibrium", "start" or "steady".
+        wanted: the coordinates in which they are asked; () for all.
+        guess: values of coordinates in place of `near` and `start`.
+    Raises:
+        DerivationError: no place of rest; the start is no steady motion; nothing can move; the coordinates asked do not
+            move by themselves.
+    """
+    refuse_motion(system.scope.model)
+    if not system.symbols.u:
+        raise DerivationError(
+            "nothing is free to move: there are no small motions",
+            "coordinates",
+            mend="leave a coordinate free: neither `driven` nor 0 by a constraint",
+        )
+    reference, first = _balanced(system, about, guess, wanted)
+    return _about(first, reference, wanted)
+
+
+def motions_beside(small: SmallMotions, wanted: Sequence[str] = ()) -> Iterator[SmallMotions | None]:
+    """The small motions about the others with the same values held, in numbers; None where angles have a pole."""
+    reference = small.reference
+    if reference.family is None:
+        return
+    system = reference.system
+    first = first_order_of(system)
+    here = {x.name: float(reference.numbers[x]) for x in (*system.symbols.q, *system.symbols.u)}
+    for place in reference.family.others[1:]:
+        given = here | {x.name: value for x, value in place.items()}
+        try:
+            there = at_the_start(system, at_rest=False, given=given)
+            yield _about(first, replace(there, exact={}, about=reference.about), wanted)
+        except (DerivationError, NoValue, ZeroDivisionError):  # angles at a pole
+            yield None
+
+
+def _about(first: FirstOrder, reference: ReferenceMotion, wanted: Sequence[str]) -> SmallMotions:
+    first = first.looked_at(at_rest=reference.at_rest)
+    choice = choice_of(first, reference, wanted)
+    if not choice.u:
+        raise DerivationError(
+            "the ties leave no freedom: there are no small motions", "coordinates", mend="take a constraint away"
+        )
+    choice, raw, kept = _steady_equations(first, choice, reference, wanted)
+    refuse_corners(first.looked_at(at_rest=False), choice, reference, raw, kept)
+    _refuse_fork(reference)
+    refuse_singular(Reducing(first, choice, Numbers(reference.numbers)), raw)
+    decided = over_coordinates(Numbers(reference.numbers), raw, kept)
+    numbers = restricted(Numbers(reference.numbers), decided, wanted, decided)
+    left = tuple(q for k, q in enumerate(raw.coordinates) if k not in kept)
+    small = SmallMotions(reference, numbers, None, raw, left, first, choice, kept, tuple(wanted))
+    small = replace(small, numbers=equations_without_rounding(numbers, _stiffness_beside(small)))
+    field = _exact_field(reference, first, choice)
+    if field is None:
+        _refuse_unvalued(reference)
+        return small
+    return replace(small, exact=small.over(field))
+
+
+def _refuse_fork(reference: ReferenceMotion) -> None:
+    """A place at which ties depend on one another that do not beside it: what they leave to first order is no motion.
+
+    Raises:
+        DerivationError: it is one.
+    """
+    try:
+        fork = fork_at(reference.system.ties, dict(reference.numbers))
+    except (DerivationError, MissingValues):  # the ties close nowhere near: there is but this place
+        return
+    if fork is not None:
+        what = f"the place is {fork.words}: beside it there are no small motions of one kind"
+        raise DerivationError(what, f"constraints.{fork.ties[0]}", "give `near` values that lead to another place")
+
+
+def _stiffness_beside(small: SmallMotions) -> np.ndarray:
+    """How large the entries of K are beside a place of rest that is known in numbers only."""
+    largest, reference = np.zeros_like(floats(small.numbers.K)), small.reference
+    if reference.place is None or reference.is_exact:
+        return largest
+    for there in states_beside(reference.numbers, reference.place.statics.q):
+        try:
+            found = floats(small.over(Numbers(there)).K)
+        except (DerivationError, NoValue, ZeroDivisionError, np.linalg.LinAlgError):
+            continue
+        if found.shape == largest.shape:
+            largest = np.maximum(largest, abs(found))
+    return largest
+
+
+def _steady_equations(
+    first: FirstOrder, choice: Choice, reference: ReferenceMotion, wanted: Sequence[str]
+) -> tuple[Choice, LinearEquations, tuple[int, ...]]:
+    """The equations in numbers, and the coordinates over which they stay as they are; where bodies spin about axes that
+    stand still if they do not stay so about their own."""
+    raw = _equations(first, choice, reference)
+    try:
+        return choice, raw, steady_coordinates(first, choice, reference, raw, wanted)
+    except DerivationError as error:
+        standing = replace(choice, standing=True)
+        if not any(turn.standing for turn in spinning(reference, standing)):
+            raise
+        raw = _equations(first, standing, reference)
+        try:
+            return standing, raw, steady_coordinates(first, standing, reference, raw, wanted)
+        except DerivationError:
+            raise error from None
+
+
+def _refuse_unvalued(reference: ReferenceMotion) -> None:
+    """Equations that are only known in numbers need values of all parameters.
+
+    Raises:
+        DerivationError: those without one are named.
+    """
+    model = reference.system.scope.model
+    missing = [f"'{name}'" for name in reference.system.symbols.parameters if name not in exact_parameters(model)]
+    if missing:
+        what = f"the reference, or the equations about it, have no closed form: {', '.join(missing)} need values"
+        raise DerivationError(what, "parameters", mend="give them values in [parameters]")
+
+
+def _equations(first: FirstOrder, choice: Choice, reference: ReferenceMotion) -> LinearEquations:
+    """The equations in numbers.
+
+    Raises:
+        DerivationError: they have no value there: rates that declared speeds do not determine are named.
+    """
+    try:
+        return reduced_equations(first, choice, reference, Numbers(reference.numbers))
+    except (NoValue, ZeroDivisionError) as error:
+        raise _without_value(reference) from error
+
+
+def _without_value(reference: ReferenceMotion) -> DerivationError:
+    solved, value = reference.system.declared, Numbers(reference.numbers).of
+    lost = [str(each) for each in solved if abs(value([each.determinant])[0]) <= REGULAR]
+    part = None if lost else valueless(reference.system, {x: float(y) for x, y in reference.numbers.items()})
+    if part is not None:
+        mend = "let what acts be regular there, or start elsewhere"
+        return DerivationError(f"{part.what}, the place of reference", part.where, mend)
+    what = lost[0] if lost else "the equations of motion, or their derivatives, have no value"
+    mend = "describe the motion by coordinates, speeds and forces that are regular there"
+    return DerivationError(f"{what} at the place of reference", "linearize", mend)
+
+
+def _exact_field(reference: ReferenceMotion, first: FirstOrder, choice: Choice) -> Exact | None:
+    """Exact entries, where the reference is known so and the work is bounded; None elsewhere."""
+    small = len(choice.u) <= MOST_EXACT and max(len(choice.dq), len(choice.du)) <= MOST_FOLLOWING
+    long = operations(x for row in first.derivatives["R_q"] for x in row).total > MOST_OPERATIONS
+    if not reference.is_exact or not small or long:
+        return None
+    return Exact(reference.exact, reference.system.scope.positive, reference.trial)
+
+
+# -- whether it is a reference ---------------------------------------------------------------------------------
+
+
+def _balanced(
+    system: System, about: str, guess: Mapping[str, float] | None, wanted: Sequence[str]
+) -> tuple[ReferenceMotion, FirstOrder]:
+    """The reference, at which forces and inertia balance, and the equations of its system.
+
+    Where no place of rest can be sought, or there are many, it is the start if all is at rest there.
+    """
+    if about in (START, STEADY):
+        reference = at_the_start(system, at_rest=False)
+        first = first_order_of(system)
+        try:
+            reference = _steady(first, reference, wanted) if about == STEADY else with_followers(first, reference)
+            wrong = _accelerated(first, reference)
+        except (NoValue, ZeroDivisionError) as error:
+            raise _without_value(reference) from error
+        return _near(system, first, reference, wrong, wanted) if wrong else (reference, first)
+    try:
+        reference = place_of_rest(system, guess)
+        first = first_order_of(reference.system)
+        _refuse_carried(first, reference)
+        return reference, first
+    except (DerivationError, NotYet) as error:
+        return _other_rest(system, guess, error)
+
+
+def _near(
+    system: System, first: FirstOrder, start: ReferenceMotion, wrong: str, wanted: Sequence[str]
+) -> tuple[ReferenceMotion, FirstOrder]:
+    """The place of rest, or of a start that moves the steady motion, near a start that is none.
+
+    Raises:
+        DerivationError: the start is told, and what is nearest to it where that is far away, or not found.
+    """
+    what = f"the start is no steady motion: '{wrong}' is accelerated there"
+    symbols, number = system.symbols, {x: float(value) for x, value in start.numbers.items()}
+    at_rest = not start.moving and all(number[u] == 0 for u in symbols.u)
+    kind = "place of rest" if at_rest else "steady motion"
+    try:
+        found = (
+            place_of_rest(system, {q.name: number[q] for q in symbols.q}) if at_rest else _steady(first, start, wanted)
+        )
+        first = first_order_of(found.system)
+        if _accelerated(first, found):
+            raise DerivationError(what, mend="start from a place of rest, or a steady motion")
+    except (DerivationError, NotYet, NoValue, ZeroDivisionError) as error:
+        mend = f'start from a {kind}, or let it be sought: about = "{EQUILIBRIUM if at_rest else STEADY}"'
+        raise DerivationError(f"{what}, and no {kind} was found near it", "linearize.about", mend) from error
+    shown = (*found.system.symbols.q, *(() if at_rest else found.system.symbols.u))
+    away = {x: float(found.numbers[x]) - number[x] for x in shown}
+    if any(abs(d) > NEARBY * max(1.0, abs(number[x])) for x, d in away.items()):
+        values = ", ".join(f"{x.name} = {float(found.numbers[x]):.6g} ({d:+.6g})" for x, d in away.items() if d)
+        mend = f'start there, or ask about = "{EQUILIBRIUM if at_rest else STEADY}"'
+        raise DerivationError(f"{what}; the {kind} nearest to it is not near: {values}", "linearize.about", mend)
+    return replace(found, beside={x: number[x] for x in shown}), first
+
+
+def _refuse_carried(first: FirstOrder, reference: ReferenceMotion) -> None:
+    """What an explicit time moves, as the seat of a joint, may accelerate the others where all forces balance.
+
+    Raises:
+        DerivationError: it does.
+    """
+    if standing_system(reference.system) is reference.system:
+        return
+    if wrong := _accelerated(first, reference):
+        what = f"what moves by an explicit time accelerates '{wrong}' where all forces balance: nothing is at rest"
+        raise DerivationError(what, "linearize", "hold it, or let an input push in its place")
+
+
+def _steady(first: FirstOrder, start: ReferenceMotion, wanted: Sequence[str]) -> ReferenceMotion:
+    """The steady motion nearest to the start, in closed form where its family has one."""
+    found = steady_start(first, start, wanted)
+    there = replace(at_the_start(first.system, at_rest=False, given=found.values), about=STEADY)
+    family = family_of(first, there, wanted, found.following)
+    return there if family is None else in_closed_form(replace(there, family=family), family.state)
+
+
+def _with_family(first: FirstOrder, reference: ReferenceMotion) -> ReferenceMotion:
+    """Rest beside drives with all its places."""
+    choice = choice_of(first, reference, ())
+    return replace(reference, family=family_of(first, reference, (), [first.system.symbols.q[k] for k in choice.q]))
+
+
+def _other_rest(
+    system: System, guess: Mapping[str, float] | None, why: EomgenError
+) -> tuple[ReferenceMotion, FirstOrder]:
+    """Rest beside what the model drives steadily, or the start without speeds."""
+    first = first_order_of(system)
+    driven = any(part.driven for part in system.scope.model.coordinates.values())
+    ways: tuple[Callable[[], ReferenceMotion], ...] = (
+        lambda: relative_rest(first.equations, guess),
+        lambda: at_the_start(system, at_rest=True),
+    )
+    for way in ways[0 if driven else 1 :]:
+        try:
+            reference = way()
+            if not _accelerated(first, reference):
+                return _with_family(first, reference) if reference.moving else reference, first
+        except (DerivationError, MissingValues, NoValue, ZeroDivisionError):
+            continue
+    raise why
+
+
+def _accelerated(first: FirstOrder, reference: ReferenceMotion) -> str:
+    """The speed that does not stay as it is; "" where all do."""
+    reducing = Reducing(first, choice_of(first, reference, ()), Numbers(reference.numbers))
+    wrong = unsettled(reducing, COMPUTED)
+    return first.system.symbols.u[reducing.choice.u[wrong[0]]].name if wrong else ""
+
+
+# -------- dependent values ------------------------------------------------------------------------------------
+# Reference -> the same with what its ties say of coordinates and speeds that nobody stated, in closed form.
+
+
+MOST = 8  # dependent speeds that are taken out exactly
+
+
+def with_followers(first: FirstOrder, reference: ReferenceMotion) -> ReferenceMotion:
+    """The reference with dependent coordinates by phi = 0 and dependent speeds by J u + sigma = 0, as far as these are
+    determined by what is known in closed form; a wheel's place from its turning."""
+    symbols, choice = first.system.symbols, choice_of(first, reference, ())
+    guessed = _guessed(first, choice)
+    if (reference.is_exact and not guessed) or len(choice.du) > MOST:
+        return reference
+    positive = first.system.scope.positive
+    located = Located({x: float(v) for x, v in reference.numbers.items()}, positive)
+    known = {x: value for x, value in reference.exact.items() if x not in guessed}
+    try:
+        unknown = [q for q in symbols.q if q not in known]
+        exact = {**reference.exact, **places_of(substituted(first.relations, known), unknown, located)}
+        if all(x in exact for x in (*symbols.q, *(symbols.u[k] for k in choice.u))):
+            exact |= dependent_speeds(first, choice, Exact(exact, positive, reference.trial))
+    except (DerivationError, NoValue, ZeroDivisionError):  # too large, or a pivot that is 0 as a formula
+        return reference
+    found = {x: value for x, value in exact.items() if x in (*symbols.q, *symbols.u) and located.agrees(value, x)}
+    return in_closed_form(reference, found)
+
+
+def _guessed(first: FirstOrder, choice: Choice) -> frozenset[Node]:
+    """Dependent coordinates of which the model only has a guess."""
+    symbols, coordinates = first.system.symbols, first.system.scope.model.coordinates
+    return frozenset(q for k in choice.dq if coordinates[(q := symbols.q[k]).name].near is not None)
+
+
+# -------- steadiness ------------------------------------------------------------------------------------------
+# Reference -> whether it is one: a state at which the equations are smooth, and later look the same as now.
+
+
+TIMES = (0.3717281828, 1.1931415926)  # later states of a steady motion, at which it must look the same [of one unit]
+CORNERS = frozenset(("abs", "sign", "min", "max", "select"))
+SIDES = 4  # directions that are tried, with their opposites
+PRIME = "'"
+LATER = (13.4142135623, 1717.7724538509)  # the same, where t itself stands in the equations
+
+
+def reduced_equations(
+    first: FirstOrder, choice: Choice, reference: ReferenceMotion, field: NumberField
+) -> LinearEquations:
+    """The equations at a state of the reference, small turns in the place of quaternions that move in it."""
+    return reduced_of(Reducing(first, choice, field), reference)
+
+
+def reduced_of(reducing: Reducing, reference: ReferenceMotion) -> LinearEquations:
+    """`reduced_equations`, of what is known of the state.
+
+    Raises:
+        DerivationError: dependent coordinates are not determined there.
+    """
+    system = reference.system
+    refuse_undetermined(system.elimination, system.scope, reference.exact, "at the place of reference")
+    turns = spinning(reference, reducing.choice)
+    return over_turns(reducing.field, reducing.first.system, reducing.equations, turns)
+
+
+def refuse_corners(
+    first: FirstOrder, choice: Choice, reference: ReferenceMotion, raw: LinearEquations, kept: Sequence[int]
+) -> None:
+    """Forces that are not smooth at the reference, as k |x| at x = 0: close to it, on both sides, all must be the same.
+
+    Raises:
+        DerivationError: they are not.
+    """
+    if not _cornered(first.residual):
+        return
+    symbols, rng = first.system.symbols, Random(7)
+    changes = _changed(first, choice, reference, raw, kept)
+    for _ in range(SIDES):
+        aside = {x: fifty_digits().number(1) * SQUARED_SINE * rng.uniform(-1, 1) for x in (*symbols.q, *symbols.u)}
+        if changes(aside) or changes({x: -d for x, d in aside.items()}):
+            rough = [f"the friction of '{name}'" for name, factor, _ in frictions(first.system) if _cornered((factor,))]
+            named = [*filter(None, [acting(first.system.loads, _cornered)]), *dict.fromkeys(rough)]
+            raise DerivationError(
+                f"{' and '.join(named) or 'the forces'}: a corner or a jump at the place of reference",
+                "linearize",
+                "take a place beside it, or forces that are smooth there",
+            )
+
+
+def _cornered(row: ScalarRow) -> bool:
+    return any(node.op in CORNERS for node in order(row))
+
+
+def steady_coordinates(
+    first: FirstOrder, choice: Choice, reference: ReferenceMotion, raw: LinearEquations, wanted: Sequence[str]
+) -> tuple[int, ...]:
+    """The coordinates over which the equations stay as they are with time: those that carry the motion.
+
+    Where the reference moves, a coordinate on which nothing depends may have a rate that changes, as the place of a car
+    that turns in a circle: it is then left out.
+
+    Raises:
+        DerivationError: the coordinate that moves, and on which the others depend, is named.
+    """
+    coordinates = reference.system.scope.model.coordinates
+    kept = carrying(raw, wanted, [name for name, part in coordinates.items() if part.dependent])
+    if not (shifts := _unsteady(first, choice, reference, raw, kept)):
+        return kept
+    fewer = seen_beside_own(raw, kept)
+    if len(fewer) < len(kept) and not _unsteady(first, choice, reference, raw, fewer):
+        return fewer
+    changes = _changed(first, choice, reference, raw, kept)
+    t = first.system.symbols.t
+    culprit = next((x for x in shifts[0] if changes({x: shifts[0][x]})), t)
+    if culprit is t:
+        named = acting(first.system.loads, lambda row: depends_on_any(row, (t,)))
+        driven = [f"'{name}'" for name, part in coordinates.items() if part.driven]
+        by = " and ".join((*driven, *([named] if named else ())))
+        raise DerivationError(
+            f"coefficients of the small motions change with time{f', by {by}' if by else ''}: there are no modes",
+            "linearize",
+            "let nothing but inputs depend on t",
+        )
+    what = f"no steady motion: '{culprit.name}' moves, and the equations depend on it"
+    raise DerivationError(what, f"coordinates.{culprit.name}", "only coordinates on which nothing depends may move")
+
+
+def _unsteady(
+    first: FirstOrder, choice: Choice, reference: ReferenceMotion, raw: LinearEquations, kept: Sequence[int]
+) -> list[dict[Node, Any]]:
+    """How coordinates and t move on to later states, where the equations are others at one of these; else none."""
+    moving, t, graph = reference.moving, first.system.symbols.t, first.equations
+    unit = 1 / max((abs(rate) for rate in moving.values()), default=1)
+    timed = depends_on_any((*graph.forcing, *graph.gamma, *graph.sigma), (t,))
+    times = (*TIMES, *LATER) if timed else TIMES
+    shifts = [{x: rate * unit * time for x, rate in {**moving, t: 1}.items()} for time in times]
+    turns = spinning(reference, choice)
+    for shift in shifts:
+        shift |= {e: x - reference.numbers[e] for e, x in turned_on(turns, reference.numbers, shift[t]).items()}
+    return shifts if any(map(_changed(first, choice, reference, raw, kept), shifts)) else []
+
+
+def refuse_singular(reducing: Reducing, equations: LinearEquations) -> None:
+    """Coordinates that do not describe motions there, as angles at a pole.
+
+    Raises:
+        DerivationError: the speed that moves nothing is named, where it is one.
+    """
+    M, Z = floats(equations.M), abs(floats(reducing.Z))
+    least = np.maximum(REGULAR * np.diagonal(Z.T @ abs(floats(reducing.M)) @ Z), SQUARED_SINE * abs(M).max())
+    idle = [u.name for u, x, size in zip(equations.speeds, np.diagonal(M), least, strict=True) if abs(x) <= size]
+    if idle or dense.scaled_condition(M) > 1 / REGULAR:
+        moved = f"'{idle[0].rstrip(PRIME)}' moves nothing there" if idle else "two coordinates move the same there"
+        raise DerivationError(
+            f"the mass matrix is singular at the place: {moved}",
+            "linearize",
+            "describe the motion by coordinates that are regular there",
+        )
+
+
+def _changed(
+    first: FirstOrder, choice: Choice, reference: ReferenceMotion, raw: LinearEquations, kept: Sequence[int]
+) -> Callable[[Mapping[Node, Any]], bool]:
+    """Whether the equations are others at a shifted state; they are those here where they hold nothing that shifts.
+
+    At rest a force that t alone changes is no other equation: it stands on the right side, as an input does.
+    """
+    t = first.system.symbols.t
+    here, held = list(_compared(raw, kept)), first.held
+
+    @cache
+    def found(shift: tuple[tuple[Node, Any], ...]) -> bool:
+        reducing = Reducing(first, choice, Numbers({**reference.numbers, **dict(shift)}))
+        try:
+            if (not reference.at_rest or any(x is not t for x, _ in shift)) and unsettled(reducing, COMPUTED):
+                return True
+            there = list(_compared(reduced_of(reducing, reference), kept)) if shift else here
+        except (NoValue, ZeroDivisionError):
+            return True
+        pairs = zip(here, there, strict=True)
+        return any(np.any(abs(A - B) > COMPUTED * (abs(A).max(initial=0) + 1e-3)) for A, B in pairs)
+
+    return lambda shift: found(tuple((x, reference.numbers[x] + d) for x, d in shift.items() if x in held))
+
+
+def _compared(equations: LinearEquations, kept: Sequence[int]) -> Iterator[np.ndarray]:
+    yield floats(equations.M)
+    yield floats(equations.C)
+    yield floats(equations.K)[:, list(kept)]
+    yield floats(equations.F)[np.ix_(kept, kept)]
+    yield floats(equations.E)[list(kept)]

@@ -1,0 +1,674 @@
+"""Small motions -> eigenvalues, frequencies, damping ratios, shapes."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping, Sequence
+from functools import cached_property
+from itertools import pairwise
+from random import Random
+from typing import Any
+
+import numpy as np
+
+from eomgen.errors import DerivationError
+from eomgen.mechanics.linearization.first_order import Entries, MatrixEntry, Numbers
+from eomgen.mechanics.linearization.linearization import SmallMotions, motions_beside, state_matrix_of
+from eomgen.mechanics.linearization.polynomial import (
+    Conditions,
+    Polynomial,
+    characteristic_polynomial,
+    closed_frequencies,
+    laplace_variable,
+    stability_conditions,
+)
+from eomgen.mechanics.linearization.reduction import LinearEquations, floats
+from eomgen.mechanics.linearization.reference import EQUILIBRIUM
+from eomgen.mechanics.linearization.transfer import TransferFunction, transfer_functions, transfers_in_numbers
+from eomgen.mechanics.start.exact import values_of_parameters
+from eomgen.records import dataclass
+from eomgen.symbolic.exact.book_form import book_form
+from eomgen.symbolic.exact.normal_form import simplest
+from eomgen.symbolic.expression.node import Node, Scalar, is_zero
+from eomgen.symbolic.expression.rational import Fraction
+from eomgen.symbolic.numeric import dense
+from eomgen.symbolic.numeric.evaluation import NoValue, evaluate, fifty_digits
+from eomgen.symbolic.numeric.tolerances import (
+    COEFFICIENT_AT_50,
+    COMPUTED,
+    ITERATED,
+    NEARLY_SINGULAR,
+    RANK,
+    ROUNDING,
+    SAME_EIGENVALUE,
+    SHARE,
+    SOLVED,
+    SUMMED,
+    WIDE_SPECTRUM,
+)
+from eomgen.symbolic.numeric.work import Work
+from eomgen.symbolic.print.text import text_size
+
+# -------- modes -----------------------------------------------------------------------------------------------
+# Small motions -> what is asked of them: frequencies in their order, exact where they are known so, and entries.
+
+
+TRIES = 12  # values of the parameters at which the order of frequencies is looked at
+LONGEST = 6_000  # characters of a polynomial whose roots are written
+MOST_WRITTEN = 8  # speeds of matrices whose entries are written as a book does
+MOST_STATES = 8  # of transfer functions in floats
+MATRICES = {"mass": "M", "damping": "C", "stiffness": "K"}
+
+
+@dataclass(frozen=True)
+class Frequency:
+    """One frequency: the mode in numbers, and in closed form where it has one."""
+
+    mode: Mode
+    exact: Scalar | None
+
+
+@dataclass(frozen=True)
+class Modes:
+    """What follows from the equations of small motions.
+
+    Args:
+        small: the equations.
+        in_full: whether a polynomial and conditions that are too long to be printed are brought into their shortest
+            form all the same, as machines get them; else they stay as they came.
+    """
+
+    small: SmallMotions
+    in_full: bool = True
+
+    @property
+    def positive(self) -> frozenset[Node]:
+        return self.small.reference.system.scope.positive
+
+    @cached_property
+    def spectrum(self) -> Spectrum:
+        return spectrum_of(self.small, self.polynomial)
+
+    @cached_property
+    def polynomial(self) -> Polynomial | None:
+        """det(s^2 M + s C + K); None where it is not written exactly."""
+        exact = self.small.exact
+        return None if exact is None else characteristic_polynomial(exact, self.positive, in_full=self.in_full)
+
+    @cached_property
+    def beside(self) -> tuple[str, ...]:
+        """The stability of each steady motion with the same values held, this one first; "" where it is not known."""
+        family = self.small.reference.family
+        if family is None or not family.others:
+            return ()
+        others = [Modes(x).spectrum.stability if x is not None else "" for x in motions_beside(self.small)]
+        return (self.spectrum.stability, *others)
+
+    @cached_property
+    def conditions(self) -> Conditions:
+        """Routh and Hurwitz: what must be positive."""
+        if self.polynomial is None or self.small.exact is None:
+            return Conditions()
+        return stability_conditions(
+            self.polynomial,
+            laplace_variable(self.small.exact),
+            self.positive,
+            self.small.reference.trial,
+            conservative=self.is_conservative,
+            in_full=self.in_full,
+        )
+
+    @cached_property
+    def is_conservative(self) -> bool:
+        """Whether there is nothing but M and a symmetric K, known exactly."""
+        e = self.small.exact
+        if e is None or not self.small.is_second_order or not all(is_zero(x) for row in e.C for x in row):
+            return False
+        return all(is_zero(self.tidy(e.K[i][j] - e.K[j][i])) for i in range(len(e.K)) for j in range(i))
+
+    @cached_property
+    def transfers(self) -> tuple[TransferFunction, ...]:
+        """From inputs to coordinates: exact where that can be, else in floats, of systems of few states."""
+        exact, small = self.small.exact, self.small
+        found = () if exact is None else transfer_functions(exact, self.positive, small.reference.trial)
+        if found or not small.numbers.inputs or not small.reference.valued or len(small.state_matrix) > MOST_STATES:
+            return found
+        return transfers_in_numbers(small.numbers, small.state_matrix, small.input_matrix)
+
+    @cached_property
+    def frequencies(self) -> tuple[Frequency, ...]:
+        """The frequencies of the oscillating modes, the lowest first."""
+        candidates = self.closed
+        if not self.small.reference.valued and not self._ordered(candidates):
+            raise DerivationError(
+                "which motion is slower, and whether it oscillates, depends on the parameters",
+                "parameters",
+                "give them values",
+            )
+        return tuple(Frequency(mode, self._exact(mode, candidates)) for mode in self.spectrum.oscillating)
+
+    @cached_property
+    def closed(self) -> list[tuple[float, Scalar]]:
+        """(number at the parameters, exact frequency)"""
+        if self.polynomial is None or self.small.exact is None:
+            return []
+        if sum(map(text_size, self.polynomial.coefficients)) > LONGEST:
+            return []
+        exact = closed_frequencies(self.polynomial, laplace_variable(self.small.exact), self.positive)
+        found = []
+        for w in exact:
+            try:
+                found.append((float(evaluate((w,), self.small.reference.trial, fifty_digits())[0]), w))
+            except (NoValue, ZeroDivisionError, TypeError):  # it does not oscillate
+                continue
+        return found
+
+    def _ordered(self, candidates: list[tuple[float, Scalar]]) -> bool:
+        """Whether the frequencies are real and in the same order at all values that are tried for the parameters."""
+        modes = self.spectrum.oscillating
+        inner = [w for mode in modes if (w := self._exact(mode, candidates)) is not None]
+        reference, rng = self.small.reference, Random(5)
+        if len(inner) < len(modes):
+            return False
+        known = values_of_parameters(reference.system.scope, None)
+        for _ in range(TRIES):
+            tried = {x: known.get(x, fifty_digits().number(Fraction(rng.randint(2, 80), 20))) for x in reference.trial}
+            try:
+                values = evaluate(inner, tried, fifty_digits())
+            except (NoValue, ZeroDivisionError):
+                return False
+            if any(b < a for a, b in pairwise(values)):
+                return False
+        return True
+
+    def _exact(self, mode: Mode, candidates: list[tuple[float, Scalar]]) -> Scalar | None:
+        assert mode.frequency is not None
+        if mode.frequency == 0:
+            return 0
+        near = [w for value, w in candidates if abs(value - mode.frequency) <= COMPUTED * mode.frequency]
+        return near[0] if near else None
+
+    # -- by name -----------------------------------------------------------------------------------------------
+
+    def entry(self, function: str, *names: str) -> tuple[MatrixEntry, bool]:
+        """(an entry of M, C or K, whether it is exact).
+
+        Raises:
+            DerivationError: a coordinate that is none of the linearized system.
+        """
+        equations = self.small.exact or self.small.numbers
+        row, column = self.place(function, *names)
+        return getattr(equations, MATRICES[function])[row][column], self.small.exact is not None
+
+    def place(self, function: str, *names: str) -> tuple[int, int]:
+        """The row and column of an entry of M, C or K.
+
+        Raises:
+            DerivationError: a coordinate that is none of the linearized system.
+        """
+        equations = self.small.exact or self.small.numbers
+        rows = {u.name.removesuffix("'"): k for k, u in enumerate(equations.speeds)}
+        if self.small.is_second_order:
+            rows |= {q.name: k for k, q in enumerate(equations.coordinates)}
+        columns = rows if function != "stiffness" else {q.name: k for k, q in enumerate(equations.coordinates)}
+        for name, known in zip(names, (rows, columns), strict=True):
+            if name not in known:
+                what = f"{function}({', '.join(names)}): '{name}' is no coordinate of the linearized system"
+                raise DerivationError(what, mend=f"one of {', '.join(known)}")
+        return rows[names[0]], columns[names[1]]
+
+    def frequency(self, k: int) -> Frequency:
+        """The k-th frequency, from 1.
+
+        Raises:
+            DerivationError: there are not so many.
+        """
+        found = self.frequencies
+        if not 1 <= k <= len(found):
+            n = len(found)
+            have = "one small motion oscillates" if n == 1 else f"{n or 'no'} small motions oscillate"
+            raise DerivationError(f"frequency({k}): {have}", mend="ask for one of those")
+        return found[k - 1]
+
+    @property
+    def symmetric_parts(self) -> dict[str, list[list[MatrixEntry]]]:
+        """D and G of C = D + G, and the symmetric and circulatory part of K = S + H."""
+        equations = self.small.exact or self.small.numbers
+        return {
+            name: part
+            for letter, names in (("C", "DG"), ("K", "SH"))
+            for name, part in zip(names, _parted(getattr(equations, letter)), strict=True)
+        }
+
+    def tidy(self, x: MatrixEntry) -> MatrixEntry:
+        """An entry in its shortest form."""
+        return x if isinstance(x, float) else simplest(x, Work.VALUE, self.positive)
+
+    def written(self, x: MatrixEntry) -> MatrixEntry:
+        """An entry as it is printed, as formulas of a book are; of many speeds as it is."""
+        if isinstance(x, float) or len(self.small.numbers.speeds) > MOST_WRITTEN:
+            return x
+        if x not in self._forms:
+            self._forms[x] = book_form(x, Work.ENTRY, self.positive)
+        return self._forms[x]
+
+    @cached_property
+    def _forms(self) -> dict[Scalar, Scalar]:
+        return {}
+
+
+def _parted(A: list[list[MatrixEntry]]) -> tuple[list[list[MatrixEntry]], list[list[MatrixEntry]]]:
+    """(A + A^T)/2 and (A - A^T)/2."""
+    half = 0.5 if any(isinstance(x, float) for row in A for x in row) else Fraction(1, 2)
+    n = range(len(A))
+    return ([[half * (A[i][j] + A[j][i]) for j in n] for i in n], [[half * (A[i][j] - A[j][i]) for j in n] for i in n])
+
+
+# -------- spectrum --------------------------------------------------------------------------------------------
+# Small motions -> their modes: eigenvalues, frequencies, damping ratios, shapes, and what they say of stability.
+#
+#     (lambda^2 M + lambda C + K) v = 0,  or  A x = lambda x,        lambda = -zeta w +- i w sqrt(1 - zeta^2)
+#
+# Systems without C and with symmetric K by the symmetric problem K v = w^2 M v, whose w^2 are real.
+
+
+ALONG = 0.1  # of a displacement along a drift, after which the equations are compared
+
+
+@dataclass(frozen=True)
+class Mode:
+    """One mode.
+
+    Args:
+        eigenvalue: lambda, of a pair the one with the positive imaginary part [1/s].
+        pair: whether the conjugate, or with undamped systems the opposite value, belongs to it.
+        shape: of each coordinate of the model, the largest 1; complex where they do not move in step.
+    """
+
+    eigenvalue: complex
+    pair: bool
+    shape: Mapping[Node, complex]
+
+    @property
+    def frequency(self) -> float | None:
+        """Angular frequency of the oscillation, Im lambda [rad/s]; 0 of a rigid motion; None: it does not oscillate."""
+        if self.eigenvalue.imag > 0:
+            return self.eigenvalue.imag
+        return 0.0 if self.eigenvalue == 0 and self.pair else None
+
+    @property
+    def hertz(self) -> float | None:
+        return None if self.frequency is None else self.frequency / math.tau
+
+    @property
+    def damping_ratio(self) -> float | None:
+        """zeta = -Re lambda/|lambda|; None of what does not oscillate."""
+        return None if not self.frequency else -self.eigenvalue.real / abs(self.eigenvalue) + 0.0
+
+    @property
+    def kind(self) -> str:
+        """What it does, in words."""
+        real = self.eigenvalue.real
+        if self.eigenvalue == 0:
+            return "stays as it is, or drifts"
+        if self.frequency:
+            return "oscillates" if real == 0 else "oscillates and fades" if real < 0 else "oscillates and grows"
+        return "grows" if real > 0 else "fades"
+
+
+@dataclass(frozen=True)
+class Spectrum:
+    """All modes: those that oscillate first, the slowest of them first.
+
+    Args:
+        modes: see there.
+        eigenvalues: all of them.
+        stability: "asymptotically stable", "stable", "stable to first order", "unstable to first order", "unstable" or
+            "undecided".
+        why: in words.
+    """
+
+    modes: tuple[Mode, ...]
+    eigenvalues: tuple[complex, ...]
+    stability: str
+    why: str
+
+    def __repr__(self) -> str:
+        return f"<spectrum of {len(self.modes)} modes: {self.stability}>"
+
+    @property
+    def oscillating(self) -> tuple[Mode, ...]:
+        """The modes that have a frequency, the slowest first."""
+        return tuple(mode for mode in self.modes if mode.frequency is not None)
+
+
+def spectrum_of(small: SmallMotions, polynomial: Polynomial | None = None) -> Spectrum:
+    """The modes of small motions in numbers.
+
+    Args:
+        polynomial: p(s), where it is known exactly.
+    """
+    zeros = count_of_zeros(small.numbers, polynomial, small.reference.trial)
+    modes = _undamped(small, zeros // 2) if _is_undamped(small) else _general(small, zeros)
+    modes.sort(key=lambda mode: (mode.frequency is None, mode.frequency or 0.0, -mode.eigenvalue.real))
+    values = [x for mode in modes for x in _all_values(mode)]
+    return Spectrum(tuple(modes), tuple(values), *_stability(small, values, modes))
+
+
+def _all_values(mode: Mode) -> tuple[complex, ...]:
+    if not mode.pair:
+        return (mode.eigenvalue,)
+    return mode.eigenvalue, mode.eigenvalue.conjugate()
+
+
+# -- undamped ------------------------------------------------------------------------------------------------
+
+
+def _is_undamped(small: SmallMotions) -> bool:
+    e = small.numbers
+    if not small.is_second_order:
+        return False
+    M, C, K = (floats(x) for x in (e.M, e.C, e.K))
+    size = abs(M).max() * np.sqrt(abs(K).max() / abs(M).max())
+    return bool(abs(C).max() <= SUMMED * size) and _is_symmetric(K, 1)
+
+
+def _is_symmetric(A: np.ndarray, sign: int) -> bool:
+    """Whether A = sign A^T: entries of slow motions count, whatever stiff ones stand beside them."""
+    rows = np.maximum(abs(A).max(axis=1), abs(A).max(axis=0))
+    limit = ITERATED * np.minimum.outer(rows, rows) + ROUNDING * abs(A).max()
+    return bool(np.all(abs(A - sign * A.T) <= limit))
+
+
+def _undamped(small: SmallMotions, rigid: int) -> list[Mode]:
+    """K v = w^2 M v."""
+    squares, vectors = squares_of(floats(small.numbers.M), floats(small.numbers.K))
+    still = np.argsort(abs(squares))[:rigid]
+    zeros = [_shape(small, vectors[:, k].astype(complex), 0) for k in still for _ in range(2)]
+    modes = []
+    for k in np.setdiff1d(np.arange(len(squares)), still):
+        square, v, rate = squares[k], vectors[:, k].astype(complex), math.sqrt(abs(squares[k]))
+        values, pair = ([complex(0, rate)], True) if square > 0 else ([complex(rate, 0), complex(-rate, 0)], False)
+        modes += [Mode(value, pair, _shape(small, v, value)) for value in values]
+    return modes + _zero_modes(small, zeros)
+
+
+# -- all others ------------------------------------------------------------------------------------------------
+
+
+def _general(small: SmallMotions, still: int) -> list[Mode]:
+    """The eigenvalues of the state matrix."""
+    values, vectors = eigenpairs(small.state_matrix)
+    order = np.argsort(abs(values))
+    moving = vectors[: len(small.numbers.coordinates)]  # 0 where speeds alone change, as that of a boat that glides
+    moving = np.where(abs(moving) > RANK * abs(vectors).max(axis=0, initial=0), moving, 0)
+    real = [moving[:, k].imag if values[k].imag < 0 else moving[:, k].real for k in order[:still]]  # drawn to a pair
+    zeros = [_shape(small, x.astype(complex), 0) for x in real]
+    values, vectors = merged(values[order[still:]]), vectors[:, order[still:]]
+    modes = []
+    for value, x in zip(_without_noise(small, values), vectors.T, strict=True):
+        if value.imag >= 0:
+            modes.append(Mode(value, value.imag > 0, _shape(small, x[: len(small.numbers.coordinates)], value)))
+    return modes + _zero_modes(small, zeros)
+
+
+def _without_noise(small: SmallMotions, values: np.ndarray) -> list[complex]:
+    """Parts that are what rounding leaves of 0 taken out: real ones all where nothing fades unless another grows."""
+    e = small.numbers
+    gyroscopic = small.is_second_order and _is_symmetric(floats(e.C), -1) and _is_symmetric(floats(e.K), 1)
+    largest = abs(values).max(initial=0)
+    turning = COMPUTED * abs(values) + SOLVED * largest
+    real = np.full(len(values), COMPUTED * largest) if gyroscopic else turning
+    return [
+        complex(0 if abs(x.real) <= fades else x.real, 0 if abs(x.imag) <= turns else x.imag)
+        for x, fades, turns in zip(values, real, turning, strict=True)
+    ]
+
+
+def _zero_modes(small: SmallMotions, shapes: Sequence[Mapping[Node, complex]]) -> list[Mode]:
+    """Two zeros are one rigid motion of a place of rest; of a steady motion they lead to its neighbours."""
+    pairs = len(shapes) // 2 if small.is_second_order and small.reference.about == EQUILIBRIUM else 0
+    rigid = [Mode(0j, True, shape) for shape in shapes[: 2 * pairs : 2]]
+    return rigid + [Mode(0j, False, shape) for shape in shapes[2 * pairs :]]
+
+
+def _shape(small: SmallMotions, v: np.ndarray, eigenvalue: complex) -> dict[Node, complex]:
+    """The coordinates of the whole model, the largest 1; noise taken out."""
+    whole = floats(small.whole.P) @ _with_others(small, v, eigenvalue)
+    largest = whole[np.argmax(abs(whole) * (1 - COMPUTED * np.arange(len(whole))))] if len(whole) else 0
+    whole = whole / largest if largest else whole
+
+    def clean(x: complex) -> complex:
+        return complex(0 if abs(x.real) < ITERATED else x.real, 0 if abs(x.imag) < ITERATED else x.imag)
+
+    return {q: clean(x) for q, x in zip(small.whole.all, whole, strict=True)}
+
+
+def _with_others(small: SmallMotions, v: np.ndarray, eigenvalue: complex) -> np.ndarray:
+    """The independent coordinates of the whole system while those of v move in a mode.
+
+    (A - lambda) x = 0 with the part v of x known: the others follow, as the track of a wheel does. Beside a motion that
+    stays as it is they stay too.
+    """
+    every, known = small.whole.coordinates, small.numbers.coordinates
+    places = [every.index(q) for q in known]
+    others = [k for k in range(len(every)) if k not in places]
+    x = np.zeros(len(every) + len(small.whole.speeds), dtype=complex)
+    x[places] = v
+    if others and eigenvalue:
+        A = state_matrix_of(small.whole) - eigenvalue * np.eye(len(x))
+        free = [k for k in range(len(x)) if k not in places]
+        x[free] = np.linalg.lstsq(A[:, free], -A[:, places] @ v, rcond=None)[0]
+    return x[: len(every)]
+
+
+# -- stability --------------------------------------------------------------------------------------------------
+
+
+def _stability(small: SmallMotions, values: Sequence[complex], modes: Sequence[Mode]) -> tuple[str, str]:
+    growing = [x for x in values if x.real > 0]
+    if any(x.imag for x in growing):
+        return "unstable", "an oscillation grows (flutter)"
+    if growing:
+        return "unstable", "a motion grows without oscillation (divergence)"
+    if all(x.real < 0 for x in values):
+        return "asymptotically stable", "all motions fade"
+    if defective(small.numbers, values):
+        return "undecided", "two oscillations have come to be one: to first order they grow with the time"
+    drift = drifting(small.numbers, sum(x == 0 for x in values))
+    leads_on = drift is not None and _leads_on(small, drift)
+    if drift is not None and (small.reference.about == EQUILIBRIUM or not leads_on):
+        others = "" if leads_on else "; terms of higher order may decide otherwise"
+        return "unstable to first order", _grows_like_time(small, drift, values) + others
+    if any(x == 0 for x in values) and small.reference.about != EQUILIBRIUM and small.reference.moving:
+        return "stable to first order", "motions oscillate, fade, or go over into a steady motion nearby"
+    if any(x == 0 for x in values):
+        return "undecided", _drifting(modes)
+    if _is_undamped(small) and small.reference.about == EQUILIBRIUM:
+        added = ", that of the centrifugal forces included," if small.reference.moving else ""
+        return "stable", f"the potential energy{added} has a minimum (Lagrange and Dirichlet)"
+    return "stable to first order", "all motions oscillate or fade; terms of higher order may decide otherwise"
+
+
+def _leads_on(small: SmallMotions, drift: np.ndarray) -> bool:
+    """Whether all equations are the same after a displacement along a drift: it is a steady motion nearby."""
+    shape = _shape(small, drift.astype(complex), 0)
+    numbers = small.reference.numbers
+    there = {q: numbers[q] + ALONG * x.real for q, x in shape.items()}
+    try:
+        beside = small.over(Numbers({**numbers, **there}))
+    except (DerivationError, NoValue, ZeroDivisionError, np.linalg.LinAlgError):
+        return False
+    pairs = [(floats(getattr(small.numbers, name)), floats(getattr(beside, name))) for name in "MCKFE"]
+    return all(A.shape == B.shape and np.all(abs(A - B) <= COMPUTED * (1 + abs(A))) for A, B in pairs)
+
+
+def _grows_like_time(small: SmallMotions, drift: np.ndarray, values: Sequence[complex]) -> str:
+    """That a zero eigenvalue has fewer modes than it counts for; what grows."""
+    shape = _shape(small, drift.astype(complex), 0)
+    names = ", ".join(q.name for q, x in shape.items() if abs(x) > SHARE) or "some speeds"
+    others = "; all other motions oscillate or fade" if any(values) else ""
+    return f"{names} grows like t, as the eigenvalue 0 has fewer modes than it counts for{others}"
+
+
+def _drifting(modes: Sequence[Mode]) -> str:
+    """That of motions which stay as they are, or drift, terms of higher order decide; what moves in them."""
+    moving = [
+        q.name
+        for q in (modes[0].shape if modes else ())
+        if any(mode.eigenvalue == 0 and abs(mode.shape[q]) > SHARE for mode in modes)
+    ]
+    names = ", ".join(moving) or "some speeds"
+    others = "; all other motions oscillate or fade" if any(mode.eigenvalue for mode in modes) else ""
+    return f"to first order {names} may stay anywhere, or drift{others}"
+
+
+# -------- eigen -----------------------------------------------------------------------------------------------
+# Matrices of small motions -> eigenvalues and eigenvectors in numbers, and how many eigenvalues are 0.
+#
+# A_0 x = lambda B_0 x,   A_0 = [F, E; -K, -C],   B_0 = [1, 0; 0, M]
+
+
+MOST_BY_DIGITS = 30  # rows of a matrix whose eigenvalues are sought with more digits
+DIGITS = 40
+
+
+def eigenpairs(A: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """(lambda, v) of A v = lambda v, the small ones as exact as the large ones."""
+    values, vectors = np.linalg.eig(A)
+    if not _is_wide(values):
+        return values, vectors
+    from mpmath import mp
+
+    with mp.workdps(DIGITS):
+        E, V = mp.eig(mp.matrix(A.tolist()))
+        return np.array([complex(x) for x in E]), _as_floats(V, complex)
+
+
+def squares_of(M: np.ndarray, K: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """(w^2, v) of K v = w^2 M v, both symmetric: A y = w^2 y of A = L^-1 K L^-T, M = L L^T, v = L^-T y."""
+    M, K = (M + M.T) / 2, (K + K.T) / 2
+    lower = np.linalg.cholesky(M)
+    A = np.linalg.solve(lower, np.linalg.solve(lower, K).T)
+    squares, vectors = np.linalg.eigh((A + A.T) / 2)
+    if not _is_wide(squares):
+        return squares, np.linalg.solve(lower.T, vectors)
+    from mpmath import mp
+
+    with mp.workdps(DIGITS):
+        L = mp.inverse(mp.cholesky(mp.matrix(M.tolist())))
+        E, V = mp.eigsy(L * mp.matrix(K.tolist()) * L.T)
+        return np.array([float(x) for x in E]), _as_floats(L.T * V, float)
+
+
+def _is_wide(values: np.ndarray) -> bool:
+    sizes = abs(values)
+    return 1 < len(values) <= MOST_BY_DIGITS and sizes.min() < WIDE_SPECTRUM * sizes.max()
+
+
+def _as_floats(A: Any, kind: type) -> np.ndarray:
+    """The columns, each with the largest entry of size 1."""
+    found = np.array([[kind(A[i, j]) for j in range(A.cols)] for i in range(A.rows)])
+    return np.asarray(found / abs(found).max(axis=0))
+
+
+# -- zeros ---------------------------------------------------------------------------------------------------------
+
+
+def count_of_zeros(e: LinearEquations, polynomial: Polynomial | None, trial: Mapping[Node, Any]) -> int:
+    """How many eigenvalues are 0.
+
+    Args:
+        polynomial: p(s), where it is known exactly.
+        trial: values of the parameters, with 50 digits.
+    """
+    found = None if polynomial is None else _of_polynomial(e, polynomial, trial)
+    return _by_rank(*_pencil(e)) if found is None else found
+
+
+def _of_polynomial(e: LinearEquations, polynomial: Polynomial, trial: Mapping[Node, Any]) -> int | None:
+    """The power of s that p(s) holds as a factor; None where nothing but 0 is left, in which no size can be seen."""
+    A, B = _pencil(e)
+    largest = abs(np.linalg.eigvals(np.linalg.solve(B, A))).max(initial=0)
+    if not largest:
+        return None
+    unit = fifty_digits().number(1) * float(largest)
+    sizes = [abs(c) * unit**k for k, c in enumerate(evaluate(polynomial.coefficients, trial, fifty_digits()))]
+    return next((k for k, x in enumerate(sizes) if x > COEFFICIENT_AT_50 * sizes[-1]), None)
+
+
+def _pencil(e: LinearEquations) -> tuple[np.ndarray, np.ndarray]:
+    """(A_0, B_0)"""
+    n, m = len(e.coordinates), len(e.speeds)
+    M = floats(e.M)  # a light mass counts too
+    C, K = (_without_rounding(x, m) for x in (e.C, e.K))
+    F, E = (_without_rounding(x, n) for x in (e.F, e.E))
+    return np.block([[F, E], [-K, -C]]), np.block([[np.eye(n), np.zeros((n, m))], [np.zeros((m, n)), M]])
+
+
+def _without_rounding(A: Entries, rows: int) -> np.ndarray:
+    found = floats(A) if rows else np.zeros((0, 0))
+    return dense.without_noise(found, ROUNDING)
+
+
+def _by_rank(A: np.ndarray, B: np.ndarray) -> int:
+    """The number of chains A x_1 = 0, A x_2 = B x_1, ... that are independent."""
+    n, found = len(A), 0
+    for k in range(1, n + 1):
+        chain = np.kron(np.eye(k), A) - np.kron(np.eye(k, k=1), B)
+        missing = k * n - dense.rank(chain, smallest=RANK)
+        if missing <= found:
+            break
+        found = missing
+    return found
+
+
+# -- eigenvalues that are one --------------------------------------------------------------------------------------
+
+
+def merged(values: np.ndarray) -> np.ndarray:
+    """The eigenvalues, those that rounding has drawn apart from one place of the imaginary axis put back on it."""
+    values = values.copy()
+    for group in _groups(values):
+        mean = values[group].mean()
+        if len(group) > 1 and abs(mean.real) <= SAME_EIGENVALUE**1.5 * abs(mean):
+            values[group] = 1j * values[group].imag
+    return values
+
+
+def _groups(values: Sequence[complex] | np.ndarray) -> list[list[int]]:
+    groups: list[list[int]] = []
+    for k in np.argsort(np.imag(values), kind="stable"):
+        near = [g for g in groups if abs(values[g[-1]] - values[k]) <= SAME_EIGENVALUE * abs(values[k])]
+        near[0].append(int(k)) if near else groups.append([int(k)])
+    return groups
+
+
+def defective(e: LinearEquations, values: Sequence[complex]) -> bool:
+    """Whether an eigenvalue of the imaginary axis has fewer modes than it counts for."""
+    A, B = _pencil(e)
+    for group in _groups(values):
+        x = 1j * np.mean([values[k].imag for k in group])
+        if len(group) > 1 and x.imag > 0 and not any(values[k].real for k in group):
+            whole = np.block([[A, x.imag * B], [-x.imag * B, A]])  # of real and imaginary parts
+            if len(whole) - dense.rank(whole, smallest=NEARLY_SINGULAR) < 2 * len(group):
+                return True
+    return False
+
+
+def drifting(e: LinearEquations, zeros: int) -> np.ndarray | None:
+    """The displacements that grow like t: x = x_2 + t x_1 with A x_1 = 0, A x_2 = B x_1; None where there are none.
+
+    A x_2 = B x_1 has a solution where L^T B x_1 = 0, L^T A = 0: with x_1 = N c, A N = 0, that is (L^T B N) c = 0.
+
+    Args:
+        zeros: how many eigenvalues are 0.
+    """
+    A, B = _pencil(e)
+    nullity = len(A) - dense.rank(A, smallest=RANK)
+    if not 0 < nullity < zeros:
+        return None
+    U, _, V = np.linalg.svd(A)
+    L, N = U[:, -nullity:], V[-nullity:].T
+    x = N @ np.linalg.svd(L.T @ B @ N)[2][-1]
+    return np.asarray(x[: len(e.coordinates)])

@@ -1,0 +1,625 @@
+"""Reference -> LinearEquations: the equations of motion to first order, constraints eliminated."""
+
+from __future__ import annotations
+
+from collections.abc import Collection, Mapping, Sequence
+from dataclasses import replace
+from functools import cached_property
+from typing import Any
+
+import numpy as np
+
+from eomgen.errors import DerivationError
+from eomgen.mechanics.dynamics.system import System
+from eomgen.mechanics.linearization.first_order import (
+    Choice,
+    Entries,
+    FirstOrder,
+    MatrixEntry,
+    NumberField,
+    at,
+    matrix_product,
+    matrix_solution,
+    matrix_sum,
+    matrix_transposed,
+    negative,
+)
+from eomgen.mechanics.linearization.reference import ReferenceMotion
+from eomgen.model.joints.ball import rotation_of
+from eomgen.model.values import quaternions_of
+from eomgen.records import dataclass
+from eomgen.symbolic.expression.formula import inner
+from eomgen.symbolic.expression.node import Node
+from eomgen.symbolic.expression.spatial import Matrix, apply, vector_of
+from eomgen.symbolic.numeric.dense import without_noise
+from eomgen.symbolic.numeric.evaluation import fifty_digits
+from eomgen.symbolic.numeric.tolerances import COMPUTED, RANK, ROUNDING, SOLVED
+
+# -------- reduction -------------------------------------------------------------------------------------------
+# Reference -> LinearEquations: the equations of motion to first order, ties and dependent speeds taken out.
+#
+# With a' the accelerations and lam the multipliers of the reference, small motions satisfy
+#
+#     M da + R_q dq + R_u du = J^T dlam + W dw,        R = M a - forcing - J^T lam
+#     dq' = S_q dq + N du,                             q' = N u + nu
+#     J du + V_q dq = 0,                               J u + sigma = 0
+#     J da + A_q dq + A_u du = 0,                      J a + gamma = 0
+#     G dq = 0,                                        relations between positions
+#
+# R_q holds M_q a and the curvature of the ties, -lam d2phi. With independent dq_i and du_i
+#
+#     dq = P dq_i,   du = Z du_i + Y dq_i,   da = Z da_i + X_q dq_i + X_u du_i,   J Z = 0
+#
+# and Z^T in front, by which dlam goes:
+#
+#     M_r da_i + C du_i + K dq_i = B dw,     dq_i' = F dq_i + E du_i
+#     M_r = Z^T M Z,   C = Z^T (R_u Z + M X_u),   K = Z^T (R_q P + R_u Y + M X_q)
+
+
+@dataclass(frozen=True)
+class LinearEquations:
+    """M du_i' + C du_i + K dq_i = B dw,  dq_i' = F dq_i + E du_i.
+
+    Args:
+        coordinates: q_i.
+        speeds: u_i.
+        inputs: w.
+        all: every coordinate, dq = P dq_i.
+    """
+
+    coordinates: tuple[Node, ...]
+    speeds: tuple[Node, ...]
+    inputs: tuple[Node, ...]
+    all: tuple[Node, ...]
+    M: Entries
+    C: Entries
+    K: Entries
+    B: Entries
+    F: Entries
+    E: Entries
+    P: Entries
+
+
+# -- accelerations and multipliers of the reference -------------------------------------------------------
+
+
+@dataclass(frozen=True)
+class Reducing:
+    """The equations at one state of the reference.
+
+    Args:
+        first: the equations.
+        choice: what stays independent.
+        field: q, u, t, inputs and parameters at the state.
+    """
+
+    first: FirstOrder
+    choice: Choice
+    field: NumberField
+
+    @cached_property
+    def J(self) -> Entries:
+        """The closing rows that are looked at; the others follow from them."""
+        return at(self.field, [self.first.equations.J[i] for i in self.choice.ties])
+
+    @cached_property
+    def M(self) -> Entries:
+        return at(self.field, self.first.equations.M)
+
+    def following(self, right: Entries) -> Entries:
+        """x of all speeds with x_i = 0 and J x + right = 0."""
+        choice = self.choice
+        J_d = [[row[k] for k in choice.du] for row in self.J]
+        found = matrix_solution(self.field, J_d, negative(right)) if choice.du else []
+        width = len(right[0]) if right else 0
+        by_speed = dict(zip(choice.du, found, strict=True))
+        return [by_speed.get(k, [0] * width) for k in range(len(self.first.system.symbols.u))]
+
+    @cached_property
+    def a(self) -> list[MatrixEntry]:
+        """Accelerations, the independent ones 0: J a + gamma = 0."""
+        if not self.choice.ties:
+            return [0] * len(self.first.system.symbols.u)
+        gamma = self.field.of([self.first.equations.gamma[i] for i in self.choice.ties])
+        return [row[0] for row in self.following([[x] for x in gamma])]
+
+    @cached_property
+    def forces(self) -> list[MatrixEntry]:
+        """M a - forcing: what the ties must push."""
+        forcing = self.field.of(self.first.equations.forcing)
+        return [self.field.tidy(inner(row, self.a) - x) for row, x in zip(self.M, forcing, strict=True)]
+
+    @cached_property
+    def lam(self) -> list[MatrixEntry]:
+        """Multipliers by J_d^T lam = M a - forcing; 0 of rows that follow from others."""
+        choice = self.choice
+        J_d = [[row[k] for row in self.J] for k in choice.du]
+        found = matrix_solution(self.field, J_d, [[self.forces[k]] for k in choice.du]) if choice.du else []
+        by_row = dict(zip(choice.ties, (row[0] for row in found), strict=True))
+        return [by_row.get(i, 0) for i in range(len(self.first.equations.J))]
+
+    @cached_property
+    def unbalanced(self) -> list[MatrixEntry]:
+        """Z^T (M a - forcing): what accelerates the independent speeds."""
+        return [self.field.tidy(inner(column, self.forces)) for column in matrix_transposed(self.Z, len(self.choice.u))]
+
+    # -- to first order ------------------------------------------------------------------------------------
+
+    @cached_property
+    def _whole(self) -> NumberField:
+        """The state with accelerations and multipliers."""
+        symbols = self.first.system.symbols
+        known = dict(zip(symbols.a, self.a, strict=True)) | dict(zip(symbols.lam, self.lam, strict=True))
+        return self.field.with_values(known)
+
+    def derivative(self, name: str) -> Entries:
+        return at(self._whole, self.first.derivatives[name])
+
+    def _closing(self, name: str) -> Entries:
+        rows = self.first.derivatives[name]
+        return at(self._whole, [rows[i] for i in self.choice.ties])
+
+    @cached_property
+    def Z(self) -> Entries:
+        """du = Z du_i: J Z = 0."""
+        n, kept = len(self.first.system.symbols.u), self.choice.u
+        found = self.following([[row[k] for k in kept] for row in self.J]) if self.choice.ties else []
+        place = {k: j for j, k in enumerate(kept)}
+        return [[int(place[k] == j) for j in range(len(kept))] if k in place else found[k] for k in range(n)]
+
+    @cached_property
+    def P(self) -> Entries:
+        """dq = P dq_i: G P = 0."""
+        choice, n = self.choice, len(self.first.system.symbols.q)
+        G = [self.first.derivatives["G"][i] for i in choice.relations]
+        entries = at(self._whole, G)
+        G_d = [[row[k] for k in choice.dq] for row in entries]
+        G_i = [[-row[k] for k in choice.q] for row in entries]
+        found = dict(zip(choice.dq, matrix_solution(self.field, G_d, G_i), strict=True)) if choice.dq else {}
+        place = {k: j for j, k in enumerate(choice.q)}
+        return [[int(place[k] == j) for j in range(len(choice.q))] if k in place else found[k] for k in range(n)]
+
+    @cached_property
+    def equations(self) -> LinearEquations:
+        """The equations of small motions."""
+        field, choice, symbols = self.field, self.choice, self.first.system.symbols
+        Z, P, n = self.Z, self.P, len(symbols.u)
+        R_q, R_u = self.derivative("R_q"), self.derivative("R_u")
+        Y = [[0] * len(choice.q)] * n
+        X_q, X_u = Y, [[0] * len(choice.u)] * n
+        if choice.ties:
+            A_u = self._closing("A_u")
+            Y = self.following(matrix_product(field, self._closing("V_q"), P))
+            X_q = self.following(
+                matrix_sum(field, matrix_product(field, self._closing("A_q"), P), matrix_product(field, A_u, Y))
+            )
+            X_u = self.following(matrix_product(field, A_u, Z))
+        Z_T = matrix_transposed(Z, len(choice.u))
+        K = matrix_sum(
+            field, matrix_product(field, R_q, P), matrix_product(field, R_u, Y), matrix_product(field, self.M, X_q)
+        )
+        C = matrix_sum(field, matrix_product(field, R_u, Z), matrix_product(field, self.M, X_u))
+        N = at(field, self.first.system.scope.N)
+        rates = matrix_sum(field, matrix_product(field, self.derivative("S_q"), P), matrix_product(field, N, Y))
+        return LinearEquations(
+            tuple(symbols.q[k] for k in choice.q),
+            tuple(symbols.u[k] for k in choice.u),
+            tuple(symbols.inputs.values()),
+            symbols.q,
+            matrix_product(field, Z_T, matrix_product(field, self.M, Z)),
+            matrix_product(field, Z_T, C),
+            matrix_product(field, Z_T, K),
+            matrix_product(field, Z_T, self.derivative("W")),
+            [rates[k] for k in choice.q],
+            matrix_product(field, [N[k] for k in choice.q], Z),
+            P,
+        )
+
+
+def dependent_speeds(first: FirstOrder, choice: Choice, field: NumberField) -> dict[Node, MatrixEntry]:
+    """The dependent speeds by J u + sigma = 0, from the independent ones of the state."""
+    if not choice.ties:
+        return {}
+    there, u = Reducing(first, choice, field), first.system.symbols.u
+    independent = [[x] for x in field.of([u[k] for k in choice.u])]
+    sigma = field.of([first.equations.sigma[i] for i in choice.ties])
+    pushed = matrix_product(field, [[row[k] for k in choice.u] for row in there.J], independent)
+    found = there.following([[field.tidy(x[0] + s)] for x, s in zip(pushed, sigma, strict=True)])
+    return {u[k]: found[k][0] for k in choice.du}
+
+
+def unsettled(reducing: Reducing, share: float) -> list[int]:
+    """Which of the independent speeds a force is left to accelerate: more than rounding leaves.
+
+    Args:
+        share: of the largest force, below which one is none.
+    """
+    found = reducing.unbalanced
+    scale = max(map(abs, (*reducing.field.of(reducing.first.equations.forcing), *reducing.forces)), default=0)
+    left = [i for i, x in enumerate(found) if abs(x) > share * scale]
+    if not left:
+        return []
+    e = reducing.equations
+    places, speeds = ([max(1.0, abs(x)) for x in reducing.field.of(part)] for part in (e.coordinates, e.speeds))
+    rows = [_size(K, places) + _size(C, speeds) + _size(M, speeds) for K, C, M in zip(e.K, e.C, e.M, strict=True)]
+    return [i for i in left if abs(found[i]) > SOLVED * rows[i]]
+
+
+def _size(row: list[MatrixEntry], unit: list[float]) -> float:
+    return float(sum(abs(x) * one for x, one in zip(row, unit, strict=True)))
+
+
+# -------- forms -----------------------------------------------------------------------------------------------
+# LinearEquations -> the same over fewer coordinates: as many as speeds where that can be, and those that are asked.
+#
+# Of second order are equations with q_i' = u_i. Coordinates on which nothing depends and that have no speed of their
+# own (the track of a wheel) are left out. Where the user asks for some coordinates alone, the others go by what they
+# keep: nothing of them acts on those asked, or their momenta stay (Routh):
+#
+#     M_oo u_o + M_oc u_c + C_oc q_c = 0
+#     M = M_cc - M_co M_oo^-1 M_oc,  C = C_cc - M_co M_oo^-1 C_oc - C_co M_oo^-1 M_oc,  K = K_cc - C_co M_oo^-1 C_oc
+
+
+Indices = Sequence[int]
+
+
+def floats(A: Entries) -> np.ndarray:
+    """The entries as floats, rows x columns."""
+    return np.array(A, dtype=float).reshape(len(A), -1)
+
+
+# -- which coordinates carry the motion ----------------------------------------------------------------------
+
+
+def carrying(equations: LinearEquations, wanted: Sequence[str], dependent: Collection[str] = ()) -> tuple[int, ...]:
+    """The coordinates that stay beside the speeds, as many as these where that can be; decided by numbers.
+
+    Args:
+        wanted: coordinates that go last.
+        dependent: those that go first, by name.
+    """
+    kept = list(range(len(equations.coordinates)))
+    K, F, E = (floats(x) for x in (equations.K, equations.F, equations.E))
+    K, F = without_noise(K, COMPUTED), without_noise(F, COMPUTED)
+    while len(kept) > len(equations.speeds):
+        unseen = [j for j in kept if not np.any(K[:, j]) and not np.any(F[kept, j])]
+        still = [j for j in kept if not np.any(E[j]) and not np.any(F[j, kept])]
+        idle = [*unseen, *still]
+        if not idle:
+            break
+        names = {j: equations.coordinates[j].name for j in idle}
+        kept.remove(max(idle, key=lambda j: (names[j] not in wanted, names[j] in dependent, _strangeness(E[j]), j)))
+    return tuple(kept)
+
+
+def seen_beside_own(equations: LinearEquations, kept: Indices) -> tuple[int, ...]:
+    """Of these coordinates those on which the motion depends, and those with a speed of their own."""
+    K, F, E = (without_noise(floats(x), COMPUTED) for x in (equations.K, equations.F, equations.E))
+    own = [j for j in kept if not _strangeness(E[j]) and not np.any(F[j])]
+    seen = {j for j in kept if np.any(K[:, j])} | {*own}
+    while more := {j for j in kept if np.any(F[[*seen], j])} - seen:
+        seen |= more
+    return tuple(sorted(seen))
+
+
+def _strangeness(row: np.ndarray) -> int:
+    """0 of a rate that is a speed, 1 of one that is a multiple of it, else 2."""
+    return 2 if np.count_nonzero(row) != 1 else int(row.max() != 1)
+
+
+def equations_without_rounding(e: LinearEquations, nearby: np.ndarray) -> LinearEquations:
+    """The equations in numbers, 0 where an entry is what is left of it: beside its row and column, or the whole.
+
+    Of C also beside what inertia and stiffness make of a rate: sqrt(M K).
+
+    Args:
+        nearby: how large the entries of K are beside the place, where what vanishes there does not.
+    """
+    M, C, K, B = (floats(x) for x in (e.M, e.C, e.K, e.B))
+    usual = np.sqrt(abs(M).max(initial=0)) * np.sqrt(abs(K).max(initial=0))
+    masses = np.sqrt(abs(np.diagonal(M)))  # an entry of M is none beside those of its own two speeds, however light
+    M = np.where(abs(M) > SOLVED * np.outer(masses, masses), M, 0.0)
+    K = np.where(abs(K) > COMPUTED * nearby, K, 0.0)
+    return replace(e, M=[[*row] for row in M.tolist()], C=_rounded(C, usual), K=_rounded(K), B=_rounded(B))
+
+
+def _rounded(A: np.ndarray, usual: float = 0) -> Entries:
+    if not A.size:
+        return [[*row] for row in A.tolist()]
+    sizes = abs(A)
+    near = np.minimum(sizes.max(axis=1)[:, None], sizes.max(axis=0)[None, :])
+    least = np.maximum(SOLVED * near, ROUNDING * max(usual, sizes.max()))
+    return [[*row] for row in np.where(sizes > least, A, 0.0).tolist()]
+
+
+def over_coordinates(field: NumberField, equations: LinearEquations, kept: Indices) -> LinearEquations:
+    """The equations over these of the coordinates; of second order where they are as many as the speeds."""
+    chosen = replace(
+        equations,
+        coordinates=tuple(equations.coordinates[j] for j in kept),
+        K=_columns(equations.K, kept),
+        P=_columns(equations.P, kept),
+        F=[[equations.F[i][j] for j in kept] for i in kept],
+        E=[equations.E[i] for i in kept],
+    )
+    return _second_order(field, chosen) if _can_be_of_second_order(field, chosen) else chosen
+
+
+def _can_be_of_second_order(field: NumberField, equations: LinearEquations) -> bool:
+    n = len(equations.speeds)
+    if len(equations.coordinates) != n:
+        return False
+    E = np.array([[field.size(x) for x in row] for row in equations.E])
+    return is_second_order(equations) or (n > 0 and bool(np.linalg.matrix_rank(E, tol=RANK) == n))
+
+
+def is_second_order(equations: LinearEquations) -> bool:
+    """Whether q_i' = u_i."""
+    n = len(equations.speeds)
+    return (
+        len(equations.coordinates) == n
+        and all(x == int(i == j) for i, row in enumerate(equations.E) for j, x in enumerate(row))
+        and all(x == 0 for row in equations.F for x in row)
+    )
+
+
+def _second_order(field: NumberField, e: LinearEquations) -> LinearEquations:
+    """With u_i = E^-1 (q_i' - F q_i), and E^-T in front."""
+    if is_second_order(e):
+        return e
+    n = len(e.speeds)
+    one = [[int(i == j) for j in range(n)] for i in range(n)]
+    inverse = matrix_solution(field, e.E, one)
+    front = matrix_transposed(inverse, n)
+    M, C = matrix_product(field, e.M, inverse), matrix_product(field, e.C, inverse)
+    K = matrix_sum(field, e.K, negative(matrix_product(field, C, e.F)))
+    C = matrix_sum(field, C, negative(matrix_product(field, M, e.F)))
+    M, C, K, B = (matrix_product(field, front, x) for x in (M, C, K, e.B))
+    return replace(e, M=M, C=C, K=K, B=B, E=one, F=[[0] * n for _ in range(n)])
+
+
+# -- only those that are asked ---------------------------------------------------------------------------------
+
+
+def restricted(
+    field: NumberField, equations: LinearEquations, wanted: Sequence[str], decided: LinearEquations
+) -> LinearEquations:
+    """The equations of the coordinates that are asked, alone.
+
+    Args:
+        decided: the same equations in numbers, by which it is seen what acts on what.
+    Raises:
+        DerivationError: the others act on them, and keep no momenta.
+    """
+    names = [q.name for q in equations.coordinates]
+    if not wanted or list(wanted) == names:
+        return equations
+    if not is_second_order(equations) or set(wanted) - set(names):
+        strange = [name for name in wanted if name not in names]
+        what = f"'{strange[0]}' is not free to move by itself" if strange else "coordinates without a speed are left"
+        raise DerivationError(
+            f"{what}: the free ones are {', '.join(names)}", "linearize.coordinates", mend="take those"
+        )
+    c = [names.index(name) for name in wanted]
+    o = [j for j in range(len(names)) if j not in c]
+    if not o:
+        return _taken(equations, c)
+    M, C, K = (without_noise(floats(x), COMPUTED) for x in (decided.M, decided.C, decided.K))
+    if not any(np.any(x[np.ix_(c, o)]) for x in (M, C, K)):
+        return _taken(equations, c)
+    if np.any(K[o]) or np.any(K[:, o]) or np.any(C[np.ix_(o, o)]) or _drives(decided, C, c, o):
+        what = f"{', '.join(wanted)} cannot move alone: coupled with {', '.join(names[j] for j in o)}"
+        raise DerivationError(what, "linearize.coordinates", "name these coordinates too")
+    return _with_momenta_kept(field, equations, c, o)
+
+
+def _drives(decided: LinearEquations, C: np.ndarray, c: Indices, o: Indices) -> bool:
+    """Whether inputs change momenta that act on the coordinates asked through their rates."""
+    B = floats(decided.B)
+    return bool(B.size and np.any(B[o]) and np.any(C[np.ix_(c, o)]))
+
+
+def _taken(e: LinearEquations, c: Indices) -> LinearEquations:
+    def part(A: Entries) -> Entries:
+        return _columns([A[i] for i in c], c)
+
+    return replace(
+        e,
+        coordinates=tuple(e.coordinates[j] for j in c),
+        speeds=tuple(e.speeds[j] for j in c),
+        M=part(e.M),
+        C=part(e.C),
+        K=part(e.K),
+        E=part(e.E),
+        F=part(e.F),
+        B=[e.B[i] for i in c],
+        P=_columns(e.P, c),
+    )
+
+
+def _with_momenta_kept(field: NumberField, e: LinearEquations, c: Indices, o: Indices) -> LinearEquations:
+    """Routh's reduction."""
+    M_oo, M_co = (_columns([e.M[i] for i in rows], o) for rows in (o, c))
+    C_co = _columns([e.C[i] for i in c], o)
+    M_oc, C_oc = (_columns([A[i] for i in o], c) for A in (e.M, e.C))
+    by_rates, by_places = matrix_solution(field, M_oo, M_oc), matrix_solution(field, M_oo, C_oc)
+    by_inputs = matrix_solution(field, M_oo, [e.B[i] for i in o])
+    whole = _taken(e, c)
+
+    def less(A: Entries, *parts: tuple[Entries, Entries]) -> Entries:
+        return matrix_sum(field, A, *(negative(matrix_product(field, X, Y)) for X, Y in parts))
+
+    return replace(
+        whole,
+        M=less(whole.M, (M_co, by_rates)),
+        C=less(whole.C, (M_co, by_places), (C_co, by_rates)),
+        K=less(whole.K, (C_co, by_places)),
+        B=less(whole.B, (M_co, by_inputs)),
+    )
+
+
+def _columns(A: Entries, columns: Indices) -> Entries:
+    return [[row[j] for j in columns] for row in A]
+
+
+# -------- spin axes -------------------------------------------------------------------------------------------
+# LinearEquations of a body that spins, by quaternion -> the same over small turns about axes.
+#
+# In a steady spin the quaternion e moves on, and equations in de have coefficients that change with it. The small
+# turn dtheta about the body's axes, de = N dtheta with e' = N w, goes with the body:
+#
+#     de_c = T dtheta,  T = N_c of the three of e that stay;      T dtheta' + T' dtheta = F T dtheta + E du
+#     K -> K T,   P -> P T,   F -> T^-1 (F T - T'),   E -> T^-1 E
+#
+# Where something acts on it in directions that stand still, as friction on a ball that spins on a table, the
+# equations stay the same about axes that stand still, R dtheta with T R^T in the place of T, and R dw in that of dw:
+#
+#     dw = U v,  U = R^T:      M -> U^T M U,   C -> U^T (C U + M U'),   K, B -> U^T K, U^T B,   E -> E U
+
+
+NAME = "turn_"
+
+
+@dataclass(frozen=True)
+class SpinAxis:
+    """A quaternion that moves in the reference.
+
+    Args:
+        four: its coordinates.
+        speeds: its angular velocity, body axes.
+        carriers: which columns of the equations are three of the four.
+        standing: whether the turns are about axes that stand still in what carries the body; else about its own.
+        body: its name.
+    """
+
+    four: tuple[Node, ...]
+    speeds: tuple[Node, ...]
+    carriers: tuple[int, ...]
+    standing: bool = False
+    body: str = ""
+
+    @property
+    def labels(self) -> tuple[str, ...]:
+        """What the small turns are called."""
+        if self.standing:
+            return tuple(f"{NAME}{axis}_{self.body}" for axis in "xyz")
+        return tuple(NAME + w.name for w in self.speeds)
+
+    @property
+    def R(self) -> Matrix:
+        """The body's axes in those of what carries it."""
+        return rotation_of("quaternion", self.four)
+
+
+def spinning(reference: ReferenceMotion, choice: Choice) -> tuple[SpinAxis, ...]:
+    """The quaternions that move in the reference, three of each independent."""
+    system, found = reference.system, []
+    speeds = {u.name: u for u in system.symbols.u}
+    names = quaternions_of(system.scope.model)
+    for four, part in zip(system.scope.quaternions, names, strict=True):
+        carriers = tuple(j for j, k in enumerate(choice.q) if system.symbols.q[k] in four)
+        moves = any(e in reference.moving for e in four)
+        if moves and len(carriers) == len(part.speeds) and all(w in speeds for w in part.speeds):
+            own = tuple(speeds[w] for w in part.speeds)
+            free = {system.symbols.u[k] for k in choice.u}
+            found.append(SpinAxis(four, own, carriers, choice.standing and free >= {*own}, part.body))
+    return tuple(found)
+
+
+def over_turns(
+    field: NumberField, system: System, equations: LinearEquations, turns: tuple[SpinAxis, ...]
+) -> LinearEquations:
+    """The equations with small turns in the place of quaternions that move."""
+    for turn in turns:
+        equations = _over_turn(field, system, equations, turn)
+        if turn.standing:
+            equations = _over_standing_speeds(field, system, equations, turn)
+    return equations
+
+
+def _over_standing_speeds(field: NumberField, system: System, e: LinearEquations, turn: SpinAxis) -> LinearEquations:
+    """dw = R^T v"""
+    own, n = [e.speeds.index(w) for w in turn.speeds], len(e.speeds)
+    flat = tuple(x for column in zip(*turn.R, strict=True) for x in column)
+    block, rate = (at(field, [x[k : k + 3] for k in (0, 3, 6)]) for x in (flat, system.scope.time_derivative(flat)))
+    U, moved = [[int(i == j) for j in range(n)] for i in range(n)], [[0] * n for _ in range(n)]
+    for i, k in enumerate(own):
+        U[k], moved[k] = _spread(block[i], tuple(own), n), _spread(rate[i], tuple(own), n)
+    front, MU = matrix_transposed(U, n), matrix_product(field, e.M, U)
+    C = matrix_sum(field, matrix_product(field, e.C, U), matrix_product(field, e.M, moved))
+    labels = dict(zip(own, turn.labels, strict=True))
+    return replace(
+        e,
+        speeds=tuple(system.scope.graph.symbol(labels[k] + "'") if k in labels else u for k, u in enumerate(e.speeds)),
+        M=matrix_product(field, front, MU),
+        C=matrix_product(field, front, C),
+        K=matrix_product(field, front, e.K),
+        B=matrix_product(field, front, e.B),
+        E=matrix_product(field, e.E, U),
+    )
+
+
+def _over_turn(field: NumberField, system: System, e: LinearEquations, turn: SpinAxis) -> LinearEquations:
+    n, graph = len(e.coordinates), system.scope.graph
+    T, rate = _by_turn(field, system, e, turn, n)
+    one = [[int(i == j) for j in range(n)] for i in range(n)]
+    T_inverse = matrix_solution(field, T, one)
+    F = matrix_product(field, T_inverse, matrix_sum(field, matrix_product(field, e.F, T), negative(rate)))
+    names = dict(zip(turn.carriers, turn.labels, strict=True))
+    labels = tuple(graph.symbol(names[j]) if j in names else q for j, q in enumerate(e.coordinates))
+    return replace(
+        e,
+        coordinates=labels,
+        K=matrix_product(field, e.K, T),
+        P=matrix_product(field, e.P, T),
+        F=F,
+        E=matrix_product(field, T_inverse, e.E),
+    )
+
+
+def _by_turn(field: NumberField, system: System, e: LinearEquations, turn: SpinAxis, n: int) -> tuple[Entries, Entries]:
+    """(T, T') of all coordinates: 1 and 0 for those that are no part of the quaternion."""
+    scope = system.scope
+    places = [scope.symbols.q.index(e.coordinates[j]) for j in turn.carriers]
+    columns = [scope.symbols.u.index(w) for w in turn.speeds]
+    rows = [tuple(scope.N[i][k] for k in columns) for i in places]
+    if turn.standing:
+        rows = [apply(turn.R, vector_of(row)) for row in rows]  # N R^T
+    flat = scope.time_derivative(tuple(x for row in rows for x in row))
+    size = len(columns)
+    block, moved = at(field, rows), at(field, [flat[size * i : size * i + size] for i in range(len(rows))])
+    T, rate = [[int(i == j) for j in range(n)] for i in range(n)], [[0] * n for _ in range(n)]
+    for i, j in enumerate(turn.carriers):
+        T[j] = _spread(block[i], turn.carriers, n)
+        rate[j] = _spread(moved[i], turn.carriers, n)
+    return T, rate
+
+
+def _spread(row: list[Any], columns: tuple[int, ...], n: int) -> list[Any]:
+    found = [0] * n
+    for j, x in zip(columns, row, strict=True):
+        found[j] = x
+    return found
+
+
+def turned_on(turns: tuple[SpinAxis, ...], numbers: Mapping[Node, Any], time: float) -> dict[Node, Any]:
+    """The quaternions that long later: e o (cos(|w| t/2), sin(|w| t/2) w/|w|)."""
+    found: dict[Node, Any] = {}
+    for turn in turns:
+        found |= _turned(turn.four, [numbers[x] for x in turn.speeds], [numbers[x] for x in turn.four], time)
+    return found
+
+
+def _turned(four: tuple[Node, ...], w: list[Any], e: list[Any], time: Any) -> dict[Node, Any]:
+    f = fifty_digits().functions
+    size = f["sqrt"](sum(x * x for x in w))
+    c, s = f["cos"](size * time / 2), f["sin"](size * time / 2) / size
+    x, y, z = (s * k for k in w)
+    e0, e1, e2, e3 = e
+    product_ = (
+        e0 * c - e1 * x - e2 * y - e3 * z,
+        e0 * x + e1 * c + e2 * z - e3 * y,
+        e0 * y - e1 * z + e2 * c + e3 * x,
+        e0 * z + e1 * y - e2 * x + e3 * c,
+    )
+    return dict(zip(four, product_, strict=True))

@@ -1,0 +1,250 @@
+"""System -> Reference: the equilibrium, or the steady motion, about which small motions are sought."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import replace
+from functools import cached_property
+from random import Random
+from typing import Any
+
+from eomgen.errors import DerivationError
+from eomgen.mechanics.constraints.assembly import fixed_by_position
+from eomgen.mechanics.constraints.rows import Row
+from eomgen.mechanics.dynamics.system import EquationsOfMotion, System
+from eomgen.mechanics.equilibrium.equations import StaticEquations, over_rates, static_equations
+from eomgen.mechanics.equilibrium.search import Equilibrium, nearest_equilibrium
+from eomgen.mechanics.integrals.laws import position_equations
+from eomgen.mechanics.kinematics.places import Located, places_of
+from eomgen.mechanics.kinematics.scene import start_values
+from eomgen.mechanics.start.exact import values_of_parameters
+from eomgen.mechanics.start.state import refuse_lost, start_state
+from eomgen.model.contacts import contacts_of
+from eomgen.model.values import exact_parameters
+from eomgen.records import dataclass
+from eomgen.symbolic.expression.derivative import depends_on, substituted
+from eomgen.symbolic.expression.node import Node, Scalar, State, is_zero
+from eomgen.symbolic.expression.traversal import holds_many_digits
+from eomgen.symbolic.numeric.evaluation import evaluate, fifty_digits
+from eomgen.symbolic.numeric.tolerances import SOLVED
+
+# -------- reference -------------------------------------------------------------------------------------------
+# System -> Reference: the place of rest, or the steady motion, about which small motions are sought.
+
+
+EQUILIBRIUM, START, STEADY = "equilibrium", "start", "steady"
+
+
+@dataclass(frozen=True)
+class ReferenceMotion:
+    """The state about which the equations are linearized.
+
+    Args:
+        system: of the model; about a place of rest its drives are held.
+        about: EQUILIBRIUM, START or STEADY.
+        exact: t, q, u and inputs as scalars of the parameters, as far as they are known so.
+        numbers: t, q, u, inputs and parameters, with 50 digits; parameters without a value have one to try.
+        place: the place of rest, where it was sought.
+        family: the steady motions that one belongs to, where it was sought and they could be written.
+        beside: the start, which was asked and is none, and to which this one is near; None where none was asked.
+    """
+
+    system: System
+    about: str
+    exact: Mapping[Node, Scalar]
+    numbers: Mapping[Node, Any]
+    place: Equilibrium | None = None
+    family: Family | None = None
+    beside: Mapping[Node, float] | None = None
+
+    @cached_property
+    def is_exact(self) -> bool:
+        """Whether everything is known in closed form."""
+        symbols = self.system.symbols
+        return all(x in self.exact for x in (*symbols.q, *symbols.u))
+
+    @cached_property
+    def at_rest(self) -> bool:
+        """Whether all speeds are 0, not only nearly."""
+        return all(is_zero(self.exact.get(u, u)) for u in self.system.symbols.u)
+
+    @cached_property
+    def valued(self) -> bool:
+        """Whether all parameters have values."""
+        return not self.system.symbols.parameters.keys() - exact_parameters(self.system.scope.model).keys()
+
+    @cached_property
+    def moving(self) -> dict[Node, Any]:
+        """The coordinates that move in the reference, and their rates."""
+        rates = evaluate(self.system.scope.rates, self.numbers, fifty_digits())
+        return {q: rate for q, rate in zip(self.system.symbols.q, rates, strict=True) if abs(rate) > SOLVED}
+
+    @property
+    def trial(self) -> dict[Node, Any]:
+        """The values of the parameters."""
+        return {x: self.numbers[x] for x in self.system.symbols.parameters.values()}
+
+
+def place_of_rest(system: System, guess: Mapping[str, float] | None = None) -> ReferenceMotion:
+    """The place of rest nearest to the guess.
+
+    Args:
+        guess: values of coordinates in place of `near` and `start`.
+    Raises:
+        DerivationError: none was found; a one-sided contact would have to pull.
+        NotYet: speeds that are not rates.
+    """
+    place = nearest_equilibrium(static_equations(system), guess)
+    if contacts_of(system.scope.model):
+        place.refuse_pulling()
+    return _place(place)
+
+
+def relative_rest(equations: EquationsOfMotion, guess: Mapping[str, float] | None = None) -> ReferenceMotion:
+    """The place at which all is at rest beside what the model drives at a steady rate: a bead on a hoop that turns.
+
+    forcing + J^T lam = 0 at u = 0, forcing with the inertia forces of the drives' motion.
+
+    Raises:
+        DerivationError: none was found.
+    """
+    system = equations.system
+    symbols, coordinates = system.symbols, system.scope.model.coordinates
+    start = start_values(system.scope)
+    driven = [q for q in symbols.q if coordinates[q.name].driven]
+    given = system.standing({q: start[q] for q in driven})
+    forcing = substituted(equations.forcing, given)
+    own = {q: k for k, u in enumerate(symbols.u) for q in symbols.q if u.name == f"{q.name}'"}
+    if len(own) != len(symbols.u) or len(own) + len(driven) != len(symbols.q):
+        raise DerivationError(
+            "rest beside drives is sought of coordinates that are all free or driven",
+            "coordinates",
+            mend='ask about = "start"',
+        )
+    statics = StaticEquations(
+        system,
+        (),
+        tuple(own),
+        given,
+        tuple(forcing[k] for k in own.values()),
+        tuple(forcing[k] for k in own.values()),
+        tuple(substituted(row, given) for row in equations.J),
+        symbols.lam,
+        substituted(tuple(x for x in position_equations(system, start) if depends_on(x, own)), given),
+    )
+    return _place(nearest_equilibrium(statics, guess))
+
+
+def _place(place: Equilibrium) -> ReferenceMotion:
+    system = over_rates(place.statics.system)
+    symbols = system.symbols
+    still: dict[Node, Scalar] = {symbols.t: 0, **dict.fromkeys(symbols.u, 0)}
+    found = {q: place.exact[q] for q in symbols.q if q in place.exact}
+    exact = (_short(found) if place.numbers else found) | still
+    trial = values_of_parameters(system.scope, Random(3))
+    numbers: dict[Node, Any] = {**trial, **_numbers(still, trial)}
+    for q in symbols.q:
+        numbers[q] = _numbers({q: exact[q]}, trial)[q] if q in exact else fifty_digits().number(1) * place.numbers[q]
+    return _with_inputs(ReferenceMotion(system, EQUILIBRIUM, exact, numbers, place))
+
+
+def at_the_start(system: System, *, at_rest: bool, given: Mapping[str, float] | None = None) -> ReferenceMotion:
+    """The start of the model, without its speeds where it is to be a place of rest.
+
+    Args:
+        given: coordinates and speeds in place of the model's.
+    Raises:
+        DerivationError: a tie that does not hold there.
+    """
+    symbols, scope, model = system.symbols, system.scope, system.scope.model
+    trial = values_of_parameters(scope, Random(3))
+    parameters = {name: float(trial[node]) for name, node in symbols.parameters.items()}
+    state = start_state(system, parameters, given)
+    numbers: dict[Node, Any] = {**trial, symbols.t: fifty_digits().number(0)}
+    sought = fixed_by_position(system.ties)
+    exact = {symbols.t: 0} | start_values(scope, (q for q in symbols.q if q not in sought))
+    for u in symbols.u:
+        speed = model.coordinates[u.name[:-1]].speed if u.name.endswith("'") else model.speeds[u.name].start
+        exact[u] = 0 if at_rest else scope.value(speed)
+    located = Located(
+        {
+            **{x: float(v) for x, v in numbers.items()},
+            **{x: 0.0 if at_rest and x in symbols.u else state[x.name] for x in (*symbols.q, *symbols.u)},
+        },
+        scope.positive,
+    )
+    gaps = [gap for row in system.ties.rows if (gap := _gap(row)) is not None]
+    exact |= places_of(substituted(tuple(gaps), exact), sought, located) if sought else {}
+    exact = {x: value for x, value in exact.items() if x is symbols.t or located.agrees(value, x)}
+    exact = exact if symbols.parameters.keys() - exact_parameters(model).keys() else _short(exact)
+    for x in (*symbols.q, *symbols.u):
+        numbers[x] = _numbers({x: exact[x]}, trial)[x] if x in exact else fifty_digits().number(1) * located.numbers[x]
+    return _with_inputs(ReferenceMotion(system, EQUILIBRIUM if at_rest else START, exact, numbers))
+
+
+def in_closed_form(reference: ReferenceMotion, state: Mapping[Node, Scalar]) -> ReferenceMotion:
+    """The reference with coordinates and speeds that are known as scalars of the parameters."""
+    numbers = {**reference.numbers, **_numbers(state, reference.trial)}
+    return replace(reference, exact={**reference.exact, **state}, numbers=numbers)
+
+
+def _short(state: Mapping[Node, Scalar]) -> dict[Node, Scalar]:
+    """What a formula can hold of a state: a double with all its digits is a number, and no part of a formula."""
+    return {node: x for node, x in state.items() if not holds_many_digits(x)}
+
+
+def _gap(row: Row) -> Scalar | None:
+    return None if row.identical else row.gap
+
+
+def _with_inputs(reference: ReferenceMotion) -> ReferenceMotion:
+    """Inputs as they are at t = 0.
+
+    Raises:
+        DerivationError: a coordinate is so far away that nothing small is left of it.
+    """
+    system = reference.system
+    refuse_lost({q: reference.numbers[q] for q in system.symbols.q})
+    given = {node: system.inputs[name] for name, node in system.symbols.inputs.items()}
+    exact = dict(zip(given, substituted(tuple(given.values()), reference.exact), strict=True))
+    exact = {x: value for x, value in exact.items() if not depends_on(value, (*system.symbols.q, *system.symbols.u))}
+    numbers = dict(reference.numbers)
+    for node, value in given.items():
+        numbers[node] = evaluate((value,), numbers, fifty_digits())[0]
+    return replace(reference, exact={**reference.exact, **exact}, numbers=numbers)
+
+
+def _numbers(state: Mapping[Node, Scalar], trial: Mapping[Node, Any]) -> dict[Node, Any]:
+    return dict(zip(state, evaluate(tuple(state.values()), trial, fifty_digits()), strict=True))
+
+
+# -------- family ----------------------------------------------------------------------------------------------
+# The family of steady motions that one belongs to: top, governor, rolling disc in a circle.
+
+
+@dataclass(frozen=True)
+class Family:
+    """The steady motions that one belongs to.
+
+    Args:
+        held: coordinates and speeds that say which of them it is.
+        following: those that follow from these.
+        conditions: what vanishes, of both.
+        formulas: those that follow, as functions of the held; {}: no closed form.
+        state: everything in closed form at the values of the start; {}: not known so.
+        zeros: coordinates that are held at 0, by which other conditions are kept.
+        others: those that follow, in all the motions with the same values held that were found, this one first.
+        closed: the same as functions of the held; {} for one that has no closed form.
+        complete: whether there are no others, where `where` says.
+    """
+
+    held: tuple[Node, ...]
+    following: tuple[Node, ...]
+    conditions: tuple[Scalar, ...]
+    formulas: State
+    state: State
+    zeros: tuple[Node, ...] = ()
+    others: tuple[Mapping[Node, float], ...] = ()
+    closed: tuple[State, ...] = ()
+    complete: bool = False
+    where: str = ""

@@ -1,0 +1,415 @@
+"""Bodies -> inertia tensors and angular momenta about a point, principal moments and axes."""
+
+from __future__ import annotations
+
+from collections.abc import Collection, Mapping, Sequence
+from functools import cached_property, cmp_to_key
+
+from eomgen.mechanics.kinematics.inertia import mass_properties
+from eomgen.mechanics.kinematics.motion import Motion, velocity_of
+from eomgen.mechanics.kinematics.symbols import Scope
+from eomgen.mechanics.start.exact import known_exactly
+from eomgen.model.composite import about
+from eomgen.model.shapes import MassProperties
+from eomgen.records import dataclass
+from eomgen.symbolic.exact.normal_form import common_factor, simplest
+from eomgen.symbolic.exact.signs import sign_of_terms
+from eomgen.symbolic.expression.derivative import substituted, symbols_of
+from eomgen.symbolic.expression.formula import cos, function, over, sqrt
+from eomgen.symbolic.expression.node import Node, Scalar, is_zero
+from eomgen.symbolic.expression.rational import Fraction
+from eomgen.symbolic.expression.spatial import (
+    IDENTITY,
+    ZERO,
+    Matrix,
+    Vector,
+    added,
+    apply,
+    cross,
+    dot,
+    matrix_of,
+    minus,
+    plus,
+    product,
+    times,
+    transposed,
+    vector_of,
+)
+from eomgen.symbolic.expression.traversal import order
+from eomgen.symbolic.numeric.sure_numbers import number_of, numbers_of
+from eomgen.symbolic.numeric.work import Work
+from eomgen.symbolic.print.text import text_size
+from eomgen.symbolic.solve.solving import roots, vanishes
+
+# -------- inertia about ---------------------------------------------------------------------------------------
+# System -> the inertia tensor and the angular momentum of bodies about a point, in ground axes.
+#
+# With r from the point P, over the mass of the bodies that are meant:
+#
+#     tensor    I_P = integral (r.r 1 - r r^T) dm = sum (R I_C R^T + m (d.d 1 - d d^T)),   d = C - P   (parallel axes)
+#     angular momentum   L_P = sum (R I_C R^T w + m d x v_C)
+
+
+def in_ground(motion: Motion, body: str) -> MassProperties:
+    """The mass properties of a body where it is: mass centre from the ground's origin, inertia in ground axes."""
+    own, pose = mass_properties(motion.scope, body), motion.link(body).pose
+    return MassProperties(own.m, pose.point(own.com), product(product(pose.R, own.I), transposed(pose.R)))
+
+
+def tensor_about(motion: Motion, point: Vector, bodies: Sequence[str]) -> Matrix:
+    """I_P of the bodies together, ground axes."""
+    total: Matrix = (ZERO, ZERO, ZERO)
+    for body in bodies:
+        total = added(total, about(in_ground(motion, body), point))
+    return total
+
+
+def angular_momentum(motion: Motion, point: Vector, bodies: Sequence[str]) -> Vector:
+    """L_P of the bodies together, of the velocities against the ground, ground axes [kg m^2/s]."""
+    total: Vector = ZERO
+    for body in bodies:
+        link, mass = motion.link(body), in_ground(motion, body)
+        velocity = velocity_of(motion, (body, mass_properties(motion.scope, body).com))
+        spin = apply(mass.I, apply(link.pose.R, link.twist.w))
+        total = plus(total, plus(spin, times(mass.m, cross(minus(mass.com, point), velocity))))
+    return total
+
+
+# -- what is not known ------------------------------------------------------------------------------
+
+
+def flat_bodies(motion: Motion, bodies: Sequence[str]) -> tuple[str, ...]:
+    """The bodies of a plane model of which only the moment about z is known: those given by `inertia`."""
+    scope = motion.scope
+    if scope.model.space != "plane":
+        return ()
+    given = [body for body in bodies if scope.model.bodies[body].inertia is not None]
+    return tuple(body for body in given if not is_zero(mass_properties(scope, body).I[2][2]))
+
+
+def shapeless(motion: Motion, bodies: Sequence[str]) -> tuple[str, ...]:
+    """The bodies that have a mass and say nothing of its inertia."""
+    parts = motion.scope.model.bodies
+    silent = [b for b in bodies if parts[b].shape is None and parts[b].parts is None and parts[b].inertia is None]
+    return tuple(body for body in silent if not is_zero(mass_properties(motion.scope, body).m))
+
+
+# -------- principal -------------------------------------------------------------------------------------------
+# Inertia tensor -> principal moments and axes, exact wherever they have a closed form.
+#
+#     det(I - J 1) = 0,  R I R^T = diag(J_1, J_2, J_3):  the rows of R are the principal axes, right-handed
+#
+# A tensor with two products that vanish splits: its moments are J_kk and, with D^2 = (a - b)^2 + 4 p^2, (a + b -+
+# D)/2; the axis of the larger one has the components sqrt((D + a - b) / 2D) and +- sqrt((D - a + b) / 2D). Else the
+# characteristic polynomial is split into factors; where it has none, its three real roots are
+#
+#     J = q + 2 p cos((f + 2 pi k) / 3),  q = tr(I) / 3,  p^2 = tr((I - q 1)^2) / 6,  cos f = det(I - q 1) / (2 p^3).
+
+
+TERMS = 60  # of a sum that is made short; a longer one nobody reads
+LONGEST = 3_000  # characters of a tensor whose characteristic polynomial may have factors
+HALF = Fraction(1, 2)
+PrincipalMoments = tuple[Scalar, Scalar, Scalar]
+
+
+@dataclass(frozen=True)
+class Principal:
+    """The principal moments and axes of a tensor.
+
+    Args:
+        moments: ascending where `sorted`, [kg m^2].
+        axes: the rows of R, unit vectors, right-handed; None where they have no closed form.
+        sorted: whether the order of the moments is known.
+        equal: pairs (k, l) of moments that are equal: every axis in their plane is principal.
+    """
+
+    moments: PrincipalMoments
+    axes: Matrix | None
+    sorted: bool
+    equal: tuple[tuple[int, int], ...]
+
+
+def principal_moments(I: Matrix, scope: Scope) -> PrincipalMoments:
+    """The principal moments, ascending; by min and max where their order depends on the values of the symbols."""
+    tensor = _Tensor(I, scope)
+    found = tensor.moments
+    ascending = _ascending(tensor)
+    if ascending is not None:
+        return vector_of(found[k] for k in ascending)
+    for k in range(3):
+        signs = {tensor.larger(k, n) for n in range(3) if n != k}
+        one, other = (found[n] for n in range(3) if n != k)
+        pair = function("min", one, other), function("max", one, other)
+        if signs <= {0, 1}:
+            return (*pair, found[k])
+        if signs <= {0, -1}:
+            return (found[k], *pair)
+    least, most = (function(name, function(name, found[0], found[1]), found[2]) for name in ("min", "max"))
+    return least, found[0] + found[1] + found[2] - least - most, most
+
+
+def principal_of(I: Matrix, scope: Scope) -> Principal:
+    """The principal moments with their axes."""
+    tensor = _Tensor(I, scope)
+    ascending = _ascending(tensor)
+    moments = tensor.moments if ascending is None else vector_of(tensor.moments[k] for k in ascending)
+    pairs = tuple((k, n) for k, n in ((0, 1), (1, 2), (0, 2)) if vanishes(moments[k] - moments[n]))
+    return Principal(moments, tensor.axes(moments, pairs), ascending is not None, pairs)
+
+
+@dataclass(frozen=True)
+class _Tensor:
+    """A symmetric tensor over the scalars of a scope."""
+
+    given: Matrix
+    scope: Scope
+
+    def short(self, x: Scalar) -> Scalar:
+        return short_form(x, self.scope.positive)
+
+    @cached_property
+    def tensor(self) -> Matrix:
+        """The tensor in short form, what vanishes as 0."""
+        I = self.given
+        upper = {(i, j): 0 if vanishes(I[i][j]) else self.short(I[i][j]) for i in range(3) for j in range(i, 3)}
+        return matrix_of((upper[min(i, j), max(i, j)] for j in range(3)) for i in range(3))
+
+    @property
+    def linked(self) -> list[tuple[int, int]]:
+        """The pairs of axes whose product of inertia does not vanish."""
+        return [(i, j) for i, j in ((0, 1), (1, 2), (0, 2)) if not is_zero(self.tensor[i][j])]
+
+    @property
+    def moments(self) -> PrincipalMoments:
+        """The principal moments; ascending where `is_ordered`, else in no order."""
+        return self._moments[0]
+
+    @property
+    def is_ordered(self) -> bool:
+        """Whether the moments come as the three cosines of the cubic, the smallest first."""
+        return self._moments[1]
+
+    @cached_property
+    def _moments(self) -> tuple[PrincipalMoments, bool]:
+        I = self.tensor
+        if not self.linked:
+            return (I[0][0], I[1][1], I[2][2]), False
+        if len(self.linked) == 1:
+            ((i, j),) = self.linked
+            return (I[3 - i - j][3 - i - j], *self._halves(I[i][i] + I[j][j], self._spread)), False
+        rational = self._cubic(I)
+        return (self._trigonometric(I), True) if rational is None else (rational, False)
+
+    @cached_property
+    def _spread(self) -> Scalar:
+        """D, the difference of the two moments in the plane of the one pair that is linked."""
+        ((i, j),) = self.linked
+        across = self.tensor[i][i] - self.tensor[j][j]
+        return self.short(sqrt(self.short(across * across + 4 * self.tensor[i][j] * self.tensor[i][j])))
+
+    def _halves(self, total: Scalar, spread: Scalar) -> tuple[Scalar, Scalar]:
+        return self.short(HALF * (total - spread)), self.short(HALF * (total + spread))
+
+    @cached_property
+    def _is_long(self) -> bool:
+        return sum(text_size(x) for row in self.tensor for x in row) > LONGEST
+
+    def _short_unless_long(self, x: Scalar) -> Scalar:
+        return x if self._is_long else self.short(x)
+
+    def _cubic(self, I: Matrix) -> PrincipalMoments | None:
+        """The roots of J^3 - tr J^2 + minors J - det where one is rational in the entries; None where none is found.
+
+        Without a determinant, as of masses in line, 0 is one.
+        """
+        short = self._short_unless_long
+        trace = short(I[0][0] + I[1][1] + I[2][2])
+        if vanishes(dot(I[0], cross(I[1], I[2]))):
+            square = trace * trace - 4 * self._minors(I)
+            spread = 0 if vanishes(square) else sqrt(square)
+            return 0, short(HALF * (trace - spread)), short(HALF * (trace + spread))
+        if self._is_long:
+            return None
+        minors, determinant = self.short(self._minors(I)), self.short(dot(I[0], cross(I[1], I[2])))
+        J = self.scope.graph.symbol("J of the characteristic equation")
+        found = roots(J * J * J - trace * J * J + minors * J - determinant, J, self.scope.positive)
+        if len(found) >= 2:
+            first, second = found[:2]
+            return first, second, self.short(trace - first - second)
+        if found:
+            total = trace - found[0]
+            square = self.short(total * total - 4 * (minors - found[0] * total))
+            return (found[0], *self._halves(total, self.short(sqrt(square))))
+        return None
+
+    @staticmethod
+    def _minors(I: Matrix) -> Scalar:
+        return sum(I[i][i] * I[j][j] - I[i][j] * I[i][j] for i, j in ((0, 1), (1, 2), (0, 2)))
+
+    def _trigonometric(self, I: Matrix) -> PrincipalMoments:
+        """q + 2 p cos(turn + 2 pi k/3), 0 <= turn <= pi/3, ascending."""
+        short = self._short_unless_long
+        q = over(short(I[0][0] + I[1][1] + I[2][2]), 3)
+        A = matrix_of((I[i][j] - (q if i == j else 0) for j in range(3)) for i in range(3))
+        p = short(sqrt(short(over(sum(x * x for row in A for x in row), 6))))
+        turn = over(function("acos", over(short(dot(A[0], cross(A[1], A[2]))), 2 * p * p * p)), 3)
+        third = over(2 * self.scope.graph.pi, 3)
+        return q + 2 * p * cos(turn + third), q + 2 * p * cos(turn - third), q + 2 * p * cos(turn)
+
+    def larger(self, i: int, j: int) -> int | None:
+        """The sign of moment i - moment j, where that is known: by its terms, or as both are made.
+
+        The two of a pair of axes come as the smaller and the larger one; of a thin plate J_z = J_x + J_y.
+        """
+        moments = self.moments
+        if len(self.linked) == 1 and {i, j} == {1, 2}:
+            return i - j
+        if i != j:
+            rest = moments[3 - i - j]
+            for large, small, sign in ((moments[i], moments[j], 1), (moments[j], moments[i], -1)):
+                if vanishes(large - small - rest):
+                    return sign
+        return self.sign(moments[i] - moments[j])
+
+    def sign(self, x: Scalar) -> int | None:
+        """The sign of x, where all its terms have it, or where it is a constant times positive symbols."""
+        known = sign_of_terms(x, self.scope.positive)
+        if known is not None:
+            return known
+        _, product = common_factor((self.short(x),))
+        rest = self.short(over(x, product))
+        if symbols_of((rest,)) or sign_of_terms(product, self.scope.positive) != 1:
+            return None
+        return 1 if number_of(rest) > 0 else -1
+
+    # -- axes ---------------------------------------------------------------------------------------
+
+    def axes(self, moments: Vector, equal: Sequence[tuple[int, int]]) -> Matrix | None:
+        """The rows of R for the moments in this order; of equal moments one choice of many. None: no closed form."""
+        if len(equal) == 3:
+            return IDENTITY
+        if len(self.linked) == 3 or len(self.linked) == 2:
+            return self._by_rows(moments, equal)
+        known = list(zip(self.moments, self._in_plane(), strict=True))
+        rows = []
+        for moment in moments[:2]:
+            k = next(k for k, (other, _) in enumerate(known) if other is moment or other == moment)
+            rows.append(known.pop(k)[1])
+        return self._right_handed(*rows)
+
+    def _in_plane(self) -> Matrix:
+        """An axis for each of the moments where at most one pair of axes is linked."""
+        if not self.linked:
+            return IDENTITY
+        ((i, j),) = self.linked
+        a, b, product, spread = self.tensor[i][i], self.tensor[j][j], self.tensor[i][j], self._spread
+        sine, cosine = (self.short(sqrt(over(spread + side, 2 * spread))) for side in (b - a, a - b))
+        sign = self._sign(product)
+        larger: list[Scalar] = [0, 0, 0]
+        smaller: list[Scalar] = [0, 0, 0]
+        larger[i], larger[j] = cosine, self.short(sign * sine)
+        smaller[i], smaller[j] = sine, self.short(-sign * cosine)
+        return IDENTITY[3 - i - j], vector_of(smaller), vector_of(larger)
+
+    def _sign(self, x: Scalar) -> Scalar:
+        """The sign of what does not vanish, as a formula where it is not known."""
+        known = self.sign(x)
+        numbers = None if known else numbers_in((x,), self.scope)
+        return known or (function("sign", x) if numbers is None else (1 if numbers[0] > 0 else -1))
+
+    def _by_rows(self, moments: Vector, equal: Sequence[tuple[int, int]]) -> Matrix | None:
+        """Every simple moment's axis is across two rows of I - J 1; two equal ones have any axes across the third."""
+        if any(node.op == "acos" for node in order(moments)):
+            return None
+        if not equal:
+            found = [n for n in map(self._across_rows, moments) if n is not None]
+            return self._turned_right(*found) if len(found) == 3 else None
+        (pair,) = equal
+        single = 3 - sum(pair)
+        n = self._across_rows(moments[single])
+        if n is None:
+            return None
+        other = self._unit(cross(IDENTITY[2], n))
+        return (n, other, self._third(n, other)) if single == 0 else (other, self._third(n, other), n)
+
+    def _across_rows(self, moment: Scalar) -> Vector | None:
+        I = self.tensor
+        rows = [vector_of(I[i][j] - (moment if i == j else 0) for j in range(3)) for i in range(3)]
+        for i, j in ((0, 1), (1, 2), (0, 2)):
+            n = vector_of(map(self.short, cross(rows[i], rows[j])))
+            if not all(vanishes(x) for x in n):
+                return self._unit(n)
+        return None
+
+    def _right_handed(self, first: Vector, second: Vector) -> Matrix:
+        return first, second, self._third(first, second)
+
+    def _turned_right(self, first: Vector, second: Vector, third: Vector) -> Matrix:
+        """The three axes, the last one reversed where they are left-handed."""
+        hand = dot(cross(first, second), third)
+        signs = [sign for sign in (1, -1) if vanishes(hand - sign)]
+        return (first, second, times(signs[0], third)) if signs else self._right_handed(first, second)
+
+    def _third(self, first: Vector, second: Vector) -> Vector:
+        return vector_of(map(self.short, cross(first, second)))
+
+    def _unit(self, n: Vector) -> Vector:
+        """n over its length, its first component that does not vanish positive where its sign is known.
+
+        Divided by that component at first, so that what all three share is gone.
+        """
+        flat = [0 if vanishes(x) else x for x in n]
+        lead = next(x for x in flat if not is_zero(x))
+        ratios = vector_of(self.short(over(x, lead)) for x in flat)
+        length = sqrt(self.short(dot(ratios, ratios)))
+        return vector_of(self.short(over(x, length)) for x in ratios)
+
+
+def _ascending(tensor: _Tensor) -> list[int] | None:
+    """The indices of the moments, ascending; None where nothing tells."""
+    moments = tensor.moments
+    if tensor.is_ordered:
+        return [0, 1, 2]
+    numbers = numbers_in(moments, tensor.scope)
+    if numbers is not None:
+        return sorted(range(3), key=lambda k: numbers[k])
+    signs = {(k, k): 0 for k in range(3)}
+    for i, j in ((0, 1), (0, 2), (1, 2)):
+        sign = tensor.larger(i, j)
+        if sign is None:
+            return None
+        signs[i, j], signs[j, i] = sign, -sign
+
+    def compared(i: int, j: int) -> int:
+        return signs[i, j]
+
+    return sorted(range(3), key=cmp_to_key(compared))
+
+
+def short_form(x: Scalar, positive: Collection[Node]) -> Scalar:
+    """x in readable form, the magnitudes of constants by their sign; a long sum as it is."""
+    found = simplest(x, Work.FORMULA, positive, TERMS)
+    signed = _with_signs(found)
+    return found if signed is found else simplest(signed, Work.FORMULA, positive, TERMS)
+
+
+def _with_signs(x: Scalar) -> Scalar:
+    """x with the magnitudes of constants by their sign: |pi - 90| is 90 - pi."""
+    known: dict[Node, Scalar] = {}
+    for node in order((x,)):
+        if node.op == "abs" and not symbols_of((node,)):
+            (inside,) = node.args
+            known[node] = inside if number_of(inside) > 0 else -inside
+    return substituted((x,), known)[0] if known else x
+
+
+def numbers_in(
+    scalars: Sequence[Scalar], scope: Scope, state: Mapping[Node, float] | None = None
+) -> list[float] | None:
+    """What scalars are worth; None where they hold what has no value.
+
+    Args:
+        state: values of other symbols than parameters (None: those have none).
+    """
+    known = {**(state or {}), **known_exactly(scope)}
+    return None if any(symbol not in known for symbol in symbols_of(tuple(scalars))) else numbers_of(scalars, known)

@@ -1,1 +1,0 @@
-"""Bodies of parts, moments and products of inertia, principal axes."""

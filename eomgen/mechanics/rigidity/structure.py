@@ -1,0 +1,446 @@
+"""System, a configuration -> Structure: what holds the bodies there, and how they could move."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Mapping, Sequence
+from functools import cached_property
+from typing import Any
+
+from eomgen.errors import DerivationError
+from eomgen.mechanics.constraints.rows import holds_identically
+from eomgen.mechanics.dynamics.system import System
+from eomgen.mechanics.free_bodies.balance import Balance, balance_of, slope
+from eomgen.mechanics.free_bodies.wrenches import Axes, Component, Effect, effects_of_load, joint_effects
+from eomgen.mechanics.rigidity.velocity_plan import RigidBlock, VelocityPlan, blocks_of
+from eomgen.mechanics.start.exact import values_for, values_where_at_rest
+from eomgen.model.constraints.base import Constraint
+from eomgen.model.forces.load import BodyPoint
+from eomgen.model.trusses import declared_at
+from eomgen.records import dataclass
+from eomgen.symbolic.exact.normal_form import readable_all
+from eomgen.symbolic.expression.derivative import derivative, substituted, tangent, tangents
+from eomgen.symbolic.expression.formula import over
+from eomgen.symbolic.expression.node import Node, Scalar, ScalarRow, State, is_zero
+from eomgen.symbolic.expression.spatial import Vector, cross, dot, times, vector_of
+from eomgen.symbolic.numeric.dense import sparse_rank
+from eomgen.symbolic.numeric.evaluation import digits_at, evaluate, fifty_digits
+from eomgen.symbolic.numeric.work import Work
+from eomgen.symbolic.print.text import to_text
+from eomgen.symbolic.solve.linear import LinearSystem, Pivots, Solution, general_solution
+
+# -------- structure -------------------------------------------------------------------------------------------
+# System, a configuration -> Structure: what holds the bodies there, and how they could move.
+#
+# The equations of the bodies at rest are  G rho + applied = 0:  a column a reaction, a row a direction in which a
+# body may move. Read the other way they are the velocities that the reactions forbid:
+#
+#     G^T xi = 0        xi: velocity of the mass centre and spin of every body
+#
+# so that   mobility = rows - rank,   degree of indeterminacy = columns - rank.   With one reaction released, G^T xi =
+# its unit vector, the bodies have one motion left: the mechanism of the principle of virtual work. A force that is
+# asked for ([unknowns]) holds the bodies like a reaction.
+
+
+UnknownColumn = tuple[int, int]
+"""(index of the body, direction in DIRECTIONS): one velocity."""
+
+
+@dataclass(frozen=True)
+class Structure:
+    """Bodies and what holds them, at one configuration.
+
+    Args:
+        balance: the equations of the bodies.
+        at: what stands in place of coordinates, speeds, accelerations, inputs and time.
+        columns: the velocities that bodies have.
+        rows: of every component, and then of every unknown of the loads, {index of the column: coefficient}.
+    """
+
+    balance: Balance
+    at: State
+    columns: tuple[UnknownColumn, ...]
+    rows: tuple[dict[int, Scalar], ...]
+
+    @property
+    def system(self) -> System:
+        return self.balance.system
+
+    @property
+    def components(self) -> tuple[Component, ...]:
+        return self.balance.components
+
+    @property
+    def names(self) -> tuple[str, ...]:
+        """Of every row: reaction_x(B), or the unknown."""
+        return self.balance.names
+
+    @property
+    def unknowns(self) -> tuple[Node, ...]:
+        """Of the loads."""
+        return self.balance.unknowns
+
+    @cached_property
+    def pushes(self) -> tuple[tuple[str, tuple[Effect, ...]], ...]:
+        """(owner, what a unit does) of every row; of an unknown of the loads its derivative, on what it acts on."""
+        axes = Axes(self.system.motion)
+        given = [e for load in self.system.loads.placed for e in effects_of_load(axes, load)]
+        given += joint_effects(self.system)
+        own = [(component.owner, component.effects) for component in self.components]
+        return (*own, *((p.name, tuple(filter(None, (_slope_of(e, p) for e in given)))) for p in self.unknowns))
+
+    # -- counts ------------------------------------------------------------------------------------
+
+    @property
+    def rank(self) -> int:
+        """How many of the reactions are independent, at the model's values of the parameters."""
+        return self._ranks[0]
+
+    @property
+    def mobility(self) -> int:
+        """In how many independent ways the bodies can move."""
+        return len(self.columns) - self.rank
+
+    @property
+    def indeterminacy(self) -> int:
+        """How many reactions too many there are for the balance of the bodies."""
+        return len(self.rows) - self.rank
+
+    @property
+    def is_special(self) -> bool:
+        """Whether its rank is less than that of structures with other values of the parameters."""
+        return self.rank < self._ranks[1]
+
+    # -- motions -----------------------------------------------------------------------------------
+
+    @cached_property
+    def loose(self) -> tuple[VelocityPlan, ...]:
+        """Independent motions that nothing resists; () where the bodies are held."""
+        plans = []
+        for f in self._solved.solution.free:
+            shares = self._solved.solution.shares
+            xi: list[Scalar] = [0] * len(self.columns)
+            xi[f] = 1
+            for j, share in shares.items():
+                xi[j] = -share.get(f, 0)
+            plans.append(self._plan(xi))
+        return tuple(plans)
+
+    @cached_property
+    def turns_idly(self) -> bool:
+        """Whether all that can move are straight bodies about their own lines, no point displaced, no load at work."""
+        return bool(self.loose) and all(self._is_idle(plan) for plan in self.loose)
+
+    @cached_property
+    def is_in_balance(self) -> bool:
+        """Whether the loads do no work in any motion that nothing resists."""
+        return all(plan.vanishes((self._work(plan),)) for plan in self.loose)
+
+    def _is_idle(self, plan: VelocityPlan) -> bool:
+        points = self.system.motion.points
+        moved = [x for body in plan.moving for r in points[body].values() for x in plan.raw_velocity((body, r))]
+        return plan.vanishes((*moved, self._work(plan)))
+
+    def _work(self, plan: VelocityPlan) -> Scalar:
+        """Of all loads, as the bodies' equations hold them; unknown ones do none in a motion that nothing resists."""
+        applied = {(self.system.motion.index[e.body], e.direction): e.applied for e in self.balance.equations}
+        given = {**self.at, **dict.fromkeys(self.unknowns, 0)}
+        loads = substituted(tuple(applied.get(column, 0) for column in self.columns), given)
+        works = zip(loads, (plan.velocities[body][direction] for body, direction in self.columns), strict=True)
+        return sum((f * v for f, v in works), start=0)
+
+    @cached_property
+    def stresses(self) -> tuple[dict[int, Scalar], ...]:
+        """Self-stresses: reactions {row: share} that are in balance without any load."""
+        found = []
+        for left in self._solved.solution.left:
+            shares = self._readable([derivative(left, d) for d in self._solved.deltas])
+            kept = {k: x for k, x in enumerate(shares) if not is_zero(x)}
+            if kept:
+                found.append(kept)
+        return tuple(found)
+
+    def determines(self, combination: Mapping[int, Scalar]) -> bool:
+        """Whether the balance gives sum of k_j rho_j a single value."""
+        works = (sum((k * stress.get(j, 0) for j, k in combination.items()), start=0) for stress in self.stresses)
+        return all(is_zero(x) or holds_identically(x) for x in works)
+
+    def released(self, row: int | Mapping[int, Scalar]) -> VelocityPlan:
+        """The motion that one released reaction leaves: a velocity 1 along it, 0 along all others.
+
+        Where the bodies have freedoms besides, these stand still. A combination k of reactions is released as one:
+        velocities k along them.
+
+        Raises:
+            DerivationError: the others hold the bodies without it: it is statically indeterminate.
+        """
+        combination = {row: 1} if isinstance(row, int) else dict(row)
+        if not self.determines(combination):
+            names = ", ".join(self.names[j] for j in combination)
+            raise DerivationError(
+                f"{names} released, nothing can move: the other reactions hold the bodies without it",
+                mend="take a redundant constraint away",
+            )
+        if [*combination.values()] == [1]:
+            return self._plan(self._columns[next(iter(combination))])
+        deltas = self._solved.deltas
+        return self._plan(tangent(self._solved.velocities, {deltas[j]: k for j, k in combination.items()}))
+
+    def index(self, name: str) -> int:
+        """The row of a reaction or unknown by its name.
+
+        Raises:
+            KeyError: there is none of this name.
+        """
+        return {own: j for j, own in reversed(list(enumerate(self.names)))}[name]
+
+    def _plan(self, xi: Sequence[Scalar]) -> VelocityPlan:
+        velocities: list[list[Scalar]] = [[0] * 6 for _ in self.system.motion.links]
+        for (body, direction), value in zip(self.columns, self._readable(xi), strict=True):
+            velocities[body][direction] = value
+        rows = tuple(tuple(six) for six in velocities)
+        return VelocityPlan(self.system, self.at, self._solved.parameters, rows, self._places, self._known)
+
+    @cached_property
+    def _columns(self) -> tuple[ScalarRow, ...]:
+        """Of each row the velocities that a velocity 1 along it alone takes."""
+        return tangents(self._solved.velocities, self._solved.deltas)
+
+    @cached_property
+    def _places(self) -> dict[BodyPoint, Vector]:
+        return {}
+
+    @cached_property
+    def _known(self) -> dict[Scalar, Any]:
+        return {}
+
+    def _readable(self, scalars: Sequence[Scalar]) -> tuple[Scalar, ...]:
+        return readable_all(tuple(scalars), Work.ANSWER, self.system.scope.positive)
+
+    # -- the solution of G^T xi = delta --------------------------------------------------------------
+
+    @cached_property
+    def _ranks(self) -> tuple[int, int]:
+        """At the model's own parameters, and at others like these."""
+        own, others = (self._numbers(self._parameters(shaken=shaken)) for shaken in (False, True))
+        return sparse_rank(own), sparse_rank(others)
+
+    def _numbers(self, parameters: State) -> list[dict[int, Any]]:
+        """The rows in numbers of 50 digits."""
+        flat = iter(evaluate([x for row in self.rows for x in row.values()], parameters, fifty_digits()))
+        return [{k: next(flat) for k in row} for row in self.rows]
+
+    @cached_property
+    def _solved(self) -> _Solved:
+        """With pivots that do not vanish at parameters like the model's, or where those are special, at these."""
+        graph = self.system.scope.graph
+        parameters = self._parameters(shaken=not self.is_special)
+        deltas = tuple(graph.symbol(f"(delta {k})") for k in range(len(self.rows)))
+        sure = () if self.is_special else tuple(self.system.symbols.parameters.values())
+        equations = LinearSystem(self.rows, deltas, len(self.columns), digits_at(parameters))
+        solution = general_solution(equations, Pivots(factors=sure))
+        return _Solved(solution, deltas, len(self.columns), parameters)
+
+    def _parameters(self, *, shaken: bool) -> State:
+        """The model's own, or the first generic ones at which all entries have a value."""
+        return values_for(self.system.scope, [x for row in self.rows for x in row.values()], shaken=shaken)
+
+
+@dataclass(frozen=True)
+class _Solved:
+    """G^T xi = delta, solved for xi."""
+
+    solution: Solution
+    deltas: tuple[Node, ...]
+    size: int
+    parameters: State
+
+    @property
+    def velocities(self) -> tuple[Scalar, ...]:
+        """xi as functions of delta; those that stay free are 0."""
+        return tuple(self.solution.constants.get(j, 0) for j in range(self.size))
+
+
+def structure_of(system: System, at: Mapping[Node, Scalar] | None = None) -> Structure:
+    """The structure at a configuration, at rest.
+
+    Args:
+        at: exact scalars in place of coordinates; None: the start.
+    Raises:
+        DerivationError: there is no body; a force, an energy or a tie that acts at no place; ties that do not close;
+            loads that are not linear in an unknown.
+    """
+    if not system.motion.links:
+        raise DerivationError("the model has no body: nothing is to be held", "bodies", "declare [bodies.NAME]")
+    balance = balance_of(system)
+    state = values_where_at_rest(system, at)
+    unknowns = balance.unknowns
+    table = {(system.motion.index[e.body], e.direction): e for e in balance.equations}
+    columns = tuple(c for c in _directions(system) if c in table or not _is_point_that_turns(system, c))
+    rows: list[dict[int, Scalar]] = [{} for _ in (*balance.components, *unknowns)]
+    for k, column in enumerate(columns):
+        equation = table.get(column)
+        for j, x in ({} if equation is None else equation.coefficients).items():
+            rows[j][k] = x
+        for j, unknown in enumerate(unknowns, start=len(balance.components)):
+            rows[j][k] = 0 if equation is None else slope(balance, equation, unknown)
+    return Structure(balance, state, columns, _placed(system, rows, state))
+
+
+def _placed(system: System, rows: Sequence[Mapping[int, Scalar]], state: State) -> tuple[dict[int, Scalar], ...]:
+    """The rows at the configuration, zeros left out."""
+    entries = substituted(tuple(x for row in rows for x in row.values()), state)
+    flat = iter(readable_all(entries, Work.ANSWER, system.scope.positive))
+    placed = [{k: next(flat) for k in row} for row in rows]
+    return tuple({k: x for k, x in row.items() if not is_zero(x)} for row in placed)
+
+
+def _directions(system: System) -> list[UnknownColumn]:
+    axes = Axes(system.motion)
+    return [(i, d) for i in range(len(system.motion.links)) for d in axes.rows]
+
+
+def _is_point_that_turns(system: System, column: UnknownColumn) -> bool:
+    """Whether it is the turning of a node or a point mass on which no moment acts: it is no motion of its own."""
+    body, direction = column
+    part = system.scope.model.bodies.get(system.motion.links[body].name)
+    point = part is None or (part.shape is not None and part.shape.is_point)
+    return point and direction > 2
+
+
+def _slope_of(effect: Effect, unknown: Node) -> Effect | None:
+    """What a unit of an unknown load adds to an effect; None where it does not stand in it."""
+    force, couple = (tuple(derivative(x, unknown) for x in v) for v in (effect.force, effect.couple))
+    if all(map(is_zero, (*force, *couple))):
+        return None
+    return Effect(effect.link, vector_of(force), vector_of(couple), effect.arm, effect.place, effect.beyond)
+
+
+# -------- loose motion ----------------------------------------------------------------------------------------
+# Plan -> in words, how bodies that nothing holds can move: "body 'CD' can turn about (2*a, 0)".
+
+
+MOST_NAMES = 6  # of parts that move together
+MOST_MOTIONS = 3  # that are told in words
+
+
+def refuse_loose(structure: Structure, freedoms: int = 0) -> None:
+    """Refuse bodies that can move although no coordinate describes it, and would.
+
+    Args:
+        freedoms: the motions that coordinates describe.
+    Raises:
+        DerivationError: which bodies can move, and how.
+    """
+    if structure.mobility <= freedoms or stays(structure):
+        return
+    told = [motion_in_words(plan) for plan in structure.loose[:MOST_MOTIONS]]
+    more = len(structure.loose) - len(told)
+    enough = structure.indeterminacy + freedoms >= structure.mobility
+    kind = "infinitesimally movable" if enough else "unstable"
+    what = f"the structure is {kind}: {'; '.join(told)}{f'; and {more} more' if more else ''}"
+    if freedoms:
+        what += f" ({freedoms} of these motions {'is' if freedoms == 1 else 'are'} a coordinate's)"
+    if enough:
+        what += f"; its {len(structure.rows)} reactions are not independent there"
+    raise DerivationError(what, declared_at(_culprit(structure.loose[0])), _mend(structure, enough))
+
+
+def stays(structure: Structure) -> bool:
+    """Whether what nothing resists stays where it is all the same.
+
+    A straight body does not turn about its own line. Where the loads do no work what hangs on strings hangs still, and
+    so does a machine of which an unknown load is asked for.
+    """
+    if structure.turns_idly:
+        return True
+    kept = bool(structure.unknowns) or all(_hangs(structure, plan) for plan in structure.loose)
+    return kept and structure.is_in_balance
+
+
+def _hangs(structure: Structure, plan: VelocityPlan) -> bool:
+    """Whether a string pulls every body that moves."""
+    system = structure.system
+    ties = system.scope.model.constraints
+    ropes = [row for row in system.ties.rows if row.component == "tension" and _only_pulls(ties[row.tie])]
+    pulled = {body for row in ropes for body, _ in row.wrenches}
+    return set(plan.moving) <= pulled
+
+
+def _only_pulls(tie: Constraint) -> bool:
+    return bool(tie.strand_rows()) or bool(getattr(tie, "unilateral", False))
+
+
+def _culprit(plan: VelocityPlan) -> str:
+    """A body or node that moves."""
+    blocks = blocks_of(plan)
+    named = [name for block in blocks for name in block.bodies]
+    return named[0] if named else plan.moving[0]
+
+
+def _mend(structure: Structure, enough: bool) -> str:
+    if structure.is_special:
+        return "at other values of the parameters it is held: change these, or turn a support"
+    if enough:
+        return "turn or move a support or hinge, so that it stands across this motion"
+    held = "hold it against this motion by a further support, hinge, clamp or member"
+    model = structure.system.scope.model
+    if not model.coordinates and any(force.elastic for force in model.forces.values()):
+        held += "; a spring holds only what a coordinate moves: name the angle or displacement in the body's joint"
+    balanced = "; its loads are in balance even so, what they need then `eomgen reactions` gives"
+    return held + (balanced if structure.is_in_balance else "")
+
+
+def motion_in_words(plan: VelocityPlan) -> str:
+    """body 'AC' can turn about (4*a, 0), with it body 'CD' about (16*a, 0)"""
+    (name, (verb, _, how)), *others = [(_named(block), _motion(plan, block)) for block in blocks_of(plan)]
+    following = [f"{other} {doing} {how}" for other, (_, doing, how) in others[:MOST_MOTIONS]]
+    following += [f"{len(others) - MOST_MOTIONS} more blocks"] if len(others) > MOST_MOTIONS else []
+    return f"{name} can {verb} {how}" + (f", with it {' and '.join(following)}" if following else "")
+
+
+def _named(block: RigidBlock) -> str:
+    """Its bodies; of trusses its members, or its nodes."""
+    members = [member for _, member in block.members]
+    kinds: list[tuple[str, str, Sequence[str]]] = [
+        ("body", "bodies", block.bodies),
+        ("member", "members", members),
+        ("node", "nodes", block.nodes),
+    ]
+    return " and ".join(_of_kind(one, many, names) for one, many, names in kinds if names)
+
+
+def _of_kind(one: str, many: str, names: Sequence[str]) -> str:
+    shown = ", ".join(f"'{name}'" for name in names[:MOST_NAMES])
+    more = f" and {len(names) - MOST_NAMES} more" if len(names) > MOST_NAMES else ""
+    return f"{one if len(names) == 1 else many} {shown}{more}"
+
+
+def _motion(plan: VelocityPlan, block: RigidBlock) -> tuple[str, str, str]:
+    """(slide, sliding, along x), (turn, turning, about (a, 0))"""
+    if plan.vanishes(block.spin):
+        return "slide", "sliding", f"along {_direction(plan, vector_of(map(plan.simple, block.velocity)))}"
+    place = block.center(plan).place if plan.system.scope.model.space == "plane" else None
+    return "turn", "turning", _screw(plan, block) if place is None else f"about {_tuple(place[:2])}"
+
+
+def _screw(plan: VelocityPlan, block: RigidBlock) -> str:
+    """In space: the axis through w x v_O / w.w along w, and the advance along it."""
+    w, v = block.spin, block.velocity
+    square = dot(w, w)
+    place = tuple(plan.simple(over(x, square)) for x in cross(w, v))
+    turning = f"about the axis through {_tuple(place)} along {_direction(plan, w)}"
+    return turning if plan.vanishes((dot(w, v),)) else f"{turning}, advancing along it"
+
+
+def _direction(plan: VelocityPlan, vector: Vector) -> str:
+    """x, y, z, or the components against the first that is not 0."""
+    kept = [k for k in range(3) if not plan.vanishes((vector[k],))]
+    if len(kept) == 1:
+        return "xyz"[kept[0]]
+    ratio = times(over(1, vector[kept[0]]), vector)
+    size = 2 if plan.system.scope.model.space == "plane" else 3
+    return _tuple([plan.simple(x) if k in kept else 0 for k, x in enumerate(ratio)][:size])
+
+
+def _tuple(scalars: Iterable[Scalar]) -> str:
+    return f"({', '.join(to_text(x) for x in scalars)})"

@@ -1,0 +1,425 @@
+"""Velocities of bodies -> Plan: velocities, spins and centres of rotation of the bodies that move as one."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable, Mapping, Sequence
+from dataclasses import field, replace
+from dataclasses import field as dataclass_field
+from functools import cached_property, partial
+from itertools import chain
+from typing import Any
+
+from eomgen.mechanics.dynamics.system import System
+from eomgen.mechanics.free_bodies.wrenches import Axes, Effect
+from eomgen.mechanics.kinematics.loads import in_ground_axes
+from eomgen.mechanics.kinematics.motion import VelocityField, rotation_center
+from eomgen.model.constraints.link import trusses_of
+from eomgen.model.forces.load import BodyPoint, Couple, PointForce, SpreadLoad
+from eomgen.model.trusses import is_node
+from eomgen.records import dataclass
+from eomgen.symbolic.exact.normal_form import Legibly, readable_all
+from eomgen.symbolic.expression.derivative import substituted
+from eomgen.symbolic.expression.formula import over, sqrt
+from eomgen.symbolic.expression.node import Node, Scalar, is_zero
+from eomgen.symbolic.expression.rational import Fraction
+from eomgen.symbolic.expression.spatial import ZERO, Vector, apply, cross, dot, minus, plus, vector_of
+from eomgen.symbolic.numeric.evaluation import evaluate, fifty_digits
+from eomgen.symbolic.numeric.tolerances import ZERO_AT_50
+from eomgen.symbolic.numeric.work import Work
+
+# -------- velocity plan ---------------------------------------------------------------------------------------
+# Velocities of all bodies at one configuration -> Plan: velocities of points, spins, centres of rotation, work.
+#
+# v(P) = v_C + w x r_CP,   power of a force F at P: F . v(P),   of a couple M: M . w, of a line load q: the integral
+# of q(s) . v(s) ds
+
+
+SIXTH = Fraction(1, 6)
+
+
+@dataclass(frozen=True)
+class PlanCenter:
+    """The centre of rotation of a body in the plane.
+
+    Args:
+        place: where it is; None: at infinity, the body translates, or everywhere, it is at rest.
+        direction: of a translation, the velocity of all points; (0, 0, 0) at rest; None for a centre in sight.
+    """
+
+    place: Vector | None
+    direction: Vector | None = None
+
+
+@dataclass(frozen=True)
+class VelocityPlan:
+    """A field of velocities of rigid bodies, a velocity plan.
+
+    Args:
+        system: whose bodies.
+        at: the configuration.
+        parameters: values of 50 digits at which the motion is what it is for all others, or is asked for.
+        velocities: of each body (velocity of the mass centre, spin) in the axes of its equations, 6.
+        places: where those points are that were asked for; plans of one structure share them.
+        known: what scalars are worth that were asked for; shared too.
+    """
+
+    system: System
+    at: Mapping[Node, Scalar]
+    parameters: Mapping[Node, Any]
+    velocities: tuple[tuple[Scalar, ...], ...]
+    places: dict[BodyPoint, Vector] = dataclass_field(default_factory=dict, compare=False, repr=False)
+    known: dict[Scalar, Any] = dataclass_field(default_factory=dict, compare=False, repr=False)
+
+    def scaled(self, k: Scalar) -> VelocityPlan:
+        """k times as fast."""
+        if k == 1:
+            return self
+        flat = readable_all([k * x for six in self.velocities for x in six], Work.VALUE, self.system.scope.positive)
+        return replace(self, velocities=tuple(flat[i : i + 6] for i in range(0, len(flat), 6)))
+
+    def plus(self, other: VelocityPlan, k: Scalar = 1) -> VelocityPlan:
+        """Both motions at once, the other k times as fast."""
+        pairs = zip(self.velocities, other.velocities, strict=True)
+        rows = tuple(tuple(self.simple(x + k * y) for x, y in zip(a, b, strict=True)) for a, b in pairs)
+        return replace(self, velocities=rows)
+
+    # -- of bodies ---------------------------------------------------------------------------------
+
+    @cached_property
+    def moving(self) -> tuple[str, ...]:
+        """The bodies that do not stay at rest."""
+        links = self.system.motion.links
+        self.numbers([x for six in self.velocities for x in six])  # all at once
+        return tuple(link.name for link, six in zip(links, self.velocities, strict=True) if not self.vanishes(six))
+
+    def spin(self, body: str | None) -> Vector:
+        """Angular velocity in ground axes; of the ground (None) 0."""
+        return self.simple.vector(self.raw_spin(body))
+
+    def center_velocity(self, body: str) -> Vector:
+        """Of the mass centre, ground axes."""
+        return self.simple.vector(self.field(body).v)
+
+    def velocity(self, place: BodyPoint) -> Vector:
+        """Of a place of a body, ground axes; of the ground 0."""
+        return self.simple.vector(self.raw_velocity(place))
+
+    def raw_spin(self, body: str | None) -> Vector:
+        """`spin`, not written out."""
+        return ZERO if body is None else self.field(body).w
+
+    def raw_velocity(self, place: BodyPoint) -> Vector:
+        """`velocity`, not written out."""
+        body, _ = place
+        return ZERO if body is None else self.raw_velocity_at(body, self.position(place))
+
+    def raw_velocity_at(self, body: str, position: Vector) -> Vector:
+        """Of the point of a body that is at a place of the ground, ground axes, not written out."""
+        return self.field(body).velocity(position)
+
+    def field(self, body: str) -> VelocityField:
+        """Velocities of a body by that of its mass centre; of a body at rest all 0."""
+        if body not in self._fields:
+            self._fields[body] = self._field(body) if body in self.moving else VelocityField()
+        return self._fields[body]
+
+    def _field(self, body: str) -> VelocityField:
+        six = self._six(body)
+        return VelocityField(self.mass_center(body), self._in_ground(body, six[:3]), w=self._in_ground(body, six[3:]))
+
+    def position(self, place: BodyPoint) -> Vector:
+        """Of a place in this configuration, ground axes."""
+        if place not in self.places:
+            self.places[place] = vector_of(substituted(self.system.motion.position(place), self.at))
+        return self.places[place]
+
+    def mass_center(self, body: str) -> Vector:
+        return self.position((body, self._axes.masses[self.system.motion.index[body]].com))
+
+    def center(self, field: VelocityField) -> PlanCenter:
+        """The centre of rotation of what moves so in the plane."""
+        if self.vanishes(field.w):
+            return PlanCenter(None, ZERO if self.vanishes(field.v) else self.simple.vector(field.v))
+        return PlanCenter(self.simple.vector(rotation_center(field)))
+
+    # -- work ----------------------------------------------------------------------------------------
+
+    def work(self, load: PointForce | Couple | SpreadLoad) -> Scalar:
+        """Power of a load on the bodies in this motion, its virtual work, not written out."""
+        if isinstance(load, Couple):
+            return dot(self.force(load.couple, load.axes), self.raw_spin(load.body))
+        if isinstance(load, PointForce):
+            return dot(self.force(load.force, load.axes), self.raw_velocity(load.place))
+        return self._work_along(load)
+
+    def _work_along(self, load: SpreadLoad) -> Scalar:
+        """L/6 (2 q_A.v_A + q_A.v_B + q_B.v_A + 2 q_B.v_B): the integral of two linear functions of s."""
+        a, b = self.raw_velocity(load.start), self.raw_velocity(load.end)
+        along = minus(self.position(load.end), self.position(load.start))
+        q_A, q_B = self.force(load.at_start), self.force(load.at_end)
+        total = 2 * dot(q_A, a) + dot(q_A, b) + dot(q_B, a) + 2 * dot(q_B, b)
+        return SIXTH * self.simple(sqrt(self.simple(dot(along, along)))) * total
+
+    def work_of_effects(self, effects: Sequence[Effect]) -> Scalar:
+        """Of forces and couples as the bodies' equations hold them, not written out."""
+        total: Scalar = 0
+        for effect in effects:
+            pairs = zip(substituted(effect.six, self.at), self.velocities[effect.link], strict=True)
+            total = total + sum((f * v for f, v in pairs), start=0)
+        return total
+
+    def force(self, vector: Vector, axes: str | None = None) -> Vector:
+        """A vector of a load in this configuration, ground axes."""
+        return vector_of(substituted(in_ground_axes(self.system.motion, vector, axes), self.at))
+
+    def vanishes(self, scalars: Sequence[Scalar], beside: Sequence[Scalar] = (1,)) -> bool:
+        """Whether all of them are 0, beside what they are multiples of."""
+        nodes = [x for x in scalars if type(x) is Node]
+        if len(nodes) < len(scalars) and not all(is_zero(x) for x in scalars if type(x) is not Node):
+            return False
+        if not nodes:
+            return True
+        known = beside if not any(type(x) is Node for x in beside) else self.numbers(beside)
+        size = max(map(abs, known), default=0)
+        return all(abs(x) <= ZERO_AT_50 * size for x in self.numbers(nodes))
+
+    def numbers(self, scalars: Sequence[Scalar]) -> list[Any]:
+        """What scalars are worth at these parameters, with 50 digits."""
+        new = tuple(dict.fromkeys(x for x in scalars if x not in self.known))
+        if new:
+            self.known.update(zip(new, evaluate(new, self.parameters, fifty_digits()), strict=True))
+        return [self.known[x] for x in scalars]
+
+    # -- helpers -------------------------------------------------------------------------------------
+
+    @cached_property
+    def simple(self) -> Legibly:
+        """Scalars as a person writes them."""
+        return Legibly(Work.VALUE, self.system.scope.positive)
+
+    @cached_property
+    def _fields(self) -> dict[str, VelocityField]:
+        return {}
+
+    @cached_property
+    def _axes(self) -> Axes:
+        return Axes(self.system.motion)
+
+    def _six(self, body: str) -> tuple[Scalar, ...]:
+        return self.velocities[self.system.motion.index[body]]
+
+    def _in_ground(self, body: str, components: Sequence[Scalar]) -> Vector:
+        """From the axes of the body's equations."""
+        vector = vector_of(components)
+        if self._axes.plane:
+            return vector
+        R = substituted([x for row in self.system.motion.link(body).pose.R for x in row], self.at)
+        rotation = (vector_of(R[0:3]), vector_of(R[3:6]), vector_of(R[6:9]))
+        return apply(rotation, vector)
+
+
+# -------- blocks ----------------------------------------------------------------------------------------------
+# Plan -> Blocks: the bodies and truss members that move as one rigid body, as a textbook numbers them.
+
+
+Member = tuple[str, str, tuple[str, str]]
+"""(truss, member, its two nodes)"""
+NodeNumbers = Sequence[Any]
+"""Of a node in the plane (v_x, v_y, x, y), with 50 digits."""
+
+
+@dataclass(frozen=True)
+class RigidBlock:
+    """What moves as one rigid body.
+
+    Args:
+        bodies: their names.
+        members: of trusses, (truss, "n1-n2").
+        nodes: of trusses, of which no member moves along: points.
+        spin: angular velocity, ground axes.
+        velocity: of the point of the block at the ground's origin, ground axes.
+    """
+
+    bodies: tuple[str, ...]
+    members: tuple[tuple[str, str], ...]
+    nodes: tuple[str, ...]
+    spin: Vector
+    velocity: Vector
+
+    @property
+    def parts(self) -> tuple[str, ...]:
+        """Everything in it by name."""
+        return (*self.bodies, *(f"{truss} {member}" for truss, member in self.members), *self.nodes)
+
+    def center(self, plan: VelocityPlan) -> PlanCenter:
+        """Its centre of rotation in the plane."""
+        return plan.center(VelocityField(v=self.velocity, w=self.spin))
+
+
+def blocks_of(plan: VelocityPlan) -> tuple[RigidBlock, ...]:
+    """The blocks that move, in the order of the model; what is in none of them stays at rest."""
+    groups: list[_Group] = []
+    for part in _bodies(plan):
+        group = next((g for g in groups if _agree(g.parts[0].numbers, part.numbers)), None)
+        if group is None:
+            groups.append(_Group([part]))
+        else:
+            group.parts.append(part)
+    members = _moving_members(plan)
+    nodes = _nodes_of(plan, members)
+    for member in members:
+        group = next((g for g in groups if all(g.carries(node, nodes(node)) for node in member[2])), None)
+        if group is not None:
+            group.parts.append(_member(plan, member, ()))
+        elif numbers := _numbers_of(*map(nodes, member[2])):
+            groups.append(_Group([_member(plan, member, numbers)]))
+    blocks = [_joined(plan, group.parts) for group in groups]
+    return (*blocks, *_single_nodes(plan, blocks))
+
+
+def turning_by_one(plan: VelocityPlan) -> Scalar:
+    """1/w of the first block that turns about one axis; 1 where none does."""
+    for part in chain(_bodies(plan), _members(plan)):
+        turning = [k for k, w in enumerate(part.numbers[:3]) if abs(w) > ZERO_AT_50]
+        if len(turning) == 1:
+            return plan.simple(over(1, part.motion()[0][turning[0]]))
+    return 1
+
+
+def resting_blocks(plan: VelocityPlan) -> tuple[str, ...]:
+    """The bodies and trusses of which nothing moves, by name."""
+    links = plan.system.motion.links
+    bodies = tuple(link.name for link in links if link.name not in plan.moving and not is_node(link.name))
+    trusses = dict.fromkeys(link.name.partition(".")[0] for link in links if is_node(link.name))
+    awake = {name.partition(".")[0] for name in plan.moving if is_node(name)}
+    return (*bodies, *(name for name in trusses if name not in awake))
+
+
+def numeral(number: int) -> str:
+    """By which a textbook names a block: I, II, III, IV, ..."""
+    text = ""
+    for value, letters in ((10, "X"), (9, "IX"), (5, "V"), (4, "IV"), (1, "I")):
+        text += letters * (number // value)
+        number %= value
+    return text
+
+
+def members_of(system: System) -> list[Member]:
+    """(truss, member, its two nodes) of every truss."""
+    trusses = trusses_of(system.scope.model.constraints)
+    return [(name, member, truss.ends(member)) for name, truss in trusses.items() for member in truss.members]
+
+
+@dataclass(frozen=True)
+class _Part:
+    """A body or a member that moves, by itself.
+
+    Args:
+        numbers: its spin, and the velocity of its point at the ground's origin, 6, with 50 digits.
+        motion: both in closed form, where they are asked for.
+    """
+
+    bodies: tuple[str, ...]
+    members: tuple[tuple[str, str], ...]
+    numbers: Sequence[Any]
+    motion: Callable[[], tuple[Vector, ...]]
+
+
+def _bodies(plan: VelocityPlan) -> Iterable[_Part]:
+    """The bodies that are no nodes."""
+    names = [name for name in plan.moving if not is_node(name)]
+    motions = [(plan.raw_spin(name), plan.raw_velocity_at(name, ZERO)) for name in names]
+    flat = iter(plan.numbers([x for motion in motions for three in motion for x in three]))
+    for name, motion in zip(names, motions, strict=True):
+        yield _Part((name,), (), [next(flat) for _ in range(6)], partial(tuple, motion))
+
+
+@dataclass(frozen=True)
+class _Group:
+    """What moves as one.
+
+    Args:
+        parts: the first has the numbers of all.
+        known: of the nodes that were asked, whether they move with it.
+    """
+
+    parts: list[_Part]
+    known: dict[str, bool] = field(default_factory=dict)
+
+    def carries(self, node: str, moving: NodeNumbers) -> bool:
+        """Whether a node in the plane moves with it: v = v_0 + w x r."""
+        if node not in self.known:
+            _, _, w, v_x, v_y, _ = self.parts[0].numbers
+            vx, vy, x, y = moving
+            self.known[node] = abs(vx - v_x + w * y) < ZERO_AT_50 and abs(vy - v_y - w * x) < ZERO_AT_50
+        return self.known[node]
+
+
+def _members(plan: VelocityPlan) -> Iterable[_Part]:
+    """The moving members in the plane that keep their length."""
+    for member in _moving_members(plan):
+        if numbers := _numbers_of(*map(_nodes_of(plan, [member]), member[2])):
+            yield _member(plan, member, numbers)
+
+
+def _moving_members(plan: VelocityPlan) -> list[Member]:
+    if plan.system.scope.model.space != "plane":
+        return []
+    moving = {*plan.moving}
+    return [each for each in members_of(plan.system) if not moving.isdisjoint(each[2])]
+
+
+def _member(plan: VelocityPlan, member: Member, numbers: Sequence[Any]) -> _Part:
+    truss, name, ends = member
+    return _Part((), ((truss, name),), numbers, partial(_of_ends, plan, ends))
+
+
+def _nodes_of(plan: VelocityPlan, members: Sequence[Member]) -> Callable[[str], NodeNumbers]:
+    """node -> (vx, vy, x, y) with 50 digits, of the nodes of these members, all found in one go"""
+    names = dict.fromkeys(node for _, _, ends in members for node in ends)
+    flat = iter(plan.numbers([x for name in names for x in _of_node(plan, name)]))
+    known = {name: tuple(next(flat) for _ in range(4)) for name in names}
+    return known.__getitem__
+
+
+def _numbers_of(one: NodeNumbers, other: NodeNumbers) -> tuple[Any, ...]:
+    """Of a member by its nodes, w = r x (v_2 - v_1) / r.r; () of one that does not keep its length."""
+    (vx, vy, x, y), (wx, wy, x_2, y_2) = one, other
+    ax, ay, dx, dy = wx - vx, wy - vy, x_2 - x, y_2 - y
+    if abs(ax * dx + ay * dy) > ZERO_AT_50:
+        return ()
+    w = (dx * ay - dy * ax) / (dx * dx + dy * dy) if ax or ay else 0
+    return 0, 0, w, vx + w * y, vy - w * x, 0
+
+
+def _of_node(plan: VelocityPlan, name: str) -> tuple[Scalar, ...]:
+    """Velocity and place of a node in the plane."""
+    return (*plan.raw_velocity((name, ZERO))[:2], *plan.position((name, ZERO))[:2])
+
+
+def _of_ends(plan: VelocityPlan, ends: tuple[str, str]) -> tuple[Vector, Vector]:
+    """The motion of a member by its nodes, in closed form."""
+    (v, place), (v_2, place_2) = ((plan.raw_velocity((n, ZERO)), plan.position((n, ZERO))) for n in ends)
+    along, apart = minus(place_2, place), minus(v_2, v)
+    spin: Vector = (0, 0, over(cross(along, apart)[2], dot(along, along)))
+    moved = plus(v, cross(spin, minus(ZERO, place)))
+    return spin, (moved[0], moved[1], 0)
+
+
+def _agree(one: Sequence[Any], other: Sequence[Any]) -> bool:
+    return all(abs(x - y) < ZERO_AT_50 for x, y in zip(one, other, strict=True))
+
+
+def _joined(plan: VelocityPlan, group: list[_Part]) -> RigidBlock:
+    bodies = tuple(name for part in group for name in part.bodies)
+    members = tuple(member for part in group for member in part.members)
+    spin, velocity = (vector_of(map(plan.simple, x)) for x in group[0].motion())
+    return RigidBlock(bodies, members, (), spin, velocity)
+
+
+def _single_nodes(plan: VelocityPlan, blocks: list[RigidBlock]) -> list[RigidBlock]:
+    """Moving nodes at the end of no moving member that keeps its length."""
+    ends = {(truss, member): pair for truss, member, pair in members_of(plan.system)}
+    carried = {node for block in blocks for member in block.members for node in ends[member]}
+    alone = [name for name in plan.moving if is_node(name) and name not in carried]
+    return [RigidBlock((), (), (name,), ZERO, plan.raw_velocity((name, ZERO))) for name in alone]

@@ -1,1 +1,0 @@
-"""Small motions about a place of rest or a steady motion: M, C, K, the state matrix, modes, stability."""

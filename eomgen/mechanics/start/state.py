@@ -1,0 +1,559 @@
+"""System -> the state at the start: dependent coordinates where the constraints put them."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterable, Mapping, Sequence
+from functools import cached_property, partial
+from random import Random
+from typing import Any
+
+import numpy as np
+
+from eomgen.errors import DerivationError, MissingValues, OpenTies, UsageError
+from eomgen.mechanics.constraints.assembly import (
+    Fork,
+    fixed_by_position,
+    fork_at,
+    is_at_rest,
+    leads_on,
+    open_at,
+    open_by,
+    speeds_along,
+    that_stay,
+    tiers_of,
+    with_gaps_closed,
+)
+from eomgen.mechanics.constraints.closure import (
+    closed,
+    gaps_of,
+    is_guess,
+    is_typed,
+    movable,
+    nearest_speeds,
+    norms_of,
+    of_50_digits,
+)
+from eomgen.mechanics.constraints.elimination import dependent_coordinates
+from eomgen.mechanics.constraints.rows import Row
+from eomgen.mechanics.dynamics.formulations import mass
+from eomgen.mechanics.dynamics.system import System
+from eomgen.mechanics.dynamics.wellposed import reason_without_value
+from eomgen.mechanics.kinematics.tree import branches_of
+from eomgen.model.begun_speeds import begun_speeds
+from eomgen.model.contacts import contacts_of
+from eomgen.model.forces.load import PointForce
+from eomgen.model.parts import Model
+from eomgen.model.units import in_own_unit
+from eomgen.model.values import exact_parameters, first_guesses, numeric_parameters, start_values
+from eomgen.records import dataclass
+from eomgen.symbolic.expression.derivative import depends_on, jacobian, substituted, symbols_of
+from eomgen.symbolic.expression.node import Node, Scalar, State
+from eomgen.symbolic.expression.spatial import minus
+from eomgen.symbolic.numeric.evaluation import FLOAT, NoValue, evaluate, fifty_digits
+from eomgen.symbolic.numeric.roots import least_left
+from eomgen.symbolic.numeric.tolerances import COMPUTED, COORDINATE_AT_50, LARGEST_AT_50, OPEN_GAP, SAME_PLACE, SUMMED
+
+# -------- initial state ---------------------------------------------------------------------------------------
+# System -> the state at the start: dependent coordinates where the ties put them, and the ties found to hold.
+#
+# Of the dependent coordinates those that position ties fix are sought from `near`, else from `start`; those that only
+# velocity ties move really start at `start`. Other coordinates and speeds stay as given where the ties hold there.
+# Where these do not, the nearest values are taken at which they do (`consistency`), and what has changed is told.
+
+
+@dataclass(frozen=True)
+class Change:
+    """A coordinate or speed that does not start as it was written.
+
+    Args:
+        given: whether somebody gave it; else it is a guess, or 0.
+        words: as its user writes it, in his unit.
+    """
+
+    name: str
+    before: float
+    after: float
+    given: bool
+    words: str
+
+    def __str__(self) -> str:
+        return self.words
+
+
+@dataclass(frozen=True)
+class Start:
+    """Where a motion begins.
+
+    Args:
+        values: of every coordinate and independent speed; all ties hold.
+        changes: of those that are not dependent, so that the ties hold.
+        ties: the names of the ties that did not hold at the values given.
+        fork: where branches meet there.
+        hit: the one-sided ties into which the given speeds lead: an impact without rebound, M (u+ - u-) = J^T Lam.
+    """
+
+    values: dict[str, float]
+    changes: tuple[Change, ...] = ()
+    ties: tuple[str, ...] = ()
+    fork: Fork | None = None
+    hit: tuple[str, ...] = ()
+
+    @property
+    def words(self) -> str:
+        """What was changed, or only found where nobody gave it, and why; "" where nothing was."""
+        if not self.changes:
+            return ""
+        if self.hit:
+            changes = ", ".join(map(str, self.changes))
+            return f"changed by an impact without rebound on {quoted_names(self.hit)}: {changes}"
+        names, how = quoted_names(self.ties), "changed" if any(change.given for change in self.changes) else "completed"
+        hold = "holds" if len(self.ties) == 1 else "hold"
+        return f"{how} so that {names} {hold} at the start: {', '.join(map(str, self.changes))}"
+
+
+def refuse_lost(places: Mapping[Node, Any]) -> None:
+    """Refuses coordinates of which so few digits are left that a step or a difference is lost.
+
+    Raises:
+        DerivationError: the first of them is named.
+    """
+    for node, x in places.items():
+        if abs(x) > LARGEST_AT_50:
+            what = f"'{node.name}' is at {float(x):.6g}, where no digit is left of a small motion"
+            raise DerivationError(what, f"coordinates.{node.name}", "start nearer to 0, an angle less whole turns")
+
+
+def start_state(
+    system: System, parameters: Mapping[str, Any] | None = None, start: Mapping[str, float] | None = None
+) -> dict[str, float]:
+    """The values of `start_of_motion`, with its arguments and errors."""
+    return start_of_motion(system, parameters, start).values
+
+
+def begun_state(system: System) -> State:
+    """A value of every symbol that stands in the ties, at the start, with 50 digits."""
+    return _numbers(system, start_state(system), None)
+
+
+def start_of_motion(
+    system: System, parameters: Mapping[str, Any] | None = None, start: Mapping[str, float] | None = None
+) -> Start:
+    """Every coordinate and independent speed at the start, at which all ties hold.
+
+    Args:
+        parameters: values in place of the model's own.
+        start: values of coordinates and speeds in place of the model's own; of a dependent coordinate the first guess.
+    Raises:
+        UsageError: a name in `start` that is no coordinate and no speed.
+        MissingValues: a start value, or a tie, needs parameters without values.
+        DerivationError: a tie that does not close near there.
+    """
+    values = _given(system, parameters, start or {})
+    if all(row.identical for row in system.ties.rows):
+        return Start(values)
+    before = _numbers(system, values, parameters)
+    sought = fixed_by_position(system.ties)
+    state = (closed(system.ties, before, sought) or before) if sought else before
+    called = _called(system, start or {})
+    state, open_gaps = with_gaps_closed(system.ties, state, called)
+    refuse_open_gaps(system, state)
+    state, open_rates = _with_rates_closed(system, state, called, parameters)
+    state, hit = _after_impact(system, state, parameters)
+    refuse_open_rates(system, state)
+    state, fork, turned = _along_a_branch(system, state, called)
+    names = tuple(dict.fromkeys((*open_gaps, *open_rates, *hit, *turned)))
+    found = {node.name: _rounded(state[node], values[node.name]) for node in (*system.symbols.q, *system.symbols.u)}
+    return Start(found, _changes(system, values, found, called) if names else (), names, fork, hit)
+
+
+# -- values at which the ties hold -------------------------------------------------------------------
+
+
+def _with_rates_closed(
+    system: System, state: State, called: frozenset[str], parameters: Mapping[str, Any] | None
+) -> tuple[State, tuple[str, ...]]:
+    """(the nearest state in which speeds agree with the ties, the ties that did not hold)."""
+    apart = open_at(((row, row.velocity) for row in system.ties.closing), system.symbols.u, state)
+    ties = that_stay(system.ties, apart)
+    opened = tuple(name for name in apart if any(row.tie == name for row in ties.rows))
+    if not opened:
+        return state, ()
+    M = _inertia(system, state, parameters)
+    return nearest_speeds(ties, state, _tiers(system, called), M) or state, opened
+
+
+def _tiers(system: System, called: frozenset[str]) -> tuple[list[Node], ...]:
+    """Speeds in the order in which they are changed: those that follow from the others first."""
+    follow = following_rates(system)
+    return follow, *tiers_of(system.scope.model, [u for u in system.symbols.u if u not in follow], called)
+
+
+def following_rates(system: System) -> list[Node]:
+    """The speeds of a system over all rates that are those of dependent coordinates."""
+    names = {f"{q}'" for q in dependent_coordinates(system.scope)}
+    return [u for u in system.symbols.u if u.name in names]
+
+
+def _after_impact(system: System, state: State, parameters: Mapping[str, Any] | None) -> tuple[State, tuple[str, ...]]:
+    """(the state after the impact on one-sided ties into which its speeds lead, these ties); as it is without one.
+
+    M (u+ - u-) = J^T Lam with J u+ + sigma = 0 of all that holds and Lam >= 0 of what can only push, or pull.
+    """
+    one_sided = {contact.name for contact in contacts_of(system.scope.model) if contact.unilateral}
+    rows = [(k, row) for k, row in enumerate(system.ties.closing) if row.tie in one_sided and row.number == 1]
+    u = system.symbols.u
+    broken = [row for _, row in rows if open_by(row.velocity, u, state)]
+    hit = tuple(row.tie for row in broken if evaluate((row.velocity,), state, fifty_digits())[0] < 0)
+    M = _inertia(system, state, parameters) if hit and len(hit) == len(broken) else None
+    after = None if M is None else nearest_speeds(system.ties, state, [(), u], M)
+    if M is None or after is None:
+        return state, ()
+    J = np.array([[float(x) for x in evaluate(row, state, fifty_digits())] for row in system.ties.J])
+    moved = M @ np.array([float(after[x] - state[x]) for x in u])
+    impulses = np.linalg.lstsq(J.T, moved, rcond=None)[0]
+    if any(impulses[k] < -COMPUTED * np.max(np.abs(impulses)) for k, _ in rows):  # another one would have to hold on
+        return state, ()
+    return after, hit
+
+
+def _inertia(system: System, state: State, parameters: Mapping[str, Any] | None) -> np.ndarray | None:
+    """M at a state; None where a mass has no value."""
+    known = exact_parameters(system.scope.model, parameters)
+    values = {node: float(known[name]) for name, node in system.symbols.parameters.items() if name in known}
+    values |= {node: float(x) for node, x in state.items()}
+    rows = mass(system.motion, branches_of(system.motion))
+    entries = [x for row in rows for x in row]
+    if not set(symbols_of(entries)) <= values.keys():
+        return None
+    M = np.array(evaluate(entries, values, FLOAT)).reshape(len(rows), -1)
+    return M if np.all(np.isfinite(M)) else None
+
+
+def _along_a_branch(system: System, state: State, called: frozenset[str]) -> tuple[State, Fork | None, tuple[str, ...]]:
+    """(the nearest state whose speeds lead along a branch, where branches meet, the ties that they did not keep).
+
+    Raises:
+        DerivationError: they lead along none.
+    """
+    try:
+        fork = fork_at(system.ties, state)
+    except (DerivationError, MissingValues):  # the ties close nowhere near: there is but this place
+        return state, None, ()
+    if fork is None or is_at_rest(system.ties, state) or leads_on(system.ties, fork, state):
+        return state, fork, ()
+    found = speeds_along(system.ties, fork, state, _tiers(system, called))
+    if found is None:
+        what = f"the start lies in {fork.words}, and no motion goes on with its speeds"
+        raise DerivationError(what, f"constraints.{fork.ties[0]}", "give other speeds, or start beside that position")
+    return found, fork, fork.ties
+
+
+def _called(system: System, start: Mapping[str, float]) -> frozenset[str]:
+    """The coordinates and speeds whose start a person typed, or a caller gave: these are changed last."""
+    names = (node.name for node in (*system.symbols.q, *system.symbols.u))
+    return frozenset(name for name in names if name in start or is_typed(system.scope.model, name))
+
+
+def _changes(
+    system: System, before: Mapping[str, float], after: Mapping[str, float], called: frozenset[str]
+) -> tuple[Change, ...]:
+    """What differs, dependent coordinates left out."""
+    follow = {*dependent_coordinates(system.scope), *(u.name for u in following_rates(system))}
+    own = [x for x in (*system.symbols.q, *system.symbols.u) if x.name not in follow]
+    return tuple(
+        _change(system.scope.model, x.name, (before[x.name], after[x.name]), x.name in called)
+        for x in own
+        if abs(after[x.name] - before[x.name]) > COMPUTED * (1 + abs(before[x.name]))
+    )
+
+
+def _change(model: Model, name: str, values: tuple[float, float], called: bool) -> Change:
+    """A change from the first of two values to the second."""
+    before, after = values
+    given = called or not is_guess(model, name)
+    was = f" (not {in_own_unit(model, name, before, 6)})" if given else ""
+    return Change(name, before, after, given, f"{name} = {in_own_unit(model, name, after)}{was}")
+
+
+def _rounded(x: Any, given: float) -> float:
+    """A number of 50 digits as a float; 0 where it is rounding, and not given."""
+    return 0.0 if abs(x) < COORDINATE_AT_50 and float(x) != given else float(x)
+
+
+def start_speeds(system: System) -> dict[Node, Scalar]:
+    """Every speed at the start, as functions of the parameters and of where it starts.
+
+    Where no declared speed of the same rates has a start, they are what the start speeds of the coordinates make them.
+    """
+    scope, begun = system.scope, begun_speeds(system.scope.model.speeds)
+    model = scope.model
+    found: dict[Node, Scalar] = {}
+    rates = {f"{name}'": scope.value(part.speed) for name, part in model.coordinates.items() if not part.driven}
+    for u in scope.symbols.u:
+        if u.name in rates:
+            found[u] = rates[u.name]
+        elif u.name in begun:
+            found[u] = scope.value(model.speeds[u.name].start)
+        else:
+            found[u] = _by_rates(system, u.name, rates)
+    return found
+
+
+def _by_rates(system: System, speed: str, rates: Mapping[str, Scalar]) -> Scalar:
+    """A declared speed at given rates, those of dependent coordinates as the ties make them, at t = 0."""
+    free = system.free
+    assert free is not None, "declared speeds leave the system over the rates behind"
+    scope = free.scope if system.elimination is None else system.elimination.scope
+    known: dict[Node, Scalar] = {u: rates[u.name] for u in scope.symbols.u}
+    return substituted((scope.names[speed],), {**known, scope.symbols.t: 0})[0]
+
+
+def _given(system: System, parameters: Mapping[str, Any] | None, start: Mapping[str, float]) -> dict[str, float]:
+    """The start values as they are written, and those in their place."""
+    names = [node.name for node in (*system.symbols.q, *system.symbols.u)]
+    unknown = [name for name in start if name not in names]
+    if unknown:
+        raise UsageError(f"no coordinate or speed '{unknown[0]}'", mend=f"one of {', '.join(names)}")
+    q, u = start_values(system.scope.model, parameters)
+    guesses = first_guesses(system.scope.model, parameters)
+    sought = {node.name for node in fixed_by_position(system.ties)}
+    values = {**q, **u, **{name: x for name, x in guesses.items() if name in sought}, **start}
+    values |= _normed(system, values)
+    values |= {name: x for name, x in _by_coordinates(system, values, parameters).items() if name not in start}
+    return {name: float(values[name]) for name in names}
+
+
+def _normed(system: System, values: Mapping[str, float]) -> dict[str, float]:
+    """The coordinates of quaternions over their norm."""
+    found: dict[str, float] = {}
+    for four in system.scope.quaternions:
+        norm = math.hypot(*(values[e.name] for e in four))
+        if norm == 0:
+            raise UsageError(
+                f"the quaternion {', '.join(e.name for e in four)} cannot start at 0", mend="1, 0, 0, 0 is not turned"
+            )
+        found |= {e.name: values[e.name] / norm for e in four}
+    return found
+
+
+def _by_coordinates(
+    system: System, values: Mapping[str, float], parameters: Mapping[str, Any] | None
+) -> dict[str, float]:
+    """The declared speeds by the start speeds of the coordinates, where none of the same rates has a start."""
+    model, symbols = system.scope.model, system.symbols
+    begun = begun_speeds(model.speeds)
+    silent = [u for u in symbols.u if u.name in model.speeds and u.name not in begun]
+    formulas = start_speeds(system) if silent else {}
+    asked = tuple(formulas[u] for u in silent)
+    used = set(symbols_of(asked))
+    p = numeric_parameters(model, parameters, needed=[name for name, x in symbols.parameters.items() if x in used])
+    state = {symbols.parameters[name]: value for name, value in p.items()}
+    state |= {q: values[q.name] for q in symbols.q}
+    return {u.name: float(x) for u, x in zip(silent, evaluate(asked, state, FLOAT), strict=True)}
+
+
+def _numbers(system: System, values: Mapping[str, float], parameters: Mapping[str, Any] | None) -> State:
+    """A value of every symbol that may stand in a tie, at t = 0, with 50 digits; what is not needed may be missing."""
+    symbols = system.symbols
+    rows = [row for row in system.ties.rows if not row.identical]
+    used = set(symbols_of([x for row in rows for x in (row.velocity, 0 if row.gap is None else row.gap)]))
+    used |= set(symbols_of(system.inputs.values()))
+    needed = [name for name, node in symbols.parameters.items() if node in used]
+    p = numeric_parameters(system.scope.model, parameters, needed=needed)
+    state = {symbols.parameters[name]: of_50_digits(value) for name, value in p.items()} | {symbols.t: of_50_digits(0)}
+    state |= {node: of_50_digits(values[node.name]) for node in (*symbols.q, *symbols.u)}
+    for name, node in symbols.inputs.items():
+        state[node] = evaluate((system.inputs[name],), state, fifty_digits())[0]
+    return state
+
+
+# -------- open ties -------------------------------------------------------------------------------------------
+# System, a state -> whether its ties hold there: more than rounding apart, they are refused by name.
+
+
+def refuse_open_gaps(system: System, state: State) -> None:
+    """Raises OpenTies for the tie that is open by most, DerivationError where its gap has no value."""
+    q = system.symbols.q
+    gaps = [(row, row.gap) for row in system.ties.rows if row.gap is not None and not row.identical]
+    found = _worst(gaps, q, state)
+    if found is None:
+        return
+    row, gap, size = found
+    if size == float("inf"):
+        raise DerivationError(
+            f"'{row.tie}' (row {row.number}) {_lacking(gap, state) or 'has no value at the start'}",
+            f"constraints.{row.tie}",
+            "give start values at which its roots and quotients have one",
+        )
+    size = _in_full(system, row, size, state)
+    what = f"'{row.tie}' (row {row.number}) does not close at the start: it is open by {size:.3g}"
+    raise OpenTies(what, f"constraints.{row.tie}", _mend(system, gap), partial(_nearest, system, state))
+
+
+def _lacking(gap: Scalar, state: State) -> str:
+    """Why a gap has no value: " is 0/0 at x = 0, where it starts"."""
+    found = reason_without_value(gap, {node: float(x) for node, x in state.items()})
+    return f"{found}, where it starts" if found else ""
+
+
+def _nearest(system: System, state: State) -> str:
+    """; how near the ties come to closing, and where."""
+    miss = nearest_miss(system, state)
+    if miss is None:
+        return ""
+    model = system.scope.model
+    there = ", ".join(f"{name} = {in_own_unit(model, name, x, 6)}" for name, x in miss.values.items())
+    if not miss.open:
+        return f"; all ties close at {there}, farther than a start is moved"
+    stay = f"{quoted_names(miss.ties)} {'stays' if len(miss.ties) == 1 else 'stay'} open"
+    left = state | {q: of_50_digits(miss.values[q.name]) for q in system.symbols.q if q.name in miss.values}
+    rows = [row for row in system.ties.rows if row.gap is not None and row.tie in miss.ties]
+    gaps = evaluate([row.gap for row in rows if row.gap is not None], left, fifty_digits())
+    size = max((_in_full(system, row, abs(float(x)), left) for row, x in zip(rows, gaps, strict=True)), default=0)
+    return f"; wherever the coordinates go, {stay}: by {size:.3g} at {there}, the least that was found"
+
+
+def _in_full(system: System, row: Row, size: float, state: State) -> float:
+    """By how much a row is open: of a link, whose gap g = (L - r.r/L)/2 is a length to first order, |L - |r||.
+
+    L = g + sqrt(g^2 + r.r)
+    """
+    tie = system.scope.model.constraints.get(row.tie)
+    if row.gap is None or tie is None or not tie.by_squares:
+        return size
+    first, second = (system.motion.position(push.place) for push in row.pushes if isinstance(push, PointForce))
+    (g, *r), digits = evaluate((row.gap, *minus(second, first)), state, fifty_digits()), fifty_digits()
+    root = digits.functions["sqrt"]
+    square = sum(x * x for x in r)
+    return float(abs(g + root(g * g + square) - root(square)))
+
+
+def _mend(system: System, gap: Scalar) -> str:
+    """What closes a gap: another guess, a coordinate marked dependent, other start values."""
+    dependent = dependent_coordinates(system.scope)
+    standing = [q.name for q in system.symbols.q if depends_on(gap, (q,))]
+    sought = [name for name in standing if name in dependent]
+    if sought:
+        return f"give start values at which it can close, or another guess: `near` of {quoted_names(sought)}"
+    free = [name for name in standing if not system.scope.model.coordinates[name].driven]
+    if not free:
+        return "change the given motions"
+    return f"give start values that close it, or mark a coordinate as `dependent`: {quoted_names(free)}"
+
+
+def quoted_names(names: Sequence[str]) -> str:
+    """Names in a sentence: 'pin', 'rod'."""
+    return ", ".join(f"'{name}'" for name in names)
+
+
+def refuse_open_rates(system: System, state: State) -> None:
+    """Raises DerivationError for the closing tie whose velocity row is off by most."""
+    u = system.symbols.u
+    found = _worst(((row, row.velocity) for row in system.ties.closing), u, state)
+    if found is None:
+        return
+    row, _, size = found
+    speeds = [node.name for node in u if depends_on(row.velocity, (node,))]
+    what = f"the speeds at the start break '{row.tie}' (row {row.number}): it opens at {size:.3g} a second"
+    raise DerivationError(what, f"constraints.{row.tie}", f"give start speeds that keep it: {quoted_names(speeds)}")
+
+
+def _worst(
+    pairs: Iterable[tuple[Row, Scalar]], symbols: Sequence[Node], state: State
+) -> tuple[Row, Scalar, float] | None:
+    """(row, scalar, size) of the largest scalar that ought to be zero and is not; None where all are."""
+    found = [(row, x, open_by(x, symbols, state)) for row, x in pairs]
+    return max((each for each in found if each[2]), key=lambda each: each[2], default=None)
+
+
+# -------- nearest miss ----------------------------------------------------------------------------------------
+# System, a place where ties are open -> how near they come to closing, wherever the coordinates go.
+#
+# min |phi(q)|^2    over the coordinates that are not driven, by Levenberg and Marquardt from several places
+
+
+TRIES = 12
+REACH = 1.5  # how far from the place others are tried [rad, m]
+FAILED = 1e6  # stands for a gap that has no value
+
+
+@dataclass(frozen=True)
+class Miss:
+    """The place where the ties are open by least.
+
+    Args:
+        values: of the coordinates that stand in gaps.
+        open: the largest |phi|; 0 where they close.
+        ties: that stay open.
+    """
+
+    values: Mapping[str, float]
+    open: float
+    ties: tuple[str, ...]
+
+
+def nearest_miss(system: System, state: Mapping[Node, Any]) -> Miss | None:
+    """The place where the gaps are least, of those that close the nearest; None where nothing moves them."""
+    gaps = gaps_of(system.ties)
+    standing = set(symbols_of(gaps))
+    free = [q for q in movable(system.ties) if q in standing]
+    if not free:
+        return None
+    search = _Search(system, {node: float(x) for node, x in state.items()}, tuple(free))
+    here = np.array([search.known[q] for q in free])
+    rng = Random(1)
+    starts = [here, *(here + np.array([rng.uniform(-REACH, REACH) for _ in free]) for _ in range(TRIES))]
+    found = [search.least(start) for start in starts]
+    best = min(found, key=lambda place: (round(search.size(place) / COMPUTED), float(np.linalg.norm(place - here))))
+    values = search.at(best)[: len(gaps)]
+    size = float(np.max(np.abs(values), initial=0.0))
+    rows = [row for row in system.ties.rows if row.gap is not None and not row.identical]
+    named = [row.tie for row, x in zip(rows, values, strict=False) if abs(x) > OPEN_GAP * size]
+    places = {q.name: float(x) if abs(x) > SAME_PLACE else 0.0 for q, x in zip(free, best, strict=True)}
+    shut = size <= COMPUTED and (size <= SUMMED or _closes(system, state, dict(zip(free, best, strict=True))))
+    return Miss(places, 0.0, ()) if shut else Miss(places, size, tuple(dict.fromkeys(named)))
+
+
+def _closes(system: System, state: Mapping[Node, Any], place: Mapping[Node, float]) -> bool:
+    """Whether all ties close near a place, and not just nearly: with 50 digits."""
+    there = {node: of_50_digits(float(x)) for node, x in {**state, **place}.items()}
+    return closed(system.ties, there, movable(system.ties)) is not None
+
+
+@dataclass(frozen=True)
+class _Search:
+    system: System
+    known: dict[Node, float]
+    free: tuple[Node, ...]
+
+    @cached_property
+    def gaps(self) -> tuple[Scalar, ...]:
+        """phi, and e . e - 1 of each quaternion."""
+        return (*gaps_of(self.system.ties), *norms_of(self.system.ties))
+
+    @cached_property
+    def slopes(self) -> tuple[Scalar, ...]:
+        """The derivatives of the gaps, row by row."""
+        return tuple(x for row in jacobian(self.gaps, self.free) for x in row)
+
+    def at(self, place: np.ndarray) -> np.ndarray:
+        """The gaps as numbers."""
+        return self._numbers(self.gaps, place)
+
+    def size(self, place: np.ndarray) -> float:
+        return float(np.max(np.abs(self.at(place)), initial=0.0))
+
+    def least(self, start: np.ndarray) -> np.ndarray:
+        return least_left(self.at, start, self._slopes_at).x
+
+    def _slopes_at(self, place: np.ndarray) -> np.ndarray:
+        return self._numbers(self.slopes, place).reshape(len(self.gaps), -1)
+
+    def _numbers(self, scalars: tuple[Scalar, ...], place: np.ndarray) -> np.ndarray:
+        state = self.known | dict(zip(self.free, place.tolist(), strict=True))
+        try:
+            values = np.array(evaluate(scalars, state, FLOAT), dtype=float)
+        except (NoValue, ZeroDivisionError, OverflowError):
+            return np.full(len(scalars), FAILED)
+        return np.asarray(np.nan_to_num(values, nan=FAILED, posinf=FAILED, neginf=-FAILED))

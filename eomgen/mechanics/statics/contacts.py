@@ -1,0 +1,369 @@
+"""Model -> how its contacts are at the start and at rest, by numbers alone."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import field
+from functools import cached_property
+from itertools import islice, product
+from random import Random
+
+from eomgen.errors import DerivationError, ModelError, UsageError
+from eomgen.mechanics.constraints.closure import of_50_digits
+from eomgen.mechanics.constraints.rows import rows_of_tie
+from eomgen.mechanics.dynamics.accelerations import exact_accelerations
+from eomgen.mechanics.dynamics.system import EquationsOfMotion, System, system_of
+from eomgen.mechanics.free_bodies.friction import equations_of_motion, frictions
+from eomgen.mechanics.kinematics.scene import ContactMode, ContactModes
+from eomgen.mechanics.reactions.reactions import Reactions, reactions_of
+from eomgen.mechanics.start.state import start_state
+from eomgen.mechanics.statics.virtual_work import StaticReaction, StaticReactions
+from eomgen.model.contacts import Contact, contacts_of, rough_contacts
+from eomgen.model.parts import Model
+from eomgen.model.values import exact_parameters
+from eomgen.records import dataclass, recalled
+from eomgen.symbolic.expression.derivative import symbols_of
+from eomgen.symbolic.expression.formula import function, sqrt
+from eomgen.symbolic.expression.node import Scalar, State
+from eomgen.symbolic.numeric.evaluation import NoValue, evaluate, fifty_digits
+from eomgen.symbolic.numeric.tolerances import CARRIED, COMPUTED
+
+# -------- contacts at start -----------------------------------------------------------------------------------
+# Model -> how its contacts are at the start, by numbers of the start alone; nothing is simulated.
+#
+# A contact that can end is open where its gap is positive there, or where it opens with the speeds. Of those that
+# touch the ones leave at once that would have to pull with the accelerations that follow: of all configurations the
+# first that agrees is taken, what holds before what lets go, as a run chooses.
+#
+#     closed   N >= 0              open     gap'' >= 0
+#
+# A bilateral contact with friction pushes along its normal or against it, by the sign of N there: N with friction for
+# that sign. Where a number is missing, or the start does not hold, a contact is taken as closed, pushing along its
+# normal, and that is said.
+
+
+ROUNDS = 4  # of signs of N, each with the friction of the one before
+MOST_TRIED = 256  # configurations of contacts that touch
+SEEDS = tuple(range(11, 17))  # of values for parameters that have none: they must agree on what leaves
+OPEN = ContactMode(closed=False)
+Numbers = Mapping[str, float]
+
+
+@dataclass(frozen=True)
+class ContactsAtStart:
+    """How the contacts of a model are at its start.
+
+    Args:
+        modes: of those that are not closed, or push against their normals.
+        assumptions: what had to be assumed, in words: "floor assumed closed: h has no value".
+    """
+
+    modes: ContactModes = field(default_factory=dict)
+    assumptions: tuple[str, ...] = ()
+
+
+def contacts_at_start(model: Model) -> ContactsAtStart:
+    """The contacts that the start values leave open, and those that push against their normals there.
+
+    Without coordinates what is rough sticks. Of one model they are found once.
+    """
+    if not contacts_of(model):
+        return ContactsAtStart()
+    return recalled(model, contacts_at_start, lambda: _at_start(model))
+
+
+def _at_start(model: Model) -> ContactsAtStart:
+    contacts = contacts_of(model)
+    if not model.coordinates:
+        return ContactsAtStart(dict(modes_at_rest(model)))
+    start = _StartNumbers(model)
+    ending = [c for c in contacts if c.unilateral]
+    opened = start.open_contacts([c.name for c in ending])
+    touching = [c for c in ending if opened.modes.get(c.name, ContactMode()).closed]
+    if touching and not opened.assumptions:
+        let_go = start.leaving(touching, opened.modes)
+        opened = ContactsAtStart({**opened.modes, **let_go.modes}, let_go.assumptions)
+    both_ways = [c for c in contacts if c.friction is not None and not c.unilateral and not c.round]
+    pushing = start.pushing(both_ways, opened.modes) if both_ways else ContactsAtStart()
+    return ContactsAtStart({**opened.modes, **pushing.modes}, (*opened.assumptions, *pushing.assumptions))
+
+
+def resting_contacts(model: Model) -> tuple[str, ...]:
+    """Contacts with dry friction that touch at the start and do not slide there, by name: friction has no sign yet.
+
+    Whether they stick or begin to slide the first phase of the motion decides. () where parameters have no value.
+    """
+    if not model.coordinates or not any(c.mu is not None for c in contacts_of(model)):
+        return ()
+    start = _StartNumbers(model)
+    try:
+        return () if start.missing else tuple(sorted(start.still(contacts_at_start(model).modes)))
+    except (DerivationError, ModelError, UsageError, NoValue):
+        return ()
+
+
+@dataclass(frozen=True)
+class _StartNumbers:
+    """The start of a model in numbers, those that nobody gave drawn."""
+
+    model: Model
+
+    @cached_property
+    def _known(self) -> dict[frozenset[tuple[str, ContactMode]], EquationsOfMotion]:
+        return {}
+
+    def _equations(self, modes: ContactModes) -> EquationsOfMotion:
+        """The equations of motion under these modes, derived once: the values of parameters alone differ."""
+        key = frozenset(modes.items())
+        if key not in self._known:
+            self._known[key] = equations_of_motion(system_of(self.model, modes))
+        return self._known[key]
+
+    @cached_property
+    def missing(self) -> tuple[str, ...]:
+        known = exact_parameters(self.model)
+        return tuple(name for name in self.model.parameters if name not in known)
+
+    @cached_property
+    def drawn(self) -> Numbers:
+        rng = Random(11)
+        return {name: rng.uniform(0.7, 1.3) for name in self.missing}
+
+    def _far(self, seed: int) -> Numbers:
+        """The same of any size."""
+        rng = Random(seed)
+        return {name: 10 ** rng.uniform(-1, 1) for name in self.missing}
+
+    def open_contacts(self, names: Sequence[str]) -> ContactsAtStart:
+        """Those of the contacts that can end whose gap is positive; none where the start leaves all of them closed."""
+        if not names:
+            return ContactsAtStart()
+        try:
+            start_state(system_of(self.model), self.drawn)
+            return ContactsAtStart()
+        except DerivationError:  # as a start that leaves a contact open is refused
+            return self._by_gaps(names)
+        except (ModelError, UsageError) as error:
+            return ContactsAtStart({}, tuple(_closed(name, error.what) for name in names))
+
+    def _by_gaps(self, names: Sequence[str]) -> ContactsAtStart:
+        try:
+            free = system_of(self.model, dict.fromkeys(names, OPEN))
+            gaps, rates = _gaps(free, names, self.drawn), _rates(free, names, self.drawn)
+            others = {p: _gaps(free, names, {**self.drawn, p: 1.7 * self.drawn[p]}) for p in self.missing}
+        except (DerivationError, ModelError, UsageError) as error:
+            why = _lacking(self.missing) if self.missing else error.what
+            return ContactsAtStart({}, tuple(_closed(name, why) for name in names))
+        modes, assumptions = {}, []
+        for name, gap in gaps.items():
+            lacking = [p for p, found in others.items() if abs(found[name] - gap) > COMPUTED * (1 + abs(gap))]
+            if lacking:
+                assumptions.append(_closed(name, _lacking(lacking)))
+            elif gap > CARRIED or (gap >= -CARRIED and rates[name] > CARRIED):
+                modes[name] = OPEN
+            elif gap < -CARRIED:
+                assumptions.append(_closed(name, f"the start passes through it, by {-gap:.3g} m"))
+        return ContactsAtStart(modes, tuple(assumptions))
+
+    def leaving(self, touching: Sequence[Contact], opened: ContactModes) -> ContactsAtStart:
+        """Those of the contacts that touch and would have to pull: they leave at once."""
+        seeds = SEEDS if self.missing else SEEDS[:1]
+        try:
+            found = [self._let_go(touching, opened, self._far(seed)) for seed in seeds]
+        except (DerivationError, ModelError, UsageError, NoValue, ZeroDivisionError):
+            return ContactsAtStart()  # no force of a contact follows there, or a speed breaks one: all stay as they are
+        if any(each != found[0] for each in found):
+            names = sorted(set().union(*(each or () for each in found)))
+            return ContactsAtStart({}, tuple(_closed(name, _lacking(self.missing)) for name in names))
+        return ContactsAtStart(dict.fromkeys(found[0] or (), OPEN))
+
+    def _let_go(self, touching: Sequence[Contact], opened: ContactModes, drawn: Numbers) -> tuple[str, ...] | None:
+        """The contacts that open by the forces; None where no configuration agrees with them."""
+        still = self.still(opened) if any(c.mu is not None for c in touching) else set()
+        for away in islice(product(*((False, True) for _ in touching)), MOST_TRIED):
+            free = [c for c, opens in zip(touching, away, strict=True) if opens]
+            held = [c for c in touching if c not in free]
+            sticking = {c.name: ContactMode(sense=0) for c in held if c.name in still}
+            if self._agrees({**opened, **sticking, **{c.name: OPEN for c in free}}, held, free, drawn):
+                return tuple(c.name for c in free)
+        return None
+
+    def _agrees(self, modes: ContactModes, held: Sequence[Contact], free: Sequence[Contact], drawn: Numbers) -> bool:
+        """Whether what is held pushes, and what is free opens, with the accelerations at the start."""
+        equations = self._equations(modes)
+        system = equations.system
+        reactions, scope = reactions_of(system), system.scope
+        forces = [x for contact in held for x in _forces(reactions, contact)]
+        state = _state(system, drawn)
+        state |= dict(zip(system.symbols.a, exact_accelerations(equations, state), strict=True))
+        rates = tuple(rows_of_tie(system.motion, contact.name)[0].velocity for contact in free)
+        digits = fifty_digits()
+        pushes = evaluate(forces, state, digits)
+        opening = evaluate(scope.with_accelerations(rates), state, digits) if rates else []
+        size = max(map(abs, (*pushes, *evaluate(equations.forcing, state, digits))), default=0)
+        fastest = max((abs(state[a]) for a in system.symbols.a), default=0)
+        return all(N >= -CARRIED * size for N in pushes) and all(x >= -CARRIED * fastest for x in opening)
+
+    def pushing(self, contacts: Sequence[Contact], opened: ContactModes) -> ContactsAtStart:
+        """Those of the contacts that push against their normals: N < 0, with the friction of just that."""
+        signs = {contact.name: 1 for contact in contacts}
+        try:
+            for _ in range(ROUNDS):
+                found = self._signs(contacts, signs, opened)
+                if found == signs:
+                    break
+                signs = found
+        except _Lacking as lacking:
+            return ContactsAtStart({}, tuple(_pushing(c.name, _lacking(lacking.names)) for c in contacts))
+        except (DerivationError, ModelError, UsageError, NoValue) as error:
+            why = error.what if isinstance(error, ModelError | DerivationError | UsageError) else str(error)
+            return ContactsAtStart({}, tuple(_pushing(c.name, why) for c in contacts))
+        return ContactsAtStart({name: ContactMode(push=-1) for name, sign in signs.items() if sign < 0})
+
+    def _signs(self, contacts: Sequence[Contact], signs: Mapping[str, int], opened: ContactModes) -> dict[str, int]:
+        """The sign of N of each contact, with the friction of given signs; what does not slide sticks."""
+        still = self.still(opened)
+        modes = {c.name: ContactMode(sense=0) if c.name in still else ContactMode(push=signs[c.name]) for c in contacts}
+        equations = self._equations({**opened, **modes})
+        system = equations.system
+        reactions = reactions_of(system)
+        normals = {c.name: reactions.normal(c.name) for c in contacts}
+        entries = (*normals.values(), *equations.forcing, *(x for row in equations.M for x in row))
+        if lacking := [x.name for x in symbols_of(entries) if x.name in self.missing]:
+            raise _Lacking(tuple(lacking))
+        state = _state(system, self.drawn)
+        state |= dict(zip(system.symbols.a, exact_accelerations(equations, state), strict=True))
+        values = evaluate(tuple(normals.values()), state, fifty_digits())
+        return {name: -1 if N < -CARRIED else 1 for name, N in zip(normals, values, strict=True)}
+
+    def still(self, opened: ContactModes) -> set[str]:
+        """The contacts with dry friction that do not slide at the start."""
+        system = system_of(self.model, opened)
+        state, rough = _state(system, self.drawn), {c.name for c in contacts_of(self.model) if c.mu is not None}
+        sliding: list[tuple[str, Scalar]] = [(name, v) for name, _, v in frictions(system) if name in rough]
+        values = evaluate(tuple(v for _, v in sliding), state, fifty_digits())
+        return {name for (name, _), v in zip(sliding, values, strict=True) if abs(v) <= CARRIED}
+
+
+class _Lacking(Exception):
+    """Parameters without values decide."""
+
+    def __init__(self, names: tuple[str, ...]) -> None:
+        self.names = names
+
+
+def _state(system: System, drawn: Numbers) -> State:
+    """Every symbol of a system at the start but a, multipliers 0."""
+    symbols, values = system.symbols, start_state(system, drawn)
+    known = {**exact_parameters(system.scope.model, drawn), **values}
+    nodes = {**symbols.parameters, **{x.name: x for x in (*symbols.q, *symbols.u)}}
+    state = {node: of_50_digits(float(known[name])) for name, node in nodes.items()}
+    state |= {x: of_50_digits(0.0) for x in (symbols.t, *symbols.lam)}
+    own = evaluate(tuple(system.inputs[name] for name in symbols.inputs), state, fifty_digits())
+    return state | dict(zip(symbols.inputs.values(), own, strict=True))
+
+
+def _gaps(free: System, names: Sequence[str], drawn: Numbers) -> dict[str, float]:
+    """How far each contact is open at the start; a strand that has no gap is taut."""
+    state = _state(free, drawn)
+    gaps = {name: rows_of_tie(free.motion, name)[0].gap for name in names}
+    values = evaluate(tuple(0 if gap is None else gap for gap in gaps.values()), state, fifty_digits())
+    return {name: float(value) for name, value in zip(gaps, values, strict=True)}
+
+
+def _rates(free: System, names: Sequence[str], drawn: Numbers) -> dict[str, float]:
+    """How fast each contact opens at the start."""
+    values = evaluate(
+        tuple(rows_of_tie(free.motion, name)[0].velocity for name in names), _state(free, drawn), fifty_digits()
+    )
+    return {name: float(value) for name, value in zip(names, values, strict=True)}
+
+
+def _forces(reactions: Reactions, contact: Contact) -> list[Scalar]:
+    """What must not be negative while the contact is closed: N, of a string the tension of every strand."""
+    if not contact.pulls:
+        return [reactions.normal(contact.name)]
+    rows = reactions.balance.system.scope.model.constraints[contact.name].strand_rows()
+    return [reactions.tension(contact.name, k + 1) for k in range(max(1, len(rows)))]
+
+
+def _closed(name: str, why: str) -> str:
+    return f"{name} assumed closed: {why}"
+
+
+def _pushing(name: str, why: str) -> str:
+    return f"{name} assumed to push along its normal: {why}"
+
+
+def _lacking(names: Sequence[str]) -> str:
+    listed = ", ".join(dict.fromkeys(names))
+    return f"{listed} {'has' if len(set(names)) == 1 else 'have'} no value"
+
+
+# -------- rest contacts ---------------------------------------------------------------------------------------
+# Model -> how its contacts are at rest; reactions -> whether they can be so.
+#
+# At rest a rough contact keeps from sliding: its friction is a reaction like others, as long as |F| <= mu N. What can
+# only push, or only pull, needs N >= 0.
+
+
+@dataclass(frozen=True)
+class RestCondition:
+    """What must hold for a contact to be as it was taken.
+
+    Args:
+        tie: the contact, or the body on a path.
+        kind: "pushes", "pulls" or "sticks".
+        margin: it is not negative where the condition holds [N].
+    """
+
+    tie: str
+    kind: str
+    margin: Scalar
+
+    @property
+    def broken(self) -> str:
+        """What happens where it is negative."""
+        return {
+            "pushes": f"contact '{self.tie}' would have to pull",
+            "pulls": f"'{self.tie}' would have to push",
+            "sticks": f"contact '{self.tie}' slides: it would need more friction than mu N",
+        }[self.kind]
+
+
+def modes_at_rest(model: Model) -> ContactModes:
+    """Every contact with dry friction sticks."""
+    return {contact.name: ContactMode(sense=0) for contact in rough_contacts(model)}
+
+
+def conditions_of(statics: StaticReactions) -> tuple[RestCondition, ...]:
+    """What must hold of contacts that can end or slide, those whose reactions are determinate."""
+    found = []
+    for contact in contacts_of(statics.system.scope.model):
+        name = contact.name
+        normal, pull = (_value(statics, f"{kind}({name})") for kind in ("reaction_n", "tension"))
+        along = _resultant([_value(statics, f"reaction_{k}({name})") for k in ("ts" if contact.surface else "t")])
+        if contact.round:  # of all that it carries the part across its line
+            whole = _resultant([_value(statics, f"reaction_{axis}({name})") for axis in "xyz"])
+            normal = None if whole is None or along is None else sqrt(whole * whole - along * along)
+        if contact.unilateral and normal is not None:
+            found.append(RestCondition(name, "pushes", normal))
+        if contact.unilateral and pull is not None:
+            found.append(RestCondition(name, "pulls", pull))
+        if contact.mu is not None and normal is not None and along is not None:
+            most = statics.system.scope.value(contact.mu) * function("abs", normal)
+            found.append(RestCondition(name, "sticks", most - function("abs", along)))
+    return tuple(found)
+
+
+def _resultant(components: Sequence[Scalar | None]) -> Scalar | None:
+    """The magnitude; of one component with its sign; None where one is not determined."""
+    known = [x for x in components if x is not None]
+    if len(known) < len(components) or len(known) == 1:
+        return known[0] if len(known) == len(components) else None
+    return sqrt(sum((x * x for x in known), start=0))
+
+
+def _value(statics: StaticReactions, name: str) -> Scalar | None:
+    reaction: StaticReaction | None = statics.by_name.get(name)
+    return None if reaction is None else reaction.value

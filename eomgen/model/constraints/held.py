@@ -1,0 +1,255 @@
+"""Supports, sliders, guides, clamps and knife edges."""
+
+from collections.abc import Iterator
+from dataclasses import replace
+from typing import Any, ClassVar
+
+from eomgen.errors import ModelError
+from eomgen.model.catalog import Catalog, not_in_the_plane, owner_of
+from eomgen.model.constraints.base import BodyLine, Constraint, FlatSurface, Groove, Meeting, TouchingPoint
+from eomgen.model.constraints.pin import alike, held_together, not_turning, others_of
+from eomgen.model.constraints.plane import Touch, left, opposite, same_turn
+from eomgen.model.constraints.rolling import complement, laid_in
+from eomgen.model.constraints.row import TieRow, direction_of, normals_of
+from eomgen.model.findings import Finding
+from eomgen.model.forces.load import LoadContext, PointForce
+from eomgen.model.kinds import BodyName, Direction, Flag, FrictionLaw, GroundPlace, PointName, Points, SpaceDirection
+from eomgen.model.positions import DocumentPath
+from eomgen.records import dataclass
+from eomgen.symbolic.expression.formula import over
+from eomgen.symbolic.expression.node import Scalar
+from eomgen.symbolic.expression.spatial import IDENTITY, Vector, apply, cross, dot, minus, times, vector_of
+
+# -------- clamp -----------------------------------------------------------------------------------------------
+# Clamp: a point of a body is built in.
+
+
+@dataclass(frozen=True, kw_only=True)
+class Clamp(Constraint):
+    """A body is built into the ground at `point`, or bodies are welded together at `points`.
+
+    Args:
+        point: that stays where it stands, with its body.
+        points: one of each body instead.
+    """
+
+    kind: ClassVar[str] = "clamp"
+    one_of: ClassVar[tuple[str, ...]] = ("point", "points")
+    point: PointName | None = None
+    points: Points | None = None
+
+    def stays(self, component: str) -> bool:
+        return self.point is not None or component == "couple"
+
+    def rows(self, scene: LoadContext) -> tuple[TieRow, ...]:
+        """The rows of a pin, and no turning against the start; in space e_i . e_j = 0 of axes in either body."""
+        first, *_ = named = [scene.place(p) for p in (*(self.points or ()), self.point) if p is not None]
+        rows: list[TieRow] = []
+        for other in others_of(scene, named):
+            rows += held_together(scene, first, other)
+            bodies = first[0], other[0]
+            rows += [same_turn(scene, *bodies)] if scene.plane else not_turning(scene, bodies)
+        return tuple(rows)
+
+    def agreeing(self, scene: LoadContext) -> tuple[Scalar, ...]:
+        """In space e_i . e_i of the axes in either body."""
+        if scene.plane:
+            return ()
+        first, *_ = named = [scene.place(p) for p in (*(self.points or ()), self.point) if p is not None]
+        return tuple(alike(scene, (first[0], other[0]), e) for other in others_of(scene, named) for e in IDENTITY)
+
+
+# -------- guide -----------------------------------------------------------------------------------------------
+# Guide: a body slides without turning.
+
+
+@dataclass(frozen=True, kw_only=True)
+class Guide(Constraint):
+    """The point moves along `along` (ground axes) and its body does not turn.
+
+    A normal force and a couple; in space two forces across `along` and three couples.
+
+    Args:
+        point: what is guided.
+        along: direction of the guide, ground axes.
+    """
+
+    kind: ClassVar[str] = "guide"
+    point: PointName
+    along: Direction
+
+    def stays(self, component: str) -> bool:
+        return True
+
+    @property
+    def lies_by_start(self) -> bool:
+        return True
+
+    def rows(self, scene: LoadContext) -> tuple[TieRow, ...]:
+        """n . (p - p_start) = 0 for each n across `along`; theta - theta_start = 0, in space as a clamp."""
+        place = scene.place(self.point)
+        rows = []
+        for name, n in normals_of(scene, direction_of(scene, scene.vector(self.along))):
+            height = dot(n, scene.position(place))
+            rows.append(TieRow((PointForce(place, n),), height - scene.start(height), component=name))
+        turns = [same_turn(scene, place[0], None)] if scene.plane else not_turning(scene, (place[0], None))
+        return (*rows, *turns)
+
+    def agreeing(self, scene: LoadContext) -> tuple[Scalar, ...]:
+        """In space e_i . e_i of the ground's axes and those that the body carries."""
+        body = scene.place(self.point)[0]
+        return () if scene.plane else tuple(alike(scene, (body, None), e) for e in IDENTITY)
+
+
+# -------- slider ----------------------------------------------------------------------------------------------
+# Slider: a point stays on the line of a body.
+
+
+@dataclass(frozen=True, kw_only=True)
+class Slider(Constraint):
+    """The point stays on the line (`line = ["A", "B"]`) of body `on`.
+
+    Args:
+        point: what slides.
+        on: the body whose line it is.
+        unilateral: it can only push (in the plane).
+        friction: in the contact.
+    """
+
+    kind: ClassVar[str] = "slider"
+    holds_ground: ClassVar[bool] = True
+    on_line: ClassVar[bool] = True
+    point: PointName
+    on: BodyName
+    unilateral: Flag = False
+    friction: FrictionLaw | None = None
+
+    def findings(self, path: DocumentPath, catalog: Catalog) -> Iterator[Finding]:
+        """The body needs a line, another than that of the point; in space the slider cannot end."""
+        if _lacks_line(catalog, self.on):
+            what = f"'{path[1]}' slides on the line of body '{self.on}', which has none"
+            yield Finding((*path, "on"), what, f'give body \'{self.on}\' its line = ["A", "B"]')
+        if self.unilateral and catalog.model.space == "space":
+            what = f"'{path[1]}' holds its point on a line in space from all sides: it cannot end"
+            yield Finding((*path, "unilateral"), what, "leave it out, or use a support", key=True)
+        if self.point is not None and owner_of(self.point) == self.on:
+            what = f"the point '{self.point}' of '{path[1]}' is on the body along which it should slide"
+            yield Finding((*path, "point"), what)
+
+    def meeting(self) -> Meeting:
+        """The point, on the body's line."""
+        return Meeting(TouchingPoint(self.point), BodyLine(self.on))
+
+    def rows(self, scene: LoadContext) -> tuple[TieRow, ...]:
+        """n . (p - p_A) = 0 for each n across A -> B in the body; the line pushes along n, friction along A -> B.
+
+        In the plane n is the left normal; in space there are two, and |N| = sqrt(N_1^2 + N_2^2). A point of the ground
+        pushes the body: then n and friction are what acts on the body.
+        """
+        (_, A), (_, B) = line = scene.line(self.on)
+        if scene.moves((*A, *B)):
+            raise ModelError(f"the line of body '{self.on}' moves in the body", scene.where, "choose points that stay")
+        d, R = direction_of(scene, minus(B, A)), scene.orientation(self.on)
+        place = scene.place(self.point)
+        arm = minus(scene.position(place), scene.position(line[0]))
+        touch, sense = (Touch(place), Touch(line[0], arm)), 1
+        if place[0] is None:
+            touch, sense = (touch[1], touch[0]), -1
+        rows = [
+            TieRow(opposite(*touch, apply(R, n)), sense * dot(apply(R, n), arm), component=name)
+            for name, n in normals_of(scene, d)
+        ]
+        rows[-1] = replace(rows[-1], tangent=opposite(*touch, apply(R, d)), round=not scene.plane)
+        return tuple(rows)
+
+
+def _lacks_line(catalog: Catalog, body: Any) -> bool:
+    part = catalog.table("bodies").get(body)
+    return part is not None and part.line is None and ("bodies", body, "line") not in catalog.broken
+
+
+# -------- support ---------------------------------------------------------------------------------------------
+# Support: a point stays on a line or a plane.
+
+
+@dataclass(frozen=True, kw_only=True)
+class Support(Constraint):
+    """The point stays on the line (plane) across `normal` through `at`; the support pushes along `normal`.
+
+    Args:
+        point: what is supported.
+        normal: ground axes, 2 or 3.
+        at: a place on the line, or a ground point's name (None: where the point stands).
+        unilateral: it can only push.
+        friction: in the contact.
+    """
+
+    kind: ClassVar[str] = "support"
+    point: PointName
+    normal: Direction
+    at: GroundPlace | None = None
+    unilateral: Flag = False
+    friction: FrictionLaw | None = None
+
+    def meeting(self) -> Meeting:
+        """The point, on its line or plane."""
+        return Meeting(TouchingPoint(self.point), FlatSurface(None, self.at, self.normal))
+
+    def rows(self, scene: LoadContext) -> tuple[TieRow, ...]:
+        """n . (p - p_0) = 0, n of unit length; the support pushes along n; friction along t, with t, n as x, y.
+
+        In space along t and s, as those of a rolling body.
+        """
+        n = direction_of(scene, scene.vector(self.normal))
+        place = scene.place(self.point)
+        position = scene.position(place)
+        origin = vector_of(map(scene.start, position)) if self.at is None else scene.ground_place(self.at)
+        along: tuple[Vector, ...] = ((n[1], -n[0], 0),) if scene.plane else laid_in(scene, n)
+        tangents = [(PointForce(place, t),) for t in along]
+        gap = dot(n, minus(position, origin))
+        row = TieRow((PointForce(place, n),), gap, component="n", tangent=tangents[0])
+        return (row if scene.plane else replace(row, cross_tangent=tangents[1]),)
+
+
+# -------- skate -----------------------------------------------------------------------------------------------
+# Skate: a knife edge.
+
+
+@dataclass(frozen=True, kw_only=True)
+class Skate(Constraint):
+    """No velocity of the point across `along` (body axes); the reaction acts along the left normal.
+
+    Args:
+        point: of the edge.
+        along: the edge, body axes.
+        normal: in space, of the ice on which it cuts, ground axes; None: z.
+    """
+
+    kind: ClassVar[str] = "skate"
+    point: PointName
+    along: Direction
+    normal: SpaceDirection | None = None
+
+    def findings(self, path: DocumentPath, catalog: Catalog) -> Iterator[Finding]:
+        """The ice has no normal in the plane."""
+        yield from not_in_the_plane(catalog, path, self, ("normal",))
+
+    def meeting(self) -> Meeting:
+        """The point, in the groove that it cuts."""
+        return Meeting(
+            TouchingPoint(self.point), Groove(self.point.rpartition(".")[0] or None, self.along, self.normal)
+        )
+
+    def rows(self, scene: LoadContext) -> tuple[TieRow, ...]:
+        """n . v = 0; a row of velocities alone, which no gap has for a rate.
+
+        n is the left normal of `along`; in space, on ice of the normal e and with the edge d, n = e x d / |e x d|.
+        """
+        place = scene.place(self.point)
+        along = direction_of(scene, scene.vector(self.along))
+        if scene.plane:
+            return (TieRow((PointForce(place, left(along), axes=place[0]),), None, component="n"),)
+        e = (0, 0, 1) if self.normal is None else direction_of(scene, scene.vector(self.normal))
+        d = along if place[0] is None else apply(scene.orientation(place[0]), along)
+        n = times(over(1, complement(scene, dot(e, d))), cross(e, d))
+        return (TieRow((PointForce(place, n),), None, component="n"),)

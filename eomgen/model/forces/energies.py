@@ -1,0 +1,61 @@
+"""Energies that are declared as functions of the coordinates and speeds."""
+
+from typing import ClassVar
+
+from eomgen.model.forces.base import Act, Force, GivenEnergy
+from eomgen.model.forces.load import LoadContext
+from eomgen.model.kinds import Energy, MotionEnergy
+from eomgen.records import dataclass
+from eomgen.symbolic.expression.formula import Expression
+from eomgen.symbolic.expression.spatial import AnyScalar
+
+# -------- potential -------------------------------------------------------------------------------------------
+# Potential: an energy of the coordinates.
+
+
+@dataclass(frozen=True, kw_only=True)
+class Potential(Force):
+    """A potential energy given as an expression of coordinates, parameters and time [J].
+
+    Args:
+        energy: V.
+    """
+
+    kind: ClassVar[str] = "potential"
+    placeless: ClassVar[bool] = True
+    energy: Energy
+
+    @property
+    def acts(self) -> tuple[Act, ...]:
+        return (GivenEnergy(potential=self.energy),)
+
+    def potential(self, scene: LoadContext) -> AnyScalar | None:
+        return scene.value(self.energy)
+
+
+# -------- kinetic ---------------------------------------------------------------------------------------------
+# Kinetic: an energy of the motion that belongs to no body.
+
+
+@dataclass(frozen=True, kw_only=True)
+class Kinetic(Force):
+    """A kinetic energy given as an expression of coordinates, rates, speeds, parameters and time [J].
+
+    Its inertia forces -(d/dt dT/dq' - dT/dq) enter M and c: a model that has its energies alone, or what moves with
+    the bodies and is none, as the water round a hull.
+
+    Args:
+        energy: T.
+    """
+
+    kind: ClassVar[str] = "kinetic"
+    placeless: ClassVar[bool] = True
+    energy: MotionEnergy
+
+    @property
+    def acts(self) -> tuple[Act, ...]:
+        return (GivenEnergy(kinetic=self.energy),)
+
+    @property
+    def kinetic(self) -> Expression:
+        return self.energy

@@ -1,0 +1,338 @@
+"""Joints of one axis: revolute, prismatic, cylindrical, screw."""
+
+from abc import abstractmethod
+from typing import Annotated, Any, ClassVar
+
+from eomgen.model.fields import FormulaRule
+from eomgen.model.joints.base import (
+    Column,
+    Effort,
+    Joint,
+    Move,
+    PushAlong,
+    Scalars,
+    SlideAlong,
+    TurnAbout,
+    X,
+    Y,
+    Z,
+    across,
+    angular,
+    linear,
+    unit,
+    vector,
+)
+from eomgen.model.kinds import (
+    Angle,
+    AngularDamping,
+    AngularStiffness,
+    ConstantAngle,
+    Direction,
+    Displacement,
+    ForceFormula,
+    LinearDamping,
+    LinearStiffness,
+    RestAngle,
+    RestLength,
+    RotorInertia,
+    SlideInertia,
+    SpaceDirection,
+    Torque,
+    ValueOf,
+)
+from eomgen.records import dataclass
+from eomgen.symbolic.expression.formula import Expression, cos, sin
+from eomgen.symbolic.expression.spatial import (
+    IDENTITY,
+    Matrix,
+    Pose,
+    Vector,
+    apply,
+    product,
+    rotation,
+    times,
+    transposed,
+)
+
+# -------- axis ------------------------------------------------------------------------------------------------
+# Joints of one axis: the child turns about it, slides along it, or both.
+
+
+@dataclass(frozen=True, kw_only=True)
+class AxisJoint(Joint):
+    """X = (Rot(n, sum a_k s_k) R_0, sum b_k s_k n): each variable s_k turns by a_k about n, advances by b_k along it.
+
+    S has the columns (a_k n, b_k n). W: the torques across n, and n where nothing turns; the forces across n, and n
+    where nothing advances; of a thread the force a n with the torque -b n, which does no work.
+    """
+
+    @abstractmethod
+    def normal(self, value: ValueOf) -> Vector:
+        """The unit axis n, parent's (turned) axes."""
+
+    @abstractmethod
+    def steps(self, value: ValueOf) -> tuple[tuple[Any, Any], ...]:
+        """(a, b) of each variable: the turn [1 or rad] and the advance [1 or m] by a unit of it."""
+
+    def mounting(self, value: ValueOf) -> Matrix:
+        """R_0, the child's axes at s = 0."""
+        return IDENTITY
+
+    def turn(self, s: Scalars, value: ValueOf) -> Any:
+        return sum((a * x for (a, _), x in zip(self.steps(value), s, strict=True)), start=0)
+
+    def pose(self, s: Scalars, value: ValueOf) -> Pose:
+        n, steps = self.normal(value), self.steps(value)
+        R, angle = self.mounting(value), sum((a * x for (a, _), x in zip(steps, s, strict=True)), start=0)
+        advance = sum((b * x for (_, b), x in zip(steps, s, strict=True)), start=0)
+        return Pose(product(rotation(n, cos(angle), sin(angle)), R), times(advance, n))
+
+    def subspace(self, s: Scalars, value: ValueOf) -> tuple[Column, ...]:
+        n = self._seen_from_child(value)
+        return tuple((*times(a, n), *times(b, n)) for a, b in self.steps(value))
+
+    def complement(self, s: Scalars, value: ValueOf) -> tuple[Column, ...]:
+        n, steps = self._seen_from_child(value), self.steps(value)
+        turns, slides = any(a != 0 for a, _ in steps), any(b != 0 for _, b in steps)
+        sideways = self._across(value)
+        torques = map(angular, sideways if turns else (X, Y, Z))
+        forces = map(linear, sideways if slides else (X, Y, Z))
+        thread = [(*times(-b, n), *times(a, n)) for a, b in steps] if len(steps) == 1 and turns and slides else []
+        return (*torques, *forces, *thread)
+
+    def _across(self, value: ValueOf) -> tuple[Vector, ...]:
+        """Two directions across the axis, child's axes."""
+        R_CP = transposed(self.mounting(value))
+        return tuple(apply(R_CP, e) for e in across(self.normal(value)))
+
+    def _seen_from_child(self, value: ValueOf) -> Vector:
+        """n in the child's axes; turning about it does not change it."""
+        return apply(transposed(self.mounting(value)), self.normal(value))
+
+
+# -------- revolute --------------------------------------------------------------------------------------------
+# Revolute: the child turns about one axis.
+
+
+@dataclass(frozen=True, kw_only=True)
+class Revolute(AxisJoint):
+    """A hinge: s = angle, X = Rot(n, s), S = (n, 0); W: the torques across n and every force.
+
+    Args:
+        angle: of the child against the parent, 0 = axes agree [rad].
+        axis: in the turned axes; need not have unit length; None: z.
+        torque: on the child, minus on the parent [N m].
+        stiffness, damping, rest, armature: - k (s - rest), - d s', and armature s'^2 / 2 to T.
+    """
+
+    kind: ClassVar[str] = "revolute"
+    angle: Angle
+    axis: SpaceDirection | None = None
+    torque: Torque | None = None
+    stiffness: AngularStiffness | None = None
+    damping: AngularDamping | None = None
+    rest: RestAngle | None = None
+    armature: RotorInertia | None = None
+
+    def turns(self) -> tuple[Expression, ...]:
+        return (self.angle,)
+
+    def moves(self) -> tuple[Move, ...]:
+        return (TurnAbout(self.axis, self.angle),)
+
+    def variables(self, space: str) -> tuple[Expression, ...]:
+        return (self.angle,)
+
+    def normal(self, value: ValueOf) -> Vector:
+        return unit(vector(self.axis, value, Z))
+
+    def steps(self, value: ValueOf) -> tuple[tuple[Any, Any], ...]:
+        return ((1, 0),)
+
+    def efforts(self) -> tuple[Effort | None, ...]:
+        return (Effort(self.torque, self.stiffness, self.damping, self.rest, self.armature),)
+
+    def pushes(self) -> tuple[PushAlong, ...]:
+        return (
+            PushAlong(
+                way=self.angle,
+                push=self.torque,
+                stiffness=self.stiffness,
+                damping=self.damping,
+                rest=self.rest,
+                armature=self.armature,
+            ),
+        )
+
+
+# -------- prismatic -------------------------------------------------------------------------------------------
+# Prismatic: the child slides along one axis.
+
+
+@dataclass(frozen=True, kw_only=True)
+class Prismatic(AxisJoint):
+    """A slide: s = displacement, X = (Rot(angle), s n), S = (0, R^T n); W: every torque and the forces across n.
+
+    Args:
+        axis: n, in the turned axes; need not have unit length.
+        displacement: along n [m].
+        angle: the constant angle of the child's axes (about z in the plane, about n in space) [rad].
+        force: on the child, minus on the parent [N].
+        stiffness, damping, rest, armature: - k (s - rest), - d s', and armature s'^2 / 2 to T.
+    """
+
+    kind: ClassVar[str] = "prismatic"
+    axis: Direction
+    displacement: Displacement
+    angle: ConstantAngle | None = None
+    force: ForceFormula | None = None
+    stiffness: LinearStiffness | None = None
+    damping: LinearDamping | None = None
+    rest: RestLength | None = None
+    armature: SlideInertia | None = None
+
+    def turns(self) -> tuple[Expression, ...]:
+        return ()
+
+    def moves(self) -> tuple[Move, ...]:
+        turn_axis = None if len(self.axis) == 2 else self.axis
+        return (SlideAlong(self.axis, self.displacement), TurnAbout(turn_axis, self.angle))
+
+    def variables(self, space: str) -> tuple[Expression, ...]:
+        return (self.displacement,)
+
+    def normal(self, value: ValueOf) -> Vector:
+        return unit(vector(self.axis, value))
+
+    def steps(self, value: ValueOf) -> tuple[tuple[Any, Any], ...]:
+        return ((0, 1),)
+
+    def mounting(self, value: ValueOf) -> Matrix:
+        angle = self.turn((), value)
+        return rotation(Z if len(self.axis) == 2 else self.normal(value), cos(angle), sin(angle))
+
+    def turn(self, s: Scalars, value: ValueOf) -> Any:
+        return 0 if self.angle is None else value(self.angle)
+
+    def efforts(self) -> tuple[Effort | None, ...]:
+        return (Effort(self.force, self.stiffness, self.damping, self.rest, self.armature),)
+
+    def pushes(self) -> tuple[PushAlong, ...]:
+        return (
+            PushAlong(
+                way=self.displacement,
+                push=self.force,
+                stiffness=self.stiffness,
+                damping=self.damping,
+                rest=self.rest,
+                armature=self.armature,
+            ),
+        )
+
+
+# -------- cylindrical -----------------------------------------------------------------------------------------
+# Cylindrical: the child turns about an axis and slides along it.
+
+
+@dataclass(frozen=True, kw_only=True)
+class Cylindrical(AxisJoint):
+    """A sleeve on a shaft: s = (d, angle), X = (Rot(n, angle), d n), S = (0, n), (n, 0); W: all across n.
+
+    Args:
+        axis: n, in the turned axes; need not have unit length; None: z.
+        displacement, angle: along n [m] and about it [rad].
+        force, torque: along n and about it on the child, minus on the parent [N, N m].
+    """
+
+    kind: ClassVar[str] = "cylindrical"
+    only_space: ClassVar[bool] = True
+    axis: SpaceDirection | None = None
+    displacement: Displacement
+    angle: Angle
+    force: ForceFormula | None = None
+    torque: Torque | None = None
+
+    def turns(self) -> tuple[Expression, ...]:
+        return (self.angle,)
+
+    def moves(self) -> tuple[Move, ...]:
+        return (SlideAlong(self.axis, self.displacement), TurnAbout(self.axis, self.angle))
+
+    def variables(self, space: str) -> tuple[Expression, ...]:
+        return (self.displacement, self.angle)
+
+    def normal(self, value: ValueOf) -> Vector:
+        return unit(vector(self.axis, value, Z))
+
+    def steps(self, value: ValueOf) -> tuple[tuple[Any, Any], ...]:
+        return ((0, 1), (1, 0))
+
+    def efforts(self) -> tuple[Effort | None, ...]:
+        return (Effort(self.force), Effort(self.torque))
+
+    def pushes(self) -> tuple[PushAlong, ...]:
+        along, about = self.displacement, self.angle
+        return (PushAlong(way=along, push=self.force), PushAlong(way=about, push=self.torque))
+
+
+# -------- screw -----------------------------------------------------------------------------------------------
+# Screw: the child turns about an axis and advances with it.
+
+
+Pitch = Annotated[Expression, FormulaRule("m")]
+
+
+@dataclass(frozen=True, kw_only=True)
+class Screw(AxisJoint):
+    """A nut on a thread of pitch h: s = angle, X = (Rot(n, s), h s n), S = (n, h n).
+
+    W: torques and forces across n, and the thread's thrust: a force n with the torque -h n.
+
+    Args:
+        axis: n, in the turned axes; need not have unit length; None: z.
+        angle: about n [rad].
+        pitch: h, advance per radian [m].
+        torque: about n on the child, minus on the parent [N m].
+        stiffness, damping, rest, armature: - k (s - rest), - d s', and armature s'^2 / 2 to T.
+    """
+
+    kind: ClassVar[str] = "screw"
+    only_space: ClassVar[bool] = True
+    axis: SpaceDirection | None = None
+    angle: Angle
+    pitch: Pitch
+    torque: Torque | None = None
+    stiffness: AngularStiffness | None = None
+    damping: AngularDamping | None = None
+    rest: RestAngle | None = None
+    armature: RotorInertia | None = None
+
+    def turns(self) -> tuple[Expression, ...]:
+        return (self.angle,)
+
+    def moves(self) -> tuple[Move, ...]:
+        return (SlideAlong(self.axis, self.pitch * self.angle), TurnAbout(self.axis, self.angle))
+
+    def variables(self, space: str) -> tuple[Expression, ...]:
+        return (self.angle,)
+
+    def normal(self, value: ValueOf) -> Vector:
+        return unit(vector(self.axis, value, Z))
+
+    def steps(self, value: ValueOf) -> tuple[tuple[Any, Any], ...]:
+        return ((1, value(self.pitch)),)
+
+    def efforts(self) -> tuple[Effort | None, ...]:
+        return (Effort(self.torque, self.stiffness, self.damping, self.rest, self.armature),)
+
+    def pushes(self) -> tuple[PushAlong, ...]:
+        return (
+            PushAlong(
+                way=self.angle,
+                push=self.torque,
+                stiffness=self.stiffness,
+                damping=self.damping,
+                rest=self.rest,
+                armature=self.armature,
+            ),
+        )

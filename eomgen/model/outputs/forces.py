@@ -1,0 +1,248 @@
+"""Reactions, multipliers, drives, tensions and section forces."""
+
+from collections.abc import Iterator
+
+from eomgen.errors import DerivationError
+from eomgen.model.catalog import Catalog
+from eomgen.model.constraints.link import ends_asked
+from eomgen.model.fields import Leaf
+from eomgen.model.findings import Finding, nearest
+from eomgen.model.outputs.base import (
+    AXES,
+    BALANCE,
+    SIDES,
+    OutputContext,
+    OutputFunction,
+    ValueOf,
+    along,
+    component,
+    name_at,
+    names_of,
+)
+from eomgen.symbolic.expression.formula import Call, Expression, Reference
+from eomgen.symbolic.expression.spatial import AnyScalar
+from eomgen.symbolic.expression.text import parse
+
+# -------- reactions -------------------------------------------------------------------------------------------
+# reaction_x, reaction_n, reaction_couple, ...: of a tie, or of the joint of a body, by the balance of the bodies.
+#
+# Their second way is the same balance, solved in doubles at one state (`NumericState.reactions`), and the Newton and
+# Euler equations of every body, into which the certificate puts them.
+
+
+def _placed(call: Call) -> tuple[str, str, str]:
+    """(tie or body, the side, the frame) of reaction_x(B), reaction_x(B.II), reaction_y(bar, bar)."""
+    owner, frame = (*names_of(call), "")[:2]
+    name, _, side = owner.partition(".")
+    return name, side, frame
+
+
+def _force(scene: OutputContext, call: Call) -> AnyScalar:
+    return scene.reactions.component("force", component(call), *_placed(call))
+
+
+def _couple(scene: OutputContext, call: Call) -> AnyScalar:
+    return scene.reactions.component("couple", component(call), *_placed(call))
+
+
+def _one_couple(scene: OutputContext, call: Call) -> AnyScalar:
+    """In space along the axle of the gear's first body; other couples have no one direction there."""
+    if scene.is_plane:
+        return scene.reactions.component("couple", AXES["z"], *_placed(call))
+    owner, _, _ = _placed(call)
+    if scene.reactions.labels(owner) != ["couple"] or str(call) != f"reaction_couple({owner})":
+        names = ", ".join(str(call).replace("couple(", f"couple_{axis}(") for axis in AXES)
+        raise DerivationError(f"'{call}': a couple in space has three components", mend=f"ask {names}")
+    return scene.reactions.multiplier(owner)
+
+
+def _contact(scene: OutputContext, call: Call) -> AnyScalar:
+    owner, side, _ = _placed(call)
+    if side:
+        mend = f"ask {call.name}({owner}), at an instant where it is meant"
+        raise DerivationError(f"'{call}': normal force and friction are on the body named first", mend=mend)
+    if call.name == "reaction_n":
+        return scene.reactions.normal(owner)
+    return scene.reactions.friction(owner, call.name[-1])
+
+
+REACTION_FORCE = OutputFunction(
+    names=along("reaction_*"),
+    kinds=("reaction", "body"),
+    least=1,
+    shown="(tie or body[, body])",
+    unit="N",
+    gives="[reaction](#reactions) of a tie, or of the body's joint, in ground axes or those of the body named second",
+    value=_force,
+    source=BALANCE,
+)
+REACTION_COUPLE = OutputFunction(
+    names=along("reaction_couple_*"),
+    kinds=("reaction", "body"),
+    least=1,
+    shown="(tie or body[, body])",
+    unit="N*m",
+    gives="its couple, about the point of the joint or tie",
+    value=_couple,
+    source=BALANCE,
+)
+ONE_REACTION_COUPLE = OutputFunction(
+    names=("reaction_couple",),
+    kinds=("reaction", "body"),
+    least=1,
+    shown="(tie or body[, body])",
+    unit="N*m",
+    gives="the same in the plane; in space of a gear, along the axle of its first body",
+    value=_one_couple,
+    source=BALANCE,
+)
+CONTACT_REACTION = OutputFunction(
+    names=("reaction_n", "reaction_t", "reaction_s"),
+    kinds=("reaction", "body"),
+    least=1,
+    shown="(tie or body)",
+    unit="N",
+    gives="normal force and friction of a contact, a guide, a path; `reaction_s` across `reaction_t` on a surface",
+    value=_contact,
+    source=BALANCE,
+)
+
+
+# -------- efforts ---------------------------------------------------------------------------------------------
+# multiplier, drive, pull, couple: along the gap of a tie, a driven coordinate, a spring, a damper.
+
+
+MULTIPLIER = OutputFunction(
+    names=("multiplier",),
+    kinds=("tie",),
+    least=1,
+    unit="J",
+    per=(0,),
+    gives="of a tie of one row",
+    value=lambda scene, call: scene.multiplier(name_at(call, 0)),
+    second=lambda trial, call: trial.held(name_at(call, 0)),
+    source=BALANCE,
+)
+DRIVE = OutputFunction(
+    names=("drive",),
+    kinds=("coordinate",),
+    least=1,
+    unit="J",
+    per=(0,),
+    gives="force or couple that moves a driven coordinate as given",
+    value=lambda scene, call: scene.drive(name_at(call, 0)),
+    second=lambda trial, call: trial.demanded(name_at(call, 0)),
+    source=BALANCE,
+)
+PULL = OutputFunction(
+    names=("pull",),
+    kinds=("force between points",),
+    least=1,
+    unit="N",
+    gives="of a spring, a damper, a `between`: what draws its points together",
+    value=lambda scene, call: scene.effort(name_at(call, 0)),
+    second=lambda trial, call: trial.acting(name_at(call, 0)),
+    moves=True,
+)
+COUPLE = OutputFunction(
+    names=("couple",),
+    kinds=("force between bodies",),
+    least=1,
+    unit="N*m",
+    gives="of a torsion spring or damper: on its second body, counter-clockwise",
+    value=lambda scene, call: scene.effort(name_at(call, 0)),
+    second=lambda trial, call: -trial.acting(name_at(call, 0)),
+    moves=True,
+)
+
+
+# -------- tension ---------------------------------------------------------------------------------------------
+# tension: of a link, of a strand of a string, or of a member of a truss.
+
+
+def _tension(scene: OutputContext, call: Call) -> AnyScalar:
+    """tension(rope), tension(rope, 2), or tension(T, n1-n2) of a truss."""
+    name, strand = name_at(call, 0), call.args[1:]
+    if scene.is_truss(name):
+        return scene.reactions.member(name, *_ends(call))
+    number = strand[0].literal if strand and isinstance(strand[0], Expression) else 1
+    if not isinstance(number, int) or len(strand) > 1:
+        raise DerivationError(
+            f"'{call}': the second argument is the number of the strand, from 1", mend="tension(string, 1)"
+        )
+    return scene.reactions.tension(name, number)
+
+
+def _ends(call: Call) -> tuple[str, str]:
+    """The nodes of the member that an output asks for."""
+    ends = ends_asked(call)
+    if ends is None:
+        raise DerivationError(f"'{call}' names no member of a truss", mend=f"write tension({call.args[0]}, n1-n2)")
+    return ends
+
+
+def _findings(catalog: Catalog, leaf: Leaf, call: Call) -> Iterator[Finding]:
+    """Of a truss the tension of one of its members can be asked."""
+    owner = call.args[0]
+    if not isinstance(owner, Reference):
+        return
+    truss = catalog.table("trusses").get(owner.name)
+    if truss is None or truss.members is None:
+        return
+    ends = ends_asked(call)
+    if ends is None or set(ends) not in [set(member.split("-")) for member in truss.members]:
+        what = f"truss '{owner.name}' has no member '{'-'.join(ends)}'" if ends else f"'{call}' names no member"
+        mend = nearest("-".join(ends or ()), truss.members) or f"tension({owner.name}, {truss.members[0]})"
+        yield Finding(leaf.path, what, mend, call.column, len(call.name))
+
+
+TENSION = OutputFunction(
+    names=("tension",),
+    kinds=("tie or truss", "any", "any"),
+    least=1,
+    shown="(tie[, number]) or (truss, n1-n2)",
+    unit="N",
+    gives="of a link; of a strand of a string, from 1 (default); of a member of a [truss](#trusses), by its two nodes",
+    value=_tension,
+    source=BALANCE,
+    findings=_findings,
+)
+
+
+# -------- section forces --------------------------------------------------------------------------------------
+# axial_force, shear_force, bending_moment: at a distance from the start of a body's line.
+
+
+def distance_of(call: Call) -> Expression:
+    """The second argument: L-c reads like a member."""
+    x = call.args[1]
+    return parse(x.name) if isinstance(x, Reference) else x
+
+
+def _section(scene: OutputContext, call: Call) -> AnyScalar:
+    """bending_moment(beam, a), shear_force(beam, a, before)."""
+    sides = [name_at(call, k) for k in range(2, len(call.args))]
+    if any(name not in SIDES for name in sides):
+        raise DerivationError(f"'{call}': the third argument is before or after", mend="N(body, x, before)")
+    x = distance_of(call).evaluate(scene.names)
+    return scene.section(name_at(call, 0)).value(call.name, x, *sides)
+
+
+def _of(name: str, unit: str, gives: str, value: ValueOf) -> OutputFunction:
+    return OutputFunction(
+        names=(name,),
+        kinds=("body", "number", "side"),
+        least=2,
+        shown="(body, distance[, before or after])",
+        unit=unit,
+        gives=gives,
+        value=value,
+        source=BALANCE,
+    )
+
+
+SECTION_FORCES = (
+    _of("axial_force", "N", "[section forces](#section-forces), at a distance from the start of its line", _section),
+    _of("shear_force", "N", "across it; at a jump the side is needed", _section),
+    _of("bending_moment", "N*m", "the moment there", _section),
+)

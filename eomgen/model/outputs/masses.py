@@ -1,0 +1,296 @@
+"""Masses, moments of inertia and angular momenta of bodies."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from typing import Any
+
+from eomgen.errors import DerivationError
+from eomgen.model.outputs.base import (
+    AXES,
+    MASSES,
+    OutputContext,
+    OutputFunction,
+    SecondOf,
+    Trial,
+    ValueOf,
+    along,
+    component,
+    name_at,
+    number_at,
+)
+from eomgen.symbolic.expression.formula import Call, over
+from eomgen.symbolic.expression.node import is_zero
+from eomgen.symbolic.expression.rational import Fraction
+from eomgen.symbolic.expression.spatial import (
+    IDENTITY,
+    AnyScalar,
+    Matrix,
+    Numbers,
+    Vector,
+    apply,
+    cross,
+    dot,
+    matrix_of,
+    minus,
+    vector_of,
+)
+
+# -------- bodies meant ----------------------------------------------------------------------------------------
+# Which bodies a function of masses is asked of, and whether enough is known of them.
+
+
+def bodies_from(scene: OutputContext, call: Call, first: int) -> tuple[str, ...]:
+    """The bodies from the argument `first` on; without any, all of them."""
+    named = tuple(name_at(call, k) for k in range(first, len(call.args)))
+    if len(set(named)) < len(named):
+        raise DerivationError(f"'{call}' names a body twice", mend="name each once")
+    if "ground" in named:
+        raise DerivationError(f"'{call}': the ground has no mass", mend="name bodies")
+    return named or scene.bodies
+
+
+def refuse_unknown(scene: OutputContext, call: Call, bodies: Sequence[str], *, about_z: bool) -> None:
+    """What is asked must be known of the bodies.
+
+    Args:
+        about_z: the moments about z are enough.
+    Raises:
+        DerivationError: naming a body of which it is not known.
+    """
+    if unknown := scene.without_inertia(bodies):
+        raise DerivationError(
+            f"'{call}': body '{unknown[0]}' has a mass and no inertia",
+            f"bodies.{unknown[0]}",
+            "give 'inertia' (0 for a point), or a shape",
+        )
+    if not about_z and (unknown := scene.known_about_z(bodies)):
+        what = f"'{call}': of body '{unknown[0]}' only the moment about z is known, its 'inertia'"
+        raise DerivationError(what, f"bodies.{unknown[0]}", "give it a shape, or parts")
+
+
+# -------- mass of ---------------------------------------------------------------------------------------------
+# mass_of: of a body, or of one of its parts (of a hole: what it takes away).
+
+
+def _mass(scene: OutputContext, call: Call) -> AnyScalar:
+    body = name_at(call, 0)
+    if body == "ground":
+        raise DerivationError(f"'{call}': the ground has no mass", mend="name a body")
+    if len(call.args) == 1:
+        whole: AnyScalar = scene.mass(body).m
+        return whole
+    parts = scene.parts(body)
+    if parts is None:
+        raise DerivationError(f"'{call}': body '{body}' is not made of parts", mend=f"write mass_of({body})")
+    return scene.mass_of_part(body, number_at(call, 1, parts))
+
+
+MASS_OF = OutputFunction(
+    names=("mass_of",),
+    kinds=("body", "number"),
+    least=1,
+    unit="kg",
+    gives="of a body, or of one of its parts (of a hole: what it takes away)",
+    value=_mass,
+    source=MASSES,
+)
+
+
+# -------- moments of inertia ----------------------------------------------------------------------------------
+# inertia_point, _axis, _plane, _product, _tensor, principal_moment: of bodies about a point, ground axes.
+#
+#     tensor    I_P = integral (r.r 1 - r r^T) dm        axis     n.I_P n,  n a unit vector along it
+#     point     integral r.r dm = tr(I_P) / 2            plane    integral x^2 dm = tr(I_P) / 2 - I_xx
+#     product   + integral x y dm = -I_xy
+#
+# The tensor's products carry a minus, those of the textbooks a plus; no function gives both. By the second way the
+# same integrals are sums over particles; no parallel axes, and no tensor is turned.
+
+
+HALF = Fraction(1, 2)
+
+
+def about_axis(I: Matrix, along: Vector) -> AnyScalar:
+    """d.I d / d.d, the moment about the axis through the tensor's point in the direction d, of any length."""
+    return over(dot(along, apply(I, along)), dot(along, along))
+
+
+def polar(I: Matrix) -> AnyScalar:
+    """About the point itself: the integral of r.r dm = tr(I) / 2."""
+    return HALF * (I[0][0] + I[1][1] + I[2][2])
+
+
+def second_moments(I: Matrix) -> Matrix:
+    """P = tr(I) / 2 - I, the integrals of x_i x_j dm: moments about planes, and the textbook's products with a plus."""
+    half = polar(I)
+    return matrix_of(((half if i == j else 0) - I[i][j] for j in range(3)) for i in range(3))
+
+
+def _tensor(scene: OutputContext, call: Call, first: int, *, about_z: bool = False) -> Matrix:
+    """I_P of the bodies from the argument `first` on, at the state."""
+    bodies = bodies_from(scene, call, first)
+    refuse_unknown(scene, call, bodies, about_z=about_z)
+    return matrix_of(scene.placed(*scene.tensor(scene.position(name_at(call, 0)), bodies)))
+
+
+def _axis_at(call: Call, k: int) -> int:
+    return AXES[name_at(call, k)]
+
+
+def _direction(scene: OutputContext, call: Call) -> Vector:
+    """Along x, y or z, or from the point to another one."""
+    name = name_at(call, 1)
+    if name in AXES:
+        return IDENTITY[AXES[name]]
+    ((x, y, z),) = scene.placed(minus(scene.position(name), scene.position(name_at(call, 0))))
+    if all(is_zero(c) for c in (x, y, z)):
+        raise DerivationError(
+            f"'{call}': both points are in one place, so they are on no single axis",
+            mend="name two points that are apart",
+        )
+    return (x, y, z)
+
+
+def _about_axis(scene: OutputContext, call: Call) -> AnyScalar:
+    along = _direction(scene, call)
+    return about_axis(_tensor(scene, call, 2, about_z=is_zero(along[0]) and is_zero(along[1])), along)
+
+
+def _about_point(scene: OutputContext, call: Call) -> AnyScalar:
+    """A body of the plane that is given by its moment about z counts as thin: its I_xx + I_yy is I_zz."""
+    thin = scene.known_about_z(bodies_from(scene, call, 1))
+    missing = HALF * sum(scene.mass(body).I[2][2] for body in thin)
+    return polar(_tensor(scene, call, 1, about_z=True)) + missing
+
+
+def _second_moment(scene: OutputContext, call: Call, i: int, j: int, first: int) -> AnyScalar:
+    return second_moments(_tensor(scene, call, first))[i][j]
+
+
+def _entry(scene: OutputContext, call: Call) -> AnyScalar:
+    i, j = _axis_at(call, 1), _axis_at(call, 2)
+    return _tensor(scene, call, 3, about_z=i == j == 2)[i][j]
+
+
+def _principal(scene: OutputContext, call: Call) -> AnyScalar:
+    return scene.principal_moments(_tensor(scene, call, 2))[number_at(call, 1, 3) - 1]
+
+
+# -- by particles -------------------------------------------------------------------------------------
+
+
+def _from_point(trial: Trial, call: Call, first: int) -> Iterator[tuple[Any, Numbers]]:
+    """(mass, place from the point) of the particles of the bodies that are meant."""
+    point = vector_of(trial.along(trial.scene.position(name_at(call, 0)))[0])
+    for body in bodies_from(trial.scene, call, first):
+        for m, r, _ in trial.particles(body, still=True):
+            yield m, minus(r, point)
+
+
+def _sum_of_axis(trial: Trial, call: Call) -> Any:
+    """sum m |n x r|^2 / n.n"""
+    n = vector_of(trial.along(_direction(trial.scene, call))[0])
+    squares = ((m, cross(n, r)) for m, r in _from_point(trial, call, 2))
+    return sum(m * dot(d, d) for m, d in squares) / dot(n, n)
+
+
+def _sum_of_products(trial: Trial, call: Call, i: int, j: int, first: int) -> Any:
+    return sum(m * r[i] * r[j] for m, r in _from_point(trial, call, first))
+
+
+def _sum_of_entry(trial: Trial, call: Call) -> Any:
+    i, j = _axis_at(call, 1), _axis_at(call, 2)
+    if i != j:
+        return -_sum_of_products(trial, call, i, j, 3)
+    return sum(_sum_of_products(trial, call, k, k, 3) for k in range(3) if k != i)
+
+
+def _eigenvalue(trial: Trial, call: Call) -> Any:
+    P = [[_sum_of_products(trial, call, i, j, 2) for j in range(3)] for i in range(3)]
+    whole = P[0][0] + P[1][1] + P[2][2]
+    tensor = [[(whole if i == j else 0) - P[i][j] for j in range(3)] for i in range(3)]
+    return trial.eigenvalues(tensor)[number_at(call, 1, 3) - 1]
+
+
+def _moment(name: str, kinds: tuple[str, ...], gives: str, value: ValueOf, second: SecondOf) -> OutputFunction:
+    return OutputFunction(
+        names=(name,),
+        kinds=kinds,
+        least=len(kinds),
+        more="body",
+        unit="kg*m^2",
+        gives=gives,
+        value=value,
+        second=second,
+        source=MASSES,
+    )
+
+
+INERTIA_POINT = _moment(
+    "inertia_point",
+    ("point",),
+    "integral of r^2 dm, of the bodies named or of all, where they are",
+    _about_point,
+    lambda trial, call: sum(m * dot(r, r) for m, r in _from_point(trial, call, 1)),
+)
+INERTIA_AXIS = _moment(
+    "inertia_axis",
+    ("point", "point or axis"),
+    "about the axis through both points, or along x, y, z through the first",
+    _about_axis,
+    _sum_of_axis,
+)
+INERTIA_PLANE = _moment(
+    "inertia_plane",
+    ("point", "axis"),
+    "about the plane across that axis: integral of x^2 dm",
+    lambda scene, call: _second_moment(scene, call, _axis_at(call, 1), _axis_at(call, 1), 2),
+    lambda trial, call: _sum_of_products(trial, call, _axis_at(call, 1), _axis_at(call, 1), 2),
+)
+INERTIA_PRODUCT = _moment(
+    "inertia_product",
+    ("point", "axis", "axis"),
+    "the textbook's: + integral of x y dm",
+    lambda scene, call: _second_moment(scene, call, _axis_at(call, 1), _axis_at(call, 2), 3),
+    lambda trial, call: _sum_of_products(trial, call, _axis_at(call, 1), _axis_at(call, 2), 3),
+)
+INERTIA_TENSOR = _moment(
+    "inertia_tensor",
+    ("point", "axis", "axis"),
+    "an entry of the tensor: x, y is - integral of x y dm",
+    _entry,
+    _sum_of_entry,
+)
+PRINCIPAL_MOMENT = _moment("principal_moment", ("point", "number"), "1, 2, 3, ascending", _principal, _eigenvalue)
+
+
+# -------- angular momentum ------------------------------------------------------------------------------------
+# angular_momentum_x, _y, _z: L_P = sum (R I_C R^T w + m d x v_C). By the second way sum m r x v over particles.
+
+
+def _momentum(scene: OutputContext, call: Call) -> AnyScalar:
+    bodies, axis = bodies_from(scene, call, 1), component(call)
+    turning = [b for b in bodies if any(not is_zero(w) for w in scene.spin(b))]
+    refuse_unknown(scene, call, turning, about_z=axis == 2)
+    return scene.angular_momentum(scene.position(name_at(call, 0)), bodies)[axis]
+
+
+def _sum(trial: Trial, call: Call) -> Any:
+    point = vector_of(trial.along(trial.scene.position(name_at(call, 0)))[0])
+    bodies, axis = bodies_from(trial.scene, call, 1), component(call)
+    return sum(m * cross(minus(r, point), v)[axis] for body in bodies for m, r, v in trial.particles(body, still=True))
+
+
+ANGULAR_MOMENTUM = OutputFunction(
+    names=along("angular_momentum_*"),
+    kinds=("point",),
+    least=1,
+    more="body",
+    unit="kg*m^2/s",
+    gives="sum of r x m v and I w about the point, ground axes, of the velocities against the ground",
+    value=_momentum,
+    second=_sum,
+    source=MASSES,
+    moves=True,
+)

@@ -1,0 +1,634 @@
+"""Forces, springs and strings: whether they act as their fields declare."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Iterator, Sequence
+from functools import cached_property
+from itertools import pairwise
+from random import Random
+from typing import Any
+
+from eomgen.mechanics.dynamics.system import EquationsOfMotion, System
+from eomgen.mechanics.kinematics.inertia import HALF, mass_properties
+from eomgen.mechanics.kinematics.loads import Applied, JointEffort, weights
+from eomgen.mechanics.kinematics.motion import BodyLink, velocity_of
+from eomgen.mechanics.kinematics.scene import SystemScene
+from eomgen.model.constraints.base import Thread
+from eomgen.model.forces.base import (
+    Act,
+    CoupleOn,
+    Element,
+    GivenEnergy,
+    PushAlongLine,
+    PushAt,
+    PushOfMass,
+    PushOnCoordinate,
+)
+from eomgen.model.forces.load import UniformField
+from eomgen.model.joints.base import PushAlong
+from eomgen.proof.in_numbers import (
+    STEP,
+    InNumbers,
+    Pushes,
+    Way,
+    add_push,
+    direction_at,
+    pushed_otherwise,
+    pushes_of,
+    way_through,
+)
+from eomgen.proof.states import refuse_open
+from eomgen.records import dataclass
+from eomgen.symbolic.expression.node import Scalar, State, is_zero
+from eomgen.symbolic.expression.spatial import (
+    ZERO,
+    Numbers,
+    Pose,
+    Twist,
+    Vector,
+    apply,
+    cross,
+    dot,
+    minus,
+    plus,
+    product,
+    times,
+    transposed,
+    vector_of,
+)
+from eomgen.symbolic.numeric.evaluation import NoValue, evaluate, fifty_digits
+from eomgen.symbolic.numeric.tolerances import COMPUTED, DIFFERENCE_AT_50, ZERO_AT_50
+
+# -------- declared work ---------------------------------------------------------------------------------------
+# System, state -> whether all that is applied acts as its fields declare it, in numbers: no load is looked at twice.
+#
+#     sum F . dr + sum tau . w + sum Q_i dq_i + sum f ds - dV  =  Q . d,      dq = N d,  d at random
+#
+# dr, w = vee(dR R^T), ds and dV are central differences of the places, axes, joint variables and energies at q +- h N
+# d. A line load is taken by Simpson's rule, which is exact for it. Before the whole, each force by itself, on every
+# body: moment about the ground's origin and force, ground axes.
+
+
+Term = tuple[Scalar, Any]
+"""(what moves, what is done for a unit of it)"""
+Placed = tuple[str | None, tuple[Scalar, ...], Numbers]
+"""(body, a place of it as a function of the coordinates, the force there in ground axes)"""
+SIMPSON = ((0, 1), (1, 4), (2, 1))  # (halves of the way, sixths of the length)
+
+
+def acting_otherwise(system: System, state: State) -> str:
+    """What pushes bodies otherwise than it is declared at a state; "" where nothing does.
+
+    Raises:
+        NoValue: something has no value there.
+    """
+    proof = _Declared(system, state)
+    for applied in system.loads.applied:
+        if any(isinstance(load, UniformField) for load in applied.loads):
+            continue
+        due = proof.pushes(system.scope.model.forces[applied.name].acts)
+        if body := pushed_otherwise(pushes_of(system.motion, state, applied.loads), due, _size(due)):
+            return f"forces.{applied.name} pushes '{body}' otherwise than it is declared"
+    due = proof.pushes(proof.acts)
+    stated = pushes_of(system.motion, state, (*system.loads.placed, *weights(system.loads)))
+    if body := pushed_otherwise(stated, due, _size(due)):
+        return f"all forces together push '{body}' otherwise than they are declared"
+    return ""
+
+
+def declared_pushes(system: System, state: State, force: str) -> Pushes:
+    """Of each body (moment about the ground's origin, force) of one force as its fields declare it.
+
+    Raises:
+        NoValue: it has none at the state.
+    """
+    return _Declared(system, state).pushes(system.scope.model.forces[force].acts)
+
+
+def working_otherwise(equations: EquationsOfMotion, state: State) -> str:
+    """That Q does another work along a random direction than what is declared; "".
+
+    Raises:
+        NoValue: something has no value there.
+    """
+    proof, u = _Declared(equations.system, state), equations.symbols.u
+    rng = Random(23)
+    d = [fifty_digits().number(rng.choice((-1, 1)) * rng.randint(50, 100)) / 100 for _ in u]
+    friction = equations.friction or (0,) * len(u)
+    Q = proof.at(tuple(x - f for x, f in zip(equations.Q, friction, strict=True)))
+    stated = sum((x * y for x, y in zip(Q, d, strict=True)), start=0)
+    works = proof.works(proof.turned(d))
+    due, size = sum(works, start=0), 1 + sum(map(abs, works)) + sum(abs(x * y) for x, y in zip(Q, d, strict=True))
+    if abs(stated - due) <= DIFFERENCE_AT_50 * size:
+        return ""
+    return f"Q does the work {float(stated):.10g} for {float(due):.10g} of all that is declared"
+
+
+def _size(pushes: Pushes) -> Any:
+    return 1 + sum(abs(x) for both in pushes.values() for v in both for x in v)
+
+
+@dataclass(frozen=True)
+class _Declared(InNumbers):
+    """All that is declared, at one state."""
+
+    @property
+    def scene(self) -> SystemScene:
+        return SystemScene(self.motion, begun=self.system.loads.begun)
+
+    def turned(self, d: Sequence[Any]) -> Way:
+        """The states at q +- h N d; nothing else changes."""
+        symbols, scope = self.system.symbols, self.system.scope
+        flat = self.at([x for row in scope.N for x in row])
+        n = len(symbols.u)
+        moved = [
+            sum((x * y for x, y in zip(flat[n * i : n * i + n], d, strict=True)), start=0) for i in range(len(scope.N))
+        ]
+
+        def beside(h: Any) -> State:
+            return {**self.state, **{q: self.state[q] + h * x for q, x in zip(symbols.q, moved, strict=True)}}
+
+        return Way((beside(-STEP), self.state, beside(STEP)), STEP)
+
+    # -- work ------------------------------------------------------------------------------------------------
+
+    def works(self, way: Way) -> list[Any]:
+        """Of every act and every joint, along a way."""
+        terms = [term for act in self.acts for term in self._terms(act)]
+        terms += [term for push in self._in_joints for term in self._of_joint(push)]
+        rates = way.rates([moving for moving, _ in terms])
+        return [k * x for (_, k), x in zip(terms, rates, strict=True)]
+
+    @property
+    def acts(self) -> Iterator[Act]:
+        for force in self.system.scope.model.forces.values():
+            yield from force.acts
+
+    @property
+    def _in_joints(self) -> Iterator[PushAlong]:
+        for link in self.system.motion.links:
+            yield from () if link.joint is None else link.joint.pushes()
+
+    def _terms(self, act: Act) -> Iterator[Term]:
+        scope = self.system.scope
+        if isinstance(act, CoupleOn):
+            yield from self._of_couple(act.body, self._couple(act))
+        elif isinstance(act, PushOnCoordinate):
+            yield scope.names[act.coordinate], self.one(scope.value(act.value))
+        elif isinstance(act, GivenEnergy):
+            yield scope.value(act.potential), fifty_digits().number(-1)
+        elif isinstance(act, Element) and not act.points:
+            pull = ActingElement(self.system, self.state, act).law[0]
+            for body, sign in zip(act.bodies, (1, -1), strict=True):
+                if body is not None:
+                    yield from self._of_couple(body, (0, 0, sign * pull))
+        else:
+            for _, place, force in self._placed(act):
+                yield from zip(place, force, strict=True)
+
+    def _of_couple(self, body: str, couple: Sequence[Any]) -> Iterator[Term]:
+        """tau . vee(dR R^T), entry by entry of dR."""
+        R = self.motion.link(body).pose.R
+        now = self.at([x for row in R for x in row])
+        for i, j, axis in ((2, 1, 0), (0, 2, 1), (1, 0, 2)):
+            if couple[axis]:
+                yield from ((R[i][k], couple[axis] * now[3 * j + k]) for k in range(3))
+
+    def _of_joint(self, push: PushAlong) -> Iterator[Term]:
+        """(push - c s' - k (s - rest)) ds, s' along the motion."""
+        scope = self.system.scope
+        s = scope.value(push.way)
+        f, k, c, rest, now = self.at((*map(scope.value, (push.push, push.stiffness, push.damping, push.rest)), s))
+        rate = way_through(self.system, self.state).rates((s,))[0] if c else 0
+        yield s, f - c * rate - k * (now - rest)
+
+    # -- what acts on bodies ---------------------------------------------------------------------------------
+
+    def pushes(self, acts: Iterable[Act]) -> Pushes:
+        """Of each body (moment about the ground's origin, force)."""
+        found: Pushes = {}
+        for act in acts:
+            if isinstance(act, CoupleOn):
+                add_push(found, act.body, self._couple(act), ZERO)
+            elif isinstance(act, Element) and not act.points:
+                pull = ActingElement(self.system, self.state, act).law[0]
+                for body, sign in zip(act.bodies, (1, -1), strict=True):
+                    add_push(found, body, (0, 0, sign * pull), ZERO)
+            elif not isinstance(act, (PushOnCoordinate, GivenEnergy)):
+                for body, place, force in self._placed(act):
+                    add_push(found, body, cross(self.vector(place), force), force)
+        return found
+
+    def _placed(self, act: Act) -> Iterator[Placed]:
+        if isinstance(act, PushAt):
+            place = self.scene.place(act.point)
+            axes = None if act.axes == "ground" else act.axes
+            force = self.carried(axes, self.vector(self.scene.vector(act.force)), direction=True)
+            yield place[0], self.scene.position(place), force
+        elif isinstance(act, PushAlongLine):
+            yield from self._along_line(act)
+        elif isinstance(act, PushOfMass):
+            g = self.vector(self.scene.vector(act.acceleration))
+            for name in act.bodies or [link.name for link in self.motion.links]:
+                mass = mass_properties(self.system.scope, name)
+                yield name, self.scene.position((name, mass.com)), times(self.one(mass.m), g)
+        elif isinstance(act, Element):
+            yield from self._of_element(act)
+
+    def _along_line(self, line: PushAlongLine) -> Iterator[Placed]:
+        """By Simpson's rule: the load at both ends and half way, there on the middle of the ends."""
+        places = [
+            self.scene.position(self.scene.place(name if "." in name else f"{line.body}.{name}")) for name in line.ends
+        ]
+        A, B = map(self.vector, places)
+        q = [self.vector(self.scene.vector(each)) for each in line.intensities]
+        gap = minus(B, A)
+        sixth = fifty_digits().functions["sqrt"](dot(gap, gap)) / 6
+        for halves, sixths in SIMPSON:
+            here = times(sixth * sixths / 2, plus(times(2 - halves, q[0]), times(halves, q[1])))
+            yield line.body, _between(places, halves), here
+
+    def _of_element(self, element: Element) -> Iterator[Placed]:
+        acting = ActingElement(self.system, self.state, element)
+        for point, sign in zip(element.points, (1, -1), strict=True):
+            place = self.scene.place(point)
+            yield place[0], self.scene.position(place), times(sign * acting.law[0], acting.direction)
+
+    def _couple(self, act: CoupleOn) -> Numbers:
+        given = self.at([self.system.scope.value(x) for x in act.couple])
+        own = vector_of(given if len(given) == 3 else (0, 0, *given))
+        return self.carried(None if act.axes == "ground" else act.axes, own, direction=True)
+
+
+def _between(places: Sequence[Sequence[Scalar]], halves: int) -> tuple[Scalar, ...]:
+    """So many halves of the way from one place to another."""
+    if halves != 1:
+        return tuple(places[halves // 2])
+    return tuple(HALF * (a + b) for a, b in zip(*places, strict=True))
+
+
+# -------- elements --------------------------------------------------------------------------------------------
+# System, state -> whether springs, dampers and pulls act as they are declared, in numbers.
+#
+#     l = |r_2 - r_1| (or n . (r_2 - r_1)),  l' = n . (v_2 - v_1);   theta between the axes of both, theta' = w_2 - w_1
+#     T = k (l - l_0) + c l' + f(l, l')      on the first along n, on the second the opposite;   V = k (l - l_0)^2 / 2
+#
+# Places and axes are those of the poses, velocities those of the twists. An angle has the whole turns of its body.
+# The laws' own lengths, rates, stretches and loads are what is proven.
+
+
+def elements_of(system: System) -> tuple[tuple[Applied, Element], ...]:
+    """The springs, dampers and pulls of a system."""
+    forces = system.scope.model.forces
+    found = ((applied, forces[applied.name].element) for applied in system.loads.applied)
+    return tuple((applied, element) for applied, element in found if element is not None)
+
+
+def undeclared(system: System, state: State) -> str:
+    """Which element acts otherwise than it is declared at a state; "" where none does.
+
+    Raises:
+        NoValue: something has no value there.
+    """
+    for applied, element in elements_of(system):
+        if wrong := ActingElement(system, state, element).wrong(applied):
+            return f"forces.{applied.name} {wrong}"
+    for effort in system.loads.efforts:
+        if wrong := _in_joint(system, state, effort):
+            return f"bodies.{effort.body}.joint {wrong}"
+    return ""
+
+
+def acting(system: System, state: State, force: str) -> Any:
+    """What an element pulls [N], or turns its second body back with [N m], by its declaration at a state."""
+    (element,) = (each for applied, each in elements_of(system) if applied.name == force)
+    return ActingElement(system, state, element).law[0]
+
+
+def _in_joint(system: System, state: State, effort: JointEffort) -> str:
+    """effort = drive - c s' - k (s - rest), V = k (s - rest)^2 / 2: s from the poses, s' from the twists of both.
+
+    Raises:
+        NoValue: the joint turns about several axes, of which no pose tells the angles.
+    """
+    link, scope = system.motion.link(effort.body), system.scope
+    law = link.joint.pushes()[effort.variable]
+    declared = tuple(map(scope.value, (law.push, law.damping, law.stiffness, law.rest)))
+    drive, c, k, rest, stated, V = evaluate((*declared, effort.effort, effort.potential), state, fifty_digits())
+    s, rate = _joint_motion(system, state, link, effort.variable)
+    stretch = s - rest
+    if _turns(link, effort.variable) and k != 0:
+        stretch = _by_whole_turns(stretch, (drive - c * rate - stated) / k)
+    left, energy = stated - (drive - c * rate - k * stretch), k * stretch * stretch / 2
+    if abs(left) > ZERO_AT_50 * (1 + abs(stated)):
+        return "pushes otherwise than its drive, rate and place say"
+    return _energy(V, energy)
+
+
+def _energy(stated: Any, due: Any) -> str:
+    """That an energy is another one."""
+    same = abs(stated - due) <= ZERO_AT_50 * (1 + abs(due))
+    return "" if same else f"has the energy {float(stated):.10g} for {float(due):.10g}"
+
+
+def _turns(link: BodyLink, variable: int) -> bool:
+    return not all(map(is_zero, link.S[variable][0]))
+
+
+def _joint_motion(system: System, state: State, link: BodyLink, variable: int) -> tuple[Any, Any]:
+    """(s, s') of a joint's variable in numbers.
+
+    A turn by s about n: 2 sin s = n . vee(R - R^T), 2 cos s = tr R - 1; a way s along v: s v.v = v . p.
+    """
+    if sum(_turns(link, j) for j in range(len(link.S))) > 1:
+        raise NoValue("a joint that turns about several axes")
+    home, here = link.joint.pose((0,) * len(link.S), system.scope.value), link.relative
+    parent = Pose() if link.parent < 0 else system.motion.links[link.parent].pose
+    carried = (Twist() if link.parent < 0 else system.motion.links[link.parent].twist).at(link.local.p)
+    turning = _turns(link, variable)
+    column = link.S[variable][0 if turning else 1]
+    n, Q = apply(here.R, column), product(here.R, transposed(home.R))
+    own = link.twist.w if turning else plus(link.twist.v, cross(link.twist.w, link.point))
+    against = minus(apply(link.pose.R, own), apply(parent.R, carried.w if turning else carried.v))
+    asked = (
+        dot(n, (Q[2][1] - Q[1][2], Q[0][2] - Q[2][0], Q[1][0] - Q[0][1])),
+        Q[0][0] + Q[1][1] + Q[2][2] - 1,
+        dot(n, minus(here.p, home.p)),
+        dot(column, column),
+        dot(against, apply(link.pose.R, column)),
+    )
+    sine, cosine, way, square, rate = evaluate(asked, state, fifty_digits())
+    size = square**0.5
+    return square.context.atan2(sine / size, cosine) / size if turning else way / square, rate / square
+
+
+def _by_whole_turns(angle: Any, other: Any) -> Any:
+    """The angle and as many whole turns as bring it next to another."""
+    turn = 2 * angle.context.pi
+    return angle + turn * round((other - angle) / turn)
+
+
+@dataclass(frozen=True)
+class ActingElement(InNumbers):
+    """One element at one state."""
+
+    element: Element
+
+    def wrong(self, applied: Applied) -> str:
+        """What of its loads and its energy is otherwise."""
+        pull, energy = self.law
+        reach: Any = 1 + max(map(abs, (x for end in self.ends for x in end)), default=0)
+        stated = pushes_of(self.motion, self.state, applied.loads)
+        if body := pushed_otherwise(stated, self.of_pull(pull), (1 + abs(pull)) * reach):
+            return f"pushes '{body}' otherwise than its length and rate say"
+        if energy is not None and applied.potential is not None:
+            return _energy(self.at((applied.potential,))[0], energy)
+        return ""
+
+    @cached_property
+    def scene(self) -> SystemScene:
+        return SystemScene(self.motion, begun=self.system.loads.begun)
+
+    # -- geometry --------------------------------------------------------------------------------------------
+
+    @cached_property
+    def ends(self) -> tuple[Numbers, ...]:
+        return tuple(self.vector(self.scene.position(self.scene.place(p))) for p in self.element.points)
+
+    @cached_property
+    def direction(self) -> Numbers:
+        """Of the pull on the first end."""
+        along = self.element.along
+        v: Numbers = minus(self.ends[1], self.ends[0]) if along is None else self.vector(self.scene.vector(along))
+        if along is None and self._is_spring_without_length and not any(v):
+            return ZERO  # it pulls nothing, in no direction
+        return direction_at(v)
+
+    @property
+    def _is_spring_without_length(self) -> bool:
+        """Whether k l is all that it pulls: that is smooth where its ends meet."""
+        element = self.element
+        springs = element.stiffness is not None and element.damping is None and element.pull is None
+        return springs and self._slack == 0
+
+    @cached_property
+    def measured(self) -> tuple[Any, Any]:
+        """(l, l') or (theta, theta')."""
+        if not self.element.points:
+            (first, w_1), (second, w_2) = map(self._turned, self.element.bodies)
+            return second - first, w_2 - w_1
+        speeds = [self.vector(velocity_of(self.motion, self.scene.place(p))) for p in self.element.points]
+        n = self.direction
+        return dot(minus(self.ends[1], self.ends[0]), n), dot(minus(speeds[1], speeds[0]), n)
+
+    def _turned(self, body: str | None) -> tuple[Any, Any]:
+        """(the angle of its axes, by the whole turns that the body has made; its spin) about z."""
+        if body is None:
+            return 0, 0
+        link = self.motion.link(body)
+        c, s, w = self.at((link.pose.R[0][0], link.pose.R[1][0], link.twist.w[2]))
+        angle = c.context.atan2(s, c)
+        return angle if link.angle is None else _by_whole_turns(angle, self.one(link.angle)), w
+
+    # -- the law ---------------------------------------------------------------------------------------------
+
+    @cached_property
+    def law(self) -> tuple[Any, Any]:
+        """(T, V); V None of what is no spring."""
+        element, scope = self.element, self.system.scope
+        k, c = self.at((scope.value(element.stiffness), scope.value(element.damping)))
+        length, rate = self.measured
+        pull, energy = c * rate, None
+        if element.stiffness is not None:
+            stretch = length - self._slack
+            pull, energy = pull + k * stretch, k * stretch * stretch / 2
+        if element.pull is not None:
+            r, r1 = (scope.graph.symbol(f"({name})") for name in ("r", "r'"))
+            law = self.scene.value_at(element.pull, {"r": r, "r'": r1})
+            pull += evaluate((law,), {**self.state, r: length, r1: rate}, fifty_digits())[0]
+        return pull, energy
+
+    @property
+    def _slack(self) -> Any:
+        slack = self.element.slack
+        if not isinstance(slack, str):
+            return self.at((self.system.scope.value(slack),))[0]
+        first, second = (self.scene.position(self.scene.place(p)) for p in self.element.points)
+        apart = self.vector([self.scene.start(x) for x in minus(second, first)])
+        if self.element.along is not None:
+            return dot(apart, self.direction)
+        return dot(apart, direction_at(apart)) if any(apart) else 0
+
+    # -- what acts -------------------------------------------------------------------------------------------
+
+    def of_pull(self, pull: Any) -> Pushes:
+        """By the law."""
+        found: Pushes = {}
+        if not self.element.points:
+            for body, sign in zip(self.element.bodies, (1, -1), strict=True):
+                add_push(found, body, (0, 0, sign * pull), ZERO)
+            return found
+        for point, place, sign in zip(self.element.points, self.ends, (1, -1), strict=True):
+            f: Numbers = times(sign * pull, self.direction)
+            add_push(found, self.scene.place(point)[0], cross(place, f), f)
+        return found
+
+
+# -------- strands ---------------------------------------------------------------------------------------------
+# System, state -> whether strings and links run and pull as they are declared, in numbers.
+#
+#     D = c_2 - c_1,   h = a_1 - a_2:   d is D turned by - asin(h / |D|) about n,   touching at c + a n x d
+#
+# a is the radius where one travels round clockwise about n, minus the radius counter-clockwise, 0 of a point. A unit
+# of tension pulls + d where a strand begins and - d where it ends, through eyelets and what slips in the strands
+# beyond; the string stays as long as it is, - sum d . (v_2 - v_1) = 0 of the material that it touches; a link is as
+# long as it says.
+
+
+def threads_of(system: System) -> dict[str, Thread]:
+    """What runs straight from point to point, by its tie, where that is closed."""
+    closed = {row.tie for row in system.ties.rows}
+    threads = {name: tie.thread() for name, tie in system.scope.model.constraints.items() if name in closed}
+    return {name: thread for name, thread in threads.items() if thread is not None}
+
+
+def strung_otherwise(system: System, state: State) -> str:
+    """Which string or link runs or pulls otherwise than it is declared; "" where none does.
+
+    Raises:
+        NoValue: something has no value there, or the ties do not hold.
+    """
+    refuse_open(system, state)
+    for name, thread in threads_of(system).items():
+        if wrong := _Strung(system, state, name, thread).wrong:
+            return f"'{name}' {wrong}"
+    return ""
+
+
+@dataclass(frozen=True)
+class _Stop:
+    """Where a thread is led: its place over the graph; the centre, a (0 of a point) and the axis in numbers."""
+
+    body: str | None
+    place: Vector
+    center: Numbers
+    a: Any
+    axis: Numbers
+    passes: bool
+
+    def touched(self, d: Numbers) -> Numbers:
+        return plus(self.center, times(self.a, cross(self.axis, d)))
+
+
+@dataclass(frozen=True)
+class _Strung(InNumbers):
+    name: str
+    thread: Thread
+
+    @property
+    def wrong(self) -> str:
+        rows = [row for row in self.system.ties.rows if row.tie == self.name and row.component == "tension"]
+        if len(rows) != len(self._ropes):
+            return f"has {len(rows)} tensions for {len(self._ropes)}"
+        for row, rope in zip(rows, self._ropes, strict=True):
+            due: Pushes = {}
+            for first, second, d in rope:
+                add_push(due, first.body, cross(first.touched(d), d), d)
+                add_push(due, second.body, cross(second.touched(d), times(-1, d)), times(-1, d))
+            size = 1 + max(abs(x) for first, *_ in rope for x in first.center)
+            stated = pushes_of(self.motion, self.state, row.pushes)
+            if body := pushed_otherwise(stated, due, size):
+                return f"pulls '{body}' otherwise than it runs"
+            given_out: Any = sum((self._lengthening(*strand) for strand in rope), start=0)
+            if self._rigid and row.pushes and abs(given_out + self.one(row.velocity)) > ZERO_AT_50 * size:
+                return "does not stay as long as it is"
+        return self._wrong_length
+
+    @property
+    def _wrong_length(self) -> str:
+        """Of what says how long it is."""
+        if self.thread.length is None:
+            return ""
+        declared = self.one(self._scene.value(self.thread.length))
+        first, second = (stop.center for stop in self._stops)
+        apart: Numbers = minus(second, first)
+        square: Any = dot(apart, apart)
+        wrong = abs(square - declared**2) > COMPUTED * (1 + square)
+        return f"is {float(square) ** 0.5:.10g} long for {float(declared):.10g}" if wrong else ""
+
+    @cached_property
+    def _ropes(self) -> list[list[tuple[_Stop, _Stop, Numbers]]]:
+        """The strands of one tension each: (from, to, direction)."""
+        ways = self.thread.ways or (None,) * (len(self._stops) - 1)
+        ropes: list[list[tuple[_Stop, _Stop, Numbers]]] = []
+        for (first, second), way in zip(pairwise(self._stops), ways, strict=True):
+            strand = (first, second, self._direction(first, second) if way is None else self._typed(way))
+            if ropes and first.passes:
+                ropes[-1].append(strand)
+            else:
+                ropes.append([strand])
+        return ropes
+
+    def _direction(self, first: _Stop, second: _Stop) -> Numbers:
+        """Of the line that touches both."""
+        D: Numbers = minus(second.center, first.center)
+        self._refuse_turned_over(first, second, D)
+        along = direction_at(D)
+        n = first.axis if first.a != 0 else second.axis
+        same: Any = dot(n, second.axis)
+        offset: Any = first.a - (same if second.a != 0 else 0) * second.a
+        distance: Any = dot(D, along)
+        if abs(offset) > distance:
+            raise NoValue("one wrap lies within the other")
+        functions = fifty_digits().functions
+        lean = -functions["asin"](offset / distance)
+        return plus(times(functions["cos"](lean), along), times(functions["sin"](lean), cross(n, along)))
+
+    def _refuse_turned_over(self, first: _Stop, second: _Stop, D: Numbers) -> None:
+        """Raises NoValue where a strand runs backwards: a line along an axis has the sense that it has at the start."""
+        at_start = [self._scene.worth(x) for x in minus(second.place, first.place)]
+        if sum(float(x) * (y or 0.0) for x, y in zip(D, at_start, strict=True)) < 0:
+            raise NoValue("a strand runs the other way than at the start")
+
+    def _typed(self, way: Any) -> Numbers:
+        """A direction that is given, of length 1."""
+        named = {"up": (0, 1, 0), "down": (0, -1, 0), "left": (-1, 0, 0), "right": (1, 0, 0)}
+        return self.vector(named[way]) if isinstance(way, str) else direction_at(self.vector(self._scene.vector(way)))
+
+    def _lengthening(self, first: _Stop, second: _Stop, d: Numbers) -> Any:
+        """d . (v_2 - v_1) of what it touches."""
+        return dot(d, minus(*(self.velocity(stop.body, stop.touched(d)) for stop in (second, first))))
+
+    # -- as it is declared -----------------------------------------------------------------------------------
+
+    @cached_property
+    def _scene(self) -> SystemScene:
+        return SystemScene(self.motion, f"constraints.{self.name}")
+
+    @cached_property
+    def _stops(self) -> list[_Stop]:
+        return list(self._declared())
+
+    def _declared(self) -> Iterator[_Stop]:
+        scene, z = self._scene, self.vector((0, 0, 1))
+        for item in self.thread.stops:
+            if isinstance(item, str):
+                body, _ = place = scene.place(item)
+                r = scene.position(place)
+                yield _Stop(body, r, self.vector(r), 0, z, True)
+                continue
+            fixed = item.body is None
+            r = scene.ground_place(item.at) if fixed else scene.position(scene.own_place(item.body, None))
+            radius = scene.radius(item.body) if item.radius is None else scene.value(item.radius)
+            axis = z if item.axis is None else direction_at(self.vector(scene.vector(item.axis)))
+            if not (fixed or scene.plane):
+                axis = vector_of(dot(self.vector(row), axis) for row in scene.orientation(item.body))
+            a = self.one(radius)
+            yield _Stop(item.body, r, self.vector(r), -a if item.turn == "ccw" else a, axis, bool(item.slip))
+
+    @property
+    def _rigid(self) -> bool:
+        """Whether it is led over places that are fixed in their bodies."""
+        named = [self._scene.place(item) for item in self.thread.stops if isinstance(item, str)]
+        named += [self._scene.own_place(x.body, None) for x in self.thread.stops if not isinstance(x, str) and x.body]
+        return not any(self.motion.moves(place) for _, place in named)

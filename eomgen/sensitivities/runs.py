@@ -1,0 +1,372 @@
+"""Derivatives along a run and at a state, and their check by differences."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import replace
+from functools import cached_property
+from typing import Any
+
+import numpy as np
+
+from eomgen.codegen.program import kinematic_rates, program_of
+from eomgen.codegen.rhs import compiled, parameter_vector
+from eomgen.errors import DerivationError, EomgenError, NotYet, RunFailed
+from eomgen.mechanics.dynamics.system import System
+from eomgen.mechanics.linearization.first_order import FirstOrder
+from eomgen.mechanics.linearization.linearization import CORNERS
+from eomgen.mechanics.start.exact import Seeds
+from eomgen.model.fields import Table
+from eomgen.model.parts import Model, Output
+from eomgen.model.reader import model_at
+from eomgen.model.values import numeric_parameters, start_values
+from eomgen.pipeline import simulator
+from eomgen.proof.check import Certificate, Check, checked, unchecked
+from eomgen.questions.answers import solve
+from eomgen.questions.in_phase import PhaseEquations
+from eomgen.questions.of_a_run import asked_of
+from eomgen.records import dataclass
+from eomgen.simulation.contacts import changing, has_phases
+from eomgen.simulation.solvers import breakpoints_of, solver_of, step
+from eomgen.symbolic.expression.derivative import depends_on, substituted, tangent
+from eomgen.symbolic.expression.formula import Expression
+from eomgen.symbolic.expression.node import Node, Scalar
+from eomgen.symbolic.expression.traversal import order
+from eomgen.symbolic.numeric.evaluation import evaluate, fifty_digits, floats_of
+from eomgen.symbolic.numeric.tolerances import (
+    BESIDE,
+    CARRIED,
+    COMPUTED,
+    COORDINATE_AT_50,
+    FINE_RUN,
+    PARAMETER_STEP,
+    RANK,
+)
+from eomgen.symbolic.numeric.work import check_patience
+
+# -------- along a run -----------------------------------------------------------------------------------------
+# Equations, what changes -> how a motion changes along its way: the variational equations, integrated with it.
+#
+#     x' = f(t, x, p),   s' = f_x s + f_p,   s(0) = dx(0)/dp
+#
+# One program gives both; where ties close, f is what the elimination of the multipliers leaves.
+
+
+JUMPS = ("sign", "less", "less_equal", "select")
+
+
+@dataclass(frozen=True)
+class ChangingRun:
+    """A motion, and how it changes.
+
+    Args:
+        t: instants, k [s].
+        values: of each formula along them, k.
+        slopes: of each formula and each name its derivative, k.
+    """
+
+    t: np.ndarray
+    values: Mapping[str, np.ndarray]
+    slopes: Mapping[tuple[str, str], np.ndarray]
+
+
+def changing_run(
+    phase: PhaseEquations,
+    start: tuple[np.ndarray, Mapping[str, np.ndarray]],
+    changes: Mapping[str, Seeds],
+    formulas: Mapping[str, Expression],
+    instants: np.ndarray,
+) -> ChangingRun:
+    """Formulas and their derivatives along a motion.
+
+    Args:
+        start: x = (q, u) at the start, and how it changes with each name.
+        changes: how the parameters change with each name.
+        formulas: by name.
+        instants: ascending from 0 [s].
+    Raises:
+        NotYet: contacts change along the way, or forces jump.
+        RunFailed: the motion ends before.
+    """
+    system = phase.system
+    rates = _rates(phase)
+    _refuse_jumps(system, rates)
+    symbols, graph = system.symbols, system.scope.graph
+    x = (*symbols.q, *symbols.u)
+    s = {name: tuple(graph.symbol(f"d({node.name})/d({name})") for node in x) for name in changes}
+    along = {name: {**seeds, **dict(zip(x, s[name], strict=True))} for name, seeds in changes.items()}
+    extended = replace(symbols, u=(*symbols.u, *(node for own in s.values() for node in own)))
+    rows = [*rates, *(d for seeds in along.values() for d in tangent(rates, seeds))]
+    f, p = compiled(program_of(rows, extended)), parameter_vector(system.scope.model)
+    x0 = np.concatenate([start[0], *(start[1][name] for name in changes)])
+    states = _integrated(f.at(p), x0, instants, breakpoints_of(system.scope.model))
+    inputs = _own_inputs(system)
+    closed = substituted([phase.of_state(formula) for formula in formulas.values()], inputs)
+    asked = [*closed, *(d for seeds in along.values() for d in tangent(closed, seeds))]
+    columns = compiled(program_of(asked, extended), "numpy").many(instants, states, p).T + 0.0
+    keys = [(of, name) for name in changes for of in formulas]
+    slopes = dict(zip(keys, columns[len(formulas) :], strict=True))
+    return ChangingRun(instants, dict(zip(formulas, columns, strict=False)), slopes)
+
+
+def _rates(phase: PhaseEquations) -> tuple[Scalar, ...]:
+    """x' as functions of t, x and the parameters."""
+    equations, a = phase.equations, phase.system.symbols.a
+    known = equations.accelerations if not equations.J and equations.accelerations else phase.accelerations
+    rates = substituted((*kinematic_rates(equations), *a), dict(zip(a, known, strict=True)))
+    return substituted(rates, _own_inputs(phase.system))
+
+
+def _own_inputs(system: System) -> dict[Node, Scalar]:
+    return {node: system.inputs[name] for name, node in system.symbols.inputs.items()}
+
+
+def _refuse_jumps(system: System, rates: Sequence[Scalar]) -> None:
+    if has_phases(system.scope.model):
+        names = ", ".join(f"'{x}'" for x in changing(system.scope.model))
+        what = f"{names} may change along the way (open, stick, slide): a motion in phases has no derivative here"
+        raise NotYet(what, mend="differences of two runs, or a stretch of one phase as a model of its own")
+    moving = (*system.symbols.q, *system.symbols.u, *system.symbols.parameters.values())
+    if any(node.op in JUMPS and depends_on(node, moving) for node in order(rates)):
+        raise NotYet(
+            "a force jumps along the way: the variational equations do not hold across it",
+            mend="take differences of two runs: a sweep over the parameter",
+        )
+
+
+def _integrated(f, x0: np.ndarray, instants: np.ndarray, breakpoints: Sequence[float]) -> np.ndarray:  # type: ignore[no-untyped-def]
+    """The states at the instants, k x n.
+
+    Raises:
+        RunFailed: the motion ends before.
+    """
+    end = float(instants[-1])
+    found = [x0 for t in instants if t <= 0]
+    solver = solver_of("DOP853", f, (0.0, end), x0, rtol=FINE_RUN, atol=FINE_RUN)
+    while len(found) < len(instants):
+        check_patience()
+        step(solver, breakpoints, end)
+        if solver.status == "failed":
+            raise RunFailed(f"the motion cannot be followed beyond t = {solver.t:.6g} s", mend="a shorter run")
+        dense = solver.dense_output()
+        while len(found) < len(instants) and instants[len(found)] <= solver.t:
+            found.append(dense(instants[len(found)]))
+    return np.array(found)
+
+
+# -------- at a state ------------------------------------------------------------------------------------------
+# A state with its change -> values of formulas there, and how they change: accelerations and multipliers with them.
+#
+# R = M a - forcing - J^T lam = 0,   A = J a + gamma = 0:   [M, -J^T; J, 0] [da; dlam] = -[dR; dA] at fixed a, lam
+
+
+ROUNDS = 3  # of corrections with 50 digits: each gains those of a double
+
+
+@dataclass(frozen=True)
+class ChangingState:
+    """A state of the equations of motion, and how it changes.
+
+    Args:
+        phase: the equations.
+        numbers: t, parameters, inputs, q and u, with 50 digits.
+        seeds: how they change.
+    """
+
+    phase: PhaseEquations
+    numbers: Mapping[Node, Any]
+    seeds: Seeds
+
+    def of(self, scalars: Sequence[Scalar]) -> list[tuple[float, float]]:
+        """(value, slope) of scalars in q, u, a, lam, t, the inputs and the parameters.
+
+        Raises:
+            DerivationError: one of them, or a force, has a corner or a jump there.
+        """
+        symbols = self.phase.system.symbols
+        numbers, seeds, held = self.numbers, self.seeds, tuple[Scalar, ...]()
+        if any(depends_on(x, (*symbols.a, *symbols.lam)) for x in scalars):
+            (numbers, seeds), held = self._moving, self._rows
+        _refuse_corners((*scalars, *held), numbers, seeds)
+        values = evaluate((*scalars, *tangent(tuple(scalars), seeds)), numbers, fifty_digits())
+        found = [0.0 if abs(x) < COORDINATE_AT_50 else x for x in floats_of(values)]
+        return list(zip(found[: len(scalars)], found[len(scalars) :], strict=True))
+
+    def formula(self, formula: Expression) -> tuple[float, float]:
+        """(value, slope) of a formula of the model."""
+        equations = self.phase.equations if self.phase.needs_equations(formula) else None
+        closed = equations is not None and equations.friction
+        return self.of([self.phase.of_state(formula) if closed else self.phase.raw(formula)])[0]
+
+    @cached_property
+    def _first(self) -> FirstOrder:
+        return FirstOrder(self.phase.system, ())
+
+    @property
+    def _rows(self) -> tuple[Scalar, ...]:
+        """What the accelerations and multipliers make 0."""
+        return *self._first.residual, *self._first.rows[1]
+
+    @cached_property
+    def _moving(self) -> tuple[Mapping[Node, Any], Seeds]:
+        """The same with accelerations and multipliers."""
+        e, symbols = self._first.equations, self.phase.system.symbols
+        n, k, graph = len(e.M), len(e.J), self.phase.system.scope.graph
+        entries = [*(x for row in e.M for x in row), *(x for row in e.J for x in row)]
+        flat = np.array(floats_of(evaluate(entries, self.numbers, fifty_digits())))
+        M, J = flat[: n * n].reshape(n, n), flat[n * n :].reshape(k, n)
+        inverse = np.linalg.pinv(np.block([[M, -J.T], [J, np.zeros((k, k))]]), rcond=RANK)
+        unknowns, rows = (*symbols.a, *symbols.lam), self._rows
+        numbers = dict(self.numbers) | dict.fromkeys(unknowns, fifty_digits().number(0))
+        for _ in range(ROUNDS):
+            numbers |= _corrected(numbers, unknowns, inverse, evaluate(rows, numbers, fifty_digits()))
+        changes = {x: graph.symbol(f"d({x.name})") for x in unknowns}
+        left = tangent(rows, {**self.seeds, **changes})
+        known = numbers | dict.fromkeys(changes.values(), fifty_digits().number(0))
+        for _ in range(ROUNDS):
+            known |= _corrected(known, tuple(changes.values()), inverse, evaluate(left, known, fifty_digits()))
+        return known, {**self.seeds, **changes}
+
+
+def _corrected(
+    known: Mapping[Node, Any], unknowns: Sequence[Node], inverse: np.ndarray, left: Sequence[Any]
+) -> dict[Node, Any]:
+    """The unknowns after one correction, which gains the digits of a double."""
+    step = inverse @ np.array([float(x) for x in left])
+    return {x: known[x] - d for x, d in zip(unknowns, step.tolist(), strict=True)}
+
+
+def _refuse_corners(scalars: Sequence[Scalar], numbers: Mapping[Node, Any], seeds: Seeds) -> None:
+    """Close to the state, on both sides, scalars must be what their slopes make of them.
+
+    Raises:
+        DerivationError: one is not.
+    """
+    if not any(node.op in CORNERS for node in order(scalars)):
+        return
+    digits = fifty_digits()
+    rates = dict(zip(seeds, evaluate(tuple(seeds.values()), numbers, digits), strict=True))
+    found = evaluate((*scalars, *tangent(tuple(scalars), seeds)), numbers, digits)
+    for side in (-1, 1):
+        step = side * digits.number(1) * BESIDE
+        beside = evaluate(scalars, {**numbers, **{x: numbers[x] + step * rate for x, rate in rates.items()}}, digits)
+        for here, there, slope in zip(found, beside, found[len(scalars) :], strict=False):
+            if abs((there - here) / step - slope) > CARRIED * (1 + abs(slope)):
+                raise DerivationError("it, or a force, has a corner or a jump there", mend="ask beside it")
+
+
+# -------- differences -----------------------------------------------------------------------------------------
+# Model, derivatives -> checks: each against central differences of the whole computation, made anew at other values.
+#
+#     f' = (8 (f(h) - f(-h)) - (f(2h) - f(-2h)))/12h + O(h^4)
+#
+# What the coarse and the fine difference differ by says how far they are to be trusted. The value itself is
+#
+#     f = (4 (f(h) + f(-h)) - (f(2h) + f(-2h)))/6 + O(h^4)
+
+
+HOW = "differences of the whole computation"
+
+
+@dataclass(frozen=True)
+class Derivatives:
+    """What is found [SI].
+
+    Args:
+        values: of each formula what it is, those that have one.
+        slopes: by (formula, name).
+        run: the same along a motion; None where none was asked.
+    """
+
+    values: Mapping[str, float]
+    slopes: Mapping[tuple[str, str], float]
+    run: ChangingRun | None = None
+
+    def slope(self, of: str, to: str) -> np.ndarray:
+        return np.atleast_1d(self.slopes[of, to] if self.run is None else self.run.slopes[of, to])
+
+    def value(self, of: str) -> np.ndarray | None:
+        if self.run is not None:
+            return np.atleast_1d(self.run.values[of])
+        return np.atleast_1d(self.values[of]) if of in self.values else None
+
+
+def checks_of(model: Model, found: Derivatives) -> Certificate:
+    """The proof of derivatives, and of what they are of."""
+    by_name: dict[str, list[str]] = {}
+    for of, to in found.slopes:
+        by_name.setdefault(to, []).append(of)
+    return Certificate(tuple(check for to, of in by_name.items() for check in _by_one(model, of, to, found)))
+
+
+def _by_one(model: Model, of: Sequence[str], to: str, told: Derivatives) -> list[Check]:
+    """Those by one name."""
+    value = _value(model, to)
+    h = PARAMETER_STEP * (abs(value) or 1.0)
+    computed = _computed(model, of, to) if told.run is None else _run(model, of, to, told.run)
+    names = [f"d({text})/d({to})" for text in of]
+    try:
+        f = [computed(value + k * h) for k in (-2, -1, 1, 2)]
+    except (EomgenError, ArithmeticError, ValueError) as error:
+        return [unchecked(name, f"without a value beside: {error}", HOW) for name in names]
+    found = []
+    for k, (text, name) in enumerate(zip(of, names, strict=True)):
+        low2, low, high, high2 = (each[k] for each in f)
+        coarse, fine = (high2 - low2) / (4 * h), (8 * (high - low) - (high2 - low2)) / (12 * h)
+        share = COMPUTED if told.run is None else CARRIED
+        own, noise = told.slope(text, to), share * np.max(np.abs(high), initial=0.0)
+        trust = np.abs(fine - coarse) + noise / h + COMPUTED * np.max(np.abs(own))
+        if not np.all(np.isfinite(fine)):
+            found.append(unchecked(name, "without a value beside", HOW))
+            continue
+        wrong = _worst(own, fine, trust)
+        here = told.value(text)
+        if here is not None and not wrong:
+            middle = (4 * (high + low) - (high2 + low2)) / 6
+            wrong = _worst(here, middle, noise + np.abs(middle - (high + low) / 2))
+            wrong = f"its value is {wrong}" if wrong else ""
+        found.append(checked(name, wrong, HOW))
+    return found
+
+
+def _worst(own: np.ndarray, right: np.ndarray, trust: np.ndarray) -> str:
+    """What is furthest off, beyond what is to be trusted; ""."""
+    worst = int(np.argmax(np.abs(own - right) - trust))
+    return "" if abs(own[worst] - right[worst]) <= trust[worst] else f"{own[worst]:.9g}, not {right[worst]:.9g}"
+
+
+def _value(model: Model, name: str) -> float:
+    """What a name is worth [SI]."""
+    if name in model.parameters:
+        return numeric_parameters(model)[name]
+    places, speeds = start_values(model)
+    return {**places, **speeds}[name]
+
+
+def _computed(model: Model, of: Sequence[str], to: str) -> Callable[[float], list[np.ndarray]]:
+    """value -> each formula, as `solve` answers it."""
+    asked = {f"asked{k}": replace(asked_of(model, text), unit=None) for k, text in enumerate(of)}
+
+    def found(value: float) -> list[np.ndarray]:
+        answers = solve(_with(replace(model, outputs=Table[Output](asked)), to, value))
+        return [np.array([np.nan if x.value is None else x.value]) for x in answers.values()]
+
+    return found
+
+
+def _run(model: Model, of: Sequence[str], to: str, run: ChangingRun) -> Callable[[float], list[np.ndarray]]:
+    """value -> each formula along the motion."""
+    asked = {f"asked{k}": replace(asked_of(model, text), unit=None) for k, text in enumerate(of)}
+    again = simulator(replace(model, outputs=Table[Output](asked)), rtol=FINE_RUN, atol=FINE_RUN)
+
+    def found(value: float) -> list[np.ndarray]:
+        parameters = {to: value} if to in model.parameters else None
+        start = None if to in model.parameters else {to: value}
+        made = again(float(run.t[-1]), parameters, start, run.t.tolist(), ("outputs",))
+        return [made.outputs[name] for name in asked]
+
+    return found
+
+
+def _with(model: Model, name: str, value: float) -> Model:
+    return model_at(model, **{"parameters" if name in model.parameters else "start": {name: value}})

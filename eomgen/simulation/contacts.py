@@ -1,0 +1,509 @@
+"""What contacts do along a motion: how they are, when they change, and which hold after it."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import field, replace
+from functools import cached_property
+from typing import Any, Literal
+
+import numpy as np
+
+from eomgen.codegen.rhs import RightHandSide
+from eomgen.errors import DerivationError
+from eomgen.mechanics.constraints.rank import redundant_rows
+from eomgen.mechanics.constraints.rows import Row, rows_of_tie
+from eomgen.mechanics.dynamics.system import System
+from eomgen.mechanics.free_bodies.solution import Indeterminate
+from eomgen.mechanics.kinematics.scene import ContactMode
+from eomgen.mechanics.reactions.reactions import Reactions, reactions_of
+from eomgen.model.contacts import Contact, contacts_of, pieces_of
+from eomgen.model.fields import Table
+from eomgen.model.part import altered
+from eomgen.model.parts import Model
+from eomgen.records import dataclass
+from eomgen.simulation.event_location import Measured
+from eomgen.simulation.phase_functions import PhaseFunctions
+from eomgen.simulation.reaction_columns import ReactionColumns
+from eomgen.symbolic.expression.derivative import symbols_of
+from eomgen.symbolic.expression.formula import Expression, function, sqrt
+from eomgen.symbolic.expression.node import Scalar
+from eomgen.symbolic.expression.rational import Fraction
+from eomgen.symbolic.expression.traversal import order
+from eomgen.symbolic.numeric.evaluation import FLOAT, evaluate
+from eomgen.symbolic.numeric.tolerances import COMPUTED, SUMMED
+
+# -------- contact events --------------------------------------------------------------------------------------
+# System, configuration of its contacts -> ContactEvents: what the contacts say, and the functions that end a phase.
+#
+# Each function is positive while the configuration holds:
+#
+#     closed, and can end:   N                 sticks:   mu |N| - |F|, F what holds it
+#     slides:                push N            open:     the gap, of a string the integral of its rate
+#     slides:                sense v           on a piece of a path:   the way to each of its ends
+
+
+STOPPED = Fraction(1, 10**7)  # on a surface [m/s]
+
+
+@dataclass(frozen=True)
+class Signal:
+    """One function of the state.
+
+    Args:
+        owner: the contact.
+        what: "N", of a string also "N2", ...; "hold", the force that lets it stick; "mu"; "slide", "slide'"; "gap",
+            "gap'", "gap''".
+        value: over the phase's symbols, accelerations and multipliers; of a gap without a formula None.
+        column: of what follows from the balance of the bodies, its name among their reactions.
+    """
+
+    owner: str
+    what: str
+    value: Scalar | None
+    column: str = ""
+
+
+@dataclass(frozen=True)
+class EventFunction:
+    """A function that must stay positive.
+
+    Args:
+        owner: the contact, or the body on a path.
+        kind: what its end means: "ends", "turns" (N changes its sign), "closes", "stops", "slips", "piece".
+        value: over the phase's symbols, accelerations and multipliers; of a gap without a formula None.
+        unit: what it measures.
+        step: to which piece of a path its end leads.
+        row: of a string with several tensions, the row that goes slack alone; else 0.
+    """
+
+    owner: str
+    kind: str
+    value: Scalar | None
+    unit: Literal["force", "rate", "gap"]
+    step: int = 0
+    row: int = 0
+
+
+@dataclass(frozen=True)
+class ContactEvents:
+    """What the contacts of one phase say, as functions of its symbols.
+
+    Args:
+        configuration: of the contacts.
+        contacts: of this phase.
+        lengths: of the piece on which each body on a path is: what is before it, and its length, where more follows.
+        system: motion, loads and ties.
+    """
+
+    configuration: Configuration
+    contacts: tuple[Contact, ...]
+    lengths: Mapping[str, tuple[bool, Scalar | None]]
+    system: System
+
+    @cached_property
+    def reactions(self) -> Reactions:
+        """Every reaction of joints and ties; open contacts have none."""
+        return reactions_of(self.system)
+
+    @cached_property
+    def signals(self) -> tuple[Signal, ...]:
+        found: list[Signal] = []
+        for contact in self.contacts:
+            if not self.mode(contact).closed:
+                found += self._of_open(contact)
+            elif self.undetermined is None:
+                found += self._of_closed(contact)
+        return tuple(found)
+
+    @cached_property
+    def undetermined(self) -> Indeterminate | None:
+        """Why the forces at the closed contacts do not follow from the balance; None where they do."""
+        try:
+            for contact in self.contacts:
+                if self.mode(contact).closed:
+                    self._of_closed(contact)
+        except Indeterminate as error:
+            return error
+        return None
+
+    @cached_property
+    def bounds(self) -> tuple[EventFunction, ...]:
+        found: list[EventFunction] = []
+        for contact in self.contacts:
+            if self.mode(contact).closed and self.undetermined is not None:
+                continue  # at rest: nothing is watched
+            signals = {s.what: s.value for s in self.signals if s.owner == contact.name}
+            found += self._bounds(contact, signals)
+        return (*found, *self._ends_of_pieces)
+
+    @cached_property
+    def loose(self) -> tuple[str, ...]:
+        """The open strings whose slack no formula gives: it is integrated."""
+        apart = (contact for contact in self.contacts if not self.mode(contact).closed)
+        return tuple(contact.name for contact in apart if self._of_open(contact)[0].value is None)
+
+    def contact(self, name: str) -> Contact:
+        return next(contact for contact in self.contacts if contact.name == name)
+
+    def mode(self, contact: Contact) -> ContactMode:
+        return self.configuration.modes[contact.name]
+
+    def _bounds(self, contact: Contact, signals: Mapping[str, Any]) -> list[EventFunction]:
+        name, mode = contact.name, self.mode(contact)
+        if not mode.closed:
+            return [EventFunction(name, "closes", signals["gap"], "gap")]
+        found = []
+        if contact.unilateral:
+            tensions = [value for what, value in signals.items() if what[0] == "N"]
+            several = len(tensions) > 1
+            found += [EventFunction(name, "ends", x, "force", row=k * several) for k, x in enumerate(tensions, start=1)]
+        elif mode.sense != 0 and not contact.round:
+            found.append(EventFunction(name, "turns", mode.push * signals["N"], "force"))
+        if mode.sense == 0:
+            grip = signals["mu"] * _size(signals["N"])
+            found.append(EventFunction(name, "slips", grip - _size(signals["hold"]), "force"))
+        elif mode.sense is not None:
+            found.append(EventFunction(name, "stops", mode.sense * signals["slide"] - stopped_below(contact), "rate"))
+        return found
+
+    @property
+    def _ends_of_pieces(self) -> list[EventFunction]:
+        """The way left to both ends of each path's piece; the first and the last piece go on."""
+        found = []
+        for body, (more_before, length) in self.lengths.items():
+            s = self.system.motion.link(body).s[0]
+            found += [EventFunction(body, "piece", s, "gap", -1)] if more_before else []
+            found += [EventFunction(body, "piece", length - s, "gap", 1)] if length is not None else []
+        return found
+
+    def _of_open(self, contact: Contact) -> list[Signal]:
+        row, scope = rows_of_tie(self.system.motion, contact.name)[0], self.system.scope
+        gap, rate = row.gap, row.velocity if row.gap is None else scope.time_derivative((row.gap,))[0]
+        return [
+            Signal(contact.name, "gap", gap),
+            Signal(contact.name, "gap'", rate),
+            Signal(contact.name, "gap''", scope.with_accelerations((rate,))[0]),
+        ]
+
+    def _of_closed(self, contact: Contact) -> list[Signal]:
+        name = contact.name
+        normals = enumerate(self._normals(contact), start=1)
+        found = [Signal(name, f"N{k}" if k > 1 else "N", value, column) for k, (value, column) in normals]
+        if contact.mu is None:
+            return found
+        v, scope = sliding_velocity(self.system, contact), self.system.scope
+        found += [Signal(name, "slide", v), Signal(name, "slide'", scope.with_accelerations((v,))[0])]
+        if self.mode(contact).sense == 0:
+            found += [Signal(name, "mu", scope.value(contact.mu)), Signal(name, "hold", *self._holding(name))]
+        return found
+
+    def _holding(self, name: str) -> tuple[Scalar, str]:
+        """What lets a contact stick, as of `_reaction`; on a surface sqrt(F_t^2 + F_s^2)."""
+        held = [r for r in self.system.ties.rows if r.tie == name and r.component in ("t", "s")]
+        forces = [self._reaction(row) for row in held]
+        return forces[0] if len(forces) == 1 else _resultant(forces)
+
+    def _normals(self, contact: Contact) -> list[tuple[Scalar, str]]:
+        """N of a support, sqrt(N_1^2 + N_2^2) of bilateral contacts, the tensions of a string.
+
+        Each as (value, name of its column).
+        """
+        if contact.of_joint:
+            labels = ("n 1", "n 2") if contact.round else ("n",)
+            found = [self._component(contact.name, "joint", label, 1) for label in labels]
+        else:
+            mine = [r for r in self.system.ties.rows if r.tie == contact.name]
+            found = [self._reaction(r) for r in mine if r.component.partition(" ")[0] in ("n", "tension")]
+        return [_resultant(found)] if contact.round else found
+
+    def _reaction(self, row: Row) -> tuple[Scalar, str]:
+        """lam of a row: its multiplier where it closes, else from the balance of the bodies."""
+        if row.status == "closing" and not self._redundant:
+            return self.system.symbols.lam[self.system.ties.closing.index(row)], ""
+        return self._component(row.tie, "tie", row.component, row.number)
+
+    def _component(self, owner: str, kind: str, label: str, number: int) -> tuple[Scalar, str]:
+        for j, c in enumerate(self.reactions.components):
+            if (c.owner, c.kind, c.label) == (owner, kind, label) and (kind == "joint" or c.number == number):
+                return self.reactions.value(j), c.name
+        raise DerivationError(
+            f"'{owner}' has no reaction '{label}'", mend="name a contact, a joint or a constraint of the model"
+        )
+
+    @cached_property
+    def _redundant(self) -> bool:
+        return bool(redundant_rows(self.system.ties))
+
+
+def stopped_below(contact: Contact) -> Fraction | int:
+    """The speed at which sliding stops: 0 where it has a sense that can turn; a speed only comes near to 0 [m/s]."""
+    return STOPPED if contact.surface else 0
+
+
+def sliding_velocity(system: System, contact: Contact) -> Scalar:
+    """Of a closed contact with friction, along its tangent."""
+    if contact.of_joint:
+        return system.motion.link(contact.name).s_rate[0]
+    return next(r.sliding for r in system.ties.rows if r.tie == contact.name and r.tangent)
+
+
+def _resultant(forces: Sequence[tuple[Scalar, str]]) -> tuple[Scalar, str]:
+    return sqrt(sum((force * force for force, _ in forces), start=0)), ""
+
+
+def _size(x: Scalar) -> Scalar:
+    return function("abs", x)
+
+
+# -------- contact signals -------------------------------------------------------------------------------------
+# ContactEvents, PhaseFunctions -> ContactSignals: what the contacts of a phase say, in numbers along its states.
+
+
+@dataclass(frozen=True)
+class ContactSignals:
+    """The signals and bounds of one phase at its states."""
+
+    watch: ContactEvents
+    functions: PhaseFunctions
+
+    def look(self, t: float, x: np.ndarray) -> dict[tuple[str, str], float]:
+        """The signals at one state, by owner and kind; nan where a reaction has no single value there."""
+        key = t, x.tobytes()
+        if key not in self._last:
+            self._last.clear()
+            found = self._along(np.array([t]), x[None, :])
+            self._last[key] = {name: float(values[0]) for name, values in found.items()}
+        return self._last[key]
+
+    @cached_property
+    def _last(self) -> dict[tuple[float, bytes], dict[tuple[str, str], float]]:
+        """The signals at the state that was looked at last: it is looked at several times."""
+        return {}
+
+    def _along(self, t: np.ndarray, x: np.ndarray) -> dict[tuple[str, str], np.ndarray]:
+        """The signals at n states."""
+        inner = self.functions.inner(x)
+        compiled = iter(self._looked.many(t, inner, self.functions.p).T)
+        columns = self._columns
+        reactions = np.zeros((len(t), 0)) if columns is None else columns.along(t, inner, self.functions.p)
+        found = {}
+        for signal in self.watch.signals:
+            if signal.column in self._with_rank and columns is not None:
+                values = reactions[:, columns.names.index(signal.column)]
+            elif signal.value is None:
+                values = self.functions.slacks(x)[:, self.watch.loose.index(signal.owner)]
+            else:
+                values = next(compiled)
+            found[signal.owner, signal.what] = values
+        return found
+
+    def sizes(self, t: float, x: np.ndarray) -> tuple[float, float]:
+        """How large forces and accelerations are at one state, the latter at least 1 m/s^2."""
+        forces = [abs(v) for (_, what), v in self.look(t, x).items() if what[0] in "Nh" and np.isfinite(v)]
+        found = np.abs(self._sized.many(np.array([t]), self.functions.inner(x)[None, :], self.functions.p)[0])
+        n = len(self.functions.equations.symbols.u)
+        return max([*forces, *found[:n]], default=0.0), max([1.0, *found[n:]])
+
+    def floors(self, t: float, x: np.ndarray) -> np.ndarray:
+        """What is rounding in each of the bounds, at one state; a speed that has just come near to 0 may pass it."""
+        n = self.functions.places
+        if not self.watch.bounds:
+            return np.zeros(0)
+        places, rates = np.max(np.abs(x[:n]), initial=1.0), np.max(np.abs(x[n:]), initial=1.0)
+        size = {"force": COMPUTED * self.sizes(t, x)[0], "rate": COMPUTED * rates, "gap": COMPUTED * places}
+        passing = [
+            float(stopped_below(self.watch.contact(b.owner))) if b.kind == "stops" else 0.0 for b in self.watch.bounds
+        ]
+        return np.maximum([size[bound.unit] for bound in self.watch.bounds], passing) + SUMMED
+
+    def watched(self, t: np.ndarray, x: np.ndarray) -> np.ndarray:
+        """The bounds along the states, n x k; nan where a reaction has no single value."""
+        if not self.watch.bounds:
+            return np.zeros((len(t), 0))
+        signals = self._along(t, x)
+        ways = iter(self._ways.many(t, self.functions.inner(x), self.functions.p).T)
+        found = [next(ways) if bound.kind == "piece" else self._left(bound, signals) for bound in self.watch.bounds]
+        return np.column_stack(found)
+
+    def measured(self, further: tuple[Scalar, ...]) -> Measured | None:
+        """The bounds and further scalars as one function of q, u and t; None where a bound is not one of these."""
+        if any(self._stands_apart(bound) for bound in self.watch.bounds):
+            return None
+        values = tuple(bound.value for bound in self.watch.bounds if bound.value is not None)
+        return Measured(self.functions.function((*values, *further)), self.functions.p)
+
+    def _stands_apart(self, bound: EventFunction) -> bool:
+        """Whether a bound follows from a balance that is solved with rank, is integrated, or knows a state before."""
+        if bound.kind == "piece":
+            return False
+        contact = self.watch.contact(bound.owner)
+        stops = bound.kind == "stops" and bool(stopped_below(contact))
+        return (
+            bound.value is None
+            or stops
+            or any(s.column in self._with_rank for s in self.watch.signals if s.owner == bound.owner)
+        )
+
+    def _left(self, bound: EventFunction, signals: Mapping[tuple[str, str], np.ndarray]) -> np.ndarray:
+        """What is left of a bound of a contact."""
+        name = bound.owner
+        mode = self.watch.configuration.modes[name]
+        if bound.kind == "closes":
+            return signals[name, "gap"]
+        if bound.kind == "stops":
+            slowing = signals[name, "slide'"] < 0  # a speed that grows from 0 does not stop
+            return np.asarray(
+                (mode.sense or 0) * signals[name, "slide"] - slowing * float(stopped_below(self.watch.contact(name)))
+            )
+        if bound.kind == "slips":
+            return np.asarray(signals[name, "mu"] * np.abs(signals[name, "N"]) - np.abs(signals[name, "hold"]))
+        return mode.push * signals[name, f"N{bound.row}" if bound.row > 1 else "N"]
+
+    @cached_property
+    def _looked(self) -> RightHandSide:
+        return self.functions.function(
+            tuple(s.value for s in self.watch.signals if s.value is not None and s.column not in self._with_rank)
+        )
+
+    @cached_property
+    def _columns(self) -> ReactionColumns | None:
+        """The reactions behind the signals that follow from the balance of the bodies; None without such."""
+        return ReactionColumns(self.watch.reactions, self.functions.rhs) if self._with_rank else None
+
+    @cached_property
+    def _with_rank(self) -> frozenset[str]:
+        """The columns for which the balance of the bodies is solved at each state, with its rank.
+
+        A formula that divides by nothing but what the parameters make, and here is not zero, has a value at all states.
+        """
+        symbols = self.functions.equations.symbols
+        known = dict(zip(symbols.parameters.values(), self.functions.p.tolist(), strict=True))
+
+        def moves(value: Scalar) -> bool:
+            below = divisors(value)
+            if not known.keys() >= {*symbols_of(below)}:
+                return True
+            return any(not np.isfinite(x) or x == 0 for x in evaluate(below, known, FLOAT))
+
+        return frozenset(s.column for s in self.watch.signals if s.column and s.value is not None and moves(s.value))
+
+    @cached_property
+    def _ways(self) -> RightHandSide:
+        return self.functions.kinematic(
+            tuple(b.value for b in self.watch.bounds if b.kind == "piece" and b.value is not None)
+        )
+
+    @cached_property
+    def _sized(self) -> RightHandSide:
+        return self.functions.function((*self.functions.equations.forcing, *self.functions.equations.symbols.a))
+
+
+def divisors(value: Scalar) -> list[Scalar]:
+    """What a formula divides by, powers that are not whole among it."""
+    found: list[Scalar] = []
+    for x in order((value,)):
+        if x.op == "div":
+            found.append(x.args[1])
+        elif x.op == "pow" and not (type(x.args[1]) is int and x.args[1] >= 0):
+            found.append(x.args[0])
+    return found
+
+
+# -------- configuration ---------------------------------------------------------------------------------------
+# Model -> how all of its contacts, and the pieces of its paths, are at a time, and what changes in words.
+
+
+@dataclass(frozen=True)
+class Configuration:
+    """How all contacts are in one phase.
+
+    Args:
+        modes: of each contact.
+        pieces: the piece of the path on which each body on a path is, from 0.
+    """
+
+    modes: Table[ContactMode] = field(default_factory=Table)
+    pieces: Table[int] = field(default_factory=Table)
+
+    @property
+    def open(self) -> tuple[str, ...]:
+        """The ties that do not hold."""
+        return tuple(name for name, mode in self.modes.items() if not mode.closed)
+
+
+def by_the_law(model: Model, configuration: Configuration) -> Configuration:
+    """The configuration where friction on a surface is along v/|v|, which has no value where v is 0."""
+    surfaces = {contact.name for contact in contacts_of(model) if contact.surface}
+    modes = {
+        name: replace(mode, sense=None) if name in surfaces and mode.sense else mode
+        for name, mode in configuration.modes.items()
+    }
+    return replace(configuration, modes=Table(modes))
+
+
+def has_phases(model: Model) -> bool:
+    """Whether the model has anything that can change as it moves."""
+    return bool(changing(model))
+
+
+def changing(model: Model) -> tuple[str, ...]:
+    """What can change as the model moves: contacts, and bodies on a path of several pieces."""
+    return tuple(dict.fromkeys((*(contact.name for contact in contacts_of(model)), *paths_of(model))))
+
+
+def paths_of(model: Model) -> tuple[str, ...]:
+    """The bodies on a path of several pieces."""
+    return tuple(name for name, body in model.bodies.items() if len(pieces_of(body)) > 1)
+
+
+def bounds_of(model: Model, body: str) -> tuple[tuple[Expression, Expression], ...]:
+    """The arc lengths at the beginning and the end of every piece of a body's path."""
+    joint: Any = model.bodies[body].joint
+    bounds: tuple[tuple[Expression, Expression], ...] = joint.bounds()
+    return bounds
+
+
+def on_pieces(model: Model, pieces: Mapping[str, int]) -> Model:
+    """The model with every path reduced to one of its pieces."""
+    if not pieces:
+        return model
+    bodies = dict(model.bodies)
+    for name, k in pieces.items():
+        joint: Any = bodies[name].joint
+        bodies[name] = altered(bodies[name], joint=joint.piece(k))
+    return altered(model, bodies=Table(bodies))
+
+
+def changed(model: Model, before: Configuration, after: Configuration) -> tuple[str, ...]:
+    """What is different after, a phrase each: "the support 'wall' opens"."""
+    contacts = {contact.name: contact for contact in contacts_of(on_pieces(model, after.pieces))}
+    phrases = [_moved_on(model, name, k) for name, k in after.pieces.items() if before.pieces.get(name, k) != k]
+    for name, mode in after.modes.items():
+        old = before.modes.get(name)
+        if old is not None and old != mode:
+            phrases += _phrases(contacts[name], old, mode)
+    return tuple(phrases)
+
+
+def _moved_on(model: Model, body: str, k: int) -> str:
+    joint: Any = model.bodies[body].joint
+    named = joint.pieces[k].name
+    return f"the body '{body}' comes to " + (f"the piece '{named}'" if named else f"piece {k + 1}") + " of its path"
+
+
+def _phrases(contact: Contact, old: ContactMode, new: ContactMode) -> Iterable[str]:
+    if old.closed and not new.closed:
+        yield f"{contact.words} goes slack" if contact.pulls else f"{contact.words} opens"
+    elif new.closed and not old.closed:
+        yield f"{contact.words} is taut again" if contact.pulls else f"{contact.words} closes"
+    elif old.sense != new.sense:
+        yield _sliding(contact, old.sense, new.sense)
+    elif old.push != new.push:
+        yield f"{contact.words} pushes from the other side"
+
+
+def _sliding(contact: Contact, old: int | None, new: int | None) -> str:
+    if new == 0:
+        return f"{contact.words} sticks"
+    return f"{contact.words} begins to slide" if old == 0 else f"{contact.words} slides back"

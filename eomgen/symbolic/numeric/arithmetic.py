@@ -1,0 +1,402 @@
+"""Arithmetics that know their error: balls, intervals, Arb's balls, the prime field."""
+
+from __future__ import annotations
+
+import math
+import sys
+from collections.abc import Callable, Sequence
+from functools import cache, partial
+from typing import Any
+
+import numpy as np
+
+from eomgen.symbolic.expression.node import Node
+from eomgen.symbolic.expression.numbers import Number
+from eomgen.symbolic.expression.splines import sampled_of
+from eomgen.symbolic.numeric.evaluation import PRIME, Arithmetic, NoValue, nearest
+from eomgen.symbolic.numeric.tolerances import OUTWARDS, TINIEST
+
+# -------- balls -----------------------------------------------------------------------------------------------
+# Balls: a number of many digits and how far from it the true one may be, (x, r) with |true - x| <= r.
+#
+# Rounding of each operation widens its ball, what cancels shows as a ball that is wide beside its number. r = 0 of a
+# number that is exact; r = inf where nothing can be said: 1/x with 0 in the ball of x. x = nan: surely no value.
+
+
+Ball = tuple[Any, Any]
+SLACK = 4  # units in the last place that one operation may lose, and the estimate of r too
+
+
+@cache
+def balls(digits: int, *, last: bool = False) -> Arithmetic:
+    """Balls around numbers of so many digits.
+
+    Args:
+        last: what no precision could tell apart is equal: a branch, a sign or an edge that hangs on it is decided so.
+    """
+    return _Balls(digits, last).arithmetic
+
+
+class _Balls:
+    """The operations on balls of one precision; the arguments are those of `balls`."""
+
+    def __init__(self, digits: int, last: bool) -> None:
+        from mpmath.ctx_mp import MPContext
+
+        self.mp, self.digits, self.last = MPContext(), digits, last
+        self.mp.dps = digits
+        self.unit = SLACK * self.mp.eps
+        self.zero: Ball = (self.mp.mpf(0), self.mp.mpf(0))
+        self.none: Ball = (self.mp.nan, self.mp.mpf(0))
+        self.open: Ball = (self.mp.mpf(0), self.mp.inf)
+
+    @property
+    def arithmetic(self) -> Arithmetic:
+        from eomgen.symbolic.numeric.sure_digits import in_balls
+
+        mp = self.mp
+        table: dict[str, Callable[..., Ball]] = {
+            "neg": lambda a: (-a[0], a[1]),
+            "add": lambda a, b: self._rounded(a[0] + b[0], a[1] + b[1]),
+            "sub": lambda a, b: self._rounded(a[0] - b[0], a[1] + b[1]),
+            "mul": self._mul,
+            "div": self._div,
+            "pow": self._pow,
+            "sqrt": self._sqrt,
+            "sin": lambda a: self._rounded(mp.sin(a[0]), a[1]),
+            "cos": lambda a: self._rounded(mp.cos(a[0]), a[1]),
+            "tan": lambda a: self._div(self._rounded(mp.sin(a[0]), a[1]), self._rounded(mp.cos(a[0]), a[1])),
+            "asin": lambda a: self._on(mp.asin, a, -1, 1),
+            "acos": lambda a: self._on(mp.acos, a, -1, 1),
+            "atan": lambda a: self._rounded(mp.atan(a[0]), a[1]),
+            "atan2": self._atan2,
+            "sinh": lambda a: self._on(mp.sinh, a),
+            "cosh": lambda a: self._rounded(mp.cosh(a[0]), mp.sinh(abs(a[0]) + a[1]) * a[1]),
+            "tanh": lambda a: self._rounded(mp.tanh(a[0]), a[1]),
+            "exp": lambda a: self._on(mp.exp, a),
+            "log": self._log,
+            "abs": lambda a: (abs(a[0]), a[1]),
+            "sign": lambda a: self._selected(self._less(self.zero, a), self.one, self._minus_if_negative(a)),
+            "min": lambda a, b: (min(a[0], b[0]), max(a[1], b[1])),
+            "max": lambda a, b: (max(a[0], b[0]), max(a[1], b[1])),
+            "less": self._less,
+            "less_equal": lambda a, b: self._not(self._less(b, a)),
+            "sampled": self._sampled,
+        }
+        guarded = {op: self._guarded(function) for op, function in table.items()}
+        own: dict[str, Callable[..., Ball]] = {"select": self._selected, "pi": lambda: self._rounded(+mp.pi, 0)}
+        by_arb = partial(in_balls, mp)
+        return Arithmetic(f"balls of {self.digits} digits", self.number, guarded | own, lambda x: self.none, by_arb)
+
+    @property
+    def one(self) -> Ball:
+        return (self.mp.mpf(1), self.mp.mpf(0))
+
+    def number(self, c: Number | float) -> Ball:
+        """An exact number; a double, as of an outline that is drawn, is one."""
+        if isinstance(c, float):
+            return (self.mp.mpf(c), self.mp.mpf(0))
+        above = self.mp.mpf(c.numerator)
+        if c.denominator == 1 and above == c.numerator:
+            return (above, self.mp.mpf(0))
+        return self._rounded(above / c.denominator, 0)
+
+    def _rounded(self, x: Any, r: Any) -> Ball:
+        return (x, r + self.unit * abs(x))
+
+    def _guarded(self, function: Callable[..., Ball]) -> Callable[..., Ball]:
+        """Of what has no value: none; of what nothing can be said: nothing can be said."""
+
+        def of(*arguments: Ball) -> Ball:
+            if any(x != x for x, _ in arguments):
+                return self.none
+            return self.open if any(r == self.mp.inf for _, r in arguments) else function(*arguments)
+
+        return of
+
+    # -- operations --------------------------------------------------------------------------------
+
+    def _mul(self, a: Ball, b: Ball) -> Ball:
+        (x, r), (y, s) = a, b
+        return self._rounded(x * y, abs(x) * s + abs(y) * r + r * s) if r or s else self._rounded(x * y, 0)
+
+    def _div(self, a: Ball, b: Ball) -> Ball:
+        (x, r), (y, s) = a, b
+        if abs(y) <= s:
+            return self.none if not y and not s else self.open
+        quotient = x / y
+        return self._rounded(quotient, (r + abs(quotient) * s) / (abs(y) - s))
+
+    def _sqrt(self, a: Ball) -> Ball:
+        x, r = a
+        if x > r:
+            root = self.mp.sqrt(x)
+            return self._rounded(root, r / root)
+        return (self.mp.mpf(0), self.mp.sqrt(abs(x) + r)) if x + r >= 0 else self.none
+
+    def _log(self, a: Ball) -> Ball:
+        x, r = a
+        if x > r:
+            return self._rounded(self.mp.log(x), r / (x - r))
+        return self.open if x + r > 0 else self.none
+
+    def _on(self, function: Callable[[Any], Any], a: Ball, low: Any = None, high: Any = None) -> Ball:
+        """A function that rises, or falls, from `low` to `high`: its ends say how far it reaches."""
+        x, r = a
+        if low is not None and (x + r < low or x - r > high):
+            return self.none
+        inside = [y if low is None else min(max(y, low), high) for y in (x, x - r, x + r)]
+        middle, *ends = (function(y) for y in inside)
+        return self._rounded(middle, max(abs(end - middle) for end in ends))
+
+    def _pow(self, a: Ball, b: Ball) -> Ball:
+        (x, r), (n, s) = a, b
+        if not s and self.mp.isint(n):
+            size = self.mp.power(abs(x) + r, abs(n) - 1) * abs(n) * r if n else self.mp.mpf(0)
+            power = self._rounded(self.mp.power(x, abs(n)), size)
+            return power if n >= 0 else self._div(self.one, power)
+        if x > r:
+            return self._on(self.mp.exp, self._mul(b, self._log(a)))
+        if x + r < 0:
+            return self.none
+        reach = self.mp.power(abs(x) + r, n - s) if n > s else self.mp.inf  # at the edge 0^n = 0
+        return self.none if reach == self.mp.inf and not r else (self.mp.mpf(0), reach)
+
+    def _atan2(self, a: Ball, b: Ball) -> Ball:
+        (y, r), (x, s) = a, b
+        if x <= s and abs(y) <= r and (r or s or not x):
+            return self.open if r or s else self.zero
+        least = self.mp.hypot(max(abs(y) - r, 0), max(abs(x) - s, 0))
+        return self._rounded(self.mp.atan2(y, x), (r + s) / least if r or s else 0)
+
+    def _sampled(self, t: Ball, k: Ball) -> Ball:
+        """Samples at t: as far apart as they are at the ends of its ball; twice, for what lies in between."""
+        sampled, (x, r) = sampled_of(k[0]), t
+        values = [sampled.at(y, lambda c: self.number(c)[0], +self.mp.pi) for y in (x, x - r, x + r)]
+        return self._rounded(
+            values[0], 2 * max(abs(y - values[0]) for y in values[1:]) + 9 * self.unit * abs(values[0])
+        )
+
+    # -- decisions ---------------------------------------------------------------------------------
+
+    def _less(self, a: Ball, b: Ball) -> Ball:
+        """1 or 0; (1/2, 1/2) where both may be."""
+        (x, r), (y, s) = a, b
+        if abs(x - y) > r + s or (not r and not s):
+            return self.one if x < y else self.zero
+        return self.zero if self.last else (self.mp.mpf(0.5), self.mp.mpf(0.5))
+
+    def _not(self, a: Ball) -> Ball:
+        return (1 - a[0], a[1])
+
+    def _minus_if_negative(self, a: Ball) -> Ball:
+        return self._selected(self._less(a, self.zero), (-self.one[0], self.one[1]), self.zero)
+
+    def _selected(self, condition: Ball, if_true: Ball, if_false: Ball) -> Ball:
+        """One of the two; both in one ball where the condition is open."""
+        if condition[0] != condition[0]:
+            return self.none
+        if not condition[1]:
+            return if_true if condition[0] else if_false
+        (x, r), (y, s) = if_true, if_false
+        return (x, max(r, abs(x - y) + s)) if x == x and y == y else self.open
+
+
+# -------- intervals -------------------------------------------------------------------------------------------
+# Intervals: what an expression may be worth anywhere in a box, for many boxes at once.
+#
+# An interval is (low, high), two arrays with one entry a box. Every function gives an interval that holds its value
+# at every point of its arguments' intervals: [1, 2] * [-1, 3] = [-2, 6], its ends moved outwards by more than
+# rounding may have moved them. Where nothing can be said it is (-inf, inf).
+
+
+Interval = tuple[Any, Any]
+LARGEST = sys.float_info.max
+
+
+def interval(low: Any, high: Any) -> Interval:
+    """(low, high) with its ends moved outwards; where an end is no number, anything."""
+    bad = np.isnan(low) | np.isnan(high)
+    low, high = np.where(bad, -np.inf, low), np.where(bad, np.inf, high)
+    return low - OUTWARDS * np.abs(low), high + OUTWARDS * np.abs(high)
+
+
+def _number(c: Number) -> Interval:
+    x = nearest(c)
+    if math.isinf(x):
+        return (LARGEST, x) if x > 0 else (x, -LARGEST)
+    return (x, x) if c == x else interval(x, x)
+
+
+def _rounded(function: Callable[..., Interval]) -> Callable[..., Interval]:
+    """The function with the ends of its values moved outwards."""
+    return lambda *arguments: interval(*function(*arguments))
+
+
+def _mul(a: Interval, b: Interval) -> Interval:
+    if a is b:
+        return _even(a, 2)
+    with np.errstate(invalid="ignore"):
+        ends = [np.multiply(x, y) for x in a for y in b]
+    ends = [np.where(np.isnan(x), 0.0, x) for x in ends]  # 0 * inf: 0 at every point
+    return np.minimum.reduce(ends), np.maximum.reduce(ends)
+
+
+def _div(a: Interval, b: Interval) -> Interval:
+    through_zero = (b[0] <= 0) & (b[1] >= 0)
+    with np.errstate(divide="ignore", invalid="ignore"):
+        low, high = _mul(a, (np.divide(1.0, b[1]), np.divide(1.0, b[0])))
+    return np.where(through_zero, -np.inf, low), np.where(through_zero, np.inf, high)
+
+
+def _even(a: Interval, n: int) -> Interval:
+    """a^n of an even n > 0."""
+    x, y = np.abs(a[0]), np.abs(a[1])
+    inside = (a[0] <= 0) & (a[1] >= 0)
+    return np.where(inside, 0.0, np.minimum(x, y) ** n), np.maximum(x, y) ** n
+
+
+def _pow(a: Interval, n: Interval) -> Interval:
+    if np.ndim(n[0]) or n[0] * n[1] < 0:
+        return _any_power(a, n)
+    e = float(n[0])
+    if n[0] == n[1] and e == int(e):
+        whole = abs(int(e))
+        power = _even(a, whole) if whole % 2 == 0 and whole else (np.power(a[0], whole), np.power(a[1], whole))
+        return _div((1.0, 1.0), power) if e < 0 else power
+    ends = [np.maximum(x, 0.0) ** abs(float(k)) for x in a for k in n]  # n an interval too, as 1/3 is
+    root = (np.minimum.reduce(ends), np.maximum.reduce(ends))
+    return _div((1.0, 1.0), root) if e < 0 else root
+
+
+def _rising(function: Callable[[Any], Any], low: float = -np.inf, high: float = np.inf) -> Callable[..., Interval]:
+    """A function that rises on its domain from `low` to `high`."""
+
+    def of(a: Interval) -> Interval:
+        with np.errstate(all="ignore"):
+            return interval(function(np.clip(a[0], low, high)), function(np.clip(a[1], low, high)))
+
+    return of
+
+
+def _any_power(a: Interval, n: Interval) -> Interval:
+    """a^n = exp(n log a); of an a that may be negative what is known is that a power is positive."""
+    low, high = _rising(np.exp)(_mul(n, _rising(np.log, TINIEST)(a)))
+    return np.where(a[0] > 0, low, 0.0), np.where(a[0] > 0, high, np.inf)
+
+
+def _cos(a: Interval) -> Interval:
+    with np.errstate(invalid="ignore"):
+        wide = ~(a[1] - a[0] < math.tau)
+        top = np.floor(a[1] / math.tau) >= np.ceil(a[0] / math.tau)
+        bottom = np.floor((a[1] - math.pi) / math.tau) >= np.ceil((a[0] - math.pi) / math.tau)
+        x, y = np.cos(a[0]), np.cos(a[1])
+    return np.where(wide | bottom, -1.0, np.minimum(x, y)), np.where(wide | top, 1.0, np.maximum(x, y))
+
+
+def _sin(a: Interval) -> Interval:
+    return _cos(interval(a[0] - math.pi / 2, a[1] - math.pi / 2))
+
+
+def _tan(a: Interval) -> Interval:
+    with np.errstate(invalid="ignore"):
+        one_branch = np.floor(a[0] / math.pi + 0.5) == np.floor(a[1] / math.pi + 0.5)
+        x, y = np.tan(a[0]), np.tan(a[1])
+    return np.where(one_branch, x, -np.inf), np.where(one_branch, y, np.inf)
+
+
+def _acos(a: Interval) -> Interval:
+    low, high = _rising(np.arcsin, -1.0, 1.0)(a)
+    return math.pi / 2 - high, math.pi / 2 - low
+
+
+def _abs(a: Interval) -> Interval:
+    x, y = np.abs(a[0]), np.abs(a[1])
+    return np.where((a[0] <= 0) & (a[1] >= 0), 0.0, np.minimum(x, y)), np.maximum(x, y)
+
+
+def _cosh(a: Interval) -> Interval:
+    low, high = _abs(a)
+    with np.errstate(over="ignore"):
+        return np.cosh(low), np.cosh(high)
+
+
+def _select(condition: Interval, if_true: Interval, if_false: Interval) -> Interval:
+    """condition: (1 where it holds all over, 1 where it may hold)."""
+    low = np.where(condition[0], if_true[0], np.where(condition[1], np.minimum(if_true[0], if_false[0]), if_false[0]))
+    high = np.where(condition[0], if_true[1], np.where(condition[1], np.maximum(if_true[1], if_false[1]), if_false[1]))
+    return low, high
+
+
+def _no_value(x: Node) -> Any:
+    raise NoValue(f"'{x.op}' outside its domain")
+
+
+INTERVALS = Arithmetic(
+    "intervals",
+    _number,
+    {
+        "neg": lambda a: (-a[1], -a[0]),
+        "add": lambda a, b: interval(a[0] + b[0], a[1] + b[1]),
+        "sub": lambda a, b: interval(a[0] - b[1], a[1] - b[0]),
+        "mul": _rounded(_mul),
+        "div": _rounded(_div),
+        "pow": _rounded(_pow),
+        "sqrt": _rising(np.sqrt, 0.0),
+        "sin": _rounded(_sin),
+        "cos": _rounded(_cos),
+        "tan": _rounded(_tan),
+        "asin": _rising(np.arcsin, -1.0, 1.0),
+        "acos": _rounded(_acos),
+        "atan": _rising(np.arctan),
+        "atan2": lambda a, b: (np.full_like(a[0] + b[0], -math.pi), np.full_like(a[0] + b[0], math.pi)),
+        "sampled": lambda t, k: (np.full_like(t[0] + t[1], -np.inf), np.full_like(t[0] + t[1], np.inf)),
+        "sinh": _rising(np.sinh),
+        "cosh": _rounded(_cosh),
+        "tanh": _rising(np.tanh),
+        "exp": _rising(np.exp),
+        "log": _rising(np.log, 0.0),
+        "abs": _abs,
+        "sign": lambda a: (np.sign(a[0]), np.sign(a[1])),
+        "min": lambda a, b: (np.minimum(a[0], b[0]), np.minimum(a[1], b[1])),
+        "max": lambda a, b: (np.maximum(a[0], b[0]), np.maximum(a[1], b[1])),
+        "less": lambda a, b: (a[1] < b[0], a[0] < b[1]),
+        "less_equal": lambda a, b: (a[1] <= b[0], a[0] <= b[1]),
+        "select": _select,
+        "pi": lambda: interval(math.pi, math.pi),
+    },
+    _no_value,
+)
+
+
+# -------- modular ---------------------------------------------------------------------------------------------
+# Linear equations in the prime field: whether one follows from others, exactly.
+
+
+def follows(rows: Sequence[Sequence[int]], row: Sequence[int]) -> bool:
+    """Whether the row is a combination of the others, modulo the prime."""
+    left = list(row)
+    for pivot, k in _echelon(rows):
+        _take_out(left, pivot, k)
+    return not any(x % PRIME for x in left)
+
+
+def _echelon(rows: Sequence[Sequence[int]]) -> list[tuple[list[int], int]]:
+    """(row with 1 at its pivot, place of the pivot), each without the pivots before it."""
+    found: list[tuple[list[int], int]] = []
+    for row in rows:
+        left = [x % PRIME for x in row]
+        for pivot, k in found:
+            _take_out(left, pivot, k)
+        k = next((k for k, x in enumerate(left) if x), -1)
+        if k >= 0:
+            inverse = pow(left[k], -1, PRIME)
+            found.append(([x * inverse % PRIME for x in left], k))
+    return found
+
+
+def _take_out(row: list[int], pivot: Sequence[int], k: int) -> None:
+    """row - row[k] * pivot, in place."""
+    factor = row[k]
+    if factor:
+        row[:] = [(x - factor * y) % PRIME for x, y in zip(row, pivot, strict=True)]

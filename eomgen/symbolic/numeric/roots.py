@@ -1,0 +1,454 @@
+"""Equations, guesses -> their roots nearby, in any arithmetic."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import field, replace
+from functools import cached_property
+from typing import Any, Generic, Protocol, TypeVar
+
+import numpy as np
+
+from eomgen.records import dataclass
+from eomgen.symbolic.expression.derivative import jacobian
+from eomgen.symbolic.expression.node import Node, Scalar, State
+from eomgen.symbolic.numeric.arithmetic import balls
+from eomgen.symbolic.numeric.dense import balanced
+from eomgen.symbolic.numeric.evaluation import Layers, NoValue, evaluate, fifty_digits
+from eomgen.symbolic.numeric.tolerances import (
+    BEST,
+    CERTAIN_AT_50,
+    COMPUTED,
+    DIFFERENCE_AT_50,
+    FELT,
+    LEAST_CHANGE,
+    MET_AT_50,
+    NEAR_ROOT,
+    SOLVED,
+)
+from eomgen.symbolic.numeric.work import check_patience
+
+# -------- newton ----------------------------------------------------------------------------------------------
+# Equations -> a root nearby, by steps of least change; the one iteration of the package, in any number of digits.
+#
+#     f(x) + A d = 0,  |d| least:   d = -A^+ f,   A = df/dx      x <- x + d      until |f| is small enough
+#
+# Redundant equations do no harm (A^+ passes over directions in which they all but do not resist). Where the way is
+# long it is damped, (A^T A + |f|^2 1) d = -A^T f, which converges as fast and does not leap along directions that
+# only an open loop resists. A is in floats: each step adds the digits of a float to x, whose own digits are those of
+# f. Source: Yamashita & Fukushima, On the rate of convergence of the Levenberg-Marquardt method (2001).
+
+
+X = TypeVar("X")
+
+
+class Sought(Protocol[X]):
+    """Equations in a place x of any kind: an array, a state, a point of a search."""
+
+    def left(self, x: X, /) -> Sequence[Any] | np.ndarray:
+        """f(x)."""
+
+    def slopes(self, x: X, /) -> np.ndarray:
+        """df/dx, equations x unknowns."""
+
+    def moved(self, x: X, step: Sequence[Any], /) -> X:
+        """x + step; the step has the digits of f."""
+
+
+@dataclass(frozen=True)
+class Root(Generic[X]):
+    """Where an iteration ended.
+
+    Args:
+        x: the place.
+        left: |f| before the last step, its largest entry; nan where f or its slopes have no value.
+        met: whether it is a root.
+    """
+
+    x: X
+    left: float
+    met: bool
+
+
+@dataclass(frozen=True)
+class Newton:
+    """How a root is sought.
+
+    Args:
+        enough: |f| at a root.
+        still: a step that ends the search at a root too, where |f| has no measure of its own.
+        steps: at most.
+        smallest: singular values of A below this part of the largest count as 0.
+        damped: by |f|, while that is below 1.
+        stalls: |f| below which a root is reached when it falls to no `share` of itself any more: redundant equations
+            differ by rounding.
+        again: one step more at the root, for its last digits.
+        keeps: A is kept while |f| falls by this factor in a step.
+        double: of a step, to within which the next is half of it: at a double root it is taken twice.
+        longest: step.
+        least: (the slopes, -f) -> d, where change has a measure of its own; None: |d| is least.
+    """
+
+    enough: float = 0.0
+    still: float = 0.0
+    steps: int = 60
+    smallest: float = LEAST_CHANGE
+    damped: bool = False
+    stalls: float = 0.0
+    share: float = 0.5
+    again: bool = False
+    keeps: float = 0.0
+    double: float = 0.0
+    longest: float = math.inf
+    least: Callable[[np.ndarray, np.ndarray], np.ndarray] | None = None
+
+    def root(self, sought: Sought[X], start: X) -> Root[X]:
+        """The root to which the steps lead from the start; not met where they lead to none, or leave the domain."""
+        x, before, size, left = start, start, math.inf, math.inf
+        A: np.ndarray | None = None
+        last: np.ndarray | None = None
+        try:
+            for _ in range(self.steps):
+                check_patience()
+                f = sought.left(x)
+                size = max(map(abs, f), default=0)
+                if size <= self.enough:
+                    return Root(self._again(sought, x, f, size), float(size), True)
+                if left < self.stalls and size >= self.share * left:
+                    return Root(before, float(left), True)
+                if A is None or size > self.keeps * left:
+                    A = sought.slopes(x)
+                unit = self._unit_step(A, f, size)
+                step = float(size) * unit
+                longest = float(np.max(np.abs(step), initial=0.0))
+                far = self._factor(step, last, longest)
+                before, left, last = x, size, step
+                x = sought.moved(x, [size * float(far * d) for d in unit])
+                if longest <= self.still and self.still:
+                    return Root(x, float(size), True)
+        except (NoValue, ZeroDivisionError, np.linalg.LinAlgError):
+            return Root(x, math.nan, False)
+        return Root(x, float(size), False)
+
+    def _unit_step(self, A: np.ndarray, f: Sequence[Any] | np.ndarray, size: Any) -> np.ndarray:
+        """d / |f|: the entries of f may be below what floats can add to x.
+
+        Raises:
+            NoValue: A has entries without a value.
+        """
+        if not np.all(np.isfinite(A)):
+            raise NoValue("the equations have no slopes")
+        right = np.array([-float(y / size) for y in f])
+        if self.least is not None:
+            return self.least(A, right)
+        if not self.damped:
+            return np.asarray(np.linalg.lstsq(A, right, rcond=self.smallest)[0])
+        n = A.shape[1]
+        damped = np.vstack([A, min(float(size), 1.0) * np.eye(n)])
+        return np.asarray(np.linalg.lstsq(damped, np.append(right, np.zeros(n)), rcond=None)[0])
+
+    def _factor(self, step: np.ndarray, last: np.ndarray | None, longest: float) -> float:
+        halves = last is not None and np.linalg.norm(2 * step - last) <= self.double * np.linalg.norm(last)
+        if self.double and longest and halves:
+            return 2.0
+        return min(1.0, self.longest / longest) if longest else 1.0
+
+    def _again(self, sought: Sought[X], x: X, f: Sequence[Any] | np.ndarray, size: Any) -> X:
+        if not self.again or not size:
+            return x
+        return sought.moved(x, [size * float(d) for d in self._unit_step(sought.slopes(x), f, size)])
+
+
+def least_left(
+    left: Callable[[np.ndarray], np.ndarray],
+    start: np.ndarray,
+    slopes: Callable[[np.ndarray], np.ndarray] | None = None,
+) -> Root[np.ndarray]:
+    """The place nearby where |f|^2 is least, in floats: a root, or how near the equations come to one.
+
+    Args:
+        slopes: df/dx (None: by differences).
+    """
+    from scipy.optimize import least_squares
+
+    found = least_squares(left, start, slopes or "2-point", xtol=BEST, ftol=BEST, gtol=BEST)
+    size = float(np.max(np.abs(found.fun), initial=0.0))
+    return Root(found.x, size, size <= BEST)
+
+
+# -------- roots nearby ----------------------------------------------------------------------------------------
+# Equations, guesses -> their roots nearby, in numbers: many guesses at once, then 50 digits.
+#
+# Levenberg and Marquardt: (A^T A + mu 1) dx = -A^T f, A = df/dx, mu smaller after each success; rows and columns are
+# scaled first, for equations have units of their own. What was found is a root only where Newton's next step is
+# smaller again: the steps to a root of order k shrink by 1 - 1/k, whatever the units are; those along a tail that has
+# none, exp(-x/l) or 1/x^2, do not.
+
+
+STEPS = 80
+FAILURES = 3  # steps one after the other after which a place so near a root is as near as its rounding lets it
+UNDAMPED = 8
+SHRINKS = 0.9  # of a step of Newton's method the next, at a root of order 10; along exp(-x^2) it is more
+STEPS_APART = 1e3  # of Newton's steps at two places, within which they are one root
+WANDERS = 1e-2  # how far 50 digits may lead away from what floats found
+POLISHED = Newton(enough=MET_AT_50, still=CERTAIN_AT_50, steps=200, keeps=1e-3)  # steps: at a multiple root
+
+
+@dataclass(frozen=True)
+class Descent:
+    """Equations in some unknowns.
+
+    Args:
+        equations: what is to vanish.
+        unknowns: the symbols sought.
+        values: of every other symbol, with 50 digits.
+        telling: how many of the unknowns, the first ones, tell two roots apart and how near they are (None: all). The
+            others may be free at a root, as the multipliers of redundant ties are.
+        scales: of the rows and of the columns (None: those of slopes at a few places).
+        last: the slopes where they were asked last, by the unknowns there.
+    """
+
+    equations: tuple[Scalar, ...]
+    unknowns: tuple[Node, ...]
+    values: Mapping[Node, Any]
+    telling: int | None = None
+    scales: tuple[np.ndarray, np.ndarray] | None = None
+    last: dict[tuple[Any, ...], np.ndarray] = field(default_factory=dict, compare=False, repr=False)
+
+    def roots_near(self, guesses: np.ndarray, most: int | None = None) -> list[np.ndarray]:
+        """From each guess the root that is reached; those that reach none are left out.
+
+        Args:
+            most: how many at most, the nearest to the first guess (None: all).
+        """
+        x = np.array(guesses, dtype=float).reshape(-1, len(self.unknowns))
+        if not len(x):
+            return []
+        if not self.equations or not self.unknowns:
+            return [row for row in x]
+        with np.errstate(all="ignore"):
+            x = np.vstack([self._undamped(x[0]), x])
+            x = x[self._arrived(x)]
+            apart = self._apart(x)
+        if most is not None:
+            apart = sorted(apart, key=lambda row: float(np.sum((row - guesses[0])[: self.telling] ** 2)))[:most]
+        polished = (self.polished(row) for row in apart)
+        return [row for row in polished if row is not None]
+
+    def polished(self, x: np.ndarray) -> np.ndarray | None:
+        """The root near x to all digits of a float; None where there is none."""
+        near = self._measured_at(x)
+        root = POLISHED.root(near, self._state(x))
+        if np.isnan(root.left):
+            return None
+        found = np.array([float(root.x[node]) for node in self.unknowns])
+        wanders = np.any(abs(found - x) > WANDERS * (1 + abs(x)))
+        return None if wanders or not near.closes_in(root.x) else found
+
+    def closes_in(self, state: State) -> bool:
+        """Whether Newton's steps from a state shrink, or are nothing, or what is left is the rounding of terms."""
+        first = self._step(state)
+        if first is None or self._is_nothing(first, state) or self._is_rounding(state):
+            return first is not None
+        moved = state | {node: state[node] + d for node, d in zip(self.unknowns, first, strict=True)}
+        second = self._step(moved)
+        return second is not None and self._length(second) <= SHRINKS * self._length(first)
+
+    def reach(self, x: np.ndarray) -> np.ndarray:
+        """How far about a place the root is that was found there, of each unknown."""
+        step = self._measured_at(x)._step(self._state(x))
+        return np.asarray(COMPUTED * np.abs(x) + (0.0 if step is None else STEPS_APART * np.abs(step.astype(float))))
+
+    def _state(self, x: np.ndarray) -> dict[Node, Any]:
+        """Values of all symbols at x, with 50 digits."""
+        return dict(self.values) | {node: fifty_digits().number(1) * float(v) for node, v in self._pairs(x)}
+
+    def _measured_at(self, x: np.ndarray) -> Descent:
+        """The same with its rows measured by their slopes at x: what is left is then a length.
+
+        With 50 digits, whose exponents have no end: where doubles underflow, nothing would be left and no step.
+        """
+        try:
+            A = self._at_digits(self._state(x))
+            quickly = _in_doubles(A, np.ones(len(A)), self._columns)
+            slopes = np.abs(A) * self._columns if quickly is None else np.abs(quickly)
+            largest = [max(row, default=0) for row in slopes]
+        except (NoValue, ZeroDivisionError):
+            return self
+        rows = [1 / size if 0 < size < math.inf else r for size, r in zip(largest, self._rows, strict=True)]
+        return replace(self, scales=(np.array(rows, dtype=object), self._columns))
+
+    def _step(self, state: State) -> np.ndarray | None:
+        """Newton's step with 50 digits; None where there is none."""
+        try:
+            f, A = self.left(state), self.slopes(state)
+            largest = max(map(abs, f), default=0)
+            if not largest:
+                return np.zeros(len(self.unknowns))
+            unit = np.linalg.lstsq(A, np.array([-float(y / largest) for y in f]), rcond=LEAST_CHANGE)[0]
+        except (NoValue, ZeroDivisionError, np.linalg.LinAlgError):
+            return None
+        return np.array([largest * float(c * d) for c, d in zip(self._columns, unit, strict=True)])
+
+    def _is_nothing(self, step: np.ndarray, state: State) -> bool:
+        return all(abs(d) <= CERTAIN_AT_50 * (1 + abs(state[x])) for x, d in zip(self.unknowns, step, strict=True))
+
+    def _is_rounding(self, state: State) -> bool:
+        """Whether each equation is 0 as far as its terms, of which much cancels, are known with so many digits."""
+        exact = {node: (x, 0) for node, x in state.items()}
+        return all(abs(x) <= reach for x, reach in evaluate(self.equations, exact, balls(50)))
+
+    def _length(self, step: np.ndarray) -> Any:
+        return max(abs(d) / float(c) for d, c in zip(step, self._columns, strict=True))
+
+    def left(self, state: State) -> list[Any]:
+        """The equations with 50 digits, rows scaled."""
+        values = evaluate(self.equations, state, fifty_digits())
+        return [y * r for y, r in zip(values, self._rows, strict=True)]
+
+    def slopes(self, state: State) -> np.ndarray:
+        """Their derivatives, rows and columns scaled."""
+        A = self._at_digits(state)
+        quickly = _in_doubles(A, self._rows, self._columns)
+        return np.array(self._rows[:, None] * A * self._columns, dtype=float) if quickly is None else quickly
+
+    def moved(self, state: State, step: Sequence[Any]) -> State:
+        """The state after a step of the scaled unknowns."""
+        moves = zip(self.unknowns, self._columns, step, strict=True)
+        return state | {node: state[node] + float(size) * d for node, size, d in moves}
+
+    def _at_digits(self, state: Mapping[Node, Any]) -> np.ndarray:
+        """df/dx with 50 digits."""
+        place = tuple(state[x] for x in self.unknowns)
+        if place not in self.last:
+            found = np.empty(len(self._derivatives), dtype=object)
+            found[:] = evaluate(self._derivatives, state, fifty_digits())
+            self.last.clear()
+            self.last[place] = found.reshape(self._shape)
+        return self.last[place]
+
+    def at_one(self, x: np.ndarray) -> np.ndarray:
+        """df/dx at x, equations x unknowns."""
+        return np.asarray(self._at(x[None, :])[1][0])
+
+    def _pairs(self, x: np.ndarray) -> zip[tuple[Node, float]]:
+        return zip(self.unknowns, x, strict=True)
+
+    @property
+    def _shape(self) -> tuple[int, int]:
+        return len(self.equations), len(self.unknowns)
+
+    @cached_property
+    def _derivatives(self) -> tuple[Scalar, ...]:
+        return tuple(x for row in jacobian(self.equations, self.unknowns) for x in row)
+
+    @cached_property
+    def _layers(self) -> Layers:
+        floats = {node: float(x) for node, x in self.values.items()}
+        return Layers((*self.equations, *self._derivatives), self.unknowns, floats)
+
+    def _at(self, x: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+        """(f, df/dx) at each place."""
+        found, n = self._layers.at(x), len(self.equations)
+        return found[:, :n], found[:, n:].reshape(-1, *self._shape)
+
+    @cached_property
+    def _scales(self) -> tuple[np.ndarray, np.ndarray]:
+        """(of the rows, of the columns): with them the largest entries of df/dx are near 1, near a few places.
+
+        Rows first: a load of 1e-100 N is a small force, and no reason to measure angles in units of 1e50 rad.
+        """
+        if self.scales is not None:
+            return self.scales
+        places = np.random.default_rng(2).uniform(-1, 1, (16, len(self.unknowns)))
+        A = np.abs(self._at(places)[1])
+        known = np.isfinite(A) & (A > 0)
+        with np.errstate(all="ignore"):
+            A = np.exp(np.sum(np.where(known, np.log(A), 0.0), axis=0) / np.sum(known, axis=0))
+        A = np.where(np.isfinite(A), A, np.any(known, axis=0))
+        largest = A.max(axis=1)
+        largest = np.where(largest > 0, largest, 1.0)
+        _, rows, columns = balanced(A / largest[:, None])
+        return rows / largest, columns
+
+    @property
+    def _rows(self) -> np.ndarray:
+        return self._scales[0]
+
+    @property
+    def _columns(self) -> np.ndarray:
+        return self._scales[1]
+
+    def _undamped(self, x: np.ndarray) -> np.ndarray:
+        """Where Newton's own steps lead from the first guess: damped ones creep along stiff valleys."""
+        for _ in range(UNDAMPED):
+            f, A = self._scaled(x[None, :])
+            if not np.all(np.isfinite(f)):
+                break
+            x = x - self._columns * np.linalg.lstsq(A[0], f[0], rcond=LEAST_CHANGE)[0]
+        return x
+
+    def _arrived(self, x: np.ndarray) -> np.ndarray:
+        """Move x to roots in place; where that succeeded."""
+        diagonal = np.arange(len(self.unknowns))
+        f, A = self._scaled(x)
+        mu, size, failed = np.full(len(x), 1e-3), _size(f), np.zeros(len(x))
+        for _ in range(STEPS):
+            left = np.flatnonzero(np.isfinite(size) & (size > BEST) & ((failed < FAILURES) | (size > SOLVED)))
+            if not len(left):
+                break
+            At = A[left].transpose(0, 2, 1)
+            normal = At @ A[left]
+            normal[:, diagonal, diagonal] += mu[left, None]
+            step = self._columns * _solved(normal, -(At @ f[left][:, :, None])[:, :, 0])
+            trial = x[left] + step
+            new_f, new_A = self._scaled(trial)
+            better = _size(new_f) < size[left]
+            done = left[better]
+            x[done], f[done], A[done] = trial[better], new_f[better], new_A[better]
+            size[done] = _size(f[done])
+            failed[left] = np.where(better, 0, failed[left] + 1)
+            mu[left] = np.clip(np.where(better, mu[left] / 5, mu[left] * 4), DIFFERENCE_AT_50, 1e12)
+        return np.asarray(np.isfinite(size) & (size < NEAR_ROOT))
+
+    def _apart(self, x: np.ndarray) -> list[np.ndarray]:
+        """Of the rows that are one root in the entries that tell, one."""
+        f, A = self._scaled(x)
+        steps = self._columns * np.einsum("bij,bj->bi", np.linalg.pinv(A, rcond=LEAST_CHANGE), f)
+        reaches = (STEPS_APART * np.abs(steps) + COMPUTED * np.abs(x))[:, : self.telling]
+        found: list[int] = []
+        for k, row in enumerate(x[:, : self.telling]):
+            others = x[found, : self.telling]
+            near = np.maximum(reaches[k], reaches[found])
+            if not np.any(np.all(np.abs(others - row) <= near, axis=1)):
+                found.append(k)
+        return [x[k] for k in found]
+
+    def _scaled(self, x: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+        f, A = self._at(x)
+        A = A * self._rows[:, None] * self._columns
+        return self._rows * f, np.where(np.isfinite(A), A, 0.0)
+
+
+def _solved(normal: np.ndarray, right: np.ndarray) -> np.ndarray:
+    """x of normal x = right, one a row; the shortest where a matrix is singular (redundant equations)."""
+    try:
+        found: np.ndarray = np.linalg.solve(normal, right[:, :, None])[:, :, 0]
+    except np.linalg.LinAlgError:
+        found = (np.linalg.pinv(normal, hermitian=True) @ right[:, :, None])[:, :, 0]
+    return found
+
+
+def _in_doubles(A: np.ndarray, rows: np.ndarray, columns: np.ndarray) -> np.ndarray | None:
+    """A of 50 digits, rows and columns scaled, in doubles; None where what is too small for one could be felt."""
+    with np.errstate(all="ignore"):
+        rows = np.array(rows, dtype=float)[:, None]
+        found = rows * np.array(A, dtype=float) * columns
+    largest = np.abs(found).max(axis=1, initial=0.0)
+    felt = np.max(rows * columns, initial=0.0) <= 1 / FELT and np.all((largest >= FELT) & np.isfinite(largest))
+    return found if felt else None
+
+
+def _size(f: np.ndarray) -> np.ndarray:
+    return np.asarray(np.sqrt(np.sum(f * f, axis=1)))
