@@ -37,7 +37,7 @@ CHAIN = (
     ("generated",),
     ("page",),
     ("judge",),
-    ("verbs", "notebook"),
+    ("verbs",),
     ("edge",),
     ("cli_options",),
     ("cli_common",),
@@ -219,6 +219,19 @@ def test_an_import_to_the_right_is_seen(tmp_path):
 def test_a_ring_is_seen():
     """a -> b -> c -> a is a ring."""
     assert ring({"a": {"b"}, "b": {"c"}, "c": {"a"}}) == ["a", "b", "c", "a"]
+
+
+def test_the_page_of_the_house_names_every_room_and_no_module_that_is_gone():
+    """docs/architecture.md: a row for each room, in their order; every `room/module` there and in the theory exists."""
+    docs = TESTS.parent / "docs"
+    rooms = (docs / "architecture.md").read_text("utf-8").split("## The rooms")[1].split("\n## ")[0]
+    named = [room for row in re.findall(r"^\| (`.*?) \|", rooms, re.M) for room in re.findall(r"`(\w+)`", row)]
+    assert [RANK[room] for room in named] == sorted(RANK[room] for room in named)
+    assert {*named, "__main__"} == RANK.keys()
+    for page in ("architecture.md", "theory.md"):
+        for place in re.findall(r"(?<!})`(\w+(?:/\w+)+)`", (docs / page).read_text("utf-8")):
+            there = [PACKAGE / place, PACKAGE / f"{place}.py", TESTS.parent / place]
+            assert any(path.exists() for path in there), f"{page} names {place}"
 
 
 def test_sympy_is_not_imported_at_the_top_of_the_command_line():

@@ -6,6 +6,7 @@ import doctest
 import re
 import shlex
 import tomllib
+from itertools import pairwise
 from pathlib import Path
 from typing import Any
 
@@ -174,6 +175,34 @@ def test_links_inside_the_repository_lead_somewhere(page):
         path, _, anchor = target.partition("#")
         if not path.startswith("http"):
             assert (folder / path).exists() if path else anchor in headings, target
+
+
+def test_the_readme_is_short():
+    """At most 1 300 words, code included; what is longer stands in docs/."""
+    assert len(README.split()) <= 1300
+
+
+def test_what_the_readme_offers_next_does_what_it_says(tmp_path, monkeypatch):
+    """The third ```sh block: five commands; `verify` finds the mistake that README names (exit 5)."""
+    (tmp_path / "models").symlink_to(ROOT / "models")
+    monkeypatch.chdir(tmp_path)
+    lines = blocks(README, "sh")[2].splitlines()
+    done = {}
+    for line in lines:
+        _, *words = shlex.split(line, comments=True)
+        result = CliRunner().invoke(main, words)
+        assert result.exit_code == (5 if words[0] == "verify" else 0), line
+        done[words[0]] = result.stdout
+        assert all(Path(file).exists() for option, file in pairwise(words) if option == "-o"), line
+    assert list(done) == ["new", "report", "play", "verify", "codegen"] and Path("my_model.toml").exists()
+    told = re.search(r"`(the term with[^`]*)`", README)
+    assert told and " ".join(told[1].split()) in " ".join(done["verify"].split())
+
+
+def test_every_command_has_its_row_in_the_page_of_commands():
+    """docs/commands.md: `eomgen NAME` begins one row of the table for each command, and for no other."""
+    page = (ROOT / "docs" / "commands.md").read_text(encoding="utf-8")
+    assert sorted(re.findall(r"^\| `eomgen (\w+)", page, re.M)) == sorted(main.commands)
 
 
 def test_the_first_two_shell_blocks_set_everything_up():

@@ -1,6 +1,6 @@
 """The reference of the model file and other papers of the tree as pages of the site: one source, cut at its heads.
 
-`models/README.md` becomes a page for each of its sections, README's limits a page, CHANGELOG and CONTRIBUTING pages.
+`models/README.md` becomes a page for each of its sections; CHANGELOG and CONTRIBUTING are pages.
 Links between sections follow; a link to a file of the tree that has no page becomes its name.
 """
 
@@ -11,7 +11,6 @@ from pathlib import Path
 
 ROOT = Path(__file__).parents[2]
 WHOLE = {"CHANGELOG.md": "changelog", "CONTRIBUTING.md": "contributing"}  # path of the tree: page under docs/tree
-PIECES = {"README.md": {"what-this-version-does-not-do-yet": "limits", "how-fast-it-is": "speed"}}
 HEAD = re.compile(r"^(#{1,6}) (.*)$")
 LINK = re.compile(r"(?<!!)\[([^\[\]]+)\]\(([^()\s]+)\)")
 FENCE = re.compile(r"^```")
@@ -108,12 +107,6 @@ def cut() -> tuple[dict[str, str], dict[tuple[str, str], str]]:
         raw[page] = ("models/README.md", head, "\n".join(raised(lines)))
         homes.update({("models/README.md", anchor): page for anchor in anchors(head, lines)})
     homes["models/README.md", ""] = "model_file/index"
-    for source, pieces in PIECES.items():
-        for head, lines in sections((ROOT / source).read_text(encoding="utf-8")):
-            if slug(head) in pieces:
-                page = f"tree/{pieces[slug(head)]}"
-                raw[page] = (source, head, "\n".join(raised(lines)))
-                homes[source, slug(head)] = page
     for source, name in WHOLE.items():
         text = (ROOT / source).read_text(encoding="utf-8")
         head = next(match[2] for match in map(HEAD.match, text.splitlines()) if match)
