@@ -153,6 +153,25 @@ def test_the_arrow_of_a_reaction_is_the_column_of_the_run(run):
     assert np.allclose(arrow, scale * force) and np.allclose(head.path[:, 0], 0.0)
 
 
+def test_the_arrows_of_supports_and_rolling_contacts_are_what_moves_the_whole():
+    """F_wall + F_floor + sum m g = sum m a_C, of a bar 4M, 3R on a disc 2M, R: the arrows at both, by one scale."""
+    model = eomgen.load(MODELS / "seeds" / "ch22_p1.toml")
+    run = eomgen.simulate(model, time=1, samples=11)
+    drawing = movie_of(run, run.t, forces=True).drawing
+    M, R, g = 1.0, 0.5, 9.81
+    q, u = run.x.T
+    a = (9 * R * np.cos(q) * u**2 + 2 * g) * np.sin(q) / (R * (4 + 9 * np.cos(q) ** 2))
+    rates = 12 * (np.cos(q) * a - np.sin(q) * u**2), 6 * (-np.sin(q) * a - np.cos(q) * u**2) + 6 * g / R
+    strokes = {"wall": [], "floor": []}
+    for stroke in drawing.strokes:
+        if stroke.role == "reaction" and stroke.of in strokes:
+            strokes[stroke.of].append(stroke.path)
+    arrows = {of: head[:, 0] - shaft[:, 0] for of, (shaft, head) in strokes.items()}
+    scale = drawing.sizes.scales["reaction", "N"]
+    assert np.allclose(arrows["wall"] + arrows["floor"], scale * M * R * np.column_stack(rates), atol=1e-6)
+    assert np.allclose(strokes["floor"][1][:, 0], np.column_stack([3 * R * np.sin(q), 0 * q]), atol=1e-9)
+
+
 @pytest.mark.parametrize(("name", "body"), (("sliding_ladder", "ladder"), ("loop_the_loop", "bead")))
 def test_each_phase_of_a_moving_picture_is_drawn_by_its_own_system(name, body):
     """A trail is where each phase's own equations have the point, at the states that its integrator went through."""

@@ -90,6 +90,23 @@ def moved(role: str, change: Any) -> Movie:
     return replace(movie(), drawing=replace(movie().drawing, strokes=tuple(strokes)))
 
 
+def test_the_arrow_of_a_contact_that_points_elsewhere_is_seen():
+    """Turned by a quarter about its tip, of a support and of what rolls; as drawn they hold."""
+    ran = eomgen.simulate(MODELS[0].parent / "seeds" / "ch22_p1.toml", time=0.4, samples=3, target="numpy")
+    shown = movie_of(ran, ran.t, forces=True)
+    assert all(check.ok for check in movie_read_back(ran, shown))
+    for owner in ("wall", "floor"):
+        tip = [s.path[:, :1] for s in shown.drawing.strokes if (s.role, s.of) == ("reaction", owner)][1]
+        strokes = [
+            replace(stroke, path=tip + (stroke.path - tip) @ np.array([[0, 1], [-1, 0]]))
+            if (stroke.role, stroke.of) == ("reaction", owner)
+            else stroke
+            for stroke in shown.drawing.strokes
+        ]
+        turned = replace(shown, drawing=replace(shown.drawing, strokes=tuple(strokes)))
+        assert any(owner in check.detail for check in movie_read_back(ran, turned) if check.ok is False)
+
+
 def test_a_movie_shows_the_run():
     """R^T (r - p) fills the shape; a spring joins its points; an arrow is k F at its point."""
     assert wrong(movie()) == ""

@@ -32,7 +32,7 @@ from eomgen.proof.check import Check, Tally, differing
 from eomgen.proof.pictures_told import picture_of_page, pictures_told, states_shown
 from eomgen.proof.reports_read import columns_unpacked, unpacked
 from eomgen.records import dataclass
-from eomgen.scene.connections import reaction_marks
+from eomgen.scene.connections import reaction_marks, resultants
 from eomgen.scene.making import scene_of_system
 from eomgen.scene.phase_frames import joined, phase_frames
 from eomgen.scene.scene import Scene
@@ -125,7 +125,9 @@ class PlayedRun:
     def scene(self) -> Scene:
         """Of a model whose contacts do not change."""
         scene = scene_of_system(self.phase.system, self.phase.equations)
-        arrows = reaction_marks(self.phase.system, single_reactions(self.phase))
+        values = single_reactions(self.phase)
+        found = resultants(self.phase.system, values)
+        arrows = reaction_marks((resultant, resultant.of(values)) for resultant in found)
         return replace(scene, marks=(*scene.marks, *arrows))
 
     @property

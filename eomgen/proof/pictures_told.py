@@ -24,6 +24,7 @@ from eomgen.mechanics.kinematics.scene import SystemScene
 from eomgen.model.composite import pose_of
 from eomgen.model.constraints.base import TouchingRound
 from eomgen.model.forces.base import PushAt
+from eomgen.model.forces.load import PointForce
 from eomgen.model.shapes import Shape
 from eomgen.proof.at_a_state import NumericState
 from eomgen.proof.check import Check, Tally
@@ -402,11 +403,29 @@ class _Shown(InNumbers):
         names = [f"reaction_{axis}({owner})" for axis in "xyz"[: self.d]]
         found = [self.numeric.reactions.get(name) for name in names]
         if any(x is None or not np.isfinite(x) for x in found):
-            return None
+            return self._of_contact(owner) if not any(name in self.numeric.reactions for name in names) else None
         at = None
         if owner in self.motion.index:
             at = self.placed(self.motion.position((owner, self.motion.link(owner).point)))
         return at, np.array([float(x) for x in found if x is not None])
+
+    def _of_contact(self, owner: str) -> tuple[np.ndarray | None, np.ndarray] | None:
+        """(place, resultant) of the rows of a contact: each along its own force, friction along its tangents."""
+        at, total = None, np.zeros(self.d)
+        for row in (row for row in self.system.ties.rows if row.tie == owner):
+            braking = (("t", row.tangent), ("s", row.cross_tangent)) if row.friction is not None else ()
+            for label, pushes in ((row.component, row.pushes), *braking):
+                push = next((x for x in pushes if isinstance(x, PointForce) and x.place[0] is not None), None)
+                if push is None and label != row.component:
+                    continue
+                size = self.numeric.reactions.get(f"reaction_{label}({owner})")
+                if push is None or size is None or not np.isfinite(size):
+                    return None
+                pushed = self.carried(push.axes, self.vector(push.force), direction=True)
+                total += float(size) * np.array([float(x) for x in pushed[: self.d]])
+                at = self.placed(self.motion.position(push.place))
+                at = at if push.beyond is None else at + self.placed(push.beyond)
+        return None if at is None else (at, total)
 
 
 # -- what a page is told -------------------------------------------------------------------------------------------

@@ -6,13 +6,14 @@ Joints, ties and force elements -> marks: hinges and supports, strings, members,
 from __future__ import annotations
 
 import math
-from collections.abc import Iterable, Iterator, Mapping, Sequence
+from collections.abc import Container, Iterable, Iterator, Mapping, Sequence
 from itertools import pairwise
 from typing import Any
 
 from eomgen.mechanics.dynamics.system import System
+from eomgen.mechanics.free_bodies.wrenches import EACH_AXIS, Axes, Component, components_of
 from eomgen.mechanics.kinematics.loads import in_ground_axes
-from eomgen.mechanics.kinematics.motion import GROUND, BodyLink, ground_place
+from eomgen.mechanics.kinematics.motion import GROUND, BodyLink, Motion, ground_place
 from eomgen.mechanics.kinematics.scene import SystemScene
 from eomgen.mechanics.rigidity.velocity_plan import members_of
 from eomgen.model.constraints.base import (
@@ -29,6 +30,7 @@ from eomgen.model.driven import driven_coordinates, driving_ties
 from eomgen.model.forces.load import Couple, PointForce
 from eomgen.model.joints.base import unit
 from eomgen.model.shapes.forms import ArcForm, EllipsoidForm, LineForm
+from eomgen.records import dataclass
 from eomgen.scene.bodies import gimbal_of, is_block, parameters_as_drawn, seen, shaft_of, wedge_of
 from eomgen.scene.forms import (
     ArrowForm,
@@ -48,7 +50,7 @@ from eomgen.symbolic.expression.derivative import substituted, symbols_of
 from eomgen.symbolic.expression.formula import function
 from eomgen.symbolic.expression.node import Node, Scalar, is_zero
 from eomgen.symbolic.expression.rational import Fraction
-from eomgen.symbolic.expression.spatial import ZERO, Pose, Vector, apply, cross, minus, times, vector_of
+from eomgen.symbolic.expression.spatial import ZERO, Pose, Vector, apply, cross, minus, plus, times, vector_of
 from eomgen.symbolic.numeric.evaluation import FLOAT, evaluate
 
 BESIDE = 1  # of springs and dampers between the same places, each to its side [symbol units]
@@ -461,22 +463,79 @@ def _drives(system: System) -> Iterator[Mark]:
             yield Mark(form, 0, "force", link.name)
 
 
-def reaction_marks(system: System, values: Mapping[str, Scalar]) -> Iterator[Mark]:
-    """The resultant force of every joint and tie, on the body that it holds, from its components `reaction_x(A)`."""
-    components = {"x": (1, 0, 0), "y": (0, 1, 0), "z": (0, 0, 1)}
-    sums: dict[str, Vector] = {}
-    for name, value in values.items():
-        head, _, owner = name.rstrip(")").partition("(")
-        axis = head.removeprefix("reaction_")
-        if head.startswith("reaction_") and axis in components:
-            x, y, z = sums.get(owner, ZERO)
-            e = components[axis]
-            sums[owner] = (x + value * e[0], y + value * e[1], z + value * e[2])
+@dataclass(frozen=True)
+class Resultant:
+    """Force of a joint or constraint on the body that it holds: the sum of its components along unit vectors.
+
+    Args:
+        owner: the constraint, or the body whose joint it is.
+        at: where it acts, ground axes [m].
+        units: of each component by its name, `reaction_x(A)` or `reaction_n(wall)`, the direction, ground axes.
+    """
+
+    owner: str
+    at: Vector
+    units: Mapping[str, Vector]
+
+    def of(self, values: Mapping[str, Scalar]) -> Vector:
+        """The resultant, ground axes [N]."""
+        total = ZERO
+        for name, along in self.units.items():
+            total = plus(total, times(values[name], along))
+        return total
+
+
+def resultants(system: System, names: Container[str]) -> Iterator[Resultant]:
+    """Resultants of the joints and constraints all of whose forces are among the names.
+
+    Components along x, y, z are whole as they are. Others, normal forces and friction, are each along what a unit of it
+    does to the first-named body, where all of them act at one place.
+    """
+    if not names:
+        return
     motion = system.motion
-    for owner, force in sums.items():
-        place = _seat(system, owner)
-        if place is not None:
-            yield Mark(ArrowForm(motion.position(place), force, "N"), 0, "reaction", owner)
+    along = "xy" if system.scope.model.space == "plane" else "xyz"
+    owners: dict[str, list[Component]] = {}
+    for component in components_of(system, Axes(motion)):
+        if component.kind != "drive":
+            owners.setdefault(component.owner, []).append(component)
+    for owner, components in owners.items():
+        seat, units = (
+            _seat(system, owner),
+            {f"reaction_{axis}({owner})": e for axis, e in zip(along, EACH_AXIS, strict=False)},
+        )
+        if seat is not None and all(name in names for name in units):
+            yield Resultant(owner, motion.position(seat), units)
+        elif (contact := _contact(motion, components)) is not None and all(name in names for name in contact.units):
+            yield contact
+
+
+def _contact(motion: Motion, components: Sequence[Component]) -> Resultant | None:
+    """Resultant of what acts at one place along directions of its own; None of hinges, strings and placed bodies."""
+    owner, on = components[0].owner, components[0].effects[0].link
+    pose, plane = motion.links[on].pose, motion.scope.model.space == "plane"
+    pushes = [(c.label, c.name, c.effects) for c in components]
+    pushes += [(s.label, f"reaction_{s.label}({owner})", s.effects) for c in components for s in c.friction]
+    places: set[Vector] = set()
+    units: dict[str, Vector] = {}
+    for label, name, effects in pushes:
+        mine = [e for e in effects if e.link == on and not all(map(is_zero, e.force))]
+        if not mine and label.startswith("couple"):
+            continue
+        if len(mine) != 1 or name in units or label[:1] not in ("n", "t", "s") or label == "tension":
+            return None
+        (push,) = mine
+        if push.place is None:
+            return None
+        places.add(plus(push.place, push.beyond or ZERO))
+        units[name] = push.force if plane else apply(pose.R, push.force)
+    return Resultant(owner, pose.point(places.pop()), units) if len(places) == 1 else None
+
+
+def reaction_marks(forces: Iterable[tuple[Resultant, Vector]]) -> Iterator[Mark]:
+    """The resultant force of every joint and constraint, on the body that it holds."""
+    for resultant, force in forces:
+        yield Mark(ArrowForm(resultant.at, force, "N"), 0, "reaction", resultant.owner)
 
 
 def _seat(system: System, owner: str) -> tuple[str | None, Vector] | None:

@@ -20,14 +20,14 @@ from eomgen.codegen.rhs import compiled
 from eomgen.mechanics.dynamics.system import System
 from eomgen.model.shapes.forms import Form
 from eomgen.proof.pictures_told import ToldArrow, ToldPicture
-from eomgen.scene.connections import reaction_marks
+from eomgen.scene.connections import Resultant, reaction_marks, resultants
 from eomgen.scene.making import scene_of_system
 from eomgen.scene.scene import ROLES, Mark, Scene, SceneFrame, frames_along, is_moving, plain_number, scalars_of
 from eomgen.scene.strokes import Drawing, SceneNumbers, Stroke
 from eomgen.simulation.result import Phase, Trajectory
 from eomgen.symbolic.expression.node import Node, Scalar
 from eomgen.symbolic.expression.rational import Fraction
-from eomgen.symbolic.expression.spatial import Pose, vector_of
+from eomgen.symbolic.expression.spatial import Pose, Vector, vector_of
 
 Piece = tuple[SceneNumbers, np.ndarray]
 """A scene over its own instants, and their places among those of the whole."""
@@ -67,14 +67,47 @@ def _phase_numbers(
     scene = scene_of(system)
     given: dict[Node, np.ndarray] = {}
     if forces:
-        symbols = {name: system.symbols.graph.symbol(f"({name})") for name in run.reactions}
-        given = {symbols[name]: columns[name] for name in run.reactions}
-        scene = replace(scene, marks=(*scene.marks, *reaction_marks(system, symbols)))
+        arrows: list[tuple[Resultant, Vector]] = []
+        for resultant, force in _resultants(run, phase, times, columns):
+            named = [system.symbols.graph.symbol(f"({axis} of {resultant.owner})") for axis in "xyz"[: len(force)]]
+            given |= dict(zip(named, force, strict=True))
+            padded: list[Scalar] = [*named, 0]
+            arrows.append((resultant, vector_of(padded[:3])))
+        scene = replace(scene, marks=(*scene.marks, *reaction_marks(arrows)))
     else:
         scene = replace(scene, marks=tuple(mark for mark in scene.marks if mark.role != "force"))
+    x = _states(system, columns, times)
+    return SceneNumbers(scene, _frames(scene, times, x, phase.model.p, given))
+
+
+def _resultants(
+    run: Trajectory, phase: Phase, times: np.ndarray, columns: Mapping[str, np.ndarray]
+) -> Iterator[tuple[Resultant, np.ndarray]]:
+    """Resultants of reactions, and their components along the run, 2 or 3 x instants [N]."""
+    system: System = phase.model.declared
+    found = list(resultants(system, run.reactions))
+    d = 2 if system.scope.model.space == "plane" else 3
+    units = [x for resultant in found for unit in resultant.units.values() for x in unit[:d]]
+    along = iter(_worth(system, units, times, _states(system, columns, times), phase.model.p))
+    for resultant in found:
+        force = np.zeros((d, len(times)))
+        for name in resultant.units:
+            force += columns[name] * np.array([next(along) for _ in range(d)])
+        yield resultant, force
+
+
+def _states(system: System, columns: Mapping[str, np.ndarray], times: np.ndarray) -> np.ndarray:
+    """States (q, u) at the instants, instants x n."""
     rest = np.zeros(len(times))
-    x = np.column_stack([rest, *(columns.get(node.name, rest) for node in (*system.symbols.q, *system.symbols.u))])
-    return SceneNumbers(scene, _frames(scene, times, x[:, 1:], phase.model.p, given))
+    nodes = (*system.symbols.q, *system.symbols.u)
+    return np.array([columns.get(node.name, rest) for node in nodes]).reshape(len(nodes), len(times)).T
+
+
+def _worth(system: System, scalars: Sequence[Scalar], t: np.ndarray, x: np.ndarray, p: np.ndarray) -> np.ndarray:
+    """Values of scalars along a motion, scalars x instants."""
+    program = program_of(scalars, system.symbols, inputs=system.inputs)
+    with np.errstate(all="ignore"):
+        return compiled(program, "numpy").many(t, x, p).T
 
 
 def _columns(run: Trajectory, phase: Phase, times: np.ndarray) -> dict[str, np.ndarray]:
@@ -96,9 +129,7 @@ def _frames(scene: Scene, t: np.ndarray, x: np.ndarray, p: np.ndarray, given: Ma
     if not given:
         return frames_along(scene, t, x, p)
     known = tuple(value for value in scene.values if value not in given)
-    program = program_of(known, scene.system.symbols, inputs=scene.system.inputs)
-    with np.errstate(all="ignore"):
-        found: dict[Scalar, np.ndarray] = dict(zip(known, compiled(program, "numpy").many(t, x, p).T, strict=True))
+    found: dict[Scalar, np.ndarray] = dict(zip(known, _worth(scene.system, known, t, x, p), strict=True))
     columns = found | dict(given)
     return np.column_stack([columns[value] for value in scene.values])
 
