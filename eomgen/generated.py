@@ -122,7 +122,7 @@ class Generated:
         if self.actuated is None:
             return None
         found = self.equations.inverse_dynamics(self.actuated)
-        answers = vectors(found.program, x0=self._start.x0, p0=self._start.p0)
+        answers = vectors(found.program, x0=self._start.x0, p0=self._start.p0, held=self._held)
         return found.program, replace(self.motion[1], vectors=answers, role=INVERSE, outputs=found.names)
 
     @cached_property
@@ -199,7 +199,7 @@ class Generated:
         return program, replace(self.motion[1], vectors=self._answers(program), role=role, blocks=sizes)
 
     def _answers(self, program: Program) -> tuple[TestVector, ...]:
-        return vectors(program, x0=self._start.x0, p0=self._start.p0)
+        return vectors(program, x0=self._start.x0, p0=self._start.p0, held=self._held)
 
     @cached_property
     def texts(self) -> dict[str, FileContent]:
@@ -344,7 +344,7 @@ class Generated:
         equations, told = self.equations, self.motion[1]
         try:
             names, program = equations.reactions_program
-            answers = vectors(program, x0=self._start.x0, p0=self._start.p0) if names else ()
+            answers = vectors(program, x0=self._start.x0, p0=self._start.p0, held=self._held) if names else ()
         except DerivationError as error:
             return None, f"no code for the reactions: {error.what}"
         if not names:

@@ -220,6 +220,21 @@ def test_vectors_hold_states_without_a_value(target, tmp_path):
         assert "dx[0]" in self_test(paths[0]).stderr
 
 
+def test_states_at_which_dependent_rows_contradict_each_other_are_no_test_vectors():
+    """Four cranks, two rows follow from others: off the constraints no a satisfies J a + gamma = 0, and none is told."""
+    model = eomgen.load(MODELS / "four_cranks.toml")
+    equations = eomgen.derive(model)
+    graph, n = equations.graph, len(equations.program.symbols.u)
+    symbols = graph.system.symbols
+    for vector in json.loads(eomgen.generate(model, ("c",)).texts["test_vectors.json"])["vectors"]:
+        values = dict(zip(symbols.parameters.values(), vector["p"], strict=True))
+        values |= dict(zip((symbols.t, *symbols.q, *symbols.u), (vector["t"], *vector["x"]), strict=True))
+        a = np.array(vector["dx"][-n:])
+        J = np.array([evaluate(row, values, FLOAT) for row in graph.J])
+        open_by = J @ a + evaluate(graph.gamma, values, FLOAT)
+        assert np.abs(open_by).max() < 1e-8 * np.abs(a).max()
+
+
 @every_target
 def test_names_of_the_language_are_harmless(target):
     """Keywords, functions, our own variables and Greek letters as names of coordinates and parameters."""

@@ -41,9 +41,12 @@ def vectors(
 ) -> tuple[TestVector, ...]:
     """Right answers near the start (else near 0), half of them with inputs given where there are any; and there.
 
+    A state at which dependent constraint rows contradict each other has no single answer (one language may satisfy
+    one row, another one the other): such states serve only where there are no others.
+
     Args:
         x0, p0: start and parameter values; where None, states near 0 and parameters between 0.5 and 2.
-        held: (t, x, p) at which all ties hold: right answers there too.
+        held: (t, x, p) at which all constraints are satisfied: right answers there too.
     Raises:
         DerivationError: no states were found at which the right-hand side has a value.
     """
@@ -51,19 +54,28 @@ def vectors(
     floats = compiled(program, "numpy")
     found: list[TestVector] = []
     partial: list[TestVector] = []
+    torn: list[TestVector] = []
     for _ in range(TRIES):
-        if len(found) == count:
+        if len(found) == count or (not found and len(torn) == count):
             break
-        vector = _vector(program, floats, _state(program, rng, x0, p0, with_inputs=len(found) % 2 == 1))
-        if vector is not None:
-            (found if all(value == value for value in vector.result) else partial).append(vector)
-    if not found:
+        vector = _vector(program, floats, _state(program, rng, x0, p0, with_inputs=len(found or torn) % 2 == 1))
+        if vector is None:
+            continue
+        if any(value != value for value in vector.result):
+            partial.append(vector)
+        else:
+            (torn if _contradicts(program, vector) else found).append(vector)
+    if not found and torn:
+        found, like = ([] if held else torn), torn[0]
+    elif found:
+        like = found[0]
+    else:
         raise DerivationError(
             "the equations have no value at any of the states tried for test vectors",
             mend="give a start, and parameters, at which the equations have values",
         )
-    where_held = [replace(found[0], t=t, x=tuple(x), p=tuple(p), inputs=None, result=()) for t, x, p in held]
-    states = (*where_held, *_special(program, found[0], x0))
+    where_held = [replace(like, t=t, x=tuple(x), p=tuple(p), inputs=None, result=()) for t, x, p in held]
+    states = (*where_held, *_special(program, like, x0))
     special = (_vector(program, floats, state) for state in states)
     return (*found, *(vector for vector in special if vector is not None), *partial[:PARTIAL])
 
@@ -82,13 +94,18 @@ def outputs_at(program: Program, values: dict[Node, Any], arithmetic: Arithmetic
     Args:
         values: of t, x, p, and of inputs that are given; the others follow from their own expressions.
     """
-    inputs = list(program.symbols.inputs.values())
-    missing = [x for x in inputs if x not in values]
-    own = [program.defaults[inputs.index(x)] for x in missing]
-    values = values | dict(zip(missing, evaluate(own, values, arithmetic), strict=True))
+    values = _with_inputs(program, values, arithmetic)
     for solve in (s for s in program.statements if type(s) is Solve):
         values = values | _solved(solve, evaluate(solve.entries, values, arithmetic))
     return evaluate(program.outputs, values, arithmetic)
+
+
+def _with_inputs(program: Program, values: dict[Node, Any], arithmetic: Arithmetic) -> dict[Node, Any]:
+    """The values, and those of inputs that are not given by their own expressions."""
+    inputs = list(program.symbols.inputs.values())
+    missing = [x for x in inputs if x not in values]
+    own = [program.defaults[inputs.index(x)] for x in missing]
+    return values | dict(zip(missing, evaluate(own, values, arithmetic), strict=True))
 
 
 def _solved(solve: Solve, entries: Sequence[Any]) -> dict[Node, Any]:
@@ -97,6 +114,29 @@ def _solved(solve: Solve, entries: Sequence[Any]) -> dict[Node, Any]:
     M = [entries[max(i, j) * (max(i, j) + 1) // 2 + min(i, j)] for i in range(n) for j in range(n)]
     J, right = entries[rows : rows + k * n], entries[rows + k * n :]
     return dict(zip(solve.unknowns, solve_bordered(M, J, right[:n], right[n:], solve.tables), strict=True))
+
+
+def _contradicts(program: Program, vector: TestVector) -> bool:
+    """Whether J a = g has no solution there: one of two dependent rows is left open by the accelerations."""
+    bordered = [s for s in program.statements if type(s) is Solve and s.border]
+    if not bordered:
+        return False
+    arithmetic = fifty_digits(partial=True)
+    values = {node: arithmetic.number(number) for node, number in _exact(program, vector).items()}
+    for solve in (s for s in program.statements if type(s) is Solve):
+        entries = evaluate(solve.entries, _with_inputs(program, values, arithmetic), arithmetic)
+        found = _solved(solve, entries)
+        n, k = len(solve.matrix), len(solve.border)
+        first, a = n * (n + 1) // 2, [found[x] for x in solve.unknowns[:n]]
+        J, g = entries[first : first + k * n], entries[first + k * n + n :]
+        for i in range(k):
+            terms = [J[i * n + j] * a[j] for j in range(n)]
+            size: Any = max(map(abs, (*terms, g[i])), default=0)
+            open_: Any = abs(sum(terms, start=-g[i]))
+            if open_ > COMPUTED * size:
+                return True
+        values = values | found
+    return False
 
 
 def _state(program: Program, rng: random.Random, x0: Any, p0: Any, with_inputs: bool) -> TestVector:
@@ -112,13 +152,7 @@ def _state(program: Program, rng: random.Random, x0: Any, p0: Any, with_inputs: 
 
 def _vector(program: Program, floats: RightHandSide, state: TestVector) -> TestVector | None:
     """The state with its answer, or None where there is none."""
-    symbols = program.symbols
-    arguments = [symbols.t, *program.moving, *symbols.parameters.values()]
-    numbers = [state.t, *state.x, *state.a, *state.p]
-    if state.inputs is not None:
-        arguments += symbols.inputs.values()
-        numbers += state.inputs
-    exact = dict(zip(arguments, map(Fraction, numbers), strict=True))
+    exact = _exact(program, state)
     result = _right(program, exact)
     found = floats(state.t, [*state.x, *state.a], state.p, state.inputs or ())
     known = [(a, b) for a, b in zip(found, result, strict=True) if b == b]
@@ -127,6 +161,17 @@ def _vector(program: Program, floats: RightHandSide, state: TestVector) -> TestV
     if not error < COMPUTED or (len(known) < len(result) and not _is_partial_nearby(program, exact, result)):
         return None
     return replace(state, result=result, tolerance=float(max(SOLVED, 10 * error)))
+
+
+def _exact(program: Program, state: TestVector) -> dict[Node, Fraction]:
+    """What a vector gives to a program, as the exact values of its doubles."""
+    symbols = program.symbols
+    arguments = [symbols.t, *program.moving, *symbols.parameters.values()]
+    numbers = [state.t, *state.x, *state.a, *state.p]
+    if state.inputs is not None:
+        arguments += symbols.inputs.values()
+        numbers += state.inputs
+    return dict(zip(arguments, map(Fraction, numbers), strict=True))
 
 
 def _right(program: Program, exact: dict[Node, Fraction]) -> tuple[float, ...]:

@@ -120,7 +120,6 @@ OWN_TESTS = {
 }
 LEFT_OUT = {
     "jax": ("bricard", "four_cranks", *(() if ALL_MODELS else ("words",))),
-    "casadi": ("four_cranks",),  # open: where redundant rows contradict one another its solution is another one
     "numba": ("bricard", "four_cranks", "four_bar", "cart_pole", "words"),
     "fmu": ("words",),  # more results than states: no system, and an FMU is one
 }  # models that these do without
