@@ -237,6 +237,16 @@ def test_a_function_of_a_body_may_have_a_greek_name():
     assert verdict("double_pendulum", r"\omega(arm2) = \dot\theta_2")
 
 
+def test_angular_velocities_about_own_axes_are_read_as_derive_prints_them():
+    """omega_k(B) = (R^T w)_k, k = 1, 2, 3; with an axis of the ground for one of the body it is wrong."""
+    for model, line in (
+        ("heavy_top", "omega_1(top) = sin(theta)*sin(psi)*phi' + cos(psi)*theta'"),
+        ("arm3", "omega_1(upper) = -sin(q2)*q1'"),
+    ):
+        assert verdict(model, line).verdict == "right"
+        assert verdict(model, line.replace("omega_1", "omega_x")).verdict == "wrong"
+
+
 def test_a_product_is_its_factors_to_their_powers():
     """x = c prod f^k, whatever it is built of: products, quotients, powers, roots."""
     graph = Graph()

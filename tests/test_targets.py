@@ -221,7 +221,7 @@ def test_vectors_hold_states_without_a_value(target, tmp_path):
 
 
 def test_states_at_which_dependent_rows_contradict_each_other_are_no_test_vectors():
-    """Four cranks, two rows follow from others: off the constraints no a satisfies J a + gamma = 0, and none is told."""
+    """Four cranks, two rows follow from others: off the constraints no a satisfies J a + gamma = 0; none is told."""
     model = eomgen.load(MODELS / "four_cranks.toml")
     equations = eomgen.derive(model)
     graph, n = equations.graph, len(equations.program.symbols.u)

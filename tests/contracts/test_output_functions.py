@@ -216,6 +216,7 @@ CALLS = {
             "normal_acceleration(arm.tip)",
         ),
         *(f"{name}_{axis}({pair})" for name in ("omega", "epsilon") for axis in "xyz" for pair in ("arm", "arm, base")),
+        *(f"{name}_{axis}(arm)" for name in ("omega", "epsilon") for axis in "123"),
         *("omega(arm)", "epsilon(arm)", "least_speed(arm.origin, arm.tip)", "kinetic_energy(arm)", "momentum(a)"),
         *(f"angular_momentum_{axis}(arm.tip)" for axis in "xyz"),
         *("inertia_point(arm.tip)", "inertia_axis(arm.tip, base.origin)", "inertia_plane(arm.tip, x)"),

@@ -88,11 +88,20 @@ def _spin(scene: OutputContext, body: str, frame: str = GROUND, *, order: int) -
 
 def _turned(trial: Trial, body: str, frame: str = GROUND, *, order: int) -> Numbers:
     """The same by differences of the rotation."""
-    scene = trial.scene
-    rows = product(transposed(scene.axes(frame)), scene.axes(body))
-    R, R1, R2 = (matrix_of((x[0:3], x[3:6], x[6:9])) for x in trial.along([x for row in rows for x in row]))
+    R, R1, R2 = _rotations(trial, body, frame)
     W = product(R1, transposed(R)) if order == 1 else added(product(R2, transposed(R)), product(R1, transposed(R1)))
     return (W[2][1], W[0][2], W[1][0])
+
+
+def _rotations(trial: Trial, body: str, frame: str) -> list[Matrix]:
+    """R from the axes of the body to those of the frame, and its first and second rate."""
+    scene = trial.scene
+    rows = product(transposed(scene.axes(frame)), scene.axes(body))
+    return [matrix_of((x[0:3], x[3:6], x[6:9])) for x in trial.along([x for row in rows for x in row])]
+
+
+def _own_axis(call: Call) -> int:
+    return int(call.name[-1]) - 1
 
 
 def _one(name: str, unit: str, gives: str, order: int) -> OutputFunction:
@@ -116,6 +125,30 @@ def _components(names: str, unit: str, order: int) -> OutputFunction:
     return components(names, unit, gives, partial(_spin, order=order), partial(_turned, order=order), BODY, least=1)
 
 
+def _about_own_axes(name: str, unit: str, order: int) -> OutputFunction:
+    """The components of R^T w along the axes of the body itself, 1, 2 and 3, as Euler's equations have them."""
+
+    def value(scene: OutputContext, call: Call) -> AnyScalar:
+        (body,) = names_of(call)
+        return apply(transposed(scene.axes(body)), _spin(scene, body, order=order))[_own_axis(call)]
+
+    def second(trial: Trial, call: Call) -> Any:
+        (body,) = names_of(call)
+        R, *_ = _rotations(trial, body, GROUND)
+        return apply(transposed(R), _turned(trial, body, order=order))[_own_axis(call)]
+
+    return OutputFunction(
+        names=tuple(f"{name}_{k}" for k in (1, 2, 3)),
+        kinds=BODY[:1],
+        least=1,
+        unit=unit,
+        gives="its components along the body's own axes",
+        value=value,
+        second=second,
+        moves=True,
+    )
+
+
 ANGLE = OutputFunction(
     names=("angle",),
     kinds=BODY,
@@ -127,8 +160,10 @@ ANGLE = OutputFunction(
 )
 OMEGA = _one("omega", "rad/s", "angular velocity; in space its magnitude", 1)
 ANGULAR_VELOCITY = _components("omega_*", "rad/s", 1)
+OWN_ANGULAR_VELOCITY = _about_own_axes("omega", "rad/s", 1)
 EPSILON = _one("epsilon", "rad/s^2", "angular acceleration; in space its magnitude", 2)
 ANGULAR_ACCELERATION = _components("epsilon_*", "rad/s^2", 2)
+OWN_ANGULAR_ACCELERATION = _about_own_axes("epsilon", "rad/s^2", 2)
 
 
 # -------- centers ---------------------------------------------------------------------------------------------
