@@ -1,6 +1,6 @@
-"""The house in figures: names defined twice, private tolerances, sizes of files and functions, arrows between rooms.
+"""The house in figures: what somebody has to know who comes new. `tests/test_layering.py` keeps those that are reached.
 
-python benchmarks/house.py          two tables in Markdown: the figures, and the lines of each room
+python benchmarks/house.py          tables in Markdown: the figures, the rooms
 """
 
 from __future__ import annotations
@@ -8,130 +8,197 @@ from __future__ import annotations
 import ast
 import re
 from collections import Counter, defaultdict
-from fnmatch import fnmatch
+from collections.abc import Iterator
+from dataclasses import dataclass
+from functools import cached_property
 from pathlib import Path
 
 PACKAGE = Path(__file__).resolve().parent.parent / "eomgen"
-LATER = {  # what was built after the house was laid out, by what it is for: patterns of paths inside the package
-    "pages and pictures": "page/ scene/ documents/*motion* documents/*pictur* documents/*drawing* documents/letters* "
-    "verbs/play.py verbs/animate.py verbs/report.py",
-    "equations that somebody derived": "judge/ verbs/verify.py symbolic/expression/text.py",
-    "other languages, series, lanes": "codegen/targets/[d-z]*.py codegen/targets/loading.py "
-    "codegen/targets/python_files.py codegen/targets/casadi.py codegen/targets/cpp.py "
-    "codegen/targets/c_lanes.py codegen/targets/c_lanes.py "
-    "codegen/taylor.py codegen/taylor.py codegen/batching.py codegen/programs.py codegen/rhs.py "
-    "codegen/vectors.py",
-    "robots and other programs": "robots/ exported.py verbs/importing.py verbs/exporting.py",
-    "many runs, sweeps, parameters": "sweeps/ sensitivities/ identification/ questions/many_runs.py "
-    "questions/simulator.py questions/simulator.py questions/of_a_run.py verbs/sweep.py verbs/identify.py",
-    "compiled steps": "simulation/compiled_steps.py simulation/compiled_steps.py simulation/motion.py "
-    "simulation/phase_functions.py",
-    "kept and compared derivations": "kept.py verbs/kept_derivation.py verbs/derive_difference.py",
-    "units of what is written": "symbolic/expression/dimensions.py",
-}
-STAYS = ("codegen/targets/numpy.py",)
-SMALL = 60  # lines of a file that should live with its owner, unless it is a member of a seam
+DIVIDED = ("symbolic", "mechanics")  # rooms whose folders have doors of their own
+SEAMS = ("joints", "forces", "constraints", "shapes", "outputs", "targets", "verbs")  # a member is a file, or a class
+LOWER = ("symbolic", "model", "mechanics", "codegen", "simulation")
+LAZY = re.compile(r"^(?:functools\.)?(?:cached_property|cache|lru_cache)\b")
+MOST_KEPT = 2  # things derived of a model that a class may cache before it counts as a bundle
 
 
-def sources() -> dict[Path, str]:
-    return {path: path.read_text(encoding="utf-8") for path in sorted(PACKAGE.rglob("*.py"))}
+@dataclass(frozen=True)
+class Module:
+    """A module of the package by its dotted name without the package's, "mechanics.kinematics.motion"."""
+
+    name: str
+    path: Path
+
+    @cached_property
+    def text(self) -> str:
+        return self.path.read_text(encoding="utf-8")
+
+    @cached_property
+    def tree(self) -> ast.Module:
+        return ast.parse(self.text)
+
+    @property
+    def lines(self) -> int:
+        return self.text.count("\n")
+
+    @property
+    def is_init(self) -> bool:
+        return self.path.name == "__init__.py"
+
+    @property
+    def room(self) -> str:
+        """What has a door: a room, in a divided room a folder, or the module itself where it stands alone."""
+        parts = self.name.split(".")
+        return ".".join(parts[: 2 if parts[0] in DIVIDED else 1])
+
+    @property
+    def in_seam(self) -> bool:
+        parts = self.name.split(".")
+        return parts[0] != "mechanics" and any(seam in parts[:-1] for seam in SEAMS)
+
+    @cached_property
+    def public_names(self) -> set[str]:
+        """Classes, functions and aliases; CONSTANTS are not counted."""
+        found: set[str] = set()
+        for node in self.tree.body:
+            if isinstance(node, ast.ClassDef | ast.FunctionDef):
+                found.add(node.name)
+            elif isinstance(node, ast.Assign):
+                found |= {target.id for target in node.targets if isinstance(target, ast.Name)}
+        return {name for name in found if not name.startswith("_") and not name.isupper()}
+
+    @cached_property
+    def imports(self) -> tuple[tuple[str, str], ...]:
+        """(module, name) of every import from the package, wherever it stands."""
+        froms = (n for n in ast.walk(self.tree) if isinstance(n, ast.ImportFrom) and n.module and not n.level)
+        return tuple(
+            (node.module.removeprefix("eomgen").removeprefix("."), alias.name)
+            for node in froms
+            if node.module and node.module.split(".")[0] == "eomgen"
+            for alias in node.names
+        )
 
 
-def public_names(text: str) -> set[str]:
-    """Classes, functions and aliases of a module; CONSTANTS are not counted."""
-    found: set[str] = set()
-    for node in ast.parse(text).body:
-        if isinstance(node, (ast.ClassDef, ast.FunctionDef)):
-            found.add(node.name)
-        elif isinstance(node, ast.Assign):
-            found |= {target.id for target in node.targets if isinstance(target, ast.Name)}
-    return {name for name in found if not name.startswith("_") and not name.isupper()}
+@dataclass(frozen=True)
+class House:
+    """All modules of the package."""
+
+    modules: dict[str, Module]
+
+    @cached_property
+    def chapters(self) -> list[Module]:
+        """What one reads: neither members of seams nor `__init__` of folders."""
+        return [m for m in self.modules.values() if not m.in_seam and not m.is_init]
+
+    @cached_property
+    def importers(self) -> dict[str, set[str]]:
+        """Of each module those that import it."""
+        found: defaultdict[str, set[str]] = defaultdict(set)
+        for module in self.modules.values():
+            for source, name in module.imports:
+                inner = f"{source}.{name}" if source else name
+                found[inner if inner in self.modules else source].add(module.name)
+        return found
+
+    @property
+    def private(self) -> list[str]:
+        """Chapters that one other module imports."""
+        return [m.name for m in self.chapters if len(self.importers[m.name]) == 1]
+
+    @cached_property
+    def crossing(self) -> dict[str, set[tuple[str, str]]]:
+        """Of each room the names (their room, name) that it takes from others."""
+        found: defaultdict[str, set[tuple[str, str]]] = defaultdict(set)
+        for module in self.modules.values():
+            for source, name in module.imports:
+                inner = f"{source}.{name}" if source else name
+                home = self.modules.get(inner) or self.modules.get(source)
+                if home is not None and home.name and home.room != module.room:
+                    found[module.room].add((home.room, name))
+        return found
+
+    def taken_from(self, rooms: tuple[str, ...]) -> set[tuple[str, str]]:
+        """Names of these rooms that others use."""
+        return {(home, x) for names in self.crossing.values() for home, x in names if home.split(".")[0] in rooms}
+
+    def taken_by(self, room: str) -> set[tuple[str, str]]:
+        """Names that a room, with its folders, takes from other rooms."""
+        mine = (names for own, names in self.crossing.items() if own.split(".")[0] == room)
+        return {(home, x) for names in mine for home, x in names if home.split(".")[0] != room}
+
+    @property
+    def bundles(self) -> list[tuple[str, int]]:
+        """(class, how many) of those that cache more than a few properties."""
+        classes = (n for m in self.modules.values() for n in ast.walk(m.tree) if isinstance(n, ast.ClassDef))
+        kept = ((node.name, sum(map(_is_kept, node.body))) for node in classes)
+        return sorted(((name, k) for name, k in kept if k > MOST_KEPT), key=lambda each: -each[1])
 
 
-def small_literals(text: str) -> int:
+def _is_kept(node: ast.stmt) -> bool:
+    decorators = node.decorator_list if isinstance(node, ast.FunctionDef) else ()
+    return any(LAZY.match(ast.unparse(each)) for each in decorators)
+
+
+def house(package: Path = PACKAGE) -> House:
+    """The package as it stands."""
+
+    def named(path: Path) -> str:
+        parts = path.relative_to(package).with_suffix("").parts
+        return ".".join(parts[:-1] if parts[-1] == "__init__" else parts)
+
+    paths = sorted(package.rglob("*.py"))
+    return House({named(path): Module(named(path), path) for path in paths})
+
+
+def longest_function(modules: list[Module]) -> int:
+    nodes = (n for m in modules for n in ast.walk(m.tree) if isinstance(n, ast.FunctionDef | ast.AsyncFunctionDef))
+    return max((n.end_lineno or n.lineno) - n.lineno + 1 for n in nodes)
+
+
+def small_literals(module: Module) -> int:
     """Literals of at most 1e-4: tolerances that stand where they are used."""
-    numbers = (node.value for node in ast.walk(ast.parse(text)) if isinstance(node, ast.Constant))
+    numbers = (node.value for node in ast.walk(module.tree) if isinstance(node, ast.Constant))
     return sum(isinstance(x, float) and 0 < x <= 1e-4 for x in numbers)
 
 
-def longest_function(text: str) -> int:
-    spans = (n for n in ast.walk(ast.parse(text)) if isinstance(n, (ast.FunctionDef, ast.AsyncFunctionDef)))
-    return max(((n.end_lineno or n.lineno) - n.lineno + 1 for n in spans), default=0)
-
-
-def figures() -> dict[str, str]:
+def figures(whole: House) -> Iterator[tuple[str, str]]:
     """(what, how much), as text."""
-    texts = sources()
-    homes: defaultdict[str, set[Path]] = defaultdict(set)
-    for path, text in texts.items():
-        for name in public_names(text):
-            homes[name].add(path)
-    twice = [name for name, where in homes.items() if len(where) > 1]
-    lines = {path: text.count("\n") for path, text in texts.items()}
-    rooms = Counter(path.relative_to(PACKAGE).parts[0] for path, n in lines.items() for _ in range(n))
-    proof = sum(n for path, n in lines.items() if "proof" in path.as_posix().removeprefix(PACKAGE.as_posix()))
-    seams = ("joints", "forces", "constraints", "shapes", "targets")
-    small = [p for p, n in lines.items() if n < SMALL and p.name != "__init__.py" and p.parent.name not in seams]
-    handlers = sum(len(re.findall(r"(?:except|suppress)\b[^:\n]*\bEomgenError", t)) for t in texts.values())
-    private = sum(small_literals(text) for path, text in texts.items() if path.name != "tolerances.py")
-    return {
-        "public names in more than one module": f"{len(twice)} of {len(homes)} ({100 * len(twice) / len(homes):.1f} %)",
-        "tolerances outside `tolerances.py`": str(private),
-        "private budgets (`WORK = ...`)": str(sum(len(re.findall(r"^WORK", t, re.M)) for t in texts.values())),
-        "handlers that name the root class of errors": str(handlers),
-        "tests on `kind ==` in mechanics and simulation, of members": str(_kinds(texts)),
-        "`# fmt: skip`": str(sum(text.count("# fmt: skip") for text in texts.values())),
-        "longest function [lines]": str(max(map(longest_function, texts.values()))),
-        "modules": str(len(texts)),
-        f"modules under {SMALL} lines, seams apart": str(len(small)),
-        "lines": f"{sum(lines.values())}, {proof} of them proofs",
-        "lines by room": ", ".join(f"{room} {n}" for room, n in rooms.most_common(9)),
-    }
-
-
-def built_later(path: Path) -> str:
-    """For what a file was built after the house was laid out, or ""."""
-    name = path.relative_to(PACKAGE).as_posix()
-    for what, patterns in LATER.items():
-        for pattern in patterns.split():
-            if name not in STAYS and fnmatch(name, pattern + "*" if pattern.endswith("/") else pattern):
-                return what
-    return ""
-
-
-def lines_of_rooms() -> list[tuple[str, int, int]]:
-    """(room, its lines, of these what was built later), the largest first; then the whole."""
-    whole, later = Counter[str](), Counter[str]()
-    for path, text in sources().items():
-        room = path.relative_to(PACKAGE).parts[0]
-        whole[room] += text.count("\n")
-        later[room] += text.count("\n") if built_later(path) else 0
-    rows = [(room, n, later[room]) for room, n in whole.most_common()]
-    return [*rows, ("all", whole.total(), later.total())]
-
-
-def lines_built_later() -> Counter[str]:
-    found = Counter[str]()
-    for path, text in sources().items():
-        found[built_later(path)] += text.count("\n")
-    return found
-
-
-def _kinds(texts: dict[Path, str]) -> int:
-    of_members = re.compile(r"\b(joint|shape|force|tie|contact|part)\.kind (==|!=|in) ")
-    return sum(len(of_members.findall(t)) for p, t in texts.items() if {"mechanics", "simulation"} & set(p.parts))
+    modules = list(whole.modules.values())
+    lines = sorted(m.lines for m in whole.chapters)
+    lower = [m for m in modules if m.name.split(".")[0] in LOWER]
+    homes = Counter(name for m in modules for name in m.public_names)
+    yield "modules", f"{len(modules)}, of them {len(whole.chapters)} outside the seams"
+    yield "lines", f"{sum(m.lines for m in modules)}"
+    yield "lines of a module: median, most", f"{lines[len(lines) // 2]}, {lines[-1]}"
+    yield "longest function [lines]", str(longest_function(modules))
+    yield "modules that one other module imports", str(len(whole.private))
+    yield (
+        "public names in symbolic, model, mechanics, codegen, simulation",
+        str(sum(len(m.public_names) for m in lower)),
+    )
+    yield (
+        "of these rooms' names, used in others (in symbolic and mechanics: other folders)",
+        str(len(whole.taken_from(LOWER))),
+    )
+    for room in ("documents", "questions", "verbs", "proof", "judge"):
+        yield f"foreign names in {room}", str(len(whole.taken_by(room)))
+    yield f"classes that cache more than {MOST_KEPT} properties", str(len(whole.bundles))
+    yield "the largest of them", ", ".join(f"{name} {k}" for name, k in whole.bundles[:6])
+    yield "public names in more than one module", str(sum(k > 1 for k in homes.values()))
+    private = sum(small_literals(m) for m in modules if m.path.name != "tolerances.py")
+    yield "tolerances outside `tolerances.py`", str(private)
 
 
 def main() -> None:
+    whole = house()
     print("| what | now |\n|---|---|")
-    for what, value in figures().items():
+    for what, value in figures(whole):
         print(f"| {what} | {value} |")
-    print("\n| room | lines | as it was laid out | built later |\n|---|---|---|---|")
-    for room, lines, later in lines_of_rooms():
-        print(f"| {room} | {lines} | {lines - later} | {later} |")
-    print("\n| built later | lines |\n|---|---|")
-    for what, lines in lines_built_later().most_common():
-        print(f"| {what} | {lines} |" if what else f"| (as it was laid out) | {lines} |")
+    rooms = defaultdict(list)
+    for module in whole.modules.values():
+        rooms[module.name.partition(".")[0]].append(module)
+    print("\n| room | modules | lines |\n|---|---|---|")
+    for room, members in sorted(rooms.items(), key=lambda each: -sum(m.lines for m in each[1])):
+        print(f"| {room or 'eomgen'} | {len(members)} | {sum(m.lines for m in members)} |")
 
 
 if __name__ == "__main__":

@@ -6,6 +6,7 @@ import ast
 import re
 from collections.abc import Iterator
 from pathlib import Path
+from runpy import run_path
 
 import pytest
 from quick_set import is_slow
@@ -270,6 +271,20 @@ def test_every_room_has_quick_tests():
     asked = {room for text in texts if not is_slow(text) for room in IMPORTED.findall(text)}
     rooms = {path.parent.name for path in PACKAGE.glob("*/__init__.py")}
     assert rooms - asked == set()
+
+
+@pytest.fixture(scope="module")
+def house():
+    """The house in figures, as `benchmarks/house.py` counts them."""
+    return run_path(str(TESTS.parent / "benchmarks" / "house.py"))["house"]()
+
+
+def test_a_newcomer_has_no_more_to_know_than_was_reached(house):
+    """Modules outside the seams, lines of the longest, modules of one importer, names of lower rooms used elsewhere."""
+    assert len(house.chapters) <= 335
+    assert max(m.lines for m in house.modules.values()) <= 700
+    assert len(house.private) <= 55
+    assert len(house.taken_from(("symbolic", "model", "mechanics", "codegen", "simulation"))) <= 1070
 
 
 OF_POSIX = {"resource", "fcntl", "pwd", "grp", "termios", "tty", "pty", "syslog"}
