@@ -397,7 +397,7 @@ def followed(
             when = t + (part + DOP853.C[i]) * h
             K[i, :, :-1] = rates(when, now)
             if counted[i]:
-                K[i, :, -1:] = powers(when, now).reshape(len(t), -1)
+                K[i, :, -1:] = powers(when, now).reshape(len(t), 1)
         y = y + h[:, None] * np.tensordot(DOP853.B, K, axes=1)
         fine, coarse = (np.abs(h[:, None] * np.tensordot(E, K, axes=1)) for E in errors)
         unsure = unsure + fine * fine / np.maximum(np.hypot(fine, 0.1 * coarse), np.finfo(float).tiny)
