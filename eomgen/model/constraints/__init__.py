@@ -1,4 +1,7 @@
-"""Constraints: the seam of ties. Adding one is one file and one name here."""
+"""Constraints: the seam of ties.
+
+Adding one is one class, beside its kin or in a file of its own, and one name here.
+"""
 
 from eomgen.model.constraints.base import Constraint
 from eomgen.model.constraints.driven import Gear, Motion

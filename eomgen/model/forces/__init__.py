@@ -1,4 +1,7 @@
-"""Forces: the seam of what is applied. Adding one is one file and one name here."""
+"""Forces: the seam of what is applied.
+
+Adding one is one class, beside its kin or in a file of its own, and one name here.
+"""
 
 from eomgen.model.forces.applied import CoupleForce, Generalized, PointForce
 from eomgen.model.forces.base import Force

@@ -1,4 +1,7 @@
-"""Joints: the seam of how a body hangs on its parent. Adding one is one file and one name here."""
+"""Joints: the seam of how a body hangs on its parent.
+
+Adding one is one class, beside its kin or in a file of its own, and one name here.
+"""
 
 from eomgen.model.joints.ball import Spherical, Universal
 from eomgen.model.joints.base import Effort, Joint, Turned

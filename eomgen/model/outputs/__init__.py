@@ -1,4 +1,7 @@
-"""Output functions: the seam of what outputs may ask. Adding one is one file and one name here."""
+"""Output functions: the seam of what outputs may ask.
+
+Adding one is one class, beside its kin or in a file of its own, and one name here.
+"""
 
 from eomgen.model.outputs.base import OutputFunction
 from eomgen.model.outputs.energies import GENERALIZED_FORCE, KINETIC_ENERGY, MOMENTUM, POTENTIAL_ENERGY, POWER

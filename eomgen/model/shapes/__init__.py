@@ -1,4 +1,7 @@
-"""Shapes: the seam of homogeneous bodies. Adding one is one file and one name here."""
+"""Shapes: the seam of homogeneous bodies.
+
+Adding one is one class, beside its kin or in a file of its own, and one name here.
+"""
 
 from eomgen.model.shapes.base import MassProperties, Shape
 from eomgen.model.shapes.hollow import (
