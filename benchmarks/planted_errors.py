@@ -344,10 +344,10 @@ def seen_by_tests(planted: Planted) -> bool:
     if not planted.tests:
         return False
     with tempfile.TemporaryDirectory() as folder:
-        for part in ("eomgen", "tests", "models", "notebooks", "benchmarks", "pyproject.toml", "README.md"):
+        for part in ("eomgen", "tests", "models", "notebooks", "benchmarks", "docs", "pyproject.toml", "README.md"):
             source = ROOT / part
             if source.is_dir():
-                shutil.copytree(source, Path(folder) / part, ignore=shutil.ignore_patterns("__pycache__"))
+                shutil.copytree(source, Path(folder) / part, ignore=shutil.ignore_patterns("__pycache__", "_build"))
             else:
                 shutil.copy(source, folder)
         (Path(folder) / "eomgen" / planted.file).write_text(planted.patched, encoding="utf-8")

@@ -37,6 +37,7 @@ html_title = "eomgen"
 html_static_path = ["_static"]
 html_css_files = ["site.css"]
 html_copy_source = False
+html_use_index = False  # it is searched
 html_show_sourcelink = False
 html_show_search_summary = False  # a browser does not let a page from a file fetch another
 html_sidebars = {page: [] for page in ("index", "first_hour", "theory", "python")}

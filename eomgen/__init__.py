@@ -29,7 +29,7 @@
 
 Parts of a model: Body, Parameter, Coordinate, Input, Output, ..., and the kinds in `shapes`, `joints`, `constraints`
 and `forces` (eomgen.joints.Revolute). Mistakes are exceptions of the family EomgenError: ModelError holds every problem
-of a model, each with its place and its mend. models/README.md is the reference of the fields.
+of a model, each with its place and its mend. docs/reference is the reference of the fields.
 
 All names are imported on first use, so that `import eomgen` costs nothing.
 """

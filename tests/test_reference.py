@@ -1,10 +1,11 @@
-"""The user's reference (models/README.md) and README.md: every example in them works, and nothing is left out."""
+"""The user's reference (docs/reference) and README.md: every example in them works, and nothing is left out."""
 
 from __future__ import annotations
 
 import doctest
 import re
 import shlex
+import sys
 import tomllib
 from itertools import pairwise
 from pathlib import Path
@@ -16,21 +17,23 @@ from each import each
 
 import eomgen
 from eomgen.cli import main
-from eomgen.model import constraints, forces, joints, shapes
 from eomgen.model.outputs import FUNCTIONS
-from eomgen.model.part import slots_of
-from eomgen.model.parts import Body, Coordinate, Model, Output, Parameter
+from eomgen.model.parts import Model
 from eomgen.questions.of_a_run import is_of_a_run
 from eomgen.symbolic.expression.formula import NAMES
 from eomgen.symbolic.expression.units import UNITS
 
+ROOT = Path(__file__).parent.parent
+sys.path.insert(0, str(ROOT / "docs" / "_ext"))
+
+import reference  # noqa: E402  the site's own extension
+
 pytestmark = pytest.mark.slow
 
-ROOT = Path(__file__).parent.parent
-REFERENCE = (ROOT / "models" / "README.md").read_text(encoding="utf-8")
+PAGES = {path: path.read_text(encoding="utf-8") for path in reference.pages()}
+REFERENCE = "\n".join(PAGES.values())
+MODELS = (ROOT / "models" / "README.md").read_text(encoding="utf-8")
 README = (ROOT / "README.md").read_text(encoding="utf-8")
-COMMON = {"shape": {"mass"}, "joint": {"on", "at", "point", "turned", "symbol"}, "constraint": {"symbol"}}
-ROOMS = {"shape": shapes.ALL, "joint": joints.ALL, "constraint": constraints.ALL, "force": forces.ALL}
 
 
 def blocks(text: str, language: str) -> list[str]:
@@ -61,14 +64,6 @@ def whole_with(piece: str) -> Model:
     return eomgen.Model(**{key: value for key, value in tables.items() if key != "eomgen"})
 
 
-def row_of(kind: str, after: str) -> list[str]:
-    """The cells of the table row of a kind, under a heading."""
-    section = REFERENCE.split(f"\n## {after}\n")[1].split("\n## ")[0]
-    rows = [line.strip("|").split(" | ") for line in section.splitlines() if line.startswith(f"| `{kind}` |")]
-    assert len(rows) == 1, f"{kind} has {len(rows)} rows under {after}"
-    return [cell.strip() for cell in rows[0]]
-
-
 @each("text", WHOLE)
 def test_a_whole_model_of_the_pages_derives_and_is_certified(text):
     """Every ```toml block that begins with `eomgen = 1`."""
@@ -88,36 +83,37 @@ def test_a_piece_of_the_reference_derives_and_its_outputs_are_answered(piece):
         assert found.keys() == of_runs and {name: a.message for name, a in found.items() if a.message} == {}
 
 
-@each("room", ROOMS)
-def test_the_reference_names_every_kind_with_exactly_its_fields(room):
-    """| `kind` | its fields | ...: a kind or a field that is new, or gone, must be written down."""
-    for member in ROOMS[room]:
-        fields = set(re.findall(r"`(\w+)`", row_of(member.kind, f"{room.capitalize()}s")[1]))
-        assert fields == {slot.key for slot in slots_of(member)} - COMMON.get(room, set()), member.kind
+@each("page", list(PAGES))
+def test_the_tables_of_the_reference_are_those_of_the_classes(page):
+    """Each kind, key, unit, default and function as the class that reads it says: `filled(page)` = page."""
+    assert reference.filled(PAGES[page]) == PAGES[page], "python docs/_ext/reference.py writes its tables anew"
 
 
-@each("room", ["joint", "constraint", "force"])
-def test_the_reference_says_which_kinds_are_derived(room):
-    """The column "derived" is `later` for the kinds that do not work, and only for them; `in the plane`, only there."""
-    for member in ROOMS[room]:
-        derived = row_of(member.kind, f"{room.capitalize()}s")[2]
-        if room == "constraint":
-            spaces = tuple(space for space in ("plane", "space") if member.works_in(space))
-            assert derived == {("plane", "space"): "yes", ("plane",): "in the plane", (): "later"}[spaces], member.kind
-        else:
-            assert (derived != "later") == (room == "joint" or member.works), member.kind
+def test_every_table_that_can_be_made_stands_in_the_reference_once():
+    """No part of the model file is left out, and no page is outside the contents."""
+    made = re.findall("<!-- made: (.+?) -->", REFERENCE)
+    assert sorted(made) == sorted(reference.MADE)
+    assert set(PAGES) == set(reference.PLACE.glob("*.md"))
 
 
-@each("part", [Parameter, Coordinate, Body, Output, Model])
-def test_the_reference_names_every_field_of_the_tables(part):
-    """Each key of the part stands in the reference as `key` or `[key]`."""
-    missing = [s.key for s in slots_of(part) if f"`{s.key}`" not in REFERENCE and f"[{s.key}" not in REFERENCE]
-    assert missing == []
+def test_a_table_that_was_changed_by_hand_is_found():
+    """One unit, one key, one kind: what the class does not say."""
+    page = PAGES[reference.PLACE / "shapes.md"]
+    for old, new in (("`radius`", "`diameter`"), ("| `cone` |", "| `kegel` |"), ("m r^2 / 2", "m r^2 / 3")):
+        assert old in page and reference.filled(page.replace(old, new)) == page
+
+
+@each("cls", sorted({*reference.TABLES.values(), *reference.BASES.values()}, key=lambda cls: cls.__name__))
+def test_every_key_of_a_table_is_explained(cls):
+    """By the docstring of the class that reads it, and by its rule."""
+    known = reference.meanings(cls)
+    assert not [slot.key for slot in reference.slots_of(cls) if not known.get(slot.name)]
+    assert all(reference.value_of(slot.rule) for slot in reference.slots_of(cls))
 
 
 def test_the_reference_lists_every_model_of_the_folder():
     """Each file of models/ by its stem, each chapter of models/seeds/ by its first word or its whole name."""
-    listed = set(re.findall(r"`(\w+)`", REFERENCE.split("## The models of this folder")[1]))
+    listed = set(re.findall(r"`(\w+)`", MODELS))
     assert {path.stem for path in (ROOT / "models").glob("*.toml")} <= listed
     for path in (ROOT / "models" / "seeds").glob("*.toml"):
         assert {path.stem, path.stem.partition("_")[0]} & listed, path.stem
@@ -134,7 +130,7 @@ def test_the_python_session_of_the_reference_runs_as_it_stands(monkeypatch):
     """Every ```python block of the reference, as one doctest session."""
     monkeypatch.chdir(ROOT)
     session = "\n".join(blocks(REFERENCE, "python"))
-    test = doctest.DocTestParser().get_doctest(session, {}, "models/README.md", "models/README.md", 0)
+    test = doctest.DocTestParser().get_doctest(session, {}, "docs/reference", "docs/reference", 0)
     told: list[str] = []
     outcome = doctest.DocTestRunner(optionflags=doctest.NORMALIZE_WHITESPACE).run(test, out=told.append)
     assert outcome.attempted > 10
@@ -165,16 +161,20 @@ def test_what_the_pages_show_of_a_command_is_what_it_prints(block, tmp_path, mon
     assert [line for line in shown if line != "..." and line not in printed] == []
 
 
-@each("page", [README, REFERENCE])
+@each("page", [ROOT / "README.md", ROOT / "models" / "README.md", *PAGES])
 def test_links_inside_the_repository_lead_somewhere(page):
-    """[text](path) is a file, [text](#heading) a heading of the page."""
-    folder = ROOT if page is README else ROOT / "models"
-    words = [re.sub(r"[^\w\- ]", "", heading) for heading in re.findall(r"^#+ (.*)$", page, re.MULTILINE)]
-    headings = {heading.strip().lower().replace(" ", "-") for heading in words}
-    for target in re.findall(r"\]\(([^)]+)\)", page):
+    """[text](path) is a file, [text](path#heading) a heading of it."""
+    for target in re.findall(r"\]\(([^)]+)\)", page.read_text(encoding="utf-8")):
         path, _, anchor = target.partition("#")
         if not path.startswith("http"):
-            assert (folder / path).exists() if path else anchor in headings, target
+            to = page.parent / path if path else page
+            assert to.exists() and (not anchor or anchor in headings(to)), target
+
+
+def headings(page: Path) -> set[str]:
+    """The anchors of a page."""
+    words = re.findall(r"^#+ (.*)$", page.read_text(encoding="utf-8"), re.MULTILINE)
+    return {re.sub(r"[^\w\- ]", "", heading).strip().lower().replace(" ", "-") for heading in words}
 
 
 def test_the_readme_is_short():

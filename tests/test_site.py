@@ -45,21 +45,32 @@ def test_a_reader_needs_no_network(site):
                 assert (page.parent / target).exists(), f"{page}: {target}"
 
 
-def test_each_section_of_the_reference_is_a_page(site):
-    """Nothing is lost where the reference is cut: each of its lines of code stands in a page."""
-    shown = "".join(unescape(re.sub("<[^>]+>", "", page.read_text("utf-8"))) for page in site.glob("model_file/*.html"))
-    blocks = re.findall(r"^```\w+\n(.*?)^```", (ROOT / "models" / "README.md").read_text("utf-8"), re.M | re.S)
-    lines = {line.strip() for block in blocks for line in block.splitlines() if "# doctest" not in line}
-    assert len(lines) > 400 and not [line for line in lines if line not in shown]
+def test_every_page_is_three_clicks_from_the_start(site):
+    """By the links of the pages, the start's own among them."""
+    start = (site / "index.html").resolve()
+    reached, edge = {start}, {start}
+    for _ in range(3):
+        found = {to for page in edge for to in linked_from(page)}
+        edge = found - reached
+        reached |= edge
+    pages = {page for page in start.parent.rglob("*.html") if not page.stem.endswith(".motion")}
+    pages = {page for page in pages if "_static" not in page.parts and page.stem != "search"}  # the theme's own
+    assert not {page.relative_to(start.parent).as_posix() for page in pages - reached}
+
+
+def linked_from(page: Path) -> set[Path]:
+    """The pages to which a page leads."""
+    targets = re.findall(r"<a [^>]*?href=\"([^\"#?:]+)", page.read_text("utf-8"))
+    return {to for to in ((page.parent / target).resolve() for target in targets) if to.suffix == ".html"}
 
 
 def test_a_kind_has_a_page_with_its_picture(site):
-    """Its fields, its example, what follows of it; the reference's table and the list of kinds lead there."""
-    found = {path.stem: path.read_text("utf-8") for path in site.glob("model_file/kinds/*.html")}
+    """Its keys, its example, what follows of it; the reference's table and the list of kinds lead there."""
+    found = {path.stem: path.read_text("utf-8") for path in site.glob("reference/kinds/*.html")}
     assert "_images/rolling.svg" in found["rolling"] and (site / "_images" / "rolling.svg").stat().st_size > 2000
     words = unescape(re.sub("<[^>]+>", "", found["rolling"]))
     assert "Disc on a slope" in words and "Equations of motion" in words and "nonnegative expression [m]" in words
-    assert 'href="kinds/rolling.html"' in (site / "model_file" / "constraints.html").read_text("utf-8")
+    assert 'href="kinds/rolling.html"' in (site / "reference" / "constraints.html").read_text("utf-8")
     assert all(f'href="{name}.html"' in found["index"] for name in found if name != "index")
 
 

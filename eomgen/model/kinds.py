@@ -175,7 +175,12 @@ Viscosity = Annotated[Expression, FormulaRule("s/m", "nonnegative")]  # -c N v
 
 @dataclass(frozen=True, kw_only=True)
 class Resistance(Part):
-    """`friction = mu`: mu |N| against the sliding velocity; `{ viscous = c }`: -c N v."""
+    """`friction = mu`: mu |N| against the sliding velocity; `{ viscous = c }`: -c N v.
+
+    Args:
+        coulomb: mu, as which a bare number counts.
+        viscous: c [s/m].
+    """
 
     shorthand: ClassVar[str] = "coulomb"
     title: ClassVar[str] = "friction"

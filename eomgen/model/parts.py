@@ -59,10 +59,10 @@ class Parameter(Part):
     """A constant of the system.
 
     Args:
-        value: a number, an expression of other parameters, or None (then only derivations can be made).
+        value: a number, an expression of other parameters, or None (`{}`: open; then only derivations can be made).
         unit: in which the number is given; `value` is in SI already.
-        about: a remark.
-        positive: whether roots of its squares may be taken.
+        about: a remark, printed in the derivation.
+        positive: roots of its squares may be taken; a value that is not positive is an error.
         symbol: in formulas, in LaTeX (None: by its name).
     """
 
@@ -86,12 +86,15 @@ class Coordinate(Part):
     """A generalized coordinate q.
 
     Args:
-        start, speed: q and q' at the start (None: 0).
-        unit: in which the numbers are given; they are in SI already.
+        start, speed: q and q' at the start, t = 0 (None: 0).
+        unit: in which the numbers are given, all of them here; they are in SI already.
         near: first guess of a dependent coordinate, or of an equilibrium.
         dependent: eliminated through the constraints.
-        motion, rate, acceleration: q, q' or q'' as a function of time, or through samples, of a driven coordinate.
+        motion, rate, acceleration: q, q' (from `start`) or q'' (from `start` and `speed`) as a function of time, or
+            through samples, of a driven coordinate; an acceleration needs an integral in closed form, as that of
+            samples is.
         symbol: in formulas, in LaTeX (None: by its name); its rates get dots.
+        about: a remark, printed in the derivation.
     """
 
     shorthand: ClassVar[str] = "start"
@@ -116,7 +119,14 @@ class Coordinate(Part):
 
 @dataclass(frozen=True, kw_only=True)
 class Speed(Part):
-    """A generalized speed that is not a rate: `rate`, a combination of the rates (None: named by a joint's `omega`)."""
+    """A generalized speed that is not a rate, but a combination of the rates.
+
+    Args:
+        rate: the combination (None: named by a joint's `omega`).
+        start: its value at the start (None: 0, or by the coordinates' `speed` where no speed has one).
+        about: a remark, printed in the derivation.
+        symbol: in formulas, in LaTeX (None: by its name).
+    """
 
     shorthand: ClassVar[str] = "rate"
     title: ClassVar[str] = "speed"
@@ -128,7 +138,14 @@ class Speed(Part):
 
 @dataclass(frozen=True, kw_only=True)
 class Input(Part):
-    """A known function of time that a caller may replace."""
+    """A known function of time that a caller may replace.
+
+    Args:
+        value: a number, an expression of time, or samples.
+        about: a remark.
+        unit: in which the numbers are given; they are in SI already.
+        symbol: in formulas, in LaTeX (None: by its name).
+    """
 
     shorthand: ClassVar[str] = "value"
     title: ClassVar[str] = "input"
@@ -144,10 +161,12 @@ class Piece(Part):
     """One piece of a composite body: a shape `at` a place, turned by `angle`; a hole takes away.
 
     Args:
-        shape: its form; its mass only where the densities are not equal.
-        at: where the shape's origin is, body axes, 2 or 3 [m].
+        shape: its form; its mass only where the densities are not equal; of a hole, what it takes away.
+        at: where the shape's origin is, body axes (None: the body's origin), 2 or 3 [m].
         turned: fixed rotations, each about the axes that the one before left.
         angle: after them, about `axis` (default z) [rad].
+        hole: it takes away.
+        axis: of `angle` (None: z).
     """
 
     title: ClassVar[str] = "a piece"
@@ -170,11 +189,18 @@ class Body(Part):
 
     Args:
         center: mass centre in the body's axes (None: the origin) [m].
-        inertia: about the mass centre, body axes: 1 value in the plane, 3 principal values or
-            6 `[xx, yy, zz, xy, yz, zx]` with the tensor's sign in space [kg m^2].
-        line: two of its points, a member's axis.
-        measured: published data, which may break the triangle inequality.
+        inertia: about the mass centre, body axes: 1 value in the plane, 3 principal values or 6 `[xx, yy, zz, xy, yz,
+            zx]` with the tensor's sign in space [kg m^2].
+        line: two of its points, `["start", "end"]`, the axis of a bar: for sliders, and for section forces.
+        measured: published data: no warning where `inertia` breaks the triangle inequality.
         symbol: its index in formulas, in LaTeX (None: its name).
+        about: a remark.
+        shape: a homogeneous body, with its mass, points and inertia.
+        mass: instead of a shape; of a body of parts that of the net whole [kg].
+        parts: a composite of shapes and holes.
+        points: further points, `{ hook = [0, "l/2"] }`, which may hold coordinates and t, and then move in the body
+            [m].
+        joint: how it hangs (None: its frame is the ground's and does not move).
     """
 
     title: ClassVar[str] = "body"
@@ -193,7 +219,13 @@ class Body(Part):
 
 @dataclass(frozen=True, kw_only=True)
 class Truss(Part):
-    """Massless two-force members between hinges: nodes and members `n1-n2`."""
+    """Massless two-force members between hinges: nodes and members `n1-n2`.
+
+    Args:
+        nodes: places of the hinges on the ground, 2 or 3 [m].
+        members: bars, each as `"n1-n2"` by its two nodes.
+        about: a remark.
+    """
 
     title: ClassVar[str] = "truss"
     nodes: GroundPoints
@@ -203,7 +235,13 @@ class Truss(Part):
 
 @dataclass(frozen=True, kw_only=True)
 class Linearize(Part):
-    """About which state the equations are linearized, and in which coordinates (None: all)."""
+    """The state about which the equations are linearized, and in which coordinates.
+
+    Args:
+        about: the place of rest nearest to the start; the start, which must be a steady motion; or the steady motion
+            sought from there.
+        coordinates: that are asked for alone (None: all).
+    """
 
     title: ClassVar[str] = "[linearize]"
     about: Annotated[str, TextRule(("equilibrium", "start", "steady"))] = "equilibrium"
@@ -215,7 +253,12 @@ OutputEquations = Annotated[tuple[WrittenEquation, ...], ListRule(EquationRule()
 
 @dataclass(frozen=True, kw_only=True)
 class Given(Part):
-    """Kinematics at one instant: known velocities and accelerations as equations."""
+    """Kinematics at one instant: known velocities and accelerations as equations.
+
+    Args:
+        velocity: equations that are linear in velocities.
+        acceleration: equations that are linear in accelerations.
+    """
 
     title: ClassVar[str] = "[given]"
     velocity: OutputEquations | None = None
@@ -224,7 +267,13 @@ class Given(Part):
 
 @dataclass(frozen=True, kw_only=True)
 class Unknown(Part):
-    """A number that is asked, and what it is."""
+    """A number that is asked, and what it is.
+
+    Args:
+        about: what it is.
+        unit: in which it is given.
+        symbol: in formulas, in LaTeX (None: by its name).
+    """
 
     shorthand: ClassVar[str] = "about"
     title: ClassVar[str] = "unknown"
@@ -239,11 +288,14 @@ class Output(Part):
 
     Args:
         value: an expression that may call functions of the motion.
-        at: the instant: an equation; the first time after the start at which it holds; or "equilibrium".
-        from_: "start" or "rest" (`from` in a file).
-        side: just before or just after the instant.
-        event: which of the events of a run, from 1 on, or "every".
-        unit: in which the result is given (None: SI).
+        at: the instant: `"t = 2"`, or any equation, `"theta = pi/2"`, `"x' = 0"`, `"reaction_n(wall) = 0"`: the first
+            time after the start at which it holds; or "equilibrium".
+        from_: with `at`: "start" (None), or "rest": from the start values with all speeds 0; without `at`: rates as
+            functions of the coordinates, by the energy theorem.
+        side: with `at`: just before (None) or just after the instant, where a quantity jumps.
+        event: with `at`: which of the events of a run, from 1 on, or "every".
+        unit: in which the answer is given (None: SI, and the unit that the formula has, as far as the file says).
+        about: a remark.
     """
 
     shorthand: ClassVar[str] = "value"
@@ -268,6 +320,24 @@ Forces = Annotated[Table[Force], TableRule(SeamRule("force", forces.ALL), "force
 @dataclass(frozen=True, kw_only=True, repr=False)
 class Model(Part):
     """A mechanical system as declared: tables of named parts, each a read-only mapping in the user's order.
+
+    Args:
+        name: of the system (a file's stem where it is left out).
+        space: the plane (x right, y up, turns about z, counter-clockwise positive), or space; required.
+        about, source: remarks.
+        parameters: constants.
+        coordinates: what moves.
+        speeds: generalized speeds that are not rates.
+        inputs: known functions of time that a caller may replace.
+        points: of the ground, fixed [m].
+        bodies: what has a frame: its mass, points, joint.
+        constraints: all contacts beyond the one joint of each body.
+        trusses: massless bars between hinges.
+        forces: what is applied.
+        linearize: about which state small motions are taken.
+        given: known velocities and accelerations at one instant.
+        unknowns: numbers that are asked of statics.
+        outputs: what is asked.
 
     Raises:
         ModelError: on construction, with every problem at once.

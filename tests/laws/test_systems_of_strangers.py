@@ -1,6 +1,6 @@
 """Sixty-seven systems that nobody here had modelled, each beside numbers that share nothing with eomgen.
 
-The models, as a reader of models/README.md writes them: tests/helpers/systems_of_strangers.toml. What they must give:
+The models, as a reader of docs/reference writes them: tests/helpers/systems_of_strangers.toml. What they must give:
 the function of the same name in tests/helpers/oracles_*.py. The list: docs/published_systems.md.
 """
 

@@ -81,7 +81,7 @@ class Quantities:
         if call.name not in FUNCTIONS:
             raise DerivationError(
                 f"'{call}': there is no function '{call.name}'",
-                mend='see "Outputs" in models/README.md',
+                mend="see docs/reference/outputs.md",
             )
         return FUNCTIONS[call.name].value(self, call)
 

@@ -17,9 +17,14 @@ from eomgen.symbolic.expression.text import as_expression
 
 @dataclass(frozen=True, kw_only=True)
 class Gear(Constraint):
-    """The rates of the two bodies' angles are in the ratio: omega of the first = ratio * omega of the second.
+    """Two wheels that turn each other: omega of the first = ratio * omega of the second.
 
-    In the plane the angles are those against the ground's axes; in space those of the bodies' own joints.
+    In the plane the angles are those against the ground's axes; in space those of the bodies' own joints, which turn
+    them about one axis each (revolute, cylindrical, screw): the axes may have any directions, as of bevel gears.
+
+    One row: the couple on the first; -ratio times it on the second. The wheels' axles carry what is left over. In space
+    each couple is along its joint's axis, the opposite on the body that carries the joint. Wheels on a common cage: an
+    epicyclic gear, or the differential of a car.
 
     Args:
         bodies: the two wheels.
@@ -60,7 +65,9 @@ def _at_joint(scene: LoadContext, body: str, couple: AnyScalar) -> tuple[AnyScal
 
 @dataclass(frozen=True, kw_only=True)
 class Motion(Constraint):
-    """coordinate = value(t).
+    """A drive of a coordinate through a tie: q = value(t).
+
+    One row: the driving force along the coordinate, a generalized force.
 
     Args:
         coordinate: what is driven.

@@ -105,10 +105,10 @@ class Measured:
 
 @dataclass(frozen=True, kw_only=True)
 class Equation(Constraint):
-    """gap = 0 (holonomic), or rate = 0 (in the rates and speeds).
+    """An equation: `gap` = 0 between coordinates, t and places, or `rate` = 0, linear in rates and velocities.
 
-    Places of points and angles of bodies may stand in both, velocities in a rate: what holds them pushes on the
-    bodies, with lam times the derivative of the equation by each.
+    Its multiplier is a generalized force. Places of points and angles of bodies may stand in both, velocities in a
+    rate: what holds them pushes on the bodies, with lam times the derivative of the equation by each.
 
     Args:
         gap: of coordinates, places and time.

@@ -26,7 +26,10 @@ from eomgen.symbolic.expression.spatial import IDENTITY, Vector, apply, cross, d
 
 @dataclass(frozen=True, kw_only=True)
 class Clamp(Constraint):
-    """A body is built into the ground at `point`, or bodies are welded together at `points`.
+    """The point is built into the ground as it stands, or the bodies of the points are welded together.
+
+    Rows: those of a pin, and a couple (in space three): no turning against the start. The couple is the one about the
+    point.
 
     Args:
         point: that stays where it stands, with its body.
@@ -65,9 +68,9 @@ class Clamp(Constraint):
 
 @dataclass(frozen=True, kw_only=True)
 class Guide(Constraint):
-    """The point moves along `along` (ground axes) and its body does not turn.
+    """The point moves along `along` (ground axes), and its body does not turn.
 
-    A normal force and a couple; in space two forces across `along` and three couples.
+    Rows: the force along the left normal of `along`; the couple. In space two forces across `along` and three couples.
 
     Args:
         point: what is guided.
@@ -108,6 +111,10 @@ class Guide(Constraint):
 @dataclass(frozen=True, kw_only=True)
 class Slider(Constraint):
     """The point stays on the line (`line = ["A", "B"]`) of body `on`.
+
+    One row: the force along the left normal of the line from A to B, on the point; where the point is one of the
+    ground, on the body. In space two forces across the line; it holds on all sides, so that it is not `unilateral`
+    there.
 
     Args:
         point: what slides.
@@ -174,7 +181,9 @@ def _lacks_line(catalog: Catalog, body: Any) -> bool:
 
 @dataclass(frozen=True, kw_only=True)
 class Support(Constraint):
-    """The point stays on the line (plane) across `normal` through `at`; the support pushes along `normal`.
+    """The point stays on the line (in space a plane) across `normal` through `at`, or through where it stands.
+
+    One row: n . (p - p_0) = 0, n = `normal` made a unit vector: the normal force, along n.
 
     Args:
         point: what is supported.
@@ -217,7 +226,10 @@ class Support(Constraint):
 
 @dataclass(frozen=True, kw_only=True)
 class Skate(Constraint):
-    """No velocity of the point across `along` (body axes); the reaction acts along the left normal.
+    """A knife edge: the point has no velocity across `along` (body axes).
+
+    One row, of velocities alone: the force along the left normal of `along`. In space it is along n x `along`, of unit
+    length, with the `normal` n of the ice.
 
     Args:
         point: of the edge.

@@ -23,7 +23,9 @@ from eomgen.symbolic.expression.traversal import order
 
 @dataclass(frozen=True, kw_only=True)
 class Link(Constraint):
-    """Two points keep their distance; tension positive.
+    """A massless rod or wire between two points, which keeps their distance; tension positive.
+
+    One row: the tension. Its gap is (L^2 - r^2) / (2 L), to first order L - r.
 
     Args:
         points: the two ends.

@@ -19,11 +19,16 @@ from eomgen.symbolic.expression.spatial import IDENTITY, Vector, apply, cross, d
 
 @dataclass(frozen=True, kw_only=True)
 class Pin(Constraint):
-    """One point: held to the ground where it stands; two or more: one hinge of them all.
+    """A hinge: one point is held to the ground where it stands at the start; two or more are one hinge of them all.
+
+    Rows, for each point after the first: e . (p_first - p_other) = 0 along x and y (in space also z): forces along
+    these axes. In space `axis` makes it a hinge, the axis carried along by both bodies, with two rows more, couples;
+    without it it is a ball joint. With an axis the single point's body keeps its axis in the ground. `check` warns of a
+    hinge whose axis would leave more freedoms in the axes of one of its bodies.
 
     Args:
         points: the hinge's points, one of each body.
-        axis: in space, the hinge's axis at the start (None: a ball joint).
+        axis: in space, the hinge's axis at the start, as it is written, guesses included (None: a ball joint).
         axes: "ground", or the body of the hinge in whose axes that is given.
     """
 

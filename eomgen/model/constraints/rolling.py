@@ -255,7 +255,12 @@ def _plain(x: AnyScalar) -> bool:
 
 @dataclass(frozen=True, kw_only=True)
 class Track(Part):
-    """A line or a plane: through `at`, `normal` towards the rolling body; in the axes of `on`."""
+    """A line or a plane: through `at`, `normal` towards the rolling body; in the axes of `on`.
+
+    Args:
+        at: a place on it, or the name of a point of the ground, 2 or 3 [m].
+        normal: towards the rolling body, of any length.
+    """
 
     title: ClassVar[str] = "a line or plane"
     at: GroundPlace
@@ -264,7 +269,14 @@ class Track(Part):
 
 @dataclass(frozen=True, kw_only=True)
 class Circle(Part):
-    """A circle about `at`, in space a ball or with `axis` a pipe, in the axes of `on`; rolled on outside or inside."""
+    """A circle about `at`, in space a ball or with `axis` a pipe, in the axes of `on`; rolled on outside or inside.
+
+    Args:
+        at: its centre, or the name of a point of the ground, 2 or 3 [m].
+        radius: of the circle, ball or pipe [m].
+        inside: the body rolls in it, and the normal points to the centre.
+        axis: of a pipe, 3.
+    """
 
     title: ClassVar[str] = "a circle"
     at: GroundPlace
@@ -400,7 +412,10 @@ ALONG = ("t", "s")
 
 @dataclass(frozen=True, kw_only=True)
 class Rolling(Constraint):
-    """The contact (a normal row) and no slip (its other rows).
+    """A round body touches a line (in space a plane), a circle or another round body, and does not slip.
+
+    Rows: the normal force n, which pushes `body` off its track; without `slip` also the friction t along n turned
+    clockwise (along x where n is y), a row of velocities alone; in space two, t and s, with n a right-handed frame.
 
     Args:
         body: what rolls.

@@ -26,11 +26,12 @@ class Wrap(Part):
     """A round thing that the string lies on.
 
     Args:
-        body: a pulley (about its origin); or `at`, a place on the ground: a peg.
+        body: a pulley, about its origin.
         radius: None: the shape's [m].
         turn: the sense in which one travels round it.
         axis: in space, about which it is round and the sense is seen, in the axes of the body or the ground; None: z.
         slip: the string slides on it: one tension through.
+        at: instead of a body: a place of the ground about which there is a peg [m].
     """
 
     title: ClassVar[str] = "a wrap of the string"
@@ -50,7 +51,9 @@ Strands = Annotated[tuple[str | tuple[Expression, ...], ...], ListRule(StrandRul
 
 @dataclass(frozen=True, kw_only=True)
 class String(Constraint):
-    """A string of constant length from end to end.
+    """A string of constant length from end to end, over pulleys, pegs and eyelets.
+
+    Rows: the tension of each strand, by the number of its row.
 
     Args:
         path: points and wraps, in the order of travel.

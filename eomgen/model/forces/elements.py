@@ -112,7 +112,7 @@ class Spring(Straight):
     Args:
         points: its two ends.
         stiffness: k [N/m].
-        length: natural length l0 [m], or "start": the distance at the start.
+        length: natural length l0 [m], or "start": the distance at the start at which all constraints hold.
         along: a fixed direction along which the stretch is measured instead, ground axes, 2 or 3.
     """
 

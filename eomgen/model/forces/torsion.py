@@ -57,7 +57,7 @@ class Turning(Force):
 
 @dataclass(frozen=True, kw_only=True)
 class TorsionSpring(Turning):
-    """A torsion spring: V = k (theta - rest)^2 / 2.
+    """A torsion spring: V = k (theta - rest)^2 / 2; in space put it into the joint.
 
     Args:
         bodies: theta is the angle of the second against the first.
@@ -94,7 +94,7 @@ class TorsionSpring(Turning):
 
 @dataclass(frozen=True, kw_only=True)
 class TorsionDamper(Turning):
-    """A torsion damper: couple - c theta'.
+    """A torsion damper: couple - c theta'; in space put it into the joint.
 
     Args:
         bodies: theta is the angle of the second against the first.

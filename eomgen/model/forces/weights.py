@@ -18,12 +18,12 @@ from eomgen.symbolic.expression.spatial import AnyScalar, Vector, dot, minus, pl
 
 @dataclass(frozen=True, kw_only=True)
 class Gravity(Force):
-    """m g at the mass centre of each body: V = - m g . r.
+    """A weight on all bodies, or on those of the list: m g at the mass centre of each, V = - m g . r.
 
     Args:
         acceleration: g, ground axes, 2 or 3 [m/s^2].
         bodies: on which it acts (None: all).
-        axis_down: the last axis points down: a weight along it is meant.
+        axis_down: the last axis (y, in space z) points down: else a weight along it is warned of.
     """
 
     kind: ClassVar[str] = "gravity"

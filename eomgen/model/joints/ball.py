@@ -173,13 +173,14 @@ def rate_matrix_of(e: tuple[Any, ...]) -> tuple[Vector, Vector, Vector, Vector]:
 
 @dataclass(frozen=True, kw_only=True)
 class Spherical(Joint):
-    """The child turns about the joint point: s = the angles or the quaternion; W: all forces.
+    """A ball joint: the child turns about the joint point.
 
-    S takes the rates of the angles (`turning_columns`), or the angular velocity by which the quaternion moves.
+    s = the angles or the quaternion; W: all forces. S takes the rates of the angles, or the angular
+    velocity by which the quaternion moves.
 
     Args:
-        orientation: "zxz", "xyz", ...: turns about the body's own successive axes; zxz:
-            R = Rz(psi) Rx(theta) Rz(phi), child to parent; or "quaternion".
+        orientation: "zxz", "xyz", ...: turns about the body's own successive axes; zxz: R = Rz(psi) Rx(theta) Rz(phi),
+            child to parent; or "quaternion".
         angles: of these turns [rad].
         quaternion: names of its four coordinates, scalar first.
         omega: names of the speeds: the child's angular velocity against the parent, child's axes [rad/s].
@@ -231,7 +232,9 @@ TwoAngles = Annotated[tuple[Expression, ...], ListRule(FormulaRule("rad", "", CO
 
 @dataclass(frozen=True, kw_only=True)
 class Universal(Joint):
-    """s = (a, b), R = Rot(n1, a) Rot(n2, b); S = (Rot(n2, b)^T n1, 0), (n2, 0); W: all forces, one torque.
+    """Two turns: about an axis of the parent, then about one of the child; the two must not be parallel.
+
+    s = (a, b), R = Rot(n1, a) Rot(n2, b); S = (Rot(n2, b)^T n1, 0), (n2, 0); W: all forces, one torque.
 
     Args:
         axes: n1 fixed in the (turned) parent, n2 fixed in the child; at angles 0 the axes of both agree.

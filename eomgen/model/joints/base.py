@@ -104,7 +104,12 @@ Z: Vector = (0, 0, 1)
 
 @dataclass(frozen=True, kw_only=True)
 class Turned(Part):
-    """A fixed rotation by `angle` about `axis` (default z)."""
+    """A fixed rotation by `angle` about `axis` (default z).
+
+    Args:
+        axis: in the axes that the rotation before left (None: z).
+        angle: constant [rad].
+    """
 
     title: ClassVar[str] = "turned"
     axis: SpaceDirection | None = None
@@ -133,8 +138,8 @@ class Joint(Part):
     """How a body hangs on its parent.
 
     Args:
-        on: the parent, or a point of it (`arm.end`); None: the ground.
-        at: where the joint sits, parent's axes [m]; on the ground also a point's name.
+        on: the parent, or a point of it (`arm.end`, then without `at`); None: the ground.
+        at: where the joint sits, parent's axes (None: its origin) [m]; on the ground also a point's name.
         point: the point of this body that sits there; None: its origin.
         turned: fixed rotations before the joint, each about the axes that the one before left.
         symbol: what its reactions are called in formulas, in LaTeX: A gives A_x, A_y, M_A.

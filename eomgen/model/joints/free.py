@@ -50,11 +50,12 @@ IN_PLANE = ("x", "y", "angle")
 
 @dataclass(frozen=True, kw_only=True)
 class Free(Joint):
-    """In the plane s = (x, y, angle), as `planar` but with no wrench left in it.
+    """A body that nothing holds: `x`, `y`, `angle`; in space `position` and an orientation.
 
-    In space s = (position, angles or quaternion), X = (R, position),
-    S = (0, R^T e_x), (0, R^T e_y), (0, R^T e_z), (columns as of `spherical`), W = (). A particle needs no orientation:
-    s = position, R = 1.
+    In the plane s = (x, y, angle), as `planar` but with no wrench left in it.
+
+    In space s = (position, angles or quaternion), X = (R, position), S = (0, R^T e_x), (0, R^T e_y), (0, R^T e_z),
+    (columns as of `spherical`), W = (). A particle needs no orientation: s = position, R = 1.
 
     Args:
         x, y, angle: of `point` in the parent's axes [m], and of the child [rad] (plane).
@@ -141,7 +142,9 @@ def _is_point(path: DocumentPath, catalog: Catalog) -> bool:
 
 @dataclass(frozen=True, kw_only=True)
 class Fixed(Joint):
-    """Welded on: f = 0, W = 1.
+    """A weld: no motion.
+
+    f = 0, W = 1.
 
     Args:
         angle: at which it is welded, constant [rad].
@@ -181,7 +184,9 @@ class Fixed(Joint):
 
 @dataclass(frozen=True, kw_only=True)
 class Planar(Joint):
-    """Motion in the x-y plane of the turned axes: s = (x, y, angle), X = ((x, y, 0), Rot(z, angle)).
+    """Motion in the x-y plane of the parent (its turned axes).
+
+    s = (x, y, angle), X = ((x, y, 0), Rot(z, angle)).
 
     S = (0, R^T e_x), (0, R^T e_y), (e_z, 0); W: the torques about x and y, and the force along z.
 

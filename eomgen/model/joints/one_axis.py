@@ -116,7 +116,9 @@ class AxisJoint(Joint):
 
 @dataclass(frozen=True, kw_only=True)
 class Revolute(AxisJoint):
-    """A hinge: s = angle, X = Rot(n, s), S = (n, 0); W: the torques across n and every force.
+    """A hinge, which turns about one axis.
+
+    s = angle, X = Rot(n, s), S = (n, 0); W: the torques across n and every force.
 
     Args:
         angle: of the child against the parent, 0 = axes agree [rad].
@@ -171,7 +173,9 @@ class Revolute(AxisJoint):
 
 @dataclass(frozen=True, kw_only=True)
 class Prismatic(AxisJoint):
-    """A slide: s = displacement, X = (Rot(angle), s n), S = (0, R^T n); W: every torque and the forces across n.
+    """A slide along `axis`.
+
+    s = displacement, X = (Rot(angle), s n), S = (0, R^T n); W: every torque and the forces across n.
 
     Args:
         axis: n, in the turned axes; need not have unit length.
@@ -236,7 +240,9 @@ class Prismatic(AxisJoint):
 
 @dataclass(frozen=True, kw_only=True)
 class Cylindrical(AxisJoint):
-    """A sleeve on a shaft: s = (d, angle), X = (Rot(n, angle), d n), S = (0, n), (n, 0); W: all across n.
+    """A sleeve on a shaft: turns about an axis and slides along it.
+
+    s = (d, angle), X = (Rot(n, angle), d n), S = (0, n), (n, 0); W: all across n.
 
     Args:
         axis: n, in the turned axes; need not have unit length; None: z.
@@ -284,7 +290,9 @@ Pitch = Annotated[Expression, FormulaRule("m")]
 
 @dataclass(frozen=True, kw_only=True)
 class Screw(AxisJoint):
-    """A nut on a thread of pitch h: s = angle, X = (Rot(n, s), h s n), S = (n, h n).
+    """A nut on a thread: turns about an axis and advances by `pitch` a radian.
+
+    With the pitch h: s = angle, X = (Rot(n, s), h s n), S = (n, h n).
 
     W: torques and forces across n, and the thread's thrust: a force n with the torque -h n.
 

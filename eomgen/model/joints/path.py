@@ -31,7 +31,16 @@ from eomgen.symbolic.expression.spatial import Pose, Vector, apply, plus
 
 @dataclass(frozen=True, kw_only=True)
 class PathPiece(Part):
-    """A straight piece (`line`: its length) or an arc (`arc`: its radius, `turn`, `angle`: how far)."""
+    """A straight piece (`line`: its length) or an arc (`arc`: its radius, `turn`, `angle`: how far).
+
+    Args:
+        name: as messages call it.
+        line: the length of a straight piece [m].
+        arc: the radius of an arc [m].
+        turn: of an arc: to the left is "ccw".
+        angle: of an arc: through which [rad].
+        friction: on this piece.
+    """
 
     title: ClassVar[str] = "a piece of the path"
     name: Text | None = None
@@ -93,11 +102,11 @@ PathPieces = Annotated[tuple[PathPiece, ...], ListRule(PartRule(PathPiece))]
 
 @dataclass(frozen=True, kw_only=True)
 class Path(Joint):
-    """A point that moves along pieces, `along` from the first one's beginning at `at`; its axes do not turn.
+    """A point on lines and arcs: `along` is the way from the first one's beginning at `at`; its axes do not turn.
 
-    X = (p(s), 1), S = (0, t), t the direction of travel; W: the force along its left normal, every torque and the
-    force out of the plane, in space that of x and y of the joint's seat. Before its beginning and after its end the
-    first and the last piece go on.
+    X = (p(s), 1), S = (0, t), t the direction of travel; W: the force along its left normal, every torque and the force
+    out of the plane, in space that of x and y of the joint's seat. Before its beginning and after its end the first and
+    the last piece go on.
 
     Args:
         along: the arc length s [m].

@@ -41,7 +41,9 @@ from eomgen.symbolic.expression.text import as_expression
 
 @dataclass(frozen=True, kw_only=True)
 class Placed(Joint):
-    """Position `at` and orientation as expressions: s = (at, angle | angles | quaternion), S as of a free body.
+    """A place as expressions say: `at` is that of `point`, along the turned axes, beside it the orientation.
+
+    s = (at, angle | angles | quaternion), S as of a free body.
 
     Args:
         at: of `point` in the parent's axes, turned as `turned` says, 2 or 3 [m].

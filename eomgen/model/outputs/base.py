@@ -211,13 +211,13 @@ class OutputFunction:
         per: the arguments by whose unit it is divided: a coordinate's, the rate's of a "coordinate or speed", the
             gap's of a tie.
         like: the argument whose unit it has.
-        gives: what, in models/README.md.
+        gives: what, in docs/reference/outputs.md.
         value: in q, u, a, lam, t and the parameters.
         second: what it is worth in numbers, by a way that shares only poses and masses with `value`; None: there is
             none here, and what proves it is said where `source` is asked.
         source: what it is found from: STATE, BALANCE, MASSES, SMALL_MOTIONS or OF_A_RUN.
         moves: whether velocities or accelerations stand in it.
-        shown: its arguments as models/README.md writes them, where the kinds do not say it.
+        shown: its arguments as docs/reference/outputs.md writes them, where the kinds do not say it.
         findings: what else is wrong with a call of it.
     """
 
@@ -253,11 +253,16 @@ class OutputFunction:
         return any(kind.startswith("coordinate") for kind in self.kinds)
 
     @property
+    def in_unit(self) -> str:
+        """The unit of its value in words: J per coordinate."""
+        if self.per:
+            return f"{self.unit} per {' and '.join(self.kinds[k] for k in self.per)}"
+        return "of the formula" if self.like is not None else self.unit
+
+    @property
     def row(self) -> str:
-        """Its line in the table of models/README.md."""
-        unit = "of the formula" if self.like is not None else self.unit
-        unit = unit if not self.per else f"{self.unit} per {' and '.join(self.kinds[k] for k in self.per)}"
-        return f"| `{' '.join(self.names)}` {self.arguments} | {self.gives} | {unit} |"
+        """Its line in the table of docs/reference/outputs.md."""
+        return f"| `{' '.join(self.names)}` {self.arguments} | {self.gives} | {self.in_unit} |"
 
     @property
     def dimension(self) -> Unit:

@@ -72,7 +72,7 @@ REACTION_FORCE = OutputFunction(
     least=1,
     shown="(tie or body[, body])",
     unit="N",
-    gives="[reaction](#reactions) of a tie, or of the body's joint, in ground axes or those of the body named second",
+    gives="[reaction](reactions.md) of a tie, or of the body's joint, in ground axes or those of the body named second",
     value=_force,
     source=BALANCE,
 )
@@ -202,7 +202,8 @@ TENSION = OutputFunction(
     least=1,
     shown="(tie[, number]) or (truss, n1-n2)",
     unit="N",
-    gives="of a link; of a strand of a string, from 1 (default); of a member of a [truss](#trusses), by its two nodes",
+    gives="of a link; of a strand of a string, from 1 (default); of a member of a [truss](statics.md#trusses), by "
+    "its two nodes",
     value=_tension,
     source=BALANCE,
     findings=_findings,
@@ -242,7 +243,12 @@ def _of(name: str, unit: str, gives: str, value: ValueOf) -> OutputFunction:
 
 
 SECTION_FORCES = (
-    _of("axial_force", "N", "[section forces](#section-forces), at a distance from the start of its line", _section),
+    _of(
+        "axial_force",
+        "N",
+        "[section forces](statics.md#section-forces), at a distance from the start of its line",
+        _section,
+    ),
     _of("shear_force", "N", "across it; at a jump the side is needed", _section),
     _of("bending_moment", "N*m", "the moment there", _section),
 )

@@ -54,7 +54,7 @@ def _entry(name: str, unit: str, letter: str) -> OutputFunction:
         least=2,
         unit=unit,
         per=(0, 1),
-        gives=f"entry of {letter} of the [small motions](#small-motions)",
+        gives=f"entry of {letter} of the [small motions](small_motions.md)",
         value=_of_linearization,
         source=SMALL_MOTIONS,
     )
@@ -66,7 +66,7 @@ FREQUENCY = OutputFunction(
     kinds=("number",),
     least=1,
     unit="rad/s",
-    gives="the k-th frequency Im λ of the [small motions](#small-motions), ascending",
+    gives="the k-th frequency Im λ of the [small motions](small_motions.md), ascending",
     value=_of_linearization,
     source=SMALL_MOTIONS,
 )

@@ -29,7 +29,11 @@ class MassProperties:
 
 @dataclass(frozen=True, kw_only=True)
 class Shape(Part, ABC):
-    """A homogeneous body of a simple form. Its mass may only be left out in a piece of a composite body."""
+    """A homogeneous body of a simple form. Its mass may only be left out in a piece of a composite body.
+
+    Args:
+        mass: m; 0 makes a massless body [kg].
+    """
 
     kind: ClassVar[str]
     dimension: ClassVar[int]  # what its mass is spread over: 0 a point, 1 a line, 2 a surface, 3 a volume

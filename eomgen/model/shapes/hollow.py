@@ -47,6 +47,10 @@ class HollowSphere(Hollow):
     """A ball of radius R with a cavity of radius r (`inner`), about their centre (the origin).
 
     I = 2 m (R^5 - r^5) / (5 (R^3 - r^3)) about every axis.
+
+    Args:
+        radius: R, outside [m].
+        inner: r, of the cavity [m].
     """
 
     kind: ClassVar[str] = "hollow_sphere"
@@ -79,6 +83,11 @@ class Tube(Hollow):
     """A cylinder of radius R with a bore of radius r (`inner`), about its centre (the origin), length l along z.
 
     I_zz = m (R^2 + r^2) / 2, I_xx = I_yy = m (3 (R^2 + r^2) + l^2) / 12.
+
+    Args:
+        radius: R, outside [m].
+        inner: r, of the bore [m].
+        length: l, along z [m].
     """
 
     kind: ClassVar[str] = "tube"
@@ -109,9 +118,13 @@ class Tube(Hollow):
 
 @dataclass(frozen=True, kw_only=True)
 class ConicalShell(Shape):
-    """A thin mantle about its mass centre (the origin), apex towards +z, h/3 of its height h below the origin.
+    """A thin mantle, without its base, about its mass centre (the origin), apex towards +z.
 
-    I_zz = m r^2 / 2, I_xx = I_yy = m r^2 / 4 + m h^2 / 18.
+    Its base is h/3 of its height h below the origin: I_zz = m r^2 / 2, I_xx = I_yy = m r^2 / 4 + m h^2 / 18.
+
+    Args:
+        radius: r, of the rim [m].
+        height: h [m].
     """
 
     kind: ClassVar[str] = "conical_shell"
@@ -142,7 +155,14 @@ class ConicalShell(Shape):
 
 @dataclass(frozen=True, kw_only=True)
 class CylindricalShell(Shape):
-    """A thin pipe about its centre (the origin), length l along z: I_zz = m r^2, I_xx = I_yy = m (6 r^2 + l^2) / 12."""
+    """A thin pipe, open at its ends, about its centre (the origin), length l along z.
+
+    I_zz = m r^2, I_xx = I_yy = m (6 r^2 + l^2) / 12.
+
+    Args:
+        radius: r [m].
+        length: l, along z [m].
+    """
 
     kind: ClassVar[str] = "cylindrical_shell"
     dimension: ClassVar[int] = 2
@@ -174,6 +194,9 @@ class HemisphericalShell(Shape):
     """Half a thin shell, the centre of its rim at the origin, the dome towards +z.
 
     Centre r / 2 along z; about the origin I = 2 m r^2 / 3 about x, y and z.
+
+    Args:
+        radius: r [m].
     """
 
     kind: ClassVar[str] = "hemispherical_shell"
@@ -204,7 +227,11 @@ class HemisphericalShell(Shape):
 
 @dataclass(frozen=True, kw_only=True)
 class SphericalShell(Shape):
-    """A thin homogeneous shell about its centre (the origin): I = 2 m r^2 / 3 about every axis."""
+    """A thin homogeneous shell about its centre (the origin): I = 2 m r^2 / 3 about every axis.
+
+    Args:
+        radius: r [m].
+    """
 
     kind: ClassVar[str] = "spherical_shell"
     dimension: ClassVar[int] = 2

@@ -38,7 +38,11 @@ class Particle(Shape):
 
 @dataclass(frozen=True, kw_only=True)
 class Rod(Shape):
-    """A thin homogeneous rod along x, from `start` (the origin) to `end`: I = m l^2 / 12 across it."""
+    """A thin homogeneous rod along x, from `start` (the origin) to `end`: I = m l^2 / 12 across it.
+
+    Args:
+        length: l [m].
+    """
 
     kind: ClassVar[str] = "rod"
     dimension: ClassVar[int] = 1
@@ -76,6 +80,10 @@ class Arc(Shape):
     """A bent rod about the centre of its circle (the origin), the angle A (`opening`) halved by +x; pi: half a hoop.
 
     Centre 2 r sin(A/2) / A along x; about the origin I_xx = m r^2 (1 - sin(A)/A) / 2, I_zz = m r^2.
+
+    Args:
+        radius: r, of the circle [m].
+        opening: A, at the centre of the circle [rad].
     """
 
     kind: ClassVar[str] = "arc"
@@ -111,7 +119,11 @@ class Arc(Shape):
 
 @dataclass(frozen=True, kw_only=True)
 class Ring(Shape):
-    """A thin homogeneous hoop about its centre (the origin), axis z: I_zz = m r^2, I_xx = I_yy = m r^2 / 2."""
+    """A thin homogeneous hoop about its centre (the origin), axis z: I_zz = m r^2, I_xx = I_yy = m r^2 / 2.
+
+    Args:
+        radius: r [m].
+    """
 
     kind: ClassVar[str] = "ring"
     dimension: ClassVar[int] = 1

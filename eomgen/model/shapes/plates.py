@@ -33,6 +33,10 @@ class Annulus(Hollow):
     """A thin round plate about its centre (the origin), axis z, between the radii r (`inner`) and R.
 
     I_zz = m (R^2 + r^2) / 2, I_xx = I_yy = half of it.
+
+    Args:
+        radius: R, outside [m].
+        inner: r, of the hole [m].
     """
 
     kind: ClassVar[str] = "annulus"
@@ -60,7 +64,11 @@ class Annulus(Hollow):
 
 @dataclass(frozen=True, kw_only=True)
 class Disc(Shape):
-    """A thin homogeneous disc about its centre (the origin), axis z: I_zz = m r^2 / 2, I_xx = I_yy = m r^2 / 4."""
+    """A thin homogeneous disc about its centre (the origin), axis z: I_zz = m r^2 / 2, I_xx = I_yy = m r^2 / 4.
+
+    Args:
+        radius: r [m].
+    """
 
     kind: ClassVar[str] = "disc"
     dimension: ClassVar[int] = 2
@@ -88,7 +96,11 @@ class Disc(Shape):
 
 @dataclass(frozen=True, kw_only=True)
 class Ellipse(Shape):
-    """A thin plate about its centre (the origin), semiaxes = [a, b] in x and y: I_xx = m b^2 / 4, I_yy = m a^2 / 4."""
+    """A thin plate about its centre (the origin), semiaxes = [a, b] in x and y: I_xx = m b^2 / 4, I_yy = m a^2 / 4.
+
+    Args:
+        semiaxes: a along x, b along y [m].
+    """
 
     kind: ClassVar[str] = "ellipse"
     dimension: ClassVar[int] = 2
@@ -126,6 +138,9 @@ class Polygon(Shape):
 
     Sums over the edges (Green): area A = sum k / 2 with k = x_i y_j - x_j y_i; the centre and the second moments follow
     from the same k. The body's axes are those in which the vertices are given.
+
+    Args:
+        vertices: in their order, as [[0, 0], [1, 0], [0, 1]] [m].
     """
 
     kind: ClassVar[str] = "polygon"
@@ -210,7 +225,12 @@ def _turn(a: Any, b: Any, c: Any) -> Any:
 
 @dataclass(frozen=True, kw_only=True)
 class Rectangle(Shape):
-    """A thin plate about its centre (the origin), width w along x, height h along y: I_zz = m (w^2 + h^2) / 12."""
+    """A thin plate about its centre (the origin), width w along x, height h along y: I_zz = m (w^2 + h^2) / 12.
+
+    Args:
+        width: w, along x [m].
+        height: h, along y [m].
+    """
 
     kind: ClassVar[str] = "rectangle"
     dimension: ClassVar[int] = 2
@@ -241,6 +261,10 @@ class Sector(Shape):
     """A thin plate about the centre of its circle (the origin), the angle A (`opening`) halved by +x; pi: half a disc.
 
     Centre 4 r sin(A/2) / (3 A) along x; about the origin I_xx = m r^2 (1 - sin(A)/A) / 4, I_zz = m r^2 / 2.
+
+    Args:
+        radius: r, of the circle [m].
+        opening: A, at the centre of the circle [rad].
     """
 
     kind: ClassVar[str] = "sector"
@@ -282,6 +306,10 @@ class Triangle(Shape):
     """A thin homogeneous plate, right angle at the origin, legs w along +x and h along +y.
 
     Centre (w/3, h/3); about it I_xx = m h^2 / 18, I_yy = m w^2 / 18, I_xy = + m w h / 36 (the tensor's sign).
+
+    Args:
+        width: w, the leg along x [m].
+        height: h, the leg along y [m].
     """
 
     kind: ClassVar[str] = "triangle"

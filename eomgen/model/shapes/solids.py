@@ -29,7 +29,11 @@ from eomgen.symbolic.expression.spatial import ZERO, Vector, added, cross, dot, 
 
 @dataclass(frozen=True, kw_only=True)
 class Box(Shape):
-    """A solid block about its centre (the origin), size = [x, y, z]: I_xx = m (y^2 + z^2) / 12, and so on round."""
+    """A solid block about its centre (the origin), size = [x, y, z]: I_xx = m (y^2 + z^2) / 12, and so on round.
+
+    Args:
+        size: the edges along x, y and z [m].
+    """
 
     kind: ClassVar[str] = "box"
     dimension: ClassVar[int] = 3
@@ -61,6 +65,10 @@ class Cone(Shape):
     """A solid cone about its mass centre (the origin), apex towards +z, h/4 of its height h below the origin.
 
     I_zz = 3 m r^2 / 10, I_xx = I_yy = 3 m (4 r^2 + h^2) / 80.
+
+    Args:
+        radius: r, of the base [m].
+        height: h [m].
     """
 
     kind: ClassVar[str] = "cone"
@@ -94,6 +102,10 @@ class Cylinder(Shape):
     """A solid cylinder about its centre (the origin), length l along z.
 
     I_zz = m r^2 / 2, I_xx = I_yy = m (3 r^2 + l^2) / 12.
+
+    Args:
+        radius: r [m].
+        length: l, along z [m].
     """
 
     kind: ClassVar[str] = "cylinder"
@@ -122,7 +134,11 @@ class Cylinder(Shape):
 
 @dataclass(frozen=True, kw_only=True)
 class Ellipsoid(Shape):
-    """A solid ellipsoid about its centre (the origin), semiaxes = [a, b, c]: I_xx = m (b^2 + c^2) / 5, and so on."""
+    """A solid ellipsoid about its centre (the origin), semiaxes = [a, b, c]: I_xx = m (b^2 + c^2) / 5, and so on.
+
+    Args:
+        semiaxes: a, b, c along x, y, z [m].
+    """
 
     kind: ClassVar[str] = "ellipsoid"
     dimension: ClassVar[int] = 3
@@ -154,6 +170,11 @@ class Frustum(Shape):
 
     With s = R^2 + R r + r^2: centre h (R^2 + 2 R r + 3 r^2) / (4 s); I_zz = 3 m (R^5 - r^5) / (10 (R^3 - r^3));
     the integral of z^2 dm is m h^2 (R^2 + 3 R r + 6 r^2) / (10 s).
+
+    Args:
+        radius: R, of the base [m].
+        top: r, of the other end [m].
+        height: h [m].
     """
 
     kind: ClassVar[str] = "frustum"
@@ -194,6 +215,9 @@ class Hemisphere(Shape):
     """Half a solid ball, the centre of its flat face at the origin, the dome towards +z.
 
     Centre 3 r / 8 along z; about the origin I = 2 m r^2 / 5 about x, y and z.
+
+    Args:
+        radius: r [m].
     """
 
     kind: ClassVar[str] = "hemisphere"
@@ -227,6 +251,10 @@ class Prism(Shape):
     """A solid with the section of a polygon, from -l/2 to l/2 along z; its axes are those of the vertices.
 
     To the polygon's moments about x and y come m l^2 / 12.
+
+    Args:
+        vertices: of its section, in their order [m].
+        length: l, along z [m].
     """
 
     kind: ClassVar[str] = "prism"
@@ -271,6 +299,11 @@ class Pyramid(Shape):
     """A solid pyramid about its mass centre (the origin), apex towards +z, h/4 of its height h below the origin.
 
     Its base is w wide along x and d deep along y: I_xx = m (d^2 / 20 + 3 h^2 / 80), I_zz = m (w^2 + d^2) / 20.
+
+    Args:
+        width: w, of the base along x [m].
+        depth: d, of the base along y [m].
+        height: h [m].
     """
 
     kind: ClassVar[str] = "pyramid"
@@ -306,7 +339,11 @@ class Pyramid(Shape):
 
 @dataclass(frozen=True, kw_only=True)
 class Sphere(Shape):
-    """A solid homogeneous ball about its centre (the origin): I = 2 m r^2 / 5 about every axis."""
+    """A solid homogeneous ball about its centre (the origin): I = 2 m r^2 / 5 about every axis.
+
+    Args:
+        radius: r [m].
+    """
 
     kind: ClassVar[str] = "sphere"
     dimension: ClassVar[int] = 3
@@ -343,6 +380,9 @@ class Tetrahedron(Shape):
 
     Volume |a . (b x c)| / 6 of the edges from one vertex; the centre c is the mean of the vertices p_k, about which
     the integral of x_i x_j dm is m / 20 times the sum of (p_k - c)_i (p_k - c)_j.
+
+    Args:
+        vertices: four of them [m].
     """
 
     kind: ClassVar[str] = "tetrahedron"
@@ -386,6 +426,10 @@ class Torus(Shape):
     """A solid ring about its centre (the origin), axis z: radius R (`major`) to the middle of its section of radius r.
 
     I_zz = m (R^2 + 3 r^2 / 4), I_xx = I_yy = m (R^2 / 2 + 5 r^2 / 8).
+
+    Args:
+        major: R, from the centre to the middle of the section [m].
+        minor: r, of the section [m].
     """
 
     kind: ClassVar[str] = "torus"
