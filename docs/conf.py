@@ -18,7 +18,7 @@ extensions = [
     "myst_parser",
     "sphinx.ext.autodoc",
     "sphinx.ext.napoleon",
-    "cut_reference",
+    "papers",
     "gallery",
     "kinds",
     "mathml",

@@ -14,7 +14,7 @@ from html import escape
 from pathlib import Path
 from typing import Any
 
-from cut_reference import write
+from papers import write
 
 import eomgen
 from eomgen.documents import markdown

@@ -14,8 +14,8 @@ from functools import cache, partial
 from pathlib import Path
 from typing import Any
 
-from cut_reference import cut, linked, write
 from gallery import answer_row, parts_of, told
+from papers import linked, papers, write
 from reference import PLACE as REFERENCE
 from reference import REGION, SEAMS, fields_table, gist, prose, safe
 
@@ -96,7 +96,7 @@ def plural(count: int, noun: str) -> str:
 # -- pages -------------------------------------------------------------------------------------------
 
 
-def page(kind: str, homes: dict[tuple[str, str], str]) -> str:
+def page(kind: str, homes: dict[str, str]) -> str:
     """The Markdown of a kind."""
     cls, model, seam = class_of(kind), example(kind), kinds()[kind]
     source, here = f"docs/reference/{seam.lower()}.md", f"reference/kinds/{kind}"
@@ -138,7 +138,7 @@ def asked_in(function: OutputFunction) -> dict[Path, list[str]]:
     return {path: names for path, names in found.items() if names}
 
 
-def function_page(function: OutputFunction, homes: dict[tuple[str, str], str]) -> str:
+def function_page(function: OutputFunction, homes: dict[str, str]) -> str:
     """The Markdown of an output function: what it gives, of what, in which unit, how it is found; answers."""
     here = f"reference/functions/{function.names[0]}"
     gives = linked(function.gives, "docs/reference/outputs.md", homes, here)
@@ -208,7 +208,7 @@ def gallery(names: list[str], columns: int = 3) -> str:
 
 def generate(app: Any) -> None:
     """All pages and pictures; those of a build with more kinds go."""
-    names, (_, homes) = chosen(), cut()
+    names, (_, homes) = chosen(), papers()
     for kind in names:
         write(PLACE / f"{kind}.md", page(kind, homes))
         rest_figure(example(kind)).save(PLACE / f"{kind}.svg")

@@ -18,12 +18,12 @@ HEAD = re.compile(r"^(#{1,6}) (.*)$")
 LINK = re.compile(r"(?<!!)\[([^\[\]]+)\]\(([^()\s]+)\)")
 
 
-def linked(text: str, source: str, homes: dict[tuple[str, str], str], page: str) -> str:
+def linked(text: str, source: str, homes: dict[str, str], page: str) -> str:
     """Links of a source of the tree, turned into links of the site.
 
     Args:
         source: the file of the tree that the text is from, "models/README.md".
-        homes: (file, anchor) -> page under docs; anchor "" is the file as a whole.
+        homes: file -> page under docs.
         page: where the text will stand, under docs.
     """
 
@@ -36,12 +36,9 @@ def linked(text: str, source: str, homes: dict[tuple[str, str], str], page: str)
         name = file.resolve().relative_to(ROOT).as_posix() if file.resolve().is_relative_to(ROOT) else path
         if name.startswith("docs/") and source == f"docs/{page}.md":
             return match[0]  # a page's own link, which Sphinx follows
-        home = homes.get((name, anchor)) or homes.get((name, ""))
-        if home is None:
+        if name not in homes:
             return words
-        up = "../" * page.count("/")
-        inner = f"#{anchor}" if anchor and (name, anchor) not in homes else ""  # a piece is a page by itself
-        return f"[{words}]({up}{home}.md{inner})"
+        return f"[{words}]({'../' * page.count('/')}{homes[name]}.md{'#' + anchor if anchor else ''})"
 
     return LINK.sub(turned, text)
 
@@ -53,20 +50,20 @@ def write(path: Path, text: str) -> None:
         path.write_text(text, encoding="utf-8")
 
 
-def cut() -> tuple[dict[str, str], dict[tuple[str, str], str]]:
-    """Page under docs -> text, of all that is cut; the homes of what links name."""
-    homes: dict[tuple[str, str], str] = {}
+def papers() -> tuple[dict[str, str], dict[str, str]]:
+    """Page under docs -> text; the homes of what links name."""
+    homes: dict[str, str] = {}
     raw: dict[str, tuple[str, str, str]] = {}  # page: (source, title, text)
     for source, name in WHOLE.items():
         text = (ROOT / source).read_text(encoding="utf-8")
         head = next(match[2] for match in map(HEAD.match, text.splitlines()) if match)
         raw[f"tree/{name}"] = (source, head, text.partition("\n")[2])
-        homes[source, ""] = f"tree/{name}"
+        homes[source] = f"tree/{name}"
     for path in (ROOT / "docs").rglob("*.md"):
         page = path.relative_to(ROOT / "docs").with_suffix("").as_posix()
-        homes[f"docs/{page}.md", ""] = page
-    homes["models", ""] = "gallery/index"
-    homes.update({(f"docs/{page}.md", ""): page for page in raw})
+        homes[f"docs/{page}.md"] = page
+    homes["models"] = "gallery/index"
+    homes.update({f"docs/{page}.md": page for page in raw})
     found = {}
     for page, (source, title, text) in raw.items():
         found[page] = f"# {title}\n\n{linked(text, source, homes, page).strip()}\n"
@@ -74,14 +71,17 @@ def cut() -> tuple[dict[str, str], dict[tuple[str, str], str]]:
 
 
 def generate(app) -> None:
-    """All pages, before Sphinx looks for them."""
-    pages, homes = cut()
+    """All pages, before Sphinx looks for them; those of an earlier build that are none any more go."""
+    pages, homes = papers()
     for page, text in pages.items():
         write(ROOT / "docs" / f"{page}.md", text)
+    for path in (ROOT / "docs" / "tree").iterdir():
+        if f"tree/{path.stem}" not in pages:
+            path.unlink()
     app.connect("source-read", lambda _, page, source: relinked(page, source, pages, homes))
 
 
-def relinked(page: str, source: list[str], pages: dict[str, str], homes: dict[tuple[str, str], str]) -> None:
+def relinked(page: str, source: list[str], pages: dict[str, str], homes: dict[str, str]) -> None:
     """Links of pages written by hand to files of the tree, which have pages here."""
     if page not in pages:
         source[0] = linked(source[0], f"docs/{page}.md", homes, page)
