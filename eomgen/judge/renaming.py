@@ -18,9 +18,12 @@ from eomgen.records import dataclass
 from eomgen.symbolic.expression.formula import over
 from eomgen.symbolic.expression.node import Node, Scalar, is_zero
 from eomgen.symbolic.expression.rational import Fraction
+from eomgen.symbolic.expression.traversal import order
 from eomgen.symbolic.print.text import to_text
 
 MOST = 600  # ways to read names that are not the model's
+FEW = 60  # of them are tried whatever it takes
+NODES = 60_000  # of the equations of motion that all ways together may evaluate: each is compared with them
 
 
 @dataclass(frozen=True)
@@ -41,8 +44,11 @@ class Renaming:
 
 
 def renamings(case: Case, written: HandEquation, unknown: Sequence[str]) -> Iterator[Renaming]:
-    """Ways to read the unknown names, the nearest first, at most MOST."""
-    return islice(_renamings(case, written, unknown), MOST)
+    """Ways to read the unknown names, the nearest first, at most MOST; fewer where the equations are long."""
+    equations = case.equations
+    entries = () if equations is None else (*equations.forcing, *(x for row in equations.M for x in row))
+    most = max(FEW, min(MOST, NODES // max(1, len(order(entries)))))
+    return islice(_renamings(case, written, unknown), most)
 
 
 def _renamings(case: Case, written: HandEquation, unknown: Sequence[str]) -> Iterator[Renaming]:
