@@ -65,19 +65,18 @@ def vectors(
             partial.append(vector)
         else:
             (torn if _contradicts(program, vector) else found).append(vector)
-    if not found and torn:
-        found, like = ([] if held else torn), torn[0]
-    elif found:
-        like = found[0]
-    else:
+    if not found and not torn:
         raise DerivationError(
             "the equations have no value at any of the states tried for test vectors",
             mend="give a start, and parameters, at which the equations have values",
         )
+    if not held:
+        found = found or torn
+    like = (found or torn)[0]
     where_held = [replace(like, t=t, x=tuple(x), p=tuple(p), inputs=None, result=()) for t, x, p in held]
     states = (*where_held, *_special(program, like, x0))
-    special = (_vector(program, floats, state) for state in states)
-    return (*found, *(vector for vector in special if vector is not None), *partial[:PARTIAL])
+    special = [vector for vector in (_vector(program, floats, state) for state in states) if vector is not None]
+    return (*(found or ([] if special else torn)), *special, *partial[:PARTIAL])
 
 
 def _special(program: Program, like: TestVector, x0: Any) -> list[TestVector]:
@@ -108,34 +107,45 @@ def _with_inputs(program: Program, values: dict[Node, Any], arithmetic: Arithmet
     return values | dict(zip(missing, evaluate(own, values, arithmetic), strict=True))
 
 
-def _solved(solve: Solve, entries: Sequence[Any]) -> dict[Node, Any]:
+def _blocks(solve: Solve, entries: Sequence[Any]) -> tuple[list[Any], Sequence[Any], Sequence[Any], Sequence[Any]]:
+    """M (n x n) and J (k x n), row after row, f and g of  M a - J^T lam = f,  J a = g."""
     n, k = len(solve.matrix), len(solve.border)
-    rows = n * (n + 1) // 2
+    first = n * (n + 1) // 2
     M = [entries[max(i, j) * (max(i, j) + 1) // 2 + min(i, j)] for i in range(n) for j in range(n)]
-    J, right = entries[rows : rows + k * n], entries[rows + k * n :]
-    return dict(zip(solve.unknowns, solve_bordered(M, J, right[:n], right[n:], solve.tables), strict=True))
+    right = entries[first + k * n :]
+    return M, entries[first : first + k * n], right[:n], right[n:]
+
+
+def _solved(solve: Solve, entries: Sequence[Any]) -> dict[Node, Any]:
+    return dict(zip(solve.unknowns, solve_bordered(*_blocks(solve, entries), solve.tables), strict=True))
 
 
 def _contradicts(program: Program, vector: TestVector) -> bool:
     """Whether J a = g has no solution there: one of two dependent rows is left open by the accelerations."""
-    bordered = [s for s in program.statements if type(s) is Solve and s.border]
-    if not bordered:
+    solves = [s for s in program.statements if type(s) is Solve]
+    if not any(solve.border for solve in solves):
         return False
     arithmetic = fifty_digits(partial=True)
     values = {node: arithmetic.number(number) for node, number in _exact(program, vector).items()}
-    for solve in (s for s in program.statements if type(s) is Solve):
-        entries = evaluate(solve.entries, _with_inputs(program, values, arithmetic), arithmetic)
+    values = _with_inputs(program, values, arithmetic)
+    for solve in solves:
+        entries = evaluate(solve.entries, values, arithmetic)
         found = _solved(solve, entries)
-        n, k = len(solve.matrix), len(solve.border)
-        first, a = n * (n + 1) // 2, [found[x] for x in solve.unknowns[:n]]
-        J, g = entries[first : first + k * n], entries[first + k * n + n :]
-        for i in range(k):
-            terms = [J[i * n + j] * a[j] for j in range(n)]
-            size: Any = max(map(abs, (*terms, g[i])), default=0)
-            open_: Any = abs(sum(terms, start=-g[i]))
-            if open_ > COMPUTED * size:
-                return True
+        if _is_left_open(solve, entries, found):
+            return True
         values = values | found
+    return False
+
+
+def _is_left_open(solve: Solve, entries: Sequence[Any], found: Mapping[Node, Any]) -> bool:
+    """Whether the accelerations of a solution leave a row of J a = g open."""
+    _, J, _, g = _blocks(solve, entries)
+    n = len(solve.matrix)
+    a = [found[x] for x in solve.unknowns[:n]]
+    for i, due in enumerate(g):
+        terms: list[Any] = [x * y for x, y in zip(J[i * n : (i + 1) * n], a, strict=True)]
+        if abs(sum(terms, start=-due)) > COMPUTED * max(map(abs, (*terms, due))):
+            return True
     return False
 
 
