@@ -12,7 +12,7 @@ from functools import lru_cache
 from random import Random
 from typing import Any
 
-from cpu_limit import TooLong, cpu_limit
+from cpu_limit import TooLong, within_cpu
 from mpmath.ctx_mp import MPContext
 
 from eomgen.errors import ExpressionError
@@ -153,8 +153,7 @@ def broken_law(text: str, t: Tree | None = None) -> str:
         t: the tree that it was written from; None for a text that may be no expression.
     """
     try:
-        with cpu_limit(SECONDS):
-            return _broken(text, t)
+        return within_cpu(SECONDS, lambda: _broken(text, t))
     except TooLong:
         return f"it takes no more than {SECONDS} s of CPU"
     except Exception as error:

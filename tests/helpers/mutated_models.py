@@ -8,7 +8,7 @@ from functools import cache
 from pathlib import Path
 from random import Random
 
-from cpu_limit import TooLong, cpu_limit
+from cpu_limit import TooLong, cpu_limit, within_cpu
 from fuzzed_expressions import PIECES, damaged, tree, written
 
 from eomgen.errors import ModelError
@@ -224,8 +224,7 @@ def loadable(rng: Random, longest: int) -> str:
 def broken_law(text: str) -> str:
     """The law that loading a text breaks, in words; "" where it keeps them all."""
     try:
-        with cpu_limit(SECONDS):
-            loads(_bytes(text), name="m")
+        within_cpu(SECONDS, lambda: loads(_bytes(text), name="m"))
     except ModelError as error:
         return _told(error, text)
     except TooLong:
