@@ -705,7 +705,7 @@ def test_doctor_names_what_is_there_and_what_is_missing(monkeypatch):
     monkeypatch.setattr(metadata, "version", found)
     result = run("doctor")
     assert result.exit_code == 0
-    assert "formulas      not found: no report as .html" in result.stdout and "eomgen[pdf]" in result.stdout
+    assert "formulas      not found: no report as .html" in result.stdout and "pip install typst" in result.stdout
     assert "C compiler    not found: equations run in numpy" in result.stdout
 
 

@@ -11,6 +11,7 @@ import pytest
 from each import each
 from hypothesis import given, settings
 from hypothesis import strategies as st
+from math_core import LatexToMathML
 from slow_run import usual
 
 import eomgen
@@ -66,7 +67,7 @@ def test_what_is_let_in_is_a_symbol_for_whoever_sets_it(text):
 @given(st.lists(st.sampled_from(TOKENS), min_size=1, max_size=12).map("".join))
 def test_what_is_let_in_is_mathematics_for_a_browser(text):
     """MathML of it by math-core, which knows nothing of our grammar."""
-    converter = pytest.importorskip("math_core").LatexToMathML()
+    converter = LatexToMathML()
     try:
         symbol = parse_symbol(text)
     except ExpressionError:

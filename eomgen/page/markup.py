@@ -17,7 +17,7 @@ from typing import Any
 
 import numpy as np
 
-from eomgen.errors import ToolMissing, visible
+from eomgen.errors import visible
 
 VOID = frozenset({"br", "img", "input", "link", "meta"})  # elements without an end
 _IMPORT = re.compile(r"^import .*\n", re.MULTILINE)
@@ -173,28 +173,15 @@ LEFT = 'style="text-align: left;justify-items: start;padding-left: 0;"', 'class=
 
 @cache
 def _converters() -> tuple[Any, Any]:
-    """(of formulas in a line, of those that stand alone, with their LaTeX inside).
+    """(of formulas in a line, of those that stand alone, with their LaTeX inside)."""
+    from math_core import LatexToMathML
 
-    Raises:
-        ToolMissing: math-core is not installed.
-    """
-    try:
-        from math_core import LatexToMathML
-    except ImportError as error:
-        mend = "pip install math-core; or write a .md, .tex or .pdf"
-        raise ToolMissing(
-            "the formulas of an HTML page are set by math-core, which is not installed", "", mend
-        ) from error
     plain = LatexToMathML(fancy_error=False, allow_unreliable_rendering=True)  # \widetilde among them
     return plain, LatexToMathML(fancy_error=False, allow_unreliable_rendering=True, annotation=True)
 
 
 def mathml(tex: str, *, display: bool = False) -> Html:
-    """A formula as MathML, with its LaTeX as annotation where it stands alone; what has no MathML stands as its LaTeX.
-
-    Raises:
-        ToolMissing: math-core is not installed.
-    """
+    """A formula as MathML; where it stands alone, with its LaTeX inside; what has no MathML stands as its LaTeX."""
     converter = _converters()[display]
     from math_core import LatexError
 

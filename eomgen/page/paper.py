@@ -1,27 +1,20 @@
-"""Report -> a paper: by Typst, which a wheel brings, else by the TeX of the machine."""
+"""Report -> a paper, set by Typst."""
 
 from __future__ import annotations
 
 import re
-import shutil
-import subprocess
-import tempfile
 from collections.abc import Callable
 from itertools import zip_longest
-from pathlib import Path
 
 from eomgen.documents.latex import Group, display_blocks, grouped, piece_latex, setter_of, side_latex
 from eomgen.documents.latex_math import Setter
 from eomgen.documents.statements import Cell, Code, Grid, Lines, Piece, Prose
-from eomgen.errors import RunFailed, ToolMissing
 from eomgen.page.contents import INKS, Report, ReportFigure, ReportSection
 from eomgen.page.html import svg
 from eomgen.page.markup import element, in_a_row, style
-from eomgen.page.tex import tex_files
 from eomgen.proof.check import SIGNS, Certificate
 from eomgen.version import __version__
 
-ENGINES = ("lualatex", "pdflatex", "xelatex", "tectonic")
 WHOLE = 576.0  # points of a picture that is as wide as the text
 TOGETHER = 5  # rows of a display that a page's end does not part
 WORDY = 24  # characters from which on a column of a table is as wide as there is room
@@ -50,36 +43,10 @@ PREAMBLE = """#set page(paper: "a4", margin: (x: 24mm, top: 24mm, bottom: 26mm),
 
 
 def pdf_of(report: Report) -> bytes:
-    """The paper.
+    """The paper, in the letters that Typst brings."""
+    import typst
 
-    Raises:
-        ToolMissing: there is neither Typst nor TeX on this machine.
-        RunFailed: TeX refuses it.
-    """
-    try:
-        import typst
-    except ImportError:
-        return _by_tex(report)
     return bytes(typst.compile(typst_text(report).encode(), ignore_system_fonts=True))
-
-
-def _by_tex(report: Report) -> bytes:
-    engine = next(filter(None, map(shutil.which, ENGINES)), None)
-    if engine is None:
-        mend = "pip install 'eomgen[pdf]' (Typst, no TeX needed); or write a .tex or .html"
-        raise ToolMissing("a paper is set by Typst or TeX, and neither is installed", "", mend)
-    with tempfile.TemporaryDirectory() as folder:
-        for name, content in tex_files(report, "paper.tex").items():
-            (Path(folder) / name).write_bytes(content.encode() if isinstance(content, str) else content)
-        words = (
-            [engine, "paper.tex"] if engine.endswith("tectonic") else [engine, "-interaction=batchmode", "paper.tex"]
-        )
-        for _ in range(2):  # tables over several pages find their widths in the first run
-            subprocess.run(words, cwd=folder, capture_output=True, check=False)
-        paper = Path(folder) / "paper.pdf"
-        if not paper.exists():
-            raise RunFailed(f"{Path(engine).name} makes no paper of it", "", "write a .tex and see its log")
-        return paper.read_bytes()
 
 
 def typst_text(report: Report) -> str:

@@ -178,13 +178,10 @@ class PlayedRun:
         }
 
     def _signs(self, plotted: Sequence[str]) -> dict[str, str]:
-        """The names as formulas have them, MathML; {} where nothing sets them: then they stand as they are spelt."""
+        """The names as formulas have them, MathML."""
         names = dict.fromkeys((*self.run.coordinates, *self.run.speeds, *self.model.parameters))
         notation = notation_of(self.model).told_apart(names)
-        try:
-            return {name: mathml(notation.latex(name)) for name in names if name in plotted or self.options.moves}
-        except ToolMissing:
-            return {}
+        return {name: mathml(notation.latex(name)) for name in names if name in plotted or self.options.moves}
 
     def _recorded(self) -> dict[str, Any]:
         """The run: states as they are integrated, or of contacts that change as they are named, with frames."""

@@ -190,7 +190,7 @@ def report(
         certify: whether what stands in it is proven.
     Raises:
         UsageError: no format has that ending; there is no such section.
-        ToolMissing: what sets the formulas is not installed.
+        ToolMissing: what runs notebooks is not installed.
     """
     form = None if path is None else form_of(str(path))
     is_file = not isinstance(model, Model)
